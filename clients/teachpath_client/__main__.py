@@ -1,0 +1,107 @@
+"""The client's command line: `teachpath-client synthetic` and `teachpath-client replay`."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+
+from google.protobuf.json_format import MessageToJson
+
+from teachpath_client.link import ClientError, Link
+from teachpath_client.reading import HandReading
+from teachpath_client.replay import read_mcap
+from teachpath_client.rest import Station
+from teachpath_client.synthetic import experiment_1, experiment_2
+from teachpath_client.tracker import Tracker
+from teachpath_proto import tracker_pb2
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Run the client's command line."""
+    options = _parser().parse_args(arguments)
+    try:
+        options.run(options)
+    except ClientError as error:
+        sys.exit(f"teachpath-client: {error}")
+    except KeyboardInterrupt:
+        sys.exit(130)
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="teachpath-client",
+        description="Send demonstrations to a teachpath station, as a tracker does: over Zenoh, with sequence numbers, "
+        "a device clock, and a handshake at the end that says what arrived.",
+    )
+    commands = parser.add_subparsers(required=True, metavar="COMMAND")
+    synthetic = commands.add_parser("synthetic", help="show the paper's experiments with a synthetic hand")
+    synthetic.add_argument("--experiment", type=int, choices=(1, 2), default=1)
+    synthetic.add_argument("--seed", type=int, default=1, help="same seed, same hand (default 1)")
+    synthetic.set_defaults(run=_synthetic)
+    replay = commands.add_parser("replay", help="play stored demonstrations as if they were live")
+    replay.add_argument("sources", nargs="+", metavar="SOURCE", help="an MCAP file, or a demonstration's id")
+    replay.add_argument("--url", default="http://127.0.0.1:8765", help="station that holds the ids (%(default)s)")
+    replay.set_defaults(run=_replay)
+    for command in (synthetic, replay):
+        command.add_argument("--task", default="demo", help="what is demonstrated (%(default)s)")
+        command.add_argument("--scene", default="", help="makes a new task with this scene, e.g. paper or empty")
+        command.add_argument("--calibration", default="", help="of the tracker's frame; default: the task's own")
+        command.add_argument("--tracker", default="glove-1", help="name of this tracker (%(default)s)")
+        command.add_argument("--endpoint", default="tcp/127.0.0.1:7447", help="the station's (%(default)s)")
+        command.add_argument("--prefix", default="teachpath/station", help="of the station's keys (%(default)s)")
+        command.add_argument("--speed", type=_speed, default=1.0, help="1 = real time (default)")
+    return parser
+
+
+def _speed(text: str) -> float:
+    speed = float(text)
+    if not 0.01 <= speed <= 100:
+        raise argparse.ArgumentTypeError(f"{text} is outside 0.01 to 100")
+    return speed
+
+
+def _synthetic(options: argparse.Namespace) -> None:
+    experiment = experiment_1 if options.experiment == 1 else experiment_2
+    with Link(options.endpoint) as link:
+        _record(Tracker(link, options.tracker, prefix=options.prefix), options, experiment(options.seed))
+
+
+def _replay(options: argparse.Namespace) -> None:
+    recordings = [_recording(source, options.url) for source in options.sources]
+    with Link(options.endpoint) as link:
+        tracker = Tracker(link, options.tracker, prefix=options.prefix)
+        for readings in recordings:
+            _record(tracker, options, readings)
+
+
+def _recording(source: str, url: str) -> list[HandReading]:
+    file = Path(source)
+    if file.suffix == ".mcap":
+        try:
+            return read_mcap(file.read_bytes())
+        except OSError as error:
+            raise ClientError(f"cannot read {source}: {error.strerror}") from error
+    with Station(url) as station:
+        return read_mcap(station.recording(source))
+
+
+def _record(tracker: Tracker, options: argparse.Namespace, readings: Iterable[HandReading]) -> None:
+    tracker.start(options.task, scene=options.scene, calibration=options.calibration)
+    try:
+        tracker.publish(readings, speed=options.speed)
+    except BaseException:
+        tracker.stop(discard=True)
+        raise
+    _print(tracker.stop())
+
+
+def _print(report: tracker_pb2.RecordingReport) -> None:
+    print(
+        MessageToJson(report, preserving_proto_field_name=True, indent=None, always_print_fields_with_no_presence=True)
+    )
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,66 @@
+"""A tracker as the station sees it: publishes readings with their pace and ends with the handshake."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterable
+
+from teachpath_client.link import Link
+from teachpath_client.reading import HandReading
+from teachpath_proto import tracker_pb2
+from teachpath_proto.keys import Keys
+
+
+class Tracker:
+    """One tracker at one station.
+
+    Args:
+        link: the session with the station.
+        name: of this tracker, unique at the station.
+        prefix: of the station's keys.
+        clock, sleep: seconds that never run back, and the wait; passed in so that tests need not wait.
+    """
+
+    def __init__(
+        self,
+        link: Link,
+        name: str,
+        *,
+        prefix: str = "teachpath/station",
+        clock: Callable[[], float] = time.monotonic,
+        sleep: Callable[[float], None] = time.sleep,
+    ) -> None:
+        self.name = name
+        self._link, self._keys = link, Keys(prefix)
+        self._clock, self._sleep = clock, sleep
+        self._publisher = link.publisher(self._keys.samples(name))
+        self._token = link.announce(self._keys.alive("tracker", name))
+        self._next = 1
+
+    def start(self, task: str, *, scene: str = "", calibration: str = "") -> tracker_pb2.RecordingReport:
+        """Ask the station to record `task` from this tracker; a new task is made when `scene` is named."""
+        request = tracker_pb2.StartRecording(task=task, tracker=self.name, scene=scene, calibration=calibration)
+        answer = self._link.ask(self._keys.recorder_start, request.SerializeToString())
+        return tracker_pb2.RecordingReport.FromString(answer)
+
+    def publish(self, readings: Iterable[HandReading], *, speed: float = 1.0) -> int:
+        """Publish readings when they are due, `speed` times as fast as they were taken; return how many.
+
+        The device clock in the samples keeps the readings' own time.
+        """
+        start_ns, start = time.time_ns(), self._clock()
+        count = 0
+        for reading in readings:
+            wait = start + reading.time / speed - self._clock()
+            if wait > 0:
+                self._sleep(wait)
+            self._publisher.put(reading.message(self._next, start_ns).SerializeToString())
+            self._next += 1
+            count += 1
+        return count
+
+    def stop(self, *, discard: bool = False) -> tracker_pb2.RecordingReport:
+        """End the recording: name the last sequence number sent and return the station's account."""
+        request = tracker_pb2.StopRecording(tracker=self.name, last_sequence=self._next - 1, discard=discard)
+        answer = self._link.ask(self._keys.recorder_stop, request.SerializeToString())
+        return tracker_pb2.RecordingReport.FromString(answer)

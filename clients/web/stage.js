@@ -1,0 +1,109 @@
+// The stage: background, light, floor grid and camera; what belongs to the page and not to the scene.
+const THEMES = {
+  light: { background: 0xe9edf1, grid: 0xc3ccd5, ground: 0.16, light: 1 },
+  dark: { background: 0x171b20, grid: 0x333c46, ground: 0.45, light: 0.78 },
+};
+
+// Dress meshcat's viewer; returns {look()} which puts the camera to its home.
+export function dress(viewer) {
+  const { THREE } = globalThis.MeshCat;
+  for (const name of ["Lights", "Grid", "Axes"]) viewer.set_property([name], "visible", false);
+  const group = new THREE.Group();
+  viewer.scene.add(group);
+  const lights = addLights(THREE, group);
+  const grid = makeGrid(THREE);
+  const ground = new THREE.Mesh(new THREE.PlaneGeometry(8, 8), new THREE.ShadowMaterial());
+  ground.receiveShadow = true;
+  ground.position.z = 0.001;
+  group.add(grid, ground);
+
+  const dark = matchMedia("(prefers-color-scheme: dark)");
+  const paint = () => {
+    const theme = THEMES[dark.matches ? "dark" : "light"];
+    viewer.scene.background?.dispose?.();
+    viewer.scene.background = new THREE.Color(theme.background);
+    viewer.scene.fog = new THREE.Fog(theme.background, 5, 12);
+    for (const [light, intensity] of lights) light.intensity = intensity * theme.light;
+    grid.material.color.setHex(theme.grid);
+    ground.material.opacity = theme.ground;
+    viewer.set_dirty();
+  };
+  dark.addEventListener("change", paint);
+  paint();
+  return { look: () => look(THREE, viewer) };
+}
+
+// Returns [light, intensity in the light theme] of each.
+function addLights(THREE, group) {
+  const sky = new THREE.HemisphereLight(0xffffff, 0xb9c0c8);
+  const sun = new THREE.DirectionalLight(0xffffff);
+  const fill = new THREE.DirectionalLight(0xdfe8ff);
+  sun.position.set(1.6, -2.2, 4.0);
+  fill.position.set(-2.5, 2.0, 1.5);
+  sun.castShadow = true;
+  sun.shadow.mapSize.set(2048, 2048);
+  sun.shadow.bias = -0.0006;
+  sun.shadow.normalBias = 0.01;
+  sun.shadow.radius = 3;
+  Object.assign(sun.shadow.camera, { left: -2, right: 2, top: 2, bottom: -2, near: 1, far: 9 });
+  group.add(sky, sun, sun.target, fill);
+  return [
+    [sky, 0.66],
+    [sun, 0.5],
+    [fill, 0.22],
+  ];
+}
+
+// One segment a cell: long lines that pass behind the camera vanish in some software renderers.
+function makeGrid(THREE, cells = 16, size = 0.25) {
+  const points = [];
+  const half = (cells * size) / 2;
+  for (let i = 0; i <= cells; i++) {
+    for (let j = 0; j < cells; j++) {
+      const [a, b, c] = [i * size - half, j * size - half, (j + 1) * size - half];
+      points.push(a, b, 0, a, c, 0, b, a, 0, c, a, 0);
+    }
+  }
+  const geometry = new THREE.BufferGeometry();
+  geometry.setAttribute("position", new THREE.Float32BufferAttribute(points, 3));
+  return new THREE.LineSegments(geometry, new THREE.LineBasicMaterial());
+}
+
+// Fit the scene and the arm's workspace into the picture, seen from the free side of the table, a little from above.
+function look(THREE, viewer) {
+  const corners = [];
+  const add = (box) => {
+    for (let i = 0; i < 8; i++) corners.push(new THREE.Vector3(...["x", "y", "z"].map((axis, k) => box[i & (1 << k) ? "max" : "min"][axis])));
+  };
+  // The arm's own box would jump with its pose: a column of its usual height stands for it.
+  add(new THREE.Box3(new THREE.Vector3(-0.25, 0, -0.25), new THREE.Vector3(0.25, 1.15, 0.25)));
+  for (const name of ["scene", "paths"]) {
+    const box = new THREE.Box3();
+    const node = viewer.scene_tree.children[name];
+    if (node) box.expandByObject(node.object);
+    if (!box.isEmpty()) add(box);
+  }
+  const camera = viewer.camera;
+  camera.fov = 30;
+  const tall = Math.tan((camera.fov * Math.PI) / 360);
+  const wide = tall * camera.aspect;
+  const ahead = new THREE.Vector3(0.7, 0.47, 0.7).normalize(); // three's frame: x forward of the arm, y up, z its right
+  const right = new THREE.Vector3(0, 1, 0).cross(ahead).normalize();
+  const up = ahead.clone().cross(right);
+  const target = new THREE.Vector3();
+  let distance = 0;
+  for (let round = 0; round < 4; round++) {
+    const seen = corners.map((corner) => corner.clone().sub(target)).map((p) => ({ x: p.dot(right), y: p.dot(up), z: p.dot(ahead) }));
+    distance = 1.05 * Math.max(...seen.map((p) => p.z + Math.max(Math.abs(p.x) / wide, Math.abs(p.y) / tall)));
+    const middle = (axis) => {
+      const shares = seen.map((p) => p[axis] / (distance - p.z));
+      return ((Math.max(...shares) + Math.min(...shares)) / 2) * distance;
+    };
+    target.addScaledVector(right, middle("x")).addScaledVector(up, middle("y"));
+  }
+  camera.position.copy(target).addScaledVector(ahead, distance);
+  viewer.controls.target.copy(target);
+  viewer.controls.update();
+  camera.updateProjectionMatrix();
+  viewer.set_dirty();
+}

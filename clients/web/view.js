@@ -1,0 +1,133 @@
+// The 3-D view: meshcat's viewer as a library, fed by our own WebSocket.
+// Server to page: batches of [u32 little-endian length][umsgpack command]; the first batch of a connection is the
+// whole scene. Page to server: the number of batches drawn, as text, from the next animation frame.
+import { dress } from "./stage.js";
+
+const SHORTEST = 250; // [ms] first pause before connecting again
+const LONGEST = 5000;
+
+export class View {
+  constructor(element, { connected, ready }) {
+    this.viewer = new MeshCat.Viewer(element);
+    this.own = new Set(Object.keys(this.viewer.scene_tree.children)); // what the server does not own
+    this.connected = connected;
+    this.ready = ready;
+    this.hidden = new Set();
+    this.pause = SHORTEST;
+    this.draws = 0;
+    this.framed = ""; // what the camera was last set up for
+    this.touched = false; // the operator has turned the view: it stays as it is
+    this.stage = dress(this.viewer);
+    this.#fitTo(element);
+  }
+
+  connect() {
+    this.connected("connecting");
+    const scheme = location.protocol === "https:" ? "wss:" : "ws:";
+    const socket = new WebSocket(`${scheme}//${location.host}/api/v1/view`);
+    socket.binaryType = "arraybuffer";
+    let owed = 0;
+    let replayed = false;
+    socket.onmessage = ({ data }) => {
+      if (!replayed) {
+        replayed = true;
+        this.pause = SHORTEST;
+        this.#clear();
+        this.connected("live");
+      }
+      if (owed++ === 0) {
+        requestAnimationFrame(() => {
+          if (socket.readyState === WebSocket.OPEN) socket.send(String(owed));
+          owed = 0;
+        });
+      }
+      this.#apply(data);
+    };
+    socket.onclose = () => {
+      const wait = this.pause * (0.75 + Math.random() / 2);
+      this.pause = Math.min(LONGEST, this.pause * 2);
+      this.connected("lost", wait / 1000);
+      setTimeout(() => this.connect(), wait);
+    };
+  }
+
+  show(layer, visible) {
+    if (visible) this.hidden.delete(layer);
+    else this.hidden.add(layer);
+    this.#hide();
+  }
+
+  home() {
+    this.touched = false;
+    this.stage.look();
+  }
+
+  // Paths that hold a drawn object, e.g. "/robot/link2/upper".
+  paths() {
+    const found = [];
+    const walk = (node, path) => {
+      if (node.children["<object>"]) found.push(path);
+      for (const [name, child] of Object.entries(node.children)) if (name !== "<object>") walk(child, `${path}/${name}`);
+    };
+    walk(this.viewer.scene_tree, "");
+    return found.filter((path) => !this.own.has(path.split("/")[1])).sort();
+  }
+
+  // World matrix of a path, column by column, three's y-up frame; null when there is none.
+  place(path) {
+    let node = this.viewer.scene_tree;
+    for (const name of path.split("/").filter(Boolean)) node = node?.children[name];
+    if (!node) return null;
+    node.object.updateWorldMatrix(true, false);
+    return node.object.matrixWorld.toArray();
+  }
+
+  #apply(data) {
+    const bytes = new DataView(data);
+    for (let at = 0; at + 4 <= bytes.byteLength; ) {
+      const length = bytes.getUint32(at, true);
+      this.viewer.handle_command_bytearray(new Uint8Array(data, at + 4, length));
+      at += 4 + length;
+    }
+    this.#hide();
+  }
+
+  // Only what exists: meshcat makes an empty group of every path it is asked for.
+  #clear() {
+    for (const name of Object.keys(this.viewer.scene_tree.children)) if (!this.own.has(name)) this.viewer.delete_path([name]);
+  }
+
+  #hide() {
+    for (const layer of ["demonstrations", "paths", "hand"]) {
+      const node = this.viewer.scene_tree.children[layer];
+      if (node) node.object.visible = !this.hidden.has(layer);
+    }
+    this.viewer.set_dirty();
+  }
+
+  #fitTo(element) {
+    // meshcat sizes itself by the window, and its control panel covers the view: both are ours to decide.
+    const viewer = this.viewer;
+    viewer.gui.domElement.remove();
+    const resize = Object.getPrototypeOf(viewer).set_3d_pane_size.bind(viewer);
+    viewer.set_3d_pane_size = () => resize(Math.max(1, element.clientWidth), Math.max(1, element.clientHeight));
+    new ResizeObserver(() => {
+      viewer.set_3d_pane_size();
+      this.framed = "";
+    }).observe(element);
+    viewer.controls.addEventListener("start", () => {
+      this.touched = true;
+    });
+    const render = Object.getPrototypeOf(viewer).render.bind(viewer);
+    viewer.render = () => {
+      const here = Object.keys(viewer.scene_tree.children).filter((name) => ["robot", "scene", "paths"].includes(name)).join();
+      if (here !== this.framed && !this.touched) {
+        this.framed = here;
+        this.stage.look();
+      }
+      render();
+      this.draws += 1;
+      if (here) this.ready();
+    };
+  }
+}

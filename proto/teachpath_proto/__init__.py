@@ -1,0 +1,1 @@
+"""The contract on the wire: protobuf messages and Zenoh keys that clients and service share."""

@@ -1,0 +1,56 @@
+"""The names on the wire: every Zenoh key of a station, built from one prefix."""
+
+import re
+
+NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,63}")
+
+
+def is_name(text: str) -> bool:
+    """Tell whether `text` may name a task, tracker, robot or station.
+
+    A name becomes a key segment, a folder and a piece of a URL: letters, digits, `.`, `_`, `-`, at most 64,
+    beginning with a letter or digit, and without `..`.
+    """
+    return NAME.fullmatch(text) is not None and ".." not in text
+
+
+class Keys:
+    """The keys of one station."""
+
+    def __init__(self, prefix: str = "teachpath/station") -> None:
+        self.prefix = prefix
+        self.recorder_start = f"{prefix}/recorder/start"
+        self.recorder_stop = f"{prefix}/recorder/stop"
+        self.recorder_status = f"{prefix}/recorder/status"
+        self.executor_command = f"{prefix}/executor/command"
+        self.executor_status = f"{prefix}/executor/status"
+        self.all_samples = f"{prefix}/trackers/*/samples"
+        self.all_alive = f"{prefix}/alive/**"
+
+    def samples(self, tracker: str) -> str:
+        """Key on which `tracker` publishes its `HandSample`s."""
+        return f"{self.prefix}/trackers/{tracker}/samples"
+
+    def tracker_of(self, key: str) -> str:
+        """Name of the tracker that published on `key` (a key of `samples`)."""
+        return key.removeprefix(f"{self.prefix}/trackers/").split("/", 1)[0]
+
+    def setpoint(self, robot: str) -> str:
+        """Key of the `Setpoint` stream to `robot`."""
+        return f"{self.prefix}/robot/{robot}/setpoint"
+
+    def state(self, robot: str) -> str:
+        """Key of the `JointState` stream from `robot`."""
+        return f"{self.prefix}/robot/{robot}/state"
+
+    def reset(self, robot: str) -> str:
+        """Key of the query that puts the simulated `robot` back to its home."""
+        return f"{self.prefix}/robot/{robot}/reset"
+
+    def job(self, job: str) -> str:
+        """Key of the `JobProgress` of one job."""
+        return f"{self.prefix}/jobs/{job}"
+
+    def alive(self, kind: str, name: str) -> str:
+        """Liveliness token of a running part, e.g. `alive("tracker", "glove-1")`."""
+        return f"{self.prefix}/alive/{kind}/{name}"

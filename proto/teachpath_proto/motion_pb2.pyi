@@ -1,0 +1,116 @@
+from google.protobuf.internal import containers as _containers
+from google.protobuf.internal import enum_type_wrapper as _enum_type_wrapper
+from google.protobuf import descriptor as _descriptor
+from google.protobuf import message as _message
+from collections.abc import Iterable as _Iterable
+from typing import ClassVar as _ClassVar, Optional as _Optional, Union as _Union
+
+DESCRIPTOR: _descriptor.FileDescriptor
+
+class Setpoint(_message.Message):
+    __slots__ = ("cycle", "nominal_ns", "sent_ns", "position", "velocity", "acceleration", "gripper_closed", "execution")
+    CYCLE_FIELD_NUMBER: _ClassVar[int]
+    NOMINAL_NS_FIELD_NUMBER: _ClassVar[int]
+    SENT_NS_FIELD_NUMBER: _ClassVar[int]
+    POSITION_FIELD_NUMBER: _ClassVar[int]
+    VELOCITY_FIELD_NUMBER: _ClassVar[int]
+    ACCELERATION_FIELD_NUMBER: _ClassVar[int]
+    GRIPPER_CLOSED_FIELD_NUMBER: _ClassVar[int]
+    EXECUTION_FIELD_NUMBER: _ClassVar[int]
+    cycle: int
+    nominal_ns: int
+    sent_ns: int
+    position: _containers.RepeatedScalarFieldContainer[float]
+    velocity: _containers.RepeatedScalarFieldContainer[float]
+    acceleration: _containers.RepeatedScalarFieldContainer[float]
+    gripper_closed: bool
+    execution: str
+    def __init__(self, cycle: _Optional[int] = ..., nominal_ns: _Optional[int] = ..., sent_ns: _Optional[int] = ..., position: _Optional[_Iterable[float]] = ..., velocity: _Optional[_Iterable[float]] = ..., acceleration: _Optional[_Iterable[float]] = ..., gripper_closed: _Optional[bool] = ..., execution: _Optional[str] = ...) -> None: ...
+
+class JointState(_message.Message):
+    __slots__ = ("stamp_ns", "cycle", "position", "velocity", "torque", "tracking_error", "missed", "holding", "gripper_closed", "object_position", "object_orientation", "execution")
+    STAMP_NS_FIELD_NUMBER: _ClassVar[int]
+    CYCLE_FIELD_NUMBER: _ClassVar[int]
+    POSITION_FIELD_NUMBER: _ClassVar[int]
+    VELOCITY_FIELD_NUMBER: _ClassVar[int]
+    TORQUE_FIELD_NUMBER: _ClassVar[int]
+    TRACKING_ERROR_FIELD_NUMBER: _ClassVar[int]
+    MISSED_FIELD_NUMBER: _ClassVar[int]
+    HOLDING_FIELD_NUMBER: _ClassVar[int]
+    GRIPPER_CLOSED_FIELD_NUMBER: _ClassVar[int]
+    OBJECT_POSITION_FIELD_NUMBER: _ClassVar[int]
+    OBJECT_ORIENTATION_FIELD_NUMBER: _ClassVar[int]
+    EXECUTION_FIELD_NUMBER: _ClassVar[int]
+    stamp_ns: int
+    cycle: int
+    position: _containers.RepeatedScalarFieldContainer[float]
+    velocity: _containers.RepeatedScalarFieldContainer[float]
+    torque: _containers.RepeatedScalarFieldContainer[float]
+    tracking_error: float
+    missed: int
+    holding: bool
+    gripper_closed: bool
+    object_position: _containers.RepeatedScalarFieldContainer[float]
+    object_orientation: _containers.RepeatedScalarFieldContainer[float]
+    execution: str
+    def __init__(self, stamp_ns: _Optional[int] = ..., cycle: _Optional[int] = ..., position: _Optional[_Iterable[float]] = ..., velocity: _Optional[_Iterable[float]] = ..., torque: _Optional[_Iterable[float]] = ..., tracking_error: _Optional[float] = ..., missed: _Optional[int] = ..., holding: _Optional[bool] = ..., gripper_closed: _Optional[bool] = ..., object_position: _Optional[_Iterable[float]] = ..., object_orientation: _Optional[_Iterable[float]] = ..., execution: _Optional[str] = ...) -> None: ...
+
+class ExecutorCommand(_message.Message):
+    __slots__ = ("verb", "execution", "plan", "override")
+    class Verb(int, metaclass=_enum_type_wrapper.EnumTypeWrapper):
+        __slots__ = ()
+        UNSPECIFIED: _ClassVar[ExecutorCommand.Verb]
+        START: _ClassVar[ExecutorCommand.Verb]
+        OVERRIDE: _ClassVar[ExecutorCommand.Verb]
+        HOLD: _ClassVar[ExecutorCommand.Verb]
+        RESUME: _ClassVar[ExecutorCommand.Verb]
+        STOP: _ClassVar[ExecutorCommand.Verb]
+    UNSPECIFIED: ExecutorCommand.Verb
+    START: ExecutorCommand.Verb
+    OVERRIDE: ExecutorCommand.Verb
+    HOLD: ExecutorCommand.Verb
+    RESUME: ExecutorCommand.Verb
+    STOP: ExecutorCommand.Verb
+    VERB_FIELD_NUMBER: _ClassVar[int]
+    EXECUTION_FIELD_NUMBER: _ClassVar[int]
+    PLAN_FIELD_NUMBER: _ClassVar[int]
+    OVERRIDE_FIELD_NUMBER: _ClassVar[int]
+    verb: ExecutorCommand.Verb
+    execution: str
+    plan: bytes
+    override: float
+    def __init__(self, verb: _Optional[_Union[ExecutorCommand.Verb, str]] = ..., execution: _Optional[str] = ..., plan: _Optional[bytes] = ..., override: _Optional[float] = ...) -> None: ...
+
+class ExecutorStatus(_message.Message):
+    __slots__ = ("execution", "state", "reason", "progress", "override", "cycles", "late", "missed", "lateness_p50_us", "lateness_p99_us", "lateness_max_us", "limit_use", "tracking_error", "limit_place", "duration")
+    EXECUTION_FIELD_NUMBER: _ClassVar[int]
+    STATE_FIELD_NUMBER: _ClassVar[int]
+    REASON_FIELD_NUMBER: _ClassVar[int]
+    PROGRESS_FIELD_NUMBER: _ClassVar[int]
+    OVERRIDE_FIELD_NUMBER: _ClassVar[int]
+    CYCLES_FIELD_NUMBER: _ClassVar[int]
+    LATE_FIELD_NUMBER: _ClassVar[int]
+    MISSED_FIELD_NUMBER: _ClassVar[int]
+    LATENESS_P50_US_FIELD_NUMBER: _ClassVar[int]
+    LATENESS_P99_US_FIELD_NUMBER: _ClassVar[int]
+    LATENESS_MAX_US_FIELD_NUMBER: _ClassVar[int]
+    LIMIT_USE_FIELD_NUMBER: _ClassVar[int]
+    TRACKING_ERROR_FIELD_NUMBER: _ClassVar[int]
+    LIMIT_PLACE_FIELD_NUMBER: _ClassVar[int]
+    DURATION_FIELD_NUMBER: _ClassVar[int]
+    execution: str
+    state: str
+    reason: str
+    progress: float
+    override: float
+    cycles: int
+    late: int
+    missed: int
+    lateness_p50_us: float
+    lateness_p99_us: float
+    lateness_max_us: float
+    limit_use: float
+    tracking_error: float
+    limit_place: str
+    duration: float
+    def __init__(self, execution: _Optional[str] = ..., state: _Optional[str] = ..., reason: _Optional[str] = ..., progress: _Optional[float] = ..., override: _Optional[float] = ..., cycles: _Optional[int] = ..., late: _Optional[int] = ..., missed: _Optional[int] = ..., lateness_p50_us: _Optional[float] = ..., lateness_p99_us: _Optional[float] = ..., lateness_max_us: _Optional[float] = ..., limit_use: _Optional[float] = ..., tracking_error: _Optional[float] = ..., limit_place: _Optional[str] = ..., duration: _Optional[float] = ...) -> None: ...

@@ -1,0 +1,28 @@
+"""The running parts that the resources speak to."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from teachpath.config import Settings
+from teachpath.io.store import Store
+from teachpath.records import Demonstration, Trajectory
+from teachpath.workers.executions import Executions
+from teachpath.workers.jobs import Jobs
+from teachpath.workers.recorder import Recorder
+
+
+@dataclass(frozen=True)
+class Parts:
+    """What a station consists of, for the resources."""
+
+    settings: Settings
+    store: Store
+    recorder: Recorder
+    jobs: Jobs
+    executions: Executions
+    trajectory: Callable[[Demonstration], Trajectory]
+    health: Callable[[], dict[str, Any]]
+    imported: Callable[[Demonstration, Trajectory], None]

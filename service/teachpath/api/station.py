@@ -1,0 +1,57 @@
+"""The station as a whole: health, scenes and calibrations; and the application that holds all resources."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from fastapi import APIRouter, FastAPI
+from starlette.middleware.trustedhost import TrustedHostMiddleware
+
+from teachpath import __version__
+from teachpath.api.executions import executions_router
+from teachpath.api.faults import answer_errors
+from teachpath.api.parts import Parts
+from teachpath.api.tasks import recording_router, tasks_router
+from teachpath.api.work import jobs_router, results_router
+from teachpath.io.documents import to_document
+from teachpath.records import Calibration
+
+DESCRIPTION = """Show a task a few times; teachpath finds the different ways it was done, learns a path for each, proves
+that the arm can follow it, and moves the arm. Metres, radians, seconds; quaternions w, x, y, z; times ending in `_ns`
+are nanoseconds since the Unix epoch. Every refusal has a sentence in `detail`."""
+
+
+def build_api(parts: Parts, view: APIRouter) -> FastAPI:
+    """Return the web application: the REST API under /api/v1 and the page with its view."""
+    app = FastAPI(title="teachpath", version=__version__, description=DESCRIPTION)
+    # Another name for this address is how a foreign page would reach a loopback service (DNS rebinding).
+    hosts = ["127.0.0.1", "localhost", "[::1]", parts.settings.web.host, *parts.settings.web.hosts]
+    app.add_middleware(TrustedHostMiddleware, allowed_hosts=hosts)
+    answer_errors(app)
+    routers = (tasks_router, recording_router, jobs_router, results_router, executions_router, station_router)
+    for router in routers:
+        app.include_router(router(parts), prefix="/api/v1")
+    app.include_router(view)
+    return app
+
+
+def station_router(parts: Parts) -> APIRouter:
+    """Return the routes of the station itself."""
+    router = APIRouter(tags=["station"])
+
+    @router.get("/health")
+    def get_health() -> dict[str, Any]:
+        """Say which parts run, and what an operator should know."""
+        return parts.health()
+
+    @router.get("/scenes")
+    def list_scenes() -> list[dict[str, Any]]:
+        """List the scenes: table, obstacles and the object at its start."""
+        return [to_document(scene) for scene in parts.settings.scenes]
+
+    @router.get("/calibrations")
+    def list_calibrations() -> list[Calibration]:
+        """List the mappings to the world from the trackers' frames."""
+        return list(parts.settings.calibrations)
+
+    return router

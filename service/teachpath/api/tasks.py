@@ -1,0 +1,142 @@
+"""Tasks and their demonstrations: make, record, import, read."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any
+
+from fastapi import APIRouter, Query, Request
+from fastapi.responses import FileResponse
+from pydantic import BaseModel, Field
+from starlette.concurrency import run_in_threadpool
+
+from teachpath.api.parts import Parts
+from teachpath.errors import UnusableInput, UnusableRecording
+from teachpath.io.documents import to_document
+from teachpath.io.wire import report_document
+from teachpath.offline.importing import Source, import_file
+from teachpath.records import Demonstration, Task
+from teachpath_proto.keys import is_name
+
+
+class NewTask(BaseModel):
+    """A task to make."""
+
+    scene: str = Field("paper", description="what stands around the arm; see /scenes")
+    calibration: str = Field("identity", description="of the tracker's frame; see /calibrations")
+
+
+class Recording(BaseModel):
+    """A recording to start or stop."""
+
+    tracker: str = Field(description="name of the tracker that shows the task")
+    calibration: str = Field("", description="start: instead of the task's own")
+    discard: bool = Field(False, description="stop: throw away the demonstration that is still open")
+
+
+def tasks_router(parts: Parts) -> APIRouter:
+    """Return the routes of tasks and demonstrations."""
+    router = APIRouter(tags=["tasks"])
+    store = parts.store
+
+    @router.get("/tasks")
+    def list_tasks() -> list[Task]:
+        """List all tasks, oldest first."""
+        return store.tasks()
+
+    @router.put("/tasks/{task}")
+    def make_task(task: str, new: NewTask) -> Task:
+        """Make a task; one that exists stays as it is."""
+        if not is_name(task):
+            raise UnusableInput(f"{task!r} cannot name a task: use letters, digits, '.', '_' or '-', at most 64")
+        scene, calibration = parts.settings.scene(new.scene), parts.settings.calibration(new.calibration)
+        return store.ensure_task(task, scene=scene.name, calibration=calibration.name)
+
+    @router.get("/tasks/{task}")
+    def get_task(task: str) -> Task:
+        """Return one task."""
+        return store.task(task)
+
+    @router.get("/tasks/{task}/demonstrations")
+    def list_demonstrations(task: str) -> list[Demonstration]:
+        """List a task's demonstrations in their order, each with its verdict and account."""
+        return store.demonstrations(store.task(task).name)
+
+    @router.post("/tasks/{task}/demonstrations", status_code=201)
+    async def import_demonstrations(
+        task: str,
+        request: Request,
+        name: Annotated[str, Query(description="name of the source")] = "upload",
+        format: Annotated[str, Query(description="csv or robottasks")] = "csv",
+        units: Annotated[str, Query(description="of the positions: m, cm, mm or in")] = "m",
+        rate: Annotated[float, Query(description="[Hz] for a format without a clock")] = 50.0,
+        scene: Annotated[str, Query(description="of a new task")] = "empty",
+        calibration: Annotated[str, Query(description="of the file's frame")] = "identity",
+    ) -> list[Demonstration]:
+        """Import a file sent as the request's body; every motion in it becomes a demonstration."""
+        content = await _body(request, parts.settings.web.largest_upload)
+        made = await run_in_threadpool(
+            import_file,
+            store,
+            parts.settings.recording,
+            Source(name, content, format, units, rate),
+            task=task,
+            scene=parts.settings.scene(scene),
+            calibration=parts.settings.calibration(calibration),
+        )
+        for demonstration, trajectory in made:
+            parts.imported(demonstration, trajectory)
+        return [demonstration for demonstration, _ in made]
+
+    @router.get("/demonstrations/{demonstration}")
+    def get_demonstration(demonstration: str) -> Demonstration:
+        """Return one demonstration."""
+        return store.demonstration(demonstration)
+
+    @router.get("/demonstrations/{demonstration}/trajectory")
+    def get_trajectory(demonstration: str) -> dict[str, Any]:
+        """Return the object's trajectory in its transport phase: times [s], positions [m], orientations, world."""
+        return to_document(parts.trajectory(store.demonstration(demonstration)))
+
+    @router.get("/demonstrations/{demonstration}/recording", response_class=FileResponse)
+    def get_recording(demonstration: str) -> FileResponse:
+        """Return the MCAP file with every sample."""
+        file = store.recordings.path(store.demonstration(demonstration).recording)
+        return FileResponse(file, media_type="application/octet-stream", filename=file.name)
+
+    return router
+
+
+def recording_router(parts: Parts) -> APIRouter:
+    """Return the routes that start and stop recording; tracker clients do the same over Zenoh."""
+    router = APIRouter(tags=["recording"])
+    recorder = parts.recorder
+
+    @router.get("/tasks/{task}/recording")
+    def get_recording_state(task: str) -> list[dict[str, Any]]:
+        """Return the accounts of the task's running recordings."""
+        name = parts.store.task(task).name
+        return [report_document(report) for report in recorder.reports() if report.task == name]
+
+    @router.post("/tasks/{task}/recording", status_code=201)
+    def start_recording(task: str, recording: Recording) -> dict[str, Any]:
+        """Start recording from a tracker; demonstrations are cut by themselves as the hand grasps and releases."""
+        return report_document(recorder.begin(task, recording.tracker, calibration=recording.calibration))
+
+    @router.post("/tasks/{task}/recording/stop")
+    def stop_recording(task: str, recording: Recording) -> dict[str, Any]:
+        """Stop recording and return the account of every sample."""
+        running = {report.tracker for report in recorder.reports() if report.task == parts.store.task(task).name}
+        if recording.tracker not in running:
+            raise UnusableInput(f"{recording.tracker!r} is not recording {task}; running: {sorted(running) or 'none'}")
+        return report_document(recorder.end(recording.tracker, discard=recording.discard))
+
+    return router
+
+
+async def _body(request: Request, limit: int) -> bytes:
+    content = bytearray()
+    async for chunk in request.stream():
+        content += chunk
+        if len(content) > limit:
+            raise UnusableRecording(f"the file is over the limit of {limit} bytes; split it, or use: teachpath import")
+    return bytes(content)

@@ -1,0 +1,160 @@
+"""The page and its 3-D view: static files under a strict content security policy, and the view's WebSocket."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Mapping
+from contextlib import suppress
+from pathlib import Path
+from typing import Final
+from urllib.parse import urlsplit
+
+from fastapi import APIRouter, Response, WebSocket, WebSocketDisconnect
+from fastapi.responses import FileResponse, PlainTextResponse
+
+from teachpath.errors import NotFound
+from teachpath.workers.preview import Page, Preview, viewer_files
+
+# The two hashes are the style elements that meshcat's bundle puts into the page: its own (empty) one and dat.gui's.
+STYLE_HASHES: Final = (
+    "sha256-47DEQpj8HBSa+/TImW+5JCeuQeRkm5NMpJWZG3hSuFU=",
+    "sha256-K7kXOYqP8pf16L5/PaLZ4u9Lt5q3nTyjCvyGtO/Af2k=",
+)
+HEADERS: Final = {
+    "Content-Security-Policy": "; ".join(
+        (
+            "default-src 'none'",
+            "script-src 'self'",
+            "style-src 'self' " + " ".join(f"'{digest}'" for digest in STYLE_HASHES),
+            "connect-src 'self'",
+            "img-src 'self' data: blob:",
+            "base-uri 'none'",
+            "form-action 'none'",
+            "frame-ancestors 'none'",
+        )
+    ),
+    "X-Content-Type-Options": "nosniff",
+    "Referrer-Policy": "no-referrer",
+    "Cache-Control": "no-cache",
+}
+MEDIA: Final = {
+    ".js": "text/javascript; charset=utf-8",
+    ".css": "text/css; charset=utf-8",
+    ".svg": "image/svg+xml",
+    ".txt": "text/plain; charset=utf-8",
+}
+_VENDORED: Final = {
+    "meshcat.min.js": ("dist/main.min.js", ".js"),
+    "meshcat.min.js.LICENSE.txt": ("dist/main.min.js.LICENSE.txt", ".txt"),
+    "meshcat.LICENSE.txt": ("LICENSE", ".txt"),
+}
+
+
+def web_root() -> Path:
+    """Return the folder of the page's files: `teachpath/web` when installed, `clients/web` in a checkout.
+
+    Raises:
+        NotFound: neither is there.
+    """
+    here = Path(__file__).resolve()
+    for folder in (here.parents[1] / "web", here.parents[3] / "clients" / "web"):
+        if (folder / "index.html").is_file():
+            return folder
+    raise NotFound("the files of the operator's page are missing; reinstall teachpath")
+
+
+def view_router(preview: Preview) -> APIRouter:
+    """Return the routes of the page, its files and its view: `/`, `/web/...`, `/vendor/...`, `/api/v1/view`."""
+    router = APIRouter(include_in_schema=False)
+    root, viewer = web_root(), viewer_files()
+
+    @router.get("/")
+    def page() -> Response:
+        return FileResponse(root / "index.html", media_type="text/html; charset=utf-8", headers=HEADERS)
+
+    @router.get("/favicon.ico")
+    def icon() -> Response:
+        return _file(root / "icon.svg", ".svg")
+
+    @router.get("/web/{name:path}")
+    def module(name: str) -> Response:
+        path = (root / name).resolve()
+        if path.suffix not in MEDIA or not path.is_relative_to(root.resolve()):
+            return _missing(name)
+        return _file(path, path.suffix)
+
+    @router.get("/vendor/{name}")
+    def vendored(name: str) -> Response:
+        place, suffix = _VENDORED.get(name, ("", ""))
+        return _file(viewer / place, suffix) if place else _missing(name)
+
+    @router.websocket("/api/v1/view")
+    async def view(socket: WebSocket) -> None:
+        if not same_origin(socket.headers):
+            await socket.close()  # before it was accepted: the handshake is answered with 403
+            return
+        await socket.accept()
+        await _serve(socket, preview)
+
+    return router
+
+
+def same_origin(headers: Mapping[str, str]) -> bool:
+    """Tell whether a WebSocket handshake comes from our own page, or from no page at all (no Origin header)."""
+    origin = headers.get("origin")
+    return origin is None or urlsplit(origin).netloc.lower() == headers.get("host", "").lower()
+
+
+async def _serve(socket: WebSocket, preview: Preview) -> None:
+    loop, news = asyncio.get_running_loop(), asyncio.Event()
+
+    def wake() -> None:
+        with suppress(RuntimeError):  # the loop has ended meanwhile
+            loop.call_soon_threadsafe(news.set)
+
+    page = preview.attach(wake)
+    news.set()
+    listening = asyncio.create_task(_listen(socket, page))
+    sending = asyncio.create_task(_send(socket, page, news))
+    try:
+        await asyncio.wait((listening, sending), return_when=asyncio.FIRST_COMPLETED)
+    finally:
+        preview.detach(page)
+        for task in (listening, sending):
+            task.cancel()
+        await asyncio.gather(listening, sending, return_exceptions=True)
+
+
+async def _listen(socket: WebSocket, page: Page) -> None:
+    """Take the page's acknowledgements until it leaves or says something else."""
+    try:
+        while True:
+            text = await socket.receive_text()
+            if not (text.isascii() and text.isdigit() and len(text) < 9):
+                await socket.close(1008, "only counts of drawn batches are expected here")
+                return
+            page.acknowledge(int(text))
+    except (WebSocketDisconnect, KeyError):
+        return
+
+
+async def _send(socket: WebSocket, page: Page, news: asyncio.Event) -> None:
+    """Send what the page has credit for, as it comes."""
+    try:
+        while True:
+            await news.wait()
+            news.clear()
+            while (batch := page.take()) is not None:
+                await socket.send_bytes(batch)
+    except (WebSocketDisconnect, RuntimeError):
+        return
+
+
+def _file(path: Path, suffix: str) -> Response:
+    if not path.is_file():
+        return _missing(path.name)
+    return FileResponse(path, media_type=MEDIA[suffix], headers=HEADERS)
+
+
+def _missing(name: str) -> Response:
+    return PlainTextResponse(f"the page has no file {name!r}\n", status_code=404, headers=HEADERS)

@@ -1,0 +1,96 @@
+"""Jobs, and what they make: runs, learned paths and plans."""
+
+from __future__ import annotations
+
+from typing import Any, Literal
+
+from fastapi import APIRouter, Response
+from pydantic import BaseModel, Field
+
+from teachpath.api.parts import Parts
+from teachpath.io.documents import to_document
+from teachpath.records import Job
+
+
+class NewJob(BaseModel):
+    """Work to begin on a task."""
+
+    kind: Literal["learn", "plan"] = Field("learn", description="learn: cluster, select, fit; plan: certify one path")
+    settings: dict[str, Any] = Field(default_factory=dict, description="learn: settings laid over the station's own")
+    path: str = Field("", description="plan: id of the learned path")
+
+
+def jobs_router(parts: Parts) -> APIRouter:
+    """Return the routes of jobs."""
+    router = APIRouter(tags=["jobs"])
+    store, jobs = parts.store, parts.jobs
+
+    @router.get("/tasks/{task}/jobs")
+    def list_jobs(task: str) -> list[Job]:
+        """List a task's jobs, oldest first."""
+        return store.jobs(task=store.task(task).name)
+
+    @router.post("/tasks/{task}/jobs", status_code=202)
+    def begin_job(task: str, new: NewJob, response: Response) -> Job:
+        """Queue a job; `Location` names it. It survives a restart of the service."""
+        stored = store.task(task)
+        if new.kind == "learn":
+            job = jobs.submit(stored.name, "learn", {"settings": new.settings})
+        else:
+            job = jobs.submit(stored.name, "plan", {"path": store.path(new.path).id})
+        response.headers["Location"] = f"/api/v1/jobs/{job.id}"
+        return job
+
+    @router.get("/jobs/{job}")
+    def get_job(job: str) -> Job:
+        """Return one job: its state, progress, and the id of its outcome (a run or a plan)."""
+        return store.job(job)
+
+    @router.post("/jobs/{job}/cancel")
+    def cancel_job(job: str) -> Job:
+        """Cancel a queued or running job."""
+        return jobs.cancel(job)
+
+    return router
+
+
+def results_router(parts: Parts) -> APIRouter:
+    """Return the routes of runs, paths and plans."""
+    router = APIRouter(tags=["results"])
+    store, jobs = parts.store, parts.jobs
+
+    @router.get("/tasks/{task}/runs")
+    def list_runs(task: str) -> list[dict[str, Any]]:
+        """List a task's learning runs, newest first: clusters, scores, dendrogram, convergence, paths."""
+        return [to_document(run) for run in store.runs(store.task(task).name)]
+
+    @router.get("/tasks/{task}/runs/{run}")
+    def get_run(task: str, run: str) -> dict[str, Any]:
+        """Return one learning run."""
+        store.task(task)
+        return to_document(store.run(run))
+
+    @router.get("/paths/{path}")
+    def get_path(path: str) -> dict[str, Any]:
+        """Return the newest version of a learned path: degree, knots, control points, weights, fit."""
+        return to_document(store.path(path))
+
+    @router.get("/paths/{path}/plans")
+    def list_plans(path: str) -> list[dict[str, Any]]:
+        """List a path's plans, newest first."""
+        return [to_document(plan) for plan in store.plans(store.path(path).id)]
+
+    @router.post("/paths/{path}/plans", status_code=202)
+    def begin_plan(path: str, response: Response) -> Job:
+        """Queue the planning of a path; `Location` names the job, its outcome the plan."""
+        stored = store.path(path)
+        job = jobs.submit(store.run(stored.run).task, "plan", {"path": stored.id})
+        response.headers["Location"] = f"/api/v1/jobs/{job.id}"
+        return job
+
+    @router.get("/plans/{plan}")
+    def get_plan(plan: str) -> dict[str, Any]:
+        """Return one plan with its certificate."""
+        return to_document(store.plan(plan))
+
+    return router

@@ -1,0 +1,219 @@
+"""The station: builds every part from one configuration and lets them meet; the only place where they do."""
+
+from __future__ import annotations
+
+import logging
+import time
+from dataclasses import asdict
+from pathlib import Path
+from types import TracebackType
+from typing import Any
+
+import numpy as np
+from fastapi import FastAPI
+
+from teachpath import __version__
+from teachpath.api.parts import Parts
+from teachpath.api.station import build_api
+from teachpath.api.view import view_router
+from teachpath.config import Settings
+from teachpath.errors import NotFound, UnusableSettings
+from teachpath.io.bus import Bus, open_bus
+from teachpath.io.store import Store
+from teachpath.learning import LearningSettings
+from teachpath.motion import drawing
+from teachpath.offline.lock import StationLock
+from teachpath.recording import Cut, object_trajectory, to_world
+from teachpath.records import Demonstration, Job, Learned, Plan, Trajectory, Vector
+from teachpath.workers import desk
+from teachpath.workers.executions import Executions
+from teachpath.workers.jobs import Jobs, Kind
+from teachpath.workers.preview import Preview
+from teachpath.workers.processes import WorkerProcess
+from teachpath.workers.recorder import Recorder
+from teachpath_proto.keys import Keys
+
+log = logging.getLogger("teachpath")
+
+
+def trajectory_of(store: Store, settings: Settings, demonstration: Demonstration) -> Trajectory:
+    """Return the object's trajectory of a stored demonstration, from its recording."""
+    carried = settings.scene(store.task(demonstration.task).scene).carried
+    return object_trajectory(
+        store.recordings.samples(demonstration.recording),
+        Cut(demonstration.grasp, demonstration.release),
+        demonstration.calibration,
+        carried.position if carried else None,
+    )
+
+
+class Station:
+    """A running station: recorder, jobs, executor, simulated robot, preview and web application.
+
+    Use it as a context manager; the web application `web` is served by whoever opened it.
+
+    Raises:
+        Conflict: another service uses the data folder.
+        Unreachable: the Zenoh endpoint is taken.
+    """
+
+    def __init__(self, settings: Settings) -> None:
+        self.settings = settings
+        self._lock = StationLock(Path(settings.store.data_dir))
+        self._lock.__enter__()
+        try:
+            self.bus: Bus = open_bus(settings.bus, listen=True)
+        except BaseException:
+            self._lock.__exit__(None, None, None)
+            raise
+        self.keys = Keys(settings.bus.prefix)
+        self.store = Store(settings.store)
+        self.recorder = Recorder(
+            self.bus,
+            self.keys,
+            self.store,
+            settings.recording,
+            scene=settings.scene,
+            calibration=settings.calibration,
+            recorded=self._show_demonstration,
+        )
+        self.jobs = Jobs(self.bus, self.keys, self.store, settings.jobs, self._kinds(), finished=self._show_outcome)
+        self.executions = Executions(self.bus, self.keys, self.store, robot=settings.executor.robot)
+        self.preview = Preview(
+            self.bus,
+            self.keys,
+            drawing(),
+            robot=settings.executor.robot,
+            home=np.array(settings.motion.home),
+            to_world=self._to_world,
+        )
+        self.processes = [WorkerProcess(name, settings.model_dump_json()) for name in ("simulator", "executor")]
+        self.web: FastAPI = build_api(self._parts(), view_router(self.preview))
+        self._shown = ""
+        self._started = time.monotonic()
+
+    def __enter__(self) -> Station:
+        unfinished = self.store.recordings.unfinished()
+        if unfinished:
+            log.warning("%d recordings were cut off; look at them with: teachpath doctor", len(unfinished))
+        self.preview.start()
+        self.recorder.start()
+        self.executions.start()
+        for process in self.processes:
+            process.start()
+        self.jobs.start()
+        tasks = self.store.tasks()
+        self._show_task(tasks[-1].name if tasks else "")
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        for process in self.processes:
+            process.ask_to_stop()
+        self.recorder.stop()
+        self.jobs.stop()
+        self.executions.stop()
+        self.preview.stop()
+        for process in self.processes:
+            process.stop()
+        self.bus.close()
+        self.store.close()
+        self._lock.__exit__(None, None, None)
+
+    def trajectory(self, demonstration: Demonstration) -> Trajectory:
+        """Return the object's trajectory of a stored demonstration."""
+        return trajectory_of(self.store, self.settings, demonstration)
+
+    def health(self) -> dict[str, Any]:
+        """Say which parts run, and what an operator should know."""
+        status = self.executions.status
+        unfinished = [f.name for f in self.store.recordings.unfinished()]
+        running = {r.tracker for r in self.recorder.reports()}
+        notes = [f"the {p.name} has ended: {p.last_words()}" for p in self.processes if not p.is_alive()]
+        if unfinished and not running:
+            notes.append(f"{len(unfinished)} recordings were cut off; stop the service and run: teachpath doctor")
+        return {
+            "version": __version__,
+            "uptime": round(time.monotonic() - self._started, 1),
+            "endpoint": self.settings.bus.endpoint,
+            "processes": {p.name: "running" if p.is_alive() else "ended" for p in self.processes},
+            "recording": sorted(running),
+            "executor": asdict(status) if status else None,
+            "notes": notes,
+        }
+
+    def _parts(self) -> Parts:
+        return Parts(
+            self.settings,
+            self.store,
+            self.recorder,
+            self.jobs,
+            self.executions,
+            self.trajectory,
+            self.health,
+            self._show_demonstration,
+        )
+
+    def _kinds(self) -> dict[str, Kind]:
+        return {
+            "learn": Kind(self._prepare_learning, desk.learn_paths, self._finish_learning),
+            "plan": Kind(self._prepare_planning, desk.plan_path, self._finish_planning),
+        }
+
+    def _prepare_learning(self, job: Job) -> tuple[dict[str, Trajectory], LearningSettings]:
+        demonstrations = [d for d in self.store.demonstrations(job.task) if d.verdict != "reject"]
+        if not demonstrations:
+            raise NotFound(f"task {job.task} has no usable demonstrations yet; show it a few times first")
+        wanted = job.request.get("settings")
+        settings = self._learning_settings(wanted if isinstance(wanted, dict) else {})
+        return {d.id: self.trajectory(d) for d in demonstrations}, settings
+
+    def _learning_settings(self, changes: dict[str, Any]) -> LearningSettings:
+        known = set(LearningSettings.__dataclass_fields__)
+        if unknown := set(changes) - known:
+            raise UnusableSettings(f"there is no learning setting {sorted(unknown)[0]}; known: {sorted(known)}")
+        return LearningSettings(**{**asdict(self.settings.learning), **changes})
+
+    def _finish_learning(self, job: Job, learned: Learned) -> str:
+        return self.store.finish_learning(job.id, learned)
+
+    def _prepare_planning(self, job: Job) -> tuple[Any, ...]:
+        path = self.store.path(str(job.request["path"]))
+        return path, self.settings.scene(self.store.task(job.task).scene), self.settings.motion
+
+    def _finish_planning(self, job: Job, plan: Plan) -> str:
+        return self.store.finish_planning(job.id, plan)
+
+    # what the view shows
+
+    def _to_world(self, tracker: str, position: Vector) -> Vector | None:
+        calibration = self.recorder.calibration_of(tracker)
+        if calibration is None:
+            return None
+        x, y, z = to_world(calibration, position)
+        return float(x), float(y), float(z)
+
+    def _show_task(self, task: str) -> None:
+        if not task:
+            self.preview.show_scene(self.settings.scenes[0])
+            return
+        self._shown = task
+        runs = self.store.runs(task)
+        self.preview.show_task(
+            self.settings.scene(self.store.task(task).scene),
+            [(d.id, self.trajectory(d).positions) for d in self.store.demonstrations(task)],
+            runs[0].learned.paths if runs else (),
+        )
+
+    def _show_demonstration(self, demonstration: Demonstration, trajectory: Trajectory) -> None:
+        if self._shown != demonstration.task:
+            self._show_task(demonstration.task)
+        else:
+            self.preview.show_demonstration(demonstration.id, trajectory.positions)
+
+    def _show_outcome(self, job: Job) -> None:
+        if job.kind == "learn" and job.outcome:
+            self._show_task(job.task)
+        elif job.kind == "plan" and job.outcome:
+            self.preview.highlight(self.store.plan(job.outcome).path)

@@ -1,0 +1,234 @@
+"""demo: the main job from one command, on real sockets, files and processes."""
+
+from __future__ import annotations
+
+import json
+import socket
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+from rich.console import Console
+
+from teachpath.commands.options import Config, settings_of
+from teachpath.commands.rest import Api
+from teachpath.commands.serving import free_port, serving, until_signalled
+from teachpath.commands.tables import clusters_table, paths_table, plan_lines
+from teachpath.commands.work import progress_bar, replay_command
+from teachpath.config import Settings
+from teachpath.errors import PathRefused, TeachpathError, Unreachable
+
+READY = 20.0  # [s] for executor and simulated arm to appear
+console = Console(stderr=True)
+
+
+def demo(
+    speed: Annotated[float, typer.Option(min=0.1, max=20, help="How fast the hand moves; 1 = real time.")] = 4.0,
+    once: Annotated[bool, typer.Option("--once", help="End after the arm has moved, instead of staying up.")] = False,
+    as_json: Annotated[bool, typer.Option("--json", help="Print the summary as JSON; --once does so too.")] = False,
+    seed: Annotated[int, typer.Option(help="Of the synthetic hand.")] = 1,
+    recordings: Annotated[
+        Path | None,
+        typer.Option(help="Instead of the synthetic hand: import a RoboTasks file and replay it."),
+    ] = None,
+    port: Annotated[int | None, typer.Option(help="Web port; 8765, or a free one when that is taken.")] = None,
+    data: Annotated[Path | None, typer.Option(help="Keep the data in this folder; else it is thrown away.")] = None,
+    config: Config = None,
+) -> None:
+    """Show twelve demonstrations over Zenoh, learn the ways, certify a path, and move the simulated Puma 560.
+
+    A hand in a process of its own shows the paper's first experiment; everything runs on this machine.
+    """
+    with ExitStack() as stack:
+        folder = data or Path(stack.enter_context(tempfile.TemporaryDirectory(prefix="teachpath-demo-")))
+        settings = _settings(config, folder, port)
+        stop = stack.enter_context(until_signalled())
+        stack.enter_context(serving(settings))
+        url = f"http://{settings.web.host}:{settings.web.port}"
+        console.print(
+            f"teachpath serves [bold]{url}[/bold]: open it to watch; API docs at {url}/docs", highlight=False
+        )
+        api = stack.enter_context(Api(url))
+        summary = _Story(api, url, settings, stop).tell(speed=speed, seed=seed, recordings=recordings)
+        if as_json or once:
+            print(json.dumps(summary, indent=2), flush=True)
+        if not once:
+            console.print(f"The service stays up at {url} until Ctrl-C.")
+            stop.wait()
+
+
+class _Stopped(TeachpathError):
+    """The operator pressed Ctrl-C."""
+
+
+class _Story:
+    """The steps of the demo, in order; each prints what it did."""
+
+    def __init__(self, api: Api, url: str, settings: Settings, stop: Any) -> None:
+        self._api, self._url, self._settings, self._stop = api, url, settings, stop
+
+    def tell(self, *, speed: float, seed: int, recordings: Path | None) -> dict[str, Any]:
+        self._wait_ready()
+        if recordings is None:
+            task, reports = self._show_experiment(speed, seed)
+        else:
+            task, reports = self._show_recordings(recordings, speed)
+        run = self._learn(task)
+        plan = self._plan(task, run)
+        execution = self._execute(plan["id"])
+        return _summary(reports, run, plan, execution)
+
+    def _wait_ready(self) -> None:
+        deadline = time.monotonic() + READY
+        while (health := self._api.call("GET", "/health"))["executor"] is None:
+            if health["notes"] or time.monotonic() > deadline:
+                raise Unreachable("; ".join(health["notes"]) or f"the executor did not appear within {READY:g} s")
+            self._pause()
+
+    def _show_experiment(self, speed: float, seed: int) -> tuple[str, list[dict[str, Any]]]:
+        command = [sys.executable, "-m", "teachpath_client", "synthetic", "--task", "demo", "--scene", "paper"]
+        command += ["--endpoint", self._settings.bus.endpoint, "--prefix", self._settings.bus.prefix]
+        command += ["--seed", str(seed), "--speed", str(speed)]
+        return "demo", self._record(command, "demo", 12)
+
+    def _show_recordings(self, file: Path, speed: float) -> tuple[str, list[dict[str, Any]]]:
+        task = file.stem
+        query = {"name": file.name, "format": "robottasks", "units": "cm", "calibration": "robottasks"}
+        stored = self._api.call("POST", f"/tasks/{task}/demonstrations", content=file.read_bytes(), params=query)
+        console.print(f"imported {len(stored)} demonstrations from {file.name}; replaying them over Zenoh")
+        command = replay_command(
+            [d["id"] for d in stored],
+            url=self._url,
+            endpoint=self._settings.bus.endpoint,
+            task=f"{task}-replayed",
+            scene="empty",
+            calibration="robottasks",
+            speed=speed,
+        )
+        return f"{task}-replayed", self._record(command, f"{task}-replayed", len(stored))
+
+    def _record(self, command: list[str], task: str, expected: int) -> list[dict[str, Any]]:
+        """Run a tracker client in its own process and follow what the recorder makes of it."""
+        with _client(command) as client, progress_bar("recording") as show:
+            while client.poll() is None:
+                made = len(self._demonstrations(task))
+                show(made / expected, f"{made} of {expected} demonstrations")
+                self._pause()
+            out, _ = client.communicate()
+            if client.returncode:
+                raise TeachpathError(f"the tracker client failed with exit status {client.returncode}")
+            show(1.0, f"{len(self._demonstrations(task))} of {expected} demonstrations")
+        reports: list[dict[str, Any]] = [json.loads(line) for line in out.splitlines()]
+        made = sum(len(report["demonstrations"]) for report in reports)
+        if made != expected:
+            notes = "; ".join(note for report in reports for note in report["notes"])
+            raise TeachpathError(f"{made} of {expected} demonstrations were recorded: {notes or 'see the tracker'}")
+        return reports
+
+    def _demonstrations(self, task: str) -> list[dict[str, Any]]:
+        known = {t["name"] for t in self._api.call("GET", "/tasks")}
+        found: list[dict[str, Any]] = self._api.call("GET", f"/tasks/{task}/demonstrations") if task in known else []
+        return found
+
+    def _learn(self, task: str) -> dict[str, Any]:
+        with progress_bar("learning") as show:
+            job = self._api.follow_job(self._api.call("POST", f"/tasks/{task}/jobs", {"kind": "learn"}), show)
+        run: dict[str, Any] = self._api.call("GET", f"/tasks/{task}/runs/{job['outcome']}")
+        numbers = {d["id"]: d["number"] for d in self._demonstrations(task)}
+        console.print(clusters_table(run, numbers))
+        console.print(paths_table(run))
+        return run
+
+    def _plan(self, task: str, run: dict[str, Any]) -> dict[str, Any]:
+        """Plan the paths in turn and return the first plan that is certified."""
+        refusals = []
+        for path in run["learned"]["paths"]:
+            with progress_bar("planning") as show:
+                try:
+                    job = self._api.follow_job(self._api.call("POST", f"/paths/{path['id']}/plans"), show)
+                except TeachpathError as error:
+                    refusals.append(f"{path['id']}: {error}")
+                    continue
+            plan: dict[str, Any] = self._api.call("GET", f"/plans/{job['outcome']}")
+            for refusal in refusals:
+                console.print(f"not executable: {refusal}", highlight=False)
+            console.print(plan_lines(plan), highlight=False)
+            return plan
+        raise PathRefused(f"no learned path of {task} is executable: {' | '.join(refusals)}")
+
+    def _execute(self, plan: str) -> dict[str, Any]:
+        with progress_bar("moving") as show:
+            execution = self._api.call("POST", "/executions", {"plan": plan})
+            return self._api.follow_execution(execution, lambda *news: (self._pause(0.0), show(*news))[1])
+
+    def _pause(self, seconds: float = 0.2) -> None:
+        if self._stop.wait(seconds):
+            raise _Stopped("stopped by the operator before the demo was over")
+
+
+@contextmanager
+def _client(command: list[str]) -> Iterator[subprocess.Popen[str]]:
+    process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
+    try:
+        yield process
+    finally:
+        if process.poll() is None:
+            process.terminate()
+            process.wait(1.0)
+
+
+def _settings(config: Path | None, folder: Path, port: int | None) -> Settings:
+    """Keep to the default ports, or take free ones when somebody is there."""
+    settings = settings_of(config, folder)
+    web = port or (settings.web.port if _is_free(settings.web.port) else free_port())
+    endpoint = settings.bus.endpoint
+    if not _is_free(int(endpoint.rsplit(":", 1)[1])):
+        endpoint = f"tcp/127.0.0.1:{free_port()}"
+    return settings_of(config, folder, web={"port": web}, bus={"endpoint": endpoint})
+
+
+def _is_free(port: int) -> bool:
+
+    try:
+        socket.create_server(("127.0.0.1", port)).close()
+    except OSError:
+        return False
+    return True
+
+
+def _summary(
+    reports: list[dict[str, Any]], run: dict[str, Any], plan: dict[str, Any], execution: dict[str, Any]
+) -> dict[str, Any]:
+    learned, status, certificate = run["learned"], execution["status"], plan["certificate"]
+    return {
+        "demonstrations": sum(len(r["demonstrations"]) for r in reports),
+        "samples": sum(int(r["received"]) for r in reports),
+        "lost_samples": sum(int(r["lost"]) for r in reports),
+        "clusters": [len(c["members"]) for c in learned["clusters"]],
+        "selected": [sum(s["selected"] for s in c["scores"]) for c in learned["clusters"]],
+        "paths": [
+            {
+                "id": p["id"],
+                "control_points": len(p["curve"]["control_points"]),
+                "largest_error_m": p["fit"]["largest"],
+            }
+            for p in learned["paths"]
+        ],
+        "planned_path": plan["path"],
+        "plan_duration_s": plan["duration"],
+        "least_clearance_m": certificate["clearance"]["value"],
+        "largest_limit_use": status["limit_use"],
+        "largest_tracking_error_rad": status["tracking_error"],
+        "setpoints": status["cycles"],
+        "setpoints_late": status["late"],
+        "setpoints_missed": status["missed"],
+        "lateness_p50_us": status["lateness_p50_us"],
+        "lateness_p99_us": status["lateness_p99_us"],
+        "execution": status["state"],
+    }

@@ -1,0 +1,70 @@
+"""A station with its web port open, in this process."""
+
+from __future__ import annotations
+
+import signal
+import socket
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+import uvicorn
+
+from teachpath.app import Station
+from teachpath.config import Settings
+from teachpath.errors import Unreachable
+
+
+@contextmanager
+def serving(settings: Settings) -> Iterator[Station]:
+    """Open a station and its web port; on leaving, everything it started has ended.
+
+    Raises:
+        Unreachable: the web port or the Zenoh endpoint is taken.
+        Conflict: another service uses the data folder.
+    """
+    web = settings.web
+    listener = _listen(web.host, web.port)
+    try:
+        with Station(settings) as station:
+            config = uvicorn.Config(
+                station.web, log_level="warning", access_log=False, timeout_graceful_shutdown=1, ws="websockets-sansio"
+            )
+            server = uvicorn.Server(config)
+            thread = threading.Thread(target=server.run, kwargs={"sockets": [listener]}, name="web", daemon=True)
+            thread.start()
+            try:
+                yield station
+            finally:
+                server.should_exit = True
+                thread.join(timeout=2.0)
+    finally:
+        listener.close()
+
+
+def _listen(host: str, port: int) -> socket.socket:
+    try:
+        return socket.create_server((host, port), backlog=128)
+    except OSError as error:
+        raise Unreachable(
+            f"cannot listen on {host}:{port} ({error.strerror}); is a service running there? Choose another: --port"
+        ) from None
+
+
+def free_port() -> int:
+    """Return a TCP port of loopback that nobody listens on now."""
+    with socket.create_server(("127.0.0.1", 0)) as probe:
+        port: int = probe.getsockname()[1]
+        return port
+
+
+@contextmanager
+def until_signalled() -> Iterator[threading.Event]:
+    """Set an event on Ctrl-C or SIGTERM instead of breaking off; the old handlers come back on leaving."""
+    stop = threading.Event()
+    handlers = {s: signal.signal(s, lambda *_: stop.set()) for s in (signal.SIGINT, signal.SIGTERM)}
+    try:
+        yield stop
+    finally:
+        for number, handler in handlers.items():
+            signal.signal(number, handler)

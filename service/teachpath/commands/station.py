@@ -1,0 +1,87 @@
+"""serve, and the two processes that it starts: executor and simulator."""
+
+from __future__ import annotations
+
+import json
+import logging
+import os
+import sys
+import threading
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from teachpath.commands.options import Config, Data, settings_of
+from teachpath.commands.serving import serving, until_signalled
+from teachpath.config import Settings, load
+from teachpath.io.bus import open_bus
+from teachpath.workers.executor import Executor
+from teachpath.workers.simulator import Simulator
+from teachpath_proto.keys import Keys
+
+Attached = Annotated[bool, typer.Option("--attached", hidden=True)]
+
+
+def serve(
+    config: Config = None,
+    data: Data = None,
+    port: Annotated[int | None, typer.Option(help="Web port; 8765 unless set.")] = None,
+) -> None:
+    """Run the service: recorder, jobs, executor, simulated arm and web port, until Ctrl-C."""
+    changes: dict[str, Any] = {} if port is None else {"web": {"port": port}}
+    settings = settings_of(config, data, **changes)
+    _log_to_stderr()
+    with until_signalled() as stop, serving(settings):
+        print(f"teachpath serves http://{settings.web.host}:{settings.web.port} (API docs at /docs)", flush=True)
+        print(f"trackers publish to {settings.bus.endpoint}; Ctrl-C ends it", flush=True)
+        stop.wait()
+
+
+def executor(config: Config = None, attached: Attached = False) -> None:
+    """Run the executor alone: it streams the setpoints of certified plans."""
+    settings = _settings(config, attached)
+    with until_signalled() as stop:
+        _leave_with_parent(stop, attached)
+        bus = open_bus(settings.bus)
+        try:
+            Executor(bus, Keys(settings.bus.prefix), settings.executor, motion=settings.motion).run(stop)
+        finally:
+            bus.close()
+
+
+def simulator(config: Config = None, attached: Attached = False) -> None:
+    """Run the simulated Puma 560 alone: it follows the setpoints and publishes its joint state."""
+    settings = _settings(config, attached)
+    with until_signalled() as stop:
+        _leave_with_parent(stop, attached)
+        bus = open_bus(settings.bus)
+        try:
+            Simulator(bus, Keys(settings.bus.prefix), settings.scenes[0], settings.simulator).run(stop)
+        finally:
+            bus.close()
+
+
+def _settings(config: Path | None, attached: bool) -> Settings:
+    _log_to_stderr()
+    return load(document=json.loads(sys.stdin.readline())) if attached else load(config)
+
+
+def _leave_with_parent(stop: threading.Event, attached: bool) -> None:
+    """Stop when the service that started this process is gone, even if it was killed."""
+    if not attached:
+        return
+
+    def wait() -> None:
+        # The parent never writes again: reading returns when its end of the pipe is closed.
+        while os.read(sys.stdin.fileno(), 4096):
+            continue
+        stop.set()
+
+    threading.Thread(target=wait, name="parent", daemon=True).start()
+
+
+def _log_to_stderr() -> None:
+    logging.basicConfig(level=logging.INFO, format="%(levelname)s %(name)s: %(message)s", stream=sys.stderr)
+    for chatty in ("alembic", "httpx"):
+        logging.getLogger(chatty).setLevel(logging.WARNING)

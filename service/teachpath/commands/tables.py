@@ -1,0 +1,55 @@
+"""What the commands print: the table of clusters in the form of the paper's Table I, and plans."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from rich.table import Table
+
+
+def clusters_table(run: dict[str, Any], numbers: dict[str, int]) -> Table:
+    """Return clusters, members, log-likelihoods and the selected ones of a run (Aleotti & Caselli 2005, Table I).
+
+    Args:
+        run: as GET /tasks/{task}/runs/{run} gives it.
+        numbers: of the demonstrations, by id.
+    """
+    learned = run["learned"]
+    table = Table(title=f"Results of trajectory clustering ({learned['mode']} mode)")
+    for name in ("Cluster", "Demonstration", "Log-likelihood", "Selected"):
+        table.add_column(name, justify="right" if name != "Selected" else "center")
+    for cluster in learned["clusters"]:
+        for i, score in enumerate(cluster["scores"]):
+            table.add_row(
+                str(cluster["index"]) if i == 0 else "",
+                str(numbers.get(score["demonstration"], score["demonstration"])),
+                f"{score['log_likelihood']:.3f}",
+                "yes" if score["selected"] else "",
+                end_section=i == len(cluster["scores"]) - 1,
+            )
+    return table
+
+
+def paths_table(run: dict[str, Any]) -> Table:
+    """Return the learned paths of a run: degree, control points, errors."""
+    table = Table(title="Learned paths")
+    for name in ("Path", "Degree", "Control points", "Largest error", "Tube radius"):
+        table.add_column(name, justify="right")
+    for path in run["learned"]["paths"]:
+        curve, fit = path["curve"], path["fit"]
+        points = str(len(curve["control_points"]))
+        table.add_row(
+            path["id"], str(curve["degree"]), points, f"{1e3 * fit['largest']:.2f} mm", f"{1e3 * fit['tube']:.1f} mm"
+        )
+    return table
+
+
+def plan_lines(plan: dict[str, Any]) -> str:
+    """Return a plan's certificate in a few lines."""
+    c = plan["certificate"]
+    uses = [f"{name} {c[f'{name}_use']['value']:.0%}" for name in ("position", "velocity", "acceleration", "jerk")]
+    return (
+        f"plan {plan['id']}: {plan['duration']:.2f} s along {plan['lengths'][-1]:.3f} m, arm {c['branch']}\n"
+        f"  largest use of the limits: {', '.join(uses)}\n"
+        f"  least clearance {1e3 * c['clearance']['value']:.1f} mm ({c['clearance']['place']})"
+    )

@@ -1,0 +1,127 @@
+"""learn, plan, run and replay: what a running service is asked to do."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import Annotated
+
+import typer
+from rich.console import Console
+from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+
+from teachpath.commands.options import LOCAL, Url
+from teachpath.commands.rest import Api
+from teachpath.commands.tables import clusters_table, paths_table, plan_lines
+from teachpath.config import load
+
+Task = Annotated[str, typer.Argument(help="The task.")]
+console = Console(stderr=True)
+
+
+@contextmanager
+def progress_bar(title: str) -> Iterator[Callable[[float, str], None]]:
+    """Show a bar on the terminal's error stream; yields `show(fraction, sentence)`."""
+    columns = (
+        TextColumn("{task.description:<10}"),
+        BarColumn(),
+        TextColumn("{task.fields[what]}"),
+        TimeElapsedColumn(),
+    )
+    with Progress(*columns, console=console) as bar:
+        row = bar.add_task(title, total=1.0, what="")
+        yield lambda fraction, what: bar.update(row, completed=fraction, what=what)
+
+
+def learn(
+    task: Task,
+    url: Url = LOCAL,
+    mode: Annotated[str, typer.Option(help="default: to be trusted; paper: Aleotti & Caselli 2005.")] = "default",
+    threshold: Annotated[float | None, typer.Option(help="Height of the cut [m]; mode paper needs it.")] = None,
+) -> None:
+    """Cluster a task's demonstrations, select the consistent ones, and fit a path to each cluster."""
+    settings: dict[str, object] = {"mode": mode} | ({} if threshold is None else {"threshold": threshold})
+    with Api(url) as api, progress_bar("learning") as show:
+        job = api.follow_job(api.call("POST", f"/tasks/{task}/jobs", {"kind": "learn", "settings": settings}), show)
+        run = api.call("GET", f"/tasks/{task}/runs/{job['outcome']}")
+        numbers = {d["id"]: d["number"] for d in api.call("GET", f"/tasks/{task}/demonstrations")}
+    out = Console()
+    out.print(clusters_table(run, numbers))
+    out.print(paths_table(run))
+    for note in run["learned"]["notes"]:
+        out.print(f"note: {note}")
+
+
+def plan(path: Annotated[str, typer.Argument(help="Id of a learned path.")], url: Url = LOCAL) -> None:
+    """Plan a learned path: prove that the arm can follow it, or say why not."""
+    with Api(url) as api, progress_bar("planning") as show:
+        job = api.follow_job(api.call("POST", f"/paths/{path}/plans"), show)
+        print(plan_lines(api.call("GET", f"/plans/{job['outcome']}")))
+
+
+def run(
+    plan: Annotated[str, typer.Argument(help="Id of a plan.")],
+    url: Url = LOCAL,
+    override: Annotated[float, typer.Option(min=0.0, max=1.0, help="Share of the planned speed.")] = 1.0,
+) -> None:
+    """Move the arm along a certified plan; Ctrl-C stops it on the path."""
+    with Api(url) as api, progress_bar("running") as show:
+        execution = api.call("POST", "/executions", {"plan": plan, "override": override})
+        try:
+            execution = api.follow_execution(execution, show)
+        except KeyboardInterrupt:
+            api.call("POST", f"/executions/{execution['id']}/stop")
+            execution = api.follow_execution(execution, show)
+    status = execution["status"]
+    print(
+        f"{execution['id']} {status['state']}: {status['cycles']} setpoints, {status['late']} late, "
+        f"{status['missed']} missed; limits used to {status['limit_use']:.1%}, "
+        f"tracking error up to {1e3 * status['tracking_error']:.2f} mrad"
+    )
+
+
+def replay(
+    task: Annotated[str, typer.Argument(help="Task whose demonstrations are played.")],
+    into: Annotated[str, typer.Option(help="Task that they are recorded into; made when missing.")] = "",
+    number: Annotated[list[int] | None, typer.Option(help="Only these demonstrations; may be repeated.")] = None,
+    speed: Annotated[float, typer.Option(help="1 = original timing.")] = 1.0,
+    url: Url = LOCAL,
+) -> None:
+    """Publish stored demonstrations over Zenoh, sample by sample, as if a tracker showed them now."""
+    with Api(url) as api:
+        stored = api.call("GET", f"/tasks/{task}")
+        demonstrations = api.call("GET", f"/tasks/{task}/demonstrations")
+        endpoint = api.call("GET", "/health")["endpoint"]
+    chosen = [d["id"] for d in demonstrations if not number or d["number"] in number]
+    if not chosen:
+        sys.exit(f"teachpath: task {task} has no such demonstrations; it has {len(demonstrations)}")
+    command = replay_command(
+        chosen,
+        url=url,
+        endpoint=endpoint,
+        task=into or f"{task}-replayed",
+        scene=stored["scene"],
+        calibration=stored["calibration"],
+        speed=speed,
+    )
+    sys.exit(subprocess.run(command, check=False).returncode)
+
+
+def replay_command(
+    demonstrations: list[str], *, url: str, endpoint: str, task: str, scene: str, calibration: str, speed: float
+) -> list[str]:
+    """Return the command of the client process that replays `demonstrations` into `task`."""
+    options = {
+        "--url": url,
+        "--endpoint": endpoint,
+        "--prefix": load().bus.prefix,
+        "--task": task,
+        "--scene": scene,
+        "--calibration": calibration,
+        "--tracker": "replay",
+        "--speed": str(speed),
+    }
+    words = [word for option in options.items() for word in option]
+    return [sys.executable, "-m", "teachpath_client", "replay", *demonstrations, *words]

@@ -1,0 +1,60 @@
+"""Every error teachpath raises on purpose.
+
+    TeachpathError
+    ├── UnusableInput          what came in cannot be used as it is
+    │   ├── UnusableSample     one hand sample: not finite, no unit quaternion, malformed, too large
+    │   ├── UnusableRecording  a file or take: empty, truncated, too short, wrong columns
+    │   └── UnusableSettings   a setting outside its limits, or one that does not exist
+    ├── LearningFailed         no path can be learned from these demonstrations
+    ├── PathRefused            the arm cannot follow this path; says where and why
+    ├── NotFound               no task, demonstration, run, path, plan, job or execution of that name
+    ├── Conflict               busy, already there, or a stale version
+    │   └── Cancelled          the operator cancelled the job
+    └── Unreachable            a process or peer does not answer
+
+A message names the value, the limit, the place and the way out.
+"""
+
+
+class TeachpathError(Exception):
+    """Base of all errors that teachpath raises on purpose; its text is a sentence for the operator."""
+
+
+class UnusableInput(TeachpathError):
+    """What came in cannot be used as it is."""
+
+
+class UnusableSample(UnusableInput):
+    """One hand sample cannot be used."""
+
+
+class UnusableRecording(UnusableInput):
+    """A file or a take cannot be used."""
+
+
+class UnusableSettings(UnusableInput):
+    """A setting is outside its limits or does not exist."""
+
+
+class LearningFailed(TeachpathError):
+    """No path can be learned from these demonstrations."""
+
+
+class PathRefused(TeachpathError):
+    """The arm cannot follow this path."""
+
+
+class NotFound(TeachpathError):
+    """There is nothing of that name."""
+
+
+class Conflict(TeachpathError):
+    """The thing is busy, already there, or has changed meanwhile."""
+
+
+class Cancelled(Conflict):
+    """The operator cancelled the work."""
+
+
+class Unreachable(TeachpathError):
+    """A process or peer does not answer."""

@@ -1,0 +1,1 @@
+"""The way out: bus, wire, store and files."""

@@ -1,0 +1,278 @@
+"""The bus: publish, subscribe, ask and liveliness, over Zenoh or within one process.
+
+Receivers run on the transport's thread: they only append to a queue of their owner (zenoh-python forbids blocking or
+calling its API inside a callback). Answers to queries run on a thread of their own, one per served key.
+"""
+
+from __future__ import annotations
+
+import json
+import queue
+import re
+import threading
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Annotated, Any, Protocol
+
+import zenoh
+from annotated_types import Ge, Le
+
+from teachpath import errors
+from teachpath.errors import TeachpathError, Unreachable
+
+Receive = Callable[[str, bytes], None]
+Answer = Callable[[bytes], bytes]
+Changed = Callable[[str, bool], None]
+
+
+@dataclass(frozen=True)
+class BusSettings:
+    """Where the Zenoh session of this process meets the others."""
+
+    # the service listens here as a Zenoh peer; workers and clients connect here
+    endpoint: str = "tcp/127.0.0.1:7447"
+    # first segments of every key; one per station
+    prefix: str = "teachpath/station"
+    # [s] how long to wait for the endpoint when connecting
+    connect_timeout: Annotated[float, Ge(0.1), Le(60)] = 10.0
+
+
+class Handle(Protocol):
+    """Something declared on the bus; `close` takes it back."""
+
+    def close(self) -> None:
+        """Take the declaration back; a second call does nothing."""
+
+
+class Bus(Protocol):
+    """What every kind of bus can do."""
+
+    def publish(self, key: str, payload: bytes) -> None:
+        """Send `payload` to all subscribers of `key`."""
+
+    def subscribe(self, key: str, receive: Receive) -> Handle:
+        """Call `receive(key, payload)` for all that is published on keys matching `key` (`*` one segment, `**` any)."""
+
+    def serve(self, key: str, answer: Answer) -> Handle:
+        """Answer queries on `key`; a TeachpathError that `answer` raises is raised again where the query was asked."""
+
+    def ask(self, key: str, payload: bytes = b"", *, timeout: float = 5.0) -> bytes:
+        """Query `key` and return the answer.
+
+        Raises:
+            Unreachable: nobody answered within `timeout` [s].
+            TeachpathError: the one that the answering side raised.
+        """
+
+    def announce(self, key: str) -> Handle:
+        """Show that a part is alive under `key` until the handle is closed or this process dies."""
+
+    def watch(self, key: str, changed: Changed) -> Handle:
+        """Call `changed(key, alive)` when a part under `key` comes or goes; parts already there come first."""
+
+    def close(self) -> None:
+        """Take back every declaration and leave."""
+
+
+def open_bus(settings: BusSettings, *, listen: bool = False) -> Bus:
+    """Join the station's bus: as the listening peer of the service, or connected to it.
+
+    Raises:
+        Unreachable: the endpoint is taken (listen) or nobody listens there.
+    """
+    return ZenohBus(settings, listen=listen)
+
+
+class ZenohBus:
+    """A Zenoh session that meets nobody but the configured endpoint: no multicast, no gossip."""
+
+    def __init__(self, settings: BusSettings, *, listen: bool) -> None:
+        config = zenoh.Config()
+        for path, value in _session_config(settings, listen).items():
+            config.insert_json5(path, json.dumps(value))
+        try:
+            self._session = zenoh.open(config)
+        except zenoh.ZError as error:
+            what = "is it taken by another service?" if listen else "is the service running there?"
+            raise Unreachable(f"no Zenoh session at {settings.endpoint}: {what} ({error})") from error
+        self._lock = threading.Lock()
+        self._publishers: dict[str, Any] = {}
+        self._handles: list[Handle] = []
+
+    def publish(self, key: str, payload: bytes) -> None:
+        with self._lock:
+            publisher = self._publishers.get(key)
+            if publisher is None:
+                publisher = self._session.declare_publisher(key, congestion_control=zenoh.CongestionControl.BLOCK)
+                self._publishers[key] = publisher
+        publisher.put(payload)
+
+    def subscribe(self, key: str, receive: Receive) -> Handle:
+        subscriber = self._session.declare_subscriber(key, lambda s: receive(str(s.key_expr), s.payload.to_bytes()))
+        return self._keep(_Undeclare(subscriber.undeclare))
+
+    def serve(self, key: str, answer: Answer) -> Handle:
+        return self._keep(_Server(self._session, key, answer))
+
+    def ask(self, key: str, payload: bytes = b"", *, timeout: float = 5.0) -> bytes:
+        for reply in self._session.get(key, payload=payload, timeout=timeout):
+            if reply.ok is not None:
+                return bytes(reply.ok.payload.to_bytes())
+            if reply.err is not None:
+                _raise_again(reply.err.payload.to_bytes(), key)
+        raise Unreachable(f"nobody answered {key} within {timeout:g} s; is that part of the service running?")
+
+    def announce(self, key: str) -> Handle:
+        return self._keep(_Undeclare(self._session.liveliness().declare_token(key).undeclare))
+
+    def watch(self, key: str, changed: Changed) -> Handle:
+        subscriber = self._session.liveliness().declare_subscriber(
+            key, lambda s: changed(str(s.key_expr), s.kind == zenoh.SampleKind.PUT), history=True
+        )
+        return self._keep(_Undeclare(subscriber.undeclare))
+
+    def close(self) -> None:
+        for handle in self._handles:
+            handle.close()
+        self._handles.clear()
+        if not self._session.is_closed():
+            self._session.close()  # type: ignore[no-untyped-call]
+
+    def _keep(self, handle: Handle) -> Handle:
+        self._handles.append(handle)
+        return handle
+
+
+def _session_config(settings: BusSettings, listen: bool) -> dict[str, object]:
+    # A peer does not route between other peers, but it does between its clients: one peer listens, all others are
+    # clients of it.
+    return {
+        "mode": "peer" if listen else "client",
+        "listen/endpoints": [settings.endpoint] if listen else [],
+        "connect/endpoints": [] if listen else [settings.endpoint],
+        "connect/timeout_ms": int(settings.connect_timeout * 1000),
+        "connect/exit_on_failure": True,
+        "scouting/multicast/enabled": False,
+        "scouting/gossip/enabled": False,
+    }
+
+
+class _Undeclare:
+    def __init__(self, undeclare: Callable[[], object]) -> None:
+        self._undeclare: Callable[[], object] | None = undeclare
+
+    def close(self) -> None:
+        undeclare, self._undeclare = self._undeclare, None
+        if undeclare is not None:
+            undeclare()
+
+
+class _Server:
+    """Answers the queries of one key in the order they came, on its own thread."""
+
+    def __init__(self, session: Any, key: str, answer: Answer) -> None:
+        self._key, self._answer = key, answer
+        self._queries: queue.SimpleQueue[Any] = queue.SimpleQueue()
+        self._queryable = session.declare_queryable(key, self._queries.put)
+        self._thread: threading.Thread | None = threading.Thread(target=self._run, name=f"serve {key}", daemon=True)
+        self._thread.start()
+
+    def _run(self) -> None:
+        while (query := self._queries.get()) is not None:
+            with query:
+                payload = query.payload.to_bytes() if query.payload is not None else b""
+                try:
+                    query.reply(self._key, self._answer(payload))
+                except TeachpathError as error:
+                    query.reply_err(_pack_error(error))
+                except Exception as error:
+                    query.reply_err(_pack_error(TeachpathError(f"{self._key} failed: {error!r}")))
+
+    def close(self) -> None:
+        thread, self._thread = self._thread, None
+        if thread is not None:
+            self._queryable.undeclare()
+            self._queries.put(None)
+            thread.join(timeout=5.0)
+
+
+def _pack_error(error: TeachpathError) -> bytes:
+    return json.dumps({"error": type(error).__name__, "message": str(error)}).encode()
+
+
+def _raise_again(payload: bytes, key: str) -> None:
+    try:
+        body = json.loads(payload)
+        kind = getattr(errors, body["error"])
+        message = body["message"]
+    except (ValueError, KeyError, TypeError, AttributeError):
+        raise Unreachable(f"{key} answered with an error: {payload[:200]!r}") from None
+    raise kind(message)
+
+
+class MemoryBus:
+    """The bus within one process: delivers in the publisher's thread, in order."""
+
+    def __init__(self) -> None:
+        self._lock = threading.RLock()
+        self._receivers: dict[_Undeclare, tuple[re.Pattern[str], Receive]] = {}
+        self._answers: dict[str, Answer] = {}
+        self._tokens: list[str] = []
+        self._watchers: dict[_Undeclare, tuple[re.Pattern[str], Changed]] = {}
+
+    def publish(self, key: str, payload: bytes) -> None:
+        with self._lock:
+            receivers = [receive for pattern, receive in self._receivers.values() if pattern.fullmatch(key)]
+        for receive in receivers:
+            receive(key, payload)
+
+    def subscribe(self, key: str, receive: Receive) -> Handle:
+        handle = _Undeclare(lambda: self._receivers.pop(handle, None))
+        with self._lock:
+            self._receivers[handle] = (_pattern(key), receive)
+        return handle
+
+    def serve(self, key: str, answer: Answer) -> Handle:
+        self._answers[key] = answer
+        return _Undeclare(lambda: self._answers.pop(key, None))
+
+    def ask(self, key: str, payload: bytes = b"", *, timeout: float = 5.0) -> bytes:
+        answer = self._answers.get(key)
+        if answer is None:
+            raise Unreachable(f"nobody answered {key} within {timeout:g} s; is that part of the service running?")
+        return answer(payload)
+
+    def announce(self, key: str) -> Handle:
+        self._tokens.append(key)
+        self._tell(key, True)
+
+        def withdraw() -> None:
+            self._tokens.remove(key)
+            self._tell(key, False)
+
+        return _Undeclare(withdraw)
+
+    def watch(self, key: str, changed: Changed) -> Handle:
+        handle = _Undeclare(lambda: self._watchers.pop(handle, None))
+        pattern = _pattern(key)
+        self._watchers[handle] = (pattern, changed)
+        for token in self._tokens:
+            if pattern.fullmatch(token):
+                changed(token, True)
+        return handle
+
+    def close(self) -> None:
+        self._receivers.clear()
+        self._answers.clear()
+        self._watchers.clear()
+
+    def _tell(self, key: str, alive: bool) -> None:
+        for pattern, changed in list(self._watchers.values()):
+            if pattern.fullmatch(key):
+                changed(key, alive)
+
+
+def _pattern(key: str) -> re.Pattern[str]:
+    """Compile a Zenoh key expression: `**` is any number of segments, `*` is one."""
+    segments = [".*" if s == "**" else re.escape(s).replace(r"\*", "[^/]*") for s in key.split("/")]
+    return re.compile("/".join(segments).replace("/.*", "(?:/.*)?"))

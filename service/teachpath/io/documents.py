@@ -1,0 +1,60 @@
+"""Records as JSON documents and back: the one form in which runs, paths and plans are stored and sent."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from typing import Any, TypeVar, get_origin
+
+import numpy as np
+from cattrs import ClassValidationError, transform_error
+from cattrs.preconf.json import make_converter
+
+from teachpath.errors import UnusableInput
+
+T = TypeVar("T")
+
+_converter = make_converter(forbid_extra_keys=True)
+
+
+def _is_array(kind: Any) -> bool:
+    return kind is np.ndarray or get_origin(kind) is np.ndarray
+
+
+_converter.register_structure_hook_func(lambda kind: kind is object, lambda value, _: value)
+_converter.register_unstructure_hook_func(_is_array, lambda a: a.tolist())
+_converter.register_structure_hook_func(_is_array, lambda v, _: np.asarray(v, dtype=np.float64))
+
+
+def to_document(record: Any) -> dict[str, Any]:
+    """Return the JSON object of a frozen record; arrays become nested lists."""
+    document: dict[str, Any] = _converter.unstructure(record)
+    return document
+
+
+def from_document(kind: type[T], document: Mapping[str, Any]) -> T:
+    """Return the record of a JSON object.
+
+    Raises:
+        UnusableInput: a field is missing, unknown or of the wrong kind; the sentence names it.
+    """
+    if not isinstance(document, Mapping):
+        raise UnusableInput(f"not a {kind.__name__}: a JSON object is needed, got {type(document).__name__}")
+    try:
+        return _converter.structure(document, kind)
+    except ClassValidationError as error:
+        raise UnusableInput(f"not a {kind.__name__}: {'; '.join(transform_error(error)[:3])}") from None
+
+
+def encode(record: Any) -> bytes:
+    """Return a record as JSON text."""
+    return json.dumps(to_document(record), allow_nan=False, separators=(",", ":")).encode()
+
+
+def decode(kind: type[T], payload: bytes) -> T:
+    """Return the record of JSON text; raises UnusableInput."""
+    try:
+        document = json.loads(payload)
+    except ValueError as error:
+        raise UnusableInput(f"{len(payload)} bytes are not a {kind.__name__} in JSON: {error}") from None
+    return from_document(kind, document)

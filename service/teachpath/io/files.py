@@ -1,0 +1,116 @@
+"""Recordings that other programs wrote: CSV and RoboTasks arrays, read whole and checked before anything is stored."""
+
+from __future__ import annotations
+
+import csv
+import io
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from teachpath.errors import UnusableRecording
+from teachpath.records import Array
+
+UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254}
+FORMATS = ("csv", "robottasks")
+LARGEST_FILE = 64 * 1024 * 1024  # bytes
+COLUMNS = ["t", "x", "y", "z"]
+ROTATION = ["qw", "qx", "qy", "qz"]
+
+
+@dataclass(frozen=True, eq=False)
+class Track:
+    """One recorded motion: times (n,) [s], positions (n, 3) [m], orientations (n, 4) w, x, y, z or None."""
+
+    times: Array
+    positions: Array
+    orientations: Array | None
+
+
+def read_tracks(content: bytes, name: str, *, kind: str, units: str, rate: float) -> list[Track]:
+    """Read the motions of a file.
+
+    Args:
+        kind: "csv" (one motion, columns t, x, y, z and perhaps qw, qx, qy, qz) or "robottasks" (an .npy array
+            (demonstrations, samples, 7) of x, y, z, qw, qx, qy, qz without a clock).
+        units: of the positions: m, cm, mm or in.
+        rate: [Hz] of a format without a clock.
+
+    Raises:
+        UnusableRecording: with the row and column that is wrong.
+    """
+    if kind not in FORMATS:
+        raise UnusableRecording(f"{name}: format {kind!r} is unknown; known: {', '.join(FORMATS)}")
+    if units not in UNITS:
+        raise UnusableRecording(f"{name}: units {units!r} are unknown; known: {', '.join(UNITS)}")
+    if not 1.0 <= rate <= 10_000.0:
+        raise UnusableRecording(f"{name}: a rate of {rate:g} Hz is outside 1 to 10000")
+    if len(content) > LARGEST_FILE:
+        raise UnusableRecording(f"{name}: {len(content)} bytes are over the limit of {LARGEST_FILE}; split the file")
+    if not content:
+        raise UnusableRecording(f"{name}: the file is empty")
+    tracks = _read_csv(content, name) if kind == "csv" else _read_robottasks(content, name, rate)
+    scaled = [Track(t.times, t.positions * UNITS[units], t.orientations) for t in tracks]
+    for number, track in enumerate(scaled, 1):
+        _check(track, name if len(scaled) == 1 else f"{name}, demonstration {number}")
+    return scaled
+
+
+def _read_csv(content: bytes, name: str) -> list[Track]:
+    try:
+        rows = list(csv.reader(io.StringIO(content.decode("utf-8-sig"))))
+    except (UnicodeDecodeError, csv.Error) as error:
+        raise UnusableRecording(f"{name}: not a CSV text file: {error}") from None
+    rows = [row for row in rows if row]
+    header = [cell.strip().lower() for cell in rows[0]] if rows else []
+    if header not in (COLUMNS, COLUMNS + ROTATION):
+        raise UnusableRecording(f"{name}: the first line must be t,x,y,z or t,x,y,z,qw,qx,qy,qz; it is {header[:9]}")
+    values = np.array([_numbers(row, len(header), f"{name}, line {i}") for i, row in enumerate(rows[1:], 2)])
+    if len(values) == 0:
+        raise UnusableRecording(f"{name}: there are no samples under the header")
+    return [Track(values[:, 0] - values[0, 0], values[:, 1:4], values[:, 4:8] if len(header) == 8 else None)]
+
+
+def _numbers(row: list[str], count: int, where: str) -> list[float]:
+    if len(row) != count:
+        raise UnusableRecording(f"{where}: {len(row)} values, the header has {count} columns; is the file truncated?")
+    try:
+        return [float(cell) for cell in row]
+    except ValueError as error:
+        raise UnusableRecording(f"{where}: {error}") from None
+
+
+def _read_robottasks(content: bytes, name: str, rate: float) -> list[Track]:
+    try:
+        values = np.load(io.BytesIO(content), allow_pickle=False)
+    except (ValueError, EOFError, OSError) as error:
+        raise UnusableRecording(f"{name}: not a whole .npy array of numbers: {error}") from None
+    if not isinstance(values, np.ndarray) or values.dtype.kind != "f" or values.ndim != 3 or values.shape[2] != 7:
+        shape = getattr(values, "shape", "several arrays")
+        raise UnusableRecording(f"{name}: the array must be floats (demonstrations, samples, 7); it is {shape}")
+    times = np.arange(values.shape[1]) / rate
+    return [Track(times, np.array(v[:, :3], dtype=np.float64), np.array(v[:, 3:], dtype=np.float64)) for v in values]
+
+
+def _check(track: Track, where: str) -> None:
+    if len(track.times) < 2:
+        raise UnusableRecording(f"{where}: {len(track.times)} samples are too few for a motion")
+    columns = [track.times[:, None], track.positions]
+    if track.orientations is not None:
+        columns.append(track.orientations)
+    bad = np.argwhere(~np.isfinite(np.hstack(columns)))
+    if len(bad):
+        column = (COLUMNS + ROTATION)[int(bad[0, 1])]
+        raise UnusableRecording(f"{where}: sample {int(bad[0, 0])} has a {column} that is not finite")
+    steps = np.diff(track.times)
+    if np.any(steps <= 0):
+        i = int(np.argmax(steps <= 0))
+        raise UnusableRecording(
+            f"{where}: time goes from {track.times[i]:g} to {track.times[i + 1]:g} s at sample {i + 1}; sort by t"
+        )
+    if track.orientations is not None:
+        norms = np.linalg.norm(track.orientations, axis=1)
+        worst = int(np.argmax(np.abs(norms - 1.0)))
+        if not math.isclose(norms[worst], 1.0, abs_tol=0.01):
+            raise UnusableRecording(f"{where}: the quaternion of sample {worst} has length {norms[worst]:.3g}, not 1")

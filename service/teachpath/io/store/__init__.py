@@ -1,0 +1,6 @@
+"""What lasts: rows of tasks, demonstrations, runs, paths, plans and jobs, and the recordings beside them."""
+
+from teachpath.io.store.recordings import RecordingHeader, Recordings, Take
+from teachpath.io.store.store import ExecutionRow, RunRow, Store, StoreSettings
+
+__all__ = ["ExecutionRow", "RecordingHeader", "Recordings", "RunRow", "Store", "StoreSettings", "Take"]

@@ -1,0 +1,151 @@
+"""Recordings: one MCAP file a demonstration, every hand sample with its source time, receive time and sequence.
+
+A file that is being written ends in `.part`; it is flushed every second and renamed when finished, so a crash costs at
+most the samples since the last flush, and `salvage` reads what is there.
+"""
+
+from __future__ import annotations
+
+import os
+import struct
+from collections.abc import Iterator
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+
+from mcap.exceptions import McapError
+from mcap.records import Header, Message, Metadata
+from mcap.stream_reader import StreamReader
+from mcap.writer import Writer
+from mcap_protobuf.schema import register_schema
+
+from teachpath.errors import NotFound, TeachpathError, UnusableRecording
+from teachpath.io import documents
+from teachpath.io.wire import parse, sample_from, sample_message
+from teachpath.records import Calibration, Sample
+from teachpath_proto import tracker_pb2
+
+TOPIC = "samples"
+HEADER = "teachpath"
+CHUNK = 64 * 1024  # bytes; small chunks lose less when a file is cut off
+
+
+@dataclass(frozen=True, slots=True)
+class RecordingHeader:
+    """What a recording is of; the first record of its file, so that a torn file still says it."""
+
+    task: str
+    tracker: str
+    calibration: Calibration
+
+
+class Take:
+    """A recording that is being written."""
+
+    def __init__(self, part: Path, header: RecordingHeader) -> None:
+        self._part = part
+        part.parent.mkdir(parents=True, exist_ok=True)
+        self._file = part.open("xb")
+        self._writer = Writer(self._file, chunk_size=CHUNK)
+        self._writer.start(profile="", library="teachpath")
+        self._writer.add_metadata(HEADER, {"header": documents.encode(header).decode()})
+        schema = register_schema(self._writer, tracker_pb2.HandSample)
+        self._channel = self._writer.register_channel(topic=TOPIC, message_encoding="protobuf", schema_id=schema)
+        self.flush()
+
+    def write(self, sample: Sample) -> None:
+        """Append one sample."""
+        self._writer.add_message(
+            self._channel,
+            log_time=sample.receive_ns,
+            data=sample_message(sample).SerializeToString(),
+            publish_time=sample.device_ns,
+            sequence=sample.sequence & 0xFFFFFFFF,
+        )
+
+    def flush(self) -> None:
+        """Hand all that was written to the operating system; a killed process loses none of it."""
+        self._writer.flush()  # type: ignore[no-untyped-call]
+
+    def finish(self, facts: dict[str, str]) -> Path:
+        """End the recording with `facts` (verdict, counts) and return its final file."""
+        self._writer.add_metadata("facts", facts)
+        self._writer.finish()  # type: ignore[no-untyped-call]
+        self._file.flush()
+        os.fsync(self._file.fileno())
+        self._file.close()
+        return self._part.rename(self._part.with_suffix(""))
+
+    def leave(self) -> None:
+        """Stop writing and leave the unfinished file for `teachpath doctor`."""
+        with suppress(OSError):
+            self._file.close()
+
+    def discard(self) -> None:
+        """Throw the recording away."""
+        self._file.close()
+        self._part.unlink(missing_ok=True)
+
+
+class Recordings:
+    """The folder of all recordings."""
+
+    def __init__(self, root: Path) -> None:
+        self._root = root
+
+    def begin(self, demonstration: str, header: RecordingHeader) -> Take:
+        """Open the recording of a new demonstration."""
+        return Take(self.folder(header.task) / f"{demonstration}.mcap.part", header)
+
+    def folder(self, task: str) -> Path:
+        """Return the folder of a task's recordings."""
+        return self._root / task
+
+    def place(self, file: Path) -> str:
+        """Return where `file` lies within the recordings, as a demonstration's row says it."""
+        return file.relative_to(self._root).as_posix()
+
+    def path(self, place: str) -> Path:
+        """Return the file at `place`; raises NotFound."""
+        file = self._root / place
+        if not file.is_file():
+            raise NotFound(f"recording {place} is missing under {self._root}; was the folder moved?")
+        return file
+
+    def samples(self, place: str) -> list[Sample]:
+        """Read all samples of a finished recording, in the order they were received."""
+        header, samples, fault = salvage(self.path(place))
+        if header is None or fault:
+            raise UnusableRecording(f"recording {place} is damaged ({fault or 'no header'}); run: teachpath doctor")
+        return samples
+
+    def unfinished(self) -> list[Path]:
+        """List the `.part` files: takes that are running, or that a crash left."""
+        return sorted(self._root.glob("*/*.mcap.part"))
+
+
+def salvage(file: Path) -> tuple[RecordingHeader | None, list[Sample], str]:
+    """Read a recording that may be torn: (header, the samples that are whole, what ended the reading or '')."""
+    header: RecordingHeader | None = None
+    samples: list[Sample] = []
+    fault = ""
+    try:
+        for record in _records(file):
+            if isinstance(record, Metadata) and record.name == HEADER:
+                header = documents.decode(RecordingHeader, record.metadata["header"].encode())
+            elif isinstance(record, Message):
+                message = parse(tracker_pb2.HandSample, record.data)
+                samples.append(sample_from(message, header.tracker if header else "", record.log_time))
+    # A torn file ends in whatever the cut left: the reader's own errors, or those of unpacking.
+    except (McapError, TeachpathError, struct.error, ValueError, KeyError, EOFError) as error:
+        fault = str(error) or type(error).__name__
+    return header, samples, fault
+
+
+def _records(file: Path) -> Iterator[object]:
+    with file.open("rb") as stream:
+        records = StreamReader(stream, record_size_limit=16 * 1024 * 1024).records
+        first = next(iter(records), None)
+        if not isinstance(first, Header):
+            raise UnusableRecording("it has no MCAP header")
+        yield from records

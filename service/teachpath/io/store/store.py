@@ -1,0 +1,299 @@
+"""The database of a station: one method a question, every change one transaction."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any, TypeVar
+
+from alembic import command
+from alembic.config import Config
+from sqlalchemy import Connection, Engine, create_engine, event, func, select, update
+from sqlalchemy.orm import Session
+
+from teachpath.errors import Conflict, NotFound
+from teachpath.io.documents import from_document, to_document
+from teachpath.io.store.recordings import Recordings
+from teachpath.io.store.tables import (
+    Base,
+    DemonstrationRow,
+    ExecutionTable,
+    JobRow,
+    PathRow,
+    PlanRow,
+    RunTable,
+    TaskRow,
+)
+from teachpath.records import Demonstration, ExecutorStatus, Job, JobState, Learned, LearnedPath, Plan, Task
+
+Row = TypeVar("Row", bound=Base)
+
+
+@dataclass(frozen=True)
+class StoreSettings:
+    """Where lasting things are kept."""
+
+    # folder of the database and the recordings; made when missing
+    data_dir: str = "teachpath-data"
+    # SQLAlchemy URL; empty: SQLite in data_dir
+    database: str = ""
+
+
+@dataclass(frozen=True, eq=False)
+class RunRow:
+    """A learning run as stored."""
+
+    id: str
+    task: str
+    created_ns: int
+    learned: Learned
+
+
+@dataclass(frozen=True, slots=True)
+class ExecutionRow:
+    """An execution as stored."""
+
+    id: str
+    plan: str
+    created_ns: int
+    status: ExecutorStatus
+
+
+class Store:
+    """The rows of a station; safe to use from several threads."""
+
+    def __init__(self, settings: StoreSettings) -> None:
+        folder = Path(settings.data_dir)
+        folder.mkdir(parents=True, exist_ok=True)
+        self.recordings = Recordings(folder / "recordings")
+        self._engine = create_engine(settings.database or f"sqlite:///{folder / 'teachpath.sqlite'}")
+        if self._engine.dialect.name == "sqlite":
+            event.listen(self._engine, "connect", _tune_sqlite)
+            event.listen(self._engine, "begin", _begin_sqlite)
+        self._writing = self._engine.execution_options(writing=True)
+        _migrate(self._engine)
+
+    def close(self) -> None:
+        """Close every connection."""
+        self._engine.dispose()
+
+    @contextmanager
+    def _change(self) -> Iterator[Session]:
+        with Session(self._writing, expire_on_commit=False) as session, session.begin():
+            yield session
+
+    def _all(self, question: Any) -> list[Any]:
+        with Session(self._engine) as session:
+            return list(session.scalars(question))
+
+    def _one(self, table: type[Row], key: Any, what: str) -> Row:
+        with Session(self._engine) as session:
+            row = session.get(table, key)
+        if row is None:
+            raise NotFound(f"there is no {what} {key!r}")
+        return row
+
+    # tasks and demonstrations
+
+    def ensure_task(self, name: str, *, scene: str, calibration: str) -> Task:
+        """Return the task `name`; made with `scene` and `calibration` when it does not exist."""
+        with self._change() as session:
+            row = session.get(TaskRow, name)
+            if row is None:
+                row = TaskRow(name=name, scene=scene, calibration=calibration, created_ns=time.time_ns())
+                session.add(row)
+        return _task(row)
+
+    def tasks(self) -> list[Task]:
+        """List all tasks, oldest first."""
+        return [_task(row) for row in self._all(select(TaskRow).order_by(TaskRow.created_ns))]
+
+    def task(self, name: str) -> Task:
+        """Return one task; raises NotFound."""
+        return _task(self._one(TaskRow, name, "task"))
+
+    def add_demonstration(self, demonstration: Demonstration) -> Demonstration:
+        """Store a demonstration under the next number of its task and return it with that number."""
+        with self._change() as session:
+            newest = session.scalar(
+                select(func.max(DemonstrationRow.number)).where(DemonstrationRow.task == demonstration.task)
+            )
+            numbered = replace(demonstration, number=(newest or 0) + 1)
+            session.add(
+                DemonstrationRow(
+                    id=numbered.id,
+                    task=numbered.task,
+                    number=numbered.number,
+                    created_ns=numbered.created_ns,
+                    verdict=numbered.verdict,
+                    document=to_document(numbered),
+                )
+            )
+        return numbered
+
+    def demonstrations(self, task: str) -> list[Demonstration]:
+        """List the demonstrations of a task in their order."""
+        question = select(DemonstrationRow).where(DemonstrationRow.task == task).order_by(DemonstrationRow.number)
+        return [from_document(Demonstration, row.document) for row in self._all(question)]
+
+    def demonstration(self, key: str) -> Demonstration:
+        """Return one demonstration; raises NotFound."""
+        return from_document(Demonstration, self._one(DemonstrationRow, key, "demonstration").document)
+
+    # runs, paths and plans
+
+    def runs(self, task: str) -> list[RunRow]:
+        """List the learning runs of a task, newest first."""
+        question = select(RunTable).where(RunTable.task == task).order_by(RunTable.created_ns.desc())
+        return [_run(row) for row in self._all(question)]
+
+    def run(self, key: str) -> RunRow:
+        """Return one learning run; raises NotFound."""
+        return _run(self._one(RunTable, key, "run"))
+
+    def path(self, key: str) -> LearnedPath:
+        """Return the newest version of a learned path; raises NotFound."""
+        rows = self._all(select(PathRow).where(PathRow.id == key).order_by(PathRow.version.desc()).limit(1))
+        if not rows:
+            raise NotFound(f"there is no path {key!r}")
+        return from_document(LearnedPath, rows[0].document)
+
+    def plans(self, path: str) -> list[Plan]:
+        """List the plans of a path, newest first."""
+        question = select(PlanRow).where(PlanRow.path == path).order_by(PlanRow.created_ns.desc())
+        return [from_document(Plan, row.document) for row in self._all(question)]
+
+    def plan(self, key: str) -> Plan:
+        """Return one plan; raises NotFound."""
+        return from_document(Plan, self._one(PlanRow, key, "plan").document)
+
+    # executions
+
+    def put_execution(self, key: str, plan: str, status: ExecutorStatus) -> None:
+        """Store how an execution stands."""
+        with self._change() as session:
+            row = session.get(ExecutionTable, key)
+            if row is None:
+                row = ExecutionTable(id=key, plan=plan, created_ns=time.time_ns())
+                session.add(row)
+            row.document = to_document(status)
+
+    def execution(self, key: str) -> ExecutionRow:
+        """Return one execution; raises NotFound."""
+        return _execution(self._one(ExecutionTable, key, "execution"))
+
+    def executions(self, limit: int = 50) -> list[ExecutionRow]:
+        """List the newest executions, newest first."""
+        question = select(ExecutionTable).order_by(ExecutionTable.created_ns.desc()).limit(limit)
+        return [_execution(row) for row in self._all(question)]
+
+    # jobs
+
+    def add_job(self, job: Job) -> None:
+        """Store a new job."""
+        with self._change() as session:
+            session.add(JobRow(**{**to_document(job), "state": job.state.value}))
+
+    def job(self, key: str) -> Job:
+        """Return one job; raises NotFound."""
+        return _job(self._one(JobRow, key, "job"))
+
+    def jobs(self, *, task: str | None = None, unfinished: bool = False) -> list[Job]:
+        """List jobs, oldest first: all, those of a task, or those that are not finished."""
+        question = select(JobRow).order_by(JobRow.created_ns)
+        if task is not None:
+            question = question.where(JobRow.task == task)
+        if unfinished:
+            question = question.where(JobRow.state.in_([JobState.QUEUED.value, JobState.RUNNING.value]))
+        return [_job(row) for row in self._all(question)]
+
+    def set_job(self, key: str, **changes: Any) -> Job:
+        """Change fields of an unfinished job and return it; a finished job stays as it is.
+
+        Raises:
+            Conflict: the job is finished.
+        """
+        with self._change() as session:
+            self._claim(session, key, changes)
+        return self.job(key)
+
+    def finish_learning(self, key: str, learned: Learned) -> str:
+        """Store a run with its paths and mark the job succeeded, all or nothing; return the run's id.
+
+        The id follows from the job's, so that a job which is run again never leaves two runs.
+        """
+        run, now = key.replace("learn", "run", 1), time.time_ns()
+        with self._change() as session:
+            self._claim(session, key, _success(run, now))
+            job = session.get_one(JobRow, key)
+            paths = tuple(replace(p, id=f"{run}-{p.cluster}", run=run) for p in learned.paths)
+            named = replace(learned, paths=paths)
+            session.add(RunTable(id=run, task=job.task, created_ns=now, document=to_document(named)))
+            session.flush()
+            for p in paths:
+                session.add(PathRow(id=p.id, version=p.version, run=run, created_ns=now, document=to_document(p)))
+        return run
+
+    def finish_planning(self, key: str, plan: Plan) -> str:
+        """Store a plan and mark the job succeeded, all or nothing; return the plan's id."""
+        now = time.time_ns()
+        with self._change() as session:
+            self._claim(session, key, _success(plan.id, now))
+            session.add(PlanRow(id=plan.id, path=plan.path, created_ns=now, document=to_document(plan)))
+        return plan.id
+
+    def _claim(self, session: Session, key: str, changes: dict[str, Any]) -> None:
+        unfinished = [JobState.QUEUED.value, JobState.RUNNING.value]
+        changed = session.execute(update(JobRow).where(JobRow.id == key, JobRow.state.in_(unfinished)).values(changes))
+        if changed.rowcount == 0:  # type: ignore[attr-defined]
+            row = session.get(JobRow, key)
+            if row is None:
+                raise NotFound(f"there is no job {key!r}")
+            raise Conflict(f"job {key} has already {row.state}")
+
+
+def _success(outcome: str, now: int) -> dict[str, Any]:
+    return {"state": JobState.SUCCEEDED.value, "fraction": 1.0, "outcome": outcome, "finished_ns": now, "message": ""}
+
+
+def _task(row: TaskRow) -> Task:
+    return Task(row.name, row.scene, row.calibration, row.created_ns)
+
+
+def _run(row: RunTable) -> RunRow:
+    return RunRow(row.id, row.task, row.created_ns, from_document(Learned, row.document))
+
+
+def _execution(row: ExecutionTable) -> ExecutionRow:
+    return ExecutionRow(row.id, row.plan, row.created_ns, from_document(ExecutorStatus, row.document))
+
+
+def _job(row: JobRow) -> Job:
+    fields = {name: getattr(row, name) for name in Job.__dataclass_fields__}
+    return Job(**{**fields, "state": JobState(row.state)})
+
+
+def _tune_sqlite(connection: Any, _: Any) -> None:
+    connection.isolation_level = None  # transactions begin where _begin_sqlite says
+    cursor = connection.cursor()
+    # WAL lets readers go on while one writes; NORMAL syncs at checkpoints and survives a killed process.
+    for pragma in ("journal_mode=WAL", "synchronous=NORMAL", "foreign_keys=ON", "busy_timeout=5000"):
+        cursor.execute(f"PRAGMA {pragma}")
+    cursor.close()
+
+
+def _begin_sqlite(connection: Connection) -> None:
+    # A deferred transaction that reads and then writes fails at once when another has written in between.
+    writing = connection.get_execution_options().get("writing", False)
+    connection.exec_driver_sql("BEGIN IMMEDIATE" if writing else "BEGIN")
+
+
+def _migrate(engine: Engine) -> None:
+    config = Config()
+    config.set_main_option("script_location", "teachpath.io.store:migrations")
+    with engine.begin() as connection:
+        config.attributes["connection"] = connection
+        command.upgrade(config, "head")

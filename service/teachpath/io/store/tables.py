@@ -1,0 +1,95 @@
+"""The tables. What is searched is a column; what is only carried along is a JSON document (io/documents)."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from sqlalchemy import JSON, BigInteger, Float, ForeignKey, Integer, String, Text, UniqueConstraint
+from sqlalchemy.orm import DeclarativeBase, Mapped, mapped_column
+
+ID = String(64)
+
+
+class Base(DeclarativeBase):
+    """Base of the tables."""
+
+
+class TaskRow(Base):
+    """A task: what is demonstrated."""
+
+    __tablename__ = "tasks"
+    name: Mapped[str] = mapped_column(ID, primary_key=True)
+    scene: Mapped[str] = mapped_column(ID)
+    calibration: Mapped[str] = mapped_column(ID)
+    created_ns: Mapped[int] = mapped_column(BigInteger)
+
+
+class DemonstrationRow(Base):
+    """A demonstration; its samples are in the recording."""
+
+    __tablename__ = "demonstrations"
+    __table_args__ = (UniqueConstraint("task", "number"),)
+    id: Mapped[str] = mapped_column(ID, primary_key=True)
+    task: Mapped[str] = mapped_column(ForeignKey("tasks.name"), index=True)
+    number: Mapped[int] = mapped_column(Integer)
+    created_ns: Mapped[int] = mapped_column(BigInteger)
+    verdict: Mapped[str] = mapped_column(String(16))
+    document: Mapped[dict[str, Any]] = mapped_column(JSON)
+
+
+class RunTable(Base):
+    """A learning run over a task's demonstrations."""
+
+    __tablename__ = "runs"
+    id: Mapped[str] = mapped_column(ID, primary_key=True)
+    task: Mapped[str] = mapped_column(ForeignKey("tasks.name"), index=True)
+    created_ns: Mapped[int] = mapped_column(BigInteger)
+    document: Mapped[dict[str, Any]] = mapped_column(JSON)
+
+
+class PathRow(Base):
+    """One version of a learned path."""
+
+    __tablename__ = "paths"
+    id: Mapped[str] = mapped_column(ID, primary_key=True)
+    version: Mapped[int] = mapped_column(Integer, primary_key=True)
+    run: Mapped[str] = mapped_column(ForeignKey("runs.id"), index=True)
+    created_ns: Mapped[int] = mapped_column(BigInteger)
+    document: Mapped[dict[str, Any]] = mapped_column(JSON)
+
+
+class PlanRow(Base):
+    """A plan with its certificate."""
+
+    __tablename__ = "plans"
+    id: Mapped[str] = mapped_column(ID, primary_key=True)
+    path: Mapped[str] = mapped_column(ID, index=True)
+    created_ns: Mapped[int] = mapped_column(BigInteger)
+    document: Mapped[dict[str, Any]] = mapped_column(JSON)
+
+
+class JobRow(Base):
+    """Background work and how it stands."""
+
+    __tablename__ = "jobs"
+    id: Mapped[str] = mapped_column(ID, primary_key=True)
+    task: Mapped[str] = mapped_column(ID, index=True)
+    kind: Mapped[str] = mapped_column(String(16))
+    state: Mapped[str] = mapped_column(String(16), index=True)
+    request: Mapped[dict[str, Any]] = mapped_column(JSON)
+    fraction: Mapped[float] = mapped_column(Float)
+    message: Mapped[str] = mapped_column(Text)
+    outcome: Mapped[str] = mapped_column(ID)
+    attempt: Mapped[int] = mapped_column(Integer)
+    created_ns: Mapped[int] = mapped_column(BigInteger)
+    finished_ns: Mapped[int] = mapped_column(BigInteger)
+
+
+class ExecutionTable(Base):
+    """An execution of a plan and its last known status."""
+
+    __tablename__ = "executions"
+    id: Mapped[str] = mapped_column(ID, primary_key=True)
+    plan: Mapped[str] = mapped_column(ForeignKey("plans.id"), index=True)
+    created_ns: Mapped[int] = mapped_column(BigInteger)
+    document: Mapped[dict[str, Any]] = mapped_column(JSON)

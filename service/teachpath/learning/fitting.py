@@ -1,0 +1,153 @@
+"""The NURBS that follows a list of points within a bound: least squares, knots where the error asks for them.
+
+Piegl & Tiller, The NURBS Book, section 9.4.1 (least squares with fixed end points); weights are 1, to be edited later.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.interpolate import BSpline
+from scipy.linalg import LinAlgError, cho_factor, cho_solve
+from scipy.spatial import cKDTree
+
+from teachpath.learning.resampling import arc_lengths
+from teachpath.nurbs import Curve
+from teachpath.records import Array
+
+POINTS_PER_SPAN = 4  # least, so that the data decide every control point (Schoenberg & Whitney)
+JUST_HALF = 0.5 - 1e-6  # so that rounding does not decide where a symmetric span is halved
+MOST_PRUNED = 5000  # points above which knots are not tried for removal
+DENSE = 2000  # points of the polyline that stands for a curve when distances are measured
+
+
+@dataclass(frozen=True, eq=False)
+class Approximation:
+    """A curve and how far the points are from the curve at their own parameters [m]."""
+
+    curve: Curve
+    largest: float
+
+
+def approximate(points: Array, bound: float, *, degree: int, most: int, span: int = POINTS_PER_SPAN) -> Approximation:
+    """Fit a NURBS to ordered points, with as few knots as the bound allows.
+
+    Starts without interior knots, halves every span that holds a point beyond the bound, and in the end takes out
+    each knot that is not needed. When `most` control points or `span` points per knot span are reached first, the
+    approximation returned is the last one, beyond the bound.
+
+    Args:
+        points: (n, d) [m] in the order of the path; the curve begins and ends exactly on the first and last.
+        bound: largest distance of a point from the curve [m].
+        degree: of the curve; lowered when there are too few points for it.
+        most: control points.
+        span: least points in a knot span.
+    """
+    s = arc_lengths(points)
+    forward = np.concatenate([[True], np.diff(s) > 1e-12 * s[-1]])
+    points, s = np.concatenate([points[forward][:-1], points[-1:]]), s[forward]
+    u = s / s[-1]
+    u[-1] = 1.0
+    degree = max(1, min(degree, len(points) - 1))
+    problem = _Problem(points, u, degree)
+    interior = np.empty(0)
+    errors = problem.solve(interior)[1]
+    while errors.max() > bound:
+        room = most - degree - 1 - len(interior)
+        added = _splits(u, interior, errors, bound, span)[: max(room, 0)]
+        if not added:
+            break
+        interior = np.sort(np.concatenate([interior, added]))
+        errors = problem.solve(interior)[1]
+    if errors.max() <= bound and len(points) <= MOST_PRUNED:
+        interior = _pruned(problem, interior, bound)
+    control, errors = problem.solve(interior)
+    curve = Curve(degree, _clamped(interior, degree), control, np.ones(len(control)))
+    return Approximation(curve, float(errors.max()))
+
+
+def distances_to(curve: Curve, points: Array) -> Array:
+    """Return the true nearest distance of every point from the curve: (n,) [m].
+
+    The curve is sampled densely and taken for a polyline, whose segments beside the nearest sample are measured.
+    """
+    samples = curve(np.linspace(0.0, 1.0, max(DENSE, 64 * len(curve.control_points)) + 1))
+    nearest = np.asarray(cKDTree(samples).query(points)[1])
+    before = np.maximum(nearest - 1, 0)
+    after = np.minimum(nearest + 1, len(samples) - 1)
+    return np.minimum(
+        _to_segments(points, samples[before], samples[nearest]), _to_segments(points, samples[nearest], samples[after])
+    )
+
+
+class _Problem:
+    """Least squares for one list of points, solved again and again with other knots."""
+
+    def __init__(self, points: Array, u: Array, degree: int) -> None:
+        self.points = points
+        self.u = u
+        self.degree = degree
+
+    def solve(self, interior: Array) -> tuple[Array, Array]:
+        """Return control points (n, d) and the distance of each point from the curve at its parameter (m,)."""
+        basis = BSpline.design_matrix(self.u, _clamped(interior, self.degree), self.degree)
+        count = basis.shape[1]
+        control = np.empty((count, self.points.shape[1]))
+        control[0], control[-1] = self.points[0], self.points[-1]
+        if count > 2:
+            gram = np.asarray((basis.T @ basis).toarray())
+            right = np.asarray(basis.T @ self.points) - gram[:, [0, -1]] @ control[[0, -1]]
+            control[1:-1] = _normal_equations(gram[1:-1, 1:-1], right[1:-1])
+        return control, np.linalg.norm(basis @ control - self.points, axis=1)
+
+
+def _normal_equations(gram: Array, right: Array) -> Array:
+    try:
+        solution = np.asarray(cho_solve(cho_factor(gram), right))
+    except LinAlgError:
+        # Too few points under some basis function: the smallest solution keeps it harmless.
+        solution = np.asarray(np.linalg.lstsq(gram, right, rcond=1e-10)[0])
+    return solution
+
+
+def _clamped(interior: Array, degree: int) -> Array:
+    return np.concatenate([np.zeros(degree + 1), interior, np.ones(degree + 1)])
+
+
+def _splits(u: Array, interior: Array, errors: Array, bound: float, span: int) -> list[float]:
+    """Return a knot for every span that breaks the bound, worst span first, at its error-weighted median."""
+    edges = np.concatenate([[0.0], interior, [1.0]])
+    begins = np.searchsorted(u, edges[:-1], side="left")
+    ends = np.append(begins[1:], len(u))
+    found: list[tuple[float, float]] = []
+    for begin, end in zip(begins, ends, strict=True):
+        worst = errors[begin:end].max(initial=0.0)
+        if worst <= bound or end - begin < 2 * span:
+            continue
+        weight = np.cumsum(np.square(errors[begin:end]))
+        middle = begin + int(np.searchsorted(weight, weight[-1] * JUST_HALF))
+        middle = min(max(middle, begin + span), end - span)
+        found.append((-float(worst), float(u[middle - 1] + u[middle]) / 2))
+    return [knot for _, knot in sorted(found)]
+
+
+def _pruned(problem: _Problem, interior: Array, bound: float) -> Array:
+    """Take out knots one at a time while the bound holds, the least missed one first."""
+    while len(interior):
+        fewer = [np.delete(interior, k) for k in range(len(interior))]
+        largest = np.array([problem.solve(knots)[1].max() for knots in fewer])
+        # The first of those equal but for rounding, so that a symmetric path is pruned alike in every frame.
+        best = int(np.argmax(largest <= largest.min() * (1 + 1e-6)))
+        if largest[best] > bound:
+            break
+        interior = fewer[best]
+    return interior
+
+
+def _to_segments(points: Array, begin: Array, end: Array) -> Array:
+    along = end - begin
+    square = np.square(along).sum(axis=1)
+    share = np.divide(((points - begin) * along).sum(axis=1), square, out=np.zeros(len(points)), where=square > 0)
+    nearest = begin + np.clip(share, 0.0, 1.0)[:, None] * along
+    return np.asarray(np.linalg.norm(points - nearest, axis=1))

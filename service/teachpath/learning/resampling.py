@@ -1,0 +1,58 @@
+"""Trajectories made comparable: smoothed, at equal arc length, at equal times, or undersampled at random."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.ndimage import uniform_filter1d
+
+from teachpath.records import Array, Trajectory
+
+SMOOTHING = 0.18  # s, width of the moving average: nine samples of a 50 Hz tracker
+
+
+def smoothed(trajectory: Trajectory) -> Array:
+    """Average a trajectory over a short moving window; the first and last position stay.
+
+    Returns:
+        (n, 3) [m].
+    """
+    positions = trajectory.positions
+    half = round(SMOOTHING / float(np.median(np.diff(trajectory.times))) / 2)
+    half = min(half, (len(positions) - 1) // 2)
+    if half == 0:
+        return positions
+    # An odd reflection about each end point keeps that point and the direction there.
+    before = 2 * positions[0] - positions[half:0:-1]
+    after = 2 * positions[-1] - positions[-2 : -half - 2 : -1]
+    extended = np.concatenate([before, positions, after])
+    averaged: Array = uniform_filter1d(extended, 2 * half + 1, axis=0)[half:-half]
+    averaged[[0, -1]] = positions[[0, -1]]
+    return averaged
+
+
+def arc_lengths(path: Array) -> Array:
+    """Return the arc length from the start at every point of a polyline: (n,) [m]."""
+    return np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(path, axis=0), axis=1))])
+
+
+def at_equal_arc_length(path: Array, count: int) -> Array:
+    """Return `count` points at equal arc length along a polyline: (count, 3) [m], both ends exact."""
+    s = arc_lengths(path)
+    forward = np.concatenate([[True], np.diff(s) > 0])
+    return _interpolated(np.linspace(0.0, s[-1], count), s[forward], path[forward])
+
+
+def at_equal_times(trajectory: Trajectory, count: int, positions: Array | None = None) -> Array:
+    """Return the positions (or others given for the same times) at `count` equal times: (count, 3) [m]."""
+    times = trajectory.times
+    values = trajectory.positions if positions is None else positions
+    return _interpolated(np.linspace(times[0], times[-1], count), times, values)
+
+
+def undersampled(positions: Array, count: int, rng: np.random.Generator) -> Array:
+    """Keep `count` positions drawn at random without replacement, in their order (Aleotti & Caselli, III-A)."""
+    return positions[np.sort(rng.choice(len(positions), count, replace=False))]
+
+
+def _interpolated(at: Array, knots: Array, values: Array) -> Array:
+    return np.column_stack([np.interp(at, knots, values[:, axis]) for axis in range(values.shape[1])])

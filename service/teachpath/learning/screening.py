@@ -1,0 +1,47 @@
+"""What cannot be learned from is named here, before any arithmetic."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from teachpath.errors import LearningFailed
+from teachpath.records import Trajectory
+
+FEWEST_POINTS = 5
+SHORTEST_WAY = 1e-3  # m, extent below which a hand has not moved
+
+
+def screen(demonstrations: Mapping[str, Trajectory]) -> None:
+    """Refuse a set of demonstrations that no path can be learned from.
+
+    Raises:
+        LearningFailed: the set is empty, or a demonstration is misshapen, not finite, runs backwards in time, has
+            fewer than five distinct points or does not move; the message names it.
+    """
+    if not demonstrations:
+        raise LearningFailed("there is no demonstration to learn from; record at least one")
+    for name, trajectory in demonstrations.items():
+        fault = _fault(trajectory)
+        if fault:
+            raise LearningFailed(f"demonstration {name} {fault}; leave it out or record it again")
+
+
+def _fault(trajectory: Trajectory) -> str:
+    times, positions = trajectory.times, trajectory.positions
+    if positions.ndim != 2 or positions.shape[1] != 3 or times.shape != positions.shape[:1]:
+        return f"has positions of shape {positions.shape} for times of shape {times.shape}, not (n, 3) and (n,)"
+    finite = np.isfinite(positions).all(axis=1) & np.isfinite(times)
+    if not finite.all():
+        return f"is not finite at sample {int(np.argmin(finite))} of {len(times)}"
+    backwards = np.diff(times) <= 0
+    if backwards.any():
+        return f"does not go forward in time at sample {int(np.argmax(backwards)) + 1}"
+    distinct = len(np.unique(positions, axis=0))
+    if distinct < FEWEST_POINTS:
+        return f"has {distinct} distinct points, needs {FEWEST_POINTS}"
+    extent = float(np.linalg.norm(np.ptp(positions, axis=0)))
+    if extent < SHORTEST_WAY:
+        return f"moves only {extent * 1e3:.2f} mm, needs {SHORTEST_WAY * 1e3:.0f} mm"
+    return ""

@@ -1,0 +1,94 @@
+"""The settings of learning, with their limits."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, fields
+from math import isfinite
+from typing import Annotated, get_args, get_type_hints
+
+from annotated_types import Ge, Gt, Le
+
+from teachpath.errors import UnusableSettings
+
+MODES = ("default", "paper")
+
+Progress = Callable[[float, str], None]
+
+
+def ignore(_fraction: float, _sentence: str) -> None:
+    """Take no notice of progress."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LearningSettings:
+    """How paths are learned from demonstrations.
+
+    Raises:
+        UnusableSettings: a value is outside its limits, or the mode needs a setting that is missing.
+    """
+
+    # `default` is what to trust; `paper` follows Aleotti & Caselli 2005 to the letter
+    mode: str = "default"
+    # demonstrations that a cluster keeps: exactly so many in mode paper, at least so many in mode default
+    keep: Annotated[int, Ge(1)] = 2
+    # m, clusters farther apart than this stay apart; None = found by silhouette (mode default only)
+    threshold: Annotated[float, Gt(0)] | None = None
+    # mean silhouette below which the demonstrations are taken for one single way
+    guard: Annotated[float, Ge(0), Le(1)] = 0.5
+    # robust z below which a demonstration is inconsistent with its cluster (mode default)
+    inconsistent: Annotated[float, Le(0)] = -10.0
+    # m, largest distance of the learned path from what it is fitted to
+    error_bound: Annotated[float, Gt(0)] = 0.005
+    # degree of the NURBS; None = 5 where it costs few control points, else 3
+    degree: Annotated[int, Ge(2), Le(7)] | None = None
+    # control points a learned path may have at most
+    most_control_points: Annotated[int, Ge(8), Le(1000)] = 60
+    # of all random choices
+    seed: Annotated[int, Ge(0)] = 1
+    # s, sampling period of the spectra (mode default)
+    period: Annotated[float, Gt(0)] = 0.02
+    # states Q of the hidden Markov models (mode paper)
+    states: Annotated[int, Ge(1), Le(100)] = 10
+    # Gaussians M per state (mode paper)
+    mixtures: Annotated[int, Ge(1), Le(20)] = 2
+    # codewords L per axis (mode paper)
+    codebook: Annotated[int, Ge(2), Le(4096)] = 64
+
+    def __post_init__(self) -> None:
+        if self.mode not in MODES:
+            raise UnusableSettings(f"learning.mode is {self.mode!r}; it is one of {', '.join(MODES)}")
+        if self.mode == "paper" and self.threshold is None:
+            raise UnusableSettings(
+                "learning.mode 'paper' cuts the clusters at a constant distance; set learning.threshold in metres"
+            )
+        hints = get_type_hints(type(self), include_extras=True)
+        for field in fields(self):
+            _check(field.name, getattr(self, field.name), hints[field.name])
+
+
+def _check(name: str, value: object, hint: object) -> None:
+    options = (hint, *get_args(hint))
+    limits = next((option.__metadata__ for option in options if hasattr(option, "__metadata__")), ())
+    if not limits or (value is None and type(None) in options):
+        return
+    whole = any(get_args(option)[:1] == (int,) for option in options)
+    if isinstance(value, bool) or not isinstance(value, int if whole else (int, float)):
+        raise UnusableSettings(f"learning.{name} is {value!r}; it is a {'whole number' if whole else 'number'}")
+    if not isfinite(value):
+        raise UnusableSettings(f"learning.{name} is {value}; it is a finite number")
+    for limit in limits:
+        kept, words = _holds(limit, float(value))
+        if not kept:
+            raise UnusableSettings(f"learning.{name} is {value:g}; it is {words}")
+
+
+def _holds(limit: object, value: float) -> tuple[bool, str]:
+    match limit:
+        case Gt(gt=bound):
+            return bool(value > bound), f"greater than {bound}"  # type: ignore[operator]
+        case Ge(ge=bound):
+            return bool(value >= bound), f"at least {bound}"  # type: ignore[operator]
+        case Le(le=bound):
+            return bool(value <= bound), f"at most {bound}"  # type: ignore[operator]
+    raise AssertionError(f"no words for the limit {limit}")

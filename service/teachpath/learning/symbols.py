@@ -1,0 +1,63 @@
+"""Trajectories as symbols in mode paper: short-time Fourier transform and vector quantisation."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
+from scipy.cluster.vq import vq
+from scipy.signal.windows import hamming
+
+from teachpath.records import Array
+
+WINDOW = 20  # samples, Hamming
+HOP = 10  # samples, half of the window
+SPECTRUM = 32  # points of the zero-padded transform
+BINS = 16  # of its magnitudes, without the last
+ROUNDS = 30  # of k-means at most
+
+
+def spectra(positions: Array) -> Array:
+    """Transform a trajectory to short-time magnitude spectra (Aleotti & Caselli, eq. (2)).
+
+    Args:
+        positions: (n, 3) [m], n at least the window of 20.
+
+    Returns:
+        (frames, 3, 16): one 16-dimensional vector per window and axis.
+    """
+    stretches = sliding_window_view(positions, WINDOW, axis=0)[::HOP]
+    return np.abs(np.fft.rfft(stretches * hamming(WINDOW), SPECTRUM, axis=2))[..., :BINS]
+
+
+def symbol_sequences(all_spectra: Sequence[Array], size: int, rng: np.random.Generator) -> list[Array]:
+    """Quantise spectra axis by axis, each axis with a codebook of its own trained on all demonstrations.
+
+    The number of a codeword means nothing: the codebook starts from randomly drawn vectors.
+
+    Args:
+        all_spectra: for each demonstration (frames, 3, 16).
+        size: codewords per axis; at most as many as there are vectors.
+        rng: draws the first codewords.
+
+    Returns:
+        for each demonstration (frames, 3) codeword numbers 1, 2, ...
+    """
+    pooled = np.concatenate(all_spectra)
+    ends = np.cumsum([len(frames) for frames in all_spectra])[:-1]
+    columns = [_quantised(pooled[:, axis], size, rng) for axis in range(pooled.shape[1])]
+    return np.split(np.column_stack(columns) + 1.0, ends)
+
+
+def _quantised(vectors: Array, size: int, rng: np.random.Generator) -> Array:
+    codebook = vectors[rng.choice(len(vectors), min(size, len(vectors)), replace=False)]
+    labels = vq(vectors, codebook)[0]
+    for _ in range(ROUNDS):
+        codebook = np.stack(
+            [vectors[labels == k].mean(axis=0) if np.any(labels == k) else codebook[k] for k in range(len(codebook))]
+        )
+        before, labels = labels, vq(vectors, codebook)[0]
+        if np.array_equal(before, labels):
+            break
+    return np.asarray(labels, dtype=np.float64)

@@ -1,0 +1,90 @@
+"""One learned path out of the selected demonstrations of a cluster."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from teachpath.errors import LearningFailed
+from teachpath.learning.fitting import Approximation, approximate, distances_to
+from teachpath.learning.resampling import arc_lengths, at_equal_arc_length, smoothed
+from teachpath.learning.settings import LearningSettings
+from teachpath.records import Array, Fit, LearnedPath, Trajectory
+
+CONSENSUS_POINTS = 200
+SMOOTH_COST = 3  # more control points that degree 5 may take than degree 3
+PAPER_DEGREE = 3
+POOLED_MOST = 12  # control points on a pooled list: more follow its zigzag and come no closer
+RETREAT = 0.05  # share of the way that may lead back towards the start unmentioned
+
+
+def consensus(paths: Sequence[Array], count: int = CONSENSUS_POINTS) -> Array:
+    """Average paths at equal arc length: (count, 3) [m], from the mean start to the mean goal."""
+    return np.asarray(np.mean([at_equal_arc_length(path, count) for path in paths], axis=0))
+
+
+def synthesise(cluster: int, selected: Sequence[Trajectory], settings: LearningSettings) -> LearnedPath:
+    """Fit the consensus of the selected demonstrations within the error bound (mode default).
+
+    Raises:
+        LearningFailed: the bound cannot be kept with `most_control_points`.
+    """
+    course = consensus([smoothed(trajectory) for trajectory in selected])
+    bound, most = settings.error_bound, settings.most_control_points
+    degrees = (3, 5) if settings.degree is None else (settings.degree,)
+    fits = [approximate(course, bound, degree=degree, most=most) for degree in degrees]
+    kept = [fit for fit in fits if fit.largest <= bound]
+    if not kept:
+        least = min(fit.largest for fit in fits)
+        raise LearningFailed(
+            f"way {cluster} cannot be followed within {bound * 1e3:.3g} mm by {most} control points, which reach "
+            f"{least * 1e3:.3g} mm; raise learning.error_bound or learning.most_control_points"
+        )
+    best = min(kept, key=_cost)
+    return _path(cluster, best, course, selected, bound, "")
+
+
+def synthesise_as_paper(cluster: int, selected: Sequence[Trajectory], settings: LearningSettings) -> LearnedPath:
+    """Pool the points of the selected, sort them by distance to the start and approximate (Aleotti & Caselli, III-C).
+
+    The global approximation of The NURBS Book returns more control points than points when such a list zigzags
+    more than the bound; the number of control points is limited here and the note says when the bound is not met.
+    """
+    start = np.mean([trajectory.positions[0] for trajectory in selected], axis=0)
+    pooled = np.concatenate([trajectory.positions for trajectory in selected])
+    order = np.argsort(np.linalg.norm(pooled - start, axis=1), kind="stable")
+    points = np.concatenate([start[None], pooled[order]])
+    most = min(POOLED_MOST, settings.most_control_points)
+    degree = PAPER_DEGREE if settings.degree is None else settings.degree
+    span = 8 * len(selected)
+    fit = approximate(points, settings.error_bound, degree=degree, most=most, span=span)
+    notes = []
+    if fit.largest > settings.error_bound:
+        notes.append(f"the pooled points spread too far for the bound: up to {fit.largest * 100:.1f} cm from the curve")
+    share = max(_retreat(smoothed(trajectory)) for trajectory in selected)
+    if share > RETREAT:
+        notes.append(
+            f"{share:.0%} of the motion leads back towards the start: sorting by distance to it scrambles the path, "
+            "use mode default"
+        )
+    return _path(cluster, fit, points, selected, settings.error_bound, "; ".join(notes))
+
+
+def _cost(fit: Approximation) -> int:
+    return len(fit.curve.control_points) - (SMOOTH_COST if fit.curve.degree > 3 else 0)
+
+
+def _retreat(path: Array) -> float:
+    """Return the share of the length over which the distance to the start decreases by more than noise."""
+    even = at_equal_arc_length(path, 50)
+    return float(np.mean(np.diff(np.linalg.norm(even - even[0], axis=1)) < -0.25 * arc_lengths(even)[-1] / 49))
+
+
+def _path(
+    cluster: int, fit: Approximation, fitted: Array, selected: Sequence[Trajectory], bound: float, note: str
+) -> LearnedPath:
+    apart = distances_to(fit.curve, fitted)
+    tube = max(float(distances_to(fit.curve, trajectory.positions).max()) for trajectory in selected)
+    measures = Fit(bound, float(apart.max()), float(np.sqrt(np.mean(np.square(apart)))), tube)
+    return LearnedPath("", "", cluster, 1, fit.curve, measures, note)

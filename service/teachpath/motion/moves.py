@@ -1,0 +1,69 @@
+"""Moves of the joints to a path and away from it: straight lines in the joints, checked against the scene."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import pairwise
+
+import numpy as np
+
+from teachpath.errors import PathRefused
+from teachpath.motion.puma560 import Array
+from teachpath.motion.scene import CollisionModel, Load
+from teachpath.motion.settings import MotionSettings
+
+STEP = 0.01  # rad, largest turn of a joint between two configurations that are checked
+
+
+def line(start: Array, goal: Array) -> Array:
+    """Sample the straight line (n, 6) between two configurations, densely enough to be checked."""
+    count = 1 + max(1, int(np.ceil(np.abs(goal - start).max() / STEP)))
+    return start + np.linspace(0.0, 1.0, count)[:, None] * (goal - start)
+
+
+def check_free(
+    model: CollisionModel, samples: Array, settings: MotionSettings, *, load: Load | None, gripper_open: bool, what: str
+) -> float:
+    """Return the least clearance [m] of configurations (n, 6) on a move.
+
+    Raises:
+        PathRefused: something comes too near; `what` names the move.
+    """
+    least = model.clearance(samples, load=load, gripper_open=gripper_open)
+    if least.distance < settings.clearance_min:
+        raise PathRefused(
+            f"{what}: {least.part} comes within {1000 * least.distance:.1f} mm of {least.other}, "
+            f"least allowed {1000 * settings.clearance_min:.1f} mm"
+        )
+    return least.distance
+
+
+def approach(
+    model: CollisionModel,
+    here: Array,
+    goal: Array,
+    settings: MotionSettings,
+    *,
+    load: Load | None = None,
+    gripper_open: bool = False,
+) -> Sequence[Array]:
+    """Find the stops on the way from one configuration to another: straight, or over the arm's home.
+
+    Returns:
+        Two or three configurations (6,), from `here` to `goal`.
+
+    Raises:
+        PathRefused: neither way is free; says what comes too near on the straight one.
+    """
+    home = np.array(settings.home)
+    refused: PathRefused | None = None
+    for stops in ((here, goal), (here, home, goal)):
+        samples = np.concatenate([line(a, b) for a, b in pairwise(stops)])
+        try:
+            what = "on the way to the path's start"
+            check_free(model, samples, settings, load=load, gripper_open=gripper_open, what=what)
+            return stops
+        except PathRefused as error:
+            refused = refused or error
+    assert refused is not None
+    raise PathRefused(f"{refused}; bring the arm nearer to its home first")

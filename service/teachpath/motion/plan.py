@@ -1,0 +1,214 @@
+"""From a learned path to a plan the arm can execute, with its certificate, or to the reason why not."""
+
+from __future__ import annotations
+
+import uuid
+from dataclasses import dataclass, replace
+from typing import Final
+
+import numpy as np
+
+from teachpath.errors import PathRefused
+from teachpath.motion.certificate import digest, stream, uses
+from teachpath.motion.kinematics import downward, inverse, tool_pose
+from teachpath.motion.moves import approach, check_free, line
+from teachpath.motion.puma560 import LOWER, SPEED, UPPER, Array
+from teachpath.motion.route import Candidate, Route, candidates, explain, route, usable
+from teachpath.motion.scene import Clearance, CollisionModel, Load
+from teachpath.motion.settings import MotionSettings
+from teachpath.motion.timing import JointPath, fastest_box, rest_to_rest
+from teachpath.records import Certificate, Extreme, LearnedPath, Plan, Scene, Vector
+
+NEAR_FINGERS: Final = 0.001  # m, that open fingers stay away from the object between them
+# A branch and roll that keeps more clearance is worth so much per metre, up to what is enough.
+GAIN: Final = 20.0
+ENOUGH: Final = 0.02  # m
+PROOF: Final = 0.004  # m, between two places of a path where clearances are measured
+
+
+@dataclass(frozen=True, eq=False)
+class _Job:
+    """What stays the same while branches are tried."""
+
+    path: LearnedPath
+    scene: Scene
+    settings: MotionSettings
+    way: Route
+    model: CollisionModel
+
+
+def plan(path: LearnedPath, scene: Scene, settings: MotionSettings | None = None) -> Plan:
+    """Plan the pick and place along a path: the centre of the carried object follows it, the tool points down.
+
+    The arm goes from its home to above the start, down, closes the gripper, follows the path, opens the gripper, goes
+    up and home. Without a carried object it follows the path with the gripper closed.
+
+    Args:
+        path: what to follow.
+        scene: what stands around.
+        settings: what may be used of the arm; the defaults when None.
+
+    Returns:
+        A plan with its certificate.
+
+    Raises:
+        PathRefused: the arm cannot; the sentence says why, where, and which control point to move.
+    """
+    settings = settings or MotionSettings()
+    way = route(path.curve, settings)
+    _starts_at_object(way, scene, settings)
+    every = candidates(way, settings)
+    fit = [candidate for candidate in every if usable(candidate, settings)]
+    if not fit:
+        nearest = min(every, key=lambda c: (max(c.excess, 0.0), c.jump >= 0, -c.singular))
+        raise PathRefused(explain(way, nearest, settings))
+    job = _Job(path, scene, settings, way, CollisionModel(scene))
+    refused: PathRefused | None = None
+    free: list[tuple[float, Candidate, Extreme]] = []
+    for candidate in sorted(fit, key=lambda c: _cost(c, settings)):
+        try:
+            clearance = _path_clearance(job, JointPath(way.lengths, candidate.joints))
+            free.append((_cost(candidate, settings) - GAIN * min(clearance.value, ENOUGH), candidate, clearance))
+        except PathRefused as error:
+            refused = refused or error
+    for _, candidate, clearance in sorted(free, key=lambda trial: trial[0]):
+        try:
+            return _certified(job, candidate, clearance)
+        except PathRefused as error:
+            refused = refused or error
+    assert refused is not None
+    raise refused
+
+
+def _cost(candidate: Candidate, settings: MotionSettings) -> float:
+    """Prefer branches far from singular poses and joint limits, and near to the arm's home (a second counts 0.2)."""
+    use = np.abs(candidate.joints - (LOWER + UPPER) / 2).max(axis=0) / ((UPPER - LOWER) / 2)
+    travel = np.abs(candidate.joints[0] - np.array(settings.home)) / SPEED
+    return float(0.1 / candidate.singular + use.max() + 0.2 * travel.max())
+
+
+def _certified(job: _Job, candidate: Candidate, clearance: Extreme) -> Plan:
+    settings, way = job.settings, job.way
+    joints = JointPath(way.lengths, candidate.joints)
+    _tool_on_path(way, joints, settings)
+    box = fastest_box(joints, share=settings.path_share)
+    start, goal = candidate.joints[0], candidate.joints[-1]
+    above_start = _above(way.positions[0], start, candidate, settings, "start")
+    above_goal = _above(way.positions[-1], goal, candidate, settings, "goal")
+    _moves_clear(job, joints, above_start, above_goal)
+    s, setpoints = stream(joints, box, settings.rate)
+    position, velocity, acceleration, jerk = uses(s, setpoints, settings.rate)
+    worst = max((velocity, acceleration, jerk), key=lambda extreme: extreme.value)
+    if worst.value > 1.0:
+        raise PathRefused(f"a limit is used to {100 * worst.value:.1f} % by {worst.place}; lower motion.path_share")
+    singular_s = float(way.lengths[candidate.singular_at])
+    drawn = Plan(
+        id=f"plan-{uuid.uuid4().hex[:12]}",
+        path=job.path.id,
+        path_version=job.path.version,
+        scene=job.scene,
+        lengths=way.lengths,
+        joints=candidate.joints,
+        limits=(box.velocity, box.acceleration, box.jerk),
+        above_start=above_start,
+        above_goal=above_goal,
+        duration=rest_to_rest(joints.end, box),
+        certificate=Certificate(
+            digest="",
+            branch=candidate.branch,
+            position_use=position,
+            velocity_use=velocity,
+            acceleration_use=acceleration,
+            jerk_use=jerk,
+            least_singular=Extreme(candidate.singular, f"s = {singular_s:.3f} m", singular_s),
+            clearance=clearance,
+        ),
+    )
+    return replace(drawn, certificate=replace(drawn.certificate, digest=digest(drawn)))
+
+
+def _starts_at_object(way: Route, scene: Scene, settings: MotionSettings) -> None:
+    if scene.carried is None:
+        return
+    off = float(np.linalg.norm(way.positions[0] - np.array(scene.carried.position)))
+    if off > settings.grasp_tolerance:
+        raise PathRefused(
+            f"the path starts {100 * off:.1f} cm from where {scene.carried.name} stands, at most "
+            f"{100 * settings.grasp_tolerance:.1f} cm; move control point 1 of {len(way.curve.control_points)} there"
+        )
+
+
+def _tool_on_path(way: Route, joints: JointPath, settings: MotionSettings) -> None:
+    samples = joints.dense()
+    wanted = way.curve(way.arc.parameters(samples))
+    off = np.linalg.norm(tool_pose(joints(samples))[:, :3, 3] - wanted, axis=1)
+    worst = int(np.argmax(off))
+    if off[worst] > settings.path_tolerance:
+        node = int(np.argmin(np.abs(way.lengths - samples[worst])))
+        raise PathRefused(f"the path bends too sharply to be followed within its tolerance {way.place(node)}")
+
+
+def _above(position: Array, q: Array, candidate: Candidate, settings: MotionSettings, what: str) -> Array:
+    """Find the configuration above an end of the path, on the same branch as configuration `q` there."""
+    lifted = position + np.array([0.0, 0.0, settings.lift])
+    solutions = inverse(downward(lifted[None], candidate.roll), q4_before=float(q[3]))
+    turned = solutions.joints[0] + 2 * np.pi * np.round((q - solutions.joints[0]) / (2 * np.pi))
+    best = turned[int(np.argmin(np.abs(turned - q).max(axis=1)))]
+    if solutions.excess[0, 0] > 0 or np.any(best < LOWER) or np.any(best > UPPER):
+        raise PathRefused(
+            f"the arm cannot reach {100 * settings.lift:.0f} cm above the {what} of the path; lower motion.lift"
+        )
+    return np.asarray(best, dtype=np.float64)
+
+
+def _path_clearance(job: _Job, joints: JointPath) -> Extreme:
+    samples = np.linspace(0.0, joints.end, max(2, int(np.ceil(joints.end / PROOF)) + 1))
+    q, load = joints(samples), _grasp(job, joints)
+    least = job.model.clearance(q, load=load)
+    if least.distance < job.settings.clearance_min:
+        raise _too_near(job, samples, least, job.settings.clearance_min)
+    if load is not None:
+        support = job.model.support(q, load)
+        if support.distance < -job.settings.contact_tolerance:
+            raise _too_near(job, samples, support, -job.settings.contact_tolerance)
+    s = float(samples[least.index])
+    return Extreme(least.distance, f"{least.part} to {least.other} at s = {s:.3f} m" if least.part else "far", s)
+
+
+def _too_near(job: _Job, samples: Array, least: Clearance, limit: float) -> PathRefused:
+    node = int(np.argmin(np.abs(job.way.lengths - samples[least.index])))
+    return PathRefused(
+        f"{least.part} comes within {1000 * least.distance:.1f} mm of {least.other}, least allowed "
+        f"{1000 * limit:.1f} mm, {job.way.place(node)} away from {least.other}"
+    )
+
+
+def _grasp(job: _Job, joints: JointPath) -> Load | None:
+    carried = job.scene.carried
+    if carried is None:
+        return None
+    upright = np.eye(4)
+    upright[:3, 3] = carried.position
+    return Load(grasp=np.linalg.inv(tool_pose(joints(0.0))) @ upright)
+
+
+def _moves_clear(job: _Job, joints: JointPath, above_start: Array, above_goal: Array) -> None:
+    model, settings, home = job.model, job.settings, np.array(job.settings.home)
+    carried = job.scene.carried
+    gripper_open = carried is not None
+    before = Load(placed=carried.position) if carried else None
+    behind = Load(placed=_left_at(job, carried.position)) if carried else None
+    approach(model, home, above_start, settings, load=before, gripper_open=gripper_open)
+    for load, low, high, what in ((before, joints(0.0), above_start, "start"), (behind, joints(joints.end), above_goal,
+                                                                                "goal")):  # fmt: skip
+        samples = line(low, high)
+        check_free(model, samples, settings, load=load, gripper_open=gripper_open, what=f"above the {what}")
+        if load is not None and model.straddle(samples, load).distance < NEAR_FINGERS:
+            raise PathRefused(f"the open fingers would hit the object at the {what}; is the path centred on it?")
+    what = "on the way home from the goal"
+    check_free(model, line(above_goal, home), settings, load=behind, gripper_open=gripper_open, what=what)
+
+
+def _left_at(job: _Job, start: Vector) -> Vector:
+    moved = np.array(start) + job.way.positions[-1] - job.way.positions[0]
+    return (float(moved[0]), float(moved[1]), float(moved[2]))

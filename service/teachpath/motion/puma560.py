@@ -1,0 +1,107 @@
+"""The Puma 560 as published: one table of lengths, masses, friction and limits, from which everything else is made.
+
+Frames: frame 0 is `world`, on the floor under the pedestal; frame i (1 to 6) is the standard Denavit-Hartenberg frame
+behind joint i, fixed to link i. The tool's grasp point lies on z of frame 6. `SOURCES` names where each column is from.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import pi, radians
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class Link:
+    """One row of the table: joint i and the link behind it, in frame i; `SOURCES` has the reference of each column."""
+
+    d: float  # m, offset along the joint's axis
+    a: float  # m, length along x of the link's frame
+    alpha: float  # rad, twist about x of the link's frame
+    mass: float  # kg
+    com: tuple[float, float, float]  # m, centre of mass in the link's frame
+    inertia: tuple[float, float, float]  # kg m^2, xx yy zz about the centre of mass
+    motor_inertia: float  # kg m^2, at the motor
+    gear: float  # motor turns per joint turn, with its sign
+    viscous: float  # N m s, at the motor
+    coulomb: tuple[float, float]  # N m, at the motor, for turning forward and backward
+    lower: float  # rad, with the zero position of this table
+    upper: float  # rad
+    torque: float  # N m, at the joint
+    speed: float  # rad/s, at the joint
+    acceleration: float  # rad/s^2, at the joint
+
+
+CORKE_ARMSTRONG: Final = (
+    "P. Corke, B. Armstrong-Helouvry: A search for consensus among model parameters reported for the PUMA 560 robot, "
+    "Proc. IEEE ICRA 1994, pp. 1608-1613"
+)
+ARMSTRONG: Final = (
+    "B. Armstrong, O. Khatib, J. Burdick: The explicit dynamic model and inertial parameters of the PUMA 560 arm, "
+    "Proc. IEEE ICRA 1986, pp. 510-518"
+)
+CORKE: Final = "P. Corke: Visual Control of Robots, Research Studies Press 1996"
+WANG_CHEN: Final = (
+    "L. Wang, C. Chen: A combined optimization method for solving the inverse kinematics problem of mechanical "
+    "manipulators, IEEE Trans. Robotics and Automation 7(4), 1991, pp. 489-499"
+)
+
+SOURCES: Final[dict[str, str]] = {
+    "d": f"{CORKE_ARMSTRONG}; d of joint 1 (26.45 in, floor to shoulder) and of joint 6 (flange): {CORKE}, ch. 2",
+    "a": CORKE_ARMSTRONG,
+    "alpha": f"R. Paul's twists as in {CORKE_ARMSTRONG}: with all joints at zero the arm is right-handed",
+    "mass": f"{ARMSTRONG}, as converted in {CORKE_ARMSTRONG}; link 1 was never measured, it does not matter",
+    "com": f"{ARMSTRONG}, as converted in {CORKE_ARMSTRONG}",
+    "inertia": f"{ARMSTRONG}, as converted in {CORKE_ARMSTRONG}; of link 1 only yy, about its axis, is known",
+    "motor_inertia": CORKE_ARMSTRONG,
+    "gear": CORKE_ARMSTRONG,
+    "viscous": CORKE_ARMSTRONG,
+    "coulomb": CORKE_ARMSTRONG,
+    "lower": f"{WANG_CHEN}, with the zero position of Paul's frames",
+    "upper": f"{WANG_CHEN}, with the zero position of Paul's frames",
+    "torque": f"{ARMSTRONG}, table 7",
+    "speed": f"{CORKE}, tables 2.18 and 2.21: voltage saturation over the gear ratio",
+    "acceleration": "derived here: inverse dynamics of this table stays within `torque` with all joints at full speed",
+}
+
+LINKS: Final = (
+    Link(0.67183, 0.0, pi / 2, 0.0, (0.0, 0.0, 0.0), (0.0, 0.35, 0.0), 200e-6, -62.6111, 1.48e-3, (0.395, 0.435),
+         radians(-160), radians(160), 97.6, 1.92, 10.0),
+    Link(0.0, 0.4318, 0.0, 17.4, (-0.3638, 0.006, 0.2275), (0.13, 0.524, 0.539), 200e-6, 107.815, 0.817e-3,
+         (0.126, 0.071), radians(-45), radians(225), 186.4, 1.51, 8.0),
+    Link(0.15005, 0.0203, -pi / 2, 4.8, (-0.0203, -0.0141, 0.070), (0.066, 0.086, 0.0125), 200e-6, -53.7063, 1.38e-3,
+         (0.132, 0.105), radians(-225), radians(45), 89.4, 2.40, 16.0),
+    Link(0.4318, 0.0, pi / 2, 0.82, (0.0, 0.019, 0.0), (1.8e-3, 1.3e-3, 1.8e-3), 33e-6, 76.0364, 71.2e-6,
+         (11.2e-3, 16.9e-3), radians(-110), radians(170), 24.2, 5.34, 40.0),
+    Link(0.0, 0.0, -pi / 2, 0.34, (0.0, 0.0, 0.0), (0.3e-3, 0.4e-3, 0.3e-3), 33e-6, 71.923, 82.6e-6,
+         (9.26e-3, 14.5e-3), radians(-100), radians(100), 20.1, 5.09, 40.0),
+    Link(0.05625, 0.0, 0.0, 0.09, (0.0, 0.0, 0.032 - 0.05625), (0.15e-3, 0.15e-3, 0.04e-3), 33e-6, 76.686, 36.7e-6,
+         (3.96e-3, 10.5e-3), radians(-266), radians(266), 21.3, 5.74, 40.0),
+)  # fmt: skip
+
+
+def _column(name: str) -> Array:
+    column = np.array([getattr(link, name) for link in LINKS], dtype=np.float64)
+    column.flags.writeable = False
+    return column
+
+
+LOWER: Final = _column("lower")  # (6,) rad
+UPPER: Final = _column("upper")
+SPEED: Final = _column("speed")  # (6,) rad/s
+ACCELERATION: Final = _column("acceleration")  # (6,) rad/s^2
+# Nobody publishes a jerk limit: by our convention the full acceleration is built up in a tenth of a second.
+JERK: Final = 10.0 * ACCELERATION
+TORQUE: Final = _column("torque")  # (6,) N m
+
+# The gripper is our own design: two fingers that close along y of frame 6.
+TOOL_LENGTH: Final = 0.13  # m, flange to grasp point
+GRIPPER_MASS: Final = 0.25  # kg
+GRIPPER_COM: Final = (0.0, 0.0, 0.05)  # m, in frame 6
+GRIPPER_INERTIA: Final = (6e-4, 5e-4, 3e-4)  # kg m^2
+FINGER_TRAVEL: Final = 0.015  # m, of each finger between closed and open

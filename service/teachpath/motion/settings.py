@@ -1,0 +1,38 @@
+"""What a plan may use of the arm, and how near it may come to things."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Annotated
+
+from annotated_types import Ge, Gt, Le
+
+
+@dataclass(frozen=True)
+class MotionSettings:
+    """How paths are planned."""
+
+    # [rad] joints 1 to 6 where the arm waits: elbow up, tool down, above the table
+    home: tuple[float, ...] = (0.365, 1.663, -3.177, 0.0, -1.628, 0.365)
+    # [m] that arm and carried object stay away from obstacles and the arm from itself
+    clearance_min: Annotated[float, Ge(0)] = 0.005
+    # [m] that the carried object may dip into what it stands on at its start
+    contact_tolerance: Annotated[float, Ge(0), Le(0.02)] = 0.003
+    # [m] between the start of a path and where the scene's object stands
+    grasp_tolerance: Annotated[float, Ge(0), Le(0.1)] = 0.03
+    # [m] above start and goal, from where the gripper comes down straight
+    lift: Annotated[float, Gt(0), Le(0.5)] = 0.08
+    # share of the joints' speed, acceleration and jerk limits that a path may use
+    path_share: Annotated[float, Gt(0), Le(1)] = 1.0
+    # the same for moves to the path and away from it
+    move_share: Annotated[float, Gt(0), Le(1)] = 0.5
+    # [rad] turns of the gripper about the vertical to try; 0 closes the fingers along y
+    rolls: tuple[float, ...] = (0.0, 1.5707963267948966, 3.141592653589793, -1.5707963267948966)
+    # least singular value of the Jacobian that still counts as away from singular poses
+    least_singular: Annotated[float, Ge(0)] = 0.03
+    # [m] the tool may be off the path between two nodes of its spline
+    path_tolerance: Annotated[float, Gt(0)] = 0.0001
+    # [m] between two nodes
+    node_spacing: Annotated[float, Gt(0), Le(0.01)] = 0.002
+    # [Hz] of the setpoints with which limits are checked
+    rate: Annotated[float, Ge(50), Le(1000)] = 250.0

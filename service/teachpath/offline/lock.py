@@ -1,0 +1,37 @@
+"""One service a data folder: a lock that ends with its process, however that ends."""
+
+from __future__ import annotations
+
+import fcntl
+from pathlib import Path
+from types import TracebackType
+
+from teachpath.errors import Conflict
+
+
+class StationLock:
+    """Holds the data folder; use it as a context manager.
+
+    Raises:
+        Conflict: another process holds it.
+    """
+
+    def __init__(self, data_dir: Path) -> None:
+        self._folder = data_dir
+
+    def __enter__(self) -> StationLock:
+        self._folder.mkdir(parents=True, exist_ok=True)
+        self._file = (self._folder / "service.lock").open("a")
+        try:
+            fcntl.flock(self._file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError:
+            self._file.close()
+            raise Conflict(
+                f"a teachpath service is using {self._folder}; stop it first, or name another folder with --data"
+            ) from None
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self._file.close()

@@ -1,0 +1,87 @@
+"""What is learned from a demonstration: the object's trajectory in the world, and the verdict on its samples."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from teachpath.errors import UnusableRecording
+from teachpath.recording.phases import Cut
+from teachpath.recording.settings import RecordingSettings
+from teachpath.records import Account, Array, Calibration, Sample, Trajectory, Vector
+
+
+def to_world(calibration: Calibration, positions: Array) -> Array:
+    """Map tracker positions (..., 3) to the world [m]: p_world = scale * R p + offset."""
+    rotation = Rotation.from_quat(calibration.rotation, scalar_first=True)
+    flat = rotation.apply(np.atleast_2d(positions)) * calibration.scale + np.array(calibration.offset)
+    return np.asarray(flat.reshape(np.shape(positions)), dtype=np.float64)
+
+
+def object_trajectory(
+    samples: Sequence[Sample], cut: Cut, calibration: Calibration, carried: Vector | None
+) -> Trajectory:
+    """Return the object's motion from grasp to release.
+
+    The hand holds the object where it took it: with T_hand the pose of the hand, the object's is
+    T_hand(t) T_hand(grasp)^-1 T_object(start). Without orientations the offset in the world stays the same; without
+    an object the hand itself is followed.
+
+    Args:
+        samples: the samples of the demonstration in the order received; duplicates and untracked ones are left out,
+            late ones put back in their place.
+        cut: its transport phase.
+        carried: start of the object's centre [m, world], or None.
+
+    Raises:
+        UnusableRecording: fewer than 2 usable samples.
+    """
+    used: dict[int, Sample] = {}
+    for sample in samples[cut.grasp : cut.release]:
+        if sample.tracked:
+            used.setdefault(sample.sequence, sample)
+    ordered = _forward_in_time([used[k] for k in sorted(used)])
+    if len(ordered) < 2:
+        raise UnusableRecording(
+            f"only {len(ordered)} usable samples between grasp and release; is the tracker in view of its source?"
+        )
+    times = np.array([s.device_ns - ordered[0].device_ns for s in ordered]) * 1e-9
+    hand = to_world(calibration, np.array([s.position for s in ordered]))
+    measured = [s.orientation for s in ordered]
+    if any(q is None for q in measured):
+        offset = np.zeros(3) if carried is None else np.array(carried) - hand[0]
+        return Trajectory(times, hand + offset, None)
+    world = Rotation.from_quat(calibration.rotation, scalar_first=True)
+    turned = world * Rotation.from_quat(np.array(measured, dtype=np.float64), scalar_first=True)
+    if carried is None:
+        return Trajectory(times, hand, _continuous(turned.as_quat(scalar_first=True)))
+    since_grasp = turned * turned[0].inv()
+    positions = hand + since_grasp.apply(np.array(carried) - hand[0])
+    return Trajectory(times, positions, _continuous(since_grasp.as_quat(scalar_first=True)))
+
+
+def _forward_in_time(samples: list[Sample]) -> list[Sample]:
+    kept: list[Sample] = []
+    for sample in samples:
+        if not kept or sample.device_ns > kept[-1].device_ns:
+            kept.append(sample)
+    return kept
+
+
+def _continuous(quaternions: Array) -> Array:
+    """Choose the signs so that neighbours lie on one half of the sphere."""
+    flips = np.sum(quaternions[1:] * quaternions[:-1], axis=1) < 0
+    signs = np.concatenate([[1.0], np.where(flips, -1.0, 1.0).cumprod()])
+    return np.asarray(quaternions * signs[:, None])
+
+
+def judge(account: Account, settings: RecordingSettings) -> str:
+    """Return the verdict on a demonstration: clean, repaired (usable, with losses) or reject."""
+    faults = account.lost + account.refused + account.untracked
+    if faults > settings.largest_loss * (account.received + account.lost):
+        return "reject"
+    if account.longest_gap_ns > settings.longest_gap * 1e9:
+        return "reject"
+    return "repaired" if faults or account.duplicated or account.reordered else "clean"

@@ -1,0 +1,39 @@
+"""The settings of recording."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Annotated
+
+from annotated_types import Ge, Gt, Le
+
+Share = Annotated[float, Ge(0), Le(1)]
+Positive = Annotated[float, Gt(0)]
+
+
+@dataclass(frozen=True)
+class RecordingSettings:
+    """How a stream of hand samples is cut and judged."""
+
+    # mean flexion (0 open, 1 closed) above which an open hand counts as closed
+    close_at: Share = 0.6
+    # mean flexion below which a closed hand counts as open
+    open_at: Share = 0.4
+    # [m] how near the object's centre the hand must close to grasp it
+    grasp_radius: Positive = 0.08
+    # [s] how long the open hand must rest to end a demonstration
+    rest_time: Positive = 0.3
+    # [m] how far it may move while it rests
+    rest_motion: Positive = 0.01
+    # [s] after the release a demonstration ends even without rest
+    longest_return: Positive = 3.0
+    # [s] a reach longer than this starts the recording anew
+    longest_reach: Positive = 60.0
+    # samples: a shorter transport phase is no demonstration
+    shortest_transport: Annotated[int, Ge(5)] = 20
+    # share of a demonstration's samples that may be lost, refused or untracked before it is rejected
+    largest_loss: Share = 0.05
+    # [s] longest gap in the device's clock before it is rejected
+    longest_gap: Positive = 0.25
+    # [s] how long the handshake at the end waits for samples that are still under way
+    handshake_timeout: Positive = 2.0

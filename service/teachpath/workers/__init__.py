@@ -1,0 +1,1 @@
+"""The running things: recorder, jobs, executor, simulator, preview; strangers to each other."""

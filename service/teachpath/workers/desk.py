@@ -1,0 +1,63 @@
+"""What runs in the process of the jobs: the work itself, with progress out and cancel in."""
+
+from __future__ import annotations
+
+import os
+import signal
+import threading
+from collections.abc import Callable
+from multiprocessing import Queue, parent_process
+from multiprocessing.synchronize import Event
+from typing import Any
+
+from teachpath.errors import Cancelled
+from teachpath.learning import LearningSettings, learn
+from teachpath.motion import MotionSettings, plan
+from teachpath.records import Learned, LearnedPath, Plan, Scene, Trajectory
+
+Progress = Callable[[float, str], None]
+
+_news: Queue[tuple[str, float, str]] | None = None
+_cancel: Event | None = None
+
+
+def sit_down(news: Queue[tuple[str, float, str]], cancel: Event) -> None:
+    """Prepare this process: it ignores Ctrl-C, which its parent handles, and never outlives its parent."""
+    global _news, _cancel
+    _news, _cancel = news, cancel
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    threading.Thread(target=_leave_with_parent, name="parent", daemon=True).start()
+
+
+def _leave_with_parent() -> None:
+    parent = parent_process()
+    if parent is not None:
+        parent.join()
+    os._exit(1)
+
+
+def warm_up() -> None:
+    """Load what the first job needs."""
+
+
+def work(key: str, function: Callable[..., Any], inputs: tuple[Any, ...]) -> Any:
+    """Call `function(*inputs, progress=...)` for job `key`."""
+
+    def progress(fraction: float, sentence: str) -> None:
+        if _cancel is not None and _cancel.is_set():
+            raise Cancelled("cancelled by the operator")
+        if _news is not None:
+            _news.put((key, fraction, sentence))
+
+    return function(*inputs, progress=progress)
+
+
+def learn_paths(demonstrations: dict[str, Trajectory], settings: LearningSettings, *, progress: Progress) -> Learned:
+    """Cluster, select and fit."""
+    return learn(demonstrations, settings, progress=progress)
+
+
+def plan_path(path: LearnedPath, scene: Scene, settings: MotionSettings, *, progress: Progress) -> Plan:
+    """Plan one path."""
+    progress(0.1, f"planning path {path.id}")
+    return plan(path, scene, settings)

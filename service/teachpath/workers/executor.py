@@ -1,0 +1,223 @@
+"""The executor: streams the setpoints of one plan at a time to the arm and obeys the operator meanwhile.
+
+It lives in a process of its own, in which nothing else runs. The loop never raises in mid-motion: whatever goes wrong
+brings the arm to rest on its path, with a reason in the status.
+"""
+
+from __future__ import annotations
+
+import gc
+import logging
+import threading
+import time
+from collections import deque
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Annotated
+
+import numpy as np
+from annotated_types import Ge, Gt, Le
+
+from teachpath.errors import Conflict, Unreachable, UnusableInput
+from teachpath.io import documents, wire
+from teachpath.io.bus import Bus
+from teachpath.motion.program import Program
+from teachpath.motion.settings import MotionSettings
+from teachpath.records import ExecutorStatus, JointState, Plan
+from teachpath.workers.pacing import Pacer, ask_for_realtime
+from teachpath.workers.run import Run
+from teachpath_proto.keys import Keys
+
+log = logging.getLogger(__name__)
+
+
+@dataclass(frozen=True)
+class ExecutorSettings:
+    """How plans are executed."""
+
+    # name of the arm in its keys
+    robot: str = "puma560"
+    # [Hz] setpoints a second
+    rate: Annotated[float, Ge(125), Le(500)] = 250.0
+    # [Hz] statuses a second
+    status_rate: Annotated[float, Gt(0), Le(50)] = 10.0
+    # [s] that the gripper takes to close or open
+    dwell: Annotated[float, Ge(0), Le(10)] = 0.5
+    # [s] without a joint state after which the arm is held
+    silence: Annotated[float, Gt(0), Le(5)] = 0.2
+    # [rad] tracking error of a joint at which the execution is given up
+    largest_error: Annotated[float, Gt(0), Le(0.5)] = 0.05
+    # [rad/s] that the arm may still move when an execution starts
+    rest_speed: Annotated[float, Gt(0), Le(0.5)] = 0.05
+    # [rad] that the arm may be off its setpoint when a held execution goes on
+    regain: Annotated[float, Gt(0), Le(0.5)] = 0.02
+    # whether to ask for real-time scheduling
+    realtime: bool = True
+
+
+class Executor:
+    """Owns the control loop; `run` is its life."""
+
+    def __init__(
+        self,
+        bus: Bus,
+        keys: Keys,
+        settings: ExecutorSettings | None = None,
+        *,
+        motion: MotionSettings | None = None,
+        clock: Callable[[], int] = time.monotonic_ns,
+        wall: Callable[[], int] = time.time_ns,
+        sleep: Callable[[float], object] = time.sleep,
+    ) -> None:
+        """Prepare the executor; nothing runs before `run`.
+
+        Args:
+            clock: monotonic nanoseconds, by which the loop is paced.
+            wall: nanoseconds since the Unix epoch, for the stamps of setpoints.
+            sleep: waits for so many seconds.
+        """
+        self._bus, self._keys = bus, keys
+        self._settings = settings or ExecutorSettings()
+        self._motion = motion or MotionSettings()
+        self._clock, self._wall = clock, wall
+        self._period = 1.0 / self._settings.rate
+        self._pacer = Pacer(round(1e9 * self._period), clock=clock, sleep=sleep)
+        self._starting = threading.Lock()
+        self._states: deque[tuple[int, bytes]] = deque(maxlen=1)
+        self._heard: tuple[int, JointState] | None = None  # the newest joint state and when it came
+        self._commands: deque[tuple[str, float]] = deque()
+        self._run: Run | None = None
+        self._told = ("", "", 0)  # execution, state and time of the newest status
+
+    def run(self, stop: threading.Event) -> None:
+        """Stream until `stop` is set; then the arm is brought to rest on its path first."""
+        s = self._settings
+        handles = [
+            self._bus.subscribe(self._keys.state(s.robot), self._hear),
+            self._bus.serve(self._keys.executor_command, self._answer),
+            self._bus.announce(self._keys.alive("executor", s.robot)),
+        ]
+        log.info("%s", ask_for_realtime() if s.realtime else "real-time scheduling was not asked for")
+        # A collection in the loop can last a hundred periods; nothing in this process makes cyclic garbage in bulk.
+        gc.collect()
+        gc.freeze()
+        gc.disable()
+        try:
+            while not (stop.is_set() and self._resting):
+                if stop.is_set() and self._run is not None:
+                    self._run.end("ended", "the executor was told to stop")
+                self._cycle(self._pacer.wait(counted=not self._resting))
+        finally:
+            gc.enable()
+            gc.unfreeze()
+            for handle in handles:
+                handle.close()
+
+    @property
+    def _resting(self) -> bool:
+        return self._run is None or self._run.resting
+
+    def _cycle(self, due: int) -> None:
+        self._listen()
+        run = self._run
+        if run is not None and not run.resting:
+            self._obey(run)
+            self._watch(run, due)
+            setpoint = run.step(due, self._wall())
+            self._bus.publish(self._keys.setpoint(self._settings.robot), wire.encode_setpoint(setpoint))
+        self._tell(due)
+
+    def _hear(self, _: str, payload: bytes) -> None:
+        self._states.append((self._clock(), payload))
+
+    def _listen(self) -> None:
+        if not self._states:
+            return
+        when, payload = self._states.pop()
+        try:
+            self._heard = (when, wire.decode_state(payload))
+        except UnusableInput as error:
+            log.warning("left out: %s", error)
+
+    def _answer(self, payload: bytes) -> bytes:
+        """Answer a command; runs on the bus's thread, the loop obeys in its next period."""
+        verb, execution, document, override = wire.decode_command(payload)
+        if verb == "start":
+            return wire.encode_status(self._start(execution, document, override).status(self._pacer))
+        run = self._run
+        if run is None or run.resting or execution != run.execution:
+            raise Conflict(f"execution {execution!r} is not running")
+        if verb == "resume":
+            self._check_regain(run)
+        self._commands.append((verb, override))
+        return wire.encode_status(run.status(self._pacer))
+
+    def _start(self, execution: str, document: bytes, override: float) -> Run:
+        with self._starting:
+            if self._run is not None and not self._run.resting:
+                raise Conflict(f"execution {self._run.execution} is {self._run.state}; stop it first")
+            plan = documents.decode(Plan, document)
+            arm = self._present()
+            speed = float(np.abs(arm.velocity).max())
+            if speed > self._settings.rest_speed:
+                raise Conflict(f"the arm still moves at {speed:.2f} rad/s; wait until it rests")
+            program = Program(plan, arm.position, self._motion, override=override, dwell=self._settings.dwell)
+            self._pacer.reset()
+            self._commands.clear()
+            offset = self._wall() - self._clock()
+            self._run = Run(execution, program, rate=self._settings.rate, offset=offset)
+            return self._run
+
+    def _present(self) -> JointState:
+        heard = self._heard
+        if heard is None or self._clock() - heard[0] > 1e9 * self._settings.silence:
+            raise Unreachable(
+                f"no joint state from {self._settings.robot}; is the simulator or the arm's driver running?"
+            )
+        return heard[1]
+
+    def _check_regain(self, run: Run) -> None:
+        off = float(np.abs(self._present().position - run.program.here).max())
+        if off > self._settings.regain:
+            raise Conflict(
+                f"the arm is {off:.3f} rad off the point where it was held, at most {self._settings.regain:g}; "
+                "stop, and start again from where it is"
+            )
+
+    def _obey(self, run: Run) -> None:
+        while self._commands:
+            verb, override = self._commands.popleft()
+            if verb == "override":
+                run.override(override)
+            elif verb == "hold":
+                run.hold("held by the operator")
+            elif verb == "resume":
+                run.resume()
+            elif verb == "stop":
+                run.end("ended", "stopped by the operator")
+
+    def _watch(self, run: Run, due: int) -> None:
+        if self._heard is None:
+            return
+        when, arm = self._heard
+        silent = (due - when) / 1e9
+        if silent > self._settings.silence:
+            run.hold(f"no joint state for {silent:.2f} s: is the arm's driver running? resume when it is back")
+        if arm.execution != run.execution:
+            return
+        run.tracking_error = max(run.tracking_error, arm.tracking_error)
+        if arm.tracking_error > self._settings.largest_error:
+            run.end(
+                "faulted",
+                f"tracking error {arm.tracking_error:.3f} rad {run.program.place}, limit "
+                f"{self._settings.largest_error:g}: is the arm blocked? free it, or start again at a lower override",
+            )
+
+    def _tell(self, due: int) -> None:
+        run = self._run
+        status = (run.execution, run.state) if run is not None else ("", "idle")
+        if status == self._told[:2] and due - self._told[2] < 1e9 / self._settings.status_rate:
+            return
+        self._told = (*status, due)
+        told = run.status(self._pacer) if run is not None else ExecutorStatus()
+        self._bus.publish(self._keys.executor_status, wire.encode_status(told))

@@ -1,0 +1,86 @@
+"""Wakes a control loop at absolute deadlines and keeps account of how late it woke."""
+
+from __future__ import annotations
+
+import os
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+LONGEST_COUNTED: Final = 20_000  # us, lateness above this counts as this
+
+
+@dataclass(frozen=True, slots=True)
+class Lateness:
+    """How late a loop woke [us], over all counted cycles."""
+
+    p50: float
+    p99: float
+    largest: float
+
+
+class Pacer:
+    """Absolute deadlines, one a period: a cycle that took too long is left out, never made up for by a burst.
+
+    Args:
+        period_ns: between two deadlines [ns].
+        clock: monotonic nanoseconds.
+        sleep: waits for so many seconds.
+    """
+
+    def __init__(
+        self,
+        period_ns: int,
+        *,
+        clock: Callable[[], int] = time.monotonic_ns,
+        sleep: Callable[[float], object] = time.sleep,
+    ) -> None:
+        self._period, self._clock, self._sleep = period_ns, clock, sleep
+        self._due = clock()
+        self.reset()
+
+    def reset(self) -> None:
+        """Begin the account anew."""
+        self.cycles = self.late = self.missed = 0
+        self._largest = 0.0
+        self._counts = np.zeros(LONGEST_COUNTED + 1, dtype=np.int64)  # one bin a microsecond
+
+    def wait(self, *, counted: bool = True) -> int:
+        """Sleep until the next deadline and return it [ns of the clock]; `counted` in the account or not."""
+        self._due += self._period
+        ahead = self._due - self._clock()
+        if ahead > 0:
+            self._sleep(ahead / 1e9)
+        behind = max(self._clock() - self._due, 0)
+        left_out = behind // self._period
+        self._due += left_out * self._period
+        if counted:
+            self._count(behind, left_out)
+        return self._due
+
+    def lateness(self) -> Lateness:
+        """Return the account since the last reset."""
+        if self.cycles == 0:
+            return Lateness(0.0, 0.0, 0.0)
+        below = np.cumsum(self._counts)
+        p50, p99 = (float(np.searchsorted(below, share * self.cycles)) for share in (0.5, 0.99))
+        return Lateness(p50, p99, self._largest)
+
+    def _count(self, behind: int, left_out: int) -> None:
+        self.late += 2 * behind > self._period
+        self.missed += left_out
+        self.cycles += 1
+        self._largest = max(self._largest, behind / 1e3)
+        self._counts[min(behind // 1000, LONGEST_COUNTED)] += 1
+
+
+def ask_for_realtime(priority: int = 50) -> str:
+    """Ask the system to run this thread before all others; return in words whether it does."""
+    try:
+        os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(priority))
+    except (AttributeError, OSError) as error:
+        return f"no real-time scheduling ({error}): the loop shares the processor, watch its lateness"
+    return f"real-time scheduling SCHED_FIFO {priority}"

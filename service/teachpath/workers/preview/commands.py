@@ -1,0 +1,186 @@
+"""The commands of meshcat's viewer, as bytes: shapes, lines and poses in, what a page is told out.
+
+meshcat (R. Deits, MIT) builds the commands and its viewer draws them; its own server is never started, because it
+listens on every interface.
+"""
+
+from __future__ import annotations
+
+import importlib.util
+import warnings
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+import umsgpack
+
+from teachpath.errors import NotFound, UnusableInput
+from teachpath.records import Array, Quaternion, Vector
+
+with warnings.catch_warnings():
+    # meshcat imports its server with it, which imports a deprecated module of pyzmq.
+    warnings.simplefilter("ignore", DeprecationWarning)
+    from meshcat import commands, geometry
+    from meshcat.path import Path as TreePath
+
+Outline = Sequence[tuple[float, float]]
+
+# One colour per cluster, the same as --way-0 ... in the page's style sheet (Okabe & Ito's palette for all eyes).
+WAYS = (0x0072B2, 0xD55E00, 0x009E73, 0xCC79A7, 0xE69F00, 0x56B4E9)
+
+# three.js lays a cylinder along y; ours stand along z.
+_UPRIGHT = np.array([[1.0, 0, 0, 0], [0, 0, -1, 0], [0, 1, 0, 0], [0, 0, 0, 1]])
+
+
+def viewer_files() -> Path:
+    """Return the folder of meshcat's viewer: `dist/main.min.js` with its third-party notices, and `LICENSE`.
+
+    Raises:
+        NotFound: meshcat is not installed as files.
+    """
+    spec = importlib.util.find_spec("meshcat")
+    if spec is None or not spec.submodule_search_locations:
+        raise NotFound("meshcat's viewer is not installed; get it with: pip install 'teachpath[service]'")
+    return Path(spec.submodule_search_locations[0]) / "viewer"
+
+
+def solid(
+    path: str,
+    kind: str,
+    size: Sequence[float],
+    *,
+    pose: Array | None = None,
+    color: int = 0x8090A0,
+    outline: Outline = (),
+) -> bytes:
+    """Draw one solid body.
+
+    Args:
+        path: place in the tree, e.g. `/scene/table`.
+        kind: `box` (size: edges x, y, z), `cylinder` (radius, height; along z), `sphere` (radius) or `prism`
+            (thickness along z, with a convex, counter-clockwise `outline` in its xy plane) [m].
+        pose: (4, 4) to the frame of `path` from the body's centre; None is the identity.
+        color: 0xRRGGBB.
+
+    Raises:
+        UnusableInput: the kind is unknown.
+    """
+    pose = np.eye(4) if pose is None else pose
+    shape: geometry.Geometry
+    if kind == "box":
+        shape = geometry.Box([float(edge) for edge in size])
+    elif kind == "cylinder":
+        shape = geometry.Cylinder(float(size[1]), float(size[0]))
+        pose = pose @ _UPRIGHT
+    elif kind == "sphere":
+        shape = geometry.Sphere(float(size[0]))
+    elif kind == "prism":
+        shape = geometry.TriangularMeshGeometry(*prism_mesh(outline, size[0]))
+    else:
+        raise UnusableInput(f"{path} cannot be drawn: {kind!r} is no box, cylinder, sphere or prism")
+    return _object(path, geometry.Mesh(shape, _paint(color, 1.0)), pose)
+
+
+def line(path: str, points: Array, *, color: int, opacity: float = 1.0) -> bytes:
+    """Draw a thin line through `points`: (n, 3) [m], frame of `path`."""
+    material = geometry.LineBasicMaterial(color=color, opacity=opacity)
+    return _object(path, geometry.Line(geometry.PointsGeometry(points.T.astype(np.float32)), material))
+
+
+def tube(path: str, points: Array, *, radius: float, color: int, opacity: float = 1.0) -> bytes:
+    """Draw a round tube of `radius` [m] along `points`: (n, 3) [m], n at least 2, no two neighbours equal."""
+    vertices, faces = tube_mesh(points, radius)
+    shape = geometry.TriangularMeshGeometry(vertices, faces)
+    return _object(path, geometry.Mesh(shape, _paint(color, opacity)))
+
+
+def tube_mesh(points: Array, radius: float, sides: int = 10) -> tuple[Array, Array]:
+    """Return (n * sides, 3) vertices and (m, 3) faces of a tube, its rings carried along without twist.
+
+    Each ring's frame is the one before, reflected twice (Wang et al., Computation of rotation minimizing frames,
+    ACM Transactions on Graphics 27(1), 2008).
+    """
+    tangents = np.gradient(points, axis=0)
+    tangents /= np.linalg.norm(tangents, axis=1)[:, None]
+    least = np.eye(3)[np.argmin(np.abs(tangents[0]))]
+    normals = np.empty_like(points)
+    normals[0] = np.cross(tangents[0], least) / np.linalg.norm(np.cross(tangents[0], least))
+    for i in range(len(points) - 1):
+        step = points[i + 1] - points[i]
+        normal, tangent = (_reflect(v, step) for v in (normals[i], tangents[i]))
+        turn = tangents[i + 1] - tangent
+        normals[i + 1] = _reflect(normal, turn) if turn @ turn > 1e-18 else normal
+    binormals = np.cross(tangents, normals)
+    angles = np.linspace(0.0, 2.0 * np.pi, sides, endpoint=False)
+    rings = np.cos(angles)[:, None] * normals[:, None] + np.sin(angles)[:, None] * binormals[:, None]
+    vertices = (points[:, None] + radius * rings).reshape(-1, 3)
+    near = np.arange((len(points) - 1) * sides).reshape(-1, sides)
+    beside = np.roll(near, -1, axis=1)
+    first = np.stack([near, beside, near + sides], axis=-1)
+    second = np.stack([beside, beside + sides, near + sides], axis=-1)
+    return vertices, np.concatenate([first, second]).reshape(-1, 3)
+
+
+def prism_mesh(outline: Outline, thickness: float) -> tuple[Array, Array]:
+    """Return (4 n, 3) vertices and (m, 3) faces of a convex prism, centred in z.
+
+    Caps and walls have vertices of their own, so that the viewer's normals are sharp between them and smooth around.
+    """
+    n, half = len(outline), thickness / 2
+    ring = np.asarray(outline, dtype=np.float64)
+    low, high = (np.column_stack([ring, np.full(n, z)]) for z in (-half, half))
+    here = np.arange(n)
+    beside = np.roll(here, -1)
+    walls = [np.stack([here, beside, here + n], axis=-1), np.stack([beside, beside + n, here + n], axis=-1)]
+    fan = np.stack([np.zeros(n - 2, dtype=int), here[1:-1], here[2:]], axis=-1)
+    faces = np.concatenate([*walls, fan[:, ::-1] + 2 * n, fan + 3 * n])
+    return np.concatenate([low, high, low, high]), faces
+
+
+def pose_of(position: Vector, orientation: Quaternion = (1.0, 0.0, 0.0, 0.0)) -> Array:
+    """Return the (4, 4) pose of a position [m] and a unit quaternion."""
+    w, x, y, z = orientation
+    pose = np.eye(4)
+    pose[:3, :3] = [
+        [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+        [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+        [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
+    ]
+    pose[:3, 3] = position
+    return pose
+
+
+def transform(path: str, pose: Array) -> bytes:
+    """Put what is at `path` to `pose`: (4, 4), to the frame of the path above."""
+    return _pack(commands.SetTransform(pose, _tree(path)).lower())
+
+
+def delete(path: str) -> bytes:
+    """Take away what is at and below `path`."""
+    return _pack(commands.Delete(_tree(path)).lower())
+
+
+def _object(path: str, drawn: geometry.Object, pose: Array | None = None) -> bytes:
+    command = commands.SetObject(drawn, path=_tree(path)).lower()
+    if pose is not None:
+        command["object"]["object"]["matrix"] = pose.T.ravel().tolist()  # three.js reads column by column
+    return _pack(command)
+
+
+def _paint(color: int, opacity: float) -> geometry.Material:
+    return geometry.MeshPhongMaterial(color=color, opacity=opacity, side=0, shininess=28, specular=0x2A2A2A)
+
+
+def _tree(path: str) -> TreePath:
+    return TreePath(tuple(name for name in path.split("/") if name))
+
+
+def _pack(command: dict[str, object]) -> bytes:
+    packed: bytes = umsgpack.packb(command)
+    return packed
+
+
+def _reflect(vector: Array, across: Array) -> Array:
+    """Mirror `vector` at the plane whose normal is `across`."""
+    mirrored: Array = vector - across * (2.0 * (across @ vector) / (across @ across))
+    return mirrored

@@ -1,0 +1,165 @@
+"""The tree of the view: what a page must show now, and what each connected page does not know yet.
+
+Commands are opaque bytes here. A page has a credit of two batches; while it owes their acknowledgement nothing is sent
+and everything that changes is merged, so that a slow or sleeping page costs no memory and disturbs nobody.
+"""
+
+from __future__ import annotations
+
+import struct
+import threading
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+
+CREDIT = 2  # batches sent ahead of their acknowledgement
+
+
+@dataclass
+class Node:
+    """The newest commands of one path: one object, one transform, one value per property."""
+
+    content: bytes | None = None
+    transform: bytes | None = None
+    properties: dict[str, bytes] = field(default_factory=dict)
+
+
+class Page:
+    """One connected page: the changes it has not been sent, one per path and kind."""
+
+    def __init__(self, lock: threading.RLock, wake: Callable[[], None]) -> None:
+        self._lock = lock
+        self.wake = wake
+        self._ordered: dict[tuple[str, str], bytes] = {}  # objects, properties, deletes: in order of their last change
+        self._transforms: dict[str, bytes] = {}
+        self._owed = 0
+
+    def take(self) -> bytes | None:
+        """Return the next batch, `[u32 little-endian length][command]...`, or None while there is none to send."""
+        with self._lock:
+            if self._owed >= CREDIT or not (self._ordered or self._transforms):
+                return None
+            commands = [*self._ordered.values(), *self._transforms.values()]
+            self._ordered.clear()
+            self._transforms.clear()
+            self._owed += 1
+        return b"".join(struct.pack("<I", len(command)) + command for command in commands)
+
+    def acknowledge(self, batches: int = 1) -> None:
+        """Give credit back: the page has drawn `batches` more batches."""
+        with self._lock:
+            self._owed = max(0, self._owed - max(0, batches))
+        self.wake()
+
+    @property
+    def pending(self) -> int:
+        """Number of commands that wait for credit."""
+        with self._lock:
+            return len(self._ordered) + len(self._transforms)
+
+    def _add(self, kind: str, path: str, command: bytes) -> None:
+        if kind == "transform":
+            self._transforms[path] = command
+        else:
+            self._ordered.pop((kind, path), None)
+            self._ordered[kind, path] = command
+
+    def _forget(self, path: str) -> None:
+        self._ordered = {key: c for key, c in self._ordered.items() if not _within(key[1], path)}
+        self._transforms = {key: c for key, c in self._transforms.items() if not _within(key, path)}
+
+
+class SceneTree:
+    """What the view shows, kept in this process and replayed to every page that connects."""
+
+    def __init__(self) -> None:
+        self._lock = threading.RLock()
+        self._nodes: dict[str, Node] = {}
+        self._pages: set[Page] = set()
+
+    def attach(self, wake: Callable[[], None]) -> Page:
+        """Add a page; its first batch is the whole tree. `wake()` is called, from any thread, when there is more."""
+        with self._lock:
+            page = Page(self._lock, wake)
+            for kind, path, command in self._replay():
+                page._add(kind, path, command)
+            self._pages.add(page)
+        return page
+
+    def detach(self, page: Page) -> None:
+        """Forget a page."""
+        with self._lock:
+            self._pages.discard(page)
+
+    def __len__(self) -> int:
+        return len(self._nodes)
+
+    def paths(self, prefix: str = "/") -> list[str]:
+        """Return the paths at and below `prefix` that hold an object."""
+        with self._lock:
+            return [p for p, node in self._nodes.items() if node.content is not None and _within(p, prefix)]
+
+    def put_object(self, path: str, command: bytes) -> None:
+        """Show an object at `path` instead of the one there."""
+        with self._lock:
+            self._node(path).content = command
+            self._tell("object", path, command)
+        self._wake()
+
+    def put_transform(self, path: str, command: bytes) -> None:
+        """Move what is at and below `path`; only the newest transform of a path is sent."""
+        with self._lock:
+            node = self._node(path)
+            if node.transform != command:
+                node.transform = command
+                self._tell("transform", path, command)
+
+    def put_property(self, path: str, name: str, command: bytes) -> None:
+        """Set a property of `path`; one value is kept per property."""
+        with self._lock:
+            self._node(path).properties[name] = command
+            self._tell("property " + name, path, command)
+        self._wake()
+
+    def delete(self, path: str, command: bytes) -> None:
+        """Take away what is at and below `path`, with all that was still to be sent about it."""
+        with self._lock:
+            gone = [p for p in self._nodes if _within(p, path)]
+            if not gone:
+                return
+            for p in gone:
+                del self._nodes[p]
+            for page in self._pages:
+                page._forget(path)
+            self._tell("delete", path, command)
+        self._wake()
+
+    def flush(self) -> None:
+        """Let the pages know that a set of transforms is complete."""
+        self._wake()
+
+    def _node(self, path: str) -> Node:
+        return self._nodes.setdefault(path, Node())
+
+    def _tell(self, kind: str, path: str, command: bytes) -> None:
+        for page in self._pages:
+            page._add(kind, path, command)
+
+    def _wake(self) -> None:
+        with self._lock:
+            pages = list(self._pages)
+        for page in pages:
+            page.wake()
+
+    def _replay(self) -> Iterator[tuple[str, str, bytes]]:
+        for path in sorted(self._nodes, key=lambda p: (p.count("/"), p)):  # parents first
+            node = self._nodes[path]
+            if node.content is not None:
+                yield "object", path, node.content
+            if node.transform is not None:
+                yield "transform", path, node.transform
+            for name, command in node.properties.items():
+                yield "property " + name, path, command
+
+
+def _within(path: str, prefix: str) -> bool:
+    return path == prefix or path.startswith(prefix.rstrip("/") + "/")

@@ -1,0 +1,271 @@
+"""The running preview: one thread that lets arm, object and hands follow the bus, and the verbs that show the rest."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections import deque
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, field
+from types import TracebackType
+from typing import Annotated
+
+import numpy as np
+from annotated_types import Ge, Gt, Le
+
+from teachpath.errors import UnusableInput
+from teachpath.io.bus import Bus, Handle
+from teachpath.io.wire import decode_sample, decode_state
+from teachpath.motion.drawing import Part
+from teachpath.motion.kinematics import link_frames
+from teachpath.records import Array, LearnedPath, Scene, Vector
+from teachpath.workers.preview import commands
+from teachpath.workers.preview.tree import Page, SceneTree
+from teachpath_proto.keys import Keys
+
+DEMONSTRATION = 0x7A8694
+HAND_OPEN, HAND_CLOSED = 0x3F7FBF, 0xE08A00
+
+ToWorld = Callable[[str, Vector], Vector | None]
+
+
+@dataclass(frozen=True)
+class PreviewSettings:
+    """How the view follows."""
+
+    # [Hz] how often arm, object and hands are drawn
+    rate: Annotated[float, Gt(0), Le(60)] = 30.0
+    # [Hz] how often the trail of a hand is drawn
+    trail_rate: Annotated[float, Gt(0), Le(30)] = 5.0
+    # points in the trail of a hand
+    trail_points: Annotated[int, Ge(2), Le(10_000)] = 600
+    # [s] without a sample after which a hand disappears
+    hand_silence: Annotated[float, Gt(0)] = 2.0
+    # [m] radius of a learned path as drawn
+    path_radius: Annotated[float, Gt(0)] = 0.005
+
+
+@dataclass
+class _Hand:
+    """A hand as drawn now."""
+
+    seen: float
+    trail: deque[Vector]
+    closed: bool | None = None
+    trail_drawn: float = field(default=-np.inf)
+
+
+class Preview:
+    """Draws for every connected page; start it, or use it as a context manager."""
+
+    def __init__(
+        self,
+        bus: Bus,
+        keys: Keys,
+        drawing: Sequence[Part],
+        *,
+        robot: str,
+        home: Array,
+        to_world: ToWorld,
+        settings: PreviewSettings | None = None,
+        clock: Callable[[], float] = time.monotonic,
+    ) -> None:
+        """Prepare the view; nothing runs before `start`.
+
+        Args:
+            drawing: the primitives of the arm, each in the frame of its link.
+            robot: name of the arm whose joint states are followed.
+            home: (6,) configuration shown until the first joint state comes [rad].
+            to_world: `to_world(tracker, position)` maps a tracker's position into the world [m], or returns None
+                while nothing is known about that tracker.
+            clock: seconds, monotonic.
+        """
+        self._bus, self._keys, self._robot = bus, keys, robot
+        self._to_world, self._clock = to_world, clock
+        self._settings = settings or PreviewSettings()
+        self._tree = SceneTree()
+        self._state: bytes | None = None
+        self._samples: deque[tuple[str, bytes]] = deque(maxlen=512)
+        self._hands: dict[str, _Hand] = {}
+        self._learned: dict[str, tuple[Array, int]] = {}
+        self._handles: list[Handle] = []
+        self._stopped = threading.Event()
+        self._thread: threading.Thread | None = None
+        self._fingers: list[tuple[str, Array]] = []
+        for part in drawing:
+            self._put_part(part)
+        self._pose_arm(home, gripper_closed=False)
+
+    def start(self) -> None:
+        """Follow the bus from now on."""
+        self._stopped.clear()
+        self._handles = [
+            self._bus.subscribe(self._keys.state(self._robot), self._receive_state),
+            self._bus.subscribe(self._keys.all_samples, self._receive_sample),
+        ]
+        self._thread = threading.Thread(target=self._run, name="preview", daemon=True)
+        self._thread.start()
+
+    def stop(self) -> None:
+        """Stop following; a second call does nothing."""
+        for handle in self._handles:
+            handle.close()
+        self._handles.clear()
+        self._stopped.set()
+        if self._thread is not None:
+            self._thread.join()
+            self._thread = None
+
+    def __enter__(self) -> Preview:
+        self.start()
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.stop()
+
+    def attach(self, wake: Callable[[], None]) -> Page:
+        """Add a page; its `take()` says what to tell it, and `wake()` is called, from any thread, on news."""
+        return self._tree.attach(wake)
+
+    def detach(self, page: Page) -> None:
+        """Forget a page that has gone."""
+        self._tree.detach(page)
+
+    def paths(self, prefix: str = "/") -> list[str]:
+        """Return the names in the tree, at and below `prefix`, that hold an object."""
+        return self._tree.paths(prefix)
+
+    def show_task(
+        self, scene: Scene, demonstrations: Iterable[tuple[str, Array]] = (), learned: Sequence[LearnedPath] = ()
+    ) -> None:
+        """Show one task and nothing of another: its scene, demonstrations (id, positions) and learned paths."""
+        self.clear("/demonstrations")
+        self.show_scene(scene)
+        for name, positions in demonstrations:
+            self.show_demonstration(name, positions)
+        self.show_learned(learned)
+
+    def show_scene(self, scene: Scene) -> None:
+        """Show the obstacles of `scene`, and its carried object at the start, instead of those shown before."""
+        self.clear("/scene")
+        self.clear("/object")
+        for shape in scene.obstacles:
+            path = f"/scene/{shape.name}"
+            pose = commands.pose_of(shape.position)
+            self._tree.put_object(path, commands.solid(path, shape.kind, shape.size, pose=pose, color=shape.color))
+        if scene.carried is not None:
+            carried = scene.carried
+            self._tree.put_object("/object", commands.solid("/object", carried.kind, carried.size, color=carried.color))
+            self._place("/object", commands.pose_of(carried.position))
+            self._tree.flush()
+
+    def show_demonstration(self, name: str, positions: Array, *, color: int = DEMONSTRATION) -> None:
+        """Show the way of one demonstration: (n, 3) [m], world; fewer than two points are not drawn."""
+        if len(positions) >= 2:
+            path = f"/demonstrations/{name}"
+            self._tree.put_object(path, commands.line(path, positions, color=color))
+
+    def show_learned(self, learned: Sequence[LearnedPath]) -> None:
+        """Show these learned paths instead of those shown before, each in the colour of its cluster."""
+        self.clear("/paths")
+        u = np.linspace(0.0, 1.0, 161)
+        self._learned = {p.id: (p.curve(u), commands.WAYS[(p.cluster - 1) % len(commands.WAYS)]) for p in learned}
+        self.highlight("")
+
+    def highlight(self, path: str) -> None:
+        """Draw the learned path `path` (its id) in full and the others pale; empty: all in full."""
+        radius = self._settings.path_radius
+        for name, (points, color) in self._learned.items():
+            chosen = path in ("", name)
+            at = f"/paths/{name}"
+            body = commands.tube(
+                at, points, radius=radius if chosen else radius / 2, color=color, opacity=1.0 if chosen else 0.45
+            )
+            self._tree.put_object(at, body)
+
+    def clear(self, prefix: str) -> None:
+        """Take away all at and below `prefix`, e.g. `/demonstrations`."""
+        if prefix == "/paths":
+            self._learned = {}
+        self._tree.delete(prefix, commands.delete(prefix))
+
+    def update(self) -> None:
+        """Draw what has arrived since the last call."""
+        payload, self._state = self._state, None
+        if payload is not None:
+            self._follow_arm(payload)
+        self._follow_hands()
+        self._tree.flush()
+
+    def _receive_state(self, key: str, payload: bytes) -> None:
+        self._state = payload
+
+    def _receive_sample(self, key: str, payload: bytes) -> None:
+        self._samples.append((self._keys.tracker_of(key), payload))
+
+    def _run(self) -> None:
+        while not self._stopped.wait(1.0 / self._settings.rate):
+            self.update()
+
+    def _follow_arm(self, payload: bytes) -> None:
+        try:
+            state = decode_state(payload)
+        except UnusableInput:
+            return  # the next one comes in 10 ms; whoever commands the arm reports it
+        self._pose_arm(state.position, gripper_closed=state.gripper_closed)
+        # an orientation of zeros says that the arm's scene has no object
+        if any(state.object_orientation) and self._tree.paths("/object"):
+            self._place("/object", commands.pose_of(state.object_position, state.object_orientation))
+
+    def _put_part(self, part: Part) -> None:
+        path = f"/robot/link{part.link}/{part.name.replace(' ', '-')}"
+        pose = commands.pose_of(part.position, part.orientation)
+        body = commands.solid(path, part.kind, part.size, pose=pose, color=part.color, outline=part.outline)
+        self._tree.put_object(path, body)
+        if any(part.opens):
+            self._fingers.append((path, commands.pose_of(part.opens)))
+
+    def _pose_arm(self, q: Array, *, gripper_closed: bool) -> None:
+        for i, frame in enumerate(link_frames(q)):
+            self._place(f"/robot/link{i}", frame)
+        for path, opened in self._fingers:
+            self._place(path, np.eye(4) if gripper_closed else opened)
+
+    def _place(self, path: str, pose: Array) -> None:
+        # A hundredth of a millimetre is less than a pixel: an arm at rest sends nothing.
+        self._tree.put_transform(path, commands.transform(path, np.round(pose, 5) + 0.0))
+
+    def _follow_hands(self) -> None:
+        now = self._clock()
+        newest: dict[str, bool] = {}
+        while self._samples:
+            tracker, payload = self._samples.popleft()
+            try:
+                sample = decode_sample(tracker, payload, 0)
+            except UnusableInput:
+                continue  # the recorder counts and reports it
+            position = self._to_world(tracker, sample.position) if sample.tracked else None
+            if position is not None:
+                hand = self._hands.setdefault(tracker, _Hand(now, deque(maxlen=self._settings.trail_points)))
+                hand.seen = now
+                hand.trail.append(position)
+                grasp = sample.buttons & 1 or (sample.flexions and float(np.mean(sample.flexions)) > 0.5)
+                newest[tracker] = bool(grasp)
+        for tracker, closed in newest.items():
+            self._draw_hand(tracker, self._hands[tracker], closed, now)
+        for tracker in [t for t, hand in self._hands.items() if now - hand.seen > self._settings.hand_silence]:
+            del self._hands[tracker]
+            self.clear(f"/hand/{tracker}")
+
+    def _draw_hand(self, tracker: str, hand: _Hand, closed: bool, now: float) -> None:
+        marker, trail = f"/hand/{tracker}/marker", f"/hand/{tracker}/trail"
+        if hand.closed != closed:
+            hand.closed = closed
+            color = HAND_CLOSED if closed else HAND_OPEN
+            self._tree.put_object(marker, commands.solid(marker, "sphere", (0.016,), color=color))
+        self._place(marker, commands.pose_of(hand.trail[-1]))
+        if len(hand.trail) >= 2 and now - hand.trail_drawn >= 1.0 / self._settings.trail_rate:
+            hand.trail_drawn = now
+            self._tree.put_object(trail, commands.line(trail, np.array(hand.trail), color=HAND_OPEN))

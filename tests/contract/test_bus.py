@@ -1,0 +1,117 @@
+"""What every kind of bus must do, run on the real one and on the in-memory twin."""
+
+import queue
+import socket
+from collections.abc import Iterator
+
+import pytest
+
+from teachpath.errors import Conflict, TeachpathError, Unreachable
+from teachpath.io.bus import Bus, BusSettings, MemoryBus, open_bus
+
+
+def free_endpoint() -> str:
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return f"tcp/127.0.0.1:{probe.getsockname()[1]}"
+
+
+@pytest.fixture(params=["memory", "zenoh: one session", "zenoh: two clients of a peer"])
+def ends(request: pytest.FixtureRequest) -> Iterator[tuple[Bus, Bus]]:
+    """Two ends of one bus."""
+    opened: list[Bus] = []
+    if request.param == "memory":
+        opened = [MemoryBus()]
+    else:
+        settings = BusSettings(endpoint=free_endpoint())
+        opened.append(open_bus(settings, listen=True))
+        if "two" in request.param:
+            opened += [open_bus(settings), open_bus(settings)]
+    yield opened[-1], opened[-2] if len(opened) > 1 else opened[-1]
+    for bus in reversed(opened):
+        bus.close()
+
+
+def wait_reachable(asker: Bus, server: Bus) -> None:
+    """Return once a declaration of `server` is known to `asker`."""
+    handle = server.serve("t/ready", lambda _: b"yes")
+    for _ in range(50):
+        try:
+            asker.ask("t/ready", timeout=0.2)
+            break
+        except Unreachable:
+            continue
+    handle.close()
+
+
+def test_delivers_in_order_to_matching_keys_only(ends: tuple[Bus, Bus]) -> None:
+    here, there = ends
+    got: queue.Queue[tuple[str, bytes]] = queue.Queue()
+    there.subscribe("t/*/samples", lambda key, payload: got.put((key, payload)))
+    wait_reachable(here, there)
+    here.publish("t/a/other", b"no")
+    here.publish("t/a/b/samples", b"no")
+    for i in range(100):
+        here.publish("t/a/samples", str(i).encode())
+    assert [got.get(timeout=5) for _ in range(100)] == [("t/a/samples", str(i).encode()) for i in range(100)]
+    assert got.empty()
+
+
+def test_answers_queries_and_raises_the_servers_error(ends: tuple[Bus, Bus]) -> None:
+    here, there = ends
+
+    def answer(payload: bytes) -> bytes:
+        if payload == b"busy":
+            raise Conflict("the recorder is busy")
+        return payload.upper()
+
+    handle = there.serve("t/echo", answer)
+    wait_reachable(here, there)
+    assert here.ask("t/echo", b"abc") == b"ABC"
+    with pytest.raises(Conflict, match="the recorder is busy"):
+        here.ask("t/echo", b"busy")
+    handle.close()
+    handle.close()
+
+
+def test_says_when_nobody_answers(ends: tuple[Bus, Bus]) -> None:
+    with pytest.raises(Unreachable, match="nobody answered t/none"):
+        ends[0].ask("t/none", timeout=0.3)
+
+
+def test_shows_who_is_alive(ends: tuple[Bus, Bus]) -> None:
+    here, there = ends
+    seen: queue.Queue[tuple[str, bool]] = queue.Queue()
+    token = here.announce("t/alive/glove")
+    there.watch("t/alive/**", lambda key, alive: seen.put((key, alive)))
+    assert seen.get(timeout=5) == ("t/alive/glove", True)
+    token.close()
+    assert seen.get(timeout=5) == ("t/alive/glove", False)
+
+
+def test_a_closed_subscription_is_silent(ends: tuple[Bus, Bus]) -> None:
+    here, there = ends
+    got: queue.Queue[bytes] = queue.Queue()
+    keep: queue.Queue[bytes] = queue.Queue()
+    handle = there.subscribe("t/x", lambda _, payload: got.put(payload))
+    there.subscribe("t/x", lambda _, payload: keep.put(payload))
+    wait_reachable(here, there)
+    here.publish("t/x", b"1")
+    assert got.get(timeout=5) == keep.get(timeout=5) == b"1"
+    handle.close()
+    here.publish("t/x", b"2")
+    assert keep.get(timeout=5) == b"2"
+    assert got.empty()
+
+
+def test_connecting_to_nobody_is_a_sentence() -> None:
+    with pytest.raises(TeachpathError, match="is the service running there"):
+        open_bus(BusSettings(endpoint=free_endpoint(), connect_timeout=0.3))
+
+
+def test_a_taken_endpoint_is_a_sentence() -> None:
+    settings = BusSettings(endpoint=free_endpoint())
+    first = open_bus(settings, listen=True)
+    with pytest.raises(Unreachable, match="taken"):
+        open_bus(settings, listen=True)
+    first.close()

@@ -1,0 +1,111 @@
+"""The house: imports go down only, and one outside thing has one door (ARCHITECTURE.md, "Floors" and "Doors")."""
+
+import ast
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+SERVICE = ROOT / "service" / "teachpath"
+
+# A room may import rooms of lower floors, and itself. Rooms of one floor are strangers.
+FLOORS = [
+    ["errors"],
+    ["nurbs"],
+    ["exchange", "records"],
+    ["learning", "motion", "recording", "io"],
+    ["workers"],
+    ["offline", "config"],
+    ["api"],
+    ["app"],
+    ["commands"],
+    ["__main__"],
+]
+FLOOR = {room: level for level, rooms in enumerate(FLOORS) for room in rooms}
+
+DOORS = {
+    "zenoh": ["io/bus.py"],
+    "google": ["io/wire.py"],
+    "cattrs": ["io/documents.py"],
+    "sqlalchemy": ["io/store"],
+    "alembic": ["io/store"],
+    "mcap": ["io/store"],
+    "mcap_protobuf": ["io/store"],
+    "hmmlearn": ["learning/hmm.py"],
+    "geomdl": ["exchange.py"],
+    "ruckig": ["motion/timing.py", "motion/governor.py", "motion/moves.py"],
+    "mujoco": ["motion/scene.py", "workers/simulator.py"],
+    "meshcat": ["workers/preview"],
+    "umsgpack": ["workers/preview"],
+    "fastapi": ["api", "app.py"],
+    "starlette": ["api"],
+    "uvicorn": ["commands/serving.py"],
+    "typer": ["__main__.py", "commands"],
+    "rich": ["commands"],
+    "httpx": ["commands/rest.py"],
+    "pydantic_settings": ["config.py"],
+}
+
+
+def imports(file: Path) -> Iterator[str]:
+    for node in ast.walk(ast.parse(file.read_text())):
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            assert node.level == 0, f"{file}: relative import"
+            yield node.module or ""
+            yield from (f"{node.module}.{alias.name}" for alias in node.names)
+
+
+def room(file: Path) -> str:
+    return file.relative_to(SERVICE).parts[0].removesuffix(".py")
+
+
+def modules() -> list[Path]:
+    return [f for f in sorted(SERVICE.rglob("*.py")) if f != SERVICE / "__init__.py"]
+
+
+@pytest.mark.parametrize("file", modules(), ids=lambda f: f.relative_to(SERVICE).as_posix())
+def test_imports_go_down_only(file: Path) -> None:
+    here = room(file)
+    for name in imports(file):
+        parts = name.split(".")
+        if parts[0] != "teachpath" or len(parts) < 2 or parts[1] == "__version__":
+            continue
+        assert parts[1] == here or FLOOR[parts[1]] < FLOOR[here], f"{here} must not import {name}"
+
+
+@pytest.mark.parametrize("file", modules(), ids=lambda f: f.relative_to(SERVICE).as_posix())
+def test_every_outside_thing_has_one_door(file: Path) -> None:
+    place = file.relative_to(SERVICE).as_posix()
+    for name in imports(file):
+        doors = DOORS.get(name.split(".")[0])
+        assert doors is None or any(place.startswith(door) for door in doors), f"{place} must not import {name}"
+
+
+def test_no_door_is_unused() -> None:
+    used = {name.split(".")[0] for file in modules() for name in imports(file)}
+    assert set(DOORS) <= used
+
+
+def test_service_and_clients_are_strangers() -> None:
+    for file in modules():
+        assert not any(name.startswith("teachpath_client") for name in imports(file)), file
+    for file in (ROOT / "clients").rglob("*.py"):
+        assert not any(name.split(".")[0] == "teachpath" for name in imports(file)), file
+    for file in (ROOT / "proto").rglob("*.py"):
+        assert not any(name.split(".")[0] in ("teachpath", "teachpath_client") for name in imports(file)), file
+
+
+def test_the_pure_rooms_reach_nothing_outside() -> None:
+    outside = {"os", "io", "socket", "subprocess", "pathlib", "time", "threading", "asyncio", "requests", "urllib"}
+    for name in ("learning", "motion", "recording"):
+        for file in (SERVICE / name).glob("*.py"):
+            assert not outside & {i.split(".")[0] for i in imports(file)}, file
+
+
+def test_ruckigs_network_service_is_never_asked() -> None:
+    for file in modules():
+        names = {node.attr for node in ast.walk(ast.parse(file.read_text())) if isinstance(node, ast.Attribute)}
+        assert "intermediate_positions" not in names, file

@@ -1,0 +1,237 @@
+"""The page and its 3-D view in headless Chromium, on a real server: what is shown, what moves, what comes back."""
+
+import io
+import os
+import shutil
+import socket
+import threading
+import time
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import httpx
+import numpy as np
+import pytest
+import uvicorn
+from fastapi import FastAPI
+from PIL import Image
+from websockets.exceptions import InvalidStatus
+from websockets.sync.client import connect
+
+from teachpath.api.view import view_router
+from teachpath.io import wire
+from teachpath.io.bus import MemoryBus
+from teachpath.motion.drawing import drawing
+from teachpath.motion.kinematics import link_frames
+from teachpath.motion.scenes import paper_scene
+from teachpath.motion.settings import MotionSettings
+from teachpath.nurbs import Curve
+from teachpath.records import Fit, JointState, LearnedPath
+from teachpath.workers.preview import Preview
+from teachpath_proto.keys import Keys
+
+pytestmark = pytest.mark.system
+
+KEYS = Keys()
+HOME = np.array(MotionSettings().home)
+ROBOT = "puma560"
+REQUIRED = bool(os.environ.get("TEACHPATH_REQUIRE_BROWSER"))
+
+
+class Server:
+    """A preview with arm, scene, demonstrations and paths behind a web server that can be restarted."""
+
+    def __init__(self) -> None:
+        with socket.socket() as probe:
+            probe.bind(("127.0.0.1", 0))
+            self.port = int(probe.getsockname()[1])
+        self.bus = MemoryBus()
+
+    def start(self, demonstrations: int) -> None:
+        self.preview = Preview(
+            self.bus, KEYS, drawing(), robot=ROBOT, home=HOME, to_world=lambda tracker, position: position
+        )
+        paths = [way(cluster) for cluster in (1, 2, 3)]
+        u = np.linspace(0, 1, 100)
+        shown = [(f"d{i}", paths[i % 3].curve(u)) for i in range(demonstrations)]
+        self.preview.show_task(paper_scene(), shown, paths)
+        self.preview.start()
+        app = FastAPI()
+        app.include_router(view_router(self.preview))
+        for resource in ("tasks", "executions"):
+            app.add_api_route(f"/api/v1/{resource}", lambda: [])
+        config = uvicorn.Config(app, host="127.0.0.1", port=self.port, log_level="warning", ws="websockets-sansio")
+        self._server = uvicorn.Server(config)
+        self._thread = threading.Thread(target=self._server.run, daemon=True)
+        self._thread.start()
+        wait_until(lambda: self._server.started)
+
+    def stop(self) -> None:
+        self._server.should_exit = True
+        self._thread.join(10)
+        assert not self._thread.is_alive()
+        self.preview.stop()
+
+    @property
+    def address(self) -> str:
+        return f"http://127.0.0.1:{self.port}"
+
+    def publish_state(self, q: np.ndarray, at: tuple[float, float, float]) -> None:
+        zero = np.zeros(6)
+        state = JointState(1, 1, q, zero, zero, 0.0, 0, False, True, at, (1.0, 0.0, 0.0, 0.0))
+        self.bus.publish(KEYS.state(ROBOT), wire.encode_state(state))
+
+
+def way(cluster: int) -> LearnedPath:
+    points = np.array([[0.5, -0.3, 0.53], [0.25 * cluster, 0.0, 0.55], [0.25 * cluster, 0.1, 0.6], [0.5, 0.3, 0.53]])
+    curve = Curve(3, np.array([0, 0, 0, 0, 1, 1, 1, 1.0]), points, np.ones(4))
+    return LearnedPath(f"p{cluster}", "run", cluster, 1, curve, Fit(0.0, 0.0, 0.0, 0.0))
+
+
+def wait_until(true: Callable[[], bool], seconds: float = 15.0, pause: Callable[[float], None] = time.sleep) -> None:
+    deadline = time.monotonic() + seconds
+    while not true():
+        assert time.monotonic() < deadline, "it did not happen in time"
+        pause(0.05)
+
+
+@pytest.fixture
+def server() -> Iterator[Server]:
+    server = Server()
+    server.start(demonstrations=12)
+    yield server
+    server.stop()
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Any]:
+    names = ("chromium", "chromium-browser", "google-chrome")
+    found = next((path for name in names if (path := shutil.which(name))), None)
+    if found is None:
+        sentence = "no Chromium to look at the page with; get it with: sudo apt-get install chromium"
+        if REQUIRED:
+            pytest.fail(sentence)
+        pytest.skip(sentence)
+    from playwright.sync_api import sync_playwright
+
+    # Without a graphics card; these flags keep the console free of messages about that.
+    flags = ["--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-dev-shm-usage"]
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=found, headless=True, args=flags)
+        yield browser
+        browser.close()
+
+
+class Visit:
+    """The page as opened in the browser, with all its console said."""
+
+    def __init__(self, browser: Any, address: str) -> None:
+        self.page = browser.new_page(viewport={"width": 1280, "height": 800})
+        self.said: list[str] = []
+        self.page.on("console", lambda message: self.said.append(f"{message.type}: {message.text}"))
+        self.page.on("pageerror", lambda error: self.said.append(f"error: {error}"))
+        self.page.goto(address)
+        self.page.wait_for_selector("html[data-scene=ready]", state="attached", timeout=30_000)
+
+    def paths(self) -> list[str]:
+        return list(self.page.evaluate("teachpath.paths()"))
+
+    def place(self, path: str) -> np.ndarray:
+        """Pose of a path in the world; the page gives three.js's frame, y up."""
+        up = np.array([[1, 0, 0, 0], [0, 0, -1, 0], [0, 1, 0, 0], [0, 0, 0, 1.0]])
+        return up @ np.reshape(self.page.evaluate(f"teachpath.place('{path}')"), (4, 4)).T
+
+    def wait(self, true: Callable[[], bool]) -> None:
+        wait_until(true, pause=lambda seconds: self.page.wait_for_timeout(1000 * seconds))
+
+
+@pytest.fixture
+def visit(browser: Any, server: Server) -> Iterator[Visit]:
+    visit = Visit(browser, server.address)
+    yield visit
+    visit.page.close()
+
+
+def test_shows_arm_obstacles_paths_and_demonstrations_with_a_clean_console(visit: Visit) -> None:
+    paths = visit.paths()
+    assert {"/scene/table", "/scene/box", "/scene/cylinder", "/object"} <= set(paths)
+    assert [p for p in paths if p.startswith("/paths/")] == ["/paths/p1", "/paths/p2", "/paths/p3"]
+    assert len([p for p in paths if p.startswith("/demonstrations/")]) == 12
+    assert len([p for p in paths if p.startswith("/robot/link")]) == len(drawing())
+    picture = np.asarray(Image.open(io.BytesIO(visit.page.screenshot())).convert("L"), dtype=float)
+    assert picture[100:700, 50:850].std() > 10  # a blank canvas has 0
+    visit.page.wait_for_timeout(1500)  # the panel has asked at least once more
+    assert visit.said == []
+    assert visit.page.locator("#connection").text_content() == "Connected"
+    assert "teachpath-client synthetic" in (visit.page.locator("#demonstrations").text_content() or "")
+
+
+def test_the_arm_and_what_it_carries_move_and_then_the_page_rests(visit: Visit, server: Server) -> None:
+    goal = HOME + np.array([0.5, -0.3, 0.3, 0.2, 0.2, 0.4])
+    assert np.allclose(visit.place("/robot/link6"), link_frames(HOME)[6], atol=1e-4)
+    for share in np.linspace(0, 1, 20):
+        server.publish_state(HOME + share * (goal - HOME), (0.4, 0.1, 0.5 + share / 10))
+        visit.page.wait_for_timeout(20)
+    visit.wait(lambda: np.allclose(visit.place("/robot/link6"), link_frames(goal)[6], atol=1e-4))
+    assert np.allclose(visit.place("/object")[:3, 3], (0.4, 0.1, 0.6), atol=1e-4)
+    visit.page.wait_for_timeout(300)
+    drawn = visit.page.evaluate("teachpath.draws")
+    for _ in range(20):
+        server.publish_state(goal, (0.4, 0.1, 0.6))
+        visit.page.wait_for_timeout(20)
+    assert visit.page.evaluate("teachpath.draws") == drawn
+
+
+def test_comes_back_after_a_restart_and_shows_the_truth(visit: Visit, server: Server) -> None:
+    server.stop()
+    visit.page.wait_for_selector("html[data-connection=lost]", state="attached")
+    server.start(demonstrations=3)
+    visit.page.wait_for_selector("html[data-connection=live]", state="attached", timeout=30_000)
+    visit.wait(lambda: len([p for p in visit.paths() if p.startswith("/demonstrations/")]) == 3)
+    assert len([p for p in visit.paths() if p.startswith("/robot/link")]) == len(drawing())
+
+
+def test_what_is_cleared_disappears_and_layers_can_be_hidden(visit: Visit, server: Server) -> None:
+    server.preview.clear("/demonstrations")
+    visit.wait(lambda: not any(p.startswith("/demonstrations") for p in visit.paths()))
+    before = visit.page.screenshot()
+    visit.page.get_by_label("learned paths").uncheck()
+    visit.wait(lambda: visit.page.screenshot() != before)
+
+
+def test_a_foreign_page_is_refused(server: Server) -> None:
+    address = f"ws://127.0.0.1:{server.port}/api/v1/view"
+    for origin in ("http://elsewhere.example", "null"):
+        with pytest.raises(InvalidStatus) as refused:
+            connect(address, origin=origin)  # type: ignore[arg-type]
+        assert refused.value.response.status_code == 403
+    with connect(address, origin=server.address) as own, connect(address) as program:  # type: ignore[arg-type]
+        assert isinstance(own.recv(timeout=5), bytes)
+        assert isinstance(program.recv(timeout=5), bytes)
+
+
+def test_a_page_that_talks_nonsense_is_closed_and_the_others_stay(server: Server) -> None:
+    address = f"ws://127.0.0.1:{server.port}/api/v1/view"
+    with connect(address) as good, connect(address) as bad:
+        good.recv(timeout=5)
+        bad.recv(timeout=5)
+        bad.send(b"\xff")
+        wait_until(lambda: bad.state.name == "CLOSED")
+        good.send("1")
+        server.preview.clear("/paths")
+        assert isinstance(good.recv(timeout=5), bytes)
+
+
+def test_files_come_with_a_strict_policy_and_nothing_else_comes(server: Server) -> None:
+    with httpx.Client(base_url=server.address) as client:
+        page = client.get("/")
+        policy = page.headers["content-security-policy"]
+        assert "default-src 'none'" in policy
+        assert "unsafe" not in policy
+        assert "<script>" not in page.text
+        assert client.get("/web/view.js").headers["content-type"].startswith("text/javascript")
+        assert "MIT" in client.get("/vendor/meshcat.LICENSE.txt").text
+        assert client.get("/vendor/meshcat.min.js").headers["x-content-type-options"] == "nosniff"
+        assert client.get("/favicon.ico").status_code == 200
+        for path in ("/web/none.js", "/web/..%2F..%2Fpyproject.toml", "/web/%2Fetc%2Fpasswd", "/vendor/index.html"):
+            assert client.get(path).status_code == 404

@@ -1,0 +1,86 @@
+import math
+from dataclasses import replace
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from teachpath.errors import UnusableInput, UnusableSample
+from teachpath.io import wire
+from tests.unit.recording.hands import sample
+
+GOOD = sample(7, (0.1, 0.2, 0.3))
+
+
+def payload(**changes: object) -> bytes:
+    return wire.sample_message(replace(GOOD, **changes)).SerializeToString()  # type: ignore[arg-type]
+
+
+def test_a_sample_survives_the_wire() -> None:
+    again = wire.decode_sample("glove", payload(), GOOD.receive_ns)
+    assert replace(again, flexions=()) == replace(GOOD, flexions=())
+    assert again.flexions == pytest.approx(GOOD.flexions, abs=1e-7)
+
+
+@given(st.binary(max_size=300))
+def test_any_bytes_are_a_sample_or_a_sentence(noise: bytes) -> None:
+    try:
+        decoded = wire.decode_sample("glove", noise, 1)
+    except UnusableSample:
+        return
+    assert all(math.isfinite(v) for v in decoded.position)
+
+
+@given(cut=st.integers(0, 200), flip=st.integers(0, 200), bit=st.integers(0, 7))
+def test_a_damaged_sample_is_refused_or_whole(cut: int, flip: int, bit: int) -> None:
+    damaged = bytearray(payload())
+    damaged[flip % len(damaged)] ^= 1 << bit
+    try:
+        decoded = wire.decode_sample("glove", bytes(damaged[:cut]), 1)
+    except UnusableSample:
+        return
+    norm = math.hypot(*decoded.orientation) if decoded.orientation else 1.0
+    assert norm == pytest.approx(1.0, abs=1e-9)
+    assert all(0.0 <= f <= 1.0 for f in decoded.flexions)
+
+
+@pytest.mark.parametrize(
+    ("changes", "sentence"),
+    [
+        ({"position": (math.nan, 0.0, 0.0)}, "not finite"),
+        ({"position": (0.0, math.inf, 0.0)}, "not finite"),
+        ({"position": (0.0, 500.0, 0.0)}, "units"),
+        ({"orientation": (0.5, 0.0, 0.0, 0.0)}, "no unit quaternion"),
+        ({"orientation": (math.nan, 0.0, 0.0, 0.0)}, "no unit quaternion"),
+        ({"flexions": (0.1,) * 7}, "18 or 22"),
+        ({"flexions": (1.5,) * 22}, "calibrated"),
+        ({"flexions": (math.nan,) * 22}, "calibrated"),
+        ({"device_ns": 0}, "device time"),
+    ],
+)
+def test_a_refusal_names_the_sample_and_the_fault(changes: dict[str, object], sentence: str) -> None:
+    with pytest.raises(UnusableSample, match=sentence) as caught:
+        wire.decode_sample("glove", payload(**changes), 1)
+    assert "sample 7 of glove" in str(caught.value)
+
+
+def test_a_huge_sample_is_refused_unread() -> None:
+    with pytest.raises(UnusableSample, match="10000000 bytes is over the limit"):
+        wire.decode_sample("glove", bytes(10_000_000), 1)
+
+
+@given(st.binary(max_size=200))
+def test_setpoints_states_and_commands_never_let_rubbish_through(noise: bytes) -> None:
+    for decode in (wire.decode_setpoint, wire.decode_state, wire.decode_command):
+        with pytest.raises(UnusableInput):
+            decode(noise)
+
+
+@pytest.mark.parametrize("verb", ["start", "override", "hold", "resume", "stop"])
+def test_commands_survive_the_wire(verb: str) -> None:
+    assert wire.decode_command(wire.encode_command(verb, "e1", plan=b"{}", override=0.5)) == (verb, "e1", b"{}", 0.5)
+
+
+def test_an_override_outside_its_range_is_refused() -> None:
+    with pytest.raises(UnusableInput, match=r"override 1\.5"):
+        wire.decode_command(wire.encode_command("override", "e1", override=1.5))

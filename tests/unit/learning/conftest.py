@@ -1,0 +1,24 @@
+"""Learning runs that several tests look at, made once."""
+
+from __future__ import annotations
+
+import pytest
+import synthetic
+
+from teachpath.learning import LearningSettings, learn
+from teachpath.records import Learned, Trajectory
+
+
+@pytest.fixture(scope="session")
+def twelve() -> dict[str, Trajectory]:
+    return synthetic.experiment_1(1)
+
+
+@pytest.fixture(scope="session")
+def learned(twelve: dict[str, Trajectory]) -> Learned:
+    return learn(twelve, LearningSettings())
+
+
+@pytest.fixture(scope="session")
+def learned_as_paper(twelve: dict[str, Trajectory]) -> Learned:
+    return learn(twelve, LearningSettings(mode="paper", threshold=0.08))

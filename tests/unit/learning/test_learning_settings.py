@@ -1,0 +1,36 @@
+"""Nonsense in the settings is refused with the name, the value and the limit."""
+
+from __future__ import annotations
+
+import pytest
+
+from teachpath.errors import UnusableSettings
+from teachpath.learning import LearningSettings
+
+
+@pytest.mark.parametrize(
+    ("change", "sentence"),
+    [
+        ({"mode": "magic"}, "'magic'; it is one of default, paper"),
+        ({"mode": "paper"}, "learning.threshold in metres"),
+        ({"keep": 0}, "keep is 0; it is at least 1"),
+        ({"keep": 1.5}, "whole number"),
+        ({"keep": True}, "whole number"),
+        ({"threshold": 0.0}, "greater than 0"),
+        ({"threshold": "far"}, "it is a number"),
+        ({"error_bound": float("nan")}, "finite"),
+        ({"error_bound": float("inf")}, "finite"),
+        ({"error_bound": -0.001}, "greater than 0"),
+        ({"degree": 8}, "at most 7"),
+        ({"guard": 1.1}, "at most 1"),
+        ({"inconsistent": 1.0}, "at most 0"),
+    ],
+)
+def test_a_setting_outside_its_limits_is_refused(change: dict[str, object], sentence: str) -> None:
+    with pytest.raises(UnusableSettings, match=sentence):
+        LearningSettings(**change)  # type: ignore[arg-type]
+
+
+def test_limits_themselves_are_allowed() -> None:
+    settings = LearningSettings(mode="paper", threshold=1e-6, keep=1, degree=7, guard=0.0, inconsistent=0.0, seed=0)
+    assert settings.degree == 7

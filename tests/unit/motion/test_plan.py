@@ -1,0 +1,122 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from teachpath.errors import PathRefused
+from teachpath.io.documents import decode, encode
+from teachpath.motion import MotionSettings, empty_scene, paper_scene, plan, verify
+from teachpath.motion.certificate import digest, stream, uses
+from teachpath.motion.kinematics import tool_pose
+from teachpath.motion.puma560 import ACCELERATION, JERK, LOWER, SPEED, UPPER
+from teachpath.motion.route import ArcLength
+from teachpath.motion.timing import JointPath, Limits
+from teachpath.records import Plan, Shape
+from tests.unit.motion.ways import FAR, MIDDLE, NEAR, clamped, learned, way
+
+
+@pytest.fixture(scope="module")
+def middle() -> Plan:
+    return plan(way(MIDDLE), paper_scene())
+
+
+@pytest.mark.parametrize("degree", [3, 5])
+@pytest.mark.parametrize("x", [NEAR, MIDDLE, FAR])
+def test_the_three_ways_of_the_paper_keep_every_limit_and_the_path(x: float, degree: int) -> None:
+    path = way(x, degree=degree)
+    made = plan(path, paper_scene())
+    s, q = stream(JointPath(made.lengths, made.joints), Limits(*made.limits), 250.0)
+    assert np.all((q >= LOWER) & (q <= UPPER))
+    for order, limit in ((1, SPEED), (2, ACCELERATION), (3, JERK)):
+        assert np.all(np.abs(np.diff(q, order, axis=0)) * 250.0**order <= limit)
+    wanted = path.curve(ArcLength(path.curve).parameters(s))
+    poses = tool_pose(q)
+    assert np.linalg.norm(poses[:, :3, 3] - wanted, axis=1).max() < 1e-4
+    np.testing.assert_allclose(poses[:, :3, 2], np.tile([0, 0, -1], (len(s), 1)), atol=1e-4)
+    assert made.certificate.clearance.value >= MotionSettings().clearance_min
+    assert len(s) / 250.0 == pytest.approx(made.duration, abs=0.05)
+
+
+def test_the_certificate_agrees_with_setpoints_differenced_again(middle: Plan) -> None:
+    s, q = stream(JointPath(middle.lengths, middle.joints), Limits(*middle.limits), 250.0)
+    certificate = middle.certificate
+    written = certificate.position_use, certificate.velocity_use, certificate.acceleration_use, certificate.jerk_use
+    assert written == uses(s, q, 250.0)
+
+
+def test_a_plan_survives_json_and_any_change_of_it_is_noticed(middle: Plan) -> None:
+    back = decode(Plan, encode(middle))
+    verify(back)
+    bent = back.joints.copy()
+    bent[10, 2] += 1e-9
+    assert middle.scene.carried is not None
+    moved = replace(middle.scene, obstacles=middle.scene.obstacles[:-1])
+    for changed in (
+        replace(back, joints=bent),
+        replace(back, scene=moved),
+        replace(back, limits=(back.limits[0] * 1.01, *back.limits[1:])),
+        replace(back, path_version=2),
+        replace(back, above_goal=back.above_goal + 1e-9),
+    ):
+        with pytest.raises(PathRefused, match="changed since it was certified"):
+            verify(changed)
+    assert digest(back) == middle.certificate.digest
+
+
+def test_a_path_through_an_obstacle_is_refused_by_name_and_place() -> None:
+    with pytest.raises(PathRefused, match=r"of box, least allowed .* at s = 0\.\d+ m .*control point \d of 9"):
+        plan(way(0.48), paper_scene())
+    with pytest.raises(PathRefused, match="of cylinder, least allowed"):
+        plan(way(0.67), paper_scene())
+
+
+def test_a_path_out_of_reach_is_refused_with_its_place() -> None:
+    with pytest.raises(PathRefused, match=r"wrist centre .* cm outside the reach at s = .* control point 5 of 9"):
+        plan(way(1.5), paper_scene())
+    with pytest.raises(PathRefused, match="too near to the arm's own axis at s ="):
+        plan(way(-0.1), paper_scene())
+
+
+def test_a_path_beyond_a_joint_limit_names_joint_and_limit() -> None:
+    with pytest.raises(PathRefused, match=r"joint 3 needs \d+\.\d deg, limit 45\.0, at s = .* control point 5 of 9"):
+        plan(way(0.31), paper_scene())
+
+
+def test_a_path_into_the_table_is_refused() -> None:
+    with pytest.raises(PathRefused, match="table"):
+        plan(way(MIDDLE, height=0.505), paper_scene())
+
+
+def test_a_path_that_does_not_start_at_the_object_is_refused() -> None:
+    path = way(MIDDLE)
+    shifted = clamped(path.curve.control_points + np.array([0.0, 0.06, 0.0]))
+    with pytest.raises(PathRefused, match=r"starts 6\.0 cm from where block stands"):
+        plan(learned(shifted), paper_scene())
+
+
+def test_a_path_that_stands_still_or_has_no_length_is_refused() -> None:
+    points = way(MIDDLE).curve.control_points
+    with pytest.raises(PathRefused, match="control points coincide"):
+        plan(learned(clamped(np.repeat(points[[0, 4, 8]], 4, axis=0))), empty_scene())
+    with pytest.raises(PathRefused, match=r"0\.0 mm long"):
+        plan(learned(clamped(np.repeat(points[:1], 5, axis=0))), empty_scene())
+
+
+def test_without_an_object_the_path_is_simply_followed() -> None:
+    made = plan(way(MIDDLE), empty_scene())
+    assert made.scene.carried is None
+    verify(made)
+
+
+def test_the_same_path_gives_the_same_motion(middle: Plan) -> None:
+    again = plan(way(MIDDLE), paper_scene())
+    assert again.certificate.digest == middle.certificate.digest
+
+
+def test_an_obstacle_above_the_start_keeps_the_gripper_from_coming_down() -> None:
+    scene = paper_scene()
+    assert scene.carried is not None
+    x, y, _ = scene.carried.position
+    lid = Shape("lid", "box", (0.3, 0.3, 0.02), (x - 0.05, y - 0.2, 0.80))
+    with pytest.raises(PathRefused, match="lid"):
+        plan(way(MIDDLE), replace(scene, obstacles=(*scene.obstacles, lid)))

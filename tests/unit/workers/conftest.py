@@ -1,0 +1,13 @@
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from teachpath.io.store import Store, StoreSettings
+
+
+@pytest.fixture
+def store(tmp_path: Path) -> Iterator[Store]:
+    store = Store(StoreSettings(data_dir=str(tmp_path / "data")))
+    yield store
+    store.close()

@@ -1,0 +1,203 @@
+import threading
+from collections.abc import Iterator
+
+import pytest
+
+from teachpath.errors import Conflict, NotFound, UnusableInput
+from teachpath.io.bus import MemoryBus
+from teachpath.io.store import Store
+from teachpath.io.wire import sample_message
+from teachpath.recording import RecordingSettings
+from teachpath.records import Calibration, Demonstration, Sample, Scene, Shape, Trajectory
+from teachpath.workers.recorder import Recorder
+from teachpath_proto import tracker_pb2
+from teachpath_proto.keys import Keys
+from tests.unit.recording.hands import PERIOD_NS, demonstration, sample
+
+KEYS = Keys("test")
+SCENE = Scene("paper", (), Shape("block", "box", (0.04, 0.04, 0.04), (0.5, 0.0, 0.48)))
+
+
+class Bench:
+    """A recorder on an in-memory bus, and a tracker that speaks to it."""
+
+    def __init__(self, store: Store) -> None:
+        self.bus, self.store = MemoryBus(), store
+        self.recorded: list[tuple[Demonstration, Trajectory]] = []
+        self.recorder = Recorder(
+            self.bus,
+            KEYS,
+            store,
+            RecordingSettings(handshake_timeout=1.0),
+            scene=lambda name: {"paper": SCENE}[name],
+            calibration=Calibration,
+            recorded=lambda *made: self.recorded.append(made),
+        )
+        self.recorder.start()
+
+    def send(self, samples: list[Sample], tracker: str = "glove") -> None:
+        for s in samples:
+            self.bus.publish(KEYS.samples(tracker), sample_message(s).SerializeToString())
+
+    def begin(self, tracker: str = "glove", task: str = "lift") -> None:
+        request = tracker_pb2.StartRecording(task=task, tracker=tracker, scene="paper")
+        self.bus.ask(KEYS.recorder_start, request.SerializeToString())
+
+    def end(self, last: int, tracker: str = "glove", *, discard: bool = False) -> tracker_pb2.RecordingReport:
+        request = tracker_pb2.StopRecording(tracker=tracker, last_sequence=last, discard=discard)
+        answer = self.bus.ask(KEYS.recorder_stop, request.SerializeToString())
+        return tracker_pb2.RecordingReport.FromString(answer)
+
+
+@pytest.fixture
+def bench(store: Store) -> Iterator[Bench]:
+    bench = Bench(store)
+    yield bench
+    bench.recorder.stop()
+
+
+def test_a_stream_becomes_demonstrations_with_every_sample_in_order(bench: Bench) -> None:
+    bench.begin()
+    stream = [s for i in range(3) for s in demonstration(1 + 110 * i)]
+    bench.send(stream)
+    report = bench.end(330)
+    assert (report.received, report.lost, len(report.demonstrations)) == (330, 0, 3)
+    rows = bench.store.demonstrations("lift")
+    assert [row.number for row in rows] == [1, 2, 3]
+    assert [row.id for row in rows] == list(report.demonstrations) == [d.id for d, _ in bench.recorded]
+    stored = [s for row in rows for s in bench.store.recordings.samples(row.recording)]
+    assert [s.sequence for s in stored] == [s.sequence for s in stream[: len(stored)]]
+    assert len(stored) + report.idle == len(stream)
+    assert all(row.verdict == "clean" for row in rows)
+
+
+def test_the_handshake_counts_what_never_came(bench: Bench) -> None:
+    bench.begin()
+    stream = demonstration()
+    bench.send(stream[:40] + stream[42:])
+    report = bench.end(115)
+    assert report.lost == 2 + 5
+    assert bench.store.demonstrations("lift")[0].account.lost == 2
+    assert bench.store.demonstrations("lift")[0].verdict == "repaired"
+
+
+def test_rubbish_is_counted_and_harms_nothing(bench: Bench) -> None:
+    bench.begin()
+    stream = demonstration()
+    bench.send(stream[:30])
+    for payload in (b"rubbish", b"", bytes(100_000)):
+        bench.bus.publish(KEYS.samples("glove"), payload)
+    bench.send([sample(31, (float("nan"), 0.0, 0.0))])
+    bench.send(stream[31:])
+    report = bench.end(110)
+    assert report.refused == 4
+    assert report.lost == 1
+    assert any("not finite" in note for note in report.notes)
+    assert len(report.demonstrations) == 1
+
+
+def test_sequence_numbers_that_go_back_are_told_apart(bench: Bench) -> None:
+    bench.begin()
+    stream = demonstration()
+    bench.send([*stream[:50], stream[51], stream[50], stream[51], stream[10], *stream[52:]])
+    report = bench.end(110)
+    assert (report.reordered, report.duplicated, report.lost) == (1, 2, 0)
+    row = bench.store.demonstrations("lift")[0]
+    assert row.verdict == "repaired"
+    assert len(bench.store.recordings.samples(row.recording)) == row.samples == 110 + 2 - report.idle
+
+
+def test_two_trackers_do_not_mix(bench: Bench) -> None:
+    bench.begin("left", "a")
+    bench.begin("right", "b")
+    for one, other in zip(demonstration(), demonstration(), strict=True):
+        bench.send([one], "left")
+        bench.send([other], "right")
+    assert bench.end(110, "left").received == bench.end(110, "right").received == 110
+    assert len(bench.store.demonstrations("a")) == len(bench.store.demonstrations("b")) == 1
+
+
+def test_a_grasp_that_is_let_go_at_once_is_no_demonstration(bench: Bench) -> None:
+    bench.begin()
+    bench.send(demonstration(transport=8))
+    report = bench.end(68)
+    assert not report.demonstrations
+    assert any("let go at once" in note for note in report.notes)
+    assert bench.store.recordings.unfinished() == []
+
+
+def test_ending_while_the_glove_is_closed_is_a_reject_and_discard_throws_it_away(bench: Bench) -> None:
+    bench.begin()
+    bench.send(demonstration()[:60])
+    bench.end(60)
+    assert [d.verdict for d in bench.store.demonstrations("lift")] == ["reject"]
+    bench.begin()
+    bench.send(demonstration()[:60])
+    assert not bench.end(60, discard=True).demonstrations
+    assert len(bench.store.demonstrations("lift")) == 1
+    assert bench.store.recordings.unfinished() == []
+
+
+@pytest.mark.parametrize("name", ["", "a/b", "../etc", "a..b", "x" * 65, "a b", "-a", "ü", "a\x00"])
+def test_names_that_could_leave_the_folder_are_refused(bench: Bench, name: str) -> None:
+    with pytest.raises(UnusableInput, match="cannot name a task"):
+        bench.begin(task=name)
+    with pytest.raises(UnusableInput, match="cannot name a tracker"):
+        bench.begin(tracker=name)
+
+
+def test_refusals_say_what_is_running(bench: Bench) -> None:
+    bench.begin()
+    with pytest.raises(Conflict, match="already recording lift"):
+        bench.begin()
+    with pytest.raises(NotFound, match=r"running: \['glove'\]"):
+        bench.recorder.end("other")
+    with pytest.raises(NotFound, match="no task"):
+        bench.recorder.begin("unknown", "other")
+    with pytest.raises(UnusableInput, match="not a StartRecording"):
+        bench.bus.ask(KEYS.recorder_start, b"\xff\xff")
+
+
+def test_a_folder_that_cannot_be_written_is_said_and_the_next_take_is_tried_again(bench: Bench) -> None:
+    folder = bench.store.recordings.folder("lift")
+    folder.parent.mkdir(parents=True)
+    folder.write_text("a file where the folder should be")
+    bench.begin()
+    bench.send(demonstration())
+    report = bench.end(110)
+    assert report.received == 110
+    assert not report.demonstrations
+    assert any("cannot be written" in note for note in report.notes)
+    folder.unlink()
+    bench.begin()
+    bench.send(demonstration())
+    assert len(bench.end(110).demonstrations) == 1
+
+
+def test_commands_from_several_threads_leave_one_recording(bench: Bench) -> None:
+    outcomes: list[str] = []
+
+    def try_begin() -> None:
+        try:
+            bench.begin()
+            outcomes.append("began")
+        except Conflict:
+            outcomes.append("conflict")
+
+    threads = [threading.Thread(target=try_begin) for _ in range(8)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert sorted(outcomes) == ["began"] + ["conflict"] * 7
+
+
+def test_an_endless_reach_does_not_fill_the_disk(bench: Bench) -> None:
+    bench.begin()
+    resting = [sample(i, (0.0, 0.5, 0.5)) for i in range(1, 61_000_000_000 // PERIOD_NS + 10)]
+    bench.send(resting)
+    bench.send(demonstration(len(resting) + 1))
+    report = bench.end(len(resting) + 110)
+    assert len(report.demonstrations) == 1
+    assert bench.store.demonstrations("lift")[0].samples < 200
+    assert report.received == len(resting) + 110
