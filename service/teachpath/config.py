@@ -1,19 +1,21 @@
 """The settings of every room in one frozen tree: defaults, one TOML file, then TEACHPATH_* variables.
 
-A variable names its room and setting: `TEACHPATH_WEB__PORT=9000`.
+A variable names its room and setting: `TEACHPATH_WEB__PORT=9000`; lists are written as in TOML.
 """
 
 from __future__ import annotations
 
+import json
+import math
 import os
 import tomllib
-from dataclasses import dataclass, fields, is_dataclass
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, is_dataclass
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, TypeVar, get_args, get_type_hints
 
 from annotated_types import Ge, Le
-from pydantic import ValidationError
-from pydantic_settings import BaseSettings, InitSettingsSource, PydanticBaseSettingsSource, SettingsConfigDict
+from pydantic import BaseModel, ConfigDict, ValidationError
 
 from teachpath.errors import NotFound, UnusableSettings
 from teachpath.io.bus import BusSettings
@@ -22,13 +24,17 @@ from teachpath.learning import LearningSettings
 from teachpath.motion import MotionSettings, paper_scene
 from teachpath.motion.scenes import empty_scene
 from teachpath.recording import RecordingSettings
-from teachpath.records import Calibration, Scene
+from teachpath.records import Calibration, Scene, Shape
 from teachpath.workers.executor import ExecutorSettings
 from teachpath.workers.jobs import JobSettings
 from teachpath.workers.simulator import SimulatorSettings
+from teachpath_proto.keys import is_name
 
+Named = TypeVar("Named", Calibration, Scene)
+PREFIX = "TEACHPATH_"
+SIZES = {"box": 3, "cylinder": 2}  # numbers in the size of a shape
 # RoboTasks (clfd datasets) was recorded in the frame of another arm; this maps it, shrunk, onto the Puma's table.
-ROBOTASKS = Calibration("robottasks", scale=0.6, rotation=(1.0, 0.0, 0.0, 0.0), offset=(0.25, 0.0, 0.45))
+ROBOTTASKS = Calibration("robottasks", scale=0.8, rotation=(1.0, 0.0, 0.0, 0.0), offset=(0.15, 0.17, 0.42))
 
 
 @dataclass(frozen=True)
@@ -45,12 +51,10 @@ class WebSettings:
     largest_upload: Annotated[int, Ge(1024)] = 67108864
 
 
-class Settings(BaseSettings):
+class Settings(BaseModel):
     """Every setting of a station."""
 
-    model_config = SettingsConfigDict(
-        env_prefix="TEACHPATH_", env_nested_delimiter="__", extra="forbid", frozen=True, env_ignore_empty=True
-    )
+    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
 
     bus: BusSettings = BusSettings()
     web: WebSettings = WebSettings()
@@ -61,7 +65,7 @@ class Settings(BaseSettings):
     executor: ExecutorSettings = ExecutorSettings()
     simulator: SimulatorSettings = SimulatorSettings()
     jobs: JobSettings = JobSettings()
-    calibrations: tuple[Calibration, ...] = (Calibration("identity"), ROBOTASKS)
+    calibrations: tuple[Calibration, ...] = (Calibration("identity"), ROBOTTASKS)
     scenes: tuple[Scene, ...] = (paper_scene(), empty_scene())
 
     def scene(self, name: str) -> Scene:
@@ -81,25 +85,24 @@ def load(file: Path | None = None, *, document: dict[str, Any] | None = None) ->
         document: settings given on the command line.
 
     Raises:
-        UnusableSettings: a setting that does not exist or is outside its limits; the sentence names it.
+        UnusableSettings: a setting that does not exist, is of the wrong type or outside its limits; the sentence names
+            it. A variable without `__` in its name is no setting of ours and is passed over.
     """
-    from_file = _read(file)
-
-    class Sourced(Settings):
-        @classmethod
-        def settings_customise_sources(
-            cls, settings_cls: type[BaseSettings], **sources: PydanticBaseSettingsSource
-        ) -> tuple[PydanticBaseSettingsSource, ...]:
-            return sources["init_settings"], sources["env_settings"], InitSettingsSource(settings_cls, from_file)
-
-    for given in (from_file, document or {}):
-        _refuse_unknown(given, Settings.model_construct(), "")
+    given: dict[str, Any] = {}
+    for layer in (_read(file), _variables(), document or {}):
+        _refuse_unknown(layer, Settings, "")
+        given = _laid_over(given, layer)
     try:
-        return Sourced(**(document or {}))
+        # JSON is where a strict check still takes a list for a tuple and an object for a dataclass.
+        settings = Settings.model_validate_json(json.dumps(given, default=str), strict=True)
     except ValidationError as error:
         first = error.errors()[0]
         place = ".".join(str(p) for p in first["loc"])
-        raise UnusableSettings(f"setting {place} = {first.get('input')!r}: {first['msg']}") from None
+        fault = first["msg"].replace("Input should", "it should")
+        raise UnusableSettings(f"setting {place} is {first.get('input')!r}; {fault}") from None
+    _check_calibrations(settings.calibrations)
+    _check_scenes(settings.scenes)
+    return settings
 
 
 def _read(file: Path | None) -> dict[str, Any]:
@@ -115,18 +118,94 @@ def _read(file: Path | None) -> dict[str, Any]:
         raise UnusableSettings(f"the settings file {chosen} is not TOML: {error}") from None
 
 
-def _refuse_unknown(document: dict[str, Any], default: Any, place: str) -> None:
-    """Name a setting that does not exist, which the dataclasses of the rooms would pass over."""
-    known = [f.name for f in fields(default)] if is_dataclass(default) else list(type(default).model_fields)
+def _variables() -> dict[str, Any]:
+    """Return the settings that are given as variables; an empty one counts as not given."""
+    document: dict[str, Any] = {}
+    for variable, text in os.environ.items():
+        room, mark, setting = variable.removeprefix(PREFIX).lower().partition("__")
+        if variable.startswith(PREFIX) and mark and text:
+            kind = _kinds(_kinds(Settings).get(room)).get(setting)
+            document.setdefault(room, {})[setting] = _value(text, kind)
+    return document
+
+
+def _value(text: str, kind: Any) -> Any:
+    if kind is str:
+        return text
+    try:
+        return tomllib.loads(f"value = {text}")["value"]
+    except tomllib.TOMLDecodeError:
+        return text
+
+
+def _laid_over(below: Any, above: Any) -> Any:
+    if not (isinstance(below, dict) and isinstance(above, dict)):
+        return above
+    return below | {key: _laid_over(below.get(key), value) for key, value in above.items()}
+
+
+def _kinds(kind: Any) -> Mapping[str, Any]:
+    """Return the settings of a room, or the fields of a record, with their types; of anything else none."""
+    if kind is Settings:
+        return {name: field.annotation for name, field in Settings.model_fields.items()}
+    return get_type_hints(kind) if is_dataclass(kind) and isinstance(kind, type) else {}
+
+
+def _refuse_unknown(document: Any, kind: Any, place: str) -> None:
+    """Name a setting that does not exist, and what does exist there."""
+    if isinstance(document, list):
+        for number, entry in enumerate(document):
+            _refuse_unknown(entry, kind, f"{place}{number}.")
+        return
+    known = _kinds(kind)
+    if not isinstance(document, dict) or not known:
+        return
     for key, value in document.items():
         if key not in known:
             raise UnusableSettings(f"there is no setting {place}{key}; known here: {', '.join(known)}")
-        inner = getattr(default, key)
-        if isinstance(value, dict) and is_dataclass(inner):
-            _refuse_unknown(value, inner, f"{place}{key}.")
+        inner = next((k for k in (known[key], *get_args(known[key])) if is_dataclass(k)), None)
+        _refuse_unknown(value, inner, f"{place}{key}.")
 
 
-def _named(things: tuple[Any, ...], name: str, what: str) -> Any:
+def _check_calibrations(calibrations: tuple[Calibration, ...]) -> None:
+    _check_names("calibration", (c.name for c in calibrations))
+    for c in calibrations:
+        if c.scale <= 0:
+            raise UnusableSettings(f"calibration {c.name} has a scale of {c.scale:g}; it should be greater than 0")
+        if not math.isclose(norm := math.hypot(*c.rotation), 1.0, abs_tol=1e-6):
+            raise UnusableSettings(f"calibration {c.name} has a rotation of length {norm:g}; a unit quaternion has 1")
+
+
+def _check_scenes(scenes: tuple[Scene, ...]) -> None:
+    _check_names("scene", (scene.name for scene in scenes))
+    for scene in scenes:
+        shapes = scene.obstacles + ((scene.carried,) if scene.carried else ())
+        _check_names(f"body of scene {scene.name}", (shape.name for shape in shapes))
+        for shape in shapes:
+            _check_shape(shape, scene.name)
+
+
+def _check_shape(shape: Shape, scene: str) -> None:
+    who = f"{shape.name} in scene {scene}"
+    if shape.kind not in SIZES:
+        raise UnusableSettings(f"{who} is a {shape.kind!r}; known are {', '.join(SIZES)}")
+    if len(shape.size) != SIZES[shape.kind] or min(shape.size) <= 0:
+        raise UnusableSettings(f"{who} has size {shape.size}; a {shape.kind} has {SIZES[shape.kind]} lengths over 0")
+
+
+def _check_names(what: str, names: Iterable[str]) -> None:
+    known: set[str] = set()
+    for name in names:
+        if not is_name(name):
+            raise UnusableSettings(f"{name!r} cannot name a {what}: use letters, digits, '.', '_' or '-', at most 64")
+        if name in known:
+            raise UnusableSettings(f"there are two settings of the {what} {name}; rename one of them")
+        known.add(name)
+    if not known and what in ("calibration", "scene"):
+        raise UnusableSettings(f"a station needs at least one {what}; leave the setting out for the built-in ones")
+
+
+def _named(things: tuple[Named, ...], name: str, what: str) -> Named:
     for thing in things:
         if thing.name == name:
             return thing

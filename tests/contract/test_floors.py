@@ -44,7 +44,7 @@ DOORS = {
     "typer": ["__main__.py", "commands"],
     "rich": ["commands"],
     "httpx": ["commands/rest.py"],
-    "pydantic_settings": ["config.py"],
+    "pydantic": ["config.py", "api"],
 }
 
 

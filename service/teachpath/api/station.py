@@ -23,7 +23,7 @@ are nanoseconds since the Unix epoch. Every refusal has a sentence in `detail`."
 
 def build_api(parts: Parts, view: APIRouter) -> FastAPI:
     """Return the web application: the REST API under /api/v1 and the page with its view."""
-    app = FastAPI(title="teachpath", version=__version__, description=DESCRIPTION)
+    app = FastAPI(title="teachpath", version=__version__, description=DESCRIPTION, docs_url=None, redoc_url=None)
     # Another name for this address is how a foreign page would reach a loopback service (DNS rebinding).
     hosts = ["127.0.0.1", "localhost", "[::1]", parts.settings.web.host, *parts.settings.web.hosts]
     app.add_middleware(TrustedHostMiddleware, allowed_hosts=hosts)

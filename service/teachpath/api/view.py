@@ -64,13 +64,17 @@ def web_root() -> Path:
 
 
 def view_router(preview: Preview) -> APIRouter:
-    """Return the routes of the page, its files and its view: `/`, `/web/...`, `/vendor/...`, `/api/v1/view`."""
+    """Return the routes of the page, its files and its view: `/`, `/docs`, `/web/...`, `/vendor/...`, `/api/v1/view`."""
     router = APIRouter(include_in_schema=False)
     root, viewer = web_root(), viewer_files()
 
     @router.get("/")
     def page() -> Response:
         return FileResponse(root / "index.html", media_type="text/html; charset=utf-8", headers=HEADERS)
+
+    @router.get("/docs")
+    def docs() -> Response:
+        return FileResponse(root / "docs.html", media_type="text/html; charset=utf-8", headers=HEADERS)
 
     @router.get("/favicon.ico")
     def icon() -> Response:

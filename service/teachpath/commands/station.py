@@ -57,7 +57,9 @@ def simulator(config: Config = None, attached: Attached = False) -> None:
         _leave_with_parent(stop, attached)
         bus = open_bus(settings.bus)
         try:
-            Simulator(bus, Keys(settings.bus.prefix), settings.scenes[0], settings.simulator).run(stop)
+            Simulator(
+                bus, Keys(settings.bus.prefix), settings.scenes[0], settings.simulator, home=settings.motion.home
+            ).run(stop)
         finally:
             bus.close()
 

@@ -16,6 +16,7 @@ Labels = NDArray[np.int64]
 
 MOST_CLUSTERS = 10  # that the silhouette chooses among
 APART = 0.1  # share of the path length: two demonstrations farther apart are two ways
+CAUTION = 0.5  # divided by its members, added to the guard of a cluster: few fall apart by chance
 CLOSE_CALL = 0.08  # of the silhouette
 
 
@@ -124,7 +125,8 @@ def _splits_well(square: Array, coarse: NDArray[np.int32], fine: NDArray[np.int3
     for label in np.unique(coarse):
         inside = np.flatnonzero(coarse == label)
         if len(np.unique(fine[inside])) > 1:
-            return len(inside) > 2 and silhouette(square[np.ix_(inside, inside)], fine[inside]) >= guard
+            alone = square[np.ix_(inside, inside)]
+            return silhouette(alone, fine[inside]) >= guard + CAUTION / len(inside)
     return False
 
 

@@ -42,6 +42,9 @@ class LeftRightHmm(BaseHMM):  # type: ignore[misc]
         self.pseudo_count = pseudo_count
         self.monitor_ = _RelativeChange(tolerance, iterations, False)
 
+    def __repr__(self) -> str:
+        return f"{type(self).__name__}({self.states} states)"
+
     @property
     def history(self) -> tuple[float, ...]:
         """Log-likelihood of the training sequences before each M-step."""
@@ -55,6 +58,11 @@ class LeftRightHmm(BaseHMM):  # type: ignore[misc]
     def log_likelihood(self, sequence: Array) -> float:
         """Return log p(O | model) of one sequence of shape (frames, features) by the forward procedure."""
         return float(self.score(sequence))
+
+    def log_likelihoods(self, sequence: Array) -> Array:
+        """Return log p(o_t | o_1 ... o_t-1, model) for every frame: (frames,); their sum is the log-likelihood."""
+        forward = self._fit_log(sequence)[3]
+        return np.diff(logsumexp(forward, axis=1), prepend=0.0)
 
     @abstractmethod
     def _begin(self, slices: list[Array], frames: Array) -> None:

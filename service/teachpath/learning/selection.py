@@ -17,7 +17,8 @@ COURSE_STATES = 20
 FLOOR = 0.02  # share of the overall variance that a state's variance keeps at least
 FOLDS = 10  # above THOROUGH members a model is trained per fold, not per member
 THOROUGH = 30
-LEAST_SPREAD = 0.2  # nats a frame, differences of score that mean nothing
+USUAL_SPREAD = 1.0  # nats a frame, of the scores of demonstrations that are alike
+BELIEF = 4  # members that the usual spread counts for beside the measured one
 PAPER_RIDGE = 0.01  # squared codeword numbers, added to every covariance
 PAPER_ITERATIONS = 10
 FEW = 4  # members below which the ranking is unreliable
@@ -27,8 +28,9 @@ Tick = Callable[[], None]
 
 @dataclass(frozen=True, eq=False)
 class _Family:
-    """One kind of feature of every member: (frames, features) each, and the states of its models."""
+    """One kind of feature of every member: what it tells, (frames, features) each, and the states of its models."""
 
+    quality: str
     sequences: list[Array]
     states: int
 
@@ -43,37 +45,42 @@ def select(index: int, members: Mapping[str, Trajectory], settings: LearningSett
     Args:
         index: number of the cluster.
         members: id -> trajectory.
-        settings: `keep` members are kept at least, and all above `inconsistent`.
+        settings: `keep` members are kept at least, and all above `inconsistent`, which is doubled for two or three
+            members, for the spread of so few scores says little.
         tick: called once per model trained.
     """
     names = sorted(members)
     if len(names) == 1:
         return _whole(index, names, "one demonstration only: nothing to compare it with")
     trajectories = [members[name] for name in names]
-    families = [_Family(positions_and_velocities(trajectories), COURSE_STATES)]
+    families = [_Family("course", positions_and_velocities(trajectories), COURSE_STATES)]
     bands = band_energies(trajectories, settings.period)
     notes = []
     if bands is None:
         notes.append("a demonstration is shorter than the analysis window: judged by positions and velocities only")
     else:
-        families.append(_Family(bands, BAND_STATES))
+        families.append(_Family("smoothness", bands, BAND_STATES))
     if len(names) < FEW:
         notes.append(f"{len(names)} demonstrations: too few for a reliable ranking")
-    scores = np.stack([_left_out_scores(family, tick) for family in families])  # (families, m)
+    profiles = [_left_out(family, tick) for family in families]
+    scores = np.array([[profile.mean() for profile in row] for row in profiles])  # (families, m)
     z = np.stack([_robust_z(row) for row in scores])
     measure = np.minimum(z, 0.0).sum(axis=0)
     # Exact ties are common, for the median and the median deviation are members' own; rounding must not break them.
     order = np.lexsort((-scores.sum(axis=0), -np.round(z.sum(axis=0), 9), -np.round(measure, 9)))
-    frames = np.stack([[len(sequence) for sequence in family.sequences] for family in families])
-    likelihoods = (scores * frames).sum(axis=0)
-    kept = [rank < settings.keep or bool(measure[i] >= settings.inconsistent) for rank, i in enumerate(order)]
-    ranked = tuple(
-        Score(names[i], float(likelihoods[i]), rank + 1, keep, _remark(z[:, i], measure[i], settings))
-        for rank, (i, keep) in enumerate(zip(order, kept, strict=True))
-    )
+    likelihoods = np.array([[profile.sum() for profile in row] for row in profiles]).sum(axis=0)
+    limit = settings.inconsistent * (2 if len(names) < FEW else 1)
+    kept = [rank < settings.keep or bool(measure[i] >= limit) for rank, i in enumerate(order)]
+    ranked = []
+    for rank, (i, keep) in enumerate(zip(order, kept, strict=True)):
+        worst = int(np.argmin(z[:, i]))
+        span = _worst_span(profiles[worst][i], trajectories[i])
+        remark = f"inconsistent in its {families[worst].quality} (z {measure[i]:.1f}), most from {span}"
+        note = remark if measure[i] < limit else ""
+        ranked.append(Score(names[i], float(likelihoods[i]), rank + 1, keep, note))
     history = _fitted(families[0].sequences, families[0].states).history
     tick()
-    return Cluster(index, tuple(score.demonstration for score in ranked), ranked, history, "; ".join(notes))
+    return Cluster(index, tuple(score.demonstration for score in ranked), tuple(ranked), history, "; ".join(notes))
 
 
 def select_as_paper(
@@ -126,17 +133,17 @@ def _whole(index: int, names: list[str], note: str) -> Cluster:
     return Cluster(index, tuple(names), scores, (), note)
 
 
-def _left_out_scores(family: _Family, tick: Tick) -> Array:
-    """Score every member per frame by a model of those outside its fold: (m,)."""
+def _left_out(family: _Family, tick: Tick) -> list[Array]:
+    """Return the log-likelihoods of every member's frames under a model of those outside its fold."""
     count = len(family.sequences)
     folds = np.arange(count) % (FOLDS if count > THOROUGH else count)
-    scores = np.empty(count)
+    profiles = [np.empty(0)] * count
     for fold in range(int(folds.max()) + 1):
         model = _fitted([family.sequences[i] for i in np.flatnonzero(folds != fold)], family.states)
         for i in np.flatnonzero(folds == fold):
-            scores[i] = model.log_likelihood(family.sequences[i]) / len(family.sequences[i])
+            profiles[i] = model.log_likelihoods(family.sequences[i])
         tick()
-    return scores
+    return profiles
 
 
 def _fitted(sequences: list[Array], states: int) -> TiedGaussianHmm:
@@ -150,13 +157,21 @@ def _fitted(sequences: list[Array], states: int) -> TiedGaussianHmm:
 
 
 def _robust_z(scores: Array) -> Array:
+    """Return how many spreads a score is above the median; the spread is that of the median deviation, and believed
+    only as far as the number of members goes.
+    """
     offsets = scores - np.median(scores)
-    return offsets / max(1.4826 * float(np.median(np.abs(offsets))), LEAST_SPREAD)
+    measured = 1.4826 * float(np.median(np.abs(offsets)))
+    count = len(scores)
+    return np.asarray(offsets / np.sqrt((count * measured**2 + BELIEF * USUAL_SPREAD**2) / (count + BELIEF)))
 
 
-def _remark(z: Array, measure: float, settings: LearningSettings) -> str:
-    if measure >= settings.inconsistent:
-        return ""
-    kinds = ("course", "smoothness")
-    worst = kinds[int(np.argmin(z))]
-    return f"inconsistent in its {worst} (z {measure:.1f})"
+def _worst_span(profile: Array, trajectory: Trajectory) -> str:
+    """Say between which times the frames are at least half as unlikely as the unlikeliest."""
+    deficit = np.median(profile) - profile
+    low = np.append(np.flatnonzero(deficit < deficit.max() / 2), len(profile))
+    worst = int(np.argmax(deficit))
+    begin = int(np.max(low[low < worst], initial=-1)) + 1
+    end = int(np.min(low[low > worst]))
+    seconds = float(trajectory.times[-1] - trajectory.times[0]) / len(profile)
+    return f"{begin * seconds:.1f} to {end * seconds:.1f} s"

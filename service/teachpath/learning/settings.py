@@ -37,7 +37,7 @@ class LearningSettings:
     # mean silhouette below which the demonstrations are taken for one single way
     guard: Annotated[float, Ge(0), Le(1)] = 0.5
     # robust z below which a demonstration is inconsistent with its cluster (mode default)
-    inconsistent: Annotated[float, Le(0)] = -10.0
+    inconsistent: Annotated[float, Le(0)] = -8.0
     # m, largest distance of the learned path from what it is fitted to
     error_bound: Annotated[float, Gt(0)] = 0.005
     # degree of the NURBS; None = 5 where it costs few control points, else 3
@@ -47,7 +47,7 @@ class LearningSettings:
     # of all random choices
     seed: Annotated[int, Ge(0)] = 1
     # s, sampling period of the spectra (mode default)
-    period: Annotated[float, Gt(0)] = 0.02
+    period: Annotated[float, Ge(0.001), Le(1)] = 0.02
     # states Q of the hidden Markov models (mode paper)
     states: Annotated[int, Ge(1), Le(100)] = 10
     # Gaussians M per state (mode paper)

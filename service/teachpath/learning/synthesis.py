@@ -13,6 +13,7 @@ from teachpath.learning.settings import LearningSettings
 from teachpath.records import Array, Fit, LearnedPath, Trajectory
 
 CONSENSUS_POINTS = 200
+LEAST_LENGTH = 0.05  # of the mean path, as share of the longest that went into it
 SMOOTH_COST = 3  # more control points that degree 5 may take than degree 3
 PAPER_DEGREE = 3
 POOLED_MOST = 12  # control points on a pooled list: more follow its zigzag and come no closer
@@ -28,9 +29,16 @@ def synthesise(cluster: int, selected: Sequence[Trajectory], settings: LearningS
     """Fit the consensus of the selected demonstrations within the error bound (mode default).
 
     Raises:
-        LearningFailed: the bound cannot be kept with `most_control_points`.
+        LearningFailed: the bound cannot be kept with `most_control_points`, or the demonstrations cancel out.
     """
-    course = consensus([smoothed(trajectory) for trajectory in selected])
+    paths = [smoothed(trajectory) for trajectory in selected]
+    course = consensus(paths)
+    length, usual = _length(course), max(_length(path) for path in paths)
+    if length < LEAST_LENGTH * usual:
+        raise LearningFailed(
+            f"the mean of way {cluster} is {length * 1e3:.3g} mm long, its demonstrations up to {usual * 1e3:.3g} mm: "
+            "they lead in opposite directions; lower learning.threshold"
+        )
     bound, most = settings.error_bound, settings.most_control_points
     degrees = (3, 5) if settings.degree is None else (settings.degree,)
     fits = [approximate(course, bound, degree=degree, most=most) for degree in degrees]
@@ -60,8 +68,9 @@ def synthesise_as_paper(cluster: int, selected: Sequence[Trajectory], settings: 
     span = 8 * len(selected)
     fit = approximate(points, settings.error_bound, degree=degree, most=most, span=span)
     notes = []
-    if fit.largest > settings.error_bound:
-        notes.append(f"the pooled points spread too far for the bound: up to {fit.largest * 100:.1f} cm from the curve")
+    largest = float(distances_to(fit.curve, points).max())
+    if largest > settings.error_bound:
+        notes.append(f"the pooled points spread too far for the bound: up to {largest * 100:.1f} cm from the curve")
     share = max(_retreat(smoothed(trajectory)) for trajectory in selected)
     if share > RETREAT:
         notes.append(
@@ -71,6 +80,10 @@ def synthesise_as_paper(cluster: int, selected: Sequence[Trajectory], settings: 
     return _path(cluster, fit, points, selected, settings.error_bound, "; ".join(notes))
 
 
+def _length(path: Array) -> float:
+    return float(arc_lengths(path)[-1])
+
+
 def _cost(fit: Approximation) -> int:
     return len(fit.curve.control_points) - (SMOOTH_COST if fit.curve.degree > 3 else 0)
 
@@ -78,7 +91,7 @@ def _cost(fit: Approximation) -> int:
 def _retreat(path: Array) -> float:
     """Return the share of the length over which the distance to the start decreases by more than noise."""
     even = at_equal_arc_length(path, 50)
-    return float(np.mean(np.diff(np.linalg.norm(even - even[0], axis=1)) < -0.25 * arc_lengths(even)[-1] / 49))
+    return float(np.mean(np.diff(np.linalg.norm(even - even[0], axis=1)) < -0.25 * _length(even) / 49))
 
 
 def _path(

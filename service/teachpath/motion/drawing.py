@@ -69,7 +69,7 @@ _PARTS: Final = (
     Part("shoulder cover", 2, "cylinder", (0.08, 0.02), (-0.4318, 0.0, 0.285), color=BLUE),
     Part("elbow cover", 2, "cylinder", (0.05, 0.02), (0.0, 0.0, 0.285), color=BLUE),
     # The prism's x runs along z of frame 3 (the forearm), its z along -y, its y along -x.
-    Part("forearm", 3, "prism", (0.07,), (0.0, 0.0, 0.0), (0.5, 0.5, -0.5, -0.5),
+    Part("forearm", 3, "prism", (0.07,), (0.0, 0.0, 0.0), (0.5, 0.5, -0.5, 0.5),
          outline=_tapered(-0.02, 0.08, 0.31, 0.05)),
     Part("wrist roll", 4, "cylinder", (0.038, 0.075), (0.0, -0.075, 0.0), Z_ALONG_Y, STEEL),
     Part("wrist yoke", 4, "cylinder", (0.034, 0.09), (0.0, 0.0, 0.0), color=WHITE),

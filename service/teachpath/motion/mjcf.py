@@ -7,6 +7,7 @@ from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
+from teachpath.errors import UnusableInput
 from teachpath.motion.drawing import Part, drawing
 from teachpath.motion.kinematics import link_frames
 from teachpath.motion.puma560 import GRIPPER_COM, GRIPPER_INERTIA, GRIPPER_MASS, LINKS, TOOL_LENGTH, Array, Link
@@ -33,6 +34,9 @@ def mjcf(scene: Scene, *, timestep: float = 0.001) -> str:
     Args:
         scene: obstacles and carried object, in the world.
         timestep: of the simulation [s].
+
+    Raises:
+        UnusableInput: a shape of the scene is neither a box nor a cylinder.
     """
     return "\n".join(
         [
@@ -143,9 +147,13 @@ def _motor(number: int, link: Link) -> str:
 
 
 def _solid(shape: Shape) -> str:
-    if shape.kind == "box":
+    if shape.kind == "box" and len(shape.size) == 3:
         return f'type="box" size="{_text(np.array(shape.size) / 2)}"'
-    return f'type="cylinder" size="{shape.size[0]!r} {shape.size[1] / 2!r}"'
+    if shape.kind == "cylinder" and len(shape.size) == 2:
+        return f'type="cylinder" size="{shape.size[0]!r} {shape.size[1] / 2!r}"'
+    raise UnusableInput(
+        f"{shape.name!r} is a {shape.kind} of {len(shape.size)} sizes; a scene has boxes of 3 and cylinders of 2"
+    )
 
 
 def _color(color: int) -> str:

@@ -4,15 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import pairwise
+from typing import Final
 
 import numpy as np
 
 from teachpath.errors import PathRefused
+from teachpath.motion.kinematics import tool_pose
 from teachpath.motion.puma560 import Array
 from teachpath.motion.scene import CollisionModel, Load
 from teachpath.motion.settings import MotionSettings
+from teachpath.records import Scene
 
-STEP = 0.01  # rad, largest turn of a joint between two configurations that are checked
+STEP: Final = 0.01  # rad, largest turn of a joint between two configurations that are checked
 
 
 def line(start: Array, goal: Array) -> Array:
@@ -67,3 +70,33 @@ def approach(
             refused = refused or error
     assert refused is not None
     raise PathRefused(f"{refused}; bring the arm nearer to its home first")
+
+
+def retreat(
+    model: CollisionModel, start: Array, goal: Array, above_goal: Array, settings: MotionSettings
+) -> tuple[Array, Array]:
+    """Find the stops on the way home behind a path, with the carried object left at its goal.
+
+    Args:
+        model: of the scene.
+        start: configuration (6,) at the path's start.
+        goal: the one at its end.
+        above_goal: the one above its end.
+        settings: home and clearances.
+
+    Raises:
+        PathRefused: the way is not free.
+    """
+    home = np.array(settings.home)
+    load = left_behind(model.scene, start, goal)
+    what = "on the way home from the goal"
+    check_free(model, line(above_goal, home), settings, load=load, gripper_open=load is not None, what=what)
+    return above_goal, home
+
+
+def left_behind(scene: Scene, start: Array, goal: Array) -> Load | None:
+    """Say where the carried object stands once it was moved along a path between two configurations."""
+    if scene.carried is None:
+        return None
+    x, y, z = np.array(scene.carried.position) + tool_pose(goal)[:3, 3] - tool_pose(start)[:3, 3]
+    return Load(placed=(float(x), float(y), float(z)))

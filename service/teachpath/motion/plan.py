@@ -8,22 +8,22 @@ from typing import Final
 
 import numpy as np
 
-from teachpath.errors import PathRefused
+from teachpath.errors import PathRefused, UnusableSettings
 from teachpath.motion.certificate import digest, stream, uses
 from teachpath.motion.kinematics import downward, inverse, tool_pose
-from teachpath.motion.moves import approach, check_free, line
+from teachpath.motion.moves import approach, check_free, left_behind, line, retreat
 from teachpath.motion.puma560 import LOWER, SPEED, UPPER, Array
 from teachpath.motion.route import Candidate, Route, candidates, explain, route, usable
 from teachpath.motion.scene import Clearance, CollisionModel, Load
 from teachpath.motion.settings import MotionSettings
 from teachpath.motion.timing import JointPath, fastest_box, rest_to_rest
-from teachpath.records import Certificate, Extreme, LearnedPath, Plan, Scene, Vector
+from teachpath.records import Certificate, Extreme, LearnedPath, Plan, Scene
 
 NEAR_FINGERS: Final = 0.001  # m, that open fingers stay away from the object between them
 # A branch and roll that keeps more clearance is worth so much per metre, up to what is enough.
 GAIN: Final = 20.0
 ENOUGH: Final = 0.02  # m
-PROOF: Final = 0.004  # m, between two places of a path where clearances are measured
+PROOF: Final = 0.002  # m, between two places of a path where clearances are measured
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,8 +53,10 @@ def plan(path: LearnedPath, scene: Scene, settings: MotionSettings | None = None
 
     Raises:
         PathRefused: the arm cannot; the sentence says why, where, and which control point to move.
+        UnusableSettings: the arm's home is outside the joint limits.
     """
     settings = settings or MotionSettings()
+    _home_within_limits(settings)
     way = route(path.curve, settings)
     _starts_at_object(way, scene, settings)
     every = candidates(way, settings)
@@ -78,6 +80,13 @@ def plan(path: LearnedPath, scene: Scene, settings: MotionSettings | None = None
             refused = refused or error
     assert refused is not None
     raise refused
+
+
+def _home_within_limits(settings: MotionSettings) -> None:
+    for joint, angle in enumerate(settings.home):
+        if not LOWER[joint] <= angle <= UPPER[joint]:
+            limits = f"{LOWER[joint]:.3f} to {UPPER[joint]:.3f}"
+            raise UnusableSettings(f"motion.home puts joint {joint + 1} to {angle:.3f} rad, limits {limits}")
 
 
 def _cost(candidate: Candidate, settings: MotionSettings) -> float:
@@ -193,22 +202,15 @@ def _grasp(job: _Job, joints: JointPath) -> Load | None:
 
 
 def _moves_clear(job: _Job, joints: JointPath, above_start: Array, above_goal: Array) -> None:
-    model, settings, home = job.model, job.settings, np.array(job.settings.home)
+    model, settings, start, goal = job.model, job.settings, joints(0.0), joints(joints.end)
     carried = job.scene.carried
-    gripper_open = carried is not None
     before = Load(placed=carried.position) if carried else None
-    behind = Load(placed=_left_at(job, carried.position)) if carried else None
-    approach(model, home, above_start, settings, load=before, gripper_open=gripper_open)
-    for load, low, high, what in ((before, joints(0.0), above_start, "start"), (behind, joints(joints.end), above_goal,
-                                                                                "goal")):  # fmt: skip
+    behind = left_behind(job.scene, start, goal)
+    gripper_open = carried is not None
+    approach(model, np.array(settings.home), above_start, settings, load=before, gripper_open=gripper_open)
+    for load, low, high, what in ((before, start, above_start, "start"), (behind, goal, above_goal, "goal")):
         samples = line(low, high)
         check_free(model, samples, settings, load=load, gripper_open=gripper_open, what=f"above the {what}")
         if load is not None and model.straddle(samples, load).distance < NEAR_FINGERS:
             raise PathRefused(f"the open fingers would hit the object at the {what}; is the path centred on it?")
-    what = "on the way home from the goal"
-    check_free(model, line(above_goal, home), settings, load=behind, gripper_open=gripper_open, what=what)
-
-
-def _left_at(job: _Job, start: Vector) -> Vector:
-    moved = np.array(start) + job.way.positions[-1] - job.way.positions[0]
-    return (float(moved[0]), float(moved[1]), float(moved[2]))
+    retreat(model, start, goal, above_goal, settings)

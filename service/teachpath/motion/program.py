@@ -10,8 +10,8 @@ from typing import Final
 import numpy as np
 
 from teachpath.motion.certificate import verify
-from teachpath.motion.governor import Governor
-from teachpath.motion.moves import approach
+from teachpath.motion.governor import SLOWEST, Governor
+from teachpath.motion.moves import approach, retreat
 from teachpath.motion.puma560 import Array
 from teachpath.motion.scene import CollisionModel, Load
 from teachpath.motion.settings import MotionSettings
@@ -99,7 +99,7 @@ class Program:
     @property
     def held(self) -> bool:
         """Whether rest was asked for, by `hold` or an override of zero."""
-        return self._held or self._override <= 0.0 or (self._governor is not None and self._governor.held)
+        return self._held or self._override < SLOWEST or (self._governor is not None and self._governor.held)
 
     @property
     def stopped(self) -> bool:
@@ -180,8 +180,10 @@ class Program:
 def _stretches(plan: Plan, here: Array, settings: MotionSettings, dwell: float) -> list[Stretch]:
     carries = plan.scene.carried is not None
     load = Load(placed=plan.scene.carried.position) if plan.scene.carried else None
-    stops = approach(CollisionModel(plan.scene), here, plan.above_start, settings, load=load, gripper_open=carries)
-    start, goal, home = plan.joints[0], plan.joints[-1], np.array(settings.home)
+    model = CollisionModel(plan.scene)
+    stops = approach(model, here, plan.above_start, settings, load=load, gripper_open=carries)
+    start, goal = plan.joints[0], plan.joints[-1]
+    leave = retreat(model, start, goal, plan.above_goal, settings)
     path = JointPath(plan.lengths, plan.joints)
     closed = not carries
     return [
@@ -191,7 +193,7 @@ def _stretches(plan: Plan, here: Array, settings: MotionSettings, dwell: float) 
         Stretch("on the path", False, True, path, Limits(*plan.limits), taught=True),
         Stretch("opening the gripper", False, closed, rest=dwell if carries else 0.0),
         *_move("on the way up", goal, plan.above_goal, False, closed, settings),
-        *_move("on the way home", plan.above_goal, home, False, closed, settings),
+        *_move("on the way home", *leave, False, closed, settings),
     ]
 
 

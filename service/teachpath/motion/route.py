@@ -9,7 +9,7 @@ from typing import Final
 
 import numpy as np
 from numpy.polynomial.legendre import leggauss
-from scipy.interpolate import CubicHermiteSpline
+from scipy.interpolate import CubicHermiteSpline, make_interp_spline
 
 from teachpath.errors import PathRefused
 from teachpath.motion.kinematics import BRANCHES, downward, explain_reach, inverse, least_singular_value
@@ -19,6 +19,7 @@ from teachpath.nurbs import Curve
 
 SHORTEST: Final = 0.01  # m, of a path that is worth following
 FEWEST_NODES: Final = 60
+FINEST: Final = 3  # times that the nodes are doubled where the curve bends sharply
 STANDSTILL: Final = 1e-4  # share of the mean speed |dc/du| below which a curve has a cusp
 # A joint that turns more than this between two nodes has jumped: the branch ends there.
 LARGEST_STEP: Final = 0.35  # rad
@@ -71,7 +72,7 @@ class Route:
     positions: Array
 
     def place(self, index: int) -> str:
-        """Name a node and the control point that moves it most."""
+        """Name a node and the control point nearest to it."""
         x, y, z = self.positions[index]
         return f"at s = {self.lengths[index]:.3f} m ({x:.3f}, {y:.3f}, {z:.3f}); {self.remedy(index)}"
 
@@ -105,7 +106,7 @@ class Candidate:
 
 
 def route(curve: Curve, settings: MotionSettings) -> Route:
-    """Sample a curve at even arc lengths.
+    """Sample a curve at even arc lengths, as densely as its sharpest bend needs.
 
     Raises:
         PathRefused: it has no 3 dimensions, is too short or stands still on its way.
@@ -122,8 +123,14 @@ def route(curve: Curve, settings: MotionSettings) -> Route:
         raise PathRefused(
             f"the curve stands still at s = {still:.3f} m: control points coincide there, move them apart"
         )
-    lengths = np.linspace(0.0, arc.total, max(FEWEST_NODES, int(np.ceil(arc.total / settings.node_spacing))) + 1)
-    return Route(curve, arc, lengths, curve(arc.parameters(lengths)))
+    count = max(FEWEST_NODES, int(np.ceil(arc.total / settings.node_spacing)))
+    found = _sampled(curve, arc, count)
+    for _ in range(FINEST):
+        if _spline_error(found) <= settings.path_tolerance / 10:
+            break
+        count *= 2
+        found = _sampled(curve, arc, count)
+    return found
 
 
 def candidates(way: Route, settings: MotionSettings) -> list[Candidate]:
@@ -188,3 +195,16 @@ def _candidate(name: str, roll: float, joints: Array) -> Candidate:
     return Candidate(
         name, roll, continuous, float(over.max()), (int(node), int(joint)), float(values[lowest]), lowest, jump
     )
+
+
+def _sampled(curve: Curve, arc: ArcLength, count: int) -> Route:
+    lengths = np.linspace(0.0, arc.total, count + 1)
+    return Route(curve, arc, lengths, curve(arc.parameters(lengths)))
+
+
+def _spline_error(found: Route) -> float:
+    """Return how far [m] the spline through the nodes leaves the curve half way between them."""
+    middle = (found.lengths[1:] + found.lengths[:-1]) / 2
+    spline = make_interp_spline(found.lengths, found.positions, k=5)
+    wanted = found.curve(found.arc.parameters(middle))
+    return float(np.linalg.norm(spline(middle) - wanted, axis=1).max())

@@ -10,6 +10,7 @@ from typing import Final
 import mujoco
 import numpy as np
 
+from teachpath.errors import UnusableInput
 from teachpath.motion.drawing import Part, drawing
 from teachpath.motion.kinematics import tool_pose
 from teachpath.motion.mjcf import CARRIED, mjcf
@@ -49,8 +50,12 @@ class CollisionModel:
     """The arm's solids and one scene, ready to measure distances (MuJoCo, `mj_geomDistance`)."""
 
     def __init__(self, scene: Scene) -> None:
+        """Build the model; raises UnusableInput when the scene has a shape without size, or two of one name."""
         self.scene = scene
-        self._model = mujoco.MjModel.from_xml_string(mjcf(scene))
+        try:
+            self._model = mujoco.MjModel.from_xml_string(mjcf(scene))
+        except ValueError as error:
+            raise UnusableInput(f"scene {scene.name!r} cannot be built: {error}") from None
         self._data = mujoco.MjData(self._model)
         self._parts = {self._id(part.name): part for part in drawing()}
         self._names = {geom: part.name for geom, part in self._parts.items()}

@@ -7,7 +7,7 @@ from typing import Final
 from teachpath.records import Scene, Shape
 
 TABLE_TOP: Final = 0.50  # m
-_TABLE: Final = Shape("table", "box", (0.9, 1.2, 0.04), (0.60, 0.0, TABLE_TOP - 0.02), 0xB58B5A)
+_TABLE: Final = Shape("table", "box", (0.9, 1.2, 0.04), (0.60, 0.0, TABLE_TOP - 0.02), 0xC9BBA4)
 
 
 def paper_scene() -> Scene:
@@ -19,8 +19,8 @@ def paper_scene() -> Scene:
         name="paper",
         obstacles=(
             _TABLE,
-            Shape("box", "box", (0.07, 0.09, 0.16), (0.48, 0.0, TABLE_TOP + 0.08), 0x4F7CAC),
-            Shape("cylinder", "cylinder", (0.035, 0.20), (0.68, 0.0, TABLE_TOP + 0.10), 0x5AA469),
+            Shape("box", "box", (0.07, 0.09, 0.16), (0.48, 0.0, TABLE_TOP + 0.08), 0x7C8896),
+            Shape("cylinder", "cylinder", (0.035, 0.20), (0.68, 0.0, TABLE_TOP + 0.10), 0x7C8896),
         ),
         carried=Shape("block", "box", (0.04, 0.04, 0.04), (0.58, -0.28, TABLE_TOP + 0.02), 0xE8C547),
     )

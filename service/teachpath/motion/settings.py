@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated
 
-from annotated_types import Ge, Gt, Le
+from annotated_types import Ge, Gt, Le, Len
 
 
 @dataclass(frozen=True)
@@ -13,7 +13,7 @@ class MotionSettings:
     """How paths are planned."""
 
     # [rad] joints 1 to 6 where the arm waits: elbow up, tool down, above the table
-    home: tuple[float, ...] = (0.365, 1.663, -3.177, 0.0, -1.628, 0.365)
+    home: Annotated[tuple[float, ...], Len(6, 6)] = (0.365, 1.663, -3.177, 0.0, -1.628, 0.365)
     # [m] that arm and carried object stay away from obstacles and the arm from itself
     clearance_min: Annotated[float, Ge(0)] = 0.005
     # [m] that the carried object may dip into what it stands on at its start
@@ -27,7 +27,7 @@ class MotionSettings:
     # the same for moves to the path and away from it
     move_share: Annotated[float, Gt(0), Le(1)] = 0.5
     # [rad] turns of the gripper about the vertical to try; 0 closes the fingers along y
-    rolls: tuple[float, ...] = (0.0, 1.5707963267948966, 3.141592653589793, -1.5707963267948966)
+    rolls: Annotated[tuple[float, ...], Len(1)] = (0.0, 1.5707963267948966, 3.141592653589793, -1.5707963267948966)
     # least singular value of the Jacobian that still counts as away from singular poses
     least_singular: Annotated[float, Ge(0)] = 0.03
     # [m] the tool may be off the path between two nodes of its spline

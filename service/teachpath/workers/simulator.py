@@ -1,6 +1,6 @@
 """The simulated arm: a dynamic Puma 560 in MuJoCo that follows the setpoints on the bus and says what it does.
 
-It speaks the two keys that a driver of a real arm would speak, and one query that puts it back to its home.
+It speaks the two keys that a driver of a real arm would speak, and one query that puts the object back to its start.
 """
 
 from __future__ import annotations
@@ -54,13 +54,13 @@ class SimulatorSettings:
 class SimulatedArm:
     """The physics: arm, gripper, object and obstacles, advanced by 1 ms a step."""
 
-    def __init__(self, scene: Scene, settings: SimulatorSettings, home: Sequence[float]) -> None:
+    def __init__(self, scene: Scene, settings: SimulatorSettings, position: Sequence[float]) -> None:
         """Build the model of `scene`; raises UnusableInput when MuJoCo cannot."""
         try:
             self._model = mujoco.MjModel.from_xml_string(mjcf(scene, timestep=STEP_NS / 1e9))
         except ValueError as error:
             raise UnusableInput(f"scene {scene.name!r} cannot be simulated: {error}") from None
-        self._settings, self._home = settings, home
+        self._settings, self._start = settings, np.array(position)
         self._carries = scene.carried is not None
         self._friction = np.array(self._model.dof_frictionloss[:6])
         self._acceleration = np.zeros(self._model.nv)
@@ -69,9 +69,9 @@ class SimulatedArm:
         self.reset()
 
     def reset(self) -> None:
-        """Put the arm to its home, at rest and open, and the object to its start."""
+        """Put the arm to where it began, at rest and open, and the object to its start."""
         mujoco.mj_resetData(self._model, self.data)
-        self.data.qpos[:6] = self._home
+        self.data.qpos[:6] = self._start
         mujoco.mj_forward(self._model, self.data)
 
     @property
@@ -156,7 +156,7 @@ class Simulator:
 
         Args:
             scene: what stands around the arm until a reset brings another one.
-            home: (6,) configuration in which the arm starts and to which a reset brings it back [rad].
+            home: (6,) configuration in which the arm starts [rad].
             clock: nanoseconds since the Unix epoch, the clock of the setpoints.
             sleep: waits for so many seconds.
         """
@@ -166,8 +166,7 @@ class Simulator:
         self._lock = threading.Lock()
         self._setpoints: deque[bytes] = deque(maxlen=1000)
         self._statuses: deque[bytes] = deque(maxlen=100)
-        self._home = home
-        self._begin(scene)
+        self._begin(scene, home)
 
     def run(self, stop: threading.Event) -> None:
         """Live in real time until `stop` is set."""
@@ -193,7 +192,9 @@ class Simulator:
                 handle.close()
 
     def reset(self, payload: bytes) -> bytes:
-        """Answer the reset query: arm to home, object to its start, in the scene given as JSON or the one there is.
+        """Answer the reset query: the object to its start, in the scene given as JSON or the one there is.
+
+        The arm stays where it is, at rest, with its gripper open: no arm ever jumps.
 
         Returns:
             The joint state after it, as published.
@@ -203,7 +204,7 @@ class Simulator:
         """
         scene = documents.decode(Scene, payload) if payload else self._scene
         with self._lock:
-            self._begin(scene)
+            self._begin(scene, self._arm.position.tolist())
             return wire.encode_state(self._state(self._clock()))
 
     def step(self, now: int) -> None:
@@ -218,8 +219,8 @@ class Simulator:
         if state is not None:
             self._bus.publish(self._keys.state(self._settings.robot), wire.encode_state(state))
 
-    def _begin(self, scene: Scene) -> None:
-        self._arm = SimulatedArm(scene, self._settings, self._home)
+    def _begin(self, scene: Scene, position: Sequence[float]) -> None:
+        self._arm = SimulatedArm(scene, self._settings, position)
         self._scene = scene
         self._queue: deque[Setpoint] = deque()  # come, but not due yet
         self._setpoints.clear()

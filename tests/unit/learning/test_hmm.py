@@ -67,6 +67,7 @@ def test_the_likelihood_is_the_sum_over_all_ways_through_the_chain(make: type[Le
             p *= model.transmat_[way[t - 1], way[t]] * emission[t, way[t]]
         total += p
     assert model.log_likelihood(observed) == pytest.approx(np.log(total), rel=1e-9)
+    assert model.log_likelihoods(observed).sum() == pytest.approx(np.log(total), rel=1e-9)
 
 
 @pytest.mark.parametrize("make", [tied, mixture])

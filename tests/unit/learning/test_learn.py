@@ -64,6 +64,8 @@ def test_mode_paper_finds_the_ways_and_keeps_two_of_each(learned_as_paper: Learn
     assert [set(cluster.members) for cluster in learned_as_paper.clusters] == WAYS
     for cluster in learned_as_paper.clusters:
         assert sum(score.selected for score in cluster.scores) == 2
+    for path in learned_as_paper.paths:
+        assert ("spread too far" in path.note) == (path.fit.largest > path.fit.bound)
 
 
 def test_the_result_names_its_settings_and_versions(learned: Learned) -> None:
@@ -122,6 +124,13 @@ def test_a_bound_below_the_noise_is_refused_in_words() -> None:
     settings = LearningSettings(error_bound=1e-5, most_control_points=20)
     with pytest.raises(LearningFailed, match=r"raise learning\.error_bound"):
         learn(synthetic.experiment_2(1), settings)
+
+
+def test_demonstrations_that_cancel_out_are_refused_in_words() -> None:
+    one = synthetic.experiment_2(1)["1"]
+    mirrored = Trajectory(one.times, 2 * one.positions[0] - one.positions)
+    with pytest.raises(LearningFailed, match="opposite directions"):
+        learn({"there": one, "away": mirrored}, LearningSettings(threshold=10.0))
 
 
 def test_a_motion_that_comes_back_to_the_start_is_followed_and_mode_paper_warns() -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 import pytest
 import synthetic
@@ -37,6 +39,19 @@ def test_the_wiggly_demonstration_is_rejected_at_any_place_in_the_list(marked: i
     assert str(marked) not in kept(cluster)
     assert "smoothness" in cluster.scores[-1].note
     assert len(kept(cluster)) >= 3
+
+
+def test_the_note_says_when_a_demonstration_departs() -> None:
+    demonstrations = synthetic.experiment_2(7, wiggle=0.0)
+    frozen = demonstrations["3"]
+    positions = frozen.positions.copy()
+    positions[100:115] = positions[100]  # from 2.0 to 2.3 s
+    cluster = selected({**demonstrations, "3": Trajectory(frozen.times, positions)})
+    note = cluster.scores[-1].note
+    begin, end = (float(word) for word in re.findall(r"from ([\d.]+) to ([\d.]+) s", note)[0])
+    assert cluster.members[-1] == "3"
+    assert 1.0 < begin <= 2.3
+    assert 2.0 <= end < 3.3
 
 
 @pytest.fixture(scope="module")

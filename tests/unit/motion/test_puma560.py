@@ -1,4 +1,5 @@
 from dataclasses import fields
+from itertools import pairwise
 
 import mujoco
 import numpy as np
@@ -62,7 +63,7 @@ def test_the_simulated_inertia_differs_only_where_no_body_can_have_the_published
 
 def test_the_acceleration_box_keeps_every_torque_at_full_speed() -> None:
     model = mujoco.MjModel.from_xml_string(mjcf(scenes()["empty"]))
-    model.dof_frictionloss[:] = 0.0
+    model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_CONSTRAINT  # neither contacts nor joint stops
     data = mujoco.MjData(model)
     rng = np.random.default_rng(3)
     worst = np.zeros(6)
@@ -89,3 +90,17 @@ def test_motors_are_limited_to_the_published_torques() -> None:
     model = mujoco.MjModel.from_xml_string(mjcf(paper_scene()))
     np.testing.assert_allclose(model.actuator_ctrlrange, np.column_stack([-TORQUE, TORQUE]))
     np.testing.assert_allclose(model.jnt_range[:6], np.column_stack([LOWER, UPPER]))
+
+
+def test_the_parts_join_into_one_arm_in_every_configuration() -> None:
+    chain = ["foot", "pedestal", "trunk", "shoulder", "upper arm", "forearm", "wrist roll", "wrist yoke", "wrist"]
+    chain += ["flange", "palm", "left finger"]
+    model = mujoco.MjModel.from_xml_string(mjcf(paper_scene()))
+    data = mujoco.MjData(model)
+    rng = np.random.default_rng(4)
+    for _ in range(20):
+        data.qpos[:6] = rng.uniform(LOWER, UPPER)
+        mujoco.mj_kinematics(model, data)
+        for one, other in pairwise(chain):
+            gap = mujoco.mj_geomDistance(model, data, model.geom(one).id, model.geom(other).id, 1.0, None)
+            assert gap < 0.006, (one, other)

@@ -6,13 +6,13 @@ from typing import Final
 
 from teachpath.motion.program import Program
 from teachpath.records import ExecutorStatus, Setpoint
-from teachpath.workers.meter import LimitMeter
-from teachpath.workers.pacing import Pacer
+from teachpath.workers.executor.meter import LimitMeter
+from teachpath.workers.executor.pacing import Pacer
 
 RESTING: Final = ("idle", "ended", "faulted")
 
 
-class Run:
+class Execution:
     """Steps through a program and finds the state that belongs to what it does.
 
     Args:
@@ -49,7 +49,7 @@ class Run:
             self.program.hold()
 
     def resume(self) -> None:
-        """Go on, unless the run is being ended."""
+        """Go on, unless it is being ended."""
         if not self._ending:
             self.reason = ""
             self.program.resume()
@@ -84,12 +84,12 @@ class Run:
         return setpoint
 
     def status(self, pacer: Pacer) -> ExecutorStatus:
-        """Tell where the run stands, with the account of the loop that runs it."""
+        """Tell where it stands, with the account of the loop that runs it."""
         late = pacer.lateness()
         return ExecutorStatus(
             execution=self.execution,
             state=self.state,
-            reason=self.reason or ("the override is 0" if self.state == "held" else ""),
+            reason=self.reason or (f"the override is {self.program.override:g}" if self.state == "held" else ""),
             progress=self.program.progress,
             override=self.program.override,
             cycles=self._sent,

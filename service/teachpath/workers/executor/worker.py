@@ -24,8 +24,8 @@ from teachpath.io.bus import Bus
 from teachpath.motion.program import Program
 from teachpath.motion.settings import MotionSettings
 from teachpath.records import ExecutorStatus, JointState, Plan
-from teachpath.workers.pacing import Pacer, ask_for_realtime
-from teachpath.workers.run import Run
+from teachpath.workers.executor.execution import Execution
+from teachpath.workers.executor.pacing import Pacer, ask_for_realtime
 from teachpath_proto.keys import Keys
 
 log = logging.getLogger(__name__)
@@ -86,7 +86,7 @@ class Executor:
         self._states: deque[tuple[int, bytes]] = deque(maxlen=1)
         self._heard: tuple[int, JointState] | None = None  # the newest joint state and when it came
         self._commands: deque[tuple[str, float]] = deque()
-        self._run: Run | None = None
+        self._current: Execution | None = None
         self._told = ("", "", 0)  # execution, state and time of the newest status
 
     def run(self, stop: threading.Event) -> None:
@@ -104,8 +104,8 @@ class Executor:
         gc.disable()
         try:
             while not (stop.is_set() and self._resting):
-                if stop.is_set() and self._run is not None:
-                    self._run.end("ended", "the executor was told to stop")
+                if stop.is_set() and self._current is not None:
+                    self._current.end("ended", "the executor was told to stop")
                 self._cycle(self._pacer.wait(counted=not self._resting))
         finally:
             gc.enable()
@@ -115,15 +115,15 @@ class Executor:
 
     @property
     def _resting(self) -> bool:
-        return self._run is None or self._run.resting
+        return self._current is None or self._current.resting
 
     def _cycle(self, due: int) -> None:
         self._listen()
-        run = self._run
-        if run is not None and not run.resting:
-            self._obey(run)
-            self._watch(run, due)
-            setpoint = run.step(due, self._wall())
+        current = self._current
+        if current is not None and not current.resting:
+            self._obey(current)
+            self._watch(current, due)
+            setpoint = current.step(due, self._wall())
             self._bus.publish(self._keys.setpoint(self._settings.robot), wire.encode_setpoint(setpoint))
         self._tell(due)
 
@@ -144,18 +144,18 @@ class Executor:
         verb, execution, document, override = wire.decode_command(payload)
         if verb == "start":
             return wire.encode_status(self._start(execution, document, override).status(self._pacer))
-        run = self._run
-        if run is None or run.resting or execution != run.execution:
+        current = self._current
+        if current is None or current.resting or execution != current.execution:
             raise Conflict(f"execution {execution!r} is not running")
         if verb == "resume":
-            self._check_regain(run)
+            self._check_regain(current)
         self._commands.append((verb, override))
-        return wire.encode_status(run.status(self._pacer))
+        return wire.encode_status(current.status(self._pacer))
 
-    def _start(self, execution: str, document: bytes, override: float) -> Run:
+    def _start(self, execution: str, document: bytes, override: float) -> Execution:
         with self._starting:
-            if self._run is not None and not self._run.resting:
-                raise Conflict(f"execution {self._run.execution} is {self._run.state}; stop it first")
+            if self._current is not None and not self._current.resting:
+                raise Conflict(f"execution {self._current.execution} is {self._current.state}; stop it first")
             plan = documents.decode(Plan, document)
             arm = self._present()
             speed = float(np.abs(arm.velocity).max())
@@ -165,8 +165,8 @@ class Executor:
             self._pacer.reset()
             self._commands.clear()
             offset = self._wall() - self._clock()
-            self._run = Run(execution, program, rate=self._settings.rate, offset=offset)
-            return self._run
+            self._current = Execution(execution, program, rate=self._settings.rate, offset=offset)
+            return self._current
 
     def _present(self) -> JointState:
         heard = self._heard
@@ -176,48 +176,48 @@ class Executor:
             )
         return heard[1]
 
-    def _check_regain(self, run: Run) -> None:
-        off = float(np.abs(self._present().position - run.program.here).max())
+    def _check_regain(self, current: Execution) -> None:
+        off = float(np.abs(self._present().position - current.program.here).max())
         if off > self._settings.regain:
             raise Conflict(
                 f"the arm is {off:.3f} rad off the point where it was held, at most {self._settings.regain:g}; "
                 "stop, and start again from where it is"
             )
 
-    def _obey(self, run: Run) -> None:
+    def _obey(self, current: Execution) -> None:
         while self._commands:
             verb, override = self._commands.popleft()
             if verb == "override":
-                run.override(override)
+                current.override(override)
             elif verb == "hold":
-                run.hold("held by the operator")
+                current.hold("held by the operator")
             elif verb == "resume":
-                run.resume()
+                current.resume()
             elif verb == "stop":
-                run.end("ended", "stopped by the operator")
+                current.end("ended", "stopped by the operator")
 
-    def _watch(self, run: Run, due: int) -> None:
+    def _watch(self, current: Execution, due: int) -> None:
         if self._heard is None:
             return
         when, arm = self._heard
         silent = (due - when) / 1e9
         if silent > self._settings.silence:
-            run.hold(f"no joint state for {silent:.2f} s: is the arm's driver running? resume when it is back")
-        if arm.execution != run.execution:
+            current.hold(f"no joint state for {silent:.2f} s: is the arm's driver running? resume when it is back")
+        if arm.execution != current.execution:
             return
-        run.tracking_error = max(run.tracking_error, arm.tracking_error)
+        current.tracking_error = max(current.tracking_error, arm.tracking_error)
         if arm.tracking_error > self._settings.largest_error:
-            run.end(
+            current.end(
                 "faulted",
-                f"tracking error {arm.tracking_error:.3f} rad {run.program.place}, limit "
+                f"tracking error {arm.tracking_error:.3f} rad {current.program.place}, limit "
                 f"{self._settings.largest_error:g}: is the arm blocked? free it, or start again at a lower override",
             )
 
     def _tell(self, due: int) -> None:
-        run = self._run
-        status = (run.execution, run.state) if run is not None else ("", "idle")
+        current = self._current
+        status = (current.execution, current.state) if current is not None else ("", "idle")
         if status == self._told[:2] and due - self._told[2] < 1e9 / self._settings.status_rate:
             return
         self._told = (*status, due)
-        told = run.status(self._pacer) if run is not None else ExecutorStatus()
+        told = current.status(self._pacer) if current is not None else ExecutorStatus()
         self._bus.publish(self._keys.executor_status, wire.encode_status(told))

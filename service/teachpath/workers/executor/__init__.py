@@ -1,0 +1,5 @@
+"""The executor: streams the setpoints of one plan at a time to the arm, in a process of its own."""
+
+from teachpath.workers.executor.worker import Executor, ExecutorSettings
+
+__all__ = ["Executor", "ExecutorSettings"]

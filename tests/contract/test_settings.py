@@ -1,0 +1,194 @@
+"""The settings: deploy/teachpath.toml is the defaults, and every wrong setting is refused with its name."""
+
+import os
+import re
+import subprocess
+import sys
+import tomllib
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import fields, is_dataclass
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from teachpath.config import Settings, load
+from teachpath.errors import NotFound, UnusableSettings
+from tests.contract import settings_file
+
+ROOMS = [(room, type(getattr(Settings(), room))) for room in Settings.model_fields]
+ROOMS = [(room, kind) for room, kind in ROOMS if is_dataclass(kind)]
+
+
+@contextmanager
+def variables(**given: str) -> Iterator[None]:
+    """Set variables for a while, and none of teachpath's else."""
+    before = {name: os.environ.pop(name) for name in list(os.environ) if name.startswith("TEACHPATH_")}
+    os.environ.update(given)
+    try:
+        yield
+    finally:
+        for name in given:
+            os.environ.pop(name, None)
+        os.environ.update(before)
+
+
+@pytest.fixture(autouse=True)
+def _alone() -> Iterator[None]:
+    with variables():
+        yield
+
+
+def toml(tmp_path: Path, text: str) -> Path:
+    file = tmp_path / "station.toml"
+    file.write_text(text)
+    return file
+
+
+def test_the_annotated_file_is_written_from_the_source() -> None:
+    assert settings_file.FILE.read_text() == settings_file.text(), "run: python -m tests.contract.settings_file"
+
+
+def test_the_annotated_file_is_the_defaults() -> None:
+    assert load(settings_file.FILE) == Settings()
+
+
+@pytest.mark.parametrize(("room", "kind"), ROOMS)
+def test_the_annotated_file_holds_every_setting_and_explains_it(room: str, kind: Any) -> None:
+    section = settings_file.FILE.read_text().split(f"\n[{room}]\n")[1].split("\n\n")[0]
+    pairs = re.findall(r"^# (.{8,})\n((?:# )?)(\w+) = ", section, re.MULTILINE)
+    default = getattr(Settings(), room)
+    assert [name for _, _, name in pairs] == [field.name for field in fields(kind)]
+    assert [name for _, hidden, name in pairs if hidden] == [
+        f.name for f in fields(kind) if getattr(default, f.name) is None
+    ]
+
+
+def test_settings_without_a_default_are_usable_as_shown(tmp_path: Path) -> None:
+    shown = re.sub(r"^# (\w+ = )", r"\1", settings_file.FILE.read_text(), flags=re.MULTILINE)
+    assert load(toml(tmp_path, shown)).learning.threshold == settings_file.EXAMPLES["learning.threshold"]
+
+
+def test_the_command_line_wins_over_variables_over_the_file_over_the_defaults(tmp_path: Path) -> None:
+    file = toml(tmp_path, '[web]\nport = 1\nhost = "file"\nhosts = ["file"]\nlargest_upload = 5000\n')
+    with variables(TEACHPATH_WEB__PORT="2", TEACHPATH_WEB__HOST="variable"):
+        web = load(file, document={"web": {"port": 3}}).web
+    assert (web.port, web.host, web.hosts, web.largest_upload) == (3, "variable", ("file",), 5000)
+    assert load(file).recording == Settings().recording
+
+
+def test_the_file_is_found_by_option_then_by_variable(tmp_path: Path) -> None:
+    named = toml(tmp_path, "[web]\nport = 1\n")
+    other = tmp_path / "other.toml"
+    other.write_text("[web]\nport = 2\n")
+    with variables(TEACHPATH_CONFIG=str(other)):
+        assert load(named).web.port == 1
+        assert load().web.port == 2
+
+
+@pytest.mark.parametrize(
+    ("variable", "text", "place", "value"),
+    [
+        ("TEACHPATH_WEB__PORT", "9000", "web.port", 9000),
+        ("TEACHPATH_LEARNING__THRESHOLD", "0.06", "learning.threshold", 0.06),
+        ("TEACHPATH_EXECUTOR__REALTIME", "false", "executor.realtime", False),
+        ("TEACHPATH_STORE__DATA_DIR", "/data 1", "store.data_dir", "/data 1"),
+        ("TEACHPATH_STORE__DATA_DIR", "12", "store.data_dir", "12"),
+        ("TEACHPATH_WEB__HOSTS", '["a", "b"]', "web.hosts", ("a", "b")),
+        ("TEACHPATH_MOTION__HOME", "[0, 1, 2, 3, 4, 5]", "motion.home", (0, 1, 2, 3, 4, 5)),
+        ("TEACHPATH_WEB__PORT", "", "web.port", 8765),
+        ("TEACHPATH_PORT_8765_TCP", "tcp://10.0.0.1:8765", "web.port", 8765),
+    ],
+)
+def test_a_variable_is_read_by_the_type_of_its_setting(variable: str, text: str, place: str, value: Any) -> None:
+    room, setting = place.split(".")
+    with variables(**{variable: text}):
+        assert getattr(getattr(load(), room), setting) == value
+
+
+WRONG = {
+    "[webb]\nport = 1": "there is no setting webb; known here: bus, web",
+    "[web]\nprot = 1": "there is no setting web.prot; known here: host, port",
+    "[[calibrations]]\nname = 'a'\nscales = 2": "no setting calibrations.0.scales; known here: name, scale",
+    "[[scenes]]\nname = 'a'\n[scenes.carried]\nweight = 2": "no setting scenes.0.carried.weight",
+    "[web]\nport = 'many'": "setting web.port is 'many'; it should be a valid integer",
+    "[web]\nport = true": "setting web.port is True",
+    "[web]\nhosts = 'a'": "setting web.hosts is 'a'; it should be a valid array",
+    "[bus]\nprefix = 1979-05-27": "setting bus.prefix|setting bus.endpoint",
+    "web = 3": "setting web is 3; it should be an object",
+    "[web]\nport = 0": "setting web.port is 0; it should be greater than or equal to 1",
+    "[recording]\nclose_at = nan": "setting recording.close_at is nan; it should be a finite number",
+    "[motion]\nleast_singular = inf": "setting motion.least_singular is inf",
+    "[motion]\nhome = [0.0, 1.0]": "setting motion.home",
+    "[learning]\nmode = 'other'": "learning.mode is 'other'; it is one of default, paper",
+    "[learning]\nmode = 'paper'": "set learning.threshold",
+    "[[calibrations]]\nscale = 2.0": "setting calibrations.0.name is",
+    "[[calibrations]]\nname = 'a'\n[[calibrations]]\nname = 'a'": "two settings of the calibration a",
+    "[[calibrations]]\nname = 'a/b'": "'a/b' cannot name a calibration",
+    "[[calibrations]]\nname = 'a'\nscale = 0.0": "calibration a has a scale of 0",
+    "[[calibrations]]\nname = 'a'\nrotation = [1.0, 1.0, 0.0, 0.0]": "calibration a has a rotation of length 1.41421",
+    "[[scenes]]\nname = 'a'\n[[scenes]]\nname = 'a'": "two settings of the scene a",
+    "scenes = []": "at least one scene",
+    "[[scenes]]\nname = 'a'\n[scenes.carried]\nname = 'b'\nkind = 'ball'\nsize = [1.0]\nposition = [0, 0, 0]": "'ball'; known",
+    "[[scenes]]\nname = 'a'\n[scenes.carried]\nname = 'b'\nkind = 'box'\nsize = [1.0]\nposition = [0, 0, 0]": "a box has 3",
+    "[web\nport = 1": "is not TOML: .*line 1",
+}
+
+
+@pytest.mark.parametrize("text", WRONG)
+def test_a_wrong_file_is_one_sentence_that_names_the_setting(tmp_path: Path, text: str) -> None:
+    with pytest.raises(UnusableSettings, match=WRONG[text]) as caught:
+        load(toml(tmp_path, text))
+    assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("variable", "text", "sentence"),
+    [
+        ("TEACHPATH_WEB__PROT", "1", "no setting web.prot"),
+        ("TEACHPATH_WEBB__PORT", "1", "no setting webb"),
+        ("TEACHPATH_WEB__PORT", "many", "setting web.port is 'many'"),
+        ("TEACHPATH_WEB__PORT", "65536", "setting web.port is 65536; it should be less than or equal to 65535"),
+        ("TEACHPATH_MOTION__HOME", "0, 1", "setting motion.home is '0, 1'; it should be a valid array"),
+        ("TEACHPATH_CONFIG", "nowhere.toml", "cannot read the settings file nowhere.toml: No such file"),
+    ],
+)
+def test_a_wrong_variable_is_one_sentence_that_names_the_setting(variable: str, text: str, sentence: str) -> None:
+    with variables(**{variable: text}), pytest.raises(UnusableSettings, match=sentence):
+        load()
+
+
+def test_a_missing_file_and_one_that_is_no_text_are_sentences(tmp_path: Path) -> None:
+    with pytest.raises(UnusableSettings, match="cannot read the settings file .*missing.toml: No such file"):
+        load(tmp_path / "missing.toml")
+    binary = tmp_path / "binary.toml"
+    binary.write_bytes(b"\xff\xfe\x00")
+    with pytest.raises(UnusableSettings, match="is not TOML"):
+        load(binary)
+
+
+def test_settings_reach_another_process_whole(tmp_path: Path) -> None:
+    settings = load(toml(tmp_path, "[web]\nport = 1\n[learning]\nthreshold = 0.06\n"))
+    assert load(document=tomllib.loads("[web]\nport = 1\n[learning]\nthreshold = 0.06\n")) == settings
+    assert Settings.model_validate_json(settings.model_dump_json()) == settings
+
+
+def test_the_command_line_ends_with_the_sentence(tmp_path: Path) -> None:
+    file = toml(tmp_path, "[web]\nprot = 1\n")
+    ended = subprocess.run(
+        [sys.executable, "-m", "teachpath", "serve", "--config", str(file)], capture_output=True, text=True, timeout=60
+    )
+    assert (ended.returncode, ended.stderr) == (
+        1,
+        "teachpath: there is no setting web.prot; known here: host, port, hosts, largest_upload\n",
+    )
+
+
+def test_scenes_and_calibrations_are_found_by_name() -> None:
+    settings = Settings()
+    assert settings.scene("paper").name == "paper"
+    with pytest.raises(NotFound, match="there is no scene 'moon'; known: paper, empty"):
+        settings.scene("moon")
+    with pytest.raises(NotFound, match="there is no calibration 'moon'; known: identity"):
+        settings.calibration("moon")

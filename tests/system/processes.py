@@ -1,0 +1,190 @@
+"""Commands of teachpath in processes of their own, and everything they start."""
+
+import os
+import signal
+import socket
+import subprocess
+import sys
+import time
+import uuid
+from collections.abc import Callable
+from pathlib import Path
+from types import TracebackType
+from typing import Any
+
+import httpx
+
+from teachpath_client.rest import Station
+
+FAMILY = "SYSTEM_TEST_FAMILY"  # in the environment of a command and of all that it starts
+READY = 30.0  # [s] for a service to answer
+
+
+def free_ports(count: int) -> list[int]:
+    """Return TCP ports of loopback that nobody listens on now, all different."""
+    probes = [socket.create_server(("127.0.0.1", 0)) for _ in range(count)]
+    ports = [int(probe.getsockname()[1]) for probe in probes]
+    for probe in probes:
+        probe.close()
+    return ports
+
+
+def wait_until(true: Callable[[], Any], *, seconds: float, what: str) -> Any:
+    """Return what `true` returns as soon as that is true; fails after `seconds`."""
+    deadline = time.monotonic() + seconds
+    while not (result := true()):
+        assert time.monotonic() < deadline, f"not within {seconds:g} s: {what}"
+        time.sleep(0.01)
+    return result
+
+
+class Command:
+    """A running `teachpath ARGUMENTS` in a session of its own, as if in a terminal of its own.
+
+    Args:
+        folder: working folder; `tmp` in it becomes its folder of temporary files.
+    """
+
+    def __init__(self, *arguments: str, folder: Path, environment: dict[str, str] | None = None) -> None:
+        self.family = uuid.uuid4().hex
+        self.temporary = folder / "tmp"
+        self.temporary.mkdir(parents=True, exist_ok=True)
+        clean = {name: value for name, value in os.environ.items() if not name.startswith("TEACHPATH_")}
+        self._out, self._err = (folder / f"{self.family}.{name}" for name in ("out", "err"))
+        with self._out.open("wb") as out, self._err.open("wb") as err:
+            self.process = subprocess.Popen(
+                [sys.executable, "-m", "teachpath", *arguments],
+                env={**clean, "TMPDIR": str(self.temporary), FAMILY: self.family, **(environment or {})},
+                cwd=folder,
+                stdin=subprocess.DEVNULL,
+                stdout=out,
+                stderr=err,
+                start_new_session=True,
+            )
+
+    @property
+    def out(self) -> str:
+        """What it printed so far."""
+        return self._out.read_text()
+
+    @property
+    def err(self) -> str:
+        """What it said on the error stream so far."""
+        return self._err.read_text()
+
+    def interrupt(self) -> None:
+        """Press Ctrl-C: the terminal sends SIGINT to the whole foreground group."""
+        os.killpg(self.process.pid, signal.SIGINT)
+
+    def wait(self, seconds: float) -> int:
+        """Return the exit status; fails when it does not end in time."""
+        try:
+            return self.process.wait(seconds)
+        except subprocess.TimeoutExpired:
+            raise AssertionError(f"still running after {seconds:g} s: {self.err[-2000:]}") from None
+
+    def relatives(self) -> list[str]:
+        """Return the command lines of all running processes that it or its children started, itself included."""
+        return [command for _, command in _family(self.family)]
+
+    def wait_gone(self, seconds: float) -> None:
+        """Fail unless it and everything it started has ended within `seconds`."""
+        wait_until(lambda: not self.relatives(), seconds=seconds, what=f"all ended, but for {self.relatives()}")
+
+    def clean_up(self) -> None:
+        """Kill what is left of it, so that a failed test harms no other."""
+        for pid, _ in _family(self.family):
+            os.kill(pid, signal.SIGKILL)
+        self.process.wait(10)
+
+
+def _family(family: str) -> list[tuple[int, str]]:
+    found = []
+    for folder in Path("/proc").glob("[0-9]*"):
+        try:
+            if f"{FAMILY}={family}".encode() in (folder / "environ").read_bytes().split(b"\0"):
+                found.append((int(folder.name), (folder / "cmdline").read_bytes().replace(b"\0", b" ").decode()))
+        except OSError:  # it ended meanwhile, or belongs to somebody else
+            continue
+    return found
+
+
+def run(*arguments: str, folder: Path, seconds: float = 30.0) -> Command:
+    """Run a command to its end and return it."""
+    command = Command(*arguments, folder=folder)
+    try:
+        command.wait(seconds)
+    finally:
+        command.clean_up()
+    return command
+
+
+class Service(Command):
+    """A running `teachpath serve` on free ports; use it as a context manager.
+
+    Args:
+        data: its data folder.
+        settings: further TEACHPATH_* variables.
+    """
+
+    def __init__(self, data: Path, **settings: str) -> None:
+        self.data = data
+        web, bus = free_ports(2)
+        self.url, self.endpoint = f"http://127.0.0.1:{web}", f"tcp/127.0.0.1:{bus}"
+        environment = {"TEACHPATH_BUS__ENDPOINT": self.endpoint, **settings}
+        super().__init__("serve", "--data", str(data), "--port", str(web), folder=data.parent, environment=environment)
+        self.station = Station(self.url)
+
+    def __enter__(self) -> "Service":
+        try:
+            wait_until(self._answers, seconds=READY, what=f"the service answers; it says {self.err}")
+        except BaseException:
+            self.clean_up()
+            raise
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.station.__exit__()
+        try:
+            if self.process.poll() is None:
+                self.process.terminate()
+                assert self.wait(10.0) == 0
+            self.wait_gone(3.0)
+            assert "Traceback" not in self.err, self.err
+        finally:
+            self.clean_up()
+
+    def call(self, method: str, resource: str, body: dict[str, Any] | None = None) -> Any:
+        """Call a resource under /api/v1 and return its JSON."""
+        return self.station.call(method, resource, body)
+
+    def demonstrations(self, task: str) -> list[dict[str, Any]]:
+        """Return the stored demonstrations of a task."""
+        found: list[dict[str, Any]] = self.call("GET", f"/tasks/{task}/demonstrations")
+        return found
+
+    def job(self, key: str, *, seconds: float = 30.0) -> dict[str, Any]:
+        """Return a job when it has ended."""
+        ended = ("succeeded", "failed", "cancelled")
+        states: list[dict[str, Any]] = []
+
+        def over() -> bool:
+            states.append(self.call("GET", f"/jobs/{key}"))
+            return states[-1]["state"] in ended
+
+        wait_until(over, seconds=seconds, what=f"job {key} ends")
+        return states[-1]
+
+    def kill(self) -> None:
+        """End the service as a crash does; its other processes must leave by themselves."""
+        self.process.kill()
+        self.process.wait(10)
+
+    def _answers(self) -> bool:
+        assert self.process.poll() is None, self.err
+        try:
+            return httpx.get(f"{self.url}/api/v1/health", trust_env=False).is_success
+        except httpx.TransportError:
+            return False

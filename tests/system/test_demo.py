@@ -1,0 +1,116 @@
+"""The demo as a user runs it: the whole story, Ctrl-C at any moment, and refusals in one sentence."""
+
+import json
+import signal
+import socket
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+
+from teachpath.learning import LearningSettings
+from teachpath.workers.executor import ExecutorSettings
+from tests.system.processes import Command, free_ports, wait_until
+
+pytestmark = pytest.mark.system
+
+Start = Callable[..., Command]
+
+STORY = 90.0  # [s] for the whole story on a busy machine
+LEAVE = 3.0  # [s] after Ctrl-C
+
+
+@pytest.fixture
+def start(tmp_path: Path) -> Iterator[Start]:
+    started: list[Command] = []
+
+    def demo(*arguments: str, port: int | None = None) -> Command:
+        web, bus = free_ports(2)
+        environment = {"TEACHPATH_BUS__ENDPOINT": f"tcp/127.0.0.1:{bus}"}
+        words = ("demo", "--port", str(port or web), *arguments)
+        started.append(Command(*words, folder=tmp_path, environment=environment))
+        return started[-1]
+
+    yield demo
+    for command in started:
+        command.clean_up()
+
+
+def assert_nothing_left(command: Command, *, seconds: float) -> None:
+    command.wait_gone(seconds)
+    assert list(command.temporary.iterdir()) == []
+
+
+def assert_story(out: str) -> None:
+    summary = json.loads(out)
+    assert (summary["demonstrations"], summary["lost_samples"]) == (12, 0)
+    assert sorted(summary["clusters"]) == [3, 4, 5]
+    assert len(summary["selected"]) == len(summary["paths"]) == 3
+    assert min(summary["selected"]) >= 2
+    assert max(path["largest_error_m"] for path in summary["paths"]) <= LearningSettings().error_bound
+    assert summary["planned_path"] in [path["id"] for path in summary["paths"]]
+    assert summary["execution"] == "ended"
+    assert 0 < summary["largest_limit_use"] <= 1.0
+    assert 0 < summary["largest_tracking_error_rad"] < ExecutorSettings().largest_error
+    assert summary["setpoints"] / ExecutorSettings().rate > summary["plan_duration_s"]
+
+
+def test_tells_the_whole_story_once_and_leaves_nothing(start: Start) -> None:
+    demo = start("--once", "--speed", "10")
+    assert demo.wait(STORY) == 0, demo.err
+    assert_story(demo.out)
+    assert "Traceback" not in demo.err
+    assert_nothing_left(demo, seconds=1.0)
+
+
+def test_ctrl_c_while_it_stays_up_ends_everything(start: Start) -> None:
+    demo = start("--json", "--speed", "20")
+    wait_until(lambda: "stays up" in demo.err or demo.process.poll(), seconds=STORY, what="the story ends")
+    assert_story(demo.out)
+    assert any("executor" in line for line in demo.relatives())
+    demo.interrupt()
+    assert demo.wait(LEAVE) == 0
+    assert "Traceback" not in demo.err
+    assert_nothing_left(demo, seconds=1.0)
+
+
+@pytest.mark.parametrize("signalled", ["Ctrl-C in a terminal", "SIGINT to the command alone"])
+def test_ctrl_c_in_the_middle_of_recording_ends_everything(start: Start, signalled: str) -> None:
+    demo = start("--speed", "4")
+    wait_until(lambda: "of 12 demonstrations" in demo.err or demo.process.poll(), seconds=30, what="it records")
+    wait_until(lambda: any("teachpath_client" in line for line in demo.relatives()), seconds=30, what="a hand moves")
+    asked = time.monotonic()
+    if signalled == "Ctrl-C in a terminal":
+        demo.interrupt()
+    else:
+        demo.process.send_signal(signal.SIGINT)
+    assert demo.wait(LEAVE) == 1
+    assert_nothing_left(demo, seconds=asked + LEAVE - time.monotonic())
+    assert "stopped by the operator" in demo.err
+    assert "Traceback" not in demo.err
+
+
+def assert_refused(demo: Command, sentence: str) -> None:
+    assert demo.wait(30) == 1
+    assert demo.out == ""
+    assert demo.err.splitlines()[-1].startswith("teachpath: ")
+    assert sentence in demo.err
+    assert "Traceback" not in demo.err
+    assert_nothing_left(demo, seconds=3.0)
+
+
+def test_a_taken_web_port_is_said(start: Start) -> None:
+    with socket.create_server(("127.0.0.1", 0)) as taken:
+        port = taken.getsockname()[1]
+        assert_refused(start("--once", port=port), f"cannot listen on 127.0.0.1:{port}")
+
+
+def test_recordings_that_are_not_there_are_said(start: Start, tmp_path: Path) -> None:
+    assert_refused(start("--once", "--recordings", str(tmp_path / "none.npy")), "none.npy")
+
+
+def test_recordings_that_are_cut_off_are_said(start: Start, tmp_path: Path) -> None:
+    torn = tmp_path / "torn.npy"
+    torn.write_bytes(b"\x93NUMPY\x01\x00v\x00{'descr': '<f8', 'fortran_order': False, 'shape': (9, 100, 7), }")
+    assert_refused(start("--once", "--recordings", str(torn)), "torn.npy: not a whole .npy array")

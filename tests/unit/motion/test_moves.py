@@ -1,0 +1,69 @@
+import numpy as np
+import pytest
+
+from teachpath.errors import PathRefused
+from teachpath.motion import MotionSettings, paper_scene
+from teachpath.motion.kinematics import downward, inverse, tool_pose
+from teachpath.motion.moves import STEP, approach, left_behind, line, retreat
+from teachpath.motion.route import within_limits
+from teachpath.motion.scene import CollisionModel
+from teachpath.records import Scene, Shape
+
+SETTINGS = MotionSettings()
+HOME = np.array(SETTINGS.home)
+
+
+def over(x: float, y: float, z: float) -> np.ndarray:
+    return within_limits(inverse(downward(np.array([[x, y, z]]), np.pi)).joints[:, 1])[0]
+
+
+LEFT, RIGHT = over(0.55, 0.25, 0.6), over(0.55, -0.25, 0.6)
+
+
+def scene_with(*shapes: Shape) -> CollisionModel:
+    return CollisionModel(Scene("test", shapes))
+
+
+def block_at(q: np.ndarray) -> Shape:
+    x, y, z = (float(v) for v in tool_pose(q)[:3, 3])
+    return Shape("post", "box", (0.03, 0.03, 0.03), (x, y, z))
+
+
+def test_a_line_is_straight_and_dense() -> None:
+    samples = line(LEFT, RIGHT)
+    np.testing.assert_array_equal(samples[[0, -1]], [LEFT, RIGHT])
+    assert np.abs(np.diff(samples, axis=0)).max() <= STEP
+    np.testing.assert_allclose(np.diff(samples, 2, axis=0), 0.0, atol=1e-12)
+
+
+def test_a_free_way_is_straight() -> None:
+    assert len(approach(scene_with(), LEFT, RIGHT, SETTINGS)) == 2
+
+
+def test_a_blocked_way_goes_over_the_home() -> None:
+    stops = approach(scene_with(block_at((LEFT + RIGHT) / 2)), LEFT, RIGHT, SETTINGS)
+    assert len(stops) == 3
+    np.testing.assert_array_equal(stops[1], HOME)
+
+
+def test_without_any_free_way_it_is_refused_by_name() -> None:
+    with pytest.raises(PathRefused, match=r"on the way to the path's start: .* of post"):
+        approach(scene_with(block_at(RIGHT)), LEFT, RIGHT, SETTINGS)
+
+
+def test_the_way_home_must_be_free() -> None:
+    goal = over(0.55, 0.25, 0.52)
+    start = over(0.55, -0.25, 0.52)
+    assert len(retreat(scene_with(), start, goal, LEFT, SETTINGS)) == 2
+    with pytest.raises(PathRefused, match=r"on the way home from the goal: .* of post"):
+        retreat(scene_with(block_at((LEFT + HOME) / 2)), start, goal, LEFT, SETTINGS)
+
+
+def test_the_object_is_left_where_the_path_brought_it() -> None:
+    scene = paper_scene()
+    assert scene.carried is not None
+    load = left_behind(scene, over(0.58, -0.28, 0.52), over(0.60, 0.20, 0.54))
+    assert load is not None
+    moved = np.array(load.placed) - np.array(scene.carried.position)
+    np.testing.assert_allclose(moved, [0.02, 0.48, 0.02], atol=1e-9)
+    assert left_behind(Scene("empty"), LEFT, RIGHT) is None

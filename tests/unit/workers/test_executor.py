@@ -1,0 +1,369 @@
+import threading
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from teachpath.errors import Conflict, PathRefused, TeachpathError, Unreachable, UnusableInput
+from teachpath.io import wire
+from teachpath.io.bus import MemoryBus
+from teachpath.io.documents import encode
+from teachpath.motion import MotionSettings, empty_scene, paper_scene, plan
+from teachpath.motion.kinematics import tool_pose
+from teachpath.motion.puma560 import ACCELERATION, JERK, SPEED
+from teachpath.records import ExecutorStatus, JointState, Plan, Setpoint
+from teachpath.workers.executor import Executor, ExecutorSettings
+from teachpath_proto.keys import Keys
+from tests.unit.motion.ways import MIDDLE, way
+
+KEYS = Keys()
+HOME = np.array(MotionSettings().home)
+PERIOD_NS = 4_000_000
+EPOCH = 1_700_000_000 * 10**9
+STUCK = 60.0  # s, after which a test gives up
+
+
+class Bench:
+    """An executor on a clock of its own, with an arm that is always exactly where its newest setpoint says."""
+
+    def __init__(self, position: np.ndarray = HOME) -> None:
+        self.bus = MemoryBus()
+        self.now = 0
+        self.position = position
+        self.error = 0.0
+        self.velocity = 0.0
+        self.speaking = True
+        self.oversleep: dict[int, int] = {}  # setpoints sent -> ns too late
+        self.setpoints: list[Setpoint] = []
+        self.statuses: list[ExecutorStatus] = []
+        self.stop = threading.Event()
+        self.todo: list[tuple[Callable[[], bool], Callable[[], object]]] = []
+        self.bus.subscribe(KEYS.setpoint("puma560"), lambda _, p: self.setpoints.append(wire.decode_setpoint(p)))
+        self.bus.subscribe(KEYS.executor_status, lambda _, p: self.statuses.append(wire.decode_status(p)))
+        self.executor = Executor(
+            self.bus,
+            KEYS,
+            ExecutorSettings(realtime=False),
+            clock=lambda: self.now,
+            wall=lambda: EPOCH + self.now,
+            sleep=self.sleep,
+        )
+
+    def when(self, condition: Callable[[], bool], act: Callable[[], object]) -> None:
+        """Do something as soon as a condition holds, one thing behind the other."""
+        self.todo.append((condition, act))
+
+    def run(self) -> None:
+        """Run until all is done and `stop` is set."""
+        self.executor.run(self.stop)
+
+    def sleep(self, duration: float) -> None:
+        self.now += round(duration * 1e9) + self.oversleep.pop(len(self.setpoints), 0)
+        assert self.now < STUCK * 1e9, f"stuck before step {self.todo[:1]} in {self.statuses[-1]}"
+        if self.setpoints:
+            self.position = self.setpoints[-1].position
+        if self.speaking:
+            self.bus.publish(KEYS.state("puma560"), wire.encode_state(self.joint_state()))
+        if self.todo and self.todo[0][0]():
+            self.todo.pop(0)[1]()
+
+    def joint_state(self) -> JointState:
+        newest = self.setpoints[-1] if self.setpoints else None
+        return JointState(
+            stamp_ns=EPOCH + self.now,
+            cycle=newest.cycle if newest else 0,
+            position=self.position,
+            velocity=np.full(6, self.velocity),
+            torque=np.zeros(6),
+            tracking_error=self.error,
+            missed=0,
+            holding=False,
+            gripper_closed=bool(newest and newest.gripper_closed),
+            object_position=(0.0, 0.0, 0.0),
+            object_orientation=(1.0, 0.0, 0.0, 0.0),
+            execution=newest.execution if newest else "",
+        )
+
+    def command(self, verb: str, execution: str = "run-1", **given: object) -> ExecutorStatus:
+        return wire.decode_status(
+            self.bus.ask(KEYS.executor_command, wire.encode_command(verb, execution, **given))  # type: ignore[arg-type]
+        )
+
+    def start(self, what: Plan, override: float = 1.0) -> None:
+        self.when(lambda: self.now > PERIOD_NS, lambda: self.command("start", plan=encode(what), override=override))
+
+    @property
+    def state(self) -> str:
+        return self.statuses[-1].state if self.statuses else ""
+
+    def states(self) -> list[str]:
+        """The states in order, without repetitions."""
+        seen = [status.state for status in self.statuses]
+        return [s for s, before in zip(seen, ["", *seen], strict=False) if s != before]
+
+
+def standing(setpoints: list[Setpoint]) -> bool:
+    return bool(np.all(setpoints[-1].velocity == 0) and np.all(setpoints[-1].acceleration == 0))
+
+
+def within_limits(setpoints: list[Setpoint]) -> bool:
+    positions = np.array([setpoints[0].position] * 3 + [s.position for s in setpoints])
+    return all(
+        bool(np.all(np.abs(np.diff(positions, k, axis=0)) * 250.0**k <= limit * (1 + 1e-6)))
+        for k, limit in ((1, SPEED), (2, ACCELERATION), (3, JERK))
+    )
+
+
+@pytest.fixture(scope="module")
+def middle() -> Plan:
+    return plan(way(MIDDLE), paper_scene())
+
+
+@pytest.fixture
+def bench() -> Bench:
+    return Bench()
+
+
+def test_a_whole_pick_and_place(bench: Bench, middle: Plan) -> None:
+    bench.start(middle)
+    bench.when(lambda: bench.state == "ended", bench.stop.set)
+    bench.run()
+    assert bench.states() == ["idle", "approaching", "following", "ended"]
+    assert within_limits(bench.setpoints)
+    assert [s.cycle for s in bench.setpoints] == list(range(len(bench.setpoints)))
+    assert set(np.diff([s.nominal_ns for s in bench.setpoints])) == {PERIOD_NS}
+    closed = [s for s in bench.setpoints if s.gripper_closed]
+    tool = tool_pose(np.array([closed[0].position, closed[-1].position]))[:, :3, 3]
+    np.testing.assert_allclose(tool, way(MIDDLE).curve(np.array([0.0, 1.0])), atol=1e-6)
+    np.testing.assert_allclose(bench.setpoints[-1].position, HOME, atol=1e-9)
+    last = bench.statuses[-1]
+    assert last.progress == pytest.approx(1.0)
+    assert last.cycles == len(bench.setpoints)
+    assert last.duration == pytest.approx(len(bench.setpoints) / 250.0)
+    assert (last.late, last.missed) == (0, 0)
+    # The path was closed-gripper for as long as planned, plus the time the gripper takes.
+    assert len(closed) / 250.0 == pytest.approx(middle.duration + ExecutorSettings().dwell, abs=0.05)
+
+
+def test_the_use_of_limits_is_measured_on_the_setpoints(bench: Bench, middle: Plan) -> None:
+    bench.start(middle)
+    bench.when(lambda: bench.state == "ended", bench.stop.set)
+    bench.run()
+    positions = np.array([HOME] * 3 + [s.position for s in bench.setpoints])
+    uses = [
+        np.abs(np.diff(positions, k, axis=0)).max(axis=0) * 250.0**k / limit
+        for k, limit in ((1, SPEED), (2, ACCELERATION), (3, JERK))
+    ]
+    assert bench.statuses[-1].limit_use == pytest.approx(np.max(uses), rel=1e-9)
+    assert "joint" in bench.statuses[-1].limit_place
+
+
+def test_hold_stands_on_the_path_and_resume_goes_on(bench: Bench, middle: Plan) -> None:
+    bench.start(middle)
+    bench.when(lambda: bench.state == "following" and bench.statuses[-1].progress > 0.3, lambda: bench.command("hold"))
+    bench.when(lambda: bench.state == "held", lambda: bench.command("resume"))
+    bench.when(lambda: bench.state == "ended", bench.stop.set)
+    bench.run()
+    assert bench.states() == ["idle", "approaching", "following", "stopping", "held", "following", "ended"]
+    held = next(s for s in bench.statuses if s.state == "held")
+    assert held.reason == "held by the operator"
+    assert standing(bench.setpoints[: held.cycles])
+    assert 0.3 < held.progress < 1.0
+    assert within_limits(bench.setpoints)
+    assert bench.statuses[-1].progress == pytest.approx(1.0)
+
+
+def test_the_approach_can_be_held_too(bench: Bench, middle: Plan) -> None:
+    bench.start(middle)
+    bench.when(lambda: len(bench.setpoints) > 50, lambda: bench.command("hold"))
+    bench.when(lambda: bench.state == "held", lambda: bench.command("resume"))
+    bench.when(lambda: bench.state == "ended", bench.stop.set)
+    bench.run()
+    assert bench.states()[1:6] == ["approaching", "stopping", "held", "approaching", "following"]
+    assert within_limits(bench.setpoints)
+
+
+def test_stop_ends_on_the_path(bench: Bench, middle: Plan) -> None:
+    bench.start(middle)
+    bench.when(lambda: bench.state == "following" and bench.statuses[-1].progress > 0.3, lambda: bench.command("stop"))
+    bench.when(lambda: bench.state == "ended", bench.stop.set)
+    bench.run()
+    last = bench.statuses[-1]
+    assert bench.states()[-3:] == ["following", "stopping", "ended"]
+    assert last.reason == "stopped by the operator"
+    assert 0.3 < last.progress < 1.0
+    assert standing(bench.setpoints)
+    assert within_limits(bench.setpoints)
+    wanted = way(MIDDLE).curve(np.linspace(0, 1, 20001))
+    here = tool_pose(bench.setpoints[-1].position)[:3, 3]
+    assert np.linalg.norm(wanted - here, axis=1).min() < 1e-4
+
+
+def test_a_process_told_to_end_brakes_first(bench: Bench, middle: Plan) -> None:
+    bench.start(middle)
+    bench.when(lambda: bench.state == "following" and bench.statuses[-1].progress > 0.3, bench.stop.set)
+    bench.run()
+    assert bench.states()[-2:] == ["stopping", "ended"]
+    assert bench.statuses[-1].reason == "the executor was told to stop"
+    assert standing(bench.setpoints)
+    assert within_limits(bench.setpoints)
+
+
+def test_an_override_slows_down_and_zero_holds(bench: Bench, middle: Plan) -> None:
+    bench.start(middle, override=0.5)
+    bench.when(lambda: bench.state == "following", lambda: bench.command("override", override=0.0))
+    bench.when(lambda: bench.state == "held", lambda: bench.command("override", override=0.2))
+    bench.when(lambda: bench.state == "ended", bench.stop.set)
+    bench.run()
+    assert next(s for s in bench.statuses if s.state == "held").reason == "the override is 0"
+    assert bench.statuses[-1].override == pytest.approx(0.2)
+    assert bench.statuses[-1].duration > 5 * middle.duration
+    assert within_limits(bench.setpoints)
+
+
+def test_a_lost_joint_state_holds_with_a_reason_and_may_be_resumed(bench: Bench, middle: Plan) -> None:
+    refused: list[TeachpathError] = []
+
+    def fall_silent() -> None:
+        bench.speaking = False
+
+    def resume_too_early() -> None:
+        with pytest.raises(Unreachable) as error:
+            bench.command("resume")
+        refused.append(error.value)
+        bench.speaking = True
+
+    bench.start(middle)
+    bench.when(lambda: bench.state == "following", fall_silent)
+    bench.when(lambda: bench.state == "held", resume_too_early)
+    bench.when(lambda: bool(refused), lambda: None)
+    bench.when(lambda: bool(refused), lambda: bench.command("resume"))
+    bench.when(lambda: bench.state == "ended", bench.stop.set)
+    bench.run()
+    held = next(s for s in bench.statuses if s.state == "held")
+    assert "no joint state for 0.2" in held.reason
+    assert refused
+    assert bench.statuses[-1].progress == pytest.approx(1.0)
+    assert within_limits(bench.setpoints)
+
+
+def test_a_large_tracking_error_ends_the_execution_as_faulted(bench: Bench, middle: Plan) -> None:
+    def block() -> None:
+        bench.error = 0.2
+
+    bench.start(middle)
+    bench.when(lambda: bench.state == "following", block)
+    bench.when(lambda: bench.state == "faulted", bench.stop.set)
+    bench.run()
+    assert bench.states()[-2:] == ["stopping", "faulted"]
+    assert "tracking error 0.200 rad at s = 0.0" in bench.statuses[-1].reason
+    assert bench.statuses[-1].tracking_error == pytest.approx(0.2)
+    assert standing(bench.setpoints)
+
+
+def test_an_arm_pushed_away_while_held_is_not_resumed(bench: Bench, middle: Plan) -> None:
+    pushed: list[str] = []
+
+    def push() -> None:
+        bench.bus.publish(
+            KEYS.state("puma560"), wire.encode_state(replace(bench.joint_state(), position=bench.position + 0.1))
+        )
+        bench.speaking = False
+
+    def resume() -> None:
+        with pytest.raises(Conflict, match=r"0\.100 rad off"):
+            bench.command("resume")
+        pushed.append("refused")
+        bench.stop.set()
+
+    bench.start(middle)
+    bench.when(lambda: len(bench.setpoints) > 100, lambda: bench.command("hold"))
+    bench.when(lambda: bench.state == "held", push)
+    bench.when(lambda: not bench.speaking, resume)
+    bench.run()
+    assert pushed == ["refused"]
+
+
+def test_late_cycles_are_counted_and_left_out_ones_never_made_up_for(bench: Bench, middle: Plan) -> None:
+    bench.oversleep = {100: 3_000_000, 200: 9_000_000}
+    bench.start(middle)
+    bench.when(lambda: bench.state == "ended", bench.stop.set)
+    bench.run()
+    last = bench.statuses[-1]
+    assert (last.late, last.missed) == (2, 2)
+    assert last.lateness_max_us == pytest.approx(9000)
+    gaps = np.diff([s.nominal_ns for s in bench.setpoints])
+    assert gaps.min() == PERIOD_NS
+    assert sorted(gaps)[-1] == 3 * PERIOD_NS
+    assert within_limits(bench.setpoints)
+
+
+def refusal(bench: Bench, kind: type[TeachpathError], **given: object) -> str:
+    """What the executor says when it does not start."""
+    said: list[str] = []
+
+    def ask() -> None:
+        with pytest.raises(kind) as error:
+            bench.command("start", **given)
+        said.append(str(error.value))
+        bench.stop.set()
+
+    bench.when(lambda: bench.now > 3 * PERIOD_NS, ask)
+    bench.run()
+    assert not bench.setpoints
+    return said[0]
+
+
+def test_a_changed_plan_is_refused(bench: Bench, middle: Plan) -> None:
+    changed = replace(middle, scene=empty_scene())
+    assert "changed since it was certified" in refusal(bench, PathRefused, plan=encode(changed))
+
+
+def test_what_is_no_plan_is_refused(bench: Bench) -> None:
+    assert "Plan" in refusal(bench, UnusableInput, plan=b"{}")
+
+
+def test_an_arm_that_does_not_speak_is_not_moved(bench: Bench, middle: Plan) -> None:
+    bench.speaking = False
+    assert "no joint state from puma560" in refusal(bench, Unreachable, plan=encode(middle))
+
+
+def test_a_moving_arm_is_not_taken_over(bench: Bench, middle: Plan) -> None:
+    bench.velocity = 0.4
+    assert "still moves at 0.40 rad/s" in refusal(bench, Conflict, plan=encode(middle))
+
+
+def test_an_arm_among_the_obstacles_is_not_moved_through_them(middle: Plan) -> None:
+    beside_the_box = middle.joints[len(middle.joints) // 2] + np.array([0.0, 0.0, 0.25, 0.0, 0.0, 0.0])
+    said = refusal(Bench(beside_the_box), PathRefused, plan=encode(middle))
+    assert "on the way to the path's start" in said
+
+
+def test_a_second_start_and_commands_to_another_execution_are_conflicts(bench: Bench, middle: Plan) -> None:
+    seen: list[str] = []
+
+    def try_others() -> None:
+        for verb, execution in (("start", "run-2"), ("hold", "run-2")):
+            with pytest.raises(Conflict):
+                bench.command(verb, execution, plan=encode(middle))
+            seen.append(verb)
+        bench.stop.set()
+
+    bench.start(middle)
+    bench.when(lambda: len(bench.setpoints) > 10, try_others)
+    bench.run()
+    assert seen == ["start", "hold"]
+
+
+def test_an_ended_execution_may_be_followed_by_another_from_where_the_arm_is(bench: Bench, middle: Plan) -> None:
+    bench.start(middle)
+    bench.when(lambda: len(bench.setpoints) > 150, lambda: bench.command("stop"))
+    bench.when(lambda: bench.state == "ended", lambda: bench.command("start", "run-2", plan=encode(middle)))
+    bench.when(lambda: bench.statuses[-1].execution == "run-2" and bench.state == "ended", bench.stop.set)
+    bench.run()
+    first = [s for s in bench.setpoints if s.execution == "run-1"]
+    second = [s for s in bench.setpoints if s.execution == "run-2"]
+    np.testing.assert_allclose(second[0].position, first[-1].position, atol=1e-4)
+    assert bench.statuses[-1].progress == pytest.approx(1.0)
+    assert within_limits(second)
