@@ -32,8 +32,8 @@ for command in (
     files.doctor,
 ):
     app.command(name=command.__name__.rstrip("_"))(command)
-for command in (station.executor, station.simulator):
-    app.command(rich_help_panel="Parts that serve starts by itself")(command)
+for part in (station.executor, station.simulator):
+    app.command(rich_help_panel="Parts that serve starts by itself")(part)
 
 
 def main() -> None:

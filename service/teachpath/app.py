@@ -78,12 +78,12 @@ class Station:
             recorded=self._show_demonstration,
         )
         self.jobs = Jobs(self.bus, self.keys, self.store, settings.jobs, self._kinds(), finished=self._show_outcome)
-        self.executions = Executions(self.bus, self.keys, self.store, robot=settings.executor.robot)
+        self.executions = Executions(self.bus, self.keys, self.store, robot=settings.bus.robot)
         self.preview = Preview(
             self.bus,
             self.keys,
             drawing(),
-            robot=settings.executor.robot,
+            robot=settings.bus.robot,
             home=np.array(settings.motion.home),
             to_world=self._to_world,
         )
@@ -191,7 +191,7 @@ class Station:
         calibration = self.recorder.calibration_of(tracker)
         if calibration is None:
             return None
-        x, y, z = to_world(calibration, position)
+        x, y, z = to_world(calibration, np.array(position))
         return float(x), float(y), float(z)
 
     def _show_task(self, task: str) -> None:

@@ -10,7 +10,7 @@ import math
 import os
 import tomllib
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, is_dataclass
+from dataclasses import asdict, dataclass, is_dataclass
 from pathlib import Path
 from typing import Annotated, Any, TypeVar, get_args, get_type_hints
 
@@ -76,6 +76,11 @@ class Settings(BaseModel):
         """Return the calibration `name`; raises NotFound with the known ones."""
         return _named(self.calibrations, name, "calibration")
 
+    def learning_with(self, changes: Mapping[str, Any]) -> LearningSettings:
+        """Return the settings of learning with `changes` laid over them; raises UnusableSettings."""
+        _refuse_unknown(changes, LearningSettings, "learning.")
+        return _checked({"learning": asdict(self.learning) | dict(changes)}).learning
+
 
 def load(file: Path | None = None, *, document: dict[str, Any] | None = None) -> Settings:
     """Read the settings: `document` wins over TEACHPATH_* variables, those over the file, that over the defaults.
@@ -92,17 +97,26 @@ def load(file: Path | None = None, *, document: dict[str, Any] | None = None) ->
     for layer in (_read(file), _variables(), document or {}):
         _refuse_unknown(layer, Settings, "")
         given = _laid_over(given, layer)
-    try:
-        # JSON is where a strict check still takes a list for a tuple and an object for a dataclass.
-        settings = Settings.model_validate_json(json.dumps(given, default=str), strict=True)
-    except ValidationError as error:
-        first = error.errors()[0]
-        place = ".".join(str(p) for p in first["loc"])
-        fault = first["msg"].replace("Input should", "it should")
-        raise UnusableSettings(f"setting {place} is {first.get('input')!r}; {fault}") from None
+    settings = _checked(given)
+    _check_names("robot", [settings.bus.robot])
     _check_calibrations(settings.calibrations)
     _check_scenes(settings.scenes)
     return settings
+
+
+def _checked(document: dict[str, Any]) -> Settings:
+    try:
+        # JSON is where a strict check still takes a list for a tuple and an object for a dataclass.
+        return Settings.model_validate_json(json.dumps(document, default=str), strict=True)
+    except ValidationError as error:
+        first = error.errors()[0]
+        if not first["loc"]:
+            raise UnusableSettings(f"the settings cannot be read: {first['msg']}") from None
+        place = ".".join(str(p) for p in first["loc"])
+        fault = first["msg"].replace("Input should", "it should")
+        raise UnusableSettings(f"setting {place} is {first.get('input')!r}; {fault}") from None
+    except OverflowError:
+        raise UnusableSettings("a number is too large for any setting; look for one of over 300 digits") from None
 
 
 def _read(file: Path | None) -> dict[str, Any]:
@@ -121,11 +135,11 @@ def _read(file: Path | None) -> dict[str, Any]:
 def _variables() -> dict[str, Any]:
     """Return the settings that are given as variables; an empty one counts as not given."""
     document: dict[str, Any] = {}
+    kinds = _kinds(Settings)
     for variable, text in os.environ.items():
         room, mark, setting = variable.removeprefix(PREFIX).lower().partition("__")
         if variable.startswith(PREFIX) and mark and text:
-            kind = _kinds(_kinds(Settings).get(room)).get(setting)
-            document.setdefault(room, {})[setting] = _value(text, kind)
+            document.setdefault(room, {})[setting] = _value(text, _kinds(kinds.get(room)).get(setting))
     return document
 
 

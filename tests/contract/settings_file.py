@@ -23,7 +23,7 @@ HEADER = """\
 # Lengths are in metres, angles in radians, times in seconds. A setting that begins with `#` has no value by default.
 """
 MORE = {
-    "calibrations": "# rotation: unit quaternion w, x, y, z; offset: [m]; scale: 1 for metres, 0.0254 for a device in inches",
+    "calibrations": "# rotation: unit quaternion w, x, y, z; offset [m]; scale 0.0254 is for a device in inches",
     "scenes": "# Positions are of centres [m], sizes of a box x, y, z, of an upright cylinder radius, height",
 }
 # A setting without a default shows one that it could have.

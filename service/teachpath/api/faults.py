@@ -1,9 +1,15 @@
-"""Errors as answers: the one table from the error tree to HTTP status codes."""
+"""Errors as answers: the one table from the error tree to HTTP status codes, and one shape for every refusal."""
 
 from __future__ import annotations
 
+from http import HTTPStatus
+from typing import Any, Final
+
 from fastapi import FastAPI, Request
+from fastapi.exceptions import RequestValidationError
 from fastapi.responses import JSONResponse
+from pydantic import BaseModel, Field
+from starlette.exceptions import HTTPException
 
 from teachpath.errors import (
     Conflict,
@@ -25,14 +31,83 @@ STATUS: dict[type[TeachpathError], int] = {
 }
 
 
+class Fault(BaseModel):
+    """One field of a request that cannot be used."""
+
+    place: str = Field(description="where it is, e.g. body.override")
+    fault: str
+
+
+class Refusal(BaseModel):
+    """Why a request was refused."""
+
+    detail: str = Field(description="a sentence for the operator: value, limit, place, way out")
+    error: str = Field(description="kind of the error")
+    errors: list[Fault] = Field(default=[], description="every unusable field of the request, when that is the reason")
+
+
+# What any resource may answer instead of its outcome.
+REFUSALS: Final[dict[int | str, dict[str, Any]]] = {
+    403: {"model": Refusal, "description": "The request comes from a page of another origin."},
+    404: {"model": Refusal, "description": "There is nothing of that name."},
+    409: {"model": Refusal, "description": "The thing is busy, already there, or has changed meanwhile."},
+    413: {"model": Refusal, "description": "The body is too large."},
+    422: {"model": Refusal, "description": "What came in cannot be used as it is."},
+    503: {"model": Refusal, "description": "A process of the station does not answer."},
+}
+
+
 def status_of(error: TeachpathError) -> int:
     """Return the HTTP status of an error: that of the nearest ancestor in the table."""
     return next((STATUS[kind] for kind in type(error).__mro__ if kind in STATUS), 500)
 
 
 def answer_errors(app: FastAPI) -> None:
-    """Let `app` answer teachpath's errors with their sentence in `detail`."""
+    """Let `app` answer every error with a sentence in `detail`."""
 
     @app.exception_handler(TeachpathError)
     async def answer(_: Request, error: TeachpathError) -> JSONResponse:
-        return JSONResponse({"detail": str(error), "error": type(error).__name__}, status_of(error))
+        return _answer(status_of(error), str(error), type(error).__name__)
+
+    @app.exception_handler(RequestValidationError)
+    async def name_fields(_: Request, error: RequestValidationError) -> JSONResponse:
+        faults = [_fault(e) for e in error.errors()]
+        sentence = f"{faults[0].place}: {faults[0].fault}" + (f", and {len(faults) - 1} more" if faults[1:] else "")
+        return _answer(422, sentence, "UnusableInput", faults)
+
+    @app.exception_handler(HTTPException)
+    async def name_place(request: Request, error: HTTPException) -> JSONResponse:
+        answer = _answer(error.status_code, _sentence(request, error), HTTPStatus(error.status_code).phrase)
+        answer.headers.update(error.headers or {})
+        return answer
+
+    @app.exception_handler(Exception)
+    async def confess(_: Request, error: Exception) -> JSONResponse:
+        # the server logs the error itself, with its traceback
+        return _answer(500, f"this is a fault of teachpath, please report it: {error!r}", "InternalError")
+
+
+def _answer(status: int, sentence: str, kind: str, faults: list[Fault] | None = None) -> JSONResponse:
+    refusal = Refusal(detail=_printable(sentence), error=kind, errors=faults or [])
+    return JSONResponse(refusal.model_dump(exclude_defaults=True), status)
+
+
+def _fault(error: dict[str, Any]) -> Fault:
+    place = ".".join(str(piece) for piece in error["loc"])
+    if error["type"] == "json_invalid":
+        return Fault(place="body", fault=f"this is no JSON: {error['ctx']['error']} at character {error['loc'][-1]}")
+    return Fault(place=_printable(place), fault=_printable(error["msg"]).replace("Input should", "it should"))
+
+
+def _sentence(request: Request, error: HTTPException) -> str:
+    place = f"{request.method} {request.url.path}"
+    if error.status_code == 404:
+        return f"there is nothing at {place}; the resources are listed at /docs"
+    if error.status_code == 405:
+        return f"{place} is not possible; allowed here: {(error.headers or {}).get('Allow', 'nothing')}"
+    return str(error.detail)
+
+
+def _printable(text: str) -> str:
+    # half of a surrogate pair, which JSON may hold, has no form in UTF-8
+    return text.encode(errors="backslashreplace").decode()

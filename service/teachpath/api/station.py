@@ -9,7 +9,8 @@ from starlette.middleware.trustedhost import TrustedHostMiddleware
 
 from teachpath import __version__
 from teachpath.api.executions import executions_router
-from teachpath.api.faults import answer_errors
+from teachpath.api.faults import REFUSALS, answer_errors
+from teachpath.api.guard import Guard
 from teachpath.api.parts import Parts
 from teachpath.api.tasks import recording_router, tasks_router
 from teachpath.api.work import jobs_router, results_router
@@ -26,11 +27,12 @@ def build_api(parts: Parts, view: APIRouter) -> FastAPI:
     app = FastAPI(title="teachpath", version=__version__, description=DESCRIPTION, docs_url=None, redoc_url=None)
     # Another name for this address is how a foreign page would reach a loopback service (DNS rebinding).
     hosts = ["127.0.0.1", "localhost", "[::1]", parts.settings.web.host, *parts.settings.web.hosts]
+    app.add_middleware(Guard, largest_upload=parts.settings.web.largest_upload)
     app.add_middleware(TrustedHostMiddleware, allowed_hosts=hosts)
     answer_errors(app)
     routers = (tasks_router, recording_router, jobs_router, results_router, executions_router, station_router)
     for router in routers:
-        app.include_router(router(parts), prefix="/api/v1")
+        app.include_router(router(parts), prefix="/api/v1", responses=REFUSALS)
     app.include_router(view)
     return app
 

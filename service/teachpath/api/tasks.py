@@ -10,7 +10,7 @@ from pydantic import BaseModel, Field
 from starlette.concurrency import run_in_threadpool
 
 from teachpath.api.parts import Parts
-from teachpath.errors import UnusableInput, UnusableRecording
+from teachpath.errors import UnusableInput
 from teachpath.io.documents import to_document
 from teachpath.io.wire import report_document
 from teachpath.offline.importing import Source, import_file
@@ -65,7 +65,7 @@ def tasks_router(parts: Parts) -> APIRouter:
     async def import_demonstrations(
         task: str,
         request: Request,
-        name: Annotated[str, Query(description="name of the source")] = "upload",
+        name: Annotated[str, Query(description="name of the source", max_length=200)] = "upload",
         format: Annotated[str, Query(description="csv or robottasks")] = "csv",
         units: Annotated[str, Query(description="of the positions: m, cm, mm or in")] = "m",
         rate: Annotated[float, Query(description="[Hz] for a format without a clock")] = 50.0,
@@ -73,7 +73,7 @@ def tasks_router(parts: Parts) -> APIRouter:
         calibration: Annotated[str, Query(description="of the file's frame")] = "identity",
     ) -> list[Demonstration]:
         """Import a file sent as the request's body; every motion in it becomes a demonstration."""
-        content = await _body(request, parts.settings.web.largest_upload)
+        content = await request.body()
         made = await run_in_threadpool(
             import_file,
             store,
@@ -131,12 +131,3 @@ def recording_router(parts: Parts) -> APIRouter:
         return report_document(recorder.end(recording.tracker, discard=recording.discard))
 
     return router
-
-
-async def _body(request: Request, limit: int) -> bytes:
-    content = bytearray()
-    async for chunk in request.stream():
-        content += chunk
-        if len(content) > limit:
-            raise UnusableRecording(f"the file is over the limit of {limit} bytes; split it, or use: teachpath import")
-    return bytes(content)

@@ -8,6 +8,7 @@ from fastapi import APIRouter, Response
 from pydantic import BaseModel, Field
 
 from teachpath.api.parts import Parts
+from teachpath.errors import NotFound
 from teachpath.io.documents import to_document
 from teachpath.records import Job
 
@@ -35,9 +36,12 @@ def jobs_router(parts: Parts) -> APIRouter:
         """Queue a job; `Location` names it. It survives a restart of the service."""
         stored = store.task(task)
         if new.kind == "learn":
+            parts.settings.learning_with(new.settings)
             job = jobs.submit(stored.name, "learn", {"settings": new.settings})
         else:
-            job = jobs.submit(stored.name, "plan", {"path": store.path(new.path).id})
+            path = store.path(new.path)
+            _of_task(stored.name, store.run(path.run).task, f"path {path.id!r}")
+            job = jobs.submit(stored.name, "plan", {"path": path.id})
         response.headers["Location"] = f"/api/v1/jobs/{job.id}"
         return job
 
@@ -67,8 +71,9 @@ def results_router(parts: Parts) -> APIRouter:
     @router.get("/tasks/{task}/runs/{run}")
     def get_run(task: str, run: str) -> dict[str, Any]:
         """Return one learning run."""
-        store.task(task)
-        return to_document(store.run(run))
+        stored = store.run(run)
+        _of_task(store.task(task).name, stored.task, f"run {run!r}")
+        return to_document(stored)
 
     @router.get("/paths/{path}")
     def get_path(path: str) -> dict[str, Any]:
@@ -94,3 +99,8 @@ def results_router(parts: Parts) -> APIRouter:
         return to_document(store.plan(plan))
 
     return router
+
+
+def _of_task(task: str, owner: str, what: str) -> None:
+    if owner != task:
+        raise NotFound(f"there is no {what} in task {task}; it is of task {owner}")

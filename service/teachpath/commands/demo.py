@@ -22,7 +22,7 @@ from teachpath.commands.serving import free_port, serving, until_signalled
 from teachpath.commands.tables import clusters_table, paths_table, plan_lines
 from teachpath.commands.work import progress_bar, replay_command
 from teachpath.config import Settings
-from teachpath.errors import PathRefused, TeachpathError, Unreachable
+from teachpath.errors import PathRefused, TeachpathError, Unreachable, UnusableRecording
 
 READY = 20.0  # [s] for executor and simulated arm to appear
 console = Console(stderr=True)
@@ -98,9 +98,13 @@ class _Story:
         return "demo", self._record(command, "demo", 12)
 
     def _show_recordings(self, file: Path, speed: float) -> tuple[str, list[dict[str, Any]]]:
+        try:
+            content = file.read_bytes()
+        except OSError as error:
+            raise UnusableRecording(f"cannot read {file}: {error.strerror}") from None
         task = file.stem
         query = {"name": file.name, "format": "robottasks", "units": "cm", "calibration": "robottasks"}
-        stored = self._api.call("POST", f"/tasks/{task}/demonstrations", content=file.read_bytes(), params=query)
+        stored = self._api.call("POST", f"/tasks/{task}/demonstrations", content=content, params=query)
         console.print(f"imported {len(stored)} demonstrations from {file.name}; replaying them over Zenoh")
         command = replay_command(
             [d["id"] for d in stored],
@@ -165,7 +169,13 @@ class _Story:
     def _execute(self, plan: str) -> dict[str, Any]:
         with progress_bar("moving") as show:
             execution = self._api.call("POST", "/executions", {"plan": plan})
-            return self._api.follow_execution(execution, lambda *news: (self._pause(0.0), show(*news))[1])
+
+
+            def show_unless_stopped(fraction: float, state: str) -> None:
+                self._pause(0.0)
+                show(fraction, state)
+
+            return self._api.follow_execution(execution, show_unless_stopped)
 
     def _pause(self, seconds: float = 0.2) -> None:
         if self._stop.wait(seconds):
@@ -194,7 +204,6 @@ def _settings(config: Path | None, folder: Path, port: int | None) -> Settings:
 
 
 def _is_free(port: int) -> bool:
-
     try:
         socket.create_server(("127.0.0.1", port)).close()
     except OSError:

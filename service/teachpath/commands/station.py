@@ -45,7 +45,7 @@ def executor(config: Config = None, attached: Attached = False) -> None:
         _leave_with_parent(stop, attached)
         bus = open_bus(settings.bus)
         try:
-            Executor(bus, Keys(settings.bus.prefix), settings.executor, motion=settings.motion).run(stop)
+            Executor(bus, Keys(settings.bus.prefix), settings.executor, robot=settings.bus.robot, motion=settings.motion).run(stop)
         finally:
             bus.close()
 
@@ -58,7 +58,12 @@ def simulator(config: Config = None, attached: Attached = False) -> None:
         bus = open_bus(settings.bus)
         try:
             Simulator(
-                bus, Keys(settings.bus.prefix), settings.scenes[0], settings.simulator, home=settings.motion.home
+                bus,
+                Keys(settings.bus.prefix),
+                settings.scenes[0],
+                settings.simulator,
+                robot=settings.bus.robot,
+                home=settings.motion.home,
             ).run(stop)
         finally:
             bus.close()

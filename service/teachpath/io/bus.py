@@ -33,6 +33,8 @@ class BusSettings:
     endpoint: str = "tcp/127.0.0.1:7447"
     # first segments of every key; one per station
     prefix: str = "teachpath/station"
+    # name of the arm in its keys
+    robot: str = "puma560"
     # [s] how long to wait for the endpoint when connecting
     connect_timeout: Annotated[float, Ge(0.1), Le(60)] = 10.0
 

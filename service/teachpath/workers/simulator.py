@@ -39,8 +39,6 @@ ENDED: Final = ("idle", "ended", "faulted")
 class SimulatorSettings:
     """How the simulated arm behaves."""
 
-    # name of the arm in its keys
-    robot: str = "puma560"
     # [rad/s] natural frequency of the critically damped tracking error
     bandwidth: Annotated[float, Gt(0), Le(150)] = 60.0
     # [s] between two setpoints; at most this long one is extrapolated
@@ -148,6 +146,7 @@ class Simulator:
         scene: Scene,
         settings: SimulatorSettings | None = None,
         *,
+        robot: str = "puma560",
         home: Sequence[float] = MotionSettings().home,
         clock: Callable[[], int] = time.time_ns,
         sleep: Callable[[float], object] = time.sleep,
@@ -156,11 +155,12 @@ class Simulator:
 
         Args:
             scene: what stands around the arm until a reset brings another one.
+            robot: name of the arm in its keys.
             home: (6,) configuration in which the arm starts [rad].
             clock: nanoseconds since the Unix epoch, the clock of the setpoints.
             sleep: waits for so many seconds.
         """
-        self._bus, self._keys = bus, keys
+        self._bus, self._keys, self._robot = bus, keys, robot
         self._settings = settings or SimulatorSettings()
         self._clock, self._sleep = clock, sleep
         self._lock = threading.Lock()
@@ -170,7 +170,7 @@ class Simulator:
 
     def run(self, stop: threading.Event) -> None:
         """Live in real time until `stop` is set."""
-        robot = self._settings.robot
+        robot = self._robot
         handles = [
             self._bus.subscribe(self._keys.setpoint(robot), lambda _, payload: self._setpoints.append(payload)),
             self._bus.subscribe(self._keys.executor_status, lambda _, payload: self._statuses.append(payload)),
@@ -217,7 +217,7 @@ class Simulator:
             self._arm.step(position, velocity, acceleration)
             self._steps += 1
         if state is not None:
-            self._bus.publish(self._keys.state(self._settings.robot), wire.encode_state(state))
+            self._bus.publish(self._keys.state(self._robot), wire.encode_state(state))
 
     def _begin(self, scene: Scene, position: Sequence[float]) -> None:
         self._arm = SimulatedArm(scene, self._settings, position)

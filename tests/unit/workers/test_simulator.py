@@ -35,7 +35,7 @@ class Bench:
         self.simulator = Simulator(
             self.bus, KEYS, scene or empty_scene(), SETTINGS, clock=lambda: self.now, sleep=self._sleep
         )
-        self.bus.subscribe(KEYS.state(SETTINGS.robot), lambda _, p: self.states.append(wire.decode_state(p)))
+        self.bus.subscribe(KEYS.state("puma560"), lambda _, p: self.states.append(wire.decode_state(p)))
         self.until = START
         self.each: Callable[[int], None] = lambda now: None
         self.cycle = 0
@@ -58,7 +58,7 @@ class Bench:
     def send(self, q: np.ndarray, v: np.ndarray, a: np.ndarray, *, closed: bool = False, execution: str = "e1") -> None:
         self.cycle += 1
         setpoint = Setpoint(self.cycle, self.now, self.now, q, v, a, closed, execution)
-        self.bus.publish(KEYS.setpoint(SETTINGS.robot), wire.encode_setpoint(setpoint))
+        self.bus.publish(KEYS.setpoint("puma560"), wire.encode_setpoint(setpoint))
 
     def move(self, goal: np.ndarray, seconds: float, *, closed: bool = False, skip: int = 0) -> list[JointState]:
         """Stream a quintic move to `goal` at 250 Hz; every `skip`-th setpoint gets lost."""
@@ -196,16 +196,16 @@ def test_reset_brings_the_object_back_leaves_the_arm_and_takes_a_new_scene() -> 
 def test_answers_the_reset_query_and_shows_that_it_lives() -> None:
     bench = Bench()
     alive: list[bool] = []
-    bench.bus.watch(KEYS.alive("robot", SETTINGS.robot), lambda key, here: alive.append(here))
+    bench.bus.watch(KEYS.alive("robot", "puma560"), lambda key, here: alive.append(here))
     answers: list[bytes] = []
-    bench.run(0.005, lambda now: answers.append(bench.bus.ask(KEYS.reset(SETTINGS.robot))))
+    bench.run(0.005, lambda now: answers.append(bench.bus.ask(KEYS.reset("puma560"))))
     assert np.array_equal(wire.decode_state(answers[0]).position, HOME)
     assert alive == [True, False]
 
 
 def test_malformed_setpoints_are_left_out() -> None:
     bench = Bench()
-    states = bench.run(0.1, lambda now: bench.bus.publish(KEYS.setpoint(SETTINGS.robot), b"\xff\xff"))
+    states = bench.run(0.1, lambda now: bench.bus.publish(KEYS.setpoint("puma560"), b"\xff\xff"))
     assert np.allclose(states[-1].position, HOME, atol=1e-3)
 
 

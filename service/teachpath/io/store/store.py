@@ -9,13 +9,12 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, TypeVar
 
-from alembic import command
-from alembic.config import Config
-from sqlalchemy import Connection, Engine, create_engine, event, func, select, update
+from sqlalchemy import func, select, update
 from sqlalchemy.orm import Session
 
 from teachpath.errors import Conflict, NotFound
 from teachpath.io.documents import from_document, to_document
+from teachpath.io.store.engine import open_engine
 from teachpath.io.store.recordings import Recordings
 from teachpath.io.store.tables import (
     Base,
@@ -69,12 +68,8 @@ class Store:
         folder = Path(settings.data_dir)
         folder.mkdir(parents=True, exist_ok=True)
         self.recordings = Recordings(folder / "recordings")
-        self._engine = create_engine(settings.database or f"sqlite:///{folder / 'teachpath.sqlite'}")
-        if self._engine.dialect.name == "sqlite":
-            event.listen(self._engine, "connect", _tune_sqlite)
-            event.listen(self._engine, "begin", _begin_sqlite)
+        self._engine = open_engine(settings.database or f"sqlite:///{folder / 'teachpath.sqlite'}")
         self._writing = self._engine.execution_options(writing=True)
-        _migrate(self._engine)
 
     def close(self) -> None:
         """Close every connection."""
@@ -274,26 +269,3 @@ def _execution(row: ExecutionTable) -> ExecutionRow:
 def _job(row: JobRow) -> Job:
     fields = {name: getattr(row, name) for name in Job.__dataclass_fields__}
     return Job(**{**fields, "state": JobState(row.state)})
-
-
-def _tune_sqlite(connection: Any, _: Any) -> None:
-    connection.isolation_level = None  # transactions begin where _begin_sqlite says
-    cursor = connection.cursor()
-    # WAL lets readers go on while one writes; NORMAL syncs at checkpoints and survives a killed process.
-    for pragma in ("journal_mode=WAL", "synchronous=NORMAL", "foreign_keys=ON", "busy_timeout=5000"):
-        cursor.execute(f"PRAGMA {pragma}")
-    cursor.close()
-
-
-def _begin_sqlite(connection: Connection) -> None:
-    # A deferred transaction that reads and then writes fails at once when another has written in between.
-    writing = connection.get_execution_options().get("writing", False)
-    connection.exec_driver_sql("BEGIN IMMEDIATE" if writing else "BEGIN")
-
-
-def _migrate(engine: Engine) -> None:
-    config = Config()
-    config.set_main_option("script_location", "teachpath.io.store:migrations")
-    with engine.begin() as connection:
-        config.attributes["connection"] = connection
-        command.upgrade(config, "head")

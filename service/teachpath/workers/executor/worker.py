@@ -35,8 +35,6 @@ log = logging.getLogger(__name__)
 class ExecutorSettings:
     """How plans are executed."""
 
-    # name of the arm in its keys
-    robot: str = "puma560"
     # [Hz] setpoints a second
     rate: Annotated[float, Ge(125), Le(500)] = 250.0
     # [Hz] statuses a second
@@ -64,6 +62,7 @@ class Executor:
         keys: Keys,
         settings: ExecutorSettings | None = None,
         *,
+        robot: str = "puma560",
         motion: MotionSettings | None = None,
         clock: Callable[[], int] = time.monotonic_ns,
         wall: Callable[[], int] = time.time_ns,
@@ -72,11 +71,12 @@ class Executor:
         """Prepare the executor; nothing runs before `run`.
 
         Args:
+            robot: name of the arm in its keys.
             clock: monotonic nanoseconds, by which the loop is paced.
             wall: nanoseconds since the Unix epoch, for the stamps of setpoints.
             sleep: waits for so many seconds.
         """
-        self._bus, self._keys = bus, keys
+        self._bus, self._keys, self._robot = bus, keys, robot
         self._settings = settings or ExecutorSettings()
         self._motion = motion or MotionSettings()
         self._clock, self._wall = clock, wall
@@ -93,9 +93,9 @@ class Executor:
         """Stream until `stop` is set; then the arm is brought to rest on its path first."""
         s = self._settings
         handles = [
-            self._bus.subscribe(self._keys.state(s.robot), self._hear),
+            self._bus.subscribe(self._keys.state(self._robot), self._hear),
             self._bus.serve(self._keys.executor_command, self._answer),
-            self._bus.announce(self._keys.alive("executor", s.robot)),
+            self._bus.announce(self._keys.alive("executor", self._robot)),
         ]
         log.info("%s", ask_for_realtime() if s.realtime else "real-time scheduling was not asked for")
         # A collection in the loop can last a hundred periods; nothing in this process makes cyclic garbage in bulk.
@@ -124,7 +124,7 @@ class Executor:
             self._obey(current)
             self._watch(current, due)
             setpoint = current.step(due, self._wall())
-            self._bus.publish(self._keys.setpoint(self._settings.robot), wire.encode_setpoint(setpoint))
+            self._bus.publish(self._keys.setpoint(self._robot), wire.encode_setpoint(setpoint))
         self._tell(due)
 
     def _hear(self, _: str, payload: bytes) -> None:
@@ -172,7 +172,7 @@ class Executor:
         heard = self._heard
         if heard is None or self._clock() - heard[0] > 1e9 * self._settings.silence:
             raise Unreachable(
-                f"no joint state from {self._settings.robot}; is the simulator or the arm's driver running?"
+                f"no joint state from {self._robot}; is the simulator or the arm's driver running?"
             )
         return heard[1]
 

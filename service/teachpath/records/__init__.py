@@ -1,0 +1,39 @@
+"""The nouns, frozen: what the rooms hand to one another.
+
+Conventions (ARCHITECTURE.md): metres, radians, seconds inside; integer nanoseconds since the Unix epoch at the edges
+(names end in `_ns`); quaternions w, x, y, z; frame `world` unless another is named.
+"""
+
+from teachpath.records.arrays import Array, Quaternion, Vector
+from teachpath.records.demonstrations import Account, Calibration, Demonstration, Phase, Sample, Task, Trajectory
+from teachpath.records.learned import Cluster, Fit, Learned, LearnedPath, Score
+from teachpath.records.motion import Certificate, ExecutorStatus, Extreme, JointState, Plan, Scene, Setpoint, Shape
+from teachpath.records.work import Job, JobState
+
+__all__ = [
+    "Account",
+    "Array",
+    "Calibration",
+    "Certificate",
+    "Cluster",
+    "Demonstration",
+    "ExecutorStatus",
+    "Extreme",
+    "Fit",
+    "Job",
+    "JobState",
+    "JointState",
+    "Learned",
+    "LearnedPath",
+    "Phase",
+    "Plan",
+    "Quaternion",
+    "Sample",
+    "Scene",
+    "Score",
+    "Setpoint",
+    "Shape",
+    "Task",
+    "Trajectory",
+    "Vector",
+]

@@ -1,0 +1,109 @@
+"""What is shown: samples, demonstrations and the tasks they belong to."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+from teachpath.records.arrays import Array, Quaternion, Vector
+
+
+class Phase(StrEnum):
+    """What the hand is doing within a demonstration."""
+
+    REACH = "reach"
+    TRANSPORT = "transport"  # begins with the grasp, ends with the release
+    RETURN = "return"
+
+
+@dataclass(frozen=True, slots=True)
+class Sample:
+    """One reading of glove and tracker, checked.
+
+    `position` [m] and `orientation` (None when not measured) are in the tracker frame; `flexions` run from 0 (open)
+    to 1 (closed); `device_ns` is the device's clock, `receive_ns` ours.
+    """
+
+    tracker: str
+    sequence: int
+    device_ns: int
+    receive_ns: int
+    position: Vector
+    orientation: Quaternion | None
+    flexions: tuple[float, ...]
+    tracked: bool
+    buttons: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class Calibration:
+    """A named mapping to `world` from `tracker`: p_world = scale * R p_tracker + offset."""
+
+    name: str
+    scale: float = 1.0
+    rotation: Quaternion = (1.0, 0.0, 0.0, 0.0)
+    offset: Vector = (0.0, 0.0, 0.0)
+
+
+@dataclass(frozen=True, slots=True)
+class Task:
+    """What is demonstrated: its name, its scene and the calibration of its demonstrations."""
+
+    name: str
+    scene: str
+    calibration: str
+    created_ns: int
+
+
+@dataclass(frozen=True, eq=False)
+class Trajectory:
+    """The object's motion in its transport phase, world frame.
+
+    Attributes:
+        times: (n,) [s], from 0, strictly increasing (device clock).
+        positions: (n, 3) [m].
+        orientations: (n, 4) unit quaternions, or None when not measured.
+    """
+
+    times: Array
+    positions: Array
+    orientations: Array | None = None
+
+    def __len__(self) -> int:
+        return len(self.times)
+
+
+@dataclass(frozen=True, slots=True)
+class Account:
+    """What became of the samples of one recording or demonstration."""
+
+    received: int = 0
+    lost: int = 0
+    duplicated: int = 0
+    reordered: int = 0
+    refused: int = 0
+    untracked: int = 0
+    longest_gap_ns: int = 0
+    notes: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Demonstration:
+    """One trial, as a row: the samples are in its recording file.
+
+    The transport phase is samples[grasp:release] of the recording.
+    """
+
+    id: str
+    task: str
+    number: int  # 1, 2, ... within its task
+    source: str  # tracker name or file name
+    calibration: Calibration
+    created_ns: int
+    duration: float  # of the transport phase [s]
+    samples: int
+    grasp: int
+    release: int
+    verdict: str  # clean, repaired, reject
+    account: Account
+    recording: str  # place of the MCAP file within the recordings

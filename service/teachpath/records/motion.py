@@ -1,0 +1,129 @@
+"""What moves: scenes, plans with their certificates, setpoints, joint states."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from teachpath.records.arrays import Array, Quaternion, Vector
+
+
+@dataclass(frozen=True, slots=True)
+class Shape:
+    """One body of a scene: a `box` (size = full edges x, y, z) or an upright `cylinder` (size = radius, height)."""
+
+    name: str
+    kind: str
+    size: tuple[float, ...]
+    position: Vector  # of its centre [m]
+    color: int = 0x8090A0
+
+
+@dataclass(frozen=True, slots=True)
+class Scene:
+    """What stands around the arm. Obstacles include the table; `carried` is the object at its start, or None."""
+
+    name: str
+    obstacles: tuple[Shape, ...] = ()
+    carried: Shape | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Extreme:
+    """A largest or least value on a path and where it occurs."""
+
+    value: float
+    place: str  # in words: "joint 3 at s = 0.412 m"
+    s: float  # arc length from the start of the path [m]
+
+
+@dataclass(frozen=True, eq=False)
+class Certificate:
+    """The proof that the arm can follow a plan; uses are shares of the limits, at most 1."""
+
+    digest: str  # SHA-256 over path, scene, limits and timing
+    branch: str
+    position_use: Extreme
+    velocity_use: Extreme
+    acceleration_use: Extreme
+    jerk_use: Extreme
+    least_singular: Extreme
+    clearance: Extreme  # of arm and carried object to scene and self [m]
+
+
+@dataclass(frozen=True, eq=False)
+class Plan:
+    """Path plus timing plus certificate: all that the executor needs.
+
+    Attributes:
+        lengths: (n,) arc length of the nodes [m], from 0, strictly increasing.
+        joints: (n, 6) configurations at the nodes [rad]; between them a quintic spline runs.
+        limits: velocity, acceleration, jerk of s along the path [m/s, m/s^2, m/s^3] at full speed.
+        above_start: (6,) configuration above the start, from where the object is grasped.
+        above_goal: (6,) configuration above the goal, to where the arm retreats.
+        duration: of the path at full speed [s].
+    """
+
+    id: str
+    path: str
+    path_version: int
+    scene: Scene
+    lengths: Array
+    joints: Array
+    limits: tuple[float, float, float]
+    above_start: Array
+    above_goal: Array
+    duration: float
+    certificate: Certificate
+
+
+@dataclass(frozen=True, eq=False)
+class Setpoint:
+    """What the arm should do in one control period; joint arrays are (6,) in rad, rad/s, rad/s^2."""
+
+    cycle: int
+    nominal_ns: int
+    sent_ns: int
+    position: Array
+    velocity: Array
+    acceleration: Array
+    gripper_closed: bool
+    execution: str
+
+
+@dataclass(frozen=True, eq=False)
+class JointState:
+    """What the arm does; joint arrays are (6,), `tracking_error` is the largest over the joints [rad]."""
+
+    stamp_ns: int
+    cycle: int
+    position: Array
+    velocity: Array
+    torque: Array
+    tracking_error: float
+    missed: int
+    holding: bool
+    gripper_closed: bool
+    object_position: Vector
+    object_orientation: Quaternion
+    execution: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class ExecutorStatus:
+    """Where an execution stands; see proto/teachpath_proto/motion.proto for the fields."""
+
+    execution: str = ""
+    state: str = "idle"
+    reason: str = ""
+    progress: float = 0.0
+    override: float = 1.0
+    cycles: int = 0
+    late: int = 0
+    missed: int = 0
+    lateness_p50_us: float = 0.0
+    lateness_p99_us: float = 0.0
+    lateness_max_us: float = 0.0
+    limit_use: float = 0.0
+    tracking_error: float = 0.0
+    limit_place: str = ""
+    duration: float = 0.0

@@ -1,0 +1,89 @@
+"""A service that is killed: what is on the disk afterwards, and what the next service makes of it."""
+
+import hashlib
+import itertools
+import re
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from teachpath.workers.recorder import FLUSH_EVERY
+from teachpath_client import HandReading, Link, Tracker
+from teachpath_client.synthetic import RATE, experiment_1
+from tests.system.processes import Service, run, wait_until
+from tests.system.test_station import SHOWN, record, trajectory, write_csv
+
+pytestmark = pytest.mark.system
+
+
+def fingerprints(data: Path) -> dict[str, str]:
+    return {file.name: hashlib.sha256(file.read_bytes()).hexdigest() for file in data.rglob("*.mcap")}
+
+
+def cut_short(count: int) -> Iterator[HandReading]:
+    """Yield the first demonstration and so many more readings."""
+    return itertools.islice(experiment_1(), count)
+
+
+def test_a_kill_in_mid_take_costs_at_most_the_last_second(tmp_path: Path) -> None:
+    sent = 220  # in mid-transport
+    with Service(tmp_path / "data") as killed:
+        record(killed, "carry", 1)
+        before, files = killed.demonstrations("carry"), fingerprints(killed.data)
+        with Link(killed.endpoint) as link:
+            tracker = Tracker(link, "glove")
+            tracker.start("carry")
+            tracker.publish(cut_short(sent), speed=1.0)
+            killed.kill()
+        killed.wait_gone(3.0)
+
+    doctor = run("doctor", "--data", str(killed.data), folder=tmp_path)
+    assert doctor.process.returncode == 0, doctor.err
+    found = re.search(r"(\d+) samples .* are whole, at most the last second is missing; made (demo-\w+)", doctor.out)
+    assert found is not None, doctor.out
+    # one sample more: the one whose arrival lets the recorder look at its clock
+    assert sent - (FLUSH_EVERY * RATE + 1) <= int(found[1]) <= sent
+    assert fingerprints(killed.data).items() >= files.items()
+    assert "every recording is whole" in run("doctor", "--data", str(killed.data), folder=tmp_path).out
+
+    with Service(killed.data) as next_one:
+        earlier, made = next_one.demonstrations("carry")
+        assert [earlier] == before
+        assert made["id"] == found[2]
+        assert made["samples"] == int(found[1])
+        assert made["verdict"] == "reject"
+        assert any("cut off" in note for note in made["account"]["notes"])
+        assert len(trajectory(next_one, made["id"])[0]) == made["release"] - made["grasp"]
+        assert next_one.call("GET", "/health")["notes"] == []
+        assert len(record(next_one, "carry", 1).demonstrations) == 1
+
+
+def test_a_job_under_way_is_run_again_once(tmp_path: Path) -> None:
+    with Service(tmp_path / "data") as killed:
+        assert len(record(killed, "carry", 12).demonstrations) == 12
+        job = killed.call("POST", "/tasks/carry/jobs", {"kind": "learn"})
+        running = lambda: killed.call("GET", f"/jobs/{job['id']}")["state"] == "running"  # noqa: E731
+        wait_until(running, seconds=20, what="the job runs")
+        killed.kill()
+        killed.wait_gone(3.0)
+
+    with Service(killed.data) as next_one:
+        ended = next_one.job(job["id"])
+        assert (ended["state"], ended["attempt"]) == ("succeeded", 2), ended["message"]
+        (only,) = next_one.call("GET", "/tasks/carry/runs")
+        assert only["id"] == ended["outcome"]
+        assert len(next_one.call("GET", "/tasks/carry/jobs")) == 1
+        assert len(only["learned"]["demonstrations"]) == 12
+
+
+def test_files_are_imported_while_no_service_runs(tmp_path: Path) -> None:
+    data, file = tmp_path / "data", write_csv(tmp_path / "motion.csv")
+    assert run("import", "files", str(file), "--data", str(data), folder=tmp_path).process.returncode == 0
+    torn = run("import", "files", str(tmp_path / "none.csv"), "--data", str(data), folder=tmp_path)
+    assert torn.process.returncode == 1
+    assert torn.err.startswith("teachpath: cannot read")
+    with Service(data) as service:
+        (imported,) = service.demonstrations("files")
+        assert len(trajectory(service, imported["id"])[0]) == 100
