@@ -5,7 +5,6 @@ from __future__ import annotations
 import io
 from collections.abc import Iterator
 
-from mcap.exceptions import McapError
 from mcap.reader import make_reader
 
 from teachpath_client.link import ClientError
@@ -21,11 +20,11 @@ def read_mcap(content: bytes) -> list[HandReading]:
     """
     messages: dict[int, tracker_pb2.HandSample] = {}
     try:
-        for _, _, record in make_reader(io.BytesIO(content)).iter_messages(topics=["samples"]):
+        for _, _, record in make_reader(io.BytesIO(content), validate_crcs=True).iter_messages(topics=["samples"]):
             message = tracker_pb2.HandSample.FromString(record.data)
             messages.setdefault(message.sequence, message)
-    except (McapError, ValueError) as error:
-        raise ClientError(f"not a recording of hand samples: {error}") from error
+    except Exception as error:  # damage shows as whatever the records, their compression and the messages raise
+        raise ClientError(f"not a recording of hand samples, or a damaged one: {error!r}") from error
     if not messages:
         raise ClientError("the recording holds no hand samples")
     return list(_readings([messages[k] for k in sorted(messages)]))

@@ -17,7 +17,7 @@ from teachpath.api.parts import Parts
 from teachpath.api.station import build_api
 from teachpath.api.view import view_router
 from teachpath.config import Settings
-from teachpath.errors import NotFound, UnusableSettings
+from teachpath.errors import NotFound
 from teachpath.io.bus import Bus, open_bus
 from teachpath.io.store import Store
 from teachpath.learning import LearningSettings
@@ -166,14 +166,8 @@ class Station:
         if not demonstrations:
             raise NotFound(f"task {job.task} has no usable demonstrations yet; show it a few times first")
         wanted = job.request.get("settings")
-        settings = self._learning_settings(wanted if isinstance(wanted, dict) else {})
+        settings = self.settings.learning_with(wanted if isinstance(wanted, dict) else {})
         return {d.id: self.trajectory(d) for d in demonstrations}, settings
-
-    def _learning_settings(self, changes: dict[str, Any]) -> LearningSettings:
-        known = set(LearningSettings.__dataclass_fields__)
-        if unknown := set(changes) - known:
-            raise UnusableSettings(f"there is no learning setting {sorted(unknown)[0]}; known: {sorted(known)}")
-        return LearningSettings(**{**asdict(self.settings.learning), **changes})
 
     def _finish_learning(self, job: Job, learned: Learned) -> str:
         return self.store.finish_learning(job.id, learned)

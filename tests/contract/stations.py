@@ -16,7 +16,7 @@ def settings(folder: Path) -> Settings:
         document={
             "bus": {"endpoint": f"tcp/127.0.0.1:{free_port()}"},
             "store": {"data_dir": str(folder)},
-            "recording": {"handshake_timeout": 0.2},
+            "recording": {"handshake_timeout": 0.2, "shortest_transport": 8},
             "web": {"largest_upload": 2_000_000, "hosts": ["robot.example"]},
         }
     )

@@ -81,6 +81,11 @@ def answer_errors(app: FastAPI) -> None:
         answer.headers.update(error.headers or {})
         return answer
 
+    @app.exception_handler(UnicodeEncodeError)
+    async def name_text(_: Request, error: UnicodeEncodeError) -> JSONResponse:
+        sentence = f"the text {error.object[:80]!r} holds half of a surrogate pair; send whole characters"
+        return _answer(422, sentence, "UnusableInput")
+
     @app.exception_handler(Exception)
     async def confess(_: Request, error: Exception) -> JSONResponse:
         # the server logs the error itself, with its traceback

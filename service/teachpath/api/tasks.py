@@ -125,7 +125,8 @@ def recording_router(parts: Parts) -> APIRouter:
     @router.post("/tasks/{task}/recording/stop")
     def stop_recording(task: str, recording: Recording) -> dict[str, Any]:
         """Stop recording and return the account of every sample."""
-        running = {report.tracker for report in recorder.reports() if report.task == parts.store.task(task).name}
+        name = parts.store.task(task).name
+        running = {report.tracker for report in recorder.reports() if report.task == name}
         if recording.tracker not in running:
             raise UnusableInput(f"{recording.tracker!r} is not recording {task}; running: {sorted(running) or 'none'}")
         return report_document(recorder.end(recording.tracker, discard=recording.discard))

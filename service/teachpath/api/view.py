@@ -64,7 +64,7 @@ def web_root() -> Path:
 
 
 def view_router(preview: Preview) -> APIRouter:
-    """Return the routes of the page, its files and its view: `/`, `/docs`, `/web/...`, `/vendor/...`, `/api/v1/view`."""
+    """Return the routes of the pages, their files and the view: `/`, `/docs`, `/web/`, `/vendor/`, `/api/v1/view`."""
     router = APIRouter(include_in_schema=False)
     root, viewer = web_root(), viewer_files()
 

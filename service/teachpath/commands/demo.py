@@ -41,9 +41,11 @@ def demo(
     data: Annotated[Path | None, typer.Option(help="Keep the data in this folder; else it is thrown away.")] = None,
     config: Config = None,
 ) -> None:
-    """Show twelve demonstrations over Zenoh, learn the ways, certify a path, and move the simulated Puma 560.
+    """Show the whole way once, on this machine.
 
-    A hand in a process of its own shows the paper's first experiment; everything runs on this machine.
+    A hand in a process of its own shows the paper's first experiment over Zenoh: twelve demonstrations, three ways
+    around two obstacles. They are recorded, clustered and fitted; the first executable path is certified, and the
+    simulated Puma 560 carries the box along it while you watch in the browser.
     """
     with ExitStack() as stack:
         folder = data or Path(stack.enter_context(tempfile.TemporaryDirectory(prefix="teachpath-demo-")))

@@ -31,7 +31,10 @@ def import_(
     config: Config = None,
     data: Data = None,
 ) -> None:
-    """Make demonstrations from files; every motion in them becomes one."""
+    """Make demonstrations from files.
+
+    Every motion in a file becomes one, with the same verdict as a live recording. The service need not run.
+    """
     settings = settings_of(config, data)
     robottasks = format == "robottasks"
     chosen = settings.calibration(calibration or ("robottasks" if robottasks else "identity"))
@@ -59,7 +62,7 @@ def export(
     config: Config = None,
     data: Data = None,
 ) -> None:
-    """Write a demonstration to a file that other programs read."""
+    """Write a demonstration to a file."""
     settings = settings_of(config, data)
     store = Store(settings.store)
     try:
@@ -79,7 +82,10 @@ def export(
 
 
 def doctor(config: Config = None, data: Data = None) -> None:
-    """Find recordings that a crash cut off, say what they hold, and repair them."""
+    """Repair recordings that a crash cut off.
+
+    Says what each of them holds and makes demonstrations of it; the torn files are kept. Stop the service first.
+    """
     settings = settings_of(config, data)
     store = Store(settings.store)
     try:

@@ -7,6 +7,7 @@ import logging
 import os
 import sys
 import threading
+import time
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -17,6 +18,7 @@ from teachpath.commands.serving import serving, until_signalled
 from teachpath.config import Settings, load
 from teachpath.io.bus import open_bus
 from teachpath.workers.executor import Executor
+from teachpath.workers.processes import GRACE
 from teachpath.workers.simulator import Simulator
 from teachpath_proto.keys import Keys
 
@@ -28,7 +30,10 @@ def serve(
     data: Data = None,
     port: Annotated[int | None, typer.Option(help="Web port; 8765 unless set.")] = None,
 ) -> None:
-    """Run the service: recorder, jobs, executor, simulated arm and web port, until Ctrl-C."""
+    """Run the service until Ctrl-C.
+
+    It records what trackers show, works on jobs, moves the simulated arm, and serves the page and the REST API.
+    """
     changes: dict[str, Any] = {} if port is None else {"web": {"port": port}}
     settings = settings_of(config, data, **changes)
     _log_to_stderr()
@@ -39,19 +44,31 @@ def serve(
 
 
 def executor(config: Config = None, attached: Attached = False) -> None:
-    """Run the executor alone: it streams the setpoints of certified plans."""
+    """Run the executor alone.
+
+    It streams the setpoints of certified plans.
+    """
     settings = _settings(config, attached)
     with until_signalled() as stop:
         _leave_with_parent(stop, attached)
         bus = open_bus(settings.bus)
         try:
-            Executor(bus, Keys(settings.bus.prefix), settings.executor, robot=settings.bus.robot, motion=settings.motion).run(stop)
+            Executor(
+                bus,
+                Keys(settings.bus.prefix),
+                settings.executor,
+                robot=settings.bus.robot,
+                motion=settings.motion,
+            ).run(stop)
         finally:
             bus.close()
 
 
 def simulator(config: Config = None, attached: Attached = False) -> None:
-    """Run the simulated Puma 560 alone: it follows the setpoints and publishes its joint state."""
+    """Run the simulated Puma 560 alone.
+
+    It follows the setpoints and publishes its joint state, as the driver of a real arm would.
+    """
     settings = _settings(config, attached)
     with until_signalled() as stop:
         _leave_with_parent(stop, attached)
@@ -84,6 +101,9 @@ def _leave_with_parent(stop: threading.Event, attached: bool) -> None:
         while os.read(sys.stdin.fileno(), 4096):
             continue
         stop.set()
+        # Joining the bus cannot be interrupted, and waits long for a service that is gone.
+        time.sleep(GRACE)
+        os._exit(1)
 
     threading.Thread(target=wait, name="parent", daemon=True).start()
 

@@ -41,7 +41,10 @@ def learn(
     mode: Annotated[str, typer.Option(help="default: to be trusted; paper: Aleotti & Caselli 2005.")] = "default",
     threshold: Annotated[float | None, typer.Option(help="Height of the cut [m]; mode paper needs it.")] = None,
 ) -> None:
-    """Cluster a task's demonstrations, select the consistent ones, and fit a path to each cluster."""
+    """Find the ways and learn a path for each.
+
+    Clusters the task's demonstrations, selects the consistent ones in each cluster, and fits a NURBS to them.
+    """
     settings: dict[str, object] = {"mode": mode} | ({} if threshold is None else {"threshold": threshold})
     with Api(url) as api, progress_bar("learning") as show:
         job = api.follow_job(api.call("POST", f"/tasks/{task}/jobs", {"kind": "learn", "settings": settings}), show)
@@ -55,7 +58,7 @@ def learn(
 
 
 def plan(path: Annotated[str, typer.Argument(help="Id of a learned path.")], url: Url = LOCAL) -> None:
-    """Plan a learned path: prove that the arm can follow it, or say why not."""
+    """Certify a learned path, or say why not."""
     with Api(url) as api, progress_bar("planning") as show:
         job = api.follow_job(api.call("POST", f"/paths/{path}/plans"), show)
         print(plan_lines(api.call("GET", f"/plans/{job['outcome']}")))
@@ -66,7 +69,10 @@ def run(
     url: Url = LOCAL,
     override: Annotated[float, typer.Option(min=0.0, max=1.0, help="Share of the planned speed.")] = 1.0,
 ) -> None:
-    """Move the arm along a certified plan; Ctrl-C stops it on the path."""
+    """Move the arm along a certified plan.
+
+    Ctrl-C stops it on the path. This is not an emergency stop.
+    """
     with Api(url) as api, progress_bar("running") as show:
         execution = api.call("POST", "/executions", {"plan": plan, "override": override})
         try:
@@ -89,7 +95,10 @@ def replay(
     speed: Annotated[float, typer.Option(help="1 = original timing.")] = 1.0,
     url: Url = LOCAL,
 ) -> None:
-    """Publish stored demonstrations over Zenoh, sample by sample, as if a tracker showed them now."""
+    """Publish stored demonstrations as if live.
+
+    Every sample goes over Zenoh at its original pace, as if a tracker showed it now, and is recorded anew.
+    """
     with Api(url) as api:
         stored = api.call("GET", f"/tasks/{task}")
         demonstrations = api.call("GET", f"/tasks/{task}/demonstrations")

@@ -10,11 +10,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from teachpath.errors import UnusableRecording
+from teachpath.io.wire import FARTHEST
 from teachpath.records import Array
 
 UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254}
 FORMATS = ("csv", "robottasks")
 LARGEST_FILE = 64 * 1024 * 1024  # bytes
+LONGEST = 86400.0  # [s]
 COLUMNS = ["t", "x", "y", "z"]
 ROTATION = ["qw", "qx", "qy", "qz"]
 
@@ -84,11 +86,13 @@ def _numbers(row: list[str], count: int, where: str) -> list[float]:
 def _read_robottasks(content: bytes, name: str, rate: float) -> list[Track]:
     try:
         values = np.load(io.BytesIO(content), allow_pickle=False)
-    except (ValueError, EOFError, OSError) as error:
+    except Exception as error:  # a damaged header ends in whatever its tokens, sizes and archive make numpy raise
         raise UnusableRecording(f"{name}: not a whole .npy array of numbers: {error}") from None
     if not isinstance(values, np.ndarray) or values.dtype.kind != "f" or values.ndim != 3 or values.shape[2] != 7:
         shape = getattr(values, "shape", "several arrays")
         raise UnusableRecording(f"{name}: the array must be floats (demonstrations, samples, 7); it is {shape}")
+    if len(values) == 0:
+        raise UnusableRecording(f"{name}: the array holds no demonstrations")
     times = np.arange(values.shape[1]) / rate
     return [Track(times, np.array(v[:, :3], dtype=np.float64), np.array(v[:, 3:], dtype=np.float64)) for v in values]
 
@@ -103,6 +107,11 @@ def _check(track: Track, where: str) -> None:
     if len(bad):
         column = (COLUMNS + ROTATION)[int(bad[0, 1])]
         raise UnusableRecording(f"{where}: sample {int(bad[0, 0])} has a {column} that is not finite")
+    farthest, span = np.max(np.abs(track.positions)), track.times[-1] - track.times[0]
+    if farthest > FARTHEST:
+        raise UnusableRecording(f"{where}: a position is {farthest:g} m away, limit {FARTHEST:g}; are the units right?")
+    if span > LONGEST:
+        raise UnusableRecording(f"{where}: it lasts {span:g} s, limit {LONGEST:g}; t is in seconds")
     steps = np.diff(track.times)
     if np.any(steps <= 0):
         i = int(np.argmax(steps <= 0))

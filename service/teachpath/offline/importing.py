@@ -5,10 +5,12 @@ from __future__ import annotations
 import time
 from dataclasses import dataclass
 
+import numpy as np
+
 from teachpath.errors import UnusableInput, UnusableRecording
 from teachpath.io.files import Track, read_tracks
 from teachpath.io.store import Store
-from teachpath.recording import GRASP_BUTTON, RecordingSettings
+from teachpath.recording import GRASP_BUTTON, RecordingSettings, Segmenter, to_world
 from teachpath.records import Calibration, Demonstration, Sample, Scene, Trajectory
 from teachpath.workers.session import RecordingSession
 from teachpath_proto.keys import is_name
@@ -38,17 +40,39 @@ def import_file(
     if not is_name(task):
         raise UnusableInput(f"{task!r} cannot name a task: use letters, digits, '.', '_' or '-', at most 64")
     tracks = read_tracks(source.content, source.name, kind=source.kind, units=source.units, rate=source.rate)
+    motions = [_samples(track, source.name) for track in tracks]
+    for number, samples in enumerate(motions, 1):
+        where = source.name if len(motions) == 1 else f"{source.name}, motion {number} of {len(motions)}"
+        _check(samples, settings, scene, calibration, where)
     store.ensure_task(task, scene=scene.name, calibration=calibration.name)
     made: list[tuple[Demonstration, Trajectory]] = []
-    for number, track in enumerate(tracks, 1):
+    for samples in motions:
         session = RecordingSession(
             store, settings, task=task, tracker=source.name, calibration=calibration, scene=scene
         )
-        finished = [session.add(sample) for sample in _samples(track, source.name)]
+        finished = [session.add(sample) for sample in samples]
         made += [f for f in finished if f is not None] + session.finish()
-        if len(made) < number:
-            raise UnusableRecording(_why_not(session, source.name, number, len(tracks), scene))
     return made
+
+
+def _check(
+    samples: list[Sample], settings: RecordingSettings, scene: Scene, calibration: Calibration, where: str
+) -> None:
+    """Refuse a motion that would be no demonstration, before any of its file is stored."""
+    carried = scene.carried.position if scene.carried else None
+    segmenter = Segmenter(settings, carried)
+    for sample in samples:
+        segmenter.push(sample, to_world(calibration, np.array(sample.position)))
+    cut = segmenter.finish()
+    if cut is None:
+        raise UnusableRecording(
+            f"{where}: the motion does not begin at the object of scene {scene.name}, at {carried} m; check units and "
+            "calibration, or use a scene without an object (empty)"
+        )
+    if cut.release - cut.grasp < settings.shortest_transport:
+        raise UnusableRecording(
+            f"{where}: {cut.release - cut.grasp} samples are under the least of {settings.shortest_transport}"
+        )
 
 
 def _samples(track: Track, name: str) -> list[Sample]:
@@ -63,13 +87,3 @@ def _samples(track: Track, name: str) -> list[Sample]:
             q = (w, i_, j, k)
         samples.append(Sample(name, i + 1, stamp, stamp, (x, y, z), q, (), True, GRASP_BUTTON))
     return samples
-
-
-def _why_not(session: RecordingSession, name: str, number: int, count: int, scene: Scene) -> str:
-    notes = "; ".join(session.account.account().notes)
-    if not notes and scene.carried is not None:
-        notes = (
-            f"the motion does not begin at the object of scene {scene.name}, at {scene.carried.position} m; "
-            "check units and calibration, or use a scene without an object (empty)"
-        )
-    return f"{name}: motion {number} of {count} is no demonstration: {notes}"

@@ -7,6 +7,8 @@ from typing import Annotated
 
 from annotated_types import Ge, Gt, Le
 
+from teachpath.errors import UnusableSettings
+
 Share = Annotated[float, Ge(0), Le(1)]
 Positive = Annotated[float, Gt(0)]
 
@@ -37,3 +39,10 @@ class RecordingSettings:
     longest_gap: Positive = 0.25
     # [s] how long the handshake at the end waits for samples that are still under way
     handshake_timeout: Positive = 2.0
+
+    def __post_init__(self) -> None:
+        if not self.open_at < self.close_at:
+            raise UnusableSettings(
+                f"recording.open_at is {self.open_at:g}; it must be under close_at, {self.close_at:g}, or the hand "
+                "would flicker between open and closed"
+            )

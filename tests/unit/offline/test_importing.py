@@ -51,7 +51,7 @@ def test_a_refused_file_leaves_nothing(store: Store) -> None:
 
 
 def test_a_motion_that_is_too_short_says_so(store: Store) -> None:
-    with pytest.raises(UnusableRecording, match="10 samples is under the least of 20"):
+    with pytest.raises(UnusableRecording, match="10 samples are under the least of 20"):
         imported(store, csv(10))
     assert store.demonstrations("wipe") == []
 

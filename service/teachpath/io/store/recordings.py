@@ -7,19 +7,17 @@ most the samples since the last flush, and `salvage` reads what is there.
 from __future__ import annotations
 
 import os
-import struct
 from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
-from mcap.exceptions import McapError
 from mcap.records import Header, Message, Metadata
 from mcap.stream_reader import StreamReader
 from mcap.writer import Writer
 from mcap_protobuf.schema import register_schema
 
-from teachpath.errors import NotFound, TeachpathError, UnusableRecording
+from teachpath.errors import NotFound, UnusableRecording
 from teachpath.io import documents
 from teachpath.io.wire import parse, sample_from, sample_message
 from teachpath.records import Calibration, Sample
@@ -136,15 +134,16 @@ def salvage(file: Path) -> tuple[RecordingHeader | None, list[Sample], str]:
             elif isinstance(record, Message):
                 message = parse(tracker_pb2.HandSample, record.data)
                 samples.append(sample_from(message, header.tracker if header else "", record.log_time))
-    # A torn file ends in whatever the cut left: the reader's own errors, or those of unpacking.
-    except (McapError, TeachpathError, struct.error, ValueError, KeyError, EOFError) as error:
+    except OSError:
+        raise
+    except Exception as error:  # damage shows as whatever the reader, its decompressor or the unpacking raises
         fault = str(error) or type(error).__name__
     return header, samples, fault
 
 
 def _records(file: Path) -> Iterator[object]:
     with file.open("rb") as stream:
-        records = StreamReader(stream, record_size_limit=16 * 1024 * 1024).records
+        records = StreamReader(stream, validate_crcs=True, record_size_limit=16 * 1024 * 1024).records
         first = next(iter(records), None)
         if not isinstance(first, Header):
             raise UnusableRecording("it has no MCAP header")

@@ -1,0 +1,69 @@
+"""A client at the REST API of a station in this process, and the files that it sends."""
+
+import asyncio
+import io
+import queue
+from typing import Any
+
+import numpy as np
+from httpx import ASGITransport, AsyncClient, Response
+
+from teachpath.app import Station
+
+API = "/api/v1"
+
+
+class Desk:
+    """A station and a client that speaks to it."""
+
+    def __init__(self, station: Station, loop: asyncio.Runner) -> None:
+        self.station, self._loop = station, loop
+        app = ASGITransport(station.web, raise_app_exceptions=False)
+        self._client = AsyncClient(transport=app, base_url="http://127.0.0.1:8765")
+        self._news: queue.SimpleQueue[bytes] = queue.SimpleQueue()
+        station.bus.subscribe(station.keys.job("*"), lambda _, payload: self._news.put(payload))
+
+    def send(self, method: str, address: str, **options: Any) -> Response:
+        return self._loop.run(self._client.request(method, address, **options))
+
+    def get(self, resource: str, **options: Any) -> Response:
+        return self.send("GET", API + resource, **options)
+
+    def put(self, resource: str, body: Any) -> Response:
+        return self.send("PUT", API + resource, json=body)
+
+    def post(self, resource: str, body: Any = None, **options: Any) -> Response:
+        return self.send("POST", API + resource, **({"json": body} | options))
+
+    def import_(self, task: str, content: Any, **query: Any) -> Response:
+        return self.post(f"/tasks/{task}/demonstrations", json=None, content=content, params=query)
+
+    def ended(self, accepted: Response) -> dict[str, Any]:
+        """Wait for the job that was accepted to end."""
+        assert accepted.status_code == 202, accepted.text
+        assert accepted.headers["location"] == f"{API}/jobs/{accepted.json()['id']}"
+        while True:
+            job: dict[str, Any] = self.send("GET", accepted.headers["location"]).json()
+            if job["finished_ns"]:
+                return job
+            self._news.get(timeout=60)
+
+
+def refused(response: Response, status: int, sentence: str) -> None:
+    """Check that a refusal has its status and a sentence, on one line, that holds `sentence`."""
+    assert response.status_code == status, response.text
+    detail = response.json()["detail"]
+    assert isinstance(detail, str)
+    assert sentence in detail, detail
+    assert len(detail) > 15
+    assert "\n" not in detail
+
+
+def csv(points: int = 60, *, step: float = 0.01) -> str:
+    return "t,x,y,z\n" + "".join(f"{i * 0.02},{0.4 + step * i},{0.1 * np.sin(i / 20):.6f},0.6\n" for i in range(points))
+
+
+def npy(values: Any) -> bytes:
+    out = io.BytesIO()
+    np.save(out, values)
+    return out.getvalue()

@@ -1,0 +1,95 @@
+"""Tasks over REST: recording, and importing files that can and cannot be used."""
+
+import numpy as np
+import pytest
+
+from tests.contract.desk import Desk, csv, npy, refused
+
+# recording
+
+
+def test_recording_starts_once_and_stops_with_an_account(desk: Desk) -> None:
+    desk.put("/tasks/lift", {})
+    begun = desk.post("/tasks/lift/recording", {"tracker": "glove"})
+    assert begun.status_code == 201
+    assert [r["tracker"] for r in desk.get("/tasks/lift/recording").json()] == ["glove"]
+    refused(desk.post("/tasks/lift/recording", {"tracker": "glove"}), 409, "glove is already recording lift")
+    refused(desk.post("/tasks/lift/recording/stop", {"tracker": "other"}), 422, "'other' is not recording lift")
+    ended = desk.post("/tasks/lift/recording/stop", {"tracker": "glove"}).json()
+    assert (int(ended["received"]), ended["demonstrations"]) == (0, [])
+    refused(desk.post("/tasks/lift/recording/stop", {"tracker": "glove"}), 422, "running: none")
+    assert desk.get("/tasks/lift/recording").json() == []
+
+
+@pytest.mark.parametrize("tracker", ["", "a/b", "*", "..", "x" * 65, "a\n"])
+def test_a_bad_tracker_name_is_refused(desk: Desk, tracker: str) -> None:
+    desk.put("/tasks/lift", {})
+    answer = desk.post("/tasks/lift/recording", {"tracker": tracker})
+    refused(answer, 422, "cannot name a tracker")
+
+
+# imports
+
+SHORT = "t,x,y,z\n" + "".join(f"{i * 0.02},{i},0,0\n" for i in range(6))
+
+
+@pytest.mark.parametrize(
+    ("content", "query", "sentence"),
+    [
+        ("", {}, "the file is empty"),
+        ("t,x,y,z\n", {}, "no samples under the header"),
+        ("a,b\n1,2\n", {}, "the first line must be t,x,y,z"),
+        (csv()[:-8], {}, "line 61"),
+        (csv() + "9,nan,0,0\n", {}, "sample 60 has a x that is not finite"),
+        (csv() + "0,0,0,0\n", {}, "sort by t"),
+        (csv().replace("0.6\n", "1e300\n"), {}, "a position is 1e+300 m away, limit 100; are the units right?"),
+        (csv(), {"units": "mm", "scene": "paper"}, "check units and calibration"),
+        (csv() + "1e300,0,0,0\n", {}, "it lasts 1e+300 s, limit 86400"),
+        ("t,x,y,z\n" + "9" * 200_000, {}, "CSV"),
+        (SHORT, {}, "under the least of 8"),
+        (csv(), {"units": "parsec"}, "units 'parsec' are unknown; known: m, cm, mm, in"),
+        (csv(), {"format": "xls"}, "format 'xls' is unknown; known: csv, robottasks"),
+        (csv(), {"rate": "nan"}, "rate of nan Hz"),
+        (csv(), {"rate": "often"}, "query.rate: it should be a valid number"),
+        (csv(), {"name": "x" * 201}, "query.name"),
+        (csv(), {"scene": "paper"}, "does not begin at the object of scene paper"),
+        (b"", {"format": "robottasks"}, "the file is empty"),
+        (b"rubbish", {"format": "robottasks"}, "not a whole .npy array"),
+        (b"PK\x03\x04rubbish", {"format": "robottasks"}, "not a whole .npy array"),
+        (npy(np.zeros((2, 30, 7)))[:-100], {"format": "robottasks"}, "not a whole .npy array"),
+        (npy(np.zeros((2, 30, 7))).replace(b"(2, 30", b"(20000000, 30000000"), {"format": "robottasks"}, "not a whole"),
+        (npy(np.zeros((2, 30, 3))), {"format": "robottasks"}, "the array must be floats"),
+        (npy(np.zeros((0, 30, 7))), {"format": "robottasks"}, "holds no demonstrations"),
+        (npy(np.zeros((2, 0, 7))), {"format": "robottasks"}, "too few"),
+        (npy(np.full((2, 30, 7), np.inf)), {"format": "robottasks"}, "not finite"),
+    ],
+)
+def test_a_file_that_cannot_be_used_is_a_sentence_and_leaves_nothing(
+    desk: Desk, content: bytes | str, query: dict[str, str], sentence: str
+) -> None:
+    refused(desk.import_("imported-badly", content, **query), 422, sentence)
+    left = desk.get("/tasks/imported-badly/demonstrations")
+    assert left.status_code == 404 or left.json() == []
+
+
+def test_a_file_is_imported_in_its_units_and_read_back(desk: Desk) -> None:
+    (made,) = desk.import_("inches", csv(), units="in", name="mine.csv").json()
+    assert (made["source"], made["samples"], made["verdict"], made["number"]) == ("mine.csv", 60, "clean", 1)
+    way = desk.get(f"/demonstrations/{made['id']}/trajectory").json()
+    assert way["positions"][-1][0] - way["positions"][0][0] == pytest.approx(0.59 * 0.0254)
+    assert desk.get(f"/demonstrations/{made['id']}").json() == made
+    recording = desk.get(f"/demonstrations/{made['id']}/recording")
+    assert recording.content.startswith(b"\x89MCAP0\r\n")
+    turned = np.zeros((3, 40, 7))
+    turned[..., 3], turned[..., 0] = 1.0, np.linspace(0.4, 0.6, 40)
+    assert len(desk.import_("array", npy(turned), format="robottasks").json()) == 3
+
+
+def test_an_empty_scene_of_tasks_shows_lists(desk: Desk) -> None:
+    desk.put("/tasks/bare", {})
+    for resource in ("demonstrations", "jobs", "runs", "recording"):
+        assert desk.get(f"/tasks/bare/{resource}").json() == []
+    health = desk.get("/health").json()
+    assert health["executor"] is None
+    assert [s["name"] for s in desk.get("/scenes").json()] == ["paper", "empty"]
+    assert [c["name"] for c in desk.get("/calibrations").json()] == ["identity", "robottasks"]

@@ -1,0 +1,117 @@
+"""Jobs, their outcomes and executions over REST."""
+
+from dataclasses import replace
+from typing import Any
+
+import pytest
+
+from teachpath.app import Station
+from teachpath.records import Job, JobState
+from tests.contract.desk import Desk, csv, refused
+from tests.unit.io.test_documents import a_plan
+
+
+def planned(station: Station, key: str) -> str:
+    """Store a plan and return its id."""
+    job = Job(f"plan-{key}", "t", "plan", {}, JobState.QUEUED, 0.0, "", "", 0, 1, 0)
+    station.store.add_job(job)
+    return station.store.finish_planning(job.id, replace(a_plan(), id=key))
+
+
+# jobs and their outcomes
+
+
+def test_a_task_without_demonstrations_fails_with_a_sentence(desk: Desk) -> None:
+    desk.put("/tasks/unshown", {})
+    job = desk.ended(desk.post("/tasks/unshown/jobs", {"kind": "learn"}))
+    assert (job["state"], job["outcome"]) == ("failed", "")
+    assert job["message"] == "task unshown has no usable demonstrations yet; show it a few times first"
+    refused(desk.post(f"/jobs/{job['id']}/cancel"), 409, "has already failed")
+    assert [j["id"] for j in desk.get("/tasks/unshown/jobs").json()] == [job["id"]]
+
+
+@pytest.mark.parametrize(
+    ("changes", "sentence"),
+    [
+        ('{"keeep": 1}', "there is no setting learning.keeep; known here: mode, keep"),
+        ('{"keep": "two"}', "setting learning.keep is 'two'; it should be a valid integer"),
+        ('{"keep": true}', "setting learning.keep is True"),
+        ('{"keep": 0}', "learning.keep"),
+        ('{"threshold": NaN}', "setting learning.threshold is nan; it should be a finite number"),
+        ('{"threshold": []}', "setting learning.threshold"),
+        ('{"mode": "other"}', "learning.mode is 'other'; it is one of default, paper"),
+        ('{"mode": "\\ud800"}', "settings cannot be read"),
+        ('{"mode": "paper"}', "set learning.threshold in metres"),
+        (f'{{"seed": 1{"0" * 400}}}', "too large"),
+        ("[]", "body.settings: it should be a valid dictionary"),
+    ],
+)
+def test_a_wrong_learning_setting_is_refused_at_once(desk: Desk, changes: str, sentence: str) -> None:
+    desk.put("/tasks/unshown", {})
+    before = len(desk.get("/tasks/unshown/jobs").json())
+    body = f'{{"kind": "learn", "settings": {changes}}}'
+    json_ = {"content-type": "application/json"}
+    refused(desk.post("/tasks/unshown/jobs", json=None, content=body, headers=json_), 422, sentence)
+    refused(desk.post("/tasks/unshown/jobs", {"kind": "dance"}), 422, "body.kind: it should be 'learn' or 'plan'")
+    assert len(desk.get("/tasks/unshown/jobs").json()) == before
+
+
+def test_one_single_demonstration_is_learned_and_its_outcome_is_found(desk: Desk) -> None:
+    desk.import_("single", csv(120, step=0.002))
+    job = desk.ended(desk.post("/tasks/single/jobs", {"kind": "learn", "settings": {"seed": 2}}))
+    assert job["state"] == "succeeded", job["message"]
+    (run,) = desk.get("/tasks/single/runs").json()
+    assert run == desk.get(f"/tasks/single/runs/{job['outcome']}").json()
+    assert [len(c["members"]) for c in run["learned"]["clusters"]] == [1]
+    assert run["learned"]["clusters"][0]["note"]
+    assert run["learned"]["settings"]["seed"] == 2
+    (path,) = run["learned"]["paths"]
+    assert desk.get(f"/paths/{path['id']}").json() == path
+    assert path["fit"]["largest"] <= path["fit"]["bound"]
+    assert desk.get(f"/paths/{path['id']}/plans").json() == []
+
+    desk.put("/tasks/other", {})
+    refused(desk.get(f"/tasks/other/runs/{run['id']}"), 404, "it is of task single")
+    refused(desk.post("/tasks/other/jobs", {"kind": "plan", "path": path["id"]}), 404, "it is of task single")
+    for accepted in (
+        desk.post(f"/paths/{path['id']}/plans"),
+        desk.post("/tasks/single/jobs", {"kind": "plan", "path": path["id"]}),
+    ):
+        ended = desk.ended(accepted)
+        assert ended["state"] in ("succeeded", "failed")
+        assert (ended["state"] == "succeeded") == bool(ended["outcome"]) == (not ended["message"])
+
+
+@pytest.mark.parametrize("settings_", [{}, {"mode": "paper", "threshold": 0.06}])
+def test_a_demonstration_shorter_than_the_window_is_learned_with_a_note(desk: Desk, settings_: dict[str, Any]) -> None:
+    task = f"short-{settings_.get('mode', 'default')}"
+    for _ in range(3):
+        desk.import_(task, csv(12))
+    job = desk.ended(desk.post(f"/tasks/{task}/jobs", {"settings": settings_}))
+    assert job["state"] == "succeeded", job["message"]
+    learned = desk.get(f"/tasks/{task}/runs/{job['outcome']}").json()["learned"]
+    assert all(cluster["note"] for cluster in learned["clusters"])
+
+
+def test_identical_points_are_refused_with_a_sentence(desk: Desk) -> None:
+    desk.import_("still", "t,x,y,z\n" + "".join(f"{i * 0.02},0.4,0,0.6\n" for i in range(60)))
+    job = desk.ended(desk.post("/tasks/still/jobs", {}))
+    assert job["state"] == "failed"
+    assert "has 1 distinct points, needs 5; leave it out or record it again" in job["message"]
+
+
+# executions
+
+
+def test_without_an_executor_an_execution_is_503_and_kept_with_its_reason(desk: Desk) -> None:
+    plan = planned(desk.station, "plan-good")
+    assert desk.get(f"/plans/{plan}").json()["id"] == plan
+    refused(desk.post("/executions", {"plan": plan}), 503, "nobody answered")
+    newest = desk.get("/executions").json()[0]
+    assert (newest["plan"], newest["status"]["state"]) == (plan, "faulted")
+    assert "nobody answered" in newest["status"]["reason"]
+    assert desk.get(f"/executions/{newest['id']}").json() == newest
+    for verb in ("hold", "resume", "stop"):
+        refused(desk.post(f"/executions/{newest['id']}/{verb}"), 409, "is not running")
+    refused(desk.post(f"/executions/{newest['id']}/override", {"override": 0.5}), 409, "is not running")
+    refused(desk.post(f"/executions/{newest['id']}/jump"), 422, "path.verb: it should be 'hold', 'resume' or 'stop'")
