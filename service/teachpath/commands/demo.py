@@ -9,7 +9,7 @@ import sys
 import tempfile
 import time
 from collections.abc import Iterator
-from contextlib import ExitStack, contextmanager
+from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -25,6 +25,7 @@ from teachpath.config import Settings
 from teachpath.errors import PathRefused, TeachpathError, Unreachable, UnusableRecording
 
 READY = 20.0  # [s] for executor and simulated arm to appear
+HOLDS = 20  # tries to go on after the arm was held
 console = Console(stderr=True)
 
 
@@ -53,9 +54,7 @@ def demo(
         stop = stack.enter_context(until_signalled())
         stack.enter_context(serving(settings))
         url = f"http://{settings.web.host}:{settings.web.port}"
-        console.print(
-            f"teachpath serves [bold]{url}[/bold]: open it to watch; API docs at {url}/docs", highlight=False
-        )
+        console.print(f"teachpath serves [bold]{url}[/bold]: open it to watch; API docs at {url}/docs", highlight=False)
         api = stack.enter_context(Api(url))
         summary = _Story(api, url, settings, stop).tell(speed=speed, seed=seed, recordings=recordings)
         if as_json or once:
@@ -74,6 +73,7 @@ class _Story:
 
     def __init__(self, api: Api, url: str, settings: Settings, stop: Any) -> None:
         self._api, self._url, self._settings, self._stop = api, url, settings, stop
+        self._held = 0
 
     def tell(self, *, speed: float, seed: int, recordings: Path | None) -> dict[str, Any]:
         self._wait_ready()
@@ -172,12 +172,23 @@ class _Story:
         with progress_bar("moving") as show:
             execution = self._api.call("POST", "/executions", {"plan": plan})
 
-
             def show_unless_stopped(fraction: float, state: str) -> None:
                 self._pause(0.0)
                 show(fraction, state)
+                if state.startswith("held"):
+                    self._resume(execution["id"], state)
 
             return self._api.follow_execution(execution, show_unless_stopped)
+
+    def _resume(self, execution: str, state: str) -> None:
+        """Go on as an operator would when the arm was held, e.g. because this machine was too busy for a moment."""
+        console.print(f"{state}; resuming", highlight=False)
+        with suppress(TeachpathError):  # still silent, or off its place: the next round tries again
+            self._api.call("POST", f"/executions/{execution}/resume")
+        self._held += 1
+        if self._held > HOLDS:
+            raise Unreachable(f"the arm was held {HOLDS} times: {state}")
+        self._pause(0.5)
 
     def _pause(self, seconds: float = 0.2) -> None:
         if self._stop.wait(seconds):

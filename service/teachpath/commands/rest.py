@@ -57,7 +57,7 @@ class Api:
     def follow_execution(self, execution: dict[str, Any], show: Callable[[float, str], None]) -> dict[str, Any]:
         """Wait for an execution to end and return it; raises TeachpathError when the arm faulted."""
         while (status := execution["status"])["state"] not in ENDED_EXECUTIONS:
-            show(status["progress"], status["state"])
+            show(status["progress"], ": ".join(filter(None, (status["state"], status["reason"]))))
             time.sleep(POLL)
             execution = self.call("GET", f"/executions/{execution['id']}")
         if status["state"] == "faulted":

@@ -44,11 +44,15 @@ def serving(settings: Settings) -> Iterator[Station]:
 
 def _listen(host: str, port: int) -> socket.socket:
     try:
-        return socket.create_server((host, port), backlog=128)
+        listener = socket.create_server((host, port), backlog=128)
     except OSError as error:
         raise Unreachable(
             f"cannot listen on {host}:{port} ({error.strerror}); is a service running there? Choose another: --port"
         ) from None
+    # Connections inherit it. asyncio sets it only on sockets that it opened itself; without it an answer waits for the
+    # client's delayed acknowledgement.
+    listener.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+    return listener
 
 
 def free_port() -> int:

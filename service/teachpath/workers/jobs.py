@@ -178,4 +178,3 @@ class Jobs:
             except Conflict:
                 continue  # ended meanwhile
             self._bus.publish(self._keys.job(key), encode_progress(job))
-
