@@ -96,14 +96,18 @@ class Station:
         unfinished = self.store.recordings.unfinished()
         if unfinished:
             log.warning("%d recordings were cut off; look at them with: teachpath doctor", len(unfinished))
-        self.preview.start()
-        self.recorder.start()
-        self.executions.start()
-        for process in self.processes:
-            process.start()
-        self.jobs.start()
-        tasks = self.store.tasks()
-        self._show_task(tasks[-1].name if tasks else "")
+        try:
+            self.preview.start()
+            self.recorder.start()
+            self.executions.start()
+            for process in self.processes:
+                process.start()
+            self.jobs.start()
+            tasks = self.store.tasks()
+            self._show_task(tasks[-1].name if tasks else "")
+        except BaseException:
+            self.__exit__(None, None, None)
+            raise
         return self
 
     def __exit__(
@@ -136,7 +140,7 @@ class Station:
         return {
             "version": __version__,
             "uptime": round(time.monotonic() - self._started, 1),
-            "endpoint": self.settings.bus.endpoint,
+            "bus": asdict(self.settings.bus),
             "processes": {p.name: "running" if p.is_alive() else "ended" for p in self.processes},
             "recording": sorted(running),
             "executor": asdict(status) if status else None,

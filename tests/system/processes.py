@@ -18,6 +18,7 @@ from teachpath_client.rest import Station
 
 FAMILY = "SYSTEM_TEST_FAMILY"  # in the environment of a command and of all that it starts
 READY = 30.0  # [s] for a service to answer
+OUTLIVED = 5.0  # [s] for the processes of a killed service to leave: they load, find it gone, and have a grace of 1.5
 
 
 def free_ports(count: int) -> list[int]:
@@ -151,7 +152,7 @@ class Service(Command):
             if self.process.poll() is None:
                 self.process.terminate()
                 assert self.wait(10.0) == 0
-            self.wait_gone(3.0)
+            self.wait_gone(OUTLIVED)
             assert "Traceback" not in self.err, self.err
         finally:
             self.clean_up()

@@ -3,7 +3,6 @@
 import hashlib
 import itertools
 import re
-import time
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -12,8 +11,8 @@ import pytest
 from teachpath.workers.recorder import FLUSH_EVERY
 from teachpath_client import HandReading, Link, Tracker
 from teachpath_client.synthetic import RATE, experiment_1
-from tests.system.processes import Service, run, wait_until
-from tests.system.test_station import SHOWN, record, trajectory, write_csv
+from tests.system.processes import OUTLIVED, Service, run, wait_until
+from tests.system.test_station import record, trajectory, write_csv
 
 pytestmark = pytest.mark.system
 
@@ -37,7 +36,7 @@ def test_a_kill_in_mid_take_costs_at_most_the_last_second(tmp_path: Path) -> Non
             tracker.start("carry")
             tracker.publish(cut_short(sent), speed=1.0)
             killed.kill()
-        killed.wait_gone(3.0)
+        killed.wait_gone(OUTLIVED)
 
     doctor = run("doctor", "--data", str(killed.data), folder=tmp_path)
     assert doctor.process.returncode == 0, doctor.err
@@ -67,7 +66,7 @@ def test_a_job_under_way_is_run_again_once(tmp_path: Path) -> None:
         running = lambda: killed.call("GET", f"/jobs/{job['id']}")["state"] == "running"  # noqa: E731
         wait_until(running, seconds=20, what="the job runs")
         killed.kill()
-        killed.wait_gone(3.0)
+        killed.wait_gone(OUTLIVED)
 
     with Service(killed.data) as next_one:
         ended = next_one.job(job["id"])

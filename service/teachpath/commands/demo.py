@@ -10,6 +10,7 @@ import tempfile
 import time
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager, suppress
+from dataclasses import asdict
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -111,7 +112,7 @@ class _Story:
         command = replay_command(
             [d["id"] for d in stored],
             url=self._url,
-            endpoint=self._settings.bus.endpoint,
+            bus=asdict(self._settings.bus),
             task=f"{task}-replayed",
             scene="empty",
             calibration="robottasks",

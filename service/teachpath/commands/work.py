@@ -15,7 +15,6 @@ from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 from teachpath.commands.options import LOCAL, Url
 from teachpath.commands.rest import Api
 from teachpath.commands.tables import clusters_table, paths_table, plan_lines
-from teachpath.config import load
 
 Task = Annotated[str, typer.Argument(help="The task.")]
 console = Console(stderr=True)
@@ -102,14 +101,14 @@ def replay(
     with Api(url) as api:
         stored = api.call("GET", f"/tasks/{task}")
         demonstrations = api.call("GET", f"/tasks/{task}/demonstrations")
-        endpoint = api.call("GET", "/health")["endpoint"]
+        bus = api.call("GET", "/health")["bus"]
     chosen = [d["id"] for d in demonstrations if not number or d["number"] in number]
     if not chosen:
         sys.exit(f"teachpath: task {task} has no such demonstrations; it has {len(demonstrations)}")
     command = replay_command(
         chosen,
         url=url,
-        endpoint=endpoint,
+        bus=bus,
         task=into or f"{task}-replayed",
         scene=stored["scene"],
         calibration=stored["calibration"],
@@ -119,13 +118,13 @@ def replay(
 
 
 def replay_command(
-    demonstrations: list[str], *, url: str, endpoint: str, task: str, scene: str, calibration: str, speed: float
+    demonstrations: list[str], *, url: str, bus: dict[str, str], task: str, scene: str, calibration: str, speed: float
 ) -> list[str]:
     """Return the command of the client process that replays `demonstrations` into `task`."""
     options = {
         "--url": url,
-        "--endpoint": endpoint,
-        "--prefix": load().bus.prefix,
+        "--endpoint": bus["endpoint"],
+        "--prefix": bus["prefix"],
         "--task": task,
         "--scene": scene,
         "--calibration": calibration,

@@ -45,6 +45,8 @@ class SimulatorSettings:
     bandwidth: Annotated[float, Gt(0), Le(150)] = 60.0
     # [s] between two setpoints; at most this long one is extrapolated
     period: Annotated[float, Gt(0), Le(0.1)] = 0.004
+    # [s] that setpoints wait before they are due, so that one that was held up on its way still comes in time
+    delay: Annotated[float, Ge(0), Le(0.2)] = 0.03
     # [s] without a setpoint after which the arm holds
     silence: Annotated[float, Gt(0), Le(1)] = 0.02
     # [m] between grasp point and object's centre, up to which a closing gripper takes the object
@@ -245,8 +247,11 @@ class Simulator:
                     self._over = status.execution
         except UnusableInput as error:
             log.warning("left out: %s", error)
-        while self._queue and (self._queue[0].nominal_ns <= now or len(self._queue) > AHEAD):
+        while self._queue and (self._due(self._queue[0]) <= now or len(self._queue) > AHEAD):
             self._apply(self._queue.popleft(), now)
+
+    def _due(self, setpoint: Setpoint) -> int:
+        return setpoint.nominal_ns + round(self._settings.delay * 1e9)
 
     def _apply(self, setpoint: Setpoint, now: int) -> None:
         newest = self._newest
@@ -268,7 +273,7 @@ class Simulator:
         newest, none = self._newest, np.zeros(6)
         if newest is None or self._silent(now):
             return self._held, none, none
-        dt = min(max((now - newest.nominal_ns) / 1e9, 0.0), self._settings.period)
+        dt = min(max((now - self._due(newest)) / 1e9, 0.0), self._settings.period)
         velocity = newest.velocity + newest.acceleration * dt
         self._held = newest.position + newest.velocity * dt + newest.acceleration * dt**2 / 2
         return self._held, velocity, newest.acceleration

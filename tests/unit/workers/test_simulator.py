@@ -122,7 +122,7 @@ def test_holds_on_silence_and_says_so_until_setpoints_come_again() -> None:
     silent = bench.run(0.5)
     assert not silent[0].holding  # not yet: 20 ms are allowed
     assert silent[-1].holding
-    assert silent[-1].missed == pytest.approx(0.49 / 0.004, abs=2)
+    assert silent[-1].missed == pytest.approx((0.49 - SETTINGS.delay) / 0.004, abs=2)
     assert np.allclose(silent[-1].position, HOME + step, atol=2e-3)
     assert np.abs(silent[-1].velocity).max() < 1e-2
     again = bench.move(HOME, 0.4)

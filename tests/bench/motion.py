@@ -1,0 +1,139 @@
+"""A served station: job round trips, and the executor's lateness and the arm's tracking error on real executions."""
+
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from statistics import median
+from typing import Any
+
+from report import Figure, against
+
+from teachpath.commands.rest import Api
+from teachpath.commands.serving import free_port, serving
+from teachpath.config import load
+
+READY = 30.0  # [s] for the executor to appear
+POLL = 0.002  # [s]
+
+
+def measure(*, repeats: int, seconds: float) -> list[Figure]:
+    """Return the figures; an execution is stopped after `seconds`, or runs to its end.
+
+    An execution that the executor gives up is a figure too, with what was measured until then.
+    """
+    with tempfile.TemporaryDirectory(prefix="teachpath-bench-") as folder:
+        endpoint = f"tcp/127.0.0.1:{free_port()}"
+        places = {"web": {"port": free_port()}, "bus": {"endpoint": endpoint}, "store": {"data_dir": folder}}
+        settings = load(document=places)
+        with serving(settings), Api(f"http://127.0.0.1:{settings.web.port}") as api:
+            _show(endpoint)
+            figures, plan = _jobs(api, repeats)
+            _wait_for_executor(api)
+            for load_, crowd in (("idle", _nobody), ("one core busy", _busy)):
+                with crowd():
+                    runs = [_execute(api, plan, seconds) for _ in range(repeats)]
+                figures += _lateness(runs, load_, settings.executor.rate)
+                error = [1e3 * run["tracking_error"] for run in runs]
+                limit = 1e3 * settings.executor.largest_error
+                what = f"tracking error of the simulated arm, {load_}"
+                figures.append(against(what, error, "mrad", name="executor.largest_error", value=limit))
+                given_up = float(sum(run["state"] == "faulted" for run in runs))
+                figures.append(Figure(f"executions given up of {repeats}, {load_}", (given_up,), "executions"))
+            return figures
+
+
+def _show(endpoint: str) -> None:
+    command = [sys.executable, "-m", "teachpath_client", "synthetic", "--scene", "paper", "--speed", "100"]
+    subprocess.run([*command, "--endpoint", endpoint], check=True, stdout=subprocess.DEVNULL)
+
+
+def _jobs(api: Api, repeats: int) -> tuple[list[Figure], str]:
+    """Learn and plan as jobs of the service; returns the figures and a plan."""
+    learning, planning = [], []
+    for count in range(repeats + 1):
+        learned, seconds = _job(api, "/tasks/demo/jobs", {"kind": "learn"})
+        learning += [seconds] * bool(count)  # the first loads the libraries
+    run = api.call("GET", f"/tasks/demo/runs/{learned['outcome']}")
+    path = run["learned"]["paths"][0]["id"]
+    for _ in range(repeats):
+        planned, seconds = _job(api, f"/paths/{path}/plans", None)
+        planning.append(seconds)
+    # A learning job that has nothing to learn from ends at once: what is left is the way there and back.
+    api.call("PUT", "/tasks/nothing", {"scene": "empty"})
+    empty = [_job(api, "/tasks/nothing/jobs", {"kind": "learn"}, state="failed")[1] for _ in range(5 * repeats)]
+    round_trip = median(empty)
+    return [
+        Figure("job round trip over REST, nothing to do", tuple(empty), "s"),
+        against("learning job, POST to outcome", learning, "s", name="round trip alone", value=round_trip),
+        against("planning job, POST to outcome", planning, "s", name="round trip alone", value=round_trip),
+    ], planned["outcome"]
+
+
+def _job(api: Api, resource: str, body: dict[str, Any] | None, *, state: str = "succeeded") -> tuple[Any, float]:
+    began = time.perf_counter()
+    job = api.call("POST", resource, body)
+    while job["state"] in ("queued", "running"):
+        time.sleep(POLL)
+        job = api.call("GET", f"/jobs/{job['id']}")
+    if job["state"] != state:
+        raise SystemExit(f"bench: the {job['kind']} job {job['state']}: {job['message']}")
+    return job, time.perf_counter() - began
+
+
+def _wait_for_executor(api: Api) -> None:
+    deadline = time.monotonic() + READY
+    while api.call("GET", "/health")["executor"] is None:
+        if time.monotonic() > deadline:
+            raise SystemExit(f"bench: the executor did not appear within {READY:g} s")
+        time.sleep(0.05)
+
+
+def _execute(api: Api, plan: str, seconds: float) -> Any:
+    """Run one execution to its end, or stop it after `seconds`; returns its last status."""
+    execution = api.call("POST", "/executions", {"plan": plan})
+    deadline = time.monotonic() + seconds
+    asked = False
+    while (status := execution["status"])["state"] not in ("ended", "faulted"):
+        if not asked and time.monotonic() > deadline:
+            asked = True
+            api.call("POST", f"/executions/{execution['id']}/stop")
+        time.sleep(0.05)
+        execution = api.call("GET", f"/executions/{execution['id']}")
+    return status
+
+
+def _lateness(runs: list[Any], crowd: str, rate: float) -> list[Figure]:
+    period = 1e6 / rate
+    names = {"p50": "lateness_p50_us", "p99": "lateness_p99_us", "max": "lateness_max_us"}
+    cycles = sum(run["cycles"] for run in runs)
+    figures = [
+        against(
+            f"executor lateness {name}, {crowd}",
+            [run[field] for run in runs],
+            "us",
+            name="control period",
+            value=period,
+        )
+        for name, field in names.items()
+    ]
+    missed = [100.0 * run["missed"] / run["cycles"] for run in runs]
+    return [*figures, Figure(f"setpoints missed of {cycles:,}, {crowd}", tuple(missed), "%")]
+
+
+@contextmanager
+def _nobody() -> Iterator[None]:
+    yield
+
+
+@contextmanager
+def _busy() -> Iterator[None]:
+    """Keep one core busy."""
+    process = subprocess.Popen([sys.executable, "-c", "while True: pass"])
+    try:
+        yield
+    finally:
+        process.kill()
+        process.wait()

@@ -1,0 +1,35 @@
+"""make bench: measured figures, each beside a limit or a peer of the same run. Nothing here passes or fails."""
+
+import argparse
+import math
+import time
+
+import learning
+import motion
+import recording
+from report import machine, print_report
+
+
+def main() -> None:
+    """Measure and print."""
+    parser = argparse.ArgumentParser(description="Measure teachpath on this machine.")
+    parser.add_argument("--quick", action="store_true", help="fewer repetitions, executions cut short")
+    quick = parser.parse_args().quick
+    began = time.monotonic()
+    print(f"teachpath bench on {machine()}{', quick' if quick else ''}\n", flush=True)
+
+    figures, trajectories = recording.measure(repeats=1 if quick else 5, samples=recording.DEMO * (1 if quick else 4))
+    print_report("Recording: hand samples to MCAP files and rows, every sample accounted for", figures)
+    print_report(
+        "Learning and planning, in this process",
+        learning.measure(trajectories, repeats=3 if quick else 7),
+    )
+    print_report(
+        "A served station: jobs in their process, executor and simulated arm in theirs",
+        motion.measure(repeats=1 if quick else 3, seconds=2.0 if quick else math.inf),
+    )
+    print(f"took {time.monotonic() - began:.0f} s")
+
+
+if __name__ == "__main__":
+    main()
