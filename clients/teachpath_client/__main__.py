@@ -1,15 +1,19 @@
-"""The client's command line: `teachpath-client synthetic` and `teachpath-client replay`."""
+"""The client's command line: `teachpath-client tracker`, `sources`, `glove-calibrate`, `synthetic` and `replay`."""
 
 from __future__ import annotations
 
 import argparse
+import logging
 import sys
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from google.protobuf.json_format import MessageToJson
 
+from teachpath_client.devices import configure, describe_sources, open_source
+from teachpath_client.devices.cyberglove import GloveSettings
 from teachpath_client.link import ClientError, Link
+from teachpath_client.live import calibrate_glove, ended_by_signals, felt, record_live
 from teachpath_client.reading import HandReading
 from teachpath_client.replay import read_mcap
 from teachpath_client.rest import Station
@@ -21,6 +25,7 @@ from teachpath_proto import tracker_pb2
 def main(arguments: Sequence[str] | None = None) -> None:
     """Run the client's command line."""
     options = _parser().parse_args(arguments)
+    logging.basicConfig(format="teachpath-client: %(message)s", level=logging.WARNING)
     try:
         options.run(options)
     except ClientError as error:
@@ -36,6 +41,18 @@ def _parser() -> argparse.ArgumentParser:
         "a device clock, and a handshake at the end that says what arrived.",
     )
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
+    tracker = commands.add_parser("tracker", help="publish from a device until Ctrl-C")
+    tracker.add_argument("--source", required=True, help="one of those that `teachpath-client sources` lists")
+    tracker.set_defaults(run=_tracker)
+    sources = commands.add_parser("sources", help="list the sources that there are")
+    sources.set_defaults(run=_sources)
+    calibrate = commands.add_parser("glove-calibrate", help="measure an open hand and a fist with a CyberGlove")
+    calibrate.add_argument("file", type=Path, metavar="FILE", help="the calibration to write, e.g. glove.toml")
+    calibrate.set_defaults(run=_calibrate_glove)
+    for command in (tracker, calibrate):
+        command.add_argument(
+            "--option", type=_option, action="append", default=[], metavar="KEY=VALUE", help="of the device; repeatable"
+        )
     synthetic = commands.add_parser("synthetic", help="show the paper's experiments with a synthetic hand")
     synthetic.add_argument("--experiment", type=int, choices=(1, 2), default=1)
     synthetic.add_argument("--seed", type=int, default=1, help="same seed, same hand (default 1)")
@@ -44,7 +61,7 @@ def _parser() -> argparse.ArgumentParser:
     replay.add_argument("sources", nargs="+", metavar="SOURCE", help="an MCAP file, or a demonstration's id")
     replay.add_argument("--url", default="http://127.0.0.1:8765", help="station that holds the ids (%(default)s)")
     replay.set_defaults(run=_replay)
-    for command in (synthetic, replay):
+    for command in (tracker, synthetic, replay):
         command.add_argument("--task", default="demo", help="what is demonstrated (%(default)s)")
         command.add_argument("--scene", default="", help="makes a new task with this scene, e.g. paper or empty")
         command.add_argument("--calibration", default="", help="of the tracker's frame; default: the task's own")
@@ -60,6 +77,46 @@ def _speed(text: str) -> float:
     if not 0.01 <= speed <= 100:
         raise argparse.ArgumentTypeError(f"{text} is outside 0.01 to 100")
     return speed
+
+
+def _option(text: str) -> tuple[str, str]:
+    key, separator, value = text.partition("=")
+    if not key or not separator:
+        raise argparse.ArgumentTypeError(f"{text} is not KEY=VALUE")
+    return key, value
+
+
+def _tracker(options: argparse.Namespace) -> None:
+    source = open_source(options.source, dict(options.option))
+    if source.capabilities.live and options.speed != 1.0:
+        raise ClientError(f"{options.source} measures in real time; leave out --speed {options.speed:g}")
+    with ended_by_signals(source), source, Link(options.endpoint) as link:
+        tracker = Tracker(link, options.tracker, prefix=options.prefix)
+        print(f"recording {options.task} from {options.source}; Ctrl-C ends it", file=sys.stderr)
+        with felt(source, link, options.tracker, options.prefix):
+            _print(
+                record_live(
+                    tracker,
+                    source,
+                    options.task,
+                    scene=options.scene,
+                    calibration=options.calibration,
+                    speed=options.speed,
+                )
+            )
+
+
+def _sources(_options: argparse.Namespace) -> None:
+    for name, line in describe_sources().items():
+        print(f"{name:12} {line}")
+
+
+def _calibrate_glove(options: argparse.Namespace) -> None:
+    settings = configure(GloveSettings, dict(options.option))
+    calibration = calibrate_glove(settings, lambda sentence: input(f"{sentence}, then press Enter: "))
+    calibration.save(options.file)
+    telling = sum(gain != 0.0 for gain in calibration.gain)
+    print(f"{options.file}: {telling} of {len(calibration.gain)} sensors tell the open hand from the fist")
 
 
 def _synthetic(options: argparse.Namespace) -> None:

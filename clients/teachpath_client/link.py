@@ -6,6 +6,10 @@ import json
 from typing import Any
 
 import zenoh
+import zenoh.ext
+
+KEPT = 1024  # samples that a subscriber which missed some can still ask for
+HEARTBEAT = 0.2  # [s] after a put until a subscriber is told its number, so that a lost last one is missed too
 
 
 class ClientError(Exception):
@@ -34,16 +38,29 @@ class Link:
             self._session = zenoh.open(config)
         except zenoh.ZError as error:
             raise ClientError(f"no station at {endpoint}: is `teachpath serve` running there? ({error})") from error
+        self._publishers: list[zenoh.ext.AdvancedPublisher] = []
 
     def __enter__(self) -> Link:
         return self
 
     def __exit__(self, *_: object) -> None:
+        # A session that closes under a publisher's heartbeat may keep the process from ending.
+        for publisher in self._publishers:
+            publisher.undeclare()  # type: ignore[no-untyped-call]
+        self._publishers.clear()
         self._session.close()  # type: ignore[no-untyped-call]
 
     def publisher(self, key: str) -> Any:
-        """Return a publisher on `key` that blocks rather than drops."""
-        return self._session.declare_publisher(key, congestion_control=zenoh.CongestionControl.BLOCK)
+        """Return a publisher on `key` that blocks rather than drops, and sends again what a subscriber missed."""
+        publisher = zenoh.ext.declare_advanced_publisher(
+            self._session,
+            key,
+            congestion_control=zenoh.CongestionControl.BLOCK,
+            cache=zenoh.ext.CacheConfig(KEPT),
+            sample_miss_detection=zenoh.ext.MissDetectionConfig(heartbeat=None, sporadic_heartbeat=HEARTBEAT),
+        )
+        self._publishers.append(publisher)
+        return publisher
 
     def announce(self, key: str) -> Any:
         """Show on `key` that this client is alive, until it leaves or dies."""

@@ -46,11 +46,13 @@ class Tracker:
     def publish(self, readings: Iterable[HandReading], *, speed: float = 1.0) -> int:
         """Publish readings when they are due, `speed` times as fast as they were taken; return how many.
 
-        The device clock in the samples keeps the readings' own time.
+        The device clock in the samples keeps the readings' own time, from the moment when the first one was there.
         """
-        start_ns, start = time.time_ns(), self._clock()
+        start_ns, start = 0, 0.0
         count = 0
         for reading in readings:
+            if count == 0:
+                start_ns, start = time.time_ns(), self._clock()
             wait = start + reading.time / speed - self._clock()
             if wait > 0:
                 self._sleep(wait)

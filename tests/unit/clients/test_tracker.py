@@ -79,6 +79,15 @@ def test_a_late_tracker_catches_up_and_leaves_nothing_out(tracker: Tracker, link
     assert link.sent[-1][0] == pytest.approx(100.0 + 9 * 0.02)
 
 
+def test_the_clock_of_a_stream_begins_with_its_first_reading(tracker: Tracker, link: MemoryLink) -> None:
+    def late() -> Any:
+        link.now += 30.0
+        yield from readings(10)
+
+    tracker.publish(late())
+    assert [at - 130.0 for at, _ in link.sent] == pytest.approx([i * 0.02 for i in range(10)])
+
+
 def test_sequence_numbers_go_on_and_stop_names_the_last(tracker: Tracker, link: MemoryLink) -> None:
     tracker.start("lift", scene="paper", calibration="lab")
     tracker.publish(readings(3))

@@ -1,0 +1,87 @@
+"""The hand of the paper: a FASTRAK for its pose and a CyberGlove for its flexions, merged into one stream."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack
+from dataclasses import replace
+from typing import Self
+
+from teachpath_client.devices.cyberglove import GloveSettings, GloveSource
+from teachpath_client.devices.fastrak import FastrakSettings, FastrakSource
+from teachpath_client.devices.source import Capabilities, configure
+from teachpath_client.link import ClientError
+from teachpath_client.reading import HandReading
+
+PATIENCE = 0.1  # [s] a read waits
+OLDEST, PERIODS = 0.1, 3.0  # [s], periods of the glove: how old the flexions of a pose may be at most
+
+
+def hand(**options: str) -> HandSource:
+    """Polhemus FASTRAK and CyberGlove together; fastrak.port=PATH, glove.port=PATH, glove.calibration=FILE."""
+    parts: dict[str, dict[str, str]] = {"fastrak": {}, "glove": {}}
+    for name, value in options.items():
+        device, _, option = name.partition(".")
+        if device not in parts or not option:
+            raise ClientError(f"there is no option {name}; they begin with fastrak. or glove., e.g. glove.port")
+        parts[device][option] = value
+    fastrak = configure(FastrakSettings, parts["fastrak"], prefix="fastrak.")
+    return HandSource(fastrak, configure(GloveSettings, parts["glove"], prefix="glove."))
+
+
+class HandSource:
+    """A tracker and a glove, live: one reading for each pose, with the flexions measured last before it.
+
+    A pose whose flexions are missing or too old gives no reading: half a hand is not a hand.
+    """
+
+    def __init__(
+        self, fastrak: FastrakSettings, glove: GloveSettings, *, clock: Callable[[], float] = time.monotonic
+    ) -> None:
+        self._fastrak = FastrakSource(fastrak, clock=clock)
+        self._glove = GloveSource(glove, clock=clock)
+        self._oldest = max(OLDEST, PERIODS / glove.rate)
+        self._clock = clock
+        self._stack = ExitStack()
+        self._over = False
+
+    @property
+    def capabilities(self) -> Capabilities:
+        """Pose and flexions, live, at the rate of the tracker."""
+        glove = self._glove.capabilities
+        return replace(self._fastrak.capabilities, sensors=glove.sensors, touch=glove.touch)
+
+    def __enter__(self) -> Self:
+        with ExitStack() as stack:
+            stack.enter_context(self._fastrak)
+            stack.enter_context(self._glove)
+            self._stack = stack.pop_all()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+        self._stack.close()
+
+    def close(self) -> None:
+        """End the iteration soon."""
+        self._over = True
+
+    def touch(self, holding: bool) -> None:
+        """Let the hand feel that it holds the object, or no longer."""
+        self._glove.touch(holding)
+
+    def __iter__(self) -> Iterator[HandReading]:
+        start: float | None = None
+        newest = following = self._glove.take(0.0)
+        while not self._over:
+            taken = self._fastrak.take(PATIENCE)
+            # While no pose comes, flexions that are too old for the next one are thrown away.
+            date = taken[0] if taken else self._clock() - self._oldest
+            following = following or self._glove.take(0.0)
+            while following is not None and following[0] <= date:
+                newest, following = following, self._glove.take(0.0)
+            if taken is None or newest is None or not 0.0 <= date - newest[0] <= self._oldest:
+                continue
+            start = date if start is None else start
+            yield replace(taken[1], time=date - start, flexions=newest[1])

@@ -1,0 +1,94 @@
+"""The paper's hand through the bytes of a FASTRAK and a CyberGlove, as an operator would record it."""
+
+import itertools
+import json
+import os
+import signal
+import subprocess
+import sys
+from collections.abc import Iterator
+from contextlib import ExitStack
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from teachpath_client import HandReading, Link
+from teachpath_client.devices.emulators import Emulator
+from teachpath_client.devices.glove_calibration import GloveCalibration
+from teachpath_client.devices.twins import FastrakTwin, GloveTwin
+from teachpath_client.synthetic import GOAL, RATE, START, experiment_1
+from teachpath_proto import tracker_pb2
+from teachpath_proto.keys import Keys
+from tests.system.processes import Service, wait_until
+
+pytestmark = pytest.mark.system
+
+SHOWN = 353  # samples that the synthetic hand needs for one demonstration
+GLOVE = GloveCalibration((60.0,) * 22, (1 / 120,) * 22)
+TRACKER = "paper-hand"
+
+
+@pytest.fixture
+def devices(tmp_path: Path) -> Iterator[tuple[Emulator, Emulator]]:
+    """A tracker and a glove that show the first reading until they are told to go on."""
+    GLOVE.save(tmp_path / "glove.toml")
+    with ExitStack() as stack:
+        tracker = stack.enter_context(Emulator(FastrakTwin(), tmp_path / "fastrak", rate=RATE, hold=True))
+        glove = stack.enter_context(Emulator(GloveTwin(GLOVE), tmp_path / "glove", rate=RATE, hold=True))
+        yield tracker, glove
+
+
+def recording(service: Service) -> tracker_pb2.RecordingReport | None:
+    """Return the report of the running recording of the tracker, if there is one."""
+    with Link(service.endpoint) as link:
+        status = tracker_pb2.RecorderStatus.FromString(link.ask(Keys().recorder_status))
+    return next((report for report in status.recordings if report.tracker == TRACKER), None)
+
+
+def test_the_first_demonstration_of_the_paper_through_fastrak_and_cyberglove(
+    service: Service, devices: tuple[Emulator, Emulator], tmp_path: Path
+) -> None:
+    shown: list[HandReading] = list(itertools.islice(experiment_1(), SHOWN))
+    for device in devices:
+        device.show(shown[0])
+    options = {"fastrak.port": "fastrak", "glove.port": "glove", "glove.calibration": "glove.toml"}
+    client = subprocess.Popen(
+        [
+            *(sys.executable, "-m", "teachpath_client", "tracker", "--source", "hand", "--task", "devices"),
+            *itertools.chain.from_iterable(("--option", f"{key}={tmp_path / name}") for key, name in options.items()),
+            *("--scene", "paper", "--tracker", TRACKER, "--endpoint", service.endpoint),
+        ],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    try:
+        wait_until(
+            lambda: (report := recording(service)) and report.received > 5,
+            seconds=30,
+            what=f"the station receives; the client ended with {client.poll()}",
+        )
+        for device in devices:
+            device.play(shown)
+        for device in devices:
+            assert device.played.wait(30)
+        wait_until(lambda: (report := recording(service)) and report.demonstrations, seconds=10, what="it was cut")
+        os.kill(client.pid, signal.SIGINT)
+        out, err = client.communicate(timeout=20)
+    finally:
+        client.kill()
+        client.wait(10)
+    assert client.returncode == 0, err
+    assert "Ctrl-C ends it" in err
+    assert "Traceback" not in err
+    report = json.loads(out)
+    assert (int(report["lost"]), int(report["refused"]), len(report["demonstrations"])) == (0, 0, 1), report
+    assert int(report["received"]) > SHOWN
+    (demonstration,) = service.demonstrations("devices")
+    assert demonstration["verdict"] == "clean"
+    trajectory = service.call("GET", f"/demonstrations/{demonstration['id']}/trajectory")
+    positions = np.array(trajectory["positions"])
+    assert np.linalg.norm(positions[0] - START) < 0.01
+    assert np.linalg.norm(positions[-1] - GOAL) < 0.02
+    assert np.ptp(np.array(trajectory["times"])) == pytest.approx(3.16, abs=0.5)  # transport time of the hand

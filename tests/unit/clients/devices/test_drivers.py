@@ -1,0 +1,334 @@
+"""The drivers against devices that misbehave, over ptys."""
+
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from teachpath_client.devices.cyberglove import GloveSettings, GloveSource
+from teachpath_client.devices.emulators import Emulator, Spoiler
+from teachpath_client.devices.fastrak import FastrakSettings, FastrakSource
+from teachpath_client.devices.hand import HandSource
+from teachpath_client.devices.twins import FastrakTwin, GloveTwin
+from teachpath_client.link import ClientError
+from teachpath_client.reading import HandReading
+from tests.unit.clients.devices.hands import calibration, gather, readings, until
+
+RATE = 400.0  # [Hz] of the emulators
+GLOVE = calibration()
+FORMATS = pytest.mark.parametrize("form", ["binary", "ascii"])
+
+
+@contextmanager
+def fastrak(folder: Path, twin: FastrakTwin | None = None, **emulated: Any) -> Iterator[Emulator]:
+    with Emulator(twin or FastrakTwin(), folder / "fastrak", rate=RATE, **emulated) as emulator:
+        yield emulator
+
+
+@contextmanager
+def glove(folder: Path, twin: GloveTwin | None = None, **emulated: Any) -> Iterator[Emulator]:
+    GLOVE.save(folder / "glove.toml")
+    with Emulator(twin or GloveTwin(GLOVE), folder / "glove", rate=RATE, **emulated) as emulator:
+        yield emulator
+
+
+def fastrak_settings(folder: Path, **chosen: Any) -> FastrakSettings:
+    return FastrakSettings(str(folder / "fastrak"), pause=0.0, **{"silence": 30.0, **chosen})
+
+
+def glove_settings(folder: Path, **chosen: Any) -> GloveSettings:
+    return GloveSettings(str(folder / "glove"), str(folder / "glove.toml"), **{"silence": 30.0, **chosen})
+
+
+def place(reading: HandReading) -> tuple[float, ...]:
+    """Return the position in whole steps of the coarsest record, 0.1 mm."""
+    return tuple(round(value * 1e4) for value in reading.position)
+
+
+def seen(flexions: tuple[float, ...]) -> tuple[float, ...]:
+    """Return the flexions as the glove shows them."""
+    return GLOVE.flexions(GLOVE.raw(flexions))
+
+
+def whole(emulator: Emulator) -> list[tuple[float, ...]]:
+    return [place(reading) for _, reading in emulator.whole]
+
+
+def ends_with(emulator: Emulator) -> Any:
+    """Tell when the last whole record of an emulator that has played all was read."""
+    return lambda reading: emulator.played.is_set() and place(reading) == place(emulator.whole[-1][1])
+
+
+@FORMATS
+def test_every_whole_record_comes_out_once_and_right_among_torn_ones_and_noise(tmp_path: Path, form: Any) -> None:
+    shown = readings(300)
+    with (
+        fastrak(tmp_path, mischief=Spoiler(1, torn=0.2, noise=0.2)) as device,
+        FastrakSource(fastrak_settings(tmp_path, format=form)) as source,
+    ):
+        device.play(shown[:-1])
+        until(device.played.is_set, "all but the last was played")
+        device.mischief = None
+        device.play(shown[-1:])
+        got = gather(iter(source), ends_with(device))
+    assert device.spoiled > 30
+    sent = whole(device)
+    spots = [place(reading) for reading in got]
+    assert [spot for spot in spots if spot in set(sent)] == sent
+    assert len(spots) == len(sent)
+    by_place = {place(reading): reading for _, reading in device.whole}
+    for reading in got:
+        true = by_place[place(reading)]
+        assert reading.position == pytest.approx(true.position, abs=1e-4)
+        assert reading.orientation == pytest.approx(true.orientation, abs=2e-4)
+        assert reading.tracked
+
+
+@FORMATS
+def test_every_whole_sample_of_a_glove_comes_out_once_and_right(tmp_path: Path, form: Any) -> None:
+    with (
+        glove(tmp_path, mischief=Spoiler(2, torn=0.2, noise=0.0)) as device,
+        GloveSource(glove_settings(tmp_path, format=form)) as source,
+    ):
+        device.play(readings(99))
+        until(device.played.is_set, "all but the last was played")
+        device.mischief = None
+        device.play(readings(100)[-1:])
+        until(device.played.is_set, "the last was played")
+        stream = iter(source)
+        found = [next(stream) for _ in device.whole]
+    assert device.spoiled > 5
+    sent = [seen(reading.flexions) for _, reading in device.whole]
+    assert [reading.flexions for reading in found] == [pytest.approx(flexions) for flexions in sent]
+    assert not any(reading.tracked for reading in found)
+
+
+@FORMATS
+def test_a_polled_glove_is_asked_for_each_sample(tmp_path: Path, form: Any) -> None:
+    with glove(tmp_path) as device, GloveSource(glove_settings(tmp_path, format=form, mode="polled")) as source:
+        stream = iter(source)
+        for shown in readings(5):
+            device.show(shown)
+            flexions = seen(shown.flexions)
+            until(lambda flexions=flexions: next(stream).flexions == pytest.approx(flexions), "the sample is asked for")
+        assert not device.twin.streaming
+
+
+def test_times_begin_at_0_and_never_run_back(tmp_path: Path) -> None:
+    with fastrak(tmp_path) as device, FastrakSource(fastrak_settings(tmp_path)) as source:
+        device.play(readings(200))
+        got = gather(iter(source), ends_with(device))
+    assert got[0].time == 0.0
+    assert all(b.time > a.time for a, b in pairwise(got))
+    assert got[-1].time == pytest.approx(device.whole[-1][0] - device.whole[0][0], abs=0.5)
+
+
+@FORMATS
+def test_a_device_that_was_unplugged_goes_on_with_the_right_times_and_the_gap_is_missing(
+    tmp_path: Path, form: Any
+) -> None:
+    first, second = readings(60)[:30], readings(60)[30:]
+    away = 0.0
+
+    def clock() -> float:
+        return time.monotonic() + away
+
+    settings = fastrak_settings(tmp_path, format=form)
+    with fastrak(tmp_path) as device, FastrakSource(settings, clock=clock) as source:
+        stream = iter(source)
+        device.play(first)
+        before = gather(stream, ends_with(device))
+        for _ in range(2):
+            device.unplug()
+            away += 50.0
+            device.plug()
+        device.play(second)
+        after = gather(stream, ends_with(device))
+    assert [place(r) for r in before + after] == [place(r) for r in first + second]
+    gap = device.whole[30][0] - device.whole[29][0]
+    assert after[0].time - before[-1].time == pytest.approx(100.0 + gap, abs=0.5)
+    for reading, true in zip(after, second, strict=True):  # in metres still: the device woke up in inches
+        assert reading.position == pytest.approx(true.position, abs=1e-4)
+
+
+def test_a_device_that_was_switched_off_behind_its_adapter_is_set_up_again(tmp_path: Path) -> None:
+    shown = readings(40)
+    with fastrak(tmp_path) as device, FastrakSource(fastrak_settings(tmp_path, silence=0.2)) as source:
+        stream = iter(source)
+        device.play(shown[:20])
+        gather(stream, ends_with(device))
+        device.twin.power_up()
+        device.play(shown[20:])
+        again = gather(stream, ends_with(device))
+    assert [place(r) for r in again] == [place(r) for r in shown[20:]]
+
+
+@FORMATS
+def test_a_device_that_paused_for_long_goes_on(tmp_path: Path, form: Any, caplog: pytest.LogCaptureFixture) -> None:
+    shown = readings(40)
+    with fastrak(tmp_path) as device, FastrakSource(fastrak_settings(tmp_path, silence=0.1, format=form)) as source:
+        stream = iter(source)
+        device.play(shown[:20])
+        before = gather(stream, ends_with(device))
+        until(lambda: "was silent for 0.1 s" in caplog.text, "the pause is noticed")
+        # Records that go out while the driver sets the device up again are missing; so it shows the last one longer.
+        device.play([*shown[20:], *[shown[-1]] * 200])
+        after = gather(stream, lambda reading: place(reading) == place(shown[-1]))
+    spots = [place(reading) for reading in after]
+    true = [place(reading) for reading in shown]
+    assert [place(reading) for reading in before] == true[:20]
+    assert spots == sorted(set(spots))
+    assert set(spots) <= set(true[20:])
+
+
+@pytest.mark.parametrize("unit", ["cm", "in"])
+@FORMATS
+def test_positions_are_in_metres_in_either_unit(tmp_path: Path, unit: Any, form: Any) -> None:
+    with fastrak(tmp_path) as device, FastrakSource(fastrak_settings(tmp_path, unit=unit, format=form)) as source:
+        device.play(shown := readings(5))
+        got = gather(iter(source), lambda _: device.played.is_set() and len(device.whole) == 5)
+    for reading, true in zip(got, shown, strict=False):
+        assert reading.position == pytest.approx(true.position, abs=0.0254 * 0.006)
+
+
+def test_a_device_that_keeps_to_its_own_unit_is_refused(tmp_path: Path) -> None:
+    with (
+        fastrak(tmp_path, FastrakTwin(stubborn=True)),
+        pytest.raises(ClientError, match="asked for cm in binary records, but says that it sends in in binary"),
+        FastrakSource(fastrak_settings(tmp_path)),
+    ):
+        pass
+
+
+def test_the_hand_is_the_first_of_the_stations_and_the_others_are_off(tmp_path: Path) -> None:
+    twin = FastrakTwin((1, 2, 3))
+    settings = fastrak_settings(tmp_path, stations=(2, 1), hemisphere="-z")
+    with fastrak(tmp_path, twin) as device, FastrakSource(settings) as source:
+        device.play(shown := readings(20))
+        got = gather(iter(source), lambda reading: round(reading.position[1], 4) == round(shown[-1].position[1], 4))
+        assert twin.active == {1, 2}
+        assert twin.hemispheres == {1: "0,0,-1", 2: "0,0,-1", 3: "1,0,0"}
+        assert source.capabilities.rate == 60.0
+    assert len(got) == 20
+    for reading, true in zip(got, shown, strict=True):
+        assert reading.position[0] == pytest.approx(true.position[0] + 0.1, abs=1e-6)
+
+
+def test_a_polled_device_is_asked_at_its_rate(tmp_path: Path) -> None:
+    with fastrak(tmp_path, hold=True) as device, FastrakSource(fastrak_settings(tmp_path, mode="polled")) as source:
+        stream = iter(source)
+        got = [next(stream) for _ in range(11)]
+        assert not device.twin.streaming
+    assert got[-1].time == pytest.approx(10 / 50.0, abs=0.15)
+
+
+def test_an_error_of_the_device_says_that_the_pose_is_a_guess(tmp_path: Path) -> None:
+    lost = HandReading(0.0, (0.1, 0.0, 0.0), None, (), tracked=False)
+    with fastrak(tmp_path) as device, FastrakSource(fastrak_settings(tmp_path)) as source:
+        device.play([lost, *readings(1)])
+        got = gather(iter(source), ends_with(device))
+    assert [reading.tracked for reading in got] == [False, True]
+
+
+def test_closing_ends_the_iteration_and_quiets_the_device(tmp_path: Path) -> None:
+    with fastrak(tmp_path, hold=True) as device, FastrakSource(fastrak_settings(tmp_path)) as source:
+        stream = iter(source)
+        next(stream)
+        source.close()
+        source.close()
+        assert len(list(stream)) <= 1
+        source.__exit__()
+        until(lambda: not device.twin.streaming, "the device is quiet")
+
+
+def test_a_silent_or_missing_or_taken_device_is_said(tmp_path: Path) -> None:
+    settings = fastrak_settings(tmp_path)
+    with pytest.raises(ClientError, match="is the device plugged in"), FastrakSource(settings):
+        pass
+    with glove(tmp_path), Emulator(GloveTwin(GLOVE), tmp_path / "fastrak", rate=RATE):
+        with pytest.raises(ClientError, match="no FASTRAK answers"), FastrakSource(settings):
+            pass
+        with GloveSource(glove_settings(tmp_path)), pytest.raises(ClientError, match="another program is using"):
+            GloveSource(glove_settings(tmp_path)).__enter__()
+
+
+def test_a_glove_that_does_not_fit_is_said(tmp_path: Path) -> None:
+    with glove(tmp_path, GloveTwin(calibration(18), cybertouch=False)):
+        with pytest.raises(ClientError, match="has 18 sensors, not 22"), GloveSource(glove_settings(tmp_path)):
+            pass
+        calibration(18).save(tmp_path / "glove.toml")
+        with pytest.raises(ClientError, match="no CyberTouch"), GloveSource(glove_settings(tmp_path, touch="phase")):
+            pass
+
+
+def test_a_cybertouch_vibrates_while_the_hand_is_closed_and_never_after_the_end(tmp_path: Path) -> None:
+    twin = GloveTwin(GLOVE)
+    with glove(tmp_path, twin) as device:
+        with GloveSource(glove_settings(tmp_path, touch="closure", amplitude=200)) as source:
+            stream = iter(source)
+            for flexion, felt in ((0.1, []), (0.9, [200]), (0.5, [200]), (0.1, [200, 0]), (0.9, [200, 0, 200])):
+                device.show(HandReading(0.0, (0.0, 0.0, 0.0), None, (flexion,) * 22))
+                until(lambda felt=felt: next(stream) and twin.felt == felt, f"{felt} is felt at {flexion}")
+                for _ in range(5):
+                    next(stream)
+                assert twin.felt == felt
+        until(lambda: twin.felt[-1] == 0, "the vibration ends")
+
+
+def test_a_hand_has_the_pose_and_the_flexions_of_the_same_moment(tmp_path: Path) -> None:
+    shown = readings(150)
+    with fastrak(tmp_path, hold=True) as tracker, glove(tmp_path, hold=True) as gloved:
+        with HandSource(fastrak_settings(tmp_path), glove_settings(tmp_path)) as source:
+            stream = iter(source)
+            for device in (tracker, gloved):
+                device.show(shown[0])
+            assert seen(next(stream).flexions)
+            for device in (tracker, gloved):
+                device.play(shown)
+            got = gather(stream, lambda reading: place(reading) == place(shown[-1]))
+        assert source.capabilities.sensors == 22
+    index = {place(reading): i for i, reading in enumerate(shown)}
+    moved = [reading for reading in got if place(reading) != place(shown[0])]
+    assert [index[place(reading)] for reading in moved] == list(range(1, 150))
+    near = 0
+    for reading in moved:
+        i = index[place(reading)]
+        around = [seen(r.flexions) for r in shown[max(0, i - 3) : i + 4]]
+        near += any(reading.flexions == pytest.approx(flexions) for flexions in around)
+    assert near > 0.9 * len(moved)
+
+
+def test_half_a_hand_gives_no_reading(tmp_path: Path) -> None:
+    shown = readings(2)
+    with (
+        fastrak(tmp_path, hold=True) as tracker,
+        glove(tmp_path, hold=True) as gloved,
+        HandSource(fastrak_settings(tmp_path), glove_settings(tmp_path)) as source,
+    ):
+        stream = iter(source)
+        for device in (tracker, gloved):
+            device.show(shown[0])
+        next(stream)
+        gloved.unplug()
+        tracker.show(shown[1])
+        gone = len(tracker.whole)
+        until(lambda: len(tracker.whole) > gone + RATE / 4, "the tracker goes on alone")
+        gloved.plug()
+        gloved.show(shown[1])
+        got = gather(stream, lambda reading: reading.flexions == pytest.approx(seen(shown[1].flexions)))
+    alone = max(b.time - a.time for a, b in pairwise(got))
+    assert alone > 0.1
+
+
+def test_a_hand_opens_both_devices_or_none(tmp_path: Path) -> None:
+    with fastrak(tmp_path, hold=True) as device:
+        GLOVE.save(tmp_path / "glove.toml")
+        with pytest.raises(ClientError, match="glove as a serial line"):
+            HandSource(fastrak_settings(tmp_path), glove_settings(tmp_path)).__enter__()
+        until(lambda: not device.twin.streaming, "the tracker is quiet")
+        with FastrakSource(fastrak_settings(tmp_path)) as source:
+            assert next(iter(source)).time == 0.0

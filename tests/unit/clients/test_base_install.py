@@ -1,0 +1,88 @@
+"""The client on a small computer: only what the base install brings may be imported."""
+
+import re
+import subprocess
+import sys
+from importlib.metadata import PackageNotFoundError, distribution, packages_distributions, requires
+
+GUARD = """
+import sys
+allowed = set({allowed!r}) | set(sys.stdlib_module_names)
+class Guard:
+    def find_spec(self, name, path=None, target=None):
+        if name.partition(".")[0] not in allowed:
+            raise ModuleNotFoundError(f"{{name}} is not in the base install", name=name)
+sys.meta_path.insert(0, Guard())
+"""
+EVERYTHING = """
+import pkgutil, importlib, teachpath_client
+for module in pkgutil.walk_packages(teachpath_client.__path__, "teachpath_client."):
+    importlib.import_module(module.name)
+"""
+SYNTHETIC = """
+from teachpath_client.devices import open_source
+with open_source("synthetic", {}) as source:
+    print(sum(1 for _ in source))
+"""
+HELP = """
+import runpy
+sys.argv = ["teachpath-client", "--help"]
+runpy.run_module("teachpath_client", run_name="__main__")
+"""
+
+
+def base_distributions() -> set[str]:
+    """Return the names of all distributions that the base install brings."""
+    found, waiting = set(), ["teachpath"]
+    while waiting:
+        name = waiting.pop()
+        for requirement in requires(name) or []:
+            needed, _, marker = requirement.partition(";")
+            depends = re.match(r"[A-Za-z0-9._-]+", needed)
+            assert depends is not None
+            wanted = depends[0].lower().replace("_", "-")
+            if "extra" in marker or wanted in found:
+                continue
+            try:
+                distribution(wanted)
+            except PackageNotFoundError:  # for another Python or another system
+                continue
+            found.add(wanted)
+            waiting.append(wanted)
+    return found
+
+
+def run(code: str) -> subprocess.CompletedProcess[str]:
+    base = base_distributions()
+    names = {
+        module
+        for module, owners in packages_distributions().items()
+        if any(owner.lower().replace("_", "-") in base for owner in owners)
+    }
+    guard = GUARD.format(allowed=sorted(names | {"teachpath_client", "teachpath_proto"}))
+    return subprocess.run([sys.executable, "-c", guard + code], capture_output=True, text=True, timeout=60)
+
+
+def test_the_guard_keeps_the_service_and_its_dependencies_out() -> None:
+    for name in ("teachpath", "scipy", "fastapi", "sqlalchemy", "mujoco", "annotated_types", "serial"):
+        ended = run(f"import {name}")
+        assert ended.returncode == 1
+        assert "is not in the base install" in ended.stderr
+
+
+def test_every_module_of_the_client_is_imported() -> None:
+    ended = run(EVERYTHING)
+    assert (ended.returncode, ended.stderr) == (0, "")
+
+
+def test_the_synthetic_source_runs() -> None:
+    ended = run(SYNTHETIC)
+    assert ended.returncode == 0, ended.stderr
+    assert int(ended.stdout) > 4000
+
+
+def test_the_command_line_helps() -> None:
+    ended = run(HELP)
+    assert ended.returncode == 0, ended.stderr
+    for command in ("tracker", "sources", "glove-calibrate", "synthetic", "replay"):
+        assert command in ended.stdout
