@@ -7,6 +7,7 @@ import time
 import learning
 import motion
 import recording
+import timing
 from report import machine, print_report
 
 
@@ -23,6 +24,10 @@ def main() -> None:
     print_report(
         "Learning and planning, in this process",
         learning.measure(trajectories, repeats=3 if quick else 7),
+    )
+    print_report(
+        "Timing: how near to the limits, how soon it stops, what a cycle costs",
+        timing.measure(repeats=1 if quick else 3),
     )
     print_report(
         "A served station: jobs in their process, executor and simulated arm in theirs",

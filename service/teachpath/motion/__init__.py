@@ -1,18 +1,15 @@
-"""The motion room: from a learned path to a certified plan, and the arm's length along it, live."""
+"""The motion room: from a learned path to a certified plan, and the arm along it, live."""
 
 from teachpath.motion.certificate import verify
 from teachpath.motion.drawing import Part, drawing
-from teachpath.motion.governor import Governor, Progress
 from teachpath.motion.mjcf import mjcf
 from teachpath.motion.plan import plan
 from teachpath.motion.scenes import empty_scene, paper_scene, scenes
 from teachpath.motion.settings import MotionSettings
 
 __all__ = [
-    "Governor",
     "MotionSettings",
     "Part",
-    "Progress",
     "drawing",
     "empty_scene",
     "mjcf",

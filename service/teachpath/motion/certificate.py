@@ -5,17 +5,15 @@ from __future__ import annotations
 import hashlib
 import json
 from dataclasses import asdict
-from typing import Final
 
 import numpy as np
 
 from teachpath.errors import PathRefused
-from teachpath.motion.governor import Governor
-from teachpath.motion.puma560 import ACCELERATION, JERK, LOWER, SPEED, UPPER, Array
-from teachpath.motion.timing import JointPath, Limits
+from teachpath.motion.joints import ARM, JointPath, Limits
+from teachpath.motion.puma560 import ACCELERATION, JERK, LOWER, SPEED, TORQUE, UPPER, Array
+from teachpath.motion.timing import uses
+from teachpath.motion.track import Track, paced
 from teachpath.records import Extreme, Plan, Scene
-
-LONGEST: Final = 600.0  # s, of a path at full speed
 
 
 def digest(plan: Plan) -> str:
@@ -23,8 +21,8 @@ def digest(plan: Plan) -> str:
     total = hashlib.sha256()
     total.update(f"{plan.path}|{plan.path_version}|".encode())
     total.update(_scene_text(plan.scene).encode())
-    numbers = (plan.lengths, plan.joints, plan.limits, plan.above_start, plan.above_goal, plan.duration)
-    for value in (*numbers, LOWER, UPPER, SPEED, ACCELERATION, JERK):
+    numbers = (plan.lengths, plan.joints, plan.pace, plan.limits, plan.above_start, plan.above_goal, plan.duration)
+    for value in (*numbers, LOWER, UPPER, SPEED, ACCELERATION, JERK, TORQUE):
         array = np.ascontiguousarray(value, dtype="<f8")
         total.update(f"{array.shape}".encode())
         total.update(array.tobytes())
@@ -43,44 +41,28 @@ def verify(plan: Plan) -> None:
         )
 
 
-def stream(path: JointPath, limits: Limits, rate: float) -> tuple[Array, Array]:
-    """Run the path at full speed as the executor does.
-
-    Args:
-        path: what to follow.
-        limits: of its length.
-        rate: setpoints a second [Hz].
-
-    Returns:
-        (n,) lengths and (n, 6) configurations of the setpoints, with the standstill before and behind.
-    """
-    governor = Governor(path.end, limits)
-    lengths = [0.0] * 4
-    while not governor.progress.finished:
-        lengths.append(governor.step(1.0 / rate).s)
-        if len(lengths) > LONGEST * rate:
-            raise PathRefused(f"the path takes longer than {LONGEST:.0f} s at full speed; smooth its sharpest turn")
-    samples = np.array(lengths + [path.end] * 3)
-    return samples, path(samples)
+def track(plan: Plan) -> Track:
+    """Make the motion of a plan against time, the same wherever it is made."""
+    path = JointPath(np.linspace(0.0, 1.0, len(plan.lengths)), plan.lengths, plan.joints)
+    return paced(path, plan.pace, Limits(*plan.limits))
 
 
-def uses(lengths: Array, joints: Array, rate: float) -> tuple[Extreme, Extreme, Extreme, Extreme]:
+def limit_uses(setpoints: Array, rate: float) -> tuple[Extreme, Extreme, Extreme, Extreme]:
     """Measure how much of the joints' position, speed, acceleration and jerk limits setpoints use.
 
     Args:
-        lengths: (n,) where on the path each setpoint lies [m].
-        joints: (n, 6) setpoints [rad].
+        setpoints: (n, 7) joints [rad] and where on the path each lies [m].
         rate: setpoints a second [Hz].
     """
     middle, half = (LOWER + UPPER) / 2, (UPPER - LOWER) / 2
-    shares = [np.abs(joints - middle) / half]
-    shares += [np.abs(np.diff(joints, order, axis=0)) * rate**order / limit
-               for order, limit in ((1, SPEED), (2, ACCELERATION), (3, JERK))]  # fmt: skip
-    position, velocity, acceleration, jerk = (_extreme(share, lengths) for share in shares)
+    shares = [np.abs(setpoints[:, :6] - middle) / half, *uses(setpoints, ARM, rate)]
+    position, velocity, acceleration, jerk = (largest_use(share, setpoints[:, 6]) for share in shares)
     return position, velocity, acceleration, jerk
 
 
-def _extreme(share: Array, lengths: Array) -> Extreme:
+def largest_use(values: Array, lengths: Array, limits: Array | float = 1.0) -> Extreme:
+    """Find the largest share of the joints' limits (6,) in values (n, 6), and its joint and place [m]."""
+    share = values / limits
     row, joint = np.unravel_index(int(np.argmax(share)), share.shape)
     s = float(lengths[row])
     return Extreme(float(share[row, joint]), f"joint {joint + 1} at s = {s:.3f} m", s)

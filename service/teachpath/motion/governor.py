@@ -1,46 +1,61 @@
-"""Drives the length s along a path, live: any override, hold and resume, within the limits and never off the path."""
+"""Runs plan time, live: any override, hold, resume and reverse, within all limits and never off the path.
+
+The state is always on a *ramp* of the rate that was judged setpoint by setpoint, together with the setpoints already
+sent, and that ends at a constant rate of at most 1, at which the plan itself keeps every limit. Another ramp takes its
+place only after it was judged as well. So nothing else is needed for safety, and nothing can fail in mid-motion.
+"""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from typing import Final
 
-from ruckig import Trajectory
+import numpy as np
+from ruckig import ControlInterface, InputParameter, Result, Ruckig, RuckigError, Trajectory
 
-from teachpath.motion.timing import Limits, State, extremes, rest_to_rest, to_position, to_speed
+from teachpath.motion import kernels
+from teachpath.motion.joints import ARM
+from teachpath.motion.moves import straight
+from teachpath.motion.puma560 import Array
+from teachpath.motion.track import Track
 
-# How far Ruckig's answer may leave [here, end], as a share of the whole length: rounding, not motion.
-SLACK: Final = 1e-7
 SLOWEST: Final = 0.01  # an override below this holds
+TRIES: Final = 20  # ramps judged in one period at most
+AGREE: Final = 1e-6  # s, between the closed form of a ramp and Ruckig's
 
 
 @dataclass(frozen=True, slots=True)
 class Progress:
-    """The state of s: length, speed, acceleration; `standing` at rest, `finished` at rest at the end."""
+    """Where the arm is: `s` [m], `rate` of plan time; `standing` at rest, `finished` at rest at the end."""
 
     s: float
-    speed: float
-    acceleration: float
+    rate: float
     standing: bool
     finished: bool
 
 
 class Governor:
-    """Ruckig's one-dimensional problem, solved again whenever the operator's wish changes.
+    """Drives one track.
 
-    A new answer is followed only after it has been checked: finite, not endless, within [here, end] and within the
-    limits. Otherwise the answer being followed, which was checked and ends at rest, stays; the wish is tried again
-    in the next period. So the state is always on a verified way to rest on the path.
+    Args:
+        track: what to run through, from its beginning, at rest.
+        dt: control period [s].
+        override: share of the full speed, 0 to 1.
     """
 
-    def __init__(self, end: float, limits: Limits, *, override: float = 1.0, start: float = 0.0) -> None:
-        self._end, self._limits = end, limits
-        self._override = _share(override)
-        self._held = False
-        self._way: tuple[Trajectory, ...] = ()  # followed one behind the other, to rest
+    def __init__(self, track: Track, dt: float, *, override: float = 1.0) -> None:
+        self._table, self._step, self._end, self._dt = track.table, track.step, track.duration, dt
+        limits = track.limits
+        self._limits = np.stack([limits.speed * dt, limits.acceleration * dt**2, limits.jerk * dt**3])
+        self._override, self._held, self._back = _share(override), False, False
+        self._state = np.zeros(3)  # tau, its rate, the rate's derivative
+        self._ramp = np.zeros(8)
+        self._trial = np.zeros(8)
         self._elapsed = 0.0
-        self._state: State = (start, 0.0, 0.0)
-        self._wish_open = True
+        self._motion = np.zeros((3, 7))
+        kernels.motion(self._table, self._step, self._state, self._motion)
+        self._sent = np.repeat(self._motion[:1, :6], 3, axis=0)  # newest last
+        self._ruckig, self._inputs, self._answer = Ruckig(1), _inputs(), Trajectory(1)
 
     @property
     def override(self) -> float:
@@ -53,88 +68,108 @@ class Governor:
         return self._held or self._override < SLOWEST
 
     @property
+    def backward(self) -> bool:
+        """Whether the way back was asked for."""
+        return self._back
+
+    @property
+    def motion(self) -> Array:
+        """The nominal motion now (3, 7): joints and length, their velocity and acceleration."""
+        return self._motion
+
+    @property
     def progress(self) -> Progress:
         """The present state."""
-        s, speed, acceleration = self._state
-        standing = not self._way
-        return Progress(s, speed, acceleration, standing, standing and s >= self._end - SLACK * self._end)
+        tau, rate, slope = self._state
+        standing = bool(rate == 0.0 and slope == 0.0)
+        return Progress(float(self._motion[0, 6]), float(rate), standing, standing and bool(tau >= self._end))
 
     def set_override(self, share: float) -> None:
         """Go at `share` of the full speed from now on, clipped to 0 to 1; zero holds."""
         self._override = _share(share)
-        self._wish_open = True
 
     def hold(self) -> None:
         """Come to rest as soon as the limits allow."""
         self._held = True
-        self._wish_open = True
 
     def resume(self) -> None:
         """Go on to the end."""
-        self._held = False
-        self._wish_open = True
+        self._held = self._back = False
 
-    def step(self, dt: float) -> Progress:
-        """Advance by one control period of `dt` [s]; never raises."""
-        if self._wish_open:
-            self._wish_open = not self._solve()
-        self._elapsed += dt
-        while self._way and self._elapsed >= self._way[0].duration:
-            self._elapsed -= self._way[0].duration
-            last, self._way = self._way[0], self._way[1:]
-            self._state = (min(last.at_time(last.duration)[0][0], self._end), 0.0, 0.0)
-        if self._way:
-            (s,), (speed,), (acceleration,) = self._way[0].at_time(self._elapsed)
-            self._state = (min(s, self._end), speed, acceleration)
+    def reverse(self) -> None:
+        """Go back along the path to its beginning."""
+        self._held, self._back = False, True
+
+    def step(self) -> Progress:
+        """Advance by one control period; never raises."""
+        wish = 0.0 if self.held else (-self._override if self._back else self._override)
+        left = self._ramp[3] + self._ramp[4] + self._ramp[5] - self._elapsed
+        if self._ramp[7] != wish or left > 0.0:
+            self._turn_to(wish, left if self._ramp[7] == wish else np.inf)
+        self._elapsed += self._dt
+        state = self._state
+        state[:] = kernels.along(self._ramp, self._elapsed)
+        if (state[0] >= self._end and state[1] >= 0.0) or (state[0] <= 0.0 and state[1] <= 0.0):
+            # The track begins and ends at rest, whatever the rate.
+            self._rest(0.0 if state[0] <= 0.0 else self._end)
+        kernels.motion(self._table, self._step, state, self._motion)
+        self._sent[:2] = self._sent[1:]
+        self._sent[2] = self._motion[0, :6]
         return self.progress
 
-    def _solve(self) -> bool:
-        if not self._way and (self.held or self.progress.finished):
-            return True
-        way = self._rest() if self.held else self._onward()
-        if way is None:
+    def _turn_to(self, wish: float, within: float) -> None:
+        trial, state = self._trial, self._state
+        if (state[0] <= 0.0 and wish >= 0.0) or (state[0] >= self._end and wish <= 0.0):
+            trial[:] = (state[0], wish, 0.0, 0.0, 0.0, 0.0, 0.0, wish)
+            kept = kernels.judge(self._table, self._step, trial, self._sent, self._limits, self._dt)
+            if kept[0] == kernels.KEPT:
+                self._follow()
+            return
+        peak = kernels.seek(
+            self._table, self._step, state, wish, self._sent, self._limits, self._dt, within, TRIES, trial
+        )
+        if peak >= 0.0 and self._confirmed(peak):
+            self._follow()
+
+    def _follow(self) -> None:
+        self._ramp[:] = self._trial
+        self._elapsed = 0.0
+
+    def _rest(self, tau: float) -> None:
+        self._state[:] = (tau, 0.0, 0.0)
+        self._ramp[:] = 0.0
+        self._ramp[0] = tau
+        self._elapsed = 0.0
+
+    def _confirmed(self, peak: float) -> bool:
+        """Tell whether Ruckig finds the same ramp."""
+        trial, inputs = self._trial, self._inputs
+        inputs.current_position, inputs.current_velocity = [float(trial[0])], [float(trial[1])]
+        inputs.current_acceleration, inputs.target_velocity = [float(trial[2])], [float(trial[7])]
+        # Room for the present acceleration: without it Ruckig would brake first.
+        most = max(peak, abs(float(trial[2])))
+        inputs.max_acceleration, inputs.max_jerk = [most * (1 + 1e-12)], [abs(float(trial[6]))]
+        try:
+            result = self._ruckig.calculate(inputs, self._answer)
+        except RuckigError:
             return False
-        self._way, self._elapsed = way, 0.0
-        return True
+        closed_form = float(trial[3] + trial[4] + trial[5])
+        return bool(result == Result.Working and abs(self._answer.duration - closed_form) <= AGREE)
 
-    def _rest(self) -> tuple[Trajectory, ...] | None:
-        brake = to_speed(self._state, self._limits, 0.0)
-        return (brake,) if brake is not None and self._verified(brake) else None
 
-    def _onward(self) -> tuple[Trajectory, ...] | None:
-        target = self._override * self._limits.velocity
-        s, speed, acceleration = self._state
-        way: tuple[Trajectory, ...] = ()
-        # Ruckig brakes a state that is too fast for its limit at full deceleration and comes out of that below zero
-        # speed, so slowing down is a problem of its own, in front.
-        if speed + max(acceleration, 0.0) ** 2 / (2 * self._limits.jerk) > target * (1 + 1e-9):
-            slower = to_speed(self._state, self._limits, target)
-            if slower is None or not self._verified(slower):
-                return None
-            way = (slower,)
-            s, speed, acceleration = slower.at_time(slower.duration)[0][0], target, 0.0
-        last = to_position((s, speed, acceleration), self._end, self._limits, target)
-        if last is None or not self._verified(last):
-            return None
-        if abs(last.at_time(last.duration)[0][0] - self._end) > SLACK * self._end:
-            return None
-        return (*way, last)
+def warm_up(dt: float) -> None:
+    """Compile the kernels, or load them from disk, so that the first motion does not wait for them."""
+    turn = np.array([0.01, 0.0, 0.0, 0.0, 0.0, 0.0])
+    governor = Governor(straight(np.zeros(6), turn, ARM, reserve=(0.5, 0.5, 0.5)), dt)
+    for act in (governor.step, governor.hold, governor.step, governor.reverse, governor.step):
+        act()
 
-    def _verified(self, answer: Trajectory) -> bool:
-        box = self._limits
-        slowest = Limits(max(self._override, SLOWEST) * box.velocity, box.acceleration, box.jerk)
-        endless = 2 * rest_to_rest(self._end, slowest) + 2 * (
-            box.velocity / box.acceleration + box.acceleration / box.jerk
-        )
-        least, fastest, hardest = extremes(answer)
-        slack = SLACK * self._end
-        return (
-            answer.duration <= endless
-            and answer.position_extrema[0].max <= self._end + slack
-            and least >= -SLACK * box.velocity
-            and fastest <= box.velocity * (1 + 1e-6)
-            and hardest <= box.acceleration * (1 + 1e-6)
-        )
+
+def _inputs() -> InputParameter:
+    inputs = InputParameter(1)
+    inputs.control_interface = ControlInterface.Velocity
+    inputs.target_acceleration = [0.0]
+    return inputs
 
 
 def _share(value: float) -> float:

@@ -7,12 +7,16 @@ from itertools import pairwise
 from typing import Final
 
 import numpy as np
+from ruckig import InputParameter, Ruckig, Trajectory
 
 from teachpath.errors import PathRefused
+from teachpath.motion.joints import Limits
 from teachpath.motion.kinematics import tool_pose
 from teachpath.motion.puma560 import Array
 from teachpath.motion.scene import CollisionModel, Load
 from teachpath.motion.settings import MotionSettings
+from teachpath.motion.track import STEP as INSTANT
+from teachpath.motion.track import Track, composed
 from teachpath.records import Scene
 
 STEP: Final = 0.01  # rad, largest turn of a joint between two configurations that are checked
@@ -22,6 +26,45 @@ def line(start: Array, goal: Array) -> Array:
     """Sample the straight line (n, 6) between two configurations, densely enough to be checked."""
     count = 1 + max(1, int(np.ceil(np.abs(goal - start).max() / STEP)))
     return start + np.linspace(0.0, 1.0, count)[:, None] * (goal - start)
+
+
+def straight(start: Array, goal: Array, limits: Limits, *, reserve: tuple[float, float, float]) -> Track:
+    """Run from rest to rest on the straight line between two configurations, as fast as Ruckig finds.
+
+    Args:
+        start: configuration (6,) [rad].
+        goal: another one.
+        limits: to keep.
+        reserve: shares of speed, acceleration and jerk limits that the run itself uses.
+    """
+    turn = float(np.abs(goal - start).max())
+    direction = (goal - start) / turn
+    slowest = np.maximum(np.abs(direction), 1e-12)
+    shared = limits.scaled(*reserve)
+    inputs = InputParameter(1)
+    inputs.target_position = [turn]
+    inputs.max_velocity = [float(np.min(shared.speed / slowest))]
+    inputs.max_acceleration = [float(np.min(shared.acceleration / slowest))]
+    inputs.max_jerk = [float(np.min(shared.jerk / slowest))]
+    run = Trajectory(1)
+    Ruckig(1).calculate(inputs, run)
+    count = max(1, int(np.ceil(run.duration / INSTANT)))
+    instants = np.linspace(0.0, run.duration, count + 1)
+    place, speed, acceleration, jerk = _phases(run, instants)
+    place[-1], speed[-1], acceleration[-1] = turn, 0.0, 0.0
+    ahead, still = np.append(direction, 1.0), np.zeros((count + 1, 7))
+    line = [np.append(start, 0.0) + place[:, None] * ahead, np.tile(ahead, (count + 1, 1)), still, still]
+    return Track(composed(line, speed, acceleration, jerk), run.duration / count, limits)
+
+
+def _phases(run: Trajectory, instants: Array) -> tuple[Array, Array, Array, Array]:
+    """Evaluate the one degree of freedom of Ruckig's answer, with its third derivative."""
+    profile = run.profiles[0][0]
+    begins = np.concatenate([[0.0], np.cumsum(profile.t)])[:-1]
+    phase = np.clip(np.searchsorted(begins, instants, side="right") - 1, 0, len(begins) - 1)
+    p, v, a, j = (np.array(values)[phase] for values in (profile.p, profile.v, profile.a, profile.j))
+    t = instants - begins[phase]
+    return p + t * (v + t * (a / 2 + t * j / 6)), v + t * (a + t * j / 2), a + t * j, j
 
 
 def check_free(

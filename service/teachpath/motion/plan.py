@@ -9,20 +9,27 @@ from typing import Final
 import numpy as np
 
 from teachpath.errors import PathRefused, UnusableSettings
-from teachpath.motion.certificate import digest, stream, uses
+from teachpath.motion.certificate import digest, largest_use, limit_uses
+from teachpath.motion.joints import ARM, JointPath, Limits
 from teachpath.motion.kinematics import downward, inverse, tool_pose
 from teachpath.motion.moves import approach, check_free, left_behind, line, retreat
-from teachpath.motion.puma560 import LOWER, SPEED, UPPER, Array
+from teachpath.motion.puma560 import LOWER, SPEED, TORQUE, UPPER, Array
 from teachpath.motion.route import Candidate, Route, candidates, explain, route, usable
 from teachpath.motion.scene import Clearance, CollisionModel, Load
 from teachpath.motion.settings import MotionSettings
-from teachpath.motion.timing import JointPath, fastest_box, rest_to_rest
+from teachpath.motion.timing import timed
+from teachpath.motion.torque import Dynamics
+from teachpath.motion.track import paced
 from teachpath.records import Certificate, Extreme, LearnedPath, Plan, Scene
 
 NEAR_FINGERS: Final = 0.001  # m, that open fingers stay away from the object between them
 # A branch and roll that keeps more clearance is worth so much per metre, up to what is enough.
 GAIN: Final = 20.0
 ENOUGH: Final = 0.02  # m
+EVERY: Final = 8  # instant of a track is looked at for its torques
+SLOWER: Final = 4  # times that a path is timed at most, each time with lower limits of acceleration
+LESS: Final = 0.97  # of the acceleration that the torques leave, because a slower path has other torques
+LEAST_LEFT: Final = 0.05  # of the limits of acceleration with which a path is still worth following
 PROOF: Final = 0.002  # m, between two places of a path where clearances are measured
 
 
@@ -69,7 +76,7 @@ def plan(path: LearnedPath, scene: Scene, settings: MotionSettings | None = None
     free: list[tuple[float, Candidate, Extreme]] = []
     for candidate in sorted(fit, key=lambda c: _cost(c, settings)):
         try:
-            clearance = _path_clearance(job, JointPath(way.lengths, candidate.joints))
+            clearance = _path_clearance(job, JointPath(way.lengths, way.lengths, candidate.joints))
             free.append((_cost(candidate, settings) - GAIN * min(clearance.value, ENOUGH), candidate, clearance))
         except PathRefused as error:
             refused = refused or error
@@ -98,30 +105,33 @@ def _cost(candidate: Candidate, settings: MotionSettings) -> float:
 
 def _certified(job: _Job, candidate: Candidate, clearance: Extreme) -> Plan:
     settings, way = job.settings, job.way
-    joints = JointPath(way.lengths, candidate.joints)
+    joints, pace, limits, torque = _within_torques(job, candidate)
     _tool_on_path(way, joints, settings)
-    box = fastest_box(joints, share=settings.path_share)
-    start, goal = candidate.joints[0], candidate.joints[-1]
+    start, goal = joints.joints[0], joints.joints[-1]
     above_start = _above(way.positions[0], start, candidate, settings, "start")
     above_goal = _above(way.positions[-1], goal, candidate, settings, "goal")
     _moves_clear(job, joints, above_start, above_goal)
-    s, setpoints = stream(joints, box, settings.rate)
-    position, velocity, acceleration, jerk = uses(s, setpoints, settings.rate)
-    worst = max((velocity, acceleration, jerk), key=lambda extreme: extreme.value)
-    if worst.value > 1.0:
-        raise PathRefused(f"a limit is used to {100 * worst.value:.1f} % by {worst.place}; lower motion.path_share")
     singular_s = float(way.lengths[candidate.singular_at])
+    track = paced(joints, pace, limits)
+    position, velocity, acceleration, jerk = limit_uses(track.setpoints(settings.rate), settings.rate)
+    worst = max((velocity, acceleration, jerk), key=lambda extreme: extreme.value)
+    if worst.value > settings.path_share:
+        raise PathRefused(
+            f"a limit is used to {100 * worst.value:.1f} % by {worst.place}, at most "
+            f"{100 * settings.path_share:.1f} %; smooth the path there"
+        )
     drawn = Plan(
         id=f"plan-{uuid.uuid4().hex[:12]}",
         path=job.path.id,
         path_version=job.path.version,
         scene=job.scene,
-        lengths=way.lengths,
-        joints=candidate.joints,
-        limits=(box.velocity, box.acceleration, box.jerk),
+        lengths=joints.lengths,
+        joints=joints.joints,
+        pace=pace,
+        limits=np.stack([limits.speed, limits.acceleration, limits.jerk]),
         above_start=above_start,
         above_goal=above_goal,
-        duration=rest_to_rest(joints.end, box),
+        duration=track.duration,
         certificate=Certificate(
             digest="",
             branch=candidate.branch,
@@ -129,11 +139,33 @@ def _certified(job: _Job, candidate: Candidate, clearance: Extreme) -> Plan:
             velocity_use=velocity,
             acceleration_use=acceleration,
             jerk_use=jerk,
+            torque_use=torque,
             least_singular=Extreme(candidate.singular, f"s = {singular_s:.3f} m", singular_s),
             clearance=clearance,
         ),
     )
     return replace(drawn, certificate=replace(drawn.certificate, digest=digest(drawn)))
+
+
+def _within_torques(job: _Job, candidate: Candidate) -> tuple[JointPath, Array, Limits, Extreme]:
+    """Time the path; where the limits of acceleration would ask too much of a motor, with lower ones."""
+    settings, limits = job.settings, ARM.scaled(*[job.settings.path_share] * 3)
+    dynamics = Dynamics(job.scene.carried)
+    for _ in range(SLOWER):
+        joints, pace = timed(job.way, candidate, limits, rate=settings.rate)
+        rows = paced(joints, pace, limits).table[::EVERY]
+        q, velocity = rows[:, 0, :6], rows[:, 1, :6]
+        worst = largest_use(dynamics.largest(q, velocity, limits.acceleration), rows[:, 0, 6], TORQUE)
+        if worst.value <= 1.0:
+            return joints, pace, limits, worst
+        left = dynamics.share_left(q, velocity, limits.acceleration)
+        if left < LEAST_LEFT:
+            break
+        limits = limits.scaled(1.0, LESS * left, 1.0)
+    raise PathRefused(
+        f"the motors would have to give {100 * worst.value:.0f} % of their torque at {worst.place}; carry less, or "
+        "bring the path nearer to the robot there"
+    )
 
 
 def _starts_at_object(way: Route, scene: Scene, settings: MotionSettings) -> None:
@@ -149,11 +181,12 @@ def _starts_at_object(way: Route, scene: Scene, settings: MotionSettings) -> Non
 
 def _tool_on_path(way: Route, joints: JointPath, settings: MotionSettings) -> None:
     samples = joints.dense()
-    wanted = way.curve(way.arc.parameters(samples))
-    off = np.linalg.norm(tool_pose(joints(samples))[:, :3, 3] - wanted, axis=1)
+    reached = joints(samples)
+    wanted = way.curve(way.arc.parameters(reached[:, 6]))
+    off = np.linalg.norm(tool_pose(reached[:, :6])[:, :3, 3] - wanted, axis=1)
     worst = int(np.argmax(off))
     if off[worst] > settings.path_tolerance:
-        node = int(np.argmin(np.abs(way.lengths - samples[worst])))
+        node = int(np.argmin(np.abs(way.lengths - reached[worst, 6])))
         raise PathRefused(f"the path bends too sharply to be followed within its tolerance {way.place(node)}")
 
 
@@ -172,7 +205,7 @@ def _above(position: Array, q: Array, candidate: Candidate, settings: MotionSett
 
 def _path_clearance(job: _Job, joints: JointPath) -> Extreme:
     samples = np.linspace(0.0, joints.end, max(2, int(np.ceil(joints.end / PROOF)) + 1))
-    q, load = joints(samples), _grasp(job, joints)
+    q, load = joints(samples)[:, :6], _grasp(job, joints)
     least = job.model.clearance(q, load=load)
     if least.distance < job.settings.clearance_min:
         raise _too_near(job, samples, least, job.settings.clearance_min)
@@ -198,11 +231,11 @@ def _grasp(job: _Job, joints: JointPath) -> Load | None:
         return None
     upright = np.eye(4)
     upright[:3, 3] = carried.position
-    return Load(grasp=np.linalg.inv(tool_pose(joints(0.0))) @ upright)
+    return Load(grasp=np.linalg.inv(tool_pose(joints.joints[0])) @ upright)
 
 
 def _moves_clear(job: _Job, joints: JointPath, above_start: Array, above_goal: Array) -> None:
-    model, settings, start, goal = job.model, job.settings, joints(0.0), joints(joints.end)
+    model, settings, start, goal = job.model, job.settings, joints.joints[0], joints.joints[-1]
     carried = job.scene.carried
     before = Load(placed=carried.position) if carried else None
     behind = left_behind(job.scene, start, goal)

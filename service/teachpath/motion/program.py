@@ -9,13 +9,15 @@ from typing import Final
 
 import numpy as np
 
-from teachpath.motion.certificate import verify
+from teachpath.motion.certificate import track, verify
 from teachpath.motion.governor import SLOWEST, Governor
-from teachpath.motion.moves import approach, retreat
+from teachpath.motion.joints import ARM
+from teachpath.motion.moves import approach, retreat, straight
 from teachpath.motion.puma560 import Array
 from teachpath.motion.scene import CollisionModel, Load
 from teachpath.motion.settings import MotionSettings
-from teachpath.motion.timing import JointPath, Limits, fastest_box, joint_move
+from teachpath.motion.timing import RESERVE
+from teachpath.motion.track import Track
 from teachpath.records import Plan
 
 NOWHERE: Final = 1e-9  # rad, a move shorter than this is none
@@ -23,7 +25,7 @@ NOWHERE: Final = 1e-9  # rad, a move shorter than this is none
 
 @dataclass(frozen=True, eq=False)
 class Stretch:
-    """A piece of an execution: motion along a path, or a rest when `path` is None.
+    """A piece of an execution: motion along a track, or a rest when `track` is None.
 
     Attributes:
         name: in words, for the operator.
@@ -36,8 +38,7 @@ class Stretch:
     name: str
     before: bool
     gripper_closed: bool
-    path: JointPath | None = None
-    limits: Limits | None = None
+    track: Track | None = None
     rest: float = 0.0
     taught: bool = False
 
@@ -61,18 +62,26 @@ class Program:
         settings: as for planning.
         override: share of the full speed, 0 to 1.
         dwell: how long the gripper takes to close or open [s].
+        period: between two setpoints [s].
 
     Raises:
         PathRefused: the plan has changed since it was certified, or the way from here to its start is not free.
     """
 
     def __init__(
-        self, plan: Plan, here: Array, settings: MotionSettings, *, override: float = 1.0, dwell: float = 0.5
+        self,
+        plan: Plan,
+        here: Array,
+        settings: MotionSettings,
+        *,
+        override: float = 1.0,
+        dwell: float = 0.5,
+        period: float = 0.004,
     ) -> None:
         verify(plan)
         self._rest_of: Iterator[Stretch] = iter(_stretches(plan, here, settings, dwell))
         self._length = float(plan.lengths[-1])
-        self._override, self._held = override, False
+        self._override, self._held, self._period = override, False, period
         self._elapsed = 0.0
         self._done = 0.0
         still = np.zeros(6)
@@ -98,8 +107,17 @@ class Program:
 
     @property
     def held(self) -> bool:
-        """Whether rest was asked for, by `hold` or an override of zero."""
-        return self._held or self._override < SLOWEST or (self._governor is not None and self._governor.held)
+        """Whether rest was asked for, by `hold` or an override of zero, or nothing is left of the way back."""
+        governor = self._governor
+        returned = governor is not None and governor.backward and governor.progress.standing
+        return self._held or self._override < SLOWEST or returned
+
+    @property
+    def why_held(self) -> str:
+        """Why it stands without having been told to, in words."""
+        if self._override < SLOWEST:
+            return f"the override is {self._override:g}"
+        return "" if self._held else f"back at the beginning {self.place}; resume to go on"
 
     @property
     def stopped(self) -> bool:
@@ -140,26 +158,35 @@ class Program:
         if self._governor is not None:
             self._governor.resume()
 
+    def reverse(self) -> None:
+        """Go back to the beginning of this stretch and wait there; between two stretches, wait."""
+        if self._governor is None:
+            self.hold()
+            return
+        self._held = False
+        self._governor.reverse()
+
     def set_override(self, share: float) -> None:
         """Go at `share` of the full speed from now on."""
         self._override = share
         if self._governor is not None:
             self._governor.set_override(share)
 
-    def step(self, dt: float) -> Moment:
-        """Advance by `dt` [s] and return the nominal motion; never raises."""
+    def step(self) -> Moment:
+        """Advance by one control period and return the nominal motion; never raises."""
         stretch, governor = self._stretch, self._governor
         if stretch is None:
             return self._moment
-        if governor is None or stretch.path is None:
-            self._elapsed += 0.0 if self.held else dt
+        if governor is None:
+            self._elapsed += 0.0 if self.held else self._period
             if self._elapsed >= stretch.rest:
                 self._advance()
             return self._moment
-        state = governor.step(dt)
+        state = governor.step()
         if stretch.taught:
             self._done = state.s
-        self._moment = Moment(*stretch.path.motion(state.s, state.speed, state.acceleration), stretch.gripper_closed)
+        position, velocity, acceleration = governor.motion[:, :6].copy()
+        self._moment = Moment(position, velocity, acceleration, stretch.gripper_closed)
         if state.finished:
             self._advance()
         return self._moment
@@ -171,8 +198,8 @@ class Program:
             return
         closed = self._stretch.gripper_closed
         self._moment = Moment(self._moment.position, np.zeros(6), np.zeros(6), closed)
-        if self._stretch.path is not None and self._stretch.limits is not None:
-            self._governor = Governor(self._stretch.path.end, self._stretch.limits, override=self._override)
+        if self._stretch.track is not None:
+            self._governor = Governor(self._stretch.track, self._period, override=self._override)
             if self._held:
                 self._governor.hold()
 
@@ -184,13 +211,12 @@ def _stretches(plan: Plan, here: Array, settings: MotionSettings, dwell: float) 
     stops = approach(model, here, plan.above_start, settings, load=load, gripper_open=carries)
     start, goal = plan.joints[0], plan.joints[-1]
     leave = retreat(model, start, goal, plan.above_goal, settings)
-    path = JointPath(plan.lengths, plan.joints)
     closed = not carries
     return [
         *[piece for a, b in pairwise(stops) for piece in _move("on the approach", a, b, True, closed, settings)],
         *_move("on the way down", plan.above_start, start, True, closed, settings),
         Stretch("closing the gripper", True, True, rest=dwell if carries else 0.0),
-        Stretch("on the path", False, True, path, Limits(*plan.limits), taught=True),
+        Stretch("on the path", False, True, track(plan), taught=True),
         Stretch("opening the gripper", False, closed, rest=dwell if carries else 0.0),
         *_move("on the way up", goal, plan.above_goal, False, closed, settings),
         *_move("on the way home", *leave, False, closed, settings),
@@ -200,5 +226,5 @@ def _stretches(plan: Plan, here: Array, settings: MotionSettings, dwell: float) 
 def _move(name: str, start: Array, goal: Array, before: bool, closed: bool, settings: MotionSettings) -> list[Stretch]:
     if np.abs(goal - start).max() < NOWHERE:
         return []
-    path = joint_move(start, goal)
-    return [Stretch(name, before, closed, path, fastest_box(path, share=settings.move_share))]
+    limits = ARM.scaled(*[settings.move_share] * 3)
+    return [Stretch(name, before, closed, straight(start, goal, limits, reserve=RESERVE))]

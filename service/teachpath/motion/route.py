@@ -37,6 +37,7 @@ class ArcLength:
         self._grid = grid
         self._lengths = np.concatenate([[0.0], np.cumsum(pieces)])
         self._speeds = np.linalg.norm(curve(grid, 1), axis=1)
+        self._arc = CubicHermiteSpline(grid, self._lengths, self._speeds)
         self.total = float(self._lengths[-1])
 
     def standstill(self) -> float | None:
@@ -44,14 +45,17 @@ class ArcLength:
         still = int(np.argmin(self._speeds))
         return float(self._lengths[still]) if self._speeds[still] < STANDSTILL * self.total else None
 
+    def lengths(self, u: Array) -> Array:
+        """Return the arc lengths (m,) [m] at the curve's parameters (m,)."""
+        return np.asarray(self._arc(u), dtype=np.float64)
+
     def parameters(self, lengths: Array) -> Array:
         """Return the curve's parameters (m,) at arc lengths (m,) [m]."""
         # Inverting by linear interpolation alone would put its kinks into the third derivative of q(s).
-        arc = CubicHermiteSpline(self._grid, self._lengths, self._speeds)
-        slope = arc.derivative()
+        slope = self._arc.derivative()
         u = np.interp(lengths, self._lengths, self._grid)
         for _ in range(3):
-            u = np.clip(u - (arc(u) - lengths) / slope(u), 0.0, 1.0)
+            u = np.clip(u - (self._arc(u) - lengths) / slope(u), 0.0, 1.0)
         return np.asarray(u, dtype=np.float64)
 
 
@@ -89,6 +93,8 @@ class Candidate:
 
     Attributes:
         branch: shoulder, elbow, wrist and tool roll in words.
+        index: of shoulder, elbow and wrist in `BRANCHES`.
+        roll: of the tool [rad].
         joints: (n, 6) continuous configurations [rad].
         excess: largest violation of a joint limit [rad], at most 0 when all hold.
         worst: (node, joint) where a joint comes nearest to a limit, or is farthest beyond.
@@ -96,6 +102,7 @@ class Candidate:
     """
 
     branch: str
+    index: int
     roll: float
     joints: Array
     excess: float
@@ -150,7 +157,7 @@ def candidates(way: Route, settings: MotionSettings) -> list[Candidate]:
             raise PathRefused(f"{reason}, {way.remedy(worst)} towards the middle of the table")
         for index, branch in enumerate(BRANCHES):
             name = f"{branch}, roll {degrees(roll):.0f} deg"
-            found.append(_candidate(name, roll, solutions.joints[:, index]))
+            found.append(_candidate(name, index, roll, solutions.joints[:, index]))
     return found
 
 
@@ -184,7 +191,7 @@ def within_limits(joints: Array) -> Array:
     return np.asarray(joints + 2 * np.pi * turns, dtype=np.float64)
 
 
-def _candidate(name: str, roll: float, joints: Array) -> Candidate:
+def _candidate(name: str, index: int, roll: float, joints: Array) -> Candidate:
     continuous = within_limits(np.unwrap(joints, axis=0))
     over = np.maximum(continuous - UPPER, LOWER - continuous)
     node, joint = np.unravel_index(int(np.argmax(over)), over.shape)
@@ -193,7 +200,7 @@ def _candidate(name: str, roll: float, joints: Array) -> Candidate:
     values = least_singular_value(continuous)
     lowest = int(np.argmin(values))
     return Candidate(
-        name, roll, continuous, float(over.max()), (int(node), int(joint)), float(values[lowest]), lowest, jump
+        name, index, roll, continuous, float(over.max()), (int(node), int(joint)), float(values[lowest]), lowest, jump
     )
 
 

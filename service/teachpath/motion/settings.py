@@ -22,7 +22,7 @@ class MotionSettings:
     grasp_tolerance: Annotated[float, Ge(0), Le(0.1)] = 0.03
     # [m] above start and goal, from where the gripper comes down straight
     lift: Annotated[float, Gt(0), Le(0.5)] = 0.08
-    # share of the joints' speed, acceleration and jerk limits that a path may use
+    # share of the joints' speed, acceleration and jerk limits that following a path may use
     path_share: Annotated[float, Gt(0), Le(1)] = 1.0
     # the same for moves to the path and away from it
     move_share: Annotated[float, Gt(0), Le(1)] = 0.5

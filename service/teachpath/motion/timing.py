@@ -1,185 +1,137 @@
-"""How fast the arm may go along a path: a quintic spline through configurations and one box of limits for its length.
+"""From a route and a branch of the arm to the fastest motion along it that all joint limits allow.
 
-With q(s) and s(t): q' = dq/ds and so on, the joints' velocity is q's', their acceleration q's'' + q''s'^2, their jerk
-q's''' + 3 q''s's'' + q'''s'^3. The triangle bound turns joint limits into limits of s', s'' and s'''.
+First a guess at the time each place of the curve is reached; then the joints as a spline over this guess, which is
+smooth because its parameter is nearly time; then the pace at which the parameter really runs (`pace`); last a stretch
+of time that is measured on setpoints, because between samples the joints' jerk has needles where the curve has knots.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from functools import cached_property
 from typing import Final
 
 import numpy as np
-from ruckig import ControlInterface, InputParameter, Result, Ruckig, RuckigError, Trajectory
 from scipy.interpolate import BSpline, make_interp_spline
+from scipy.ndimage import uniform_filter1d
 
 from teachpath.errors import PathRefused
-from teachpath.motion.puma560 import ACCELERATION, JERK, SPEED, Array
+from teachpath.motion.joints import JointPath, Limits
+from teachpath.motion.kinematics import downward, inverse
+from teachpath.motion.pace import fastest_pace
+from teachpath.motion.profile import squared_rates, times
+from teachpath.motion.puma560 import Array
+from teachpath.motion.route import Candidate, Route
+from teachpath.motion.track import Track, paced
 
-DEGREE: Final = 5
-# Samples per node at which the box is computed: the bound holds between them up to the spline's own smoothness.
-DENSITY: Final = 4
-# The share of the limits the box uses, for what lies between the samples.
-SHARE: Final = 0.995
-SPEEDS: Final = 48  # candidates of the search for the fastest box
-ACCELERATIONS: Final = 16
-
-State = tuple[float, float, float]  # s, its speed, its acceleration
-
-
-@dataclass(frozen=True, slots=True)
-class Limits:
-    """Largest velocity [m/s], acceleration [m/s^2] and jerk [m/s^3] of s; for a joint move in rad."""
-
-    velocity: float
-    acceleration: float
-    jerk: float
-
-
-@dataclass(frozen=True, eq=False)
-class JointPath:
-    """Configurations along a length: q(s), three times continuously differentiable and more.
-
-    Attributes:
-        lengths: (n,) strictly increasing, from 0.
-        joints: (n, 6) configurations at the nodes [rad].
-    """
-
-    lengths: Array
-    joints: Array
-
-    @property
-    def end(self) -> float:
-        """Length of the whole path."""
-        return float(self.lengths[-1])
-
-    @cached_property
-    def _derivatives(self) -> tuple[BSpline[np.float64], ...]:
-        degree = min(DEGREE, len(self.lengths) - 1)
-        spline = make_interp_spline(self.lengths, self.joints, k=degree)
-        return (spline, *(spline.derivative(k) for k in range(1, min(degree, 3) + 1)))
-
-    def __call__(self, s: Array | float, order: int = 0) -> Array:
-        """Evaluate q or its derivative of `order` 0 to 3 with respect to s: (..., 6)."""
-        at = np.clip(s, 0.0, self.end)
-        if order >= len(self._derivatives):
-            return np.zeros((*np.shape(at), self.joints.shape[1]))
-        return np.asarray(self._derivatives[order](at), dtype=np.float64)
-
-    def motion(self, s: float, speed: float, acceleration: float) -> tuple[Array, Array, Array]:
-        """Return the joints' position, velocity and acceleration (6,) each, at a state of s."""
-        first = self(s, 1)
-        return self(s), first * speed, first * acceleration + self(s, 2) * speed**2
-
-    def dense(self) -> Array:
-        """Return lengths several times denser than the nodes."""
-        grid = np.arange((len(self.lengths) - 1) * DENSITY + 1) / DENSITY
-        return np.interp(grid, np.arange(len(self.lengths)), self.lengths)
+# Shares of the speed, acceleration and jerk limits that a plan uses: the rest is for changing its rate. Speed has the
+# least, because slowing down needs none of it.
+RESERVE: Final = (0.99, 0.93, 0.87)
+GUESSED: Final = (0.98, 0.90)  # shares of speed and acceleration limits that the guess uses
+PLACES: Final = 400  # of the curve in the guess, at least so many ...
+PER_SPAN: Final = 24  # ... and so many between two knots
+MARGIN: Final = 0.1  # s, that the guess is too short for want of jerk limits
+WINDOW: Final = 0.05  # s, of the filter that takes the jumps of acceleration out of the guess
+KNOT: Final = 0.05  # s, between two knots of the smooth guess
+FEWEST: Final = 24  # intervals of the smooth guess, at least
+MOST: Final = 80  # and at most, because the linear programs grow with them
+FINER: Final = 4  # intervals of the pace for each interval of the guess
+NODES: Final = 400  # of the joints' spline, at least
+PHASES: Final = (0.0, 0.25, 0.5, 0.75)  # of the first setpoint, in control periods
+OVERRIDES: Final = (0.1, 0.3, 0.5, 0.7, 0.9)
+STRETCHES: Final = 4  # times that time is stretched at most
+EXACT: Final = 1e-3  # relative stretch that is not worth repeating
 
 
-def joint_move(start: Array, goal: Array) -> JointPath:
-    """Return the straight line between two different configurations; its length is the largest turn [rad]."""
-    return JointPath(np.array([0.0, np.abs(goal - start).max()]), np.stack([start, goal]))
-
-
-def fastest_box(path: JointPath, *, share: float = 1.0) -> Limits:
-    """Find the constant limits of s that bring the arm from rest to rest soonest within every joint limit.
+def timed(way: Route, candidate: Candidate, limits: Limits, *, rate: float) -> tuple[JointPath, Array]:
+    """Find the fastest motion along a route on one branch of the arm.
 
     Args:
-        path: what to follow.
-        share: of the joints' speed, acceleration and jerk limits that may be used, in (0, 1].
+        way: the route.
+        candidate: the branch and the roll of the tool.
+        limits: to keep, also while the rate is being changed.
+        rate: setpoints a second on which they are measured [Hz].
+
+    Returns:
+        The joints by a parameter from 0 to 1, and the coefficients of its pace (see `track.paced`).
 
     Raises:
-        PathRefused: the path turns so sharply in the joints that no useful speed is left.
+        PathRefused: no motion was found that keeps the limits.
     """
-    first, second, third = (np.abs(path(path.dense(), k)) for k in (1, 2, 3))
-    room = share * SHARE
-    speed, acceleration, jerk = room * SPEED, room * ACCELERATION, room * JERK
-    steepest = np.maximum(first, 1e-9)
-    fastest = min(
-        _least(speed / steepest),
-        _least(np.sqrt(acceleration / np.maximum(second, 1e-9))),
-        _least(np.cbrt(jerk / np.maximum(third, 1e-9))),
-    )
-    best, shortest = None, np.inf
-    for v in fastest * np.linspace(1.0 / SPEEDS, 1.0, SPEEDS):
-        most = _least((acceleration - second * v**2) / steepest)
-        for a in most * np.linspace(1.0 / ACCELERATIONS, 1.0, ACCELERATIONS):
-            j = _least((jerk - third * v**3 - 3 * second * v * a) / steepest)
-            if a <= 1e-6 or j <= 1e-6:
-                continue
-            box = Limits(float(v), float(a), j)
-            duration = rest_to_rest(path.end, box)
-            if duration < shortest:
-                best, shortest = box, duration
-    if best is None:
+    warp = _guess(way, candidate, limits)
+    intervals = FINER * (len(warp.c) - warp.k)
+    sigma = np.linspace(0.0, 1.0, max(NODES, intervals) + 1)
+    u = np.asarray(warp(sigma), dtype=np.float64)
+    path = JointPath(sigma, way.arc.lengths(u), configurations(way, candidate, u))
+    pace = fastest_pace(path, limits.scaled(*RESERVE), intervals)
+    for _ in range(STRETCHES):
+        factor = _factor(paced(path, pace, limits), rate)
+        pace = pace / factor**2
+        if abs(factor - 1.0) < EXACT:
+            break
+    if not np.all(np.isfinite(pace)):
         raise PathRefused("the path turns too sharply for the joints; smooth it by moving its control points apart")
-    return best
+    return path, pace
 
 
-def rest_to_rest(length: float, box: Limits) -> float:
-    """Return the time [s] to cover `length` from rest to rest (Biagiotti & Melchiorri 2008, section 3.4)."""
-    v, a, j = box.velocity, box.acceleration, box.jerk
-    a = min(a, np.sqrt(v * j))
-    if length >= v * (v / a + a / j):
-        return float(length / v + v / a + a / j)
-    if length >= 2 * a**3 / j**2:
-        return float(a / j + np.sqrt((a / j) ** 2 + 4 * length / a))
-    return float(4 * np.cbrt(length / (2 * j)))
+def configurations(way: Route, candidate: Candidate, u: Array) -> Array:
+    """Return the configurations (m, 6) of a candidate at parameters (m,) of its curve."""
+    poses = downward(way.curve(u), candidate.roll)
+    joints = np.unwrap(inverse(poses).joints[:, candidate.index], axis=0)
+    return np.asarray(joints + 2 * np.pi * np.round((candidate.joints[0] - joints[0]) / (2 * np.pi)), dtype=np.float64)
 
 
-def to_position(state: State, end: float, box: Limits, speed: float) -> Trajectory | None:
-    """Solve for the way from a state of s to rest at `end`, no faster than `speed`; None when there is none."""
-    inputs = _inputs(state, box)
-    inputs.control_interface = ControlInterface.Position
-    inputs.target_position = [end]
-    inputs.max_velocity = [speed]
-    return _solve(inputs)
+def lower_bound(way: Route, candidate: Candidate, limits: Limits) -> float:
+    """Return the shortest time [s] that speed and acceleration limits alone allow: no jerk limit, no reserve."""
+    u = _places(way, 4 * PLACES)
+    spline = make_interp_spline(u, configurations(way, candidate, u), k=5)
+    free = np.full(len(u), np.inf)
+    return float(times(u, squared_rates(u, spline(u, 1), spline(u, 2), limits.speed, limits.acceleration, free))[-1])
 
 
-def to_speed(state: State, box: Limits, speed: float) -> Trajectory | None:
-    """Solve for the soonest way from a state of s to a constant `speed`; None when there is none."""
-    inputs = _inputs(state, box)
-    inputs.control_interface = ControlInterface.Velocity
-    inputs.target_velocity = [speed]
-    return _solve(inputs)
+def uses(setpoints: Array, limits: Limits, rate: float) -> tuple[Array, Array, Array]:
+    """Measure the use of speed (n - 1, 6), acceleration (n - 2, 6) and jerk limits (n - 3, 6) by differences."""
+    first, second, third = (
+        np.abs(np.diff(setpoints[:, :6], order, axis=0)) * rate**order / limit
+        for order, limit in ((1, limits.speed), (2, limits.acceleration), (3, limits.jerk))
+    )
+    return first, second, third
 
 
-def extremes(trajectory: Trajectory) -> tuple[float, float, float]:
-    """Return the least speed, the largest speed and the largest |acceleration| of s along an answer of Ruckig."""
-    profile = trajectory.profiles[0][0]
-    phases = [*zip(profile.brake.t, profile.brake.j, profile.brake.a, profile.brake.v, strict=True)]
-    phases += [*zip(profile.t, profile.j, profile.a, profile.v, strict=False)]
-    speeds, accelerations = [], []
-    for duration, jerk, acceleration, speed in phases:
-        if duration <= 0.0:
-            continue
-        last = acceleration + jerk * duration
-        speeds += [speed, speed + (acceleration + last) / 2 * duration]
-        accelerations += [abs(acceleration), abs(last)]
-        if acceleration * last < 0:
-            speeds.append(speed - acceleration**2 / (2 * jerk))
-    return min(speeds, default=0.0), max(speeds, default=0.0), max(accelerations, default=0.0)
+def _guess(way: Route, candidate: Candidate, limits: Limits) -> BSpline[np.float64]:
+    """Return the curve's parameter by nearly proportional time, from 0 to 1; it grows with the cube at both ends."""
+    u = _places(way, PLACES)
+    spline = make_interp_spline(u, configurations(way, candidate, u), k=5)
+    slow = np.min(limits.jerk / np.maximum(np.abs(spline(u, 3)), 1e-9), axis=1) ** (2 / 3)
+    speed, acceleration = GUESSED[0] * limits.speed, GUESSED[1] * limits.acceleration
+    reached = times(u, squared_rates(u, spline(u, 1), spline(u, 2), speed, acceleration, slow))
+    duration = reached[-1] + MARGIN
+    instants = np.linspace(0.0, duration, 50 * min(max(FEWEST, int(np.ceil(duration / KNOT))), MOST) + 1)
+    smooth = np.interp(instants - MARGIN / 2, reached, u)
+    width = max(1, round(WINDOW / (instants[1] - instants[0])))
+    for _ in range(2):
+        smooth = uniform_filter1d(smooth, width, mode="nearest")
+    knots = np.concatenate([np.zeros(5), np.linspace(0.0, 1.0, len(instants) // 50 + 1), np.ones(5)])
+    places = np.convolve(knots[1:-1], np.full(5, 0.2), mode="valid")  # Greville points
+    coefficients = np.interp(places * duration, instants, smooth)
+    # x = p'^2 grows with s^(4/3) when jerk is limited; a parameter that begins with the cube of time takes that out.
+    coefficients[:3], coefficients[-3:] = 0.0, 1.0
+    return BSpline(knots, coefficients, 5)
 
 
-def _solve(inputs: InputParameter) -> Trajectory | None:
-    trajectory = Trajectory(1)
-    try:
-        result = Ruckig(1).calculate(inputs, trajectory)
-    except RuckigError:
-        return None
-    return trajectory if result == Result.Working and np.isfinite(trajectory.duration) else None
+def _places(way: Route, least: int) -> Array:
+    knots = np.unique(way.curve.knots)
+    lengths = way.arc.lengths(knots)
+    counts = np.maximum(PER_SPAN, np.ceil(least * np.diff(lengths) / lengths[-1])).astype(np.int64)
+    spans = zip(knots[:-1], knots[1:], counts, strict=True)
+    return np.unique(np.concatenate([np.linspace(a, b, count + 1) for a, b, count in spans]))
 
 
-def _inputs(state: State, box: Limits) -> InputParameter:
-    inputs = InputParameter(1)
-    inputs.current_position, inputs.current_velocity, inputs.current_acceleration = ([value] for value in state)
-    inputs.target_velocity, inputs.target_acceleration = [0.0], [0.0]
-    inputs.max_velocity, inputs.max_acceleration, inputs.max_jerk = (
-        [box.velocity], [box.acceleration], [box.jerk])  # fmt: skip
-    return inputs
-
-
-def _least(values: Array) -> float:
-    return float(np.min(values))
+def _factor(track: Track, rate: float) -> float:
+    """Return by what time must be stretched so that setpoints keep the limits with the reserve."""
+    speed, acceleration, jerk = RESERVE
+    factor = 0.0
+    runs = [(phase, 1.0) for phase in PHASES] + [(0.0, override) for override in OVERRIDES]
+    for phase, override in runs:
+        use = uses(track.setpoints(rate, phase=phase, override=override), track.limits, rate)
+        v, a, j = (float(share.max()) for share in use)
+        factor = max(factor, v / speed, np.sqrt(a / acceleration), np.cbrt(j / jerk))
+    return factor

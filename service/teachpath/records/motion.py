@@ -46,6 +46,7 @@ class Certificate:
     velocity_use: Extreme
     acceleration_use: Extreme
     jerk_use: Extreme
+    torque_use: Extreme  # the most that any sequence of commands can ask for on the path
     least_singular: Extreme
     clearance: Extreme  # of arm and carried object to scene and self [m]
 
@@ -56,8 +57,12 @@ class Plan:
 
     Attributes:
         lengths: (n,) arc length of the nodes [m], from 0, strictly increasing.
-        joints: (n, 6) configurations at the nodes [rad]; between them a quintic spline runs.
-        limits: velocity, acceleration, jerk of s along the path [m/s, m/s^2, m/s^3] at full speed.
+        joints: (n, 6) configurations at the nodes [rad]; between them a quintic spline runs, on even parameters from
+            0 to 1.
+        pace: (m,) coefficients of the square of the parameter's rate at full speed, a quadratic spline on even
+            intervals [1/s^2].
+        limits: (3, 6) of the joints' speed [rad/s], acceleration [rad/s^2] and jerk [rad/s^3] while they follow the
+            path, at any override.
         above_start: (6,) configuration above the start, from where the object is grasped.
         above_goal: (6,) configuration above the goal, to where the arm retreats.
         duration: of the path at full speed [s].
@@ -69,7 +74,8 @@ class Plan:
     scene: Scene
     lengths: Array
     joints: Array
-    limits: tuple[float, float, float]
+    pace: Array
+    limits: Array
     above_start: Array
     above_goal: Array
     duration: float

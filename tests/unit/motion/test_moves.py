@@ -3,10 +3,12 @@ import pytest
 
 from teachpath.errors import PathRefused
 from teachpath.motion import MotionSettings, paper_scene
+from teachpath.motion.joints import ARM
 from teachpath.motion.kinematics import downward, inverse, tool_pose
-from teachpath.motion.moves import STEP, approach, left_behind, line, retreat
+from teachpath.motion.moves import STEP, approach, left_behind, line, retreat, straight
 from teachpath.motion.route import within_limits
 from teachpath.motion.scene import CollisionModel
+from teachpath.motion.timing import uses
 from teachpath.records import Scene, Shape
 
 SETTINGS = MotionSettings()
@@ -34,6 +36,17 @@ def test_a_line_is_straight_and_dense() -> None:
     np.testing.assert_array_equal(samples[[0, -1]], [LEFT, RIGHT])
     assert np.abs(np.diff(samples, axis=0)).max() <= STEP
     np.testing.assert_allclose(np.diff(samples, 2, axis=0), 0.0, atol=1e-12)
+
+
+@pytest.mark.parametrize("share", [1e-8, 1e-4, 0.1, 1.0])
+def test_a_straight_run_keeps_the_limits_and_ends_where_it_should(share: float) -> None:
+    goal = LEFT + share * (RIGHT - LEFT)
+    track = straight(LEFT, goal, ARM, reserve=(1.0, 1.0, 1.0))
+    np.testing.assert_allclose(track.table[[0, -1], 0, :6], [LEFT, goal], rtol=0, atol=1e-12)
+    setpoints = track.setpoints(250.0)
+    assert max(use.max() for use in uses(setpoints, ARM, 250.0)) <= 1.0 + 1e-6
+    along = (setpoints[:, :6] - LEFT) @ (goal - LEFT) / np.sum((goal - LEFT) ** 2)
+    np.testing.assert_allclose(setpoints[:, :6], LEFT + along[:, None] * (goal - LEFT), rtol=0, atol=1e-12)
 
 
 def test_a_free_way_is_straight() -> None:

@@ -6,11 +6,10 @@ import pytest
 from teachpath.errors import PathRefused
 from teachpath.io.documents import decode, encode
 from teachpath.motion import MotionSettings, empty_scene, paper_scene, plan, verify
-from teachpath.motion.certificate import digest, stream, uses
+from teachpath.motion.certificate import digest, limit_uses, track
 from teachpath.motion.kinematics import tool_pose
 from teachpath.motion.puma560 import ACCELERATION, JERK, LOWER, SPEED, UPPER
 from teachpath.motion.route import ArcLength
-from teachpath.motion.timing import JointPath, Limits
 from teachpath.records import Plan, Shape
 from tests.unit.motion.ways import FAR, MIDDLE, NEAR, clamped, learned, way
 
@@ -25,7 +24,8 @@ def middle() -> Plan:
 def test_the_three_ways_of_the_paper_keep_every_limit_and_the_path(x: float, degree: int) -> None:
     path = way(x, degree=degree)
     made = plan(path, paper_scene())
-    s, q = stream(JointPath(made.lengths, made.joints), Limits(*made.limits), 250.0)
+    setpoints = track(made).setpoints(250.0)
+    q, s = setpoints[:, :6], setpoints[:, 6]
     assert np.all((q >= LOWER) & (q <= UPPER))
     for order, limit in ((1, SPEED), (2, ACCELERATION), (3, JERK)):
         assert np.all(np.abs(np.diff(q, order, axis=0)) * 250.0**order <= limit)
@@ -34,14 +34,13 @@ def test_the_three_ways_of_the_paper_keep_every_limit_and_the_path(x: float, deg
     assert np.linalg.norm(poses[:, :3, 3] - wanted, axis=1).max() < 1e-4
     np.testing.assert_allclose(poses[:, :3, 2], np.tile([0, 0, -1], (len(s), 1)), atol=1e-4)
     assert made.certificate.clearance.value >= MotionSettings().clearance_min
-    assert len(s) / 250.0 == pytest.approx(made.duration, abs=0.05)
+    assert track(made).duration == made.duration
 
 
 def test_the_certificate_agrees_with_setpoints_differenced_again(middle: Plan) -> None:
-    s, q = stream(JointPath(middle.lengths, middle.joints), Limits(*middle.limits), 250.0)
     certificate = middle.certificate
     written = certificate.position_use, certificate.velocity_use, certificate.acceleration_use, certificate.jerk_use
-    assert written == uses(s, q, 250.0)
+    assert written == limit_uses(track(middle).setpoints(250.0), 250.0)
 
 
 def test_a_plan_survives_json_and_any_change_of_it_is_noticed(middle: Plan) -> None:
@@ -54,7 +53,9 @@ def test_a_plan_survives_json_and_any_change_of_it_is_noticed(middle: Plan) -> N
     for changed in (
         replace(back, joints=bent),
         replace(back, scene=moved),
-        replace(back, limits=(back.limits[0] * 1.01, *back.limits[1:])),
+        replace(back, pace=back.pace * 1.01),
+        replace(back, limits=back.limits * 1.01),
+        replace(back, duration=back.duration * 0.99),
         replace(back, path_version=2),
         replace(back, above_goal=back.above_goal + 1e-9),
     ):

@@ -1,44 +1,118 @@
 import numpy as np
 import pytest
 
-from teachpath.motion import paper_scene, plan
+from teachpath.motion import MotionSettings
+from teachpath.motion.joints import ARM, JointPath, Limits
+from teachpath.motion.kinematics import tool_pose
+from teachpath.motion.pace import fastest_pace
+from teachpath.motion.profile import squared_rates, times
 from teachpath.motion.puma560 import ACCELERATION, JERK, SPEED
-from teachpath.motion.timing import JointPath, fastest_box, joint_move, rest_to_rest
-from tests.unit.motion.ways import FAR, MIDDLE, NEAR, way
+from teachpath.motion.route import Candidate, Route, candidates, route, usable
+from teachpath.motion.timing import RESERVE, lower_bound, timed, uses
+from teachpath.motion.track import Track, paced
+from teachpath.nurbs import Curve
+from tests.unit.motion.ways import FAR, MIDDLE, NEAR, clamped, hooked, wandering, way
+
+RATE = 250.0
 
 
-@pytest.mark.parametrize("x", [NEAR, MIDDLE, FAR])
-def test_the_box_keeps_the_triangle_bound_between_its_samples_too(x: float) -> None:
-    made = plan(way(x), paper_scene())
-    path = JointPath(made.lengths, made.joints)
-    box = fastest_box(path)
-    first, second, third = (np.abs(path(np.linspace(0, path.end, 20011), k)) for k in (1, 2, 3))
-    v, a, j = box.velocity, box.acceleration, box.jerk
-    assert np.all(first * v <= SPEED)
-    assert np.all(second * v**2 + first * a <= ACCELERATION)
-    assert np.all(third * v**3 + 3 * second * v * a + first * j <= JERK)
+def on_a_branch(curve: Curve) -> tuple[Route, Candidate]:
+    settings = MotionSettings()
+    found = route(curve, settings)
+    return found, max((c for c in candidates(found, settings) if usable(c, settings)), key=lambda c: c.singular)
+
+
+def fastest(curve: Curve, limits: Limits = ARM) -> tuple[Track, float]:
+    """The track along a curve and the lower bound of its duration."""
+    found, candidate = on_a_branch(curve)
+    path, pace = timed(found, candidate, limits, rate=RATE)
+    return paced(path, pace, limits), lower_bound(found, candidate, limits)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_setpoints_keep_the_limits_with_the_reserve_at_any_phase_and_override(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    track, _ = fastest(wandering(seed))
+    for _ in range(20):
+        setpoints = track.setpoints(RATE, phase=rng.uniform(), override=rng.choice([1.0, rng.uniform(0.05, 1.0)]))
+        for use, reserve in zip(uses(setpoints, ARM, RATE), RESERVE, strict=True):
+            assert use.max() <= reserve * 1.005
+    assert max(use.max() / r for use, r in zip(uses(track.setpoints(RATE), ARM, RATE), RESERVE, strict=True)) > 0.95
+
+
+@pytest.mark.parametrize(("x", "ratio"), [(NEAR, 1.16), (MIDDLE, 1.26), (FAR, 1.28)])
+def test_the_ways_of_the_paper_take_little_longer_than_without_jerk_limit_and_reserve(x: float, ratio: float) -> None:
+    track, bound = fastest(way(x, degree=5).curve)
+    assert bound < track.duration < ratio * bound
+
+
+def test_a_sharp_bend_slows_only_itself() -> None:
+    found, candidate = on_a_branch(hooked())
+    path, pace = timed(found, candidate, ARM, rate=RATE)
+    track = paced(path, pace, ARM)
+    # No constant box of limits for the length runs faster than the steepest place allows everywhere.
+    by_length = JointPath(found.lengths, found.lengths, candidate.joints)
+    first, second, third = (np.abs(by_length(by_length.dense(), k)[:, :6]).max(axis=0) for k in (1, 2, 3))
+    box = 1 / max((first / SPEED).max(), np.sqrt(second / ACCELERATION).max(), np.cbrt(third / JERK).max())
+    assert track.duration < 0.2 * found.lengths[-1] / box
+
+
+@pytest.mark.parametrize("curve", [way(MIDDLE).curve, way(FAR, degree=5).curve, hooked()])
+def test_the_tool_stays_on_the_curve(curve: Curve) -> None:
+    found, candidate = on_a_branch(curve)
+    path, pace = timed(found, candidate, ARM, rate=RATE)
+    setpoints = paced(path, pace, ARM).setpoints(RATE, phase=0.3)
+    wanted = found.curve(found.arc.parameters(setpoints[:, 6]))
+    assert np.linalg.norm(tool_pose(setpoints[:, :6])[:, :3, 3] - wanted, axis=1).max() < 1e-5
 
 
 def test_a_smaller_share_of_the_limits_takes_longer() -> None:
-    path = joint_move(np.zeros(6), np.array([1.0, -0.4, 0.2, 0.0, 0.9, 2.0]))
-    durations = [rest_to_rest(path.end, fastest_box(path, share=share)) for share in (0.2, 0.5, 1.0)]
+    durations = [fastest(way(MIDDLE).curve, ARM.scaled(s, s, s))[0].duration for s in (0.2, 0.5, 1.0)]
     assert durations == sorted(durations, reverse=True)
 
 
-def test_a_joint_move_is_a_straight_line_from_end_to_end() -> None:
-    start, goal = np.zeros(6), np.array([1.0, -0.4, 0.2, 0.0, 0.9, 2.0])
-    path = joint_move(start, goal)
-    np.testing.assert_allclose(path(0.0), start)
-    np.testing.assert_allclose(path(path.end), goal)
-    np.testing.assert_allclose(path(path.end * 0.3), 0.3 * goal)
-    assert not path(0.7, 2).any()
-    assert not path(0.7, 3).any()
-
-
-def test_derivatives_of_a_path_are_those_of_its_values() -> None:
-    s = np.linspace(0, 2, 80)
-    path = JointPath(s, np.sin(np.outer(s, np.arange(1, 7) / 3)))
-    at, h = np.linspace(0.1, 1.9, 50), 1e-4
+def test_a_track_is_the_integral_of_its_derivatives() -> None:
+    track, _ = fastest(way(MIDDLE, degree=5).curve)
     for order in (0, 1, 2):
-        numeric = (path(at + h, order) - path(at - h, order)) / (2 * h)
-        np.testing.assert_allclose(path(at, order + 1), numeric, atol=1e-6)
+        slopes = track.table[:, order + 1, :6]
+        integral = np.concatenate([np.zeros((1, 6)), np.cumsum((slopes[1:] + slopes[:-1]) / 2 * track.step, axis=0)])
+        gained = track.table[:, order, :6] - track.table[0, order, :6]
+        np.testing.assert_allclose(integral, gained, atol=5e-3 * np.abs(gained).max())
+    np.testing.assert_allclose(track.table[[0, -1], 1:3, :6], 0.0, atol=0.02)
+
+
+def line(turn: float) -> JointPath:
+    """One joint's straight line, its parameter growing with the cube of time at both ends."""
+    sigma = np.linspace(0.0, 1.0, 201)
+    share = sigma**3 * (10 - 15 * sigma + 6 * sigma**2)
+    return JointPath(sigma, share, share[:, None] * np.array([turn, 0, 0, 0, 0, 0]))
+
+
+@pytest.mark.parametrize("turn", [0.02, 0.3, 2.0])
+def test_one_joint_alone_takes_hardly_longer_than_its_closed_form(turn: float) -> None:
+    # Rest to rest under limits of speed, acceleration and jerk (Biagiotti & Melchiorri 2008, section 3.4).
+    v, a, j = SPEED[0], min(ACCELERATION[0], np.sqrt(SPEED[0] * JERK[0])), JERK[0]
+    if turn >= v * (v / a + a / j):
+        shortest = turn / v + v / a + a / j
+    elif turn >= 2 * a**3 / j**2:
+        shortest = a / j + np.sqrt((a / j) ** 2 + 4 * turn / a)
+    else:
+        shortest = 4 * np.cbrt(turn / (2 * j))
+    path = line(turn)
+    duration = paced(path, fastest_pace(path, ARM, 100), ARM).duration
+    assert 0.999 * shortest < duration < 1.04 * shortest
+
+
+@pytest.mark.parametrize("turn", [0.02, 0.3, 2.0])
+def test_the_lower_bound_of_a_line_is_the_trapezoid(turn: float) -> None:
+    grid = np.linspace(0.0, 1.0, 4001)
+    first = np.tile([turn, 0, 0, 0, 0, 0], (len(grid), 1))
+    squares = squared_rates(grid, first, 0 * first, SPEED, ACCELERATION, np.full(len(grid), np.inf))
+    v, a = min(SPEED[0], np.sqrt(turn * ACCELERATION[0])), ACCELERATION[0]
+    assert times(grid, squares)[-1] == pytest.approx(turn / v + v / a, rel=2e-3)
+
+
+def test_a_path_of_few_millimetres_can_be_timed() -> None:
+    start = way(MIDDLE).curve.control_points[0] + [0.0, 0.0, 0.1]
+    track, bound = fastest(clamped(start + np.linspace(0, 1, 6)[:, None] * [0.0, 0.012, 0.0], degree=5))
+    assert bound < track.duration < 1.0

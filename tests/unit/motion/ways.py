@@ -35,3 +35,20 @@ def way(x: float, *, height: float = HEIGHT, degree: int = 3) -> LearnedPath:
     )
     back = there[-2::-1] * [1.0, -1.0, 1.0]
     return learned(clamped(np.concatenate([there, back]), degree=degree))
+
+
+def wandering(seed: int, *, degree: int = 5) -> Curve:
+    """A random smooth path over the table, from one side to the other."""
+    rng = np.random.default_rng(seed)
+    along = np.linspace(-0.3, 0.3, 9)
+    middle = np.column_stack([np.full(9, 0.58), along, np.full(9, 0.68)])
+    return clamped(middle + rng.normal(0.0, 0.03, (9, 3)), degree=degree)
+
+
+def hooked() -> Curve:
+    """The way through the middle, with a hook of few millimetres at its beginning as a trembling hand makes it."""
+    points = way(MIDDLE, degree=5).curve.control_points
+    hook = points[0] + 0.001 * np.array([[0, 0, 0], [-2, -2, 4], [4, 4, 2], [8, -6, 12]])
+    curve = np.concatenate([hook, points[1:]])
+    inner = np.concatenate([[0.0, 0.012, 0.03], np.linspace(0.06, 1.0, len(curve) - 7)])
+    return Curve(5, np.r_[np.zeros(5), inner, np.ones(5)], curve, np.ones(len(curve)))

@@ -367,3 +367,19 @@ def test_an_ended_execution_may_be_followed_by_another_from_where_the_arm_is(ben
     np.testing.assert_allclose(second[0].position, first[-1].position, atol=1e-4)
     assert bench.statuses[-1].progress == pytest.approx(1.0)
     assert within_limits(second)
+
+
+def test_reverse_goes_back_to_the_beginning_of_the_path_and_resume_on_to_its_end(bench: Bench, middle: Plan) -> None:
+    bench.start(middle)
+    bench.when(
+        lambda: bench.state == "following" and bench.statuses[-1].progress > 0.4, lambda: bench.command("reverse")
+    )
+    bench.when(lambda: bench.state == "held", lambda: bench.command("resume"))
+    bench.when(lambda: bench.state == "ended", bench.stop.set)
+    bench.run()
+    held = next(s for s in bench.statuses if s.state == "held")
+    assert held.progress == 0.0
+    assert "back at the beginning" in held.reason
+    assert bench.states()[-4:] == ["following", "held", "following", "ended"]
+    assert bench.statuses[-1].progress == pytest.approx(1.0)
+    assert within_limits(bench.setpoints)

@@ -1,59 +1,10 @@
 import threading
-from collections.abc import Iterator
 
 import pytest
 
 from teachpath.errors import Conflict, NotFound, UnusableInput
-from teachpath.io.bus import MemoryBus
-from teachpath.io.store import Store
-from teachpath.io.wire import sample_message
-from teachpath.recording import RecordingSettings
-from teachpath.records import Calibration, Demonstration, Sample, Scene, Shape, Trajectory
-from teachpath.workers.recorder import Recorder
-from teachpath_proto import tracker_pb2
-from teachpath_proto.keys import Keys
 from tests.unit.recording.hands import PERIOD_NS, demonstration, sample
-
-KEYS = Keys("test")
-SCENE = Scene("paper", (), Shape("block", "box", (0.04, 0.04, 0.04), (0.5, 0.0, 0.48)))
-
-
-class Bench:
-    """A recorder on an in-memory bus, and a tracker that speaks to it."""
-
-    def __init__(self, store: Store) -> None:
-        self.bus, self.store = MemoryBus(), store
-        self.recorded: list[tuple[Demonstration, Trajectory]] = []
-        self.recorder = Recorder(
-            self.bus,
-            KEYS,
-            store,
-            RecordingSettings(handshake_timeout=1.0),
-            scene=lambda name: {"paper": SCENE}[name],
-            calibration=Calibration,
-            recorded=lambda *made: self.recorded.append(made),
-        )
-        self.recorder.start()
-
-    def send(self, samples: list[Sample], tracker: str = "glove") -> None:
-        for s in samples:
-            self.bus.publish(KEYS.samples(tracker), sample_message(s).SerializeToString())
-
-    def begin(self, tracker: str = "glove", task: str = "lift") -> None:
-        request = tracker_pb2.StartRecording(task=task, tracker=tracker, scene="paper")
-        self.bus.ask(KEYS.recorder_start, request.SerializeToString())
-
-    def end(self, last: int, tracker: str = "glove", *, discard: bool = False) -> tracker_pb2.RecordingReport:
-        request = tracker_pb2.StopRecording(tracker=tracker, last_sequence=last, discard=discard)
-        answer = self.bus.ask(KEYS.recorder_stop, request.SerializeToString())
-        return tracker_pb2.RecordingReport.FromString(answer)
-
-
-@pytest.fixture
-def bench(store: Store) -> Iterator[Bench]:
-    bench = Bench(store)
-    yield bench
-    bench.recorder.stop()
+from tests.unit.workers.recorders import KEYS, Bench
 
 
 def test_a_stream_becomes_demonstrations_with_every_sample_in_order(bench: Bench) -> None:

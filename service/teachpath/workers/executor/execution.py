@@ -54,6 +54,12 @@ class Execution:
             self.reason = ""
             self.program.resume()
 
+    def reverse(self) -> None:
+        """Go back to the beginning of this stretch, unless it is being ended."""
+        if not self._ending:
+            self.reason = ""
+            self.program.reverse()
+
     def end(self, state: str, reason: str) -> None:
         """Come to rest on the path and end there as `ended` or `faulted`."""
         if not self._ending:
@@ -67,7 +73,7 @@ class Execution:
             due: when the period began [ns of the loop's clock].
             sent_ns: now [ns since the Unix epoch].
         """
-        moment = self.program.step(self._period)
+        moment = self.program.step()
         self._meter.add(moment.position, self.program)
         setpoint = Setpoint(
             cycle=self._sent,
@@ -89,7 +95,7 @@ class Execution:
         return ExecutorStatus(
             execution=self.execution,
             state=self.state,
-            reason=self.reason or (f"the override is {self.program.override:g}" if self.state == "held" else ""),
+            reason=self.reason or (self.program.why_held if self.state == "held" else ""),
             progress=self.program.progress,
             override=self.program.override,
             cycles=self._sent,

@@ -21,6 +21,7 @@ from annotated_types import Ge, Gt, Le
 from teachpath.errors import Conflict, Unreachable, UnusableInput
 from teachpath.io import documents, wire
 from teachpath.io.bus import Bus
+from teachpath.motion.governor import warm_up
 from teachpath.motion.program import Program
 from teachpath.motion.settings import MotionSettings
 from teachpath.records import ExecutorStatus, JointState, Plan
@@ -92,6 +93,7 @@ class Executor:
     def run(self, stop: threading.Event) -> None:
         """Stream until `stop` is set; then the arm is brought to rest on its path first."""
         s = self._settings
+        warm_up(self._period)
         handles = [
             self._bus.subscribe(self._keys.state(self._robot), self._hear),
             self._bus.serve(self._keys.executor_command, self._answer),
@@ -147,7 +149,7 @@ class Executor:
         current = self._current
         if current is None or current.resting or execution != current.execution:
             raise Conflict(f"execution {execution!r} is not running")
-        if verb == "resume":
+        if verb in ("resume", "reverse"):
             self._check_regain(current)
         self._commands.append((verb, override))
         return wire.encode_status(current.status(self._pacer))
@@ -161,7 +163,14 @@ class Executor:
             speed = float(np.abs(arm.velocity).max())
             if speed > self._settings.rest_speed:
                 raise Conflict(f"the arm still moves at {speed:.2f} rad/s; wait until it rests")
-            program = Program(plan, arm.position, self._motion, override=override, dwell=self._settings.dwell)
+            program = Program(
+                plan,
+                arm.position,
+                self._motion,
+                override=override,
+                dwell=self._settings.dwell,
+                period=self._period,
+            )
             self._pacer.reset()
             self._commands.clear()
             offset = self._wall() - self._clock()
@@ -171,9 +180,7 @@ class Executor:
     def _present(self) -> JointState:
         heard = self._heard
         if heard is None or self._clock() - heard[0] > 1e9 * self._settings.silence:
-            raise Unreachable(
-                f"no joint state from {self._robot}; is the simulator or the arm's driver running?"
-            )
+            raise Unreachable(f"no joint state from {self._robot}; is the simulator or the arm's driver running?")
         return heard[1]
 
     def _check_regain(self, current: Execution) -> None:
@@ -193,6 +200,8 @@ class Executor:
                 current.hold("held by the operator")
             elif verb == "resume":
                 current.resume()
+            elif verb == "reverse":
+                current.reverse()
             elif verb == "stop":
                 current.end("ended", "stopped by the operator")
 
