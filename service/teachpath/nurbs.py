@@ -24,7 +24,7 @@ class Curve:
     Attributes:
         degree: p, 1 to 7.
         knots: (n + p + 1,) non-decreasing, p + 1 times 0 first and p + 1 times 1 last.
-        control_points: (n, d) [m].
+        control_points: (n, d) [m], or of a curve of quaternions (n, 4).
         weights: (n,) positive.
     """
 
@@ -76,6 +76,17 @@ class Curve:
         u = (spans[:-1] + half)[:, None] + half[:, None] * nodes  # (spans, 16)
         speed = np.linalg.norm(self(u.ravel(), 1), axis=1).reshape(u.shape)
         return float(np.sum(half * (speed @ weights)))
+
+
+def unit(curve: Curve, u: Array | float) -> Array:
+    """Evaluate a curve of quaternions: (m, 4) or (4,) of unit length, neighbours on one half of the sphere.
+
+    Args:
+        curve: with control points (n, 4), no quaternions themselves.
+        u: (m,) or scalar parameters in [0, 1].
+    """
+    at = curve(u)
+    return np.asarray(at / np.linalg.norm(at, axis=-1, keepdims=True))
 
 
 def _check(curve: Curve) -> None:

@@ -1,6 +1,8 @@
 """From demonstrations to learned paths: clustering, selection of the consistent ones, NURBS fitting."""
 
+from teachpath.learning.compare import compare
+from teachpath.learning.dendrogram import recut
 from teachpath.learning.learn import learn
 from teachpath.learning.settings import LearningSettings
 
-__all__ = ["LearningSettings", "learn"]
+__all__ = ["LearningSettings", "compare", "learn", "recut"]

@@ -5,19 +5,18 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
-from scipy.cluster.hierarchy import fcluster, linkage
-from scipy.spatial.distance import squareform
+from scipy.cluster import hierarchy
 
-from teachpath.learning.settings import Progress, ignore
+from teachpath.learning.dendrogram import Labels, height_between, labels_at, labels_into
+from teachpath.learning.settings import LearningSettings, Progress, ignore
+from teachpath.learning.silhouettes import Silhouettes
 from teachpath.records import Array
-
-Labels = NDArray[np.int64]
 
 MOST_CLUSTERS = 10  # that the silhouette chooses among
 APART = 0.1  # share of the path length: two demonstrations farther apart are two ways
 CAUTION = 0.5  # divided by its members, added to the guard of a cluster: few fall apart by chance
 CLOSE_CALL = 0.08  # of the silhouette
+CLOSE_MERGE = 1.1  # ratio of a merge's height to that of the cut
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,41 +28,62 @@ class Grouping:
         threshold: height of the cut [m].
         labels: (m,) cluster of each demonstration, 1, 2, ... in the order of their first members.
         note: what is doubtful about it, or empty.
+        rival: number of clusters of the next best cut when the choice was close, else None.
     """
 
     linkage: Array
     threshold: float
     labels: Labels
     note: str = ""
+    rival: int | None = None
 
 
-def distances(paths: Array, progress: Progress = ignore) -> Array:
-    """Return the mean distance of corresponding points for every pair (Aleotti & Caselli, eq. (1)).
+def group(
+    condensed: Array, count: int, settings: LearningSettings, *, length: float, progress: Progress = ignore
+) -> Grouping:
+    """Merge by average link and cut as the settings say: at a height, into a number, or where the silhouette is best.
 
     Args:
-        paths: (m, n, 3) [m].
+        condensed: distances of all pairs [m], in scipy's order.
+        count: number m of demonstrations.
+        settings: `clusters`, else `threshold`, else `guard` decide.
+        length: of a typical path [m].
         progress: is told how far the work has come.
-
-    Returns:
-        (m (m - 1) / 2,) [m], condensed in scipy's order.
     """
-    m = len(paths)
-    rows = [np.empty(0)]
-    for i in range(m - 1):
-        progress(1 - ((m - i) / m) ** 2, "measuring the distances between demonstrations")
-        rows.append(np.sqrt(np.square(paths[i + 1 :] - paths[i]).sum(axis=2)).mean(axis=1))
-    return np.concatenate(rows)
+    if settings.clusters is not None and settings.mode == "default":
+        return cut_into(condensed, count, settings.clusters)
+    if settings.threshold is not None:
+        return cut_at(condensed, count, settings.threshold)
+    return cut_by_silhouette(condensed, count, guard=settings.guard, length=length, progress=progress)
 
 
 def cut_at(condensed: Array, count: int, threshold: float) -> Grouping:
     """Merge by average link until the two closest clusters are farther apart than `threshold` [m]."""
-    if count == 1:
-        return Grouping(np.empty((0, 4)), threshold, np.ones(1, dtype=np.int64))
-    tree = linkage(condensed, "average")
-    return Grouping(tree, threshold, _by_first_member(fcluster(tree, threshold, "distance")))
+    tree = _tree(condensed, count)
+    labels = labels_at(tree, threshold)
+    rival = _next_merge(tree, int(labels.max()), threshold)
+    if rival is None:
+        return Grouping(tree, threshold, labels)
+    least = float(tree[1 - max(rival, int(labels.max())), 2])
+    note = (
+        f"{_ways(int(labels.max()))}, but ambiguous: two clusters {least * 100:.1f} cm apart are close to "
+        f"learning.threshold {threshold * 100:.1f} cm, on its other side there are {rival}"
+    )
+    return Grouping(tree, threshold, labels, note, rival)
 
 
-def cut_by_silhouette(condensed: Array, count: int, *, guard: float, length: float) -> Grouping:
+def cut_into(condensed: Array, count: int, clusters: int) -> Grouping:
+    """Merge by average link until `clusters` are left, or every demonstration alone when there are fewer."""
+    tree = _tree(condensed, count)
+    left = min(clusters, count)
+    height = height_between(tree, left)
+    note = f"{count} demonstrations cannot be {clusters} ways; every one is its own" if left < clusters else ""
+    return Grouping(tree, height, labels_into(tree, left), note, _next_merge(tree, left, height))
+
+
+def cut_by_silhouette(
+    condensed: Array, count: int, *, guard: float, length: float, progress: Progress = ignore
+) -> Grouping:
     """Merge by average link and cut where the mean silhouette is best (Rousseeuw 1987).
 
     A silhouette is not defined for one single cluster, so below `guard` the demonstrations count as one way. The
@@ -76,64 +96,59 @@ def cut_by_silhouette(condensed: Array, count: int, *, guard: float, length: flo
         count: number m of demonstrations.
         guard: least mean silhouette for more than one cluster.
         length: of a typical path [m], the yardstick for two demonstrations and for doubts.
+        progress: is told how far the work has come.
     """
     if count == 1:
-        return cut_at(condensed, 1, 0.0)
-    tree = linkage(condensed, "average")
+        return cut_into(condensed, 1, 1)
+    tree = _tree(condensed, count)
     top = float(tree[-1, 2])
     wide = top > APART * length
     if count == 2:
         threshold = top / 2 if wide else top
-        return Grouping(tree, threshold, _by_first_member(fcluster(tree, threshold, "distance")), _pair_note(top, wide))
-    square = squareform(condensed)
-    candidates = range(2, min(MOST_CLUSTERS, count - 1) + 1)
-    labelings = {k: fcluster(tree, k, "maxclust") for k in candidates}
-    scores = {k: silhouette(square, labels) for k, labels in labelings.items() if len(np.unique(labels)) == k}
-    best = max(scores, key=lambda k: scores[k], default=1)
-    if best == 1 or scores[best] < guard:
-        doubt = _doubt_one(scores.get(best, 0.0), guard, top, wide)
-        return Grouping(tree, top, np.ones(count, dtype=np.int64), doubt)
-    while best + 1 in scores and _splits_well(square, labelings[best], labelings[best + 1], guard):
+        return Grouping(tree, threshold, labels_at(tree, threshold), _pair_note(top, wide), 1 if wide else 2)
+    most = min(MOST_CLUSTERS, count - 1)
+    silhouettes = Silhouettes(condensed, tree, most, progress)
+    scores = {k: silhouettes.mean(k) for k in range(2, most + 1)}
+    best = max(scores, key=lambda k: scores[k])
+    if scores[best] < guard:
+        doubt = _doubt_one(scores[best], guard, top, wide)
+        return Grouping(tree, top, labels_into(tree, 1), doubt, best if doubt else None)
+    while best < most:
+        alone, members = silhouettes.of_split(best)
+        if alone < guard + CAUTION / members:
+            break
         best += 1
-    threshold = float(tree[-best, 2] + tree[-best + 1, 2]) / 2
-    return Grouping(tree, threshold, _by_first_member(labelings[best]), _doubt_many(scores, best, guard))
+    rivals = _rivals(scores, best, guard)
+    note, rival = _doubt_many(best, rivals), rivals[0] if rivals else None
+    return Grouping(tree, height_between(tree, best), labels_into(tree, best), note, rival)
 
 
-def silhouette(square: Array, labels: NDArray[np.int32] | Labels) -> float:
-    """Return the mean silhouette of a partition, -1 to 1; a demonstration alone in its cluster counts 0.
-
-    Args:
-        square: (m, m) distances.
-        labels: (m,) cluster of each.
-    """
-    members = labels == np.unique(labels)[:, None]  # (k, m)
-    sizes = members.sum(axis=1)
-    own = members.argmax(axis=0)
-    sums = square @ members.T  # (m, k)
-    rows = np.arange(len(labels))
-    within = sums[rows, own] / np.maximum(sizes[own] - 1, 1)
-    means = sums / sizes
-    means[rows, own] = np.inf
-    nearest = means.min(axis=1)
-    larger = np.maximum(within, nearest)
-    values = np.divide(nearest - within, larger, out=np.zeros(len(labels)), where=larger > 0)
-    return float(np.where(sizes[own] > 1, values, 0.0).mean())
+def _tree(condensed: Array, count: int) -> Array:
+    return np.asarray(hierarchy.linkage(condensed, "average")) if count > 1 else np.empty((0, 4))
 
 
-def _splits_well(square: Array, coarse: NDArray[np.int32], fine: NDArray[np.int32], guard: float) -> bool:
-    """Tell whether the one cluster of `coarse` that `fine` splits would be split if it were alone."""
-    for label in np.unique(coarse):
-        inside = np.flatnonzero(coarse == label)
-        if len(np.unique(fine[inside])) > 1:
-            alone = square[np.ix_(inside, inside)]
-            return silhouette(alone, fine[inside]) >= guard + CAUTION / len(inside)
-    return False
+def _next_merge(tree: Array, clusters: int, height: float) -> int | None:
+    """Return the number of clusters on the other side of the nearest merge, when that is close to the cut."""
+    near: list[tuple[float, int]] = []
+    if not height > 0:
+        return None
+    if clusters > 1:
+        near.append((float(tree[-clusters + 1, 2]) / height, clusters - 1))
+    if clusters <= len(tree) and tree[-clusters, 2] > 0:
+        near.append((height / float(tree[-clusters, 2]), clusters + 1))
+    ratio, other = min(near, default=(np.inf, 0))
+    return other if ratio < CLOSE_MERGE else None
 
 
-def _by_first_member(labels: NDArray[np.int32]) -> Labels:
-    _, first, inverse = np.unique(labels, return_index=True, return_inverse=True)
-    rank = np.argsort(np.argsort(first))
-    return np.asarray(rank[inverse] + 1, dtype=np.int64)
+def _rivals(scores: dict[int, float], best: int, guard: float) -> list[int]:
+    """Return the cuts that would do nearly as well, the best of them first."""
+    close = [k for k, score in scores.items() if k != best and score > scores[best] - CLOSE_CALL]
+    close.sort(key=lambda k: -scores[k])
+    return close + ([1] if scores[best] < guard + CLOSE_CALL else [])
+
+
+def _ways(count: int) -> str:
+    return "one way" if count == 1 else f"{count} ways"
 
 
 def _pair_note(top: float, wide: bool) -> str:
@@ -150,10 +165,8 @@ def _doubt_one(score: float, guard: float, top: float, wide: bool) -> str:
     return ""
 
 
-def _doubt_many(scores: dict[int, float], best: int, guard: float) -> str:
-    close = [k for k, score in scores.items() if k != best and score > scores[best] - CLOSE_CALL]
-    rivals = ([1] if scores[best] < guard + CLOSE_CALL else []) + sorted(close)
+def _doubt_many(best: int, rivals: list[int]) -> str:
     if not rivals:
         return ""
-    others = " or ".join(str(k) for k in rivals)
+    others = " or ".join(str(k) for k in sorted(rivals))
     return f"{best} ways, but ambiguous: {others} would do nearly as well; set learning.threshold to decide it"

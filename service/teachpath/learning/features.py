@@ -1,14 +1,15 @@
-"""What the consistency of demonstrations is judged by in mode default: band energies, positions, velocities."""
+"""What the consistency of demonstrations is judged by in mode default: their course, their shape, their smoothness."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 from scipy.signal.windows import hamming
 
-from teachpath.learning.resampling import at_equal_times, smoothed
+from teachpath.learning.resampling import arc_lengths, at_equal_arc_length, at_equal_times, smoothed
 from teachpath.records import Array, Trajectory
 
 WINDOW = 40  # samples of a stretch, or fewer when a demonstration is shorter
@@ -17,8 +18,51 @@ TREND = 3  # degree of the polynomial that stands for the intended motion within
 SPECTRUM = 64  # points of the zero-padded transform
 BANDS = ((1, 5), (5, 9), (9, 17), (17, 33))  # bins, first to one behind the last
 QUIET = 2e-4  # m, amplitude below which movement is not told from tracker noise
-INSTANTS = 40  # equal times at which position and velocity are taken
+INSTANTS = 40  # equal times, or equal shares of the path, at which positions are taken
+FINE = 200  # points of a path that its bow is taken off
+BOW = 5  # degree of the polynomial that stands for a path's large-scale form
 LEAD = 0.03  # s, weight of velocity beside position
+
+
+@dataclass(frozen=True, eq=False)
+class Family:
+    """One kind of feature of every member of a cluster.
+
+    Attributes:
+        quality: what it tells: course, shape or smoothness.
+        sequences: for each member (frames, features).
+        times: for each member (frames,) [s], when the frames are, since the first sample.
+        states: of the models of it.
+    """
+
+    quality: str
+    sequences: list[Array]
+    times: list[Array]
+    states: int
+
+
+def families(trajectories: Sequence[Trajectory], period: float) -> list[Family]:
+    """Return the features of the members of a cluster; without smoothness when one is shorter than the window.
+
+    Args:
+        trajectories: of one cluster.
+        period: sampling period [s] they are brought to for smoothness.
+    """
+    durations = [float(trajectory.times[-1] - trajectory.times[0]) for trajectory in trajectories]
+    equal = [np.linspace(0.0, duration, INSTANTS) for duration in durations]
+    paths = [smoothed(trajectory) for trajectory in trajectories]
+    found = [
+        Family("course", positions_and_velocities(trajectories), equal, 10),
+        Family("shape", shapes(paths), [_when(t, path) for t, path in zip(trajectories, paths, strict=True)], 20),
+    ]
+    energies = band_energies(trajectories, period)
+    if energies is not None:
+        centres = [
+            (np.arange(len(frames)) + 0.5) * duration / len(frames)
+            for frames, duration in zip(energies, durations, strict=True)
+        ]
+        found.append(Family("smoothness", energies, centres, 5))
+    return found
 
 
 def band_energies(trajectories: Sequence[Trajectory], period: float) -> list[Array] | None:
@@ -69,3 +113,26 @@ def positions_and_velocities(trajectories: Sequence[Trajectory]) -> list[Array]:
         step = float(trajectory.times[-1] - trajectory.times[0]) / (INSTANTS - 1)
         features.append(np.column_stack([local, LEAD * np.gradient(local, step, axis=0)]))
     return features
+
+
+def shapes(paths: Sequence[Array]) -> list[Array]:
+    """Return what is left of each path at equal arc length when its large-scale bow is taken off.
+
+    Demonstrations of one way differ by bows, which say nothing; a local detour is no bow. Given along the principal
+    axes of all, so it does not depend on the frame.
+
+    Returns:
+        for each path (40, 3) [m].
+    """
+    bow = np.linalg.qr(np.polynomial.legendre.legvander(np.linspace(-1.0, 1.0, FINE), BOW))[0]
+    stations = np.linspace(0, FINE - 1, INSTANTS).round().astype(int)
+    courses = [at_equal_arc_length(path, FINE) for path in paths]
+    residuals = [(course - bow @ (bow.T @ course))[stations] for course in courses]
+    axes = np.linalg.eigh(np.cov(np.concatenate(residuals).T))[1]
+    return [residual @ axes for residual in residuals]
+
+
+def _when(trajectory: Trajectory, path: Array) -> Array:
+    """Return the times [s] at which equal shares of a path are reached."""
+    s = arc_lengths(path)
+    return np.asarray(np.interp(np.linspace(0.0, s[-1], INSTANTS), s, trajectory.times - trajectory.times[0]))

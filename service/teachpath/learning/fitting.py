@@ -30,7 +30,9 @@ class Approximation:
     largest: float
 
 
-def approximate(points: Array, bound: float, *, degree: int, most: int, span: int = POINTS_PER_SPAN) -> Approximation:
+def approximate(
+    points: Array, bound: float, *, degree: int, most: int, span: int = POINTS_PER_SPAN, at: Array | None = None
+) -> Approximation:
     """Fit a NURBS to ordered points, with as few knots as the bound allows.
 
     Starts without interior knots, halves every span that holds a point beyond the bound, and in the end takes out
@@ -43,8 +45,9 @@ def approximate(points: Array, bound: float, *, degree: int, most: int, span: in
         degree: of the curve; lowered when there are too few points for it.
         most: control points.
         span: least points in a knot span.
+        at: (n,) parameters of the points, from 0 to 1; None = their share of the arc length.
     """
-    s = arc_lengths(points)
+    s = arc_lengths(points) if at is None else at
     forward = np.concatenate([[True], np.diff(s) > 1e-12 * s[-1]])
     points, s = np.concatenate([points[forward][:-1], points[-1:]]), s[forward]
     u = s / s[-1]

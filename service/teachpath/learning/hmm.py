@@ -20,6 +20,7 @@ from teachpath.records import Array
 Statistics = dict[str, Any]
 
 LOG_2PI = float(np.log(2 * np.pi))
+ONE_ONLY = 4.0  # factor on the variance of a model of one sequence
 
 
 class LeftRightHmm(BaseHMM):  # type: ignore[misc]
@@ -106,6 +107,14 @@ class TiedGaussianHmm(LeftRightHmm):
         super().__init__(**options)
         self.floor = floor
 
+    def widen(self, sequences: int) -> None:
+        """Widen the variance to what a new sequence shows against means that were estimated from so few.
+
+        The variance about the estimated means is too small by (n - 1) / n, that of a new sequence larger than the true
+        one by (n + 1) / n.
+        """
+        self.variance_ *= (sequences + 1) / (sequences - 1) if sequences > 1 else ONE_ONLY
+
     def _begin(self, slices: list[Array], frames: Array) -> None:
         self.means_ = np.stack([part.mean(axis=0) for part in slices])
         squares = sum(np.square(part - mean).sum(axis=0) for part, mean in zip(slices, self.means_, strict=True))
@@ -140,70 +149,6 @@ class TiedGaussianHmm(LeftRightHmm):
             for X, posteriors in stats["frames"]
         )
         self.variance_ = np.maximum(squares / weight.sum(), self.floor)
-
-
-class MixtureHmm(LeftRightHmm):
-    """A mixture of Gaussians with full covariances per state (Aleotti & Caselli 2005, eq. (3)).
-
-    Args:
-        mixtures: number M of Gaussians per state.
-        ridge: added to the diagonal of every covariance in every M-step.
-        rng: draws the frames of its time slice that the Gaussians of a state start from.
-        options: see `LeftRightHmm`.
-    """
-
-    def __init__(self, mixtures: int, ridge: float, rng: np.random.Generator, **options: Any) -> None:
-        super().__init__(**options)
-        self.mixtures = mixtures
-        self.ridge = ridge
-        self.rng = rng
-
-    def _begin(self, slices: list[Array], frames: Array) -> None:
-        shape = (self.n_components, self.mixtures)
-        picks = [self.rng.choice(len(part), self.mixtures, replace=len(part) < self.mixtures) for part in slices]
-        self.means_ = np.stack([part[pick] for part, pick in zip(slices, picks, strict=True)])  # (Q, M, d)
-        spread = np.diag(frames.var(axis=0) + self.ridge)
-        self.covariances_ = np.broadcast_to(spread, (*shape, *spread.shape)).copy()
-        self.weights_ = np.full(shape, 1 / self.mixtures)
-
-    def _log_components(self, X: Array) -> Array:
-        offsets = X[:, None, None, :] - self.means_  # (frames, Q, M, d)
-        whitened = np.linalg.solve(np.linalg.cholesky(self.covariances_), offsets[..., None])[..., 0]
-        log_determinant = np.linalg.slogdet(self.covariances_)[1]
-        quadratic = np.square(whitened).sum(axis=3)
-        return np.asarray(np.log(self.weights_) - 0.5 * (quadratic + log_determinant + self.n_features * LOG_2PI))
-
-    def _compute_log_likelihood(self, X: Array) -> Array:
-        return np.asarray(logsumexp(self._log_components(X), axis=2))
-
-    def _initialize_sufficient_statistics(self) -> Statistics:
-        stats: Statistics = super()._initialize_sufficient_statistics()
-        stats["frames"] = []
-        return stats
-
-    def _accumulate_sufficient_statistics(
-        self, stats: Statistics, X: Array, lattice: Array, posteriors: Array, fwdlattice: Array, bwdlattice: Array
-    ) -> None:
-        super()._accumulate_sufficient_statistics(stats, X, lattice, posteriors, fwdlattice, bwdlattice)
-        components = self._log_components(X)
-        shares = np.exp(components - logsumexp(components, axis=2, keepdims=True))
-        stats["frames"].append((X, posteriors[:, :, None] * shares))
-
-    def _do_mstep(self, stats: Statistics) -> None:
-        super()._do_mstep(stats)
-        X = np.concatenate([frames for frames, _ in stats["frames"]])
-        shares = np.concatenate([shares for _, shares in stats["frames"]])  # (frames, Q, M)
-        weight = shares.sum(axis=0)
-        used = weight > 1e-8
-        divisor = np.where(used, weight, 1.0)
-        means = np.einsum("tqm,td->qmd", shares, X) / divisor[..., None]
-        self.means_ = np.where(used[..., None], means, self.means_)
-        offsets = X[:, None, None, :] - self.means_
-        scatter = np.einsum("tqm,tqmi,tqmj->qmij", shares, offsets, offsets, optimize=True) / divisor[..., None, None]
-        scatter = scatter + self.ridge * np.eye(self.n_features)
-        self.covariances_ = np.where(used[..., None, None], scatter, self.covariances_)
-        floor = np.maximum(weight, 1e-10)
-        self.weights_ = floor / floor.sum(axis=1, keepdims=True)
 
 
 class _RelativeChange(ConvergenceMonitor):  # type: ignore[misc]

@@ -2,22 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from dataclasses import asdict
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import asdict, replace
 from importlib.metadata import version
 
 import numpy as np
 
-from teachpath.learning import clustering, symbols
+from teachpath.learning.clustering import Grouping
+from teachpath.learning.crowd import grouped
+from teachpath.learning.dendrogram import Labels, groups
+from teachpath.learning.describing import ambiguities, fingerprint, tube
+from teachpath.learning.paper import models_of_paper, select_as_paper
 from teachpath.learning.resampling import arc_lengths, at_equal_arc_length, smoothed, undersampled
 from teachpath.learning.screening import screen
-from teachpath.learning.selection import models_to_train, select, select_as_paper
+from teachpath.learning.selection import models_to_train, select
 from teachpath.learning.settings import LearningSettings, Progress, ignore
 from teachpath.learning.synthesis import synthesise, synthesise_as_paper
-from teachpath.records import Cluster, Learned, LearnedPath, Trajectory
+from teachpath.records import Array, Cluster, Learned, LearnedPath, Trajectory
 
 PATH_POINTS = 100  # at equal arc length, for the distance of two paths
-LIBRARIES = ("teachpath", "numpy", "scipy", "hmmlearn")
+LIBRARIES = ("teachpath", "numpy", "scipy", "hmmlearn", "numba")
 
 
 def learn(
@@ -38,66 +42,50 @@ def learn(
     """
     screen(demonstrations)
     progress(0.0, f"comparing {len(demonstrations)} demonstrations")
-    if settings.mode == "paper":
-        grouping, clusters, paths = _as_paper(demonstrations, settings, progress)
+    names = tuple(demonstrations)
+    by_default = settings.mode == "default"
+    metric = settings.metric if by_default else "undersampled"
+    if metric == "undersampled":
+        courses = _equalised(demonstrations, settings.seed)
+        length = float(np.median([arc_lengths(smoothed(each))[-1] for each in demonstrations.values()]))
     else:
-        grouping, clusters, paths = _by_default(demonstrations, settings, progress)
+        courses = np.stack([at_equal_arc_length(smoothed(each), PATH_POINTS) for each in demonstrations.values()])
+        length = float(np.median([arc_lengths(course)[-1] for course in courses]))
+    grouping, medoids = grouped(courses, settings, length=length, metric=metric, progress=_part(progress, 0.0, 0.2))
+    ways = groups(names, grouping.labels)
+    choosing = _part(progress, 0.2, 0.8)
+    if by_default:
+        tick = _ticker(choosing, models_to_train([len(way) for way in ways], settings.repeats))
+        clusters = tuple(
+            select(index + 1, {name: demonstrations[name] for name in way}, settings, tick=tick)
+            for index, way in enumerate(ways)
+        )
+    else:
+        tick = _ticker(choosing, models_of_paper(len(ways), settings.repeats))
+        clusters = select_as_paper(dict(zip(names, courses, strict=True)), ways, settings, tick=tick)
+    paths = _fitted(clusters, demonstrations, settings, _part(progress, 0.8, 1.0))
     progress(1.0, f"learned {len(paths)} {'path' if len(paths) == 1 else 'paths'}")
     return Learned(
         mode=settings.mode,
-        demonstrations=tuple(demonstrations),
+        demonstrations=names,
         linkage=grouping.linkage,
         threshold=grouping.threshold,
-        clusters=clusters,
+        clusters=_described(clusters, paths, grouping, medoids, demonstrations),
         paths=paths,
         notes=(grouping.note,) if grouping.note else (),
         settings=asdict(settings),
         versions={name: version(name) for name in LIBRARIES},
+        inputs={name: fingerprint(trajectory) for name, trajectory in demonstrations.items()},
     )
 
 
-Result = tuple[clustering.Grouping, tuple[Cluster, ...], tuple[LearnedPath, ...]]
-
-
-def _by_default(demonstrations: Mapping[str, Trajectory], settings: LearningSettings, progress: Progress) -> Result:
-    smooth = [smoothed(trajectory) for trajectory in demonstrations.values()]
-    paths = np.stack([at_equal_arc_length(path, PATH_POINTS) for path in smooth])
-    condensed = clustering.distances(paths, _part(progress, 0.0, 0.2))
-    if settings.threshold is None:
-        length = float(np.median([arc_lengths(path)[-1] for path in paths]))
-        grouping = clustering.cut_by_silhouette(condensed, len(paths), guard=settings.guard, length=length)
-    else:
-        grouping = clustering.cut_at(condensed, len(paths), settings.threshold)
-    ways = _members(demonstrations, grouping)
-    tick = _ticker(_part(progress, 0.2, 0.8), models_to_train([len(way) for way in ways]))
-    clusters = tuple(select(index + 1, way, settings, tick=tick) for index, way in enumerate(ways))
-    return grouping, clusters, _fitted(clusters, demonstrations, settings, _part(progress, 0.8, 1.0))
-
-
-def _as_paper(demonstrations: Mapping[str, Trajectory], settings: LearningSettings, progress: Progress) -> Result:
-    assert settings.threshold is not None
-    rng = np.random.default_rng(settings.seed)
+def _equalised(demonstrations: Mapping[str, Trajectory], seed: int) -> Array:
+    """Undersample all demonstrations to the length of the shortest (Aleotti & Caselli, III-A): (m, N, 3) [m]."""
+    rng = np.random.default_rng(seed)
     shortest = min(len(trajectory) for trajectory in demonstrations.values())
-    equalised = [undersampled(trajectory.positions, shortest, rng) for trajectory in demonstrations.values()]
-    condensed = clustering.distances(np.stack(equalised), _part(progress, 0.0, 0.2))
-    grouping = clustering.cut_at(condensed, len(equalised), settings.threshold)
-    ways = _members(demonstrations, grouping)
-    if shortest < symbols.WINDOW:
-        words = [np.empty((0, 3)) for _ in equalised]
-    else:
-        words = symbols.symbol_sequences([symbols.spectra(path) for path in equalised], settings.codebook, rng)
-    sequences = dict(zip(demonstrations, words, strict=True))
-    tick = _ticker(_part(progress, 0.3, 0.8), len(ways))
-    clusters = tuple(
-        select_as_paper(index + 1, {name: sequences[name] for name in way}, settings, rng, tick=tick)
-        for index, way in enumerate(ways)
-    )
-    return grouping, clusters, _fitted(clusters, demonstrations, settings, _part(progress, 0.8, 1.0))
-
-
-def _members(demonstrations: Mapping[str, Trajectory], grouping: clustering.Grouping) -> list[dict[str, Trajectory]]:
-    listed = list(zip(demonstrations.items(), grouping.labels, strict=True))
-    return [dict(item for item, label in listed if label == way) for way in range(1, grouping.labels.max() + 1)]
+    # Drawn in the order of the ids, so that the order in which they are listed changes nothing.
+    drawn = {name: undersampled(demonstrations[name].positions, shortest, rng) for name in sorted(demonstrations)}
+    return np.stack([drawn[name] for name in demonstrations])
 
 
 def _fitted(
@@ -106,13 +94,35 @@ def _fitted(
     settings: LearningSettings,
     progress: Progress,
 ) -> tuple[LearnedPath, ...]:
-    fit = synthesise_as_paper if settings.mode == "paper" else synthesise
+    fit = synthesise if settings.mode == "default" else synthesise_as_paper
     paths = []
     for done, cluster in enumerate(clusters):
         progress(done / len(clusters), f"fitting the path of way {cluster.index}")
-        selected = [demonstrations[score.demonstration] for score in cluster.scores if score.selected]
-        paths.append(fit(cluster.index, selected, settings))
+        paths.append(fit(cluster.index, _selected(cluster, demonstrations), settings))
     return tuple(paths)
+
+
+def _described(
+    clusters: tuple[Cluster, ...],
+    paths: tuple[LearnedPath, ...],
+    grouping: Grouping,
+    medoids: Labels,
+    demonstrations: Mapping[str, Trajectory],
+) -> tuple[Cluster, ...]:
+    names = tuple(demonstrations)
+    return tuple(
+        replace(
+            cluster,
+            representative=names[medoid],
+            spread=tube(path.curve, _selected(cluster, demonstrations)),
+            ambiguous=doubt,
+        )
+        for cluster, path, medoid, doubt in zip(clusters, paths, medoids, ambiguities(grouping), strict=True)
+    )
+
+
+def _selected(cluster: Cluster, demonstrations: Mapping[str, Trajectory]) -> Sequence[Trajectory]:
+    return [demonstrations[score.demonstration] for score in cluster.scores if score.selected]
 
 
 def _part(progress: Progress, begin: float, end: float) -> Progress:

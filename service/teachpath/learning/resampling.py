@@ -16,18 +16,19 @@ def smoothed(trajectory: Trajectory) -> Array:
     Returns:
         (n, 3) [m].
     """
-    positions = trajectory.positions
-    half = round(SMOOTHING / float(np.median(np.diff(trajectory.times))) / 2)
-    half = min(half, (len(positions) - 1) // 2)
-    if half == 0:
-        return positions
-    # An odd reflection about each end point keeps that point and the direction there.
-    before = 2 * positions[0] - positions[half:0:-1]
-    after = 2 * positions[-1] - positions[-2 : -half - 2 : -1]
-    extended = np.concatenate([before, positions, after])
-    averaged: Array = uniform_filter1d(extended, 2 * half + 1, axis=0)[half:-half]
-    averaged[[0, -1]] = positions[[0, -1]]
-    return averaged
+    return _averaged(trajectory.positions, trajectory.times)
+
+
+def smoothed_orientations(times: Array, orientations: Array) -> Array:
+    """Average orientations over the same window, neighbours on one half of the sphere: (n, 4) unit quaternions."""
+    averaged = _averaged(continuous(orientations), times)
+    return np.asarray(averaged / np.linalg.norm(averaged, axis=1, keepdims=True))
+
+
+def continuous(orientations: Array) -> Array:
+    """Return the same orientations with signs such that neighbours lie on one half of the sphere."""
+    turns = np.where((orientations[1:] * orientations[:-1]).sum(axis=1) < 0, -1.0, 1.0)
+    return np.asarray(orientations * np.concatenate([[1.0], np.cumprod(turns)])[:, None])
 
 
 def arc_lengths(path: Array) -> Array:
@@ -52,6 +53,21 @@ def at_equal_times(trajectory: Trajectory, count: int, positions: Array | None =
 def undersampled(positions: Array, count: int, rng: np.random.Generator) -> Array:
     """Keep `count` positions drawn at random without replacement, in their order (Aleotti & Caselli, III-A)."""
     return positions[np.sort(rng.choice(len(positions), count, replace=False))]
+
+
+def _averaged(values: Array, times: Array) -> Array:
+    # The quarter keeps whole rates away from the edge of two windows, between which rounding would choose.
+    half = int(SMOOTHING / float(np.median(np.diff(times))) / 2 + 0.25)
+    half = min(half, (len(values) - 1) // 2)
+    if half == 0:
+        return values
+    # An odd reflection about each end point keeps that point and the direction there.
+    before = 2 * values[0] - values[half:0:-1]
+    after = 2 * values[-1] - values[-2 : -half - 2 : -1]
+    extended = np.concatenate([before, values, after])
+    averaged: Array = uniform_filter1d(extended, 2 * half + 1, axis=0)[half:-half]
+    averaged[[0, -1]] = values[[0, -1]]
+    return averaged
 
 
 def _interpolated(at: Array, knots: Array, values: Array) -> Array:

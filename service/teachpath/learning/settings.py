@@ -11,7 +11,8 @@ from annotated_types import Ge, Gt, Le
 
 from teachpath.errors import UnusableSettings
 
-MODES = ("default", "paper")
+MODES = ("default", "paper", "repaired")
+METRICS = ("arc", "frechet", "dtw", "undersampled")
 
 Progress = Callable[[float, str], None]
 
@@ -28,18 +29,28 @@ class LearningSettings:
         UnusableSettings: a value is outside its limits, or the mode needs a setting that is missing.
     """
 
-    # `default` is what to trust; `paper` follows Aleotti & Caselli 2005 to the letter
+    # `default` is what to trust; `paper` follows Aleotti & Caselli 2005 to the letter; `repaired` is `paper` with
+    # symbols in an order that means something and a model that starts from slices of time
     mode: str = "default"
-    # demonstrations that a cluster keeps: exactly so many in mode paper, at least so many in mode default
+    # demonstrations that a cluster keeps: at least so many in mode default, exactly so many in the others
     keep: Annotated[int, Ge(1)] = 2
+    # distance of two demonstrations in mode default: mean of corresponding points at equal arc length `arc`,
+    # `frechet` (discrete), `dtw`, or as in the others, of randomly undersampled points, `undersampled`
+    metric: str = "arc"
     # m, clusters farther apart than this stay apart; None = found by silhouette (mode default only)
     threshold: Annotated[float, Gt(0)] | None = None
+    # number of clusters where it is known, goes before `threshold`; None = found (mode default only)
+    clusters: Annotated[int, Ge(1)] | None = None
     # mean silhouette below which the demonstrations are taken for one single way
     guard: Annotated[float, Ge(0), Le(1)] = 0.5
     # robust z below which a demonstration is inconsistent with its cluster (mode default)
     inconsistent: Annotated[float, Le(0)] = -8.0
+    # repetitions that a demonstration's stability is counted in: other seeds, in mode default others left out
+    repeats: Annotated[int, Ge(0), Le(10_000)] = 8
     # m, largest distance of the learned path from what it is fitted to
     error_bound: Annotated[float, Gt(0)] = 0.005
+    # rad, largest angle of the learned orientations from what they are fitted to
+    turn_bound: Annotated[float, Gt(0), Le(1)] = 0.035
     # degree of the NURBS; None = 5 where it costs few control points, else 3
     degree: Annotated[int, Ge(2), Le(7)] | None = None
     # control points a learned path may have at most
@@ -48,19 +59,21 @@ class LearningSettings:
     seed: Annotated[int, Ge(0)] = 1
     # s, sampling period of the spectra (mode default)
     period: Annotated[float, Ge(0.001), Le(1)] = 0.02
-    # states Q of the hidden Markov models (mode paper)
+    # states Q of the hidden Markov models (mode paper; repaired has 5)
     states: Annotated[int, Ge(1), Le(100)] = 10
-    # Gaussians M per state (mode paper)
+    # Gaussians M per state (mode paper; repaired has 1)
     mixtures: Annotated[int, Ge(1), Le(20)] = 2
-    # codewords L per axis (mode paper)
+    # codewords L per axis (modes paper and repaired)
     codebook: Annotated[int, Ge(2), Le(4096)] = 64
 
     def __post_init__(self) -> None:
-        if self.mode not in MODES:
-            raise UnusableSettings(f"learning.mode is {self.mode!r}; it is one of {', '.join(MODES)}")
-        if self.mode == "paper" and self.threshold is None:
+        for name, choices in (("mode", MODES), ("metric", METRICS)):
+            if getattr(self, name) not in choices:
+                raise UnusableSettings(f"learning.{name} is {getattr(self, name)!r}; it is one of {', '.join(choices)}")
+        if self.mode != "default" and self.threshold is None:
             raise UnusableSettings(
-                "learning.mode 'paper' cuts the clusters at a constant distance; set learning.threshold in metres"
+                f"learning.mode {self.mode!r} cuts the clusters at a constant distance; "
+                "set learning.threshold in metres"
             )
         hints = get_type_hints(type(self), include_extras=True)
         for field in fields(self):

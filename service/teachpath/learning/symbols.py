@@ -31,26 +31,30 @@ def spectra(positions: Array) -> Array:
     return np.abs(np.fft.rfft(stretches * hamming(WINDOW), SPECTRUM, axis=2))[..., :BINS]
 
 
-def symbol_sequences(all_spectra: Sequence[Array], size: int, rng: np.random.Generator) -> list[Array]:
+def symbol_sequences(
+    all_spectra: Sequence[Array], size: int, rng: np.random.Generator, *, ordered: bool = False
+) -> list[Array]:
     """Quantise spectra axis by axis, each axis with a codebook of its own trained on all demonstrations.
 
-    The number of a codeword means nothing: the codebook starts from randomly drawn vectors.
+    The number of a codeword means nothing, for the codebook starts from randomly drawn vectors; when `ordered`,
+    codewords are numbered along their first principal component, so that near numbers are near spectra.
 
     Args:
         all_spectra: for each demonstration (frames, 3, 16).
         size: codewords per axis; at most as many as there are vectors.
         rng: draws the first codewords.
+        ordered: whether the codewords are put in order.
 
     Returns:
         for each demonstration (frames, 3) codeword numbers 1, 2, ...
     """
     pooled = np.concatenate(all_spectra)
     ends = np.cumsum([len(frames) for frames in all_spectra])[:-1]
-    columns = [_quantised(pooled[:, axis], size, rng) for axis in range(pooled.shape[1])]
+    columns = [_quantised(pooled[:, axis], size, rng, ordered) for axis in range(pooled.shape[1])]
     return np.split(np.column_stack(columns) + 1.0, ends)
 
 
-def _quantised(vectors: Array, size: int, rng: np.random.Generator) -> Array:
+def _quantised(vectors: Array, size: int, rng: np.random.Generator, ordered: bool) -> Array:
     codebook = vectors[rng.choice(len(vectors), min(size, len(vectors)), replace=False)]
     labels = vq(vectors, codebook)[0]
     for _ in range(ROUNDS):
@@ -60,4 +64,8 @@ def _quantised(vectors: Array, size: int, rng: np.random.Generator) -> Array:
         before, labels = labels, vq(vectors, codebook)[0]
         if np.array_equal(before, labels):
             break
+    if ordered:
+        offsets = codebook - codebook.mean(axis=0)
+        along = offsets @ np.linalg.svd(offsets, full_matrices=False)[2][0]
+        return np.asarray(np.argsort(np.argsort(along))[labels], dtype=np.float64)
     return np.asarray(labels, dtype=np.float64)

@@ -7,8 +7,10 @@ from collections.abc import Sequence
 import numpy as np
 
 from teachpath.errors import LearningFailed
-from teachpath.learning.fitting import Approximation, approximate, distances_to
-from teachpath.learning.resampling import arc_lengths, at_equal_arc_length, smoothed
+from teachpath.learning.distances import frechet
+from teachpath.learning.fitting import DENSE, Approximation, approximate, distances_to
+from teachpath.learning.orienting import mean_orientations, orient
+from teachpath.learning.resampling import SMOOTHING, arc_lengths, at_equal_arc_length, smoothed
 from teachpath.learning.settings import LearningSettings
 from teachpath.records import Array, Fit, LearnedPath, Trajectory
 
@@ -47,10 +49,11 @@ def synthesise(cluster: int, selected: Sequence[Trajectory], settings: LearningS
         least = min(fit.largest for fit in fits)
         raise LearningFailed(
             f"way {cluster} cannot be followed within {bound * 1e3:.3g} mm by {most} control points, which reach "
-            f"{least * 1e3:.3g} mm; raise learning.error_bound or learning.most_control_points"
+            f"{least * 1e3:.3g} mm, when noise leaves some {noise_left(selected) * 1e3:.2g} mm in the mean of "
+            "its demonstrations; raise learning.error_bound or learning.most_control_points"
         )
     best = min(kept, key=_cost)
-    return _path(cluster, best, course, selected, bound, "")
+    return _path(cluster, best, course, selected, settings, "")
 
 
 def synthesise_as_paper(cluster: int, selected: Sequence[Trajectory], settings: LearningSettings) -> LearnedPath:
@@ -77,7 +80,18 @@ def synthesise_as_paper(cluster: int, selected: Sequence[Trajectory], settings: 
             f"{share:.0%} of the motion leads back towards the start: sorting by distance to it scrambles the path, "
             "use mode default"
         )
-    return _path(cluster, fit, points, selected, settings.error_bound, "; ".join(notes))
+    return _path(cluster, fit, points, selected, settings, "; ".join(notes))
+
+
+def noise_left(selected: Sequence[Trajectory]) -> float:
+    """Return the noise [m] that smoothing and averaging leave in the mean, as read off the third differences."""
+    squares = []
+    for trajectory in selected:
+        roughness = float(np.median(np.square(np.diff(trajectory.positions, 3, axis=0)).sum(axis=1)))
+        width = max(SMOOTHING / float(np.median(np.diff(trajectory.times))), 1.0)
+        # The squares of 1, -3, 3, -1 are 20 together.
+        squares.append(roughness / 20 / width)
+    return float(np.sqrt(np.mean(squares) / len(squares)))
 
 
 def _length(path: Array) -> float:
@@ -95,9 +109,26 @@ def _retreat(path: Array) -> float:
 
 
 def _path(
-    cluster: int, fit: Approximation, fitted: Array, selected: Sequence[Trajectory], bound: float, note: str
+    cluster: int,
+    fit: Approximation,
+    fitted: Array,
+    selected: Sequence[Trajectory],
+    settings: LearningSettings,
+    note: str,
 ) -> LearnedPath:
     apart = distances_to(fit.curve, fitted)
+    course = consensus([smoothed(trajectory) for trajectory in selected])
     tube = max(float(distances_to(fit.curve, trajectory.positions).max()) for trajectory in selected)
-    measures = Fit(bound, float(apart.max()), float(np.sqrt(np.mean(np.square(apart)))), tube)
-    return LearnedPath("", "", cluster, 1, fit.curve, measures, note)
+    mean, orientation, turn = mean_orientations(selected, len(course)), None, None
+    if mean is not None:
+        s = arc_lengths(course)
+        orientation, turn = orient(cluster, mean, s / s[-1], fit.curve.degree, settings)
+    measures = Fit(
+        settings.error_bound,
+        float(apart.max()),
+        float(np.sqrt(np.mean(np.square(apart)))),
+        tube,
+        frechet(at_equal_arc_length(fit.curve(np.linspace(0.0, 1.0, DENSE)), len(course)), course),
+        turn,
+    )
+    return LearnedPath("", "", cluster, 1, fit.curve, measures, note, orientation)

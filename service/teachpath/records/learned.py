@@ -9,14 +9,38 @@ from teachpath.records.arrays import Array
 
 
 @dataclass(frozen=True, slots=True)
+class Departure:
+    """Where and how a demonstration differs most from the others of its cluster."""
+
+    share: tuple[float, float]  # of the length of its path, from and to
+    seconds: tuple[float, float]  # since its first sample, from and to
+    sentence: str
+
+
+@dataclass(frozen=True, slots=True)
 class Score:
-    """How one demonstration fares in the selection of its cluster."""
+    """How one demonstration fares in the selection of its cluster.
+
+    Attributes:
+        log_likelihood: of its observations under the model that judges it.
+        rank: 1 = most consistent.
+        note: why it was not selected, or not scored.
+        margin: by how much it is better than the next in rank: robust z in mode default, else log-likelihood; None for
+            the last.
+        z: robust z score of its consistency, 0 = like the others or better; None when not scored.
+        stability: share of repetitions in which it was selected; None when there were none.
+        departure: where it differs most; None when it is consistent.
+    """
 
     demonstration: str
     log_likelihood: float
-    rank: int  # 1 = most consistent
+    rank: int
     selected: bool
     note: str = ""
+    margin: float | None = None
+    z: float | None = None
+    stability: float | None = None
+    departure: Departure | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,6 +52,10 @@ class Cluster:
         scores: same order as `members`.
         convergence: log-likelihood of the model after each training iteration (Fig. 4).
         note: why selection was skipped or is unreliable; empty when neither.
+        representative: id of the medoid, the member nearest to the others; empty in runs of earlier versions.
+        spread: (50,) radius [m] at equal arc length of the tube around the learned path in which the selected
+            demonstrations lie.
+        ambiguous: what the next best cut would do with it, when the choice was close; else empty.
     """
 
     index: int
@@ -35,6 +63,9 @@ class Cluster:
     scores: tuple[Score, ...]
     convergence: tuple[float, ...] = ()
     note: str = ""
+    representative: str = ""
+    spread: Array | None = None
+    ambiguous: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,11 +76,19 @@ class Fit:
     largest: float
     rms: float
     tube: float  # largest distance of a selected demonstration from the path
+    frechet: float | None = None  # distance when both are walked along in order
+    turn: float | None = None  # largest angle of the orientations from what they were fitted to [rad]
 
 
 @dataclass(frozen=True, eq=False)
 class LearnedPath:
-    """The NURBS of one cluster: the way of the object's centre in the world."""
+    """The NURBS of one cluster: the way of the object's centre in the world.
+
+    Attributes:
+        curve: positions [m].
+        orientation: quaternions at the same parameter, to be brought to unit length (`nurbs.unit`); None when not all
+            selected demonstrations carry orientations.
+    """
 
     id: str
     run: str
@@ -58,6 +97,7 @@ class LearnedPath:
     curve: Curve
     fit: Fit
     note: str = ""
+    orientation: Curve | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,6 +109,7 @@ class Learned:
             `demonstrations`.
         threshold: height of the cut [m].
         versions: library versions that made it.
+        inputs: SHA-256 of every demonstration's times, positions and orientations, by id.
     """
 
     mode: str
@@ -80,3 +121,4 @@ class Learned:
     notes: tuple[str, ...] = ()
     settings: dict[str, object] = field(default_factory=dict)
     versions: dict[str, str] = field(default_factory=dict)
+    inputs: dict[str, str] = field(default_factory=dict)

@@ -21,4 +21,4 @@ def learned(twelve: dict[str, Trajectory]) -> Learned:
 
 @pytest.fixture(scope="session")
 def learned_as_paper(twelve: dict[str, Trajectory]) -> Learned:
-    return learn(twelve, LearningSettings(mode="paper", threshold=0.08))
+    return learn(twelve, LearningSettings(mode="paper", threshold=0.08, repeats=0))

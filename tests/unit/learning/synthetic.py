@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.interpolate import CubicSpline
 
+from teachpath.learning.resampling import arc_lengths, at_equal_arc_length
 from teachpath.records import Array, Trajectory
 
 START, GOAL = np.array([0.35, 0.25, 0.05]), np.array([0.40, -0.30, 0.05])
@@ -72,6 +73,61 @@ def loop(points: int = 300, noise: float = 0.0, seed: int = 0) -> Array:
     angle = 2 * np.pi * (1.6 * t - 0.2)
     path = np.column_stack([0.5 * t, 0.1 * np.sin(angle), 0.2 + 0.1 * np.cos(angle)])
     return path + np.random.default_rng(seed).normal(0, noise, path.shape)
+
+
+def curl(points: int = 300) -> Array:
+    """A path with a full loop in its middle, on which it comes back towards its start: (points, 3) [m]."""
+    t = np.linspace(0, 1, points)
+    angle = 3 * np.pi * t
+    return np.column_stack([0.4 * t + 0.12 * np.sin(angle), 0.12 * (1 - np.cos(angle)), 0.1 + 0.1 * t])
+
+
+def retreat(points: int = 300) -> Array:
+    """A path that turns back for a third of its length: (points, 3) [m]."""
+    t = np.linspace(0, 1, points)
+    along = 0.5 * t + 0.12 * np.sin(2 * np.pi * 1.5 * t)
+    return np.column_stack([along, 0.08 * np.cos(3 * np.pi * t), 0.1 + 0.05 * t])
+
+
+def closed(points: int = 300) -> Array:
+    """A path that ends where it began: (points, 3) [m]."""
+    angle = np.linspace(0, 2 * np.pi, points)
+    return np.column_stack([0.2 - 0.2 * np.cos(angle), 0.15 * np.sin(angle), 0.1 + 0.03 * np.sin(2 * angle)])
+
+
+def shown(path: Array, count: int, seed: int = 1) -> tuple[list[Trajectory], Array]:
+    """Demonstrations along a path, each with a smooth bow, tremor and noise of its own, and the mean without those two.
+
+    Returns:
+        the trajectories, and (n, 3) [m] the mean of the clean paths at equal arc length.
+    """
+    rng = np.random.default_rng(seed)
+    t = np.linspace(0.0, 1.0, len(path))
+    bows = np.sin(np.pi * np.outer(t, [1, 2]))
+    clean = [path + bows @ rng.normal(0, 0.01, (2, 3)) for _ in range(count)]
+    speed = t + 0.1 * np.sin(2 * np.pi * t) / np.pi
+    seconds = np.arange(len(path)) * PERIOD
+    trajectories = []
+    for course in clean:
+        walked = np.column_stack([np.interp(speed, t, course[:, k]) for k in range(3)])
+        shaken = walked + _shaking(rng, seconds, 0.0015, 4.0, 9.0, waves=3) + rng.normal(0, 0.001, course.shape)
+        trajectories.append(Trajectory(seconds, shaken))
+    return trajectories, np.mean([at_equal_arc_length(course, 300) for course in clean], axis=0)
+
+
+def turning(demonstrations: dict[str, Trajectory], noise: float = 0.01, seed: int = 1) -> dict[str, Trajectory]:
+    """The same demonstrations with orientations: a turn by 2.5 rad, noise in rad, signs at random."""
+    rng = np.random.default_rng(seed)
+    turned = {}
+    for name, d in demonstrations.items():
+        share = arc_lengths(d.positions)
+        angle = 2.5 * share / share[-1]
+        axis = np.array([0.6, 0.0, 0.8])
+        quaternions = np.column_stack([np.cos(angle / 2), np.sin(angle / 2)[:, None] * axis])
+        quaternions += rng.normal(0, noise / 2, quaternions.shape)
+        quaternions *= rng.choice([-1.0, 1.0], (len(d), 1)) / np.linalg.norm(quaternions, axis=1, keepdims=True)
+        turned[name] = Trajectory(d.times, d.positions, quaternions)
+    return turned
 
 
 def moved(demonstrations: dict[str, Trajectory], rotation: Array, offset: Array) -> dict[str, Trajectory]:

@@ -5,9 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import synthetic
-from scipy.spatial.distance import squareform
 
-from teachpath.learning.clustering import Grouping, cut_at, cut_by_silhouette, distances, silhouette
+from teachpath.learning.clustering import Grouping, cut_at, cut_by_silhouette, cut_into
+from teachpath.learning.describing import ambiguities
+from teachpath.learning.distances import distances
 from teachpath.learning.resampling import at_equal_arc_length, smoothed
 from teachpath.records import Array, Trajectory
 
@@ -20,18 +21,6 @@ def condensed(demonstrations: dict[str, Trajectory]) -> Array:
 
 def grouped(demonstrations: dict[str, Trajectory], guard: float = 0.5) -> Grouping:
     return cut_by_silhouette(condensed(demonstrations), len(demonstrations), guard=guard, length=0.8)
-
-
-def test_the_distance_is_the_mean_of_pointwise_distances() -> None:
-    rng = np.random.default_rng(1)
-    paths = rng.normal(size=(6, 20, 3))
-    expected = [[np.mean([np.linalg.norm(p - q) for p, q in zip(a, b, strict=True)]) for b in paths] for a in paths]
-    np.testing.assert_allclose(squareform(distances(paths)), expected, atol=1e-12)
-
-
-def test_the_distance_is_a_metric_of_paths() -> None:
-    square = squareform(distances(np.random.default_rng(2).normal(size=(8, 10, 3))))
-    assert np.all(square[:, :, None] <= square[:, None, :] + square.T[None, :, :] + 1e-12)
 
 
 @pytest.mark.parametrize("seed", range(8))
@@ -107,7 +96,49 @@ def test_one_demonstration_is_one_way() -> None:
     assert grouping.linkage.shape == (0, 4)
 
 
-def test_the_silhouette_is_one_for_points_in_two_places_and_negative_when_mixed_up() -> None:
-    square = np.abs(np.subtract.outer([0.0, 0, 1, 1], [0.0, 0, 1, 1]))
-    assert silhouette(square, np.array([1, 1, 2, 2])) == pytest.approx(1.0)
-    assert silhouette(square, np.array([1, 2, 1, 2])) < 0
+@pytest.mark.parametrize("count", [1, 2, 3, 7, 12])
+def test_a_known_number_of_ways_is_cut_into(count: int) -> None:
+    grouping = cut_into(condensed(synthetic.experiment_1(8)), 12, count)
+    assert set(grouping.labels) == set(range(1, count + 1))
+    again = cut_at(condensed(synthetic.experiment_1(8)), 12, grouping.threshold)
+    np.testing.assert_array_equal(again.labels, grouping.labels)
+
+
+def test_more_ways_than_demonstrations_are_said_to_be_impossible() -> None:
+    grouping = cut_into(np.array([0.1, 0.2, 0.2]), 3, 5)
+    assert grouping.labels.tolist() == [1, 2, 3]
+    assert "3 demonstrations cannot be 5 ways" in grouping.note
+
+
+def places(*offsets: float, spread: float = 0.002) -> Array:
+    """Distances of copies of one path at these places."""
+    rng = np.random.default_rng(4)
+    shifted = [synthetic.loop(30) + offset + rng.normal(0, spread, 3) for offset in offsets]
+    return distances(np.stack(shifted))
+
+
+def test_a_close_choice_names_the_next_best_cut_and_the_clusters_it_touches() -> None:
+    apart = places(0, 0, 0, 0, 0.6, 0.6, 0.6, 0.6, 0.66, 0.66, 0.66, 0.66, spread=0.012)
+    grouping = cut_by_silhouette(apart, 12, guard=0.5, length=1.0)
+    assert grouping.rival is not None
+    assert grouping.rival != grouping.labels.max()
+    assert "ambiguous" in grouping.note
+    doubts = ambiguities(grouping)
+    assert doubts[0] == ""
+    assert all("could as well be" in doubt for doubt in doubts[1:])
+
+
+def test_a_clear_choice_is_not_called_ambiguous() -> None:
+    grouping = cut_by_silhouette(places(0, 0, 0, 0.5, 0.5, 0.5), 6, guard=0.5, length=1.0)
+    assert (grouping.note, grouping.rival) == ("", None)
+    assert ambiguities(grouping) == ["", ""]
+
+
+def test_a_threshold_close_to_a_merge_is_called_ambiguous() -> None:
+    apart = places(0, 0.2, spread=0.0)
+    near, far = cut_at(apart, 2, apart[0] * 1.02), cut_at(apart, 2, apart[0] * 2)
+    assert near.rival == 2
+    assert ambiguities(near) == ["ambiguous: could as well be 2 ways, of 1 and 1 demonstrations"]
+    assert "close to learning.threshold" in near.note
+    assert far.rival is None
+    assert "together with 2" in ambiguities(cut_at(apart, 2, apart[0] * 0.98))[0]

@@ -7,7 +7,8 @@ from itertools import product
 import numpy as np
 import pytest
 
-from teachpath.learning.hmm import LeftRightHmm, MixtureHmm, TiedGaussianHmm
+from teachpath.learning.hmm import LeftRightHmm, TiedGaussianHmm
+from teachpath.learning.mixture import MixtureHmm
 from teachpath.records import Array
 
 
@@ -103,3 +104,25 @@ def test_the_order_of_training_sequences_does_not_matter() -> None:
     backward.train(sequences()[::-1])
     np.testing.assert_allclose(forward.means_, backward.means_, atol=1e-10)
     np.testing.assert_allclose(forward.history, backward.history, rtol=1e-10)
+
+
+@pytest.mark.parametrize("in_time", [False, True])
+def test_a_start_in_time_puts_the_states_in_order(in_time: bool) -> None:
+    model = mixture(states=5, iterations=1, in_time=in_time)
+    model.train([np.linspace(0.0, 50.0, 40)[:, None] + np.zeros((40, 3)) for _ in range(3)])
+    ordered = bool(np.all(np.diff(model.means_[:, :, 0].mean(axis=1)) > 0))
+    assert ordered == in_time
+
+
+@pytest.mark.parametrize("count", [2, 3, 8])
+def test_a_widened_model_expects_new_sequences_as_far_off_as_they_are(count: int) -> None:
+    rng = np.random.default_rng(3)
+    off, expected = [], []
+    for _ in range(200):
+        places = rng.normal(0, 0.4, (count + 1, 1, 3)) * np.ones((count + 1, 10, 3))
+        model = tied(states=1, iterations=1)
+        model.train(list(places[1:]))
+        model.widen(count)
+        off.append(np.square(places[0] - model.means_[0]))
+        expected.append(model.variance_)
+    assert np.mean(off) == pytest.approx(np.mean(expected), rel=0.2)

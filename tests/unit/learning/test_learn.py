@@ -9,12 +9,14 @@ import pytest
 import synthetic
 
 from teachpath.errors import Cancelled, LearningFailed
-from teachpath.learning import LearningSettings, learn
+from teachpath.learning import LearningSettings, learn, recut
+from teachpath.nurbs import unit
 from teachpath.records import Learned, Trajectory
 
 WAYS = [{"1", "6", "8", "10", "12"}, {"2", "5", "11"}, {"3", "4", "7", "9"}]
-PAPER = LearningSettings(mode="paper", threshold=0.08)
-BOTH = pytest.mark.parametrize("settings", [LearningSettings(), PAPER], ids=["default", "paper"])
+PAPER = LearningSettings(mode="paper", threshold=0.08, repeats=0)
+REPAIRED = replace(PAPER, mode="repaired")
+BOTH = pytest.mark.parametrize("settings", [LearningSettings(), PAPER, REPAIRED], ids=["default", "paper", "repaired"])
 
 
 def assert_usable(learned: Learned) -> None:
@@ -31,8 +33,22 @@ def assert_usable(learned: Learned) -> None:
         assert np.all(np.isfinite([score.log_likelihood for score in cluster.scores]))
         assert np.all(np.isfinite(cluster.convergence))
         assert any(score.selected for score in cluster.scores)
+        assert cluster.representative in cluster.members
+        assert cluster.spread is not None
+        assert np.all(np.isfinite(cluster.spread))
+        for score in cluster.scores:
+            assert all(np.isfinite(v) for v in (score.margin, score.z, score.stability) if v is not None)
+    assert set(learned.inputs) == set(learned.demonstrations)
     for path in learned.paths:
-        measures = (path.fit.bound, path.fit.largest, path.fit.rms, path.fit.tube, path.curve.length())
+        assert path.fit.frechet is not None
+        measures = (
+            path.fit.bound,
+            path.fit.largest,
+            path.fit.rms,
+            path.fit.tube,
+            path.fit.frechet,
+            path.curve.length(),
+        )
         assert np.all(np.isfinite(measures))
         assert len(path.curve.control_points) <= 60
 
@@ -57,6 +73,9 @@ def test_three_ways_are_learned_from_the_first_experiment(learned: Learned, twel
         tube = max(np.linalg.norm(dense - point, axis=1).min() for p in chosen for point in p[::5])
         assert tube <= path.fit.tube + 1e-4
         assert cluster.convergence[-1] > cluster.convergence[0]
+        assert cluster.spread is not None
+        assert 0 < cluster.spread.max() <= path.fit.tube + 0.01
+        assert cluster.ambiguous == ""
 
 
 def test_mode_paper_finds_the_ways_and_keeps_two_of_each(learned_as_paper: Learned) -> None:
@@ -104,10 +123,84 @@ def test_a_rigid_motion_of_the_demonstrations_moves_the_paths(learned: Learned, 
         np.testing.assert_allclose(moved.curve.control_points, expected, atol=1e-6)
 
 
+@pytest.mark.parametrize("order", [(1, 2, 0), (1, 0, 2)])
+def test_a_permutation_of_the_axes_permutes_the_paths(
+    learned: Learned, twelve: dict[str, Trajectory], order: tuple[int, ...]
+) -> None:
+    there = learn(synthetic.moved(twelve, np.eye(3)[list(order)], np.zeros(3)), LearningSettings())
+    for here, permuted in zip(learned.paths, there.paths, strict=True):
+        np.testing.assert_allclose(permuted.curve.control_points, here.curve.control_points[:, list(order)], atol=1e-6)
+
+
+@pytest.mark.parametrize("scale", [0.5, 3.0])
+def test_a_scaled_task_with_a_scaled_bound_has_scaled_paths(
+    learned: Learned, twelve: dict[str, Trajectory], scale: float
+) -> None:
+    there = learn(synthetic.moved(twelve, scale * np.eye(3), np.zeros(3)), LearningSettings(error_bound=0.005 * scale))
+    assert there.threshold == pytest.approx(scale * learned.threshold)
+    for one, other in zip(learned.clusters, there.clusters, strict=True):
+        assert set(other.members) == set(one.members)
+        assert other.representative == one.representative
+    for here, scaled in zip(learned.paths, there.paths, strict=True):
+        np.testing.assert_allclose(scaled.curve.control_points, scale * here.curve.control_points, atol=1e-6)
+
+
+def test_times_in_another_clock_give_the_same_paths(learned: Learned, twelve: dict[str, Trajectory]) -> None:
+    later = {k: Trajectory(d.times + 1000.0, d.positions) for k, d in twelve.items()}
+    for here, there in zip(learned.paths, learn(later, LearningSettings()).paths, strict=True):
+        np.testing.assert_allclose(there.curve.control_points, here.curve.control_points, atol=1e-6)
+
+
+@BOTH
+def test_the_order_in_which_demonstrations_are_listed_changes_no_selection(settings: LearningSettings) -> None:
+    demonstrations = synthetic.experiment_2(8)
+    here, there = (
+        learn(listed, replace(settings, repeats=3))
+        for listed in (demonstrations, dict(reversed(demonstrations.items())))
+    )
+    chosen = [{s.demonstration: (s.selected, s.stability) for s in run.clusters[0].scores} for run in (here, there)]
+    assert chosen[0] == chosen[1]
+
+
+@pytest.mark.parametrize("metric", ["arc", "frechet", "dtw", "undersampled"])
+def test_every_metric_finds_the_ways(twelve: dict[str, Trajectory], metric: str) -> None:
+    learned = learn(twelve, LearningSettings(metric=metric, repeats=0))
+    assert [set(cluster.members) for cluster in learned.clusters] == WAYS
+
+
+def test_a_known_number_of_ways_is_found(twelve: dict[str, Trajectory]) -> None:
+    learned = learn(twelve, LearningSettings(clusters=3, repeats=0))
+    assert [set(cluster.members) for cluster in learned.clusters] == WAYS
+    assert recut(learned, clusters=3) == recut(learned, threshold=learned.threshold)
+
+
+def test_orientations_are_learned_where_all_carry_them(twelve: dict[str, Trajectory]) -> None:
+    settings = LearningSettings(repeats=0)
+    learned = learn(synthetic.turning(twelve), settings)
+    for path, positions_only in zip(learned.paths, learn(twelve, settings).paths, strict=True):
+        assert positions_only.orientation is None
+        np.testing.assert_array_equal(path.curve.control_points, positions_only.curve.control_points)
+        assert path.orientation is not None
+        assert path.fit.turn is not None
+        assert path.fit.turn <= settings.turn_bound
+        turn = unit(path.orientation, np.linspace(0, 1, 200))
+        assert np.all((turn[1:] * turn[:-1]).sum(axis=1) > 0.99)
+        angle = 2 * np.arccos(np.abs(turn[[0, -1], 0]))
+        np.testing.assert_allclose(angle, [0.0, 2.5], atol=0.03)
+
+
+def test_one_demonstration_without_orientations_makes_the_path_one_of_positions() -> None:
+    demonstrations = synthetic.experiment_2(1)
+    turned = synthetic.turning(demonstrations)
+    (path,) = learn({**turned, "2": demonstrations["2"]}, LearningSettings(repeats=0)).paths
+    assert path.orientation is None
+    assert path.fit.turn is None
+
+
 def test_reversed_demonstrations_give_the_reversed_path() -> None:
     twelve = synthetic.experiment_1(5)
     back = {k: Trajectory(d.times, d.positions[::-1]) for k, d in twelve.items()}
-    settings = LearningSettings(inconsistent=-1e6)  # keeps everybody, so that only geometry is compared
+    settings = LearningSettings(inconsistent=-1e6, repeats=0)  # keeps everybody, so that only geometry is compared
     for one, other in zip(learn(twelve, settings).paths, learn(back, settings).paths, strict=True):
         u = np.linspace(0, 1, 50)
         there, again = one.curve(u), other.curve(1 - u)

@@ -11,7 +11,12 @@ from teachpath.learning import LearningSettings
 @pytest.mark.parametrize(
     ("change", "sentence"),
     [
-        ({"mode": "magic"}, "'magic'; it is one of default, paper"),
+        ({"mode": "magic"}, "'magic'; it is one of default, paper, repaired"),
+        ({"metric": "hausdorff"}, "'hausdorff'; it is one of arc, frechet, dtw, undersampled"),
+        ({"mode": "repaired"}, "learning.threshold in metres"),
+        ({"clusters": 0}, "clusters is 0; it is at least 1"),
+        ({"repeats": -1}, "repeats is -1; it is at least 0"),
+        ({"turn_bound": 0.0}, "greater than 0"),
         ({"mode": "paper"}, "learning.threshold in metres"),
         ({"keep": 0}, "keep is 0; it is at least 1"),
         ({"keep": 1.5}, "whole number"),

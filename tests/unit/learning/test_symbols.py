@@ -38,6 +38,15 @@ def test_symbols_are_whole_numbers_from_one_and_equal_vectors_get_equal_ones() -
     np.testing.assert_array_equal(sequences[0], sequences[2])
 
 
+def test_ordered_codewords_of_near_spectra_have_near_numbers() -> None:
+    loudness = np.random.default_rng(5).uniform(1.0, 9.0, 60)
+    growing = loudness[:, None, None] * np.ones((1, 3, 16))
+    (labels,) = symbol_sequences([growing], 12, np.random.default_rng(1), ordered=True)
+    for axis in range(3):
+        rising = labels[np.argsort(loudness), axis]
+        assert np.all(np.diff(rising) >= 0) or np.all(np.diff(rising) <= 0)
+
+
 def test_a_codebook_larger_than_the_vectors_gives_each_its_own_symbol() -> None:
     labels = symbol_sequences([np.random.default_rng(4).normal(size=(10, 3, 16))], 64, np.random.default_rng(1))[0]
     assert all(len(set(labels[:, axis])) == 10 for axis in range(3))

@@ -1,0 +1,138 @@
+"""Why two learning runs differ, in sentences: inputs, settings, versions, clusters, selection, paths."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+import numpy as np
+
+from teachpath.learning.distances import frechet
+from teachpath.learning.resampling import at_equal_arc_length
+from teachpath.records import Array, Cluster, Fit, Learned, LearnedPath
+
+POINTS = 200  # of a path when two are compared
+DENSE = 1000
+SAME = 1e-6  # m, distance of paths that are the same but for rounding
+NAMED = 6  # demonstrations that a sentence names; more are counted
+
+
+def compare(a: Learned, b: Learned) -> tuple[str, ...]:
+    """Say what differs between two runs, causes before consequences: nothing when they are the same.
+
+    Ways are matched by the demonstrations they share. Two runs of the same inputs, settings and versions are the same
+    to the last bit, so paths that changed without a cause are said to be unexplained.
+    """
+    causes = (
+        *_inputs(a, b),
+        *_changes("setting", a.settings, b.settings),
+        *_changes("version of", a.versions, b.versions),
+    )
+    pairs = _matched(a, b)
+    effects = (*_ways(a, b, pairs), *_selections(pairs, a, b), *_paths(pairs, a, b))
+    if effects and not causes and a.inputs and b.inputs:
+        return (*effects, "inputs, settings and versions are the same: the difference is unexplained")
+    return (*causes, *effects)
+
+
+Pairs = list[tuple[Cluster, Cluster]]
+
+
+def _inputs(a: Learned, b: Learned) -> Iterator[str]:
+    before, after = set(a.demonstrations), set(b.demonstrations)
+    if gone := [name for name in a.demonstrations if name not in after]:
+        yield f"{_named(gone)} no longer learned from"
+    if new := [name for name in b.demonstrations if name not in before]:
+        yield f"{_named(new)} new"
+    if a.inputs and b.inputs:
+        changed = [name for name in a.demonstrations if name in after and a.inputs.get(name) != b.inputs.get(name)]
+        if changed:
+            yield f"{_named(changed)} changed, in samples, object or calibration"
+    elif before == after:
+        yield "one of the runs kept no fingerprints of its demonstrations: whether they changed cannot be told"
+    if before == after and a.demonstrations != b.demonstrations:
+        yield "the demonstrations are listed in another order"
+
+
+def _changes(what: str, a: Mapping[str, object], b: Mapping[str, object]) -> Iterator[str]:
+    for name in sorted(set(a) | set(b)):
+        if a.get(name) != b.get(name):
+            yield f"{what} {name}: {_shown(a.get(name))} became {_shown(b.get(name))}"
+
+
+def _matched(a: Learned, b: Learned) -> Pairs:
+    """Return the clusters of both runs that belong together, those that share most demonstrations first."""
+    candidates = [(one, other) for one in a.clusters for other in b.clusters]
+    candidates.sort(key=lambda pair: -len(set(pair[0].members) & set(pair[1].members)))
+    pairs: Pairs = []
+    for one, other in candidates:
+        free = all(one is not taken and other is not given for taken, given in pairs)
+        if free and set(one.members) & set(other.members):
+            pairs.append((one, other))
+    return sorted(pairs, key=lambda pair: pair[0].index)
+
+
+def _ways(a: Learned, b: Learned, pairs: Pairs) -> Iterator[str]:
+    if len(a.clusters) != len(b.clusters):
+        heights = f"{a.threshold * 100:.2f} and {b.threshold * 100:.2f} cm"
+        yield f"{len(a.clusters)} ways became {len(b.clusters)}, cut at {heights}"
+    both = set(a.demonstrations) & set(b.demonstrations)
+    for one, other in pairs:
+        if one.index != other.index:
+            yield f"way {one.index} is now number {other.index}"
+        left = sorted((set(one.members) - set(other.members)) & both)
+        if left:
+            yield f"way {one.index}: {_named(left)} now in another way"
+    for learned, index, told in ((a, 0, "is gone"), (b, 1, "is new")):
+        known = {pair[index].index for pair in pairs}
+        for cluster in learned.clusters:
+            if cluster.index not in known:
+                yield f"way {cluster.index} of {len(cluster.members)} demonstrations {told}"
+
+
+def _selections(pairs: Pairs, a: Learned, b: Learned) -> Iterator[str]:
+    both = set(a.demonstrations) & set(b.demonstrations)
+    for one, other in pairs:
+        before, after = ({s.demonstration for s in cluster.scores if s.selected} for cluster in (one, other))
+        if dropped := sorted((before - after) & both & set(other.members)):
+            yield f"way {one.index}: {_named(dropped)} no longer selected"
+        if added := sorted((after - before) & both & set(one.members)):
+            yield f"way {one.index}: {_named(added)} now selected"
+
+
+def _paths(pairs: Pairs, a: Learned, b: Learned) -> Iterator[str]:
+    for one, other in pairs:
+        before, after = _path(a, one), _path(b, other)
+        if before is None or after is None:
+            continue
+        moved = frechet(_course(before), _course(after))
+        counts = [len(path.curve.control_points) for path in (before, after)]
+        shapes = [(path.curve.degree, count) for path, count in zip((before, after), counts, strict=True)]
+        if moved <= SAME and shapes[0] == shapes[1]:
+            continue
+        bends = "" if shapes[0] == shapes[1] else f", degree and control points {shapes[0]} became {shapes[1]}"
+        yield f"way {one.index}: the path moved by up to {moved * 1e3:.3g} mm{bends}{_fits(before.fit, after.fit)}"
+
+
+def _fits(before: Fit, after: Fit) -> str:
+    if abs(before.tube - after.tube) <= SAME:
+        return ""
+    return f", tube {before.tube * 1e3:.3g} mm became {after.tube * 1e3:.3g} mm"
+
+
+def _course(path: LearnedPath) -> Array:
+    return at_equal_arc_length(path.curve(np.linspace(0.0, 1.0, DENSE)), POINTS)
+
+
+def _path(learned: Learned, cluster: Cluster) -> LearnedPath | None:
+    return next((path for path in learned.paths if path.cluster == cluster.index), None)
+
+
+def _named(names: list[str]) -> str:
+    verb = "is" if len(names) == 1 else "are"
+    if len(names) > NAMED:
+        return f"{len(names)} demonstrations are"
+    return f"{'demonstration' if len(names) == 1 else 'demonstrations'} {', '.join(names)} {verb}"
+
+
+def _shown(value: object) -> str:
+    return "nothing" if value is None else f"{value:g}" if isinstance(value, float) else str(value)

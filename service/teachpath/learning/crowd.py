@@ -1,0 +1,67 @@
+"""Clustering of very many demonstrations: a random sample is clustered, every other one joins its nearest there.
+
+The distances of all pairs grow with the square of their number; those to a sample do not. A way that is shown less
+often than once in a sample's worth of demonstrations may be missed.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from teachpath.learning.clustering import Grouping, group
+from teachpath.learning.dendrogram import Labels, grafted, labels_at
+from teachpath.learning.distances import distances, nearest_of
+from teachpath.learning.settings import LearningSettings, Progress, ignore
+from teachpath.learning.silhouettes import medoids
+from teachpath.records import Array
+
+MOST_PAIRED = 20_000  # demonstrations above which not every pair is measured
+SAMPLE = 2000
+
+
+def grouped(
+    paths: Array, settings: LearningSettings, *, length: float, metric: str, progress: Progress = ignore
+) -> tuple[Grouping, Labels]:
+    """Cluster paths, by all pairs or from 20,000 on by a sample of 2000.
+
+    With a threshold set, those farther than it from all of the sample stay alone; else the cut is found on the
+    sample and everybody belongs to the cluster of its nearest.
+
+    Args:
+        paths: (m, n, 3) [m].
+        settings: see `clustering.group`; `seed` draws the sample.
+        length: of a typical path [m].
+        metric: see `distances.distances`.
+        progress: is told how far the work has come.
+
+    Returns:
+        the grouping, and the medoid of every cluster: its member nearest to the others, of a sample's cluster the
+        one nearest to the others of the sample.
+    """
+    m = len(paths)
+    measure, cut = _part(progress, 0.0, 0.7), _part(progress, 0.7, 1.0)
+    if m <= MOST_PAIRED:
+        condensed = distances(paths, metric, measure)
+        grouping = group(condensed, m, settings, length=length, progress=cut)
+        return grouping, medoids(condensed, grouping.labels)
+    sample = np.sort(np.random.default_rng(settings.seed).choice(m, SAMPLE, replace=False))
+    condensed = distances(paths[sample], metric)
+    of_sample = group(condensed, SAMPLE, settings, length=length)
+    joins, apart = nearest_of(paths, paths[sample], metric, progress)
+    joins, apart = sample[joins], apart.copy()
+    joins[sample] = sample
+    if settings.threshold is None or settings.clusters is not None:
+        apart = np.minimum(apart, of_sample.threshold)
+    linkage = grafted(of_sample.linkage, sample, joins, apart)
+    labels = labels_at(linkage, of_sample.threshold)
+    central = {labels[at]: at for at in sample[medoids(condensed, of_sample.labels)]}
+    found = np.array([central.get(k, int(np.argmax(labels == k))) for k in range(1, int(labels.max()) + 1)])
+    note = f"{m} demonstrations are grouped by a sample of {SAMPLE}"
+    notes = "; ".join(part for part in (note, of_sample.note) if part)
+    return replace(of_sample, linkage=linkage, labels=labels, note=notes), found
+
+
+def _part(progress: Progress, begin: float, end: float) -> Progress:
+    return lambda fraction, sentence: progress(begin + fraction * (end - begin), sentence)

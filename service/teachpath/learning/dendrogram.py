@@ -1,0 +1,121 @@
+"""The tree of merges that clustering leaves behind, and its cuts: no distance is needed to move a cut."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from teachpath.errors import UnusableSettings
+from teachpath.records import Array, Learned
+
+Labels = NDArray[np.int64]
+
+
+def recut(
+    learned: Learned, *, threshold: float | None = None, clusters: int | None = None
+) -> tuple[tuple[str, ...], ...]:
+    """Return the members of every cluster when the dendrogram of a run is cut somewhere else.
+
+    Args:
+        learned: a run; its distances are not needed again.
+        threshold: height of the cut [m].
+        clusters: or their number.
+
+    Returns:
+        for every cluster its demonstrations in listed order; clusters in the order of their first members.
+
+    Raises:
+        UnusableSettings: neither or both are given, or one is outside what the dendrogram allows.
+    """
+    if (threshold is None) == (clusters is None):
+        raise UnusableSettings("a dendrogram is cut at a threshold or into a number of clusters; give one of the two")
+    if threshold is not None:
+        if not threshold > 0:
+            raise UnusableSettings(f"a dendrogram cannot be cut at {threshold:g} m; the threshold is greater than 0")
+        labels = labels_at(learned.linkage, threshold)
+    else:
+        count = len(learned.demonstrations)
+        if clusters is None or not 1 <= clusters <= count:
+            raise UnusableSettings(f"{count} demonstrations cannot be cut into {clusters} clusters; give 1 to {count}")
+        labels = labels_into(learned.linkage, clusters)
+    return groups(learned.demonstrations, labels)
+
+
+def groups(names: Sequence[str], labels: Labels) -> tuple[tuple[str, ...], ...]:
+    """Return the names that carry label 1, those that carry label 2, and so on."""
+    found: list[list[str]] = [[] for _ in range(int(labels.max()))]
+    for name, label in zip(names, labels, strict=True):
+        found[label - 1].append(name)
+    return tuple(tuple(group) for group in found)
+
+
+def labels_at(linkage: Array, threshold: float) -> Labels:
+    """Return the clusters (m,) of a cut at a height [m]: all merges up to it are made."""
+    return _after(linkage, int(np.searchsorted(linkage[:, 2], threshold, side="right")))
+
+
+def labels_into(linkage: Array, count: int) -> Labels:
+    """Return the clusters (m,) of the cut that leaves `count` of them."""
+    return _after(linkage, len(linkage) + 1 - count)
+
+
+def height_between(linkage: Array, count: int) -> float:
+    """Return a height [m] at which a cut leaves `count` clusters: halfway between two merges."""
+    merges = len(linkage) + 1 - count
+    heights = linkage[:, 2]
+    if merges == len(linkage):
+        return float(heights[-1]) if merges else 0.0
+    below = float(heights[merges - 1]) if merges else 0.0
+    return (below + float(heights[merges])) / 2
+
+
+def grafted(linkage: Array, sample: Labels, joins: Labels, heights: Array) -> Array:
+    """Return the dendrogram of all demonstrations from that of a sample, the others joining one of the sample each.
+
+    Args:
+        linkage: of the sample.
+        sample: (s,) which demonstrations it consists of.
+        joins: (m,) the demonstration of the sample that each one joins; its own number for those of the sample.
+        heights: (m,) at which height [m].
+
+    Returns:
+        (m - 1, 4) merges as scipy writes them.
+    """
+    member = list(sample)  # one demonstration of every cluster of the sample's dendrogram
+    merges: list[tuple[float, int, int]] = []
+    for left, right, height, _ in linkage:
+        merges.append((float(height), int(member[int(left)]), int(member[int(right)])))
+        member.append(member[int(left)])
+    merges += [(float(heights[i]), i, int(joins[i])) for i in map(int, np.flatnonzero(joins != np.arange(len(joins))))]
+    merges.sort()
+    parent, name, size = np.arange(len(joins)), np.arange(len(joins)), np.ones(len(joins), dtype=int)
+    rows = np.empty((len(merges), 4))
+    for row, (height, one, other) in enumerate(merges):
+        left, right = sorted((_root(parent, one), _root(parent, other)), key=lambda at: name[at])
+        size[left] += size[right]
+        rows[row] = name[left], name[right], height, size[left]
+        parent[right] = left
+        name[left] = len(joins) + row
+    return rows
+
+
+def _after(linkage: Array, merges: int) -> Labels:
+    """Return labels 1, 2, ... in the order of first members after so many merges."""
+    m = len(linkage) + 1
+    parent = np.arange(m + merges)
+    for row in range(merges):
+        parent[linkage[row, :2].astype(int)] = m + row
+    for node in range(m + merges - 1, -1, -1):
+        parent[node] = parent[parent[node]]
+    _, first, inverse = np.unique(parent[:m], return_index=True, return_inverse=True)
+    rank = np.argsort(np.argsort(first))
+    return np.asarray(rank[inverse] + 1, dtype=np.int64)
+
+
+def _root(parent: Labels, node: int) -> int:
+    while parent[node] != node:
+        parent[node] = parent[parent[node]]
+        node = int(parent[node])
+    return node

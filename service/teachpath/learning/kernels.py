@@ -1,0 +1,118 @@
+"""The door to numba: distances between thousands of paths, compiled, in single precision, on every core.
+
+Every pair is worked out by one thread in one order, so the number of threads does not change a bit.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, TypeVar, cast
+
+import numba
+import numpy as np
+from numpy.typing import NDArray
+
+from teachpath.records import Array
+
+F = TypeVar("F", bound=Callable[..., Any])
+
+Paths = NDArray[np.float32]  # (m, 3, n): one row a coordinate, so that the inner loops run along memory
+
+BLOCK = 64  # paths compared with as many: both sets stay in the cache
+
+
+def compiled(**options: Any) -> Callable[[F], F]:
+    """Compile a function at its first call, and keep the result on disk where a place for it can be written."""
+
+    def compile_later(function: F) -> F:
+        try:
+            return cast(F, numba.njit(cache=True, **options)(function))
+        except RuntimeError:  # no directory that numba could write to
+            return cast(F, numba.njit(**options)(function))
+
+    return compile_later
+
+
+@compiled(fastmath=True)
+def _mean_distance(a: Paths, b: Paths) -> np.float32:
+    # A total that started as a Python float would lift the whole loop to double precision.
+    total = np.float32(0)
+    for k in range(a.shape[1]):
+        x, y, z = a[0, k] - b[0, k], a[1, k] - b[1, k], a[2, k] - b[2, k]
+        total += np.sqrt(x * x + y * y + z * z)
+    return total / np.float32(a.shape[1])
+
+
+@compiled()
+def _warped_distance(a: Paths, b: Paths, widest: bool) -> np.float32:
+    n = a.shape[1]
+    cost = np.empty(n, dtype=np.float32)
+    steps = np.ones(n, dtype=np.float32)
+    for i in range(n):
+        diagonal, diagonal_steps = np.float32(0), np.float32(0)
+        for j in range(n):
+            x, y, z = a[0, i] - b[0, j], a[1, i] - b[1, j], a[2, i] - b[2, j]
+            here = np.sqrt(x * x + y * y + z * z)
+            before, before_steps = np.float32(np.inf), np.float32(0)
+            if i > 0:
+                before, before_steps = cost[j], steps[j]
+            if j > 0 and cost[j - 1] < before:
+                before, before_steps = cost[j - 1], steps[j - 1]
+            if i > 0 and j > 0 and diagonal <= before:
+                before, before_steps = diagonal, diagonal_steps
+            if i == 0 and j == 0:
+                before = np.float32(0)
+            diagonal, diagonal_steps = cost[j], steps[j]
+            cost[j] = max(here, before) if widest else here + before
+            steps[j] = before_steps + np.float32(1)
+    return np.float32(cost[n - 1] if widest else cost[n - 1] / steps[n - 1])
+
+
+@compiled(parallel=True)
+def _fill(paths: Paths, out: Array, begin: int, kind: int) -> None:
+    m = len(paths)
+    end = min(begin + BLOCK, m)
+    for block in numba.prange((m - begin + BLOCK - 1) // BLOCK):
+        first = begin + block * BLOCK
+        for i in range(begin, end):
+            row = i * (2 * m - i - 1) // 2 - i - 1
+            for j in range(max(first, i + 1), min(first + BLOCK, m)):
+                if kind == 0:
+                    out[row + j] = _mean_distance(paths[i], paths[j])
+                else:
+                    out[row + j] = _warped_distance(paths[i], paths[j], kind == 1)
+
+
+@compiled(parallel=True)
+def _assign(paths: Paths, chosen: Paths, nearest: NDArray[np.int64], apart: Array, kind: int) -> None:
+    for i in numba.prange(len(paths)):
+        apart[i] = np.inf
+        for j in range(len(chosen)):
+            if kind == 0:
+                here = _mean_distance(paths[i], chosen[j])
+            else:
+                here = _warped_distance(paths[i], chosen[j], kind == 1)
+            if here < apart[i]:
+                apart[i] = here
+                nearest[i] = j
+
+
+def fill_rows(paths: Paths, out: Array, begin: int, kind: int) -> None:
+    """Write the distances of paths `begin` to `begin` + 64 from all later ones into `out`, condensed in scipy's order.
+
+    Args:
+        paths: (m, 3, n) [m].
+        out: (m (m - 1) / 2,) [m].
+        begin: first row of the strip.
+        kind: 0 = mean distance of corresponding points (Aleotti & Caselli, eq. (1)), 1 = discrete Fréchet distance,
+            2 = dynamic time warping, mean cost along the best matching.
+    """
+    _fill(paths, out, begin, kind)
+
+
+def nearest_of(paths: Paths, chosen: Paths, kind: int) -> tuple[NDArray[np.int64], Array]:
+    """Return for every path the number of the nearest chosen one and its distance [m]; kinds as in `fill_rows`."""
+    nearest = np.zeros(len(paths), dtype=np.int64)
+    apart = np.empty(len(paths))
+    _assign(paths, chosen, nearest, apart, kind)
+    return nearest, apart
