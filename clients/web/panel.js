@@ -2,23 +2,33 @@
 import { element, number, percent, plural, replace } from "./elements.js";
 
 const PERIOD = 1000; // [ms]
+const STATION_PERIOD = 400; // [ms] trackers are shown within a second of coming or going
+const LISTED = 40; // newest demonstrations
 const WAYS = 6; // colours --way-0 to --way-5
 
 export class Panel {
   constructor(document) {
     this.at = (id) => document.getElementById(id);
     this.task = "";
+    this.station = null;
+    this.refusal = "";
+    this.working = { recordings: [], jobs: [] };
   }
 
   start() {
     this.at("task").addEventListener("change", (event) => {
       this.task = event.target.value;
     });
-    const turn = async () => {
-      if (!document.hidden) await this.refresh();
-      setTimeout(turn, PERIOD);
+    for (const id of ["work", "demonstrations"]) this.at(id).addEventListener("click", (event) => this.#order(event));
+    const every = async (period, step) => {
+      if (!document.hidden) await step();
+      setTimeout(every, period, period, step);
     };
-    turn();
+    every(PERIOD, () => this.refresh());
+    every(STATION_PERIOD, async () => {
+      this.station = await get("health");
+      this.#work();
+    });
   }
 
   async refresh() {
@@ -28,7 +38,8 @@ export class Panel {
     const here = this.task && `tasks/${encodeURIComponent(this.task)}`;
     const of = (what) => (here ? get(`${here}/${what}`) : (tasks && []));
     const [jobs, recordings, demonstrations, runs] = await Promise.all(["jobs", "recording", "demonstrations", "runs"].map(of));
-    this.#work(recordings, jobs);
+    this.working = { recordings: recordings ?? [], jobs: jobs ?? [] };
+    this.#work();
     this.#demonstrations(demonstrations);
     this.#learned(runs, demonstrations ?? []);
   }
@@ -64,19 +75,30 @@ export class Panel {
     );
   }
 
-  // Recordings and jobs that run now; the last job that failed stays until another one begins.
-  #work(recordings, jobs) {
-    const running = (jobs ?? []).filter((job) => job.state === "running" || job.state === "queued");
-    const failed = jobs?.at(-1)?.state === "failed" ? [jobs.at(-1)] : [];
+  // Trackers that are there, recordings and jobs that run; the last job that failed stays until another one begins.
+  #work() {
+    const { recordings, jobs } = this.working;
+    const running = jobs.filter((job) => job.state === "running" || job.state === "queued");
+    const failed = jobs.at(-1)?.state === "failed" ? [jobs.at(-1)] : [];
+    const there = (this.station?.trackers ?? []).filter((t) => !recordings.some((r) => r.tracker === t.name));
     const lines = [
-      ...(recordings ?? []).map((r) =>
-        element("p", { class: "job" }, element("span", { class: "dot recording" }), `Recording ${r.tracker}: ${r.phase || "waiting"}, ${r.received} ${plural(r.received, "sample")}`),
-      ),
+      ...recordings.map(recordingLine),
+      ...there.map((t) => element("p", { class: "job" }, element("span", { class: "dot there" }), `${t.name} is here`)),
       ...running.map((job) => element("div", { class: "job" }, element("p", {}, `${sentence(job.kind)}: ${job.message || job.state}`), bar(job.fraction, `${job.kind} job`))),
       ...failed.map((job) => element("p", { class: "job failed" }, `${sentence(job.kind)} failed: ${job.message}`)),
+      this.refusal && element("p", { class: "job failed" }, this.refusal),
+      ...(this.station?.notes ?? []).map((note) => element("p", { class: "job note" }, sentence(note))),
     ];
-    this.at("work-section").hidden = lines.length === 0;
+    this.at("work-section").hidden = !lines.some(Boolean);
     replace(this.at("work"), ...lines);
+  }
+
+  // A button names what it orders: a verb of the recording, and the tracker where one is meant.
+  async #order(event) {
+    const { verb, tracker } = event.target.closest("button[data-verb]")?.dataset ?? {};
+    if (!verb) return;
+    this.refusal = await post(`tasks/${encodeURIComponent(this.task)}/recording/${verb}`, tracker && { tracker });
+    await this.refresh();
   }
 
   #demonstrations(demonstrations) {
@@ -89,18 +111,28 @@ export class Panel {
       );
       return;
     }
-    const count = (verdict) => demonstrations.filter((d) => d.verdict === verdict).length;
-    const mean = demonstrations.reduce((sum, d) => sum + d.duration, 0) / demonstrations.length;
+    const kept = demonstrations.filter((d) => !d.discarded_ns);
+    const count = (verdict) => kept.filter((d) => d.verdict === verdict).length;
+    const mean = kept.reduce((sum, d) => sum + d.duration, 0) / kept.length;
+    const advice = this.station?.coach?.task === this.task && this.station.coach.sentence;
     replace(
       this.at("demonstrations"),
-      element("p", { class: "count" }, element("strong", {}, String(demonstrations.length)), ` ${plural(demonstrations.length, "demonstration")}`),
+      element("p", { class: "count" }, element("strong", {}, String(kept.length)), ` ${plural(kept.length, "demonstration")}`),
+      advice && element("p", { class: "coach" }, `${sentence(advice)}.`),
       facts([
         ["Clean", String(count("clean"))],
         ["Repaired", count("repaired") && String(count("repaired"))],
         ["Not usable", count("reject") && String(count("reject"))],
-        ["Mean transport", number(mean, 1, "s")],
-        ["Samples lost", String(demonstrations.reduce((sum, d) => sum + (d.account?.lost ?? 0), 0))],
+        ["Mean transport", kept.length > 0 && number(mean, 1, "s")],
+        ["Samples lost", String(kept.reduce((sum, d) => sum + (d.account?.lost ?? 0), 0))],
       ]),
+      element("ol", { class: "takes", "aria-label": "demonstrations, newest first" }, ...demonstrations.slice(-LISTED).reverse().map(takeLine)),
+      element(
+        "p",
+        { class: "orders" },
+        kept.length > 0 && button("discard", "Discard the last"),
+        kept.length < demonstrations.length && button("restore", "Undo discard"),
+      ),
     );
   }
 
@@ -118,6 +150,37 @@ export class Panel {
     const head = element("thead", {}, element("tr", {}, ...["Way", "Demonstration", "Log-likelihood", "Selected"].map((t) => element("th", { scope: "col" }, t))));
     replace(this.at("learned"), element("table", {}, head, ...run.clusters.map((cluster) => rows(cluster, numbers))), ...notes(run));
   }
+}
+
+function recordingLine(r) {
+  const paused = r.state === "paused" || r.state === "pausing";
+  const doing = { recording: r.phase, pausing: "will pause after this one", paused: "paused", lost: "the tracker has gone" }[r.state] ?? r.phase;
+  return element(
+    "p",
+    { class: "job" },
+    element("span", { class: `dot ${r.state || "recording"}` }),
+    `Recording ${r.tracker}: ${doing || "waiting"}, ${r.received} ${plural(r.received, "sample")}`,
+    r.lost > 0 && `, ${r.lost} lost`,
+    " ",
+    r.state !== "lost" && button(paused ? "resume" : "pause", paused ? "Resume" : "Pause", r.tracker),
+  );
+}
+
+function takeLine(d) {
+  const why = [d.mark && `marked ${d.mark}`, ...(d.reasons ?? [])].filter(Boolean).join("; ");
+  const word = d.discarded_ns ? "discarded" : d.verdict;
+  return element(
+    "li",
+    { class: word, value: String(d.number) },
+    element("span", { class: "number" }, String(d.number)),
+    element("span", { class: "verdict" }, word),
+    element("span", { class: "figure" }, number(d.duration, 1, "s")),
+    why && element("span", { class: "why" }, sentence(why)),
+  );
+}
+
+function button(verb, text, tracker = "") {
+  return element("button", { type: "button", "data-verb": verb, ...(tracker && { "data-tracker": tracker }) }, text);
 }
 
 function rows(cluster, numbers) {
@@ -171,5 +234,20 @@ async function get(path) {
     return answer.ok ? await answer.json() : null;
   } catch {
     return null;
+  }
+}
+
+// Why the service refused, or nothing.
+async function post(path, body) {
+  try {
+    const answer = await fetch(`/api/v1/${path}`, {
+      method: "POST",
+      signal: AbortSignal.timeout(5000),
+      headers: { Accept: "application/json", "Content-Type": "application/json" },
+      body: JSON.stringify(body || {}),
+    });
+    return answer.ok ? "" : (await answer.json()).detail;
+  } catch {
+    return "The service does not answer.";
   }
 }

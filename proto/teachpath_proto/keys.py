@@ -21,11 +21,17 @@ class Keys:
         self.prefix = prefix
         self.recorder_start = f"{prefix}/recorder/start"
         self.recorder_stop = f"{prefix}/recorder/stop"
+        self.recorder_pause = f"{prefix}/recorder/pause"
+        self.recorder_resume = f"{prefix}/recorder/resume"
+        self.recorder_discard = f"{prefix}/recorder/discard"
+        self.recorder_restore = f"{prefix}/recorder/restore"
+        self.recorder_amend = f"{prefix}/recorder/amend"
         self.recorder_status = f"{prefix}/recorder/status"
         self.executor_command = f"{prefix}/executor/command"
         self.executor_status = f"{prefix}/executor/status"
         self.all_samples = f"{prefix}/trackers/*/samples"
         self.all_alive = f"{prefix}/alive/**"
+        self.all_trackers_alive = f"{prefix}/alive/tracker/*"
 
     def samples(self, tracker: str) -> str:
         """Key on which `tracker` publishes its `HandSample`s."""
@@ -34,6 +40,10 @@ class Keys:
     def tracker_of(self, key: str) -> str:
         """Name of the tracker that published on `key` (a key of `samples`)."""
         return key.removeprefix(f"{self.prefix}/trackers/").split("/", 1)[0]
+
+    def announced(self, key: str) -> str:
+        """Name of the part that shows on `key` (a key of `alive`) that it is alive."""
+        return key.rsplit("/", 1)[1]
 
     def setpoint(self, robot: str) -> str:
         """Key of the `Setpoint` stream to `robot`."""

@@ -65,12 +65,14 @@ class ExecutorCommand(_message.Message):
         HOLD: _ClassVar[ExecutorCommand.Verb]
         RESUME: _ClassVar[ExecutorCommand.Verb]
         STOP: _ClassVar[ExecutorCommand.Verb]
+        REVERSE: _ClassVar[ExecutorCommand.Verb]
     UNSPECIFIED: ExecutorCommand.Verb
     START: ExecutorCommand.Verb
     OVERRIDE: ExecutorCommand.Verb
     HOLD: ExecutorCommand.Verb
     RESUME: ExecutorCommand.Verb
     STOP: ExecutorCommand.Verb
+    REVERSE: ExecutorCommand.Verb
     VERB_FIELD_NUMBER: _ClassVar[int]
     EXECUTION_FIELD_NUMBER: _ClassVar[int]
     PLAN_FIELD_NUMBER: _ClassVar[int]

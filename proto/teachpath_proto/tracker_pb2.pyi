@@ -47,16 +47,20 @@ class HandSample(_message.Message):
     def __init__(self, sequence: _Optional[int] = ..., device_ns: _Optional[int] = ..., position: _Optional[_Union[Vector3, _Mapping]] = ..., orientation: _Optional[_Union[Quaternion, _Mapping]] = ..., flexions: _Optional[_Iterable[float]] = ..., tracked: _Optional[bool] = ..., buttons: _Optional[int] = ...) -> None: ...
 
 class StartRecording(_message.Message):
-    __slots__ = ("task", "tracker", "calibration", "scene")
+    __slots__ = ("task", "tracker", "calibration", "scene", "rate", "armed")
     TASK_FIELD_NUMBER: _ClassVar[int]
     TRACKER_FIELD_NUMBER: _ClassVar[int]
     CALIBRATION_FIELD_NUMBER: _ClassVar[int]
     SCENE_FIELD_NUMBER: _ClassVar[int]
+    RATE_FIELD_NUMBER: _ClassVar[int]
+    ARMED_FIELD_NUMBER: _ClassVar[int]
     task: str
     tracker: str
     calibration: str
     scene: str
-    def __init__(self, task: _Optional[str] = ..., tracker: _Optional[str] = ..., calibration: _Optional[str] = ..., scene: _Optional[str] = ...) -> None: ...
+    rate: float
+    armed: bool
+    def __init__(self, task: _Optional[str] = ..., tracker: _Optional[str] = ..., calibration: _Optional[str] = ..., scene: _Optional[str] = ..., rate: _Optional[float] = ..., armed: _Optional[bool] = ...) -> None: ...
 
 class StopRecording(_message.Message):
     __slots__ = ("tracker", "last_sequence", "discard")
@@ -69,7 +73,7 @@ class StopRecording(_message.Message):
     def __init__(self, tracker: _Optional[str] = ..., last_sequence: _Optional[int] = ..., discard: _Optional[bool] = ...) -> None: ...
 
 class RecordingReport(_message.Message):
-    __slots__ = ("task", "tracker", "demonstrations", "received", "lost", "duplicated", "reordered", "refused", "untracked", "longest_gap_ns", "notes", "phase", "idle")
+    __slots__ = ("task", "tracker", "demonstrations", "received", "lost", "duplicated", "reordered", "refused", "untracked", "longest_gap_ns", "notes", "phase", "idle", "gaps", "conflicts", "clock_jumps", "declared_rate", "seen_rate", "clock_offset_ns", "clock_uncertainty_ns", "clock_rate", "state", "pedal")
     TASK_FIELD_NUMBER: _ClassVar[int]
     TRACKER_FIELD_NUMBER: _ClassVar[int]
     DEMONSTRATIONS_FIELD_NUMBER: _ClassVar[int]
@@ -83,6 +87,16 @@ class RecordingReport(_message.Message):
     NOTES_FIELD_NUMBER: _ClassVar[int]
     PHASE_FIELD_NUMBER: _ClassVar[int]
     IDLE_FIELD_NUMBER: _ClassVar[int]
+    GAPS_FIELD_NUMBER: _ClassVar[int]
+    CONFLICTS_FIELD_NUMBER: _ClassVar[int]
+    CLOCK_JUMPS_FIELD_NUMBER: _ClassVar[int]
+    DECLARED_RATE_FIELD_NUMBER: _ClassVar[int]
+    SEEN_RATE_FIELD_NUMBER: _ClassVar[int]
+    CLOCK_OFFSET_NS_FIELD_NUMBER: _ClassVar[int]
+    CLOCK_UNCERTAINTY_NS_FIELD_NUMBER: _ClassVar[int]
+    CLOCK_RATE_FIELD_NUMBER: _ClassVar[int]
+    STATE_FIELD_NUMBER: _ClassVar[int]
+    PEDAL_FIELD_NUMBER: _ClassVar[int]
     task: str
     tracker: str
     demonstrations: _containers.RepeatedScalarFieldContainer[str]
@@ -96,7 +110,71 @@ class RecordingReport(_message.Message):
     notes: _containers.RepeatedScalarFieldContainer[str]
     phase: str
     idle: int
-    def __init__(self, task: _Optional[str] = ..., tracker: _Optional[str] = ..., demonstrations: _Optional[_Iterable[str]] = ..., received: _Optional[int] = ..., lost: _Optional[int] = ..., duplicated: _Optional[int] = ..., reordered: _Optional[int] = ..., refused: _Optional[int] = ..., untracked: _Optional[int] = ..., longest_gap_ns: _Optional[int] = ..., notes: _Optional[_Iterable[str]] = ..., phase: _Optional[str] = ..., idle: _Optional[int] = ...) -> None: ...
+    gaps: int
+    conflicts: int
+    clock_jumps: int
+    declared_rate: float
+    seen_rate: float
+    clock_offset_ns: int
+    clock_uncertainty_ns: int
+    clock_rate: float
+    state: str
+    pedal: bool
+    def __init__(self, task: _Optional[str] = ..., tracker: _Optional[str] = ..., demonstrations: _Optional[_Iterable[str]] = ..., received: _Optional[int] = ..., lost: _Optional[int] = ..., duplicated: _Optional[int] = ..., reordered: _Optional[int] = ..., refused: _Optional[int] = ..., untracked: _Optional[int] = ..., longest_gap_ns: _Optional[int] = ..., notes: _Optional[_Iterable[str]] = ..., phase: _Optional[str] = ..., idle: _Optional[int] = ..., gaps: _Optional[int] = ..., conflicts: _Optional[int] = ..., clock_jumps: _Optional[int] = ..., declared_rate: _Optional[float] = ..., seen_rate: _Optional[float] = ..., clock_offset_ns: _Optional[int] = ..., clock_uncertainty_ns: _Optional[int] = ..., clock_rate: _Optional[float] = ..., state: _Optional[str] = ..., pedal: _Optional[bool] = ...) -> None: ...
+
+class PauseRecording(_message.Message):
+    __slots__ = ("tracker",)
+    TRACKER_FIELD_NUMBER: _ClassVar[int]
+    tracker: str
+    def __init__(self, tracker: _Optional[str] = ...) -> None: ...
+
+class PickDemonstration(_message.Message):
+    __slots__ = ("tracker", "task")
+    TRACKER_FIELD_NUMBER: _ClassVar[int]
+    TASK_FIELD_NUMBER: _ClassVar[int]
+    tracker: str
+    task: str
+    def __init__(self, tracker: _Optional[str] = ..., task: _Optional[str] = ...) -> None: ...
+
+class AmendDemonstration(_message.Message):
+    __slots__ = ("demonstration", "mark", "discarded", "trim")
+    DEMONSTRATION_FIELD_NUMBER: _ClassVar[int]
+    MARK_FIELD_NUMBER: _ClassVar[int]
+    DISCARDED_FIELD_NUMBER: _ClassVar[int]
+    TRIM_FIELD_NUMBER: _ClassVar[int]
+    demonstration: str
+    mark: str
+    discarded: bool
+    trim: Span
+    def __init__(self, demonstration: _Optional[str] = ..., mark: _Optional[str] = ..., discarded: _Optional[bool] = ..., trim: _Optional[_Union[Span, _Mapping]] = ...) -> None: ...
+
+class Span(_message.Message):
+    __slots__ = ("begin", "end")
+    BEGIN_FIELD_NUMBER: _ClassVar[int]
+    END_FIELD_NUMBER: _ClassVar[int]
+    begin: int
+    end: int
+    def __init__(self, begin: _Optional[int] = ..., end: _Optional[int] = ...) -> None: ...
+
+class DemonstrationReport(_message.Message):
+    __slots__ = ("demonstration", "task", "number", "verdict", "reasons", "mark", "discarded", "transport")
+    DEMONSTRATION_FIELD_NUMBER: _ClassVar[int]
+    TASK_FIELD_NUMBER: _ClassVar[int]
+    NUMBER_FIELD_NUMBER: _ClassVar[int]
+    VERDICT_FIELD_NUMBER: _ClassVar[int]
+    REASONS_FIELD_NUMBER: _ClassVar[int]
+    MARK_FIELD_NUMBER: _ClassVar[int]
+    DISCARDED_FIELD_NUMBER: _ClassVar[int]
+    TRANSPORT_FIELD_NUMBER: _ClassVar[int]
+    demonstration: str
+    task: str
+    number: int
+    verdict: str
+    reasons: _containers.RepeatedScalarFieldContainer[str]
+    mark: str
+    discarded: bool
+    transport: Span
+    def __init__(self, demonstration: _Optional[str] = ..., task: _Optional[str] = ..., number: _Optional[int] = ..., verdict: _Optional[str] = ..., reasons: _Optional[_Iterable[str]] = ..., mark: _Optional[str] = ..., discarded: _Optional[bool] = ..., transport: _Optional[_Union[Span, _Mapping]] = ...) -> None: ...
 
 class RecorderStatus(_message.Message):
     __slots__ = ("recordings",)

@@ -23,9 +23,11 @@ from teachpath.io.store import Store
 from teachpath.learning import LearningSettings
 from teachpath.motion import drawing
 from teachpath.offline.lock import StationLock
-from teachpath.recording import Cut, object_trajectory, to_world
+from teachpath.recording import to_world
 from teachpath.records import Demonstration, Job, Learned, Plan, Trajectory, Vector
 from teachpath.workers import desk
+from teachpath.workers.coach import Coach
+from teachpath.workers.curation import Curation
 from teachpath.workers.executions import Executions
 from teachpath.workers.jobs import Jobs, Kind
 from teachpath.workers.preview import Preview
@@ -38,13 +40,7 @@ log = logging.getLogger("teachpath")
 
 def trajectory_of(store: Store, settings: Settings, demonstration: Demonstration) -> Trajectory:
     """Return the object's trajectory of a stored demonstration, from its recording."""
-    carried = settings.scene(store.task(demonstration.task).scene).carried
-    return object_trajectory(
-        store.recordings.samples(demonstration.recording),
-        Cut(demonstration.grasp, demonstration.release),
-        demonstration.calibration,
-        carried.position if carried else None,
-    )
+    return Curation(store, settings.recording, settings.scene).trajectory(demonstration)
 
 
 class Station:
@@ -76,7 +72,9 @@ class Station:
             scene=settings.scene,
             calibration=settings.calibration,
             recorded=self._show_demonstration,
+            changed=lambda demonstration: self._show_task(demonstration.task),
         )
+        self.coach = Coach(self.store.demonstrations, self.trajectory, settings.learning)
         self.jobs = Jobs(self.bus, self.keys, self.store, settings.jobs, self._kinds(), finished=self._show_outcome)
         self.executions = Executions(self.bus, self.keys, self.store, robot=settings.bus.robot)
         self.preview = Preview(
@@ -116,6 +114,7 @@ class Station:
         for process in self.processes:
             process.ask_to_stop()
         self.recorder.stop()
+        self.coach.stop()
         self.jobs.stop()
         self.executions.stop()
         self.preview.stop()
@@ -135,6 +134,7 @@ class Station:
         unfinished = [f.name for f in self.store.recordings.unfinished()]
         running = {r.tracker for r in self.recorder.reports()}
         notes = [f"the {p.name} has ended: {p.last_words()}" for p in self.processes if not p.is_alive()]
+        notes += self.recorder.faults()
         if unfinished and not running:
             notes.append(f"{len(unfinished)} recordings were cut off; stop the service and run: teachpath doctor")
         return {
@@ -143,6 +143,8 @@ class Station:
             "bus": asdict(self.settings.bus),
             "processes": {p.name: "running" if p.is_alive() else "ended" for p in self.processes},
             "recording": sorted(running),
+            "trackers": [asdict(tracker) for tracker in self.recorder.trackers()],
+            "coach": {"task": self._shown, "sentence": self.coach.sentence(self._shown)},
             "executor": asdict(status) if status else None,
             "notes": notes,
         }
@@ -166,7 +168,7 @@ class Station:
         }
 
     def _prepare_learning(self, job: Job) -> tuple[dict[str, Trajectory], LearningSettings]:
-        demonstrations = [d for d in self.store.demonstrations(job.task) if d.verdict != "reject"]
+        demonstrations = [d for d in self.store.demonstrations(job.task) if d.is_usable]
         if not demonstrations:
             raise NotFound(f"task {job.task} has no usable demonstrations yet; show it a few times first")
         wanted = job.request.get("settings")
@@ -197,18 +199,23 @@ class Station:
             self.preview.show_scene(self.settings.scenes[0])
             return
         self._shown = task
+        self.coach.consider(task)
         runs = self.store.runs(task)
         self.preview.show_task(
             self.settings.scene(self.store.task(task).scene),
-            [(d.id, self.trajectory(d).positions) for d in self.store.demonstrations(task)],
+            [(d.id, self.trajectory(d).positions) for d in self._kept(task)],
             runs[0].learned.paths if runs else (),
         )
+
+    def _kept(self, task: str) -> list[Demonstration]:
+        return [d for d in self.store.demonstrations(task) if not d.discarded_ns]
 
     def _show_demonstration(self, demonstration: Demonstration, trajectory: Trajectory) -> None:
         if self._shown != demonstration.task:
             self._show_task(demonstration.task)
         else:
             self.preview.show_demonstration(demonstration.id, trajectory.positions)
+            self.coach.consider(demonstration.task)
 
     def _show_outcome(self, job: Job) -> None:
         if job.kind == "learn" and job.outcome:

@@ -27,7 +27,7 @@ MORE = {
     "scenes": "# Positions are of centres [m], sizes of a box x, y, z, of an upright cylinder radius, height",
 }
 # A setting without a default shows one that it could have.
-EXAMPLES = {"learning.threshold": 0.06, "learning.degree": 3}
+EXAMPLES = {"learning.threshold": 0.06, "learning.clusters": 3, "learning.degree": 3}
 WORDS = {Ge: ("ge", "at least"), Gt: ("gt", "over"), Le: ("le", "at most"), Lt: ("lt", "under")}
 
 

@@ -1,5 +1,6 @@
 """What every kind of bus must do, run on the real one and on the in-memory twin."""
 
+import itertools
 import queue
 import socket
 from collections.abc import Iterator
@@ -8,6 +9,7 @@ import pytest
 
 from teachpath.errors import Conflict, TeachpathError, Unreachable
 from teachpath.io.bus import Bus, BusSettings, MemoryBus, open_bus
+from teachpath_client import Link
 
 
 def free_endpoint() -> str:
@@ -115,3 +117,43 @@ def test_a_taken_endpoint_is_a_sentence() -> None:
     with pytest.raises(Unreachable, match="taken"):
         open_bus(settings, listen=True)
     first.close()
+
+
+def test_a_subscription_that_counts_what_it_missed_serves_plain_publishers_and_ends_with_its_session(
+    ends: tuple[Bus, Bus],
+) -> None:
+    here, there = ends
+    got: queue.Queue[bytes] = queue.Queue()
+    missed: list[int] = []
+    handle = there.subscribe("t/*/samples", lambda _, payload: got.put(payload), missed=missed.append)
+    wait_reachable(here, there)
+    for i in range(200):
+        here.publish("t/a/samples", str(i).encode())
+    assert [got.get(timeout=5) for _ in range(200)] == [str(i).encode() for i in range(200)]
+    handle.close()
+    here.publish("t/a/samples", b"late")
+    there.subscribe("t/*/samples", lambda _, payload: got.put(payload), missed=missed.append)
+    assert got.empty()
+    assert missed == []
+
+
+def test_what_a_client_sends_comes_once_and_in_order_from_the_first_that_comes() -> None:
+    settings = BusSettings(endpoint=free_endpoint())
+    bus = open_bus(settings, listen=True)
+    got: queue.Queue[int] = queue.Queue()
+    missed: list[int] = []
+    try:
+        with Link(settings.endpoint) as link:
+            publisher, sent = link.publisher("t/a/samples"), itertools.count()
+            bus.subscribe("t/*/samples", lambda _, payload: got.put(int(payload)), missed=missed.append)
+            while got.empty():
+                publisher.put(str(next(sent)).encode())
+            for _ in range(500):
+                publisher.put(str(next(sent)).encode())
+            last, seen = next(sent) - 1, [got.get(timeout=5)]
+            while seen[-1] < last:
+                seen.append(got.get(timeout=5))
+            assert seen == list(range(seen[0], last + 1))
+            assert missed == []
+    finally:
+        bus.close()

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from tests.contract.desk import Desk, csv, npy, refused
+from tests.system.processes import wait_until
 
 # recording
 
@@ -93,3 +94,55 @@ def test_an_empty_scene_of_tasks_shows_lists(desk: Desk) -> None:
     assert health["executor"] is None
     assert [s["name"] for s in desk.get("/scenes").json()] == ["paper", "empty"]
     assert [c["name"] for c in desk.get("/calibrations").json()] == ["identity", "robottasks"]
+
+
+# control of a recording, and what is said of demonstrations
+
+
+def test_an_armed_recording_pauses_resumes_and_says_its_state(desk: Desk) -> None:
+    desk.put("/tasks/armed", {})
+    begun = desk.post("/tasks/armed/recording", {"tracker": "pedal", "armed": True, "rate": 50})
+    assert (begun.json()["state"], begun.json()["declared_rate"]) == ("paused", 50.0)
+    refused(desk.post("/tasks/armed/recording/resume", {"tracker": "other"}), 422, "'other' is not recording armed")
+    for verb, state in (("resume", "recording"), ("pause", "paused"), ("pause", "paused")):
+        assert desk.post(f"/tasks/armed/recording/{verb}", {"tracker": "pedal"}).json()["state"] == state
+    assert desk.post("/tasks/armed/recording/stop", {"tracker": "pedal"}).json()["state"] == ""
+    refused(desk.post("/tasks/armed/recording", {"tracker": "pedal", "rate": -1}), 422, "body.rate")
+    refused(desk.post("/tasks/armed/recording/pause", {"tracker": "pedal"}), 422, "running: none")
+
+
+def test_demonstrations_are_discarded_restored_marked_and_trimmed(desk: Desk) -> None:
+    made = [desk.import_("curated", csv()).json()[0] for _ in range(2)]
+    refused(desk.post("/tasks/curated/recording/restore"), 404, "no discarded demonstration")
+    gone = desk.post("/tasks/curated/recording/discard").json()
+    assert (gone["id"], gone["discarded_ns"] > 0) == (made[1]["id"], True)
+    assert desk.post("/tasks/curated/recording/restore").json() == made[1]
+
+    here = f"/api/v1/demonstrations/{made[0]['id']}"
+    marked = desk.send("PATCH", here, json={"mark": "bad"}).json()
+    assert marked == made[0] | {"mark": "bad"}
+    trimmed = desk.send("PATCH", here, json={"trim": [10, 40]}).json()
+    assert (trimmed["trim"], trimmed["grasp"], trimmed["release"]) == ([10, 40], 0, 60)
+    assert len(desk.get(f"/demonstrations/{made[0]['id']}/trajectory").json()["times"]) == 30
+    assert desk.send("PATCH", here, json={"trim": [0, 0], "mark": ""}).json() == made[0]
+    assert desk.send("PATCH", here, json={}).json() == made[0]
+    refused(desk.send("PATCH", here, json={"trim": [50, 70]}), 422, "no transport phase of a recording with 60 samples")
+    refused(desk.send("PATCH", here, json={"mark": "ugly"}), 422, "body.mark")
+    refused(desk.send("PATCH", "/api/v1/demonstrations/moon", json={"mark": "bad"}), 404, "demonstration 'moon'")
+    for verb in ("discard", "restore"):
+        refused(desk.post(f"/tasks/moon/recording/{verb}"), 404, "task 'moon'")
+
+
+def test_trackers_that_are_there_are_in_the_health(desk: Desk) -> None:
+    token = desk.station.bus.announce(desk.station.keys.alive("tracker", "glove-9"))
+    seen = lambda: [t["name"] for t in desk.get("/health").json()["trackers"]]  # noqa: E731
+    wait_until(lambda: "glove-9" in seen(), seconds=1.0, what="the tracker is there")
+    token.close()
+    wait_until(lambda: "glove-9" not in seen(), seconds=1.0, what="the tracker has gone")
+
+
+def test_what_is_not_usable_is_not_learned_from(desk: Desk) -> None:
+    (only,) = desk.import_("unusable", csv()).json()
+    desk.send("PATCH", f"/api/v1/demonstrations/{only['id']}", json={"mark": "bad"})
+    job = desk.ended(desk.post("/tasks/unusable/jobs", {"kind": "learn"}))
+    assert (job["state"], "no usable demonstrations" in job["message"]) == ("failed", True)

@@ -111,7 +111,11 @@ def test_without_an_executor_an_execution_is_503_and_kept_with_its_reason(desk: 
     assert (newest["plan"], newest["status"]["state"]) == (plan, "faulted")
     assert "nobody answered" in newest["status"]["reason"]
     assert desk.get(f"/executions/{newest['id']}").json() == newest
-    for verb in ("hold", "resume", "stop"):
+    for verb in ("hold", "resume", "reverse", "stop"):
         refused(desk.post(f"/executions/{newest['id']}/{verb}"), 409, "is not running")
     refused(desk.post(f"/executions/{newest['id']}/override", {"override": 0.5}), 409, "is not running")
-    refused(desk.post(f"/executions/{newest['id']}/jump"), 422, "path.verb: it should be 'hold', 'resume' or 'stop'")
+    refused(
+        desk.post(f"/executions/{newest['id']}/jump"),
+        422,
+        "path.verb: it should be 'hold', 'resume', 'reverse' or 'stop'",
+    )

@@ -52,8 +52,8 @@ def executions_router(parts: Parts) -> APIRouter:
         return executions.command(execution, "override", override=speed.override)
 
     @router.post("/executions/{execution}/{verb}")
-    def steer(execution: str, verb: Literal["hold", "resume", "stop"]) -> ExecutionRow:
-        """Hold on the path, resume, or stop and end. This is not an emergency stop."""
+    def steer(execution: str, verb: Literal["hold", "resume", "reverse", "stop"]) -> ExecutionRow:
+        """Hold on the path, resume, go back along it, or stop and end. This is not an emergency stop."""
         return executions.command(execution, verb)
 
     return router

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 from fastapi import APIRouter, Query, Request
 from fastapi.responses import FileResponse
@@ -15,6 +15,7 @@ from teachpath.io.documents import to_document
 from teachpath.io.wire import report_document
 from teachpath.offline.importing import Source, import_file
 from teachpath.records import Demonstration, Task
+from teachpath.workers.curation import Amendment
 from teachpath_proto.keys import is_name
 
 
@@ -30,7 +31,25 @@ class Recording(BaseModel):
 
     tracker: str = Field(description="name of the tracker that shows the task")
     calibration: str = Field("", description="start: instead of the task's own")
+    rate: float = Field(0.0, ge=0.0, le=10_000.0, description="start: samples a second that it sends; 0 = not said")
+    armed: bool = Field(False, description="start: paused, until the pedal or `resume` begins the first take")
     discard: bool = Field(False, description="stop: throw away the demonstration that is still open")
+
+
+class Named(BaseModel):
+    """A tracker whose recording is meant."""
+
+    tracker: str = Field(description="name of the tracker that is recording the task")
+
+
+class Amended(BaseModel):
+    """What an operator says of a demonstration; what is left out stays as it is."""
+
+    mark: Literal["", "good", "bad"] | None = Field(None, description="good, bad, or empty for none")
+    discarded: bool | None = Field(None, description="discarded ones are kept, but not learned from")
+    trim: tuple[int, int] | None = Field(
+        None, description="transport phase, samples[begin:end]; [0, 0] brings back the recorder's own cut"
+    )
 
 
 def tasks_router(parts: Parts) -> APIRouter:
@@ -92,6 +111,13 @@ def tasks_router(parts: Parts) -> APIRouter:
         """Return one demonstration."""
         return store.demonstration(demonstration)
 
+    @router.patch("/demonstrations/{demonstration}")
+    def amend_demonstration(demonstration: str, amended: Amended) -> Demonstration:
+        """Mark, discard, restore or trim a demonstration; its recording and the recorder's own cut stay."""
+        return parts.recorder.curation.amend(
+            demonstration, Amendment(mark=amended.mark, discarded=amended.discarded, trim=amended.trim)
+        )
+
     @router.get("/demonstrations/{demonstration}/trajectory")
     def get_trajectory(demonstration: str) -> dict[str, Any]:
         """Return the object's trajectory in its transport phase: times [s], positions [m], orientations, world."""
@@ -120,15 +146,46 @@ def recording_router(parts: Parts) -> APIRouter:
     @router.post("/tasks/{task}/recording", status_code=201)
     def start_recording(task: str, recording: Recording) -> dict[str, Any]:
         """Start recording from a tracker; demonstrations are cut by themselves as the hand grasps and releases."""
-        return report_document(recorder.begin(task, recording.tracker, calibration=recording.calibration))
+        return report_document(
+            recorder.begin(
+                task,
+                recording.tracker,
+                calibration=recording.calibration,
+                rate=recording.rate,
+                armed=recording.armed,
+            )
+        )
 
     @router.post("/tasks/{task}/recording/stop")
     def stop_recording(task: str, recording: Recording) -> dict[str, Any]:
         """Stop recording and return the account of every sample."""
+        return report_document(recorder.end(of_task(task, recording.tracker), discard=recording.discard))
+
+    @router.post("/tasks/{task}/recording/pause")
+    def pause_recording(task: str, named: Named) -> dict[str, Any]:
+        """Record nothing until `resume`; what is carried now is recorded to its end first."""
+        return report_document(recorder.pause(of_task(task, named.tracker)))
+
+    @router.post("/tasks/{task}/recording/resume")
+    def resume_recording(task: str, named: Named) -> dict[str, Any]:
+        """Record again."""
+        return report_document(recorder.resume(of_task(task, named.tracker)))
+
+    @router.post("/tasks/{task}/recording/discard")
+    def discard_last(task: str) -> Demonstration:
+        """Discard the newest demonstration that is kept; it is marked, not deleted."""
+        return recorder.curation.discard_last(task)
+
+    @router.post("/tasks/{task}/recording/restore")
+    def restore_last(task: str) -> Demonstration:
+        """Bring back the demonstration that was discarded last."""
+        return recorder.curation.restore_last(task)
+
+    def of_task(task: str, tracker: str) -> str:
         name = parts.store.task(task).name
         running = {report.tracker for report in recorder.reports() if report.task == name}
-        if recording.tracker not in running:
-            raise UnusableInput(f"{recording.tracker!r} is not recording {task}; running: {sorted(running) or 'none'}")
-        return report_document(recorder.end(recording.tracker, discard=recording.discard))
+        if tracker not in running:
+            raise UnusableInput(f"{tracker!r} is not recording {task}; running: {sorted(running) or 'none'}")
+        return tracker
 
     return router

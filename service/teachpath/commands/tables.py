@@ -47,7 +47,9 @@ def paths_table(run: dict[str, Any]) -> Table:
 def plan_lines(plan: dict[str, Any]) -> str:
     """Return a plan's certificate in a few lines."""
     c = plan["certificate"]
-    uses = [f"{name} {c[f'{name}_use']['value']:.0%}" for name in ("position", "velocity", "acceleration", "jerk")]
+    uses = [
+        f"{name} {c[f'{name}_use']['value']:.0%}" for name in ("position", "velocity", "acceleration", "jerk", "torque")
+    ]
     return (
         f"plan {plan['id']}: {plan['duration']:.2f} s along {plan['lengths'][-1]:.3f} m, arm {c['branch']}\n"
         f"  largest use of the limits: {', '.join(uses)}\n"

@@ -15,6 +15,7 @@ from dataclasses import dataclass
 from typing import Annotated, Any, Protocol
 
 import zenoh
+import zenoh.ext
 from annotated_types import Ge, Le
 
 from teachpath import errors
@@ -23,6 +24,7 @@ from teachpath.errors import TeachpathError, Unreachable
 Receive = Callable[[str, bytes], None]
 Answer = Callable[[bytes], bytes]
 Changed = Callable[[str, bool], None]
+Missed = Callable[[int], None]
 
 
 @dataclass(frozen=True)
@@ -52,8 +54,12 @@ class Bus(Protocol):
     def publish(self, key: str, payload: bytes) -> None:
         """Send `payload` to all subscribers of `key`."""
 
-    def subscribe(self, key: str, receive: Receive) -> Handle:
-        """Call `receive(key, payload)` for all that is published on keys matching `key` (`*` one segment, `**` any)."""
+    def subscribe(self, key: str, receive: Receive, *, missed: Missed | None = None) -> Handle:
+        """Call `receive(key, payload)` for all that is published on keys matching `key` (`*` one segment, `**` any).
+
+        With `missed`, samples of publishers that keep a cache are asked for again when one is missing, and those that
+        could not be had are counted: `missed(count)`. Plain publishers are served as well, without that.
+        """
 
     def serve(self, key: str, answer: Answer) -> Handle:
         """Answer queries on `key`; a TeachpathError that `answer` raises is raised again where the query was asked."""
@@ -109,9 +115,21 @@ class ZenohBus:
                 self._publishers[key] = publisher
         publisher.put(payload)
 
-    def subscribe(self, key: str, receive: Receive) -> Handle:
-        subscriber = self._session.declare_subscriber(key, lambda s: receive(str(s.key_expr), s.payload.to_bytes()))
-        return self._keep(_Undeclare(subscriber.undeclare))
+    def subscribe(self, key: str, receive: Receive, *, missed: Missed | None = None) -> Handle:
+        def callback(sample: zenoh.Sample) -> None:
+            receive(str(sample.key_expr), sample.payload.to_bytes())
+
+        if missed is None:
+            return self._keep(_Undeclare(self._session.declare_subscriber(key, callback).undeclare))
+        recovery = zenoh.ext.RecoveryConfig(periodic_queries=None, heartbeat=True)
+        subscriber = zenoh.ext.declare_advanced_subscriber(self._session, key, callback, recovery=recovery)
+        listener = subscriber.sample_miss_listener(lambda miss: missed(miss.nb))
+
+        def undeclare() -> None:
+            listener.undeclare()  # type: ignore[no-untyped-call]
+            subscriber.undeclare()  # type: ignore[no-untyped-call]
+
+        return self._keep(_Undeclare(undeclare))
 
     def serve(self, key: str, answer: Answer) -> Handle:
         return self._keep(_Server(self._session, key, answer))
@@ -134,6 +152,7 @@ class ZenohBus:
         return self._keep(_Undeclare(subscriber.undeclare))
 
     def close(self) -> None:
+        # A session that closes before an advanced subscriber is undeclared may keep the process from ending.
         for handle in self._handles:
             handle.close()
         self._handles.clear()
@@ -228,7 +247,7 @@ class MemoryBus:
         for receive in receivers:
             receive(key, payload)
 
-    def subscribe(self, key: str, receive: Receive) -> Handle:
+    def subscribe(self, key: str, receive: Receive, *, missed: Missed | None = None) -> Handle:
         handle = _Undeclare(lambda: self._receivers.pop(handle, None))
         with self._lock:
             self._receivers[handle] = (_pattern(key), receive)

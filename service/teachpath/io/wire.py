@@ -11,7 +11,18 @@ from google.protobuf.json_format import MessageToDict
 from google.protobuf.message import DecodeError, Message
 
 from teachpath.errors import UnusableInput, UnusableSample
-from teachpath.records import Account, Array, ExecutorStatus, Job, JointState, Quaternion, Sample, Setpoint
+from teachpath.records import (
+    Account,
+    Array,
+    Clock,
+    Demonstration,
+    ExecutorStatus,
+    Job,
+    JointState,
+    Quaternion,
+    Sample,
+    Setpoint,
+)
 from teachpath_proto import job_pb2, motion_pb2, tracker_pb2
 
 LARGEST_SAMPLE = 64 * 1024  # bytes; an honest one has about 200
@@ -55,13 +66,14 @@ def sample_from(message: tracker_pb2.HandSample, tracker: str, receive_ns: int) 
     where = f"sample {message.sequence} of {tracker}"
     p = message.position
     position = (p.x, p.y, p.z)
-    if not all(math.isfinite(v) for v in position):
+    if not math.isfinite(p.x + p.y + p.z):
         raise UnusableSample(f"{where}: position {position} is not finite")
     if max(map(abs, position)) > FARTHEST:
         raise UnusableSample(f"{where}: position {position} is over {FARTHEST:g} m away; are its units metres?")
     if len(message.flexions) not in FLEXION_COUNTS:
         raise UnusableSample(f"{where}: {len(message.flexions)} flexions; a glove has 18 or 22, or send none")
-    if not all(0.0 <= v <= 1.0 for v in message.flexions):
+    flexions = tuple(message.flexions)
+    if flexions and not (min(flexions) >= 0.0 and max(flexions) <= 1.0 and math.isfinite(sum(flexions))):
         raise UnusableSample(f"{where}: a flexion is outside 0 (open) to 1 (closed); is the glove calibrated?")
     if message.device_ns <= 0:
         raise UnusableSample(f"{where}: device time {message.device_ns} ns; send nanoseconds since the Unix epoch")
@@ -72,7 +84,7 @@ def sample_from(message: tracker_pb2.HandSample, tracker: str, receive_ns: int) 
         receive_ns=receive_ns,
         position=position,
         orientation=_unit(message.orientation, where),
-        flexions=tuple(message.flexions),
+        flexions=flexions,
         tracked=message.tracked,
         buttons=message.buttons,
     )
@@ -102,9 +114,10 @@ def sample_message(sample: Sample) -> tracker_pb2.HandSample:
 
 
 def encode_report(
-    task: str, tracker: str, demonstrations: list[str], account: Account, *, phase: str = "", idle: int = 0
+    task: str, tracker: str, demonstrations: list[str], account: Account, *, idle: int = 0, **state: Any
 ) -> tracker_pb2.RecordingReport:
-    """Return the report of a recording."""
+    """Return the report of a recording; `state` is its phase, state and pedal."""
+    clock = account.clock or Clock(0, 0, 0.0)
     return tracker_pb2.RecordingReport(
         task=task,
         tracker=tracker,
@@ -115,11 +128,34 @@ def encode_report(
         reordered=account.reordered,
         refused=account.refused,
         untracked=account.untracked,
+        gaps=account.gaps,
         longest_gap_ns=account.longest_gap_ns,
+        conflicts=account.conflicts,
+        clock_jumps=account.clock_jumps,
+        declared_rate=account.declared_rate,
+        seen_rate=account.seen_rate,
+        clock_offset_ns=clock.offset_ns,
+        clock_uncertainty_ns=clock.uncertainty_ns,
+        clock_rate=clock.rate,
         notes=account.notes,
-        phase=phase,
         idle=idle,
+        **state,
     )
+
+
+def encode_demonstration(demonstration: Demonstration) -> bytes:
+    """Return the report of a demonstration."""
+    begin, end = demonstration.transport
+    return tracker_pb2.DemonstrationReport(
+        demonstration=demonstration.id,
+        task=demonstration.task,
+        number=demonstration.number,
+        verdict=demonstration.verdict,
+        reasons=demonstration.reasons,
+        mark=demonstration.mark,
+        discarded=bool(demonstration.discarded_ns),
+        transport=tracker_pb2.Span(begin=begin, end=end),
+    ).SerializeToString()
 
 
 def report_document(report: tracker_pb2.RecordingReport) -> dict[str, Any]:
@@ -210,7 +246,7 @@ def _joints(values: Iterable[float], where: str) -> Array:
 
 
 def encode_command(verb: str, execution: str, *, plan: bytes = b"", override: float = 1.0) -> bytes:
-    """Return the message of a command: `verb` is start, override, hold, resume or stop."""
+    """Return the message of a command: `verb` is start, override, hold, resume, reverse or stop."""
     return motion_pb2.ExecutorCommand(
         verb=verb.upper(), execution=execution, plan=plan, override=override
     ).SerializeToString()
@@ -220,7 +256,7 @@ def decode_command(payload: bytes) -> tuple[str, str, bytes, float]:
     """Return (verb in lower case, execution, plan in JSON, override) of a command; raises UnusableInput."""
     m = parse(motion_pb2.ExecutorCommand, payload)
     if m.verb not in motion_pb2.ExecutorCommand.Verb.values() or not m.verb:
-        raise UnusableInput(f"command {m.verb} is unknown: say start, override, hold, resume or stop")
+        raise UnusableInput(f"command {m.verb} is unknown: say start, override, hold, resume, reverse or stop")
     if not 0.0 <= m.override <= 1.0:
         raise UnusableInput(f"override {m.override:g} is outside 0 to 1")
     return motion_pb2.ExecutorCommand.Verb.Name(m.verb).lower(), m.execution, m.plan, m.override

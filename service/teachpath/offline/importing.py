@@ -5,12 +5,10 @@ from __future__ import annotations
 import time
 from dataclasses import dataclass
 
-import numpy as np
-
 from teachpath.errors import UnusableInput, UnusableRecording
 from teachpath.io.files import Track, read_tracks
 from teachpath.io.store import Store
-from teachpath.recording import GRASP_BUTTON, RecordingSettings, Segmenter, to_world
+from teachpath.recording import GRASP_BUTTON, RecordingSettings, Segmenter, point_to_world
 from teachpath.records import Calibration, Demonstration, Sample, Scene, Trajectory
 from teachpath.workers.session import RecordingSession
 from teachpath_proto.keys import is_name
@@ -61,8 +59,9 @@ def _check(
     """Refuse a motion that would be no demonstration, before any of its file is stored."""
     carried = scene.carried.position if scene.carried else None
     segmenter = Segmenter(settings, carried)
+    mapped = point_to_world(calibration)
     for sample in samples:
-        segmenter.push(sample, to_world(calibration, np.array(sample.position)))
+        segmenter.push(sample, mapped(sample.position))
     cut = segmenter.finish()
     if cut is None:
         raise UnusableRecording(

@@ -1,58 +1,80 @@
-"""The account of a sample stream: what came, what did not, what came twice or late."""
+"""The account of a sample stream: what came, what did not, what came twice or late, and how its clock ran."""
 
 from __future__ import annotations
 
+from bisect import bisect_right
 from collections import deque
 
+from teachpath.recording.clock import REAL_TIME, DeviceClock
 from teachpath.records import Account, Sample
 
 LARGEST_JUMP = 100_000  # sequence numbers; a larger gap is a restarted device, not loss
 REMEMBERED_NOTES = 20
+REMEMBERED_SAMPLES = 512
+FASTEST = 100.0  # device seconds in one of ours; beyond it the receive times come from a burst
+RESTARTED = 10  # older numbers in a row, each with a newer time: the device counts anew
 
 
 class StreamAccount:
     """Counts the samples of one tracker by their sequence numbers.
 
-    A sample below the highest number seen fills a gap (reordered) or was there before (duplicated).
+    A sample below the highest number seen fills a gap (reordered) or was there before (duplicated; in conflict when
+    it was taken at another time).
+
+    Args:
+        declared_rate: [Hz] what the client says it sends; 0: it says nothing.
+        largest_clock_step: [s] see RecordingSettings.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, *, declared_rate: float = 0.0, largest_clock_step: float = 0.25) -> None:
         self.first: int | None = None
         self.highest = -1
-        self._missing: set[int] = set()
+        self._declared_rate = declared_rate
+        self._largest_clock_step_ns = round(largest_clock_step * 1e9)
+        self._missing: list[tuple[int, int]] = []  # stretches of numbers, rising, first and last of each
+        self._lost = self._settled_gaps = 0
         self._received = self._duplicated = self._reordered = self._refused = self._untracked = 0
-        self._last_device_ns = 0
+        self._conflicts = self._clock_jumps = self._late_in_a_row = 0
+        self._recent: list[tuple[int, int]] = [(-1, 0)] * REMEMBERED_SAMPLES
+        self._last_device_ns = self._last_receive_ns = 0
+        self._steps = self._device_ns = self._receive_ns = 0  # sums over the steps of the clock that were no jumps
         self._longest_gap_ns = 0
+        self._clock = DeviceClock()
+        self._interrupted = False
         self._notes: deque[str] = deque(maxlen=REMEMBERED_NOTES)
 
     def observe(self, sample: Sample) -> bool:
         """Count one sample; return whether it is newer than all before (neither late nor a duplicate)."""
         self._received += 1
-        if self.first is None:
-            self.first, self.highest = sample.sequence, sample.sequence - 1
-        if sample.sequence <= self.highest:
+        if self.first is None or (self._interrupted and sample.sequence <= self.highest):
+            self._count_anew(sample.sequence)
+        self._interrupted = False
+        step = sample.sequence - self.highest
+        if step <= 0:
             self._observe_late(sample)
             return False
-        if sample.sequence - self.highest > LARGEST_JUMP:
+        if step > LARGEST_JUMP:
             self.note(f"the sequence jumps from {self.highest} to {sample.sequence}: was the device restarted?")
-        else:
-            self._missing.update(range(self.highest + 1, sample.sequence))
+        elif step > 1:
+            self._miss(self.highest + 1, sample.sequence - 1)
         self.highest = sample.sequence
+        self._late_in_a_row = 0
         self._untracked += not sample.tracked
+        self._recent[sample.sequence % REMEMBERED_SAMPLES] = (sample.sequence, sample.device_ns)
         if self._last_device_ns:
-            self._longest_gap_ns = max(self._longest_gap_ns, sample.device_ns - self._last_device_ns)
-        self._last_device_ns = max(self._last_device_ns, sample.device_ns)
+            self._observe_clock(sample, step)
+        self._last_device_ns, self._last_receive_ns = sample.device_ns, sample.receive_ns
+        self._clock.observe(sample)
         return True
 
-    def _observe_late(self, sample: Sample) -> None:
-        if sample.sequence in self._missing:
-            self._missing.discard(sample.sequence)
-            self._reordered += 1
-            self._untracked += not sample.tracked
-            return
-        self._duplicated += 1
-        if sample.sequence < (self.first or 0):
-            self.note(f"sequence {sample.sequence} is below the first one, {self.first}")
+    @property
+    def restarted(self) -> bool:
+        """Whether the device seems to count anew: only older numbers come, with newer times."""
+        return self._late_in_a_row >= RESTARTED
+
+    def interrupt(self) -> None:
+        """Expect that the device may count anew: it was away."""
+        self._interrupted = True
 
     def refuse(self, reason: str) -> None:
         """Count a payload that is no usable sample."""
@@ -65,7 +87,7 @@ class StreamAccount:
             self.first = last_sequence  # nothing came at all; how many were sent is not known
             self.note(f"no sample came, though the client says it sent up to number {last_sequence}")
         if 0 < last_sequence - self.highest <= LARGEST_JUMP:
-            self._missing.update(range(self.highest + 1, last_sequence + 1))
+            self._miss(self.highest + 1, last_sequence)
             self.highest = last_sequence
 
     def note(self, sentence: str) -> None:
@@ -75,13 +97,77 @@ class StreamAccount:
 
     def account(self) -> Account:
         """Return the counts so far."""
+        clock = self._clock.estimate()
+        notes = tuple(self._notes)
+        if clock is not None and abs(clock.rate - 1.0) > REAL_TIME:
+            notes = (*notes, f"the device's clock runs {clock.rate:.3g} x ours")
         return Account(
             received=self._received,
-            lost=len(self._missing),
+            lost=self._lost,
             duplicated=self._duplicated,
             reordered=self._reordered,
             refused=self._refused,
             untracked=self._untracked,
+            gaps=self._settled_gaps + len(self._missing),
             longest_gap_ns=self._longest_gap_ns,
-            notes=tuple(self._notes),
+            conflicts=self._conflicts,
+            clock_jumps=self._clock_jumps,
+            declared_rate=self._declared_rate,
+            seen_rate=1e9 * self._steps / self._device_ns if self._device_ns else 0.0,
+            clock=clock,
+            notes=notes,
         )
+
+    def _count_anew(self, sequence: int) -> None:
+        if self.first is not None:
+            self.note(f"the device counts anew from number {sequence}")
+        self.first, self.highest = sequence, sequence - 1
+        self._settled_gaps += len(self._missing)
+        self._missing.clear()
+        self._recent = [(-1, 0)] * REMEMBERED_SAMPLES
+        self._last_device_ns = self._late_in_a_row = 0
+        self._clock.restart()
+
+    def _observe_late(self, sample: Sample) -> None:
+        if self._fills_gap(sample.sequence):
+            self._reordered += 1
+            self._untracked += not sample.tracked
+            self._recent[sample.sequence % REMEMBERED_SAMPLES] = (sample.sequence, sample.device_ns)
+            return
+        self._duplicated += 1
+        self._late_in_a_row = self._late_in_a_row + 1 if sample.device_ns > self._last_device_ns else 0
+        number, device_ns = self._recent[sample.sequence % REMEMBERED_SAMPLES]
+        if number == sample.sequence and device_ns != sample.device_ns:
+            self._conflicts += 1
+            self.note(f"two different samples have one number, the first {number}: do two trackers share this name?")
+        elif sample.sequence < (self.first or 0):
+            self.note(f"sequence {sample.sequence} is below the first one, {self.first}")
+
+    def _observe_clock(self, sample: Sample, step: int) -> None:
+        device, receive = sample.device_ns - self._last_device_ns, sample.receive_ns - self._last_receive_ns
+        period = 1e9 / self._declared_rate if self._declared_rate else self._device_ns / max(self._steps, 1)
+        rate = min(max(self._device_ns / max(self._receive_ns, 1), 1.0), FASTEST)
+        # Loss is explained by the numbers, a pause by our clock; what neither explains is the clock itself.
+        if device < 0 or device - self._largest_clock_step_ns > max(step * period, receive * rate):
+            self._clock_jumps += 1
+            self.note(f"the device's clock jumps by {device * 1e-9:+.3g} s at sample {sample.sequence}")
+            self._clock.restart()
+            return
+        self._steps += step
+        self._device_ns += device
+        self._receive_ns += receive
+        self._longest_gap_ns = max(self._longest_gap_ns, device)
+
+    def _miss(self, first: int, last: int) -> None:
+        self._missing.append((first, last))
+        self._lost += last - first + 1
+
+    def _fills_gap(self, sequence: int) -> bool:
+        i = bisect_right(self._missing, (sequence, LARGEST_JUMP + sequence)) - 1
+        if i < 0 or sequence > self._missing[i][1]:
+            return False
+        first, last = self._missing[i]
+        rest = [(first, sequence - 1), (sequence + 1, last)]
+        self._missing[i : i + 1] = [(a, b) for a, b in rest if a <= b]
+        self._lost -= 1
+        return True

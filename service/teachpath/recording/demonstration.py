@@ -1,16 +1,15 @@
-"""What is learned from a demonstration: the object's trajectory in the world, and the verdict on its samples."""
+"""What is learned from a demonstration: the object's trajectory in the world."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Collection, Sequence
 
 import numpy as np
 from scipy.spatial.transform import Rotation
 
 from teachpath.errors import UnusableRecording
 from teachpath.recording.phases import Cut
-from teachpath.recording.settings import RecordingSettings
-from teachpath.records import Account, Array, Calibration, Sample, Trajectory, Vector
+from teachpath.records import Array, Calibration, Sample, Trajectory, Vector
 
 
 def to_world(calibration: Calibration, positions: Array) -> Array:
@@ -20,8 +19,35 @@ def to_world(calibration: Calibration, positions: Array) -> Array:
     return np.asarray(flat.reshape(np.shape(positions)), dtype=np.float64)
 
 
+def point_to_world(calibration: Calibration) -> Callable[[Vector], Vector]:
+    """Return the map of `to_world` for one position at a time, without the cost of arrays."""
+    turn = Rotation.from_quat(calibration.rotation, scalar_first=True).as_matrix() * calibration.scale
+    (a, b, c), (d, e, f), (g, h, i) = turn.tolist()
+    u, v, w = calibration.offset
+
+    def mapped(position: Vector) -> Vector:
+        x, y, z = position
+        return a * x + b * y + c * z + u, d * x + e * y + f * z + v, g * x + h * y + i * z + w
+
+    return mapped
+
+
+def usable(samples: Sequence[Sample]) -> list[Sample]:
+    """Return the samples in the order of their numbers, without duplicates and untracked ones."""
+    used: dict[int, Sample] = {}
+    for sample in samples:
+        if sample.tracked:
+            used.setdefault(sample.sequence, sample)
+    return [used[k] for k in sorted(used)]
+
+
 def object_trajectory(
-    samples: Sequence[Sample], cut: Cut, calibration: Calibration, carried: Vector | None
+    samples: Sequence[Sample],
+    cut: Cut,
+    calibration: Calibration,
+    carried: Vector | None,
+    *,
+    left_out: Collection[int] = (),
 ) -> Trajectory:
     """Return the object's motion from grasp to release.
 
@@ -34,15 +60,12 @@ def object_trajectory(
             late ones put back in their place.
         cut: its transport phase.
         carried: start of the object's centre [m, world], or None.
+        left_out: numbers of samples whose position has jumped.
 
     Raises:
         UnusableRecording: fewer than 2 usable samples.
     """
-    used: dict[int, Sample] = {}
-    for sample in samples[cut.grasp : cut.release]:
-        if sample.tracked:
-            used.setdefault(sample.sequence, sample)
-    ordered = _forward_in_time([used[k] for k in sorted(used)])
+    ordered = _forward_in_time([s for s in usable(samples[cut.grasp : cut.release]) if s.sequence not in left_out])
     if len(ordered) < 2:
         raise UnusableRecording(
             f"only {len(ordered)} usable samples between grasp and release; is the tracker in view of its source?"
@@ -75,13 +98,3 @@ def _continuous(quaternions: Array) -> Array:
     flips = np.sum(quaternions[1:] * quaternions[:-1], axis=1) < 0
     signs = np.concatenate([[1.0], np.where(flips, -1.0, 1.0).cumprod()])
     return np.asarray(quaternions * signs[:, None])
-
-
-def judge(account: Account, settings: RecordingSettings) -> str:
-    """Return the verdict on a demonstration: clean, repaired (usable, with losses) or reject."""
-    faults = account.lost + account.refused + account.untracked
-    if faults > settings.largest_loss * (account.received + account.lost):
-        return "reject"
-    if account.longest_gap_ns > settings.longest_gap * 1e9:
-        return "reject"
-    return "repaired" if faults or account.duplicated or account.reordered else "clean"

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
+import math
 from collections import deque
 from dataclasses import dataclass
 
-import numpy as np
-
 from teachpath.recording.settings import RecordingSettings
-from teachpath.records import Array, Phase, Sample, Vector
+from teachpath.records import Phase, Sample, Vector
 
-GRASP_BUTTON = 1
+GRASP_BUTTON = 1  # held
+TOGGLE_BUTTON = 2  # pressed: pause or resume
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,10 +30,15 @@ class Segmenter:
     demonstration is complete when the hand, open again, rests, or after `longest_return`, or with the next grasp.
     """
 
-    def __init__(self, settings: RecordingSettings, carried: Vector | None) -> None:
-        self._settings = settings
-        self._carried = None if carried is None else np.array(carried)
-        self._closed = False
+    def __init__(self, settings: RecordingSettings, carried: Vector | None, *, closed: bool = False) -> None:
+        """Begin to follow a hand.
+
+        Args:
+            carried: start of the object's centre [m, world], or None: the hand grasps anywhere.
+            closed: the hand may be closed already, so that it must open before it can grasp.
+        """
+        self._settings, self._carried = settings, carried
+        self._closed = closed
         self._restart()
 
     def _restart(self) -> None:
@@ -41,10 +46,10 @@ class Segmenter:
         self._count = 0
         self._grasp = self._release = 0
         self._release_ns = 0
-        self._recent: deque[tuple[int, Array]] = deque()
+        self._recent: deque[tuple[int, Vector]] = deque()
 
-    def push(self, sample: Sample, position: Array) -> Cut | None:
-        """Take the next sample and its hand position (3,) [m, world]; return the cut that it completes.
+    def push(self, sample: Sample, position: Vector) -> Cut | None:
+        """Take the next sample and its hand position [m, world]; return the cut that it completes.
 
         The sample that completes a cut is the last one of it.
         """
@@ -86,18 +91,18 @@ class Segmenter:
         closure = sum(sample.flexions) / len(sample.flexions)
         return closure > (self._settings.open_at if self._closed else self._settings.close_at)
 
-    def _near(self, position: Array) -> bool:
+    def _near(self, position: Vector) -> bool:
         if self._carried is None:
             return True
-        return float(np.linalg.norm(position - self._carried)) <= self._settings.grasp_radius
+        return math.dist(position, self._carried) <= self._settings.grasp_radius
 
-    def _returned(self, sample: Sample, position: Array, was_closed: bool) -> bool:
+    def _returned(self, sample: Sample, position: Vector, was_closed: bool) -> bool:
         self._recent.append((sample.device_ns, position))
         rest_ns = int(self._settings.rest_time * 1e9)
         while sample.device_ns - self._recent[0][0] > rest_ns:
             self._recent.popleft()
         whole = sample.device_ns - self._release_ns >= rest_ns
-        spread = np.ptp(np.array([p for _, p in self._recent]), axis=0).max()
+        spread = max(max(axis) - min(axis) for axis in zip(*(p for _, p in self._recent), strict=True))
         rests = whole and spread <= self._settings.rest_motion
         late = sample.device_ns - self._release_ns > self._settings.longest_return * 1e9
         return rests or late or (self._closed and not was_closed)

@@ -11,6 +11,7 @@ from teachpath.errors import UnusableSettings
 
 Share = Annotated[float, Ge(0), Le(1)]
 Positive = Annotated[float, Gt(0)]
+Corner = tuple[float, float, float]
 
 
 @dataclass(frozen=True)
@@ -33,10 +34,23 @@ class RecordingSettings:
     longest_reach: Positive = 60.0
     # samples: a shorter transport phase is no demonstration
     shortest_transport: Annotated[int, Ge(5)] = 20
-    # share of a demonstration's samples that may be lost, refused or untracked before it is rejected
+    # share of a demonstration's samples that may be lost, refused, untracked, jumping or out of the workspace before
+    # it is rejected
     largest_loss: Share = 0.05
     # [s] longest gap in the device's clock before it is rejected
     longest_gap: Positive = 0.25
+    # [m] lowest corner of the workspace, world; a hand that transports outside it is counted as a fault
+    workspace_low: Corner = (-1.5, -1.5, -0.5)
+    # [m] its highest corner
+    workspace_high: Corner = (1.5, 1.5, 2.5)
+    # [m] a position farther than this from where its neighbours put it has jumped
+    largest_jump: Positive = 0.05
+    # share by which the rate may differ from the one that the client declared
+    rate_tolerance: Share = 0.1
+    # [s] a step of the device's clock that neither the numbers nor our clock explain is a clock jump
+    largest_clock_step: Positive = 0.25
+    # [s] a tracker that is silent for longer in mid-take is lost
+    longest_silence: Positive = 2.0
     # [s] how long the handshake at the end waits for samples that are still under way
     handshake_timeout: Positive = 2.0
 
@@ -46,3 +60,8 @@ class RecordingSettings:
                 f"recording.open_at is {self.open_at:g}; it must be under close_at, {self.close_at:g}, or the hand "
                 "would flicker between open and closed"
             )
+        for axis, low, high in zip("xyz", self.workspace_low, self.workspace_high, strict=True):
+            if not low < high:
+                raise UnusableSettings(
+                    f"recording.workspace_low is {low:g} in {axis}; it must be under workspace_high, {high:g}"
+                )

@@ -5,8 +5,17 @@ Conventions (ARCHITECTURE.md): metres, radians, seconds inside; integer nanoseco
 """
 
 from teachpath.records.arrays import Array, Quaternion, Vector
-from teachpath.records.demonstrations import Account, Calibration, Demonstration, Phase, Sample, Task, Trajectory
-from teachpath.records.learned import Cluster, Fit, Learned, LearnedPath, Score
+from teachpath.records.demonstrations import (
+    Account,
+    Calibration,
+    Clock,
+    Demonstration,
+    Phase,
+    Sample,
+    Task,
+    Trajectory,
+)
+from teachpath.records.learned import Cluster, Departure, Fit, Learned, LearnedPath, Score
 from teachpath.records.motion import Certificate, ExecutorStatus, Extreme, JointState, Plan, Scene, Setpoint, Shape
 from teachpath.records.work import Job, JobState
 
@@ -15,8 +24,10 @@ __all__ = [
     "Array",
     "Calibration",
     "Certificate",
+    "Clock",
     "Cluster",
     "Demonstration",
+    "Departure",
     "ExecutorStatus",
     "Extreme",
     "Fit",

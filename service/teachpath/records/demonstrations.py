@@ -74,8 +74,27 @@ class Trajectory:
 
 
 @dataclass(frozen=True, slots=True)
+class Clock:
+    """How a device's clock stands to ours.
+
+    Attributes:
+        offset_ns: ours minus the device's at the newest sample, with the least transit in it: a delay that every
+            sample has cannot be seen from one side.
+        uncertainty_ns: how much longer than the least transit the median one is.
+        rate: seconds of the device's clock in one of ours.
+    """
+
+    offset_ns: int
+    uncertainty_ns: int
+    rate: float
+
+
+@dataclass(frozen=True, slots=True)
 class Account:
-    """What became of the samples of one recording or demonstration."""
+    """What became of the samples of one recording or demonstration.
+
+    Jumps, leaps and samples out of the workspace are those of the transport phase.
+    """
 
     received: int = 0
     lost: int = 0
@@ -83,7 +102,16 @@ class Account:
     reordered: int = 0
     refused: int = 0
     untracked: int = 0
-    longest_gap_ns: int = 0
+    gaps: int = 0  # stretches of numbers that never came
+    longest_gap_ns: int = 0  # device clock
+    jumps: int = 0  # positions that their neighbours contradict; left out of the trajectory
+    leaps: int = 0  # places where the position jumps and stays
+    out_of_workspace: int = 0
+    conflicts: int = 0  # numbers that came twice with different device times
+    clock_jumps: int = 0
+    declared_rate: float = 0.0  # [Hz] 0: the client said none
+    seen_rate: float = 0.0  # [Hz] numbers a second of the device's clock
+    clock: Clock | None = None
     notes: tuple[str, ...] = ()
 
 
@@ -91,7 +119,8 @@ class Account:
 class Demonstration:
     """One trial, as a row: the samples are in its recording file.
 
-    The transport phase is samples[grasp:release] of the recording.
+    The transport phase is samples[grasp:release] of the recording, or samples[trim[0]:trim[1]] when the operator has
+    trimmed it.
     """
 
     id: str
@@ -107,3 +136,18 @@ class Demonstration:
     verdict: str  # clean, repaired, reject
     account: Account
     recording: str  # place of the MCAP file within the recordings
+    reasons: tuple[str, ...] = ()  # why the verdict is not clean
+    left_out: tuple[int, ...] = ()  # numbers of the samples that jumped
+    trim: tuple[int, int] | None = None
+    mark: str = ""  # the operator's own: good, bad or none
+    discarded_ns: int = 0  # when it was discarded; 0: it is not
+
+    @property
+    def transport(self) -> tuple[int, int]:
+        """Where the transport phase begins and ends, as indices into the samples."""
+        return self.trim or (self.grasp, self.release)
+
+    @property
+    def is_usable(self) -> bool:
+        """Whether it is learned from: not rejected, not discarded and not marked bad."""
+        return self.verdict != "reject" and self.mark != "bad" and not self.discarded_ns

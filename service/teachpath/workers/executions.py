@@ -16,7 +16,7 @@ from teachpath.records import ExecutorStatus
 from teachpath_proto.keys import Keys
 
 RESTING = frozenset({"idle", "ended", "faulted"})
-VERBS = ("override", "hold", "resume", "stop")
+VERBS = ("override", "hold", "resume", "reverse", "stop")
 
 
 class Executions:
@@ -76,7 +76,7 @@ class Executions:
         return self._store.execution(key)
 
     def command(self, execution: str, verb: str, *, override: float = 1.0) -> ExecutionRow:
-        """Steer an execution: override (speed, 0 to 1), hold, resume or stop.
+        """Steer an execution: override (speed, 0 to 1), hold, resume, reverse or stop.
 
         Raises:
             UnusableInput: an unknown verb.

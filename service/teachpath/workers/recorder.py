@@ -7,17 +7,21 @@ import threading
 import time
 from collections.abc import Callable
 
-from teachpath.errors import Conflict, NotFound, UnusableInput, UnusableSample
+from teachpath.errors import Conflict, NotFound, TeachpathError, UnusableInput, UnusableSample
 from teachpath.io.bus import Bus, Handle
 from teachpath.io.store import Store
-from teachpath.io.wire import decode_sample, parse
+from teachpath.io.wire import decode_sample
 from teachpath.recording import RecordingSettings
 from teachpath.records import Calibration, Demonstration, Scene, Trajectory
-from teachpath.workers.session import RecordingSession
+from teachpath.workers.curation import Curation
+from teachpath.workers.presence import Presence, Tracker
+from teachpath.workers.recorder_queries import RecorderQueries
+from teachpath.workers.session import Finished, RecordingSession
 from teachpath_proto import tracker_pb2
 from teachpath_proto.keys import Keys, is_name
 
-FLUSH_EVERY = 1.0  # [s]
+FLUSH_EVERY = 0.75  # [s] under a second, with a margin for a busy machine
+LOOK_EVERY = 0.2  # [s] for trackers that have fallen silent
 
 Recorded = Callable[[Demonstration, Trajectory], None]
 Report = tracker_pb2.RecordingReport
@@ -29,7 +33,9 @@ class Recorder:
     Args:
         scene: gives the scene of a name; raises NotFound.
         calibration: gives the calibration of a name; raises NotFound.
-        recorded: called on the recorder's thread with each new demonstration.
+        changed: called with each demonstration that an operator has discarded, restored, marked or trimmed.
+        recorded: called with each new demonstration, on the recorder's thread or that of the caller of `end`.
+        clock: [s] monotonic.
     """
 
     def __init__(
@@ -42,12 +48,19 @@ class Recorder:
         scene: Callable[[str], Scene],
         calibration: Callable[[str], Calibration],
         recorded: Recorded = lambda demonstration, trajectory: None,
+        changed: Callable[[Demonstration], None] = lambda demonstration: None,
+        clock: Callable[[], float] = time.monotonic,
     ) -> None:
         self._bus, self._keys, self._store, self._settings = bus, keys, store, settings
-        self._scene, self._calibration, self._recorded = scene, calibration, recorded
-        self._inbox: queue.SimpleQueue[tuple[str, bytes, int] | None] = queue.SimpleQueue()
+        self._scene, self._calibration, self._recorded, self._clock = scene, calibration, recorded, clock
+        self.curation = Curation(store, settings, scene, changed)
+        self._queries = RecorderQueries(bus, keys, self)
+        # (key, payload of a sample or whether a tracker is alive, when it was received)
+        self._inbox: queue.SimpleQueue[tuple[str, bytes | bool, int] | None] = queue.SimpleQueue()
         self._changed = threading.Condition()
         self._sessions: dict[str, RecordingSession] = {}
+        self._presence = Presence(clock)
+        self._missed = 0
         self._thread: threading.Thread | None = None
         self._handles: list[Handle] = []
 
@@ -56,14 +69,14 @@ class Recorder:
         self._thread = threading.Thread(target=self._run, name="recorder", daemon=True)
         self._thread.start()
         self._handles = [
-            self._bus.subscribe(self._keys.all_samples, self._receive),
-            self._bus.serve(self._keys.recorder_start, self._answer_start),
-            self._bus.serve(self._keys.recorder_stop, self._answer_stop),
-            self._bus.serve(self._keys.recorder_status, self._answer_status),
+            self._bus.subscribe(self._keys.all_samples, self._receive, missed=self._miss),
+            self._bus.watch(self._keys.all_trackers_alive, self._come_or_go),
         ]
+        self._queries.start()
 
     def stop(self) -> None:
         """End every running recording, keeping what is complete, and stop listening."""
+        self._queries.stop()
         for handle in self._handles:
             handle.close()
         if self._thread is not None:
@@ -75,26 +88,42 @@ class Recorder:
                 session.finish()
             self._sessions.clear()
 
-    def begin(self, task: str, tracker: str, *, calibration: str = "", scene: str = "") -> Report:
+    def begin(
+        self,
+        task: str,
+        tracker: str,
+        *,
+        calibration: str = "",
+        scene: str = "",
+        rate: float = 0.0,
+        armed: bool = False,
+    ) -> Report:
         """Start recording demonstrations of `task` from `tracker`.
 
-        A task that does not exist is made when `scene` is named.
+        A task that does not exist is made when `scene` is named. A recording whose tracker has gone gives way.
+
+        Args:
+            rate: [Hz] that the client declares; 0: it says nothing.
+            armed: begin paused; the pedal or `resume` begins the first take.
 
         Raises:
-            UnusableInput: a name that cannot be a folder and a key.
+            UnusableInput: a name that cannot be a folder and a key, or no rate.
             NotFound: no such task, scene or calibration.
             Conflict: this tracker is being recorded already.
         """
         for what, name in (("task", task), ("tracker", tracker)):
             if not is_name(name):
                 raise UnusableInput(f"{name!r} cannot name a {what}: use letters, digits, '.', '_' or '-', at most 64")
+        if not 0.0 <= rate <= 10_000.0:
+            raise UnusableInput(f"a rate of {rate:g} Hz is outside 0 (not said) to 10000")
         if scene:
             self._scene(scene)
             self._store.ensure_task(task, scene=scene, calibration=self._calibration(calibration or "identity").name)
         stored = self._store.task(task)
         with self._changed:
-            if tracker in self._sessions:
-                raise Conflict(f"{tracker} is already recording {self._sessions[tracker].task}; stop that first")
+            before = self._sessions.get(tracker)
+            if before is not None and before.state != "lost":
+                raise Conflict(f"{tracker} is already recording {before.task}; stop that first")
             session = RecordingSession(
                 self._store,
                 self._settings,
@@ -102,9 +131,14 @@ class Recorder:
                 tracker=tracker,
                 calibration=self._calibration(calibration or stored.calibration),
                 scene=self._scene(stored.scene),
+                rate=rate,
+                armed=armed,
             )
+            finished = before.finish() if before is not None else []
             self._sessions[tracker] = session
-            return session.report()
+            report = session.report()
+        self._hand_out(finished)
+        return report
 
     def end(self, tracker: str, *, last_sequence: int | None = None, discard: bool = False) -> Report:
         """End the recording of `tracker` and return its account.
@@ -118,21 +152,49 @@ class Recorder:
                 arrived = lambda: session.account.highest >= last_sequence  # noqa: E731
                 self._changed.wait_for(arrived, timeout=self._settings.handshake_timeout)
                 session.expect(last_sequence)
-            self._sessions.pop(tracker, None)
+            if self._sessions.get(tracker) is session:
+                del self._sessions[tracker]
             finished = session.finish(discard=discard)
-        for demonstration, trajectory in finished:
-            self._recorded(demonstration, trajectory)
+        self._hand_out(finished)
         return session.report(ended=True)
+
+    def pause(self, tracker: str) -> Report:
+        """Record nothing from `tracker` until `resume`; what is carried now is recorded to its end first."""
+        with self._changed:
+            session = self._session(tracker)
+            session.pause()
+            return session.report()
+
+    def resume(self, tracker: str) -> Report:
+        """Record from `tracker` again."""
+        with self._changed:
+            session = self._session(tracker)
+            session.resume()
+            return session.report()
 
     def reports(self) -> list[Report]:
         """Return the accounts of all running recordings."""
         with self._changed:
             return [session.report() for session in self._sessions.values()]
 
+    def trackers(self) -> list[Tracker]:
+        """Return the trackers that are there: those that say so, and those that send."""
+        return self._presence.trackers()
+
+    def faults(self) -> list[str]:
+        """Say what keeps samples from being recorded now, for the operator."""
+        with self._changed:
+            found = [f"{session.tracker}: {session.fault}" for session in self._sessions.values() if session.fault]
+        return found + ([f"Zenoh reports {self._missed} samples that never came"] if self._missed else [])
+
     def calibration_of(self, tracker: str) -> Calibration | None:
         """Return the calibration under which `tracker` is being recorded, or None."""
         session = self._sessions.get(tracker)
         return session.calibration if session else None
+
+    def task_of(self, tracker: str) -> str:
+        """Return the task that `tracker` is recording; raises NotFound."""
+        return self._session(tracker).task
 
     def _session(self, tracker: str) -> RecordingSession:
         session = self._sessions.get(tracker)
@@ -140,54 +202,84 @@ class Recorder:
             raise NotFound(f"{tracker!r} is not being recorded; running: {sorted(self._sessions) or 'none'}")
         return session
 
+    # on the transport's threads: append only
+
     def _receive(self, key: str, payload: bytes) -> None:
-        # on the transport's thread: append only
         self._inbox.put((key, payload, time.time_ns()))
 
+    def _come_or_go(self, key: str, alive: bool) -> None:
+        self._inbox.put((key, alive, 0))
+
+    def _miss(self, count: int) -> None:
+        self._missed += count
+
+    # on the recorder's thread
+
     def _run(self) -> None:
-        flushed = time.monotonic()
+        flushed = looked = self._clock()
         while True:
             try:
-                item = self._inbox.get(timeout=FLUSH_EVERY / 4)
+                item = self._inbox.get(timeout=LOOK_EVERY)
             except queue.Empty:
                 item = ("", b"", 0)
             if item is None:
                 return
             if item[0]:
                 self._take_in(*item)
-            if time.monotonic() - flushed >= FLUSH_EVERY:
-                flushed = time.monotonic()
+            now = self._clock()
+            if now - flushed >= FLUSH_EVERY:
+                flushed = now
                 with self._changed:
                     for session in self._sessions.values():
                         session.flush()
+            # Samples that wait are no silence.
+            if now - looked >= LOOK_EVERY and self._inbox.empty():
+                looked = now
+                self._look_for_silence()
 
-    def _take_in(self, key: str, payload: bytes, receive_ns: int) -> None:
+    def _take_in(self, key: str, content: bytes | bool, receive_ns: int) -> None:
+        if isinstance(content, bool):
+            self._follow(self._keys.announced(key), content)
+            return
         tracker = self._keys.tracker_of(key)
-        finished: tuple[Demonstration, Trajectory] | None = None
+        self._presence.hear(tracker)
+        finished: Finished | None = None
         with self._changed:
             session = self._sessions.get(tracker)
             if session is None:
                 return
             try:
-                finished = session.add(decode_sample(tracker, payload, receive_ns))
+                finished = session.add(decode_sample(tracker, content, receive_ns), content)
             except UnusableSample as error:
                 session.refuse(str(error))
             except Exception as error:  # one take's fault must not end the others
                 session.fail(f"recording failed: {error!r}")
             self._changed.notify_all()
         if finished is not None:
-            self._recorded(*finished)
+            self._hand_out([finished])
 
-    def _answer_start(self, payload: bytes) -> bytes:
-        request = parse(tracker_pb2.StartRecording, payload)
-        report = self.begin(request.task, request.tracker, calibration=request.calibration, scene=request.scene)
-        return report.SerializeToString()
+    def _follow(self, tracker: str, alive: bool) -> None:
+        self._presence.announce(tracker, alive)
+        if not alive:
+            self._lose(tracker, "the tracker has gone in mid-take")
 
-    def _answer_stop(self, payload: bytes) -> bytes:
-        request = parse(tracker_pb2.StopRecording, payload)
-        return self.end(
-            request.tracker, last_sequence=request.last_sequence, discard=request.discard
-        ).SerializeToString()
+    def _look_for_silence(self) -> None:
+        limit = self._settings.longest_silence
+        carrying = [t for t, session in list(self._sessions.items()) if session.is_carrying]
+        for tracker in carrying:
+            if self._presence.silence_of(tracker) > limit:
+                self._lose(tracker, f"no sample came for {limit:g} s in mid-take")
 
-    def _answer_status(self, _: bytes) -> bytes:
-        return tracker_pb2.RecorderStatus(recordings=self.reports()).SerializeToString()
+    def _lose(self, tracker: str, reason: str) -> None:
+        with self._changed:
+            session = self._sessions.get(tracker)
+            finished = session.lose(reason if session.is_carrying else "the tracker has gone") if session else None
+        if finished is not None:
+            self._hand_out([finished])
+
+    def _hand_out(self, finished: list[Finished]) -> None:
+        for demonstration, trajectory in finished:
+            try:
+                self._recorded(demonstration, trajectory)
+            except TeachpathError:
+                continue  # whoever shows it may fail; the demonstration is stored

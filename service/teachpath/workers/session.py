@@ -2,33 +2,43 @@
 
 from __future__ import annotations
 
-import time
 import uuid
-from dataclasses import replace
-
-import numpy as np
+from enum import StrEnum
 
 from teachpath.errors import UnusableRecording
-from teachpath.io.documents import encode
 from teachpath.io.store import RecordingHeader, Store, Take
 from teachpath.io.wire import encode_report
 from teachpath.recording import (
+    TOGGLE_BUTTON,
     Cut,
     RecordingSettings,
     Segmenter,
     StreamAccount,
-    judge,
-    object_trajectory,
-    to_world,
+    point_to_world,
 )
 from teachpath.records import Calibration, Demonstration, Phase, Sample, Scene, Trajectory
+from teachpath.workers.closing import TakenSamples, close_take
 from teachpath_proto import tracker_pb2
 
 Finished = tuple[Demonstration, Trajectory]
 
 
+class State(StrEnum):
+    """What a recording does with the samples that come."""
+
+    RECORDING = "recording"
+    PAUSING = "pausing"  # paused as soon as what is carried has been let go
+    PAUSED = "paused"
+    LOST = "lost"  # the tracker has gone; recording goes on when it comes back
+
+
 class RecordingSession:
-    """Writes the samples of one tracker and cuts them; not thread-safe, its owner locks."""
+    """Writes the samples of one tracker and cuts them; not thread-safe, its owner locks.
+
+    Args:
+        rate: [Hz] that the client declares; 0: it says nothing.
+        armed: begin paused.
+    """
 
     def __init__(
         self,
@@ -39,35 +49,95 @@ class RecordingSession:
         tracker: str,
         calibration: Calibration,
         scene: Scene,
+        rate: float = 0.0,
+        armed: bool = False,
     ) -> None:
         self.task, self.tracker, self.calibration = task, tracker, calibration
-        self.account = StreamAccount()  # of the whole recording
-        self._store, self._settings = store, settings
+        self.state = State.PAUSED if armed else State.RECORDING
+        self._store, self._settings, self._rate = store, settings, rate
+        self.account = self._new_account()  # of the whole recording
         self._carried = scene.carried.position if scene.carried else None
-        self._segmenter = Segmenter(settings, self._carried)
+        self._to_world = point_to_world(calibration)
         self._demonstrations: list[str] = []
         self._idle = 0
         self._fault = ""
-        self._torn = False
+        self._torn = self._pedal_was_used = False
+        self._buttons = 0
         self._take: Take | None = None
         self._samples: list[Sample] = []
-        self._part = StreamAccount()  # of the take that is open
+        self._part = self._new_account()  # of the take that is open
+        self._segmenter = Segmenter(settings, self._carried)
 
-    def add(self, sample: Sample) -> Finished | None:
-        """Write one sample; return the demonstration that it completes."""
+    @property
+    def is_carrying(self) -> bool:
+        """Whether a take is under way that would be missed: something is grasped, or has just been let go."""
+        return self._segmenter.phase is not Phase.REACH
+
+    @property
+    def fault(self) -> str:
+        """Why the open take is not written, or empty."""
+        return self._fault
+
+    def add(self, sample: Sample, payload: bytes = b"") -> Finished | None:
+        """Write one sample, `payload` as it came; return the demonstration that it completes."""
         fresh = self.account.observe(sample)
+        if self.account.restarted:
+            self._idle += 1
+            return self.interrupt("the device began to count anew in mid-take")
+        if self.state is State.LOST:
+            self.state = State.RECORDING
+        if fresh:
+            self._follow_pedal(sample.buttons)
+        if self.state is State.PAUSED:
+            self._idle += 1
+            return None
         self._part.observe(sample)
-        self._write(sample)
+        self._write(sample, payload)
         self._samples.append(sample)
         if not fresh:
             self._segmenter.pass_over()
             return None
-        cut = self._segmenter.push(sample, to_world(self.calibration, np.array(sample.position)))
+        cut = self._segmenter.push(sample, self._to_world(sample.position))
         if cut is not None:
             return self._close(cut)
         if self._segmenter.phase is Phase.REACH and self._reaches_too_long():
             self._drop()
         return None
+
+    def pause(self) -> None:
+        """Record nothing until `resume`; what is carried now is recorded to its end first."""
+        if self.state is State.RECORDING and self.is_carrying:
+            self.state = State.PAUSING
+        elif self.state is not State.PAUSING:
+            self.state = State.PAUSED
+            self._drop()
+
+    def resume(self) -> None:
+        """Record again."""
+        if self.state is not State.LOST:
+            self.state = State.RECORDING
+
+    def interrupt(self, reason: str) -> Finished | None:
+        """End the open take because its samples ended, never as a silent short one; return what it makes.
+
+        What was let go before is whole, and repaired at best; what was still carried is rejected.
+        """
+        for account in (self.account, self._part):
+            account.note(reason)
+            account.interrupt()
+        cut = self._segmenter.finish()
+        finished = self._close(cut, fault=reason) if cut is not None else None
+        self._drop()
+        # A hand that comes back closed has grasped nothing since.
+        self._segmenter = Segmenter(self._settings, self._carried, closed=True)
+        return finished
+
+    def lose(self, reason: str) -> Finished | None:
+        """Take note that the tracker has gone; as `interrupt`."""
+        finished = self.interrupt(reason)
+        if self.state in (State.RECORDING, State.PAUSING):
+            self.state = State.LOST
+        return finished
 
     def refuse(self, reason: str) -> None:
         """Count a payload that is no sample."""
@@ -91,7 +161,7 @@ class RecordingSession:
             try:
                 self._take.flush()
             except OSError as error:
-                self.fail(f"the recording cannot be written: {error}")
+                self.fail(_cannot("written", error))
 
     def finish(self, *, discard: bool = False, torn: bool = False) -> list[Finished]:
         """End the recording; return the demonstration that its end completes, if there is one.
@@ -108,9 +178,15 @@ class RecordingSession:
 
     def report(self, *, ended: bool = False) -> tracker_pb2.RecordingReport:
         """Return the account of this recording so far."""
-        phase = "" if ended else self._segmenter.phase.value
         return encode_report(
-            self.task, self.tracker, self._demonstrations, self.account.account(), phase=phase, idle=self._idle
+            self.task,
+            self.tracker,
+            self._demonstrations,
+            self.account.account(),
+            idle=self._idle,
+            phase="" if ended else self._segmenter.phase.value,
+            state="" if ended else self.state.value,
+            pedal=self._pedal_was_used,
         )
 
     def fail(self, reason: str) -> None:
@@ -121,7 +197,17 @@ class RecordingSession:
             self._take.leave()
             self._take = None
 
-    def _write(self, sample: Sample) -> None:
+    def _follow_pedal(self, buttons: int) -> None:
+        pressed = buttons & TOGGLE_BUTTON and not self._buttons & TOGGLE_BUTTON
+        self._buttons = buttons
+        if pressed:
+            self._pedal_was_used = True
+            if self.state is State.RECORDING:
+                self.pause()
+            else:
+                self.resume()
+
+    def _write(self, sample: Sample, payload: bytes) -> None:
         if self._fault:
             return
         try:
@@ -129,64 +215,40 @@ class RecordingSession:
                 self._id = f"demo-{uuid.uuid4().hex[:12]}"
                 header = RecordingHeader(self.task, self.tracker, self.calibration)
                 self._take = self._store.recordings.begin(self._id, header)
-            self._take.write(sample)
+            self._take.write(sample, payload)
         except OSError as error:
-            self.fail(f"the recording cannot be written: {error}")
+            self.fail(_cannot("written", error))
 
     def _reaches_too_long(self) -> bool:
         reach_ns = self._samples[-1].device_ns - self._samples[0].device_ns
         return reach_ns > self._settings.longest_reach * 1e9
 
-    def _close(self, cut: Cut) -> Finished | None:
+    def _close(self, cut: Cut, *, fault: str = "") -> Finished | None:
         """Finish the take as a demonstration; a take that cannot be one is dropped, with a note that says why."""
         try:
             if self._take is None:
                 raise UnusableRecording(f"a demonstration was lost: {self._fault}")
-            if cut.release - cut.grasp < self._settings.shortest_transport:
-                raise UnusableRecording(
-                    f"a transport phase of {cut.release - cut.grasp} samples is under the least of "
-                    f"{self._settings.shortest_transport}: the object was let go at once"
-                )
-            trajectory = object_trajectory(self._samples, cut, self.calibration, self._carried)
+            # A device without a glove lets go by ending its recording; a glove would have shown the release.
+            if cut.open_ended and not fault and (self._torn or self._samples[-1].flexions):
+                fault = "the recording ended before the hand let go"
+            taken = TakenSamples(self._samples, cut, self._part.account(), self.calibration, self._carried, fault)
+            finished = close_take(self._store, self._settings, self._take, taken, self._facts())
         except UnusableRecording as error:
             self.account.note(str(error))
             self._drop()
             return None
-        try:
-            demonstration = self._store.add_demonstration(self._finish_take(self._take, cut, trajectory))
         except OSError as error:
-            self.fail(f"the recording cannot be finished: {error}")
+            self.fail(_cannot("finished", error))
             self._drop()
             return None
-        self._demonstrations.append(demonstration.id)
+        self._demonstrations.append(finished[0].id)
         self._open_next()
-        return demonstration, trajectory
+        if self.state is State.PAUSING:
+            self.state = State.PAUSED
+        return finished
 
-    def _finish_take(self, take: Take, cut: Cut, trajectory: Trajectory) -> Demonstration:
-        account = self._part.account()
-        verdict = judge(account, self._settings)
-        # A device without a glove lets go by ending its recording; a glove would have shown the release.
-        if cut.open_ended and (self._torn or self._samples[-1].flexions):
-            verdict = "reject"
-            account = replace(
-                account, notes=(*account.notes, "the recording ended before the hand let go")
-            )
-        file = take.finish({"verdict": verdict, "account": encode(account).decode()})
-        return Demonstration(
-            id=self._id,
-            task=self.task,
-            number=0,
-            source=self.tracker,
-            calibration=self.calibration,
-            created_ns=time.time_ns(),
-            duration=float(trajectory.times[-1]),
-            samples=len(self._samples),
-            grasp=cut.grasp,
-            release=cut.release,
-            verdict=verdict,
-            account=account,
-            recording=self._store.recordings.place(file),
-        )
+    def _facts(self) -> dict[str, str]:
+        return {"id": self._id, "task": self.task, "source": self.tracker}
 
     def _drop(self) -> None:
         if self._take is not None:
@@ -198,5 +260,14 @@ class RecordingSession:
         self._take = None
         self._fault = ""
         self._samples = []
-        self._part = StreamAccount()
+        self._part = self._new_account()
         self._segmenter = Segmenter(self._settings, self._carried)
+
+    def _new_account(self) -> StreamAccount:
+        return StreamAccount(declared_rate=self._rate, largest_clock_step=self._settings.largest_clock_step)
+
+
+def _cannot(what: str, error: OSError) -> str:
+    return (
+        f"the recording cannot be {what}: {error.strerror or error}; free space or mend the folder, then show it again"
+    )

@@ -14,11 +14,11 @@ def a_path() -> LearnedPath:
 
 def a_plan() -> Plan:
     nowhere = Extreme(0.5, "joint 1 at s = 0.000 m", 0.0)
-    certificate = Certificate("00", "righty up flip", *[nowhere] * 6)
+    certificate = Certificate("00", "righty up flip", *[nowhere] * 7)
     box = Shape("box", "box", (0.1, 0.1, 0.1), (0.0, 0.0, 0.0))
     joints = np.arange(12.0).reshape(2, 6) / 7
-    return Plan("id", "p", 1, Scene("s", (box,), box), np.array([0, 1.0]), joints, (0.1, 0.2, 0.3), joints[0],
-                joints[1], 2.0, certificate)  # fmt: skip
+    return Plan("id", "p", 1, Scene("s", (box,), box), np.array([0, 1.0]), joints, np.array([0.1, 0.7]),
+                joints[[0, 1, 0]], joints[0], joints[1], 2.0, certificate)  # fmt: skip
 
 
 def test_a_path_survives_json_to_the_last_bit() -> None:

@@ -57,7 +57,7 @@ def test_a_torn_recording_becomes_a_demonstration_and_the_torn_file_is_kept(stor
 
 
 def test_a_take_cut_off_in_transport_is_a_reject(store: Store, data: Path) -> None:
-    torn_file(store, 75, keep=0.9)
+    torn_file(store, 60)
     examined(store, data)
     assert [row.verdict for row in store.demonstrations("lift")] == ["reject"]
 

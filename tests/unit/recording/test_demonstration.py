@@ -5,8 +5,8 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from teachpath.errors import UnusableRecording
-from teachpath.recording import Cut, RecordingSettings, judge, object_trajectory, to_world
-from teachpath.records import Account, Calibration
+from teachpath.recording import Cut, object_trajectory, point_to_world, to_world
+from teachpath.records import Calibration
 from tests.unit.recording.hands import demonstration
 
 CUT = Cut(20, 70)
@@ -48,6 +48,7 @@ def test_a_calibration_is_applied_to_positions_and_turns() -> None:
     calibration = Calibration("bench", 2.0, quarter, (1.0, 0.0, 0.0))
     assert np.allclose(to_world(calibration, np.array([1.0, 0.0, 0.5])), [1.0, 2.0, 1.0])
     assert np.allclose(to_world(calibration, np.ones((4, 3)))[2], [-1.0, 2.0, 2.0])
+    assert np.allclose(point_to_world(calibration)((1.0, 1.0, 1.0)), [-1.0, 2.0, 2.0])
 
 
 def test_untracked_samples_are_no_part_of_the_trajectory() -> None:
@@ -56,12 +57,3 @@ def test_untracked_samples_are_no_part_of_the_trajectory() -> None:
     assert np.abs(object_trajectory(ghosts, CUT, IDENTITY, None).positions).max() < 1.0
     with pytest.raises(UnusableRecording, match="in view"):
         object_trajectory([replace(s, tracked=False) for s in samples], CUT, IDENTITY, None)
-
-
-def test_the_verdict_follows_the_losses() -> None:
-    settings = RecordingSettings()
-    assert judge(Account(received=100), settings) == "clean"
-    assert judge(Account(received=100, duplicated=1), settings) == "repaired"
-    assert judge(Account(received=98, lost=2), settings) == "repaired"
-    assert judge(Account(received=90, lost=10), settings) == "reject"
-    assert judge(Account(received=100, longest_gap_ns=300_000_000), settings) == "reject"

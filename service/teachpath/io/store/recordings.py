@@ -1,24 +1,27 @@
 """Recordings: one MCAP file a demonstration, every hand sample with its source time, receive time and sequence.
 
-A file that is being written ends in `.part`; it is flushed every second and renamed when finished, so a crash costs at
-most the samples since the last flush, and `salvage` reads what is there.
+Beside the samples stands what viewers draw of them. A file that is being written ends in `.part`; it is flushed every
+second and renamed when finished, so a crash costs at most the samples since the last flush, and `salvage` reads what
+is there.
 """
 
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
+from typing import BinaryIO
 
-from mcap.records import Header, Message, Metadata
+from mcap.records import Channel, Header, Message, Metadata
 from mcap.stream_reader import StreamReader
 from mcap.writer import Writer
 from mcap_protobuf.schema import register_schema
 
 from teachpath.errors import NotFound, UnusableRecording
 from teachpath.io import documents
+from teachpath.io.store.drawing import Drawing
 from teachpath.io.wire import parse, sample_from, sample_message
 from teachpath.records import Calibration, Sample
 from teachpath_proto import tracker_pb2
@@ -26,6 +29,14 @@ from teachpath_proto import tracker_pb2
 TOPIC = "samples"
 HEADER = "teachpath"
 CHUNK = 64 * 1024  # bytes; small chunks lose less when a file is cut off
+
+Opener = Callable[[Path], BinaryIO]
+
+
+def open_new(file: Path) -> BinaryIO:
+    """Open a file that must not exist yet for writing; makes its folder."""
+    file.parent.mkdir(parents=True, exist_ok=True)
+    return file.open("xb")
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,26 +51,27 @@ class RecordingHeader:
 class Take:
     """A recording that is being written."""
 
-    def __init__(self, part: Path, header: RecordingHeader) -> None:
+    def __init__(self, part: Path, header: RecordingHeader, opener: Opener = open_new) -> None:
         self._part = part
-        part.parent.mkdir(parents=True, exist_ok=True)
-        self._file = part.open("xb")
+        self._file = opener(part)
         self._writer = Writer(self._file, chunk_size=CHUNK)
         self._writer.start(profile="", library="teachpath")
         self._writer.add_metadata(HEADER, {"header": documents.encode(header).decode()})
         schema = register_schema(self._writer, tracker_pb2.HandSample)
         self._channel = self._writer.register_channel(topic=TOPIC, message_encoding="protobuf", schema_id=schema)
+        self._drawing = Drawing(self._writer, header.calibration)
         self.flush()
 
-    def write(self, sample: Sample) -> None:
-        """Append one sample."""
+    def write(self, sample: Sample, payload: bytes = b"") -> None:
+        """Append one sample; `payload` is its message as it came, made anew when empty."""
         self._writer.add_message(
             self._channel,
             log_time=sample.receive_ns,
-            data=sample_message(sample).SerializeToString(),
+            data=payload or sample_message(sample).SerializeToString(),
             publish_time=sample.device_ns,
             sequence=sample.sequence & 0xFFFFFFFF,
         )
+        self._drawing.write(sample)
 
     def flush(self) -> None:
         """Hand all that was written to the operating system; a killed process loses none of it."""
@@ -81,19 +93,19 @@ class Take:
 
     def discard(self) -> None:
         """Throw the recording away."""
-        self._file.close()
+        self.leave()
         self._part.unlink(missing_ok=True)
 
 
 class Recordings:
-    """The folder of all recordings."""
+    """The folder of all recordings; `opener` opens a new file in it."""
 
-    def __init__(self, root: Path) -> None:
-        self._root = root
+    def __init__(self, root: Path, opener: Opener = open_new) -> None:
+        self._root, self._opener = root, opener
 
     def begin(self, demonstration: str, header: RecordingHeader) -> Take:
         """Open the recording of a new demonstration."""
-        return Take(self.folder(header.task) / f"{demonstration}.mcap.part", header)
+        return Take(self.folder(header.task) / f"{demonstration}.mcap.part", header, self._opener)
 
     def folder(self, task: str) -> Path:
         """Return the folder of a task's recordings."""
@@ -127,11 +139,14 @@ def salvage(file: Path) -> tuple[RecordingHeader | None, list[Sample], str]:
     header: RecordingHeader | None = None
     samples: list[Sample] = []
     fault = ""
+    ours: set[int] = set()  # channels that hold samples
     try:
         for record in _records(file):
             if isinstance(record, Metadata) and record.name == HEADER:
                 header = documents.decode(RecordingHeader, record.metadata["header"].encode())
-            elif isinstance(record, Message):
+            elif isinstance(record, Channel) and record.topic == TOPIC:
+                ours.add(record.id)
+            elif isinstance(record, Message) and record.channel_id in ours:
                 message = parse(tracker_pb2.HandSample, record.data)
                 samples.append(sample_from(message, header.tracker if header else "", record.log_time))
     except OSError:

@@ -15,7 +15,7 @@ from sqlalchemy.orm import Session
 from teachpath.errors import Conflict, NotFound
 from teachpath.io.documents import from_document, to_document
 from teachpath.io.store.engine import open_engine
-from teachpath.io.store.recordings import Recordings
+from teachpath.io.store.recordings import Opener, Recordings, open_new
 from teachpath.io.store.tables import (
     Base,
     DemonstrationRow,
@@ -62,12 +62,13 @@ class ExecutionRow:
 
 
 class Store:
-    """The rows of a station; safe to use from several threads."""
+    """The rows of a station, and its recordings; safe to use from several threads."""
 
-    def __init__(self, settings: StoreSettings) -> None:
+    def __init__(self, settings: StoreSettings, *, opener: Opener = open_new) -> None:
+        """Open the database; `opener` opens the files of new recordings."""
         folder = Path(settings.data_dir)
         folder.mkdir(parents=True, exist_ok=True)
-        self.recordings = Recordings(folder / "recordings")
+        self.recordings = Recordings(folder / "recordings", opener)
         self._engine = open_engine(settings.database or f"sqlite:///{folder / 'teachpath.sqlite'}")
         self._writing = self._engine.execution_options(writing=True)
 
@@ -137,6 +138,16 @@ class Store:
     def demonstration(self, key: str) -> Demonstration:
         """Return one demonstration; raises NotFound."""
         return from_document(Demonstration, self._one(DemonstrationRow, key, "demonstration").document)
+
+    def change_demonstration(self, key: str, **changes: Any) -> Demonstration:
+        """Change fields of a demonstration and return it; raises NotFound."""
+        with self._change() as session:
+            row = session.get(DemonstrationRow, key, with_for_update=True)
+            if row is None:
+                raise NotFound(f"there is no demonstration {key!r}")
+            changed = replace(from_document(Demonstration, row.document), **changes)
+            row.document, row.verdict = to_document(changed), changed.verdict
+        return changed
 
     # runs, paths and plans
 

@@ -1,0 +1,40 @@
+"""The coach: one sentence that says how far the demonstrations agree, and what to show again."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+ENOUGH = 3  # demonstrations of a way
+COUNTS = ("no", "one", "two")
+PLACES = ("first", "second", "third", "fourth", "fifth", "sixth", "seventh", "eighth", "ninth", "tenth")
+
+
+@dataclass(frozen=True, slots=True)
+class Shown:
+    """One way of doing the task, as shown so far."""
+
+    count: int  # of demonstrations
+    spread: float  # [m] largest distance of two of them
+
+
+def advise(ways: Sequence[Shown]) -> str:
+    """Return the sentence for the operator, or nothing before the first demonstration; ways come in their order."""
+    total = sum(way.count for way in ways)
+    if total == 0:
+        return ""
+    if total == 1:
+        return "one demonstration so far; show it again"
+    spread = max(way.spread for way in ways)
+    agree = f"{total} demonstrations agree within {100 * spread:.1f} cm"
+    if len(ways) > 1:
+        agree = f"{total} demonstrations show {len(ways)} ways"
+        if spread > 0.0:
+            agree += f" and agree within {100 * spread:.1f} cm"
+    thin = [(index, way) for index, way in enumerate(ways) if way.count < ENOUGH]
+    if not thin:
+        return agree
+    index, least = min(thin, key=lambda each: each[1].count)
+    which = f"the {PLACES[index]} way has" if index < len(PLACES) else f"way {index + 1} has"
+    who = which if len(ways) > 1 else "there are"
+    return f"{agree}; {who} only {COUNTS[least.count]}, show it again"

@@ -1,0 +1,102 @@
+"""How a take ends: its samples become a demonstration, judged, with its file finished and its row stored."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from teachpath.errors import UnusableRecording
+from teachpath.io.documents import encode
+from teachpath.io.store import Store, Take
+from teachpath.recording import (
+    Cut,
+    RecordingSettings,
+    Verdict,
+    faults_of,
+    judge,
+    object_trajectory,
+    to_world,
+    usable,
+)
+from teachpath.records import Account, Calibration, Demonstration, Sample, Trajectory, Vector
+
+
+@dataclass(frozen=True, eq=False)
+class TakenSamples:
+    """A take whose phases are known.
+
+    Attributes:
+        account: of its samples; the faults of the positions are added here.
+        carried: start of the object's centre [m, world], or None.
+        fault: why it ended too early, or empty.
+    """
+
+    samples: Sequence[Sample]
+    cut: Cut
+    account: Account
+    calibration: Calibration
+    carried: Vector | None
+    fault: str = ""
+
+
+def close_take(
+    store: Store, settings: RecordingSettings, take: Take, taken: TakenSamples, facts: Mapping[str, str]
+) -> tuple[Demonstration, Trajectory]:
+    """Finish a take's file and store its demonstration; `facts` are its id, task and source.
+
+    Raises:
+        UnusableRecording: the transport phase is too short; nothing was finished or stored.
+        OSError: the file cannot be finished.
+    """
+    cut = taken.cut
+    if cut.release - cut.grasp < settings.shortest_transport:
+        raise UnusableRecording(
+            f"a transport phase of {cut.release - cut.grasp} samples is under the least of "
+            f"{settings.shortest_transport}: the object was let go at once"
+        )
+    account, left_out = _with_positions(taken, settings)
+    trajectory = object_trajectory(taken.samples, cut, taken.calibration, taken.carried, left_out=left_out)
+    verdict = _judge(account, taken, settings)
+    demonstration = Demonstration(
+        id=facts["id"],
+        task=facts["task"],
+        number=0,
+        source=facts["source"],
+        calibration=taken.calibration,
+        created_ns=time.time_ns(),
+        duration=float(trajectory.times[-1]),
+        samples=len(taken.samples),
+        grasp=cut.grasp,
+        release=cut.release,
+        verdict=verdict.word,
+        account=account,
+        recording="",
+        reasons=verdict.reasons,
+        left_out=left_out,
+    )
+    file = take.finish(
+        {"verdict": verdict.word, "account": encode(account).decode(), "demonstration": encode(demonstration).decode()}
+    )
+    stored = store.add_demonstration(replace(demonstration, recording=store.recordings.place(file)))
+    return stored, trajectory
+
+
+def _with_positions(taken: TakenSamples, settings: RecordingSettings) -> tuple[Account, tuple[int, ...]]:
+    ordered = usable(taken.samples[taken.cut.grasp : taken.cut.release])
+    if not ordered:
+        return taken.account, ()
+    positions = to_world(taken.calibration, np.array([s.position for s in ordered]))
+    faults = faults_of(ordered, positions, settings)
+    account = replace(taken.account, jumps=len(faults.jumped), leaps=faults.leaps, out_of_workspace=faults.outside)
+    return account, faults.jumped
+
+
+def _judge(account: Account, taken: TakenSamples, settings: RecordingSettings) -> Verdict:
+    verdict = judge(account, settings)
+    if not taken.fault:
+        return verdict
+    reasons = (taken.fault, *verdict.reasons)
+    return Verdict("reject" if taken.cut.open_ended or verdict.word == "reject" else "repaired", reasons)

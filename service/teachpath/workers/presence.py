@@ -1,0 +1,61 @@
+"""Which trackers are there: by their liveliness tokens, and by what they send."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable
+from dataclasses import dataclass
+
+HEARD = 2.0  # [s] a tracker without a token is there for so long after a sample
+MOST = 1000  # trackers that are remembered; a flood of names must not fill the memory
+
+
+@dataclass(frozen=True, slots=True)
+class Tracker:
+    """A tracker that is there."""
+
+    name: str
+    announced: bool  # by a liveliness token; else it only sends
+    silence: float  # [s] since its last sample; negative: it has sent none
+
+
+class Presence:
+    """Follows who comes and goes; safe to use from several threads."""
+
+    def __init__(self, clock: Callable[[], float]) -> None:
+        self._clock, self._lock = clock, threading.Lock()
+        self._announced: set[str] = set()
+        self._heard: dict[str, float] = {}
+
+    def announce(self, tracker: str, alive: bool) -> None:
+        """Take note that a tracker came or went."""
+        with self._lock:
+            if alive and len(self._announced) < MOST:
+                self._announced.add(tracker)
+            elif not alive:
+                self._announced.discard(tracker)
+                self._heard.pop(tracker, None)
+
+    def hear(self, tracker: str) -> None:
+        """Take note of a sample."""
+        with self._lock:
+            if tracker in self._heard or len(self._heard) < MOST:
+                self._heard[tracker] = self._clock()
+            else:
+                limit = self._clock() - HEARD
+                self._heard = {name: at for name, at in self._heard.items() if at > limit}
+
+    def silence_of(self, tracker: str) -> float:
+        """Return how long nothing came from a tracker [s]; 0 when it is not known."""
+        with self._lock:
+            return self._clock() - self._heard.get(tracker, self._clock())
+
+    def trackers(self) -> list[Tracker]:
+        """Return who is there, by name."""
+        now = self._clock()
+        with self._lock:
+            sending = {name for name, at in self._heard.items() if now - at <= HEARD}
+            return [
+                Tracker(name, name in self._announced, round(now - self._heard.get(name, now + 1.0), 1))
+                for name in sorted(self._announced | sending)
+            ]

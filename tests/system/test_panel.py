@@ -1,0 +1,87 @@
+"""The page's panel beside a running service: who is there, what is recorded, and what is thought of it."""
+
+import dataclasses
+import time
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+
+from teachpath_client import Link, Tracker
+from tests.system.processes import Service
+from tests.system.test_station import FAST, SHOWN, shown
+from tests.system.test_view import Visit
+
+pytestmark = pytest.mark.system
+
+SOON = 1.0  # [s] for the page to show that a tracker came or went
+
+
+@pytest.fixture
+def visit(browser: Any, service: Service) -> Iterator[Visit]:
+    visit = Visit(browser, service.url)
+    yield visit
+    visit.page.close()
+
+
+def within(visit: Visit, seconds: float, script: str) -> None:
+    visit.page.wait_for_function(f"() => {script}", timeout=1000 * seconds, polling=20)
+
+
+def text(id_: str) -> str:
+    return f"document.getElementById('{id_}').textContent"
+
+
+def test_a_tracker_that_comes_and_goes_is_shown_within_a_second(visit: Visit, service: Service) -> None:
+    visit.page.wait_for_timeout(500)
+    for _ in range(3):
+        with Link(service.endpoint) as link:
+            tracker = Tracker(link, "glove-page")
+            began = time.monotonic()
+            within(visit, SOON, f"{text('work')}.includes('glove-page is here')")
+        del tracker
+        within(visit, SOON, f"!{text('work')}.includes('glove-page')")
+        assert time.monotonic() - began < 2 * SOON + 0.5
+    assert visit.said == []
+
+
+def test_every_demonstration_has_its_verdict_and_what_is_wrong_with_it(visit: Visit, service: Service) -> None:
+    bad = [dataclasses.replace(r, tracked=not 150 < i < 190) for i, r in enumerate(shown(1))]
+    with Link(service.endpoint) as link:
+        tracker = Tracker(link, "glove-judged")
+        tracker.start("judged", scene="paper")
+        tracker.publish(shown(1), speed=FAST)
+        tracker.stop()
+        tracker.start("judged")
+        tracker.publish(bad, speed=FAST)
+        tracker.stop()
+    visit.page.wait_for_selector("#task option[value=judged]", state="attached")
+    visit.page.select_option("#task", "judged")
+    within(visit, 5, "document.querySelectorAll('.takes li').length === 2")
+    newest, oldest = visit.page.locator(".takes li").all_inner_texts()
+    assert "clean" in oldest
+    assert "reject" in newest
+    assert f"samples are faulty, " in newest.replace("\n", " ")
+    visit.page.get_by_role("button", name="Discard the last").click()
+    within(visit, 5, "document.querySelectorAll('.takes li.discarded').length === 1")
+    assert [bool(d["discarded_ns"]) for d in service.demonstrations("judged")] == [False, True]
+    visit.page.get_by_role("button", name="Undo discard").click()
+    within(visit, 5, "document.querySelectorAll('.takes li.discarded').length === 0")
+    within(visit, 5, f"{text('demonstrations')}.includes('One demonstration so far; show it again.')")
+    assert visit.said == []
+
+
+def test_a_recording_is_paused_and_resumed_from_the_page(visit: Visit, service: Service) -> None:
+    with Link(service.endpoint) as link:
+        tracker = Tracker(link, "glove-paused")
+        tracker.start("paused", scene="paper")
+        visit.page.wait_for_selector("#task option[value=paused]", state="attached")
+        visit.page.select_option("#task", "paused")
+        visit.page.get_by_role("button", name="Pause").click()
+        within(visit, 5, f"{text('work')}.includes('Recording glove-paused: paused')")
+        tracker.publish(shown(1), speed=FAST)
+        visit.page.get_by_role("button", name="Resume").click()
+        within(visit, 5, f"{text('work')}.includes('Recording glove-paused: reach')")
+        report = tracker.stop()
+    assert (report.received, report.idle, len(report.demonstrations)) == (SHOWN, SHOWN, 0)
+    assert visit.said == []

@@ -1,0 +1,49 @@
+from dataclasses import replace
+
+import pytest
+
+from teachpath.errors import UnusableSettings
+from teachpath.recording import RecordingSettings, judge
+from teachpath.records import Account
+
+SETTINGS = RecordingSettings()
+CLEAN = Account(received=100, declared_rate=50.0, seen_rate=50.0)
+
+
+@pytest.mark.parametrize(
+    ("changes", "word", "reason"),
+    [
+        ({}, "clean", ""),
+        ({"duplicated": 1}, "repaired", "1 sample came twice"),
+        ({"reordered": 3}, "repaired", "3 samples came late"),
+        ({"received": 98, "lost": 2}, "repaired", "2 samples lost"),
+        ({"received": 90, "lost": 10}, "reject", "10 of 100 samples are faulty, 10.0%, limit 5.0%"),
+        ({"untracked": 4}, "repaired", "4 samples untracked"),
+        ({"jumps": 2}, "repaired", "2 samples jumping"),
+        ({"jumps": 3, "untracked": 3}, "reject", "6 of 100 samples"),
+        ({"out_of_workspace": 50}, "reject", "50 of 100 samples"),
+        ({"conflicts": 40, "duplicated": 40}, "reject", "40 of 100 samples"),
+        ({"longest_gap_ns": 300_000_000}, "reject", "a gap of 0.30 s, limit 0.25 s"),
+        ({"clock_jumps": 1}, "reject", "clock jumps once"),
+        ({"leaps": 2}, "reject", "the position leaps 2 times by over 5 cm and stays"),
+        ({"seen_rate": 44.0}, "repaired", "the rate is 44 Hz, declared 50 Hz"),
+        ({"seen_rate": 46.0}, "clean", ""),
+        ({"seen_rate": 30.0, "declared_rate": 0.0}, "clean", ""),
+    ],
+)
+def test_the_verdict_follows_the_numbers_and_says_them(changes: dict[str, int], word: str, reason: str) -> None:
+    verdict = judge(replace(CLEAN, **changes), SETTINGS)  # type: ignore[arg-type]
+    assert verdict.word == word
+    assert reason in (verdict.reasons[0] if verdict.reasons else "")
+    assert bool(verdict.reasons) == (word != "clean")
+
+
+def test_the_limits_are_those_of_the_settings() -> None:
+    lost = Account(received=90, lost=10)
+    assert judge(lost, replace(SETTINGS, largest_loss=0.1)).word == "repaired"
+    assert judge(replace(CLEAN, longest_gap_ns=300_000_000), replace(SETTINGS, longest_gap=0.3)).word == "clean"
+
+
+def test_a_workspace_without_room_is_refused() -> None:
+    with pytest.raises(UnusableSettings, match=r"workspace_low is 2 in y; it must be under workspace_high, 1\.5"):
+        RecordingSettings(workspace_low=(-1.0, 2.0, 0.0))
