@@ -53,7 +53,7 @@ def families(trajectories: Sequence[Trajectory], period: float) -> list[Family]:
     paths = [smoothed(trajectory) for trajectory in trajectories]
     found = [
         Family("course", positions_and_velocities(trajectories), equal, 10),
-        Family("shape", shapes(paths), [_when(t, path) for t, path in zip(trajectories, paths, strict=True)], 20),
+        Family("shape", shapes(paths), [_when(t, path) for t, path in zip(trajectories, paths, strict=True)], 10),
     ]
     energies = band_energies(trajectories, period)
     if energies is not None:

@@ -12,6 +12,7 @@ from itertools import pairwise
 from typing import Any
 
 import numpy as np
+from hmmlearn import _hmmc
 from hmmlearn.base import BaseHMM, ConvergenceMonitor
 from scipy.special import logsumexp
 
@@ -62,7 +63,7 @@ class LeftRightHmm(BaseHMM):  # type: ignore[misc]
 
     def log_likelihoods(self, sequence: Array) -> Array:
         """Return log p(o_t | o_1 ... o_t-1, model) for every frame: (frames,); their sum is the log-likelihood."""
-        forward = self._fit_log(sequence)[3]
+        forward = _hmmc.forward_log(self.startprob_, self.transmat_, self._compute_log_likelihood(sequence))[1]
         return np.diff(logsumexp(forward, axis=1), prepend=0.0)
 
     @abstractmethod
@@ -144,10 +145,8 @@ class TiedGaussianHmm(LeftRightHmm):
         super()._do_mstep(stats)
         weight = stats["weight"][:, None]
         self.means_ = np.where(weight > 1e-8, stats["first"] / np.maximum(weight, 1e-8), self.means_)
-        squares = sum(
-            np.einsum("tq,tqd->d", posteriors, np.square(X[:, None, :] - self.means_))
-            for X, posteriors in stats["frames"]
-        )
+        X, posteriors = (np.concatenate(parts) for parts in zip(*stats["frames"], strict=True))
+        squares = np.einsum("tq,tqd->d", posteriors, np.square(X[:, None, :] - self.means_))
         self.variance_ = np.maximum(squares / weight.sum(), self.floor)
 
 

@@ -18,7 +18,7 @@ CAREFUL = 1.5  # factor on the limit for so few
 FOLDS = 10  # above THOROUGH members a model is trained per fold, not per member
 THOROUGH = 30
 REPEATED_FOLDS = 5
-REPEATED_EFFORT = Effort(iterations=3, sequences=15)
+REPEATED_EFFORT = Effort(iterations=2, sequences=15)
 COMPARED = 50  # others at most that the words about a departure are found by
 LEFT_OUT = 0.2  # share of the members that a repetition leaves out, at least one
 

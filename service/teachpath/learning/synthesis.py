@@ -120,8 +120,8 @@ def _path(
     course = consensus([smoothed(trajectory) for trajectory in selected])
     tube = max(float(distances_to(fit.curve, trajectory.positions).max()) for trajectory in selected)
     mean, orientation, turn = mean_orientations(selected, len(course)), None, None
-    if mean is not None:
-        s = arc_lengths(course)
+    s = arc_lengths(course)
+    if mean is not None and s[-1] > 0:
         orientation, turn = orient(cluster, mean, s / s[-1], fit.curve.degree, settings)
     measures = Fit(
         settings.error_bound,
