@@ -20,7 +20,7 @@ from rich.console import Console
 from teachpath.commands.options import Config, settings_of
 from teachpath.commands.rest import Api
 from teachpath.commands.serving import free_port, serving, until_signalled
-from teachpath.commands.tables import clusters_table, paths_table, plan_lines
+from teachpath.commands.tables import clusters_table, paths_table, plan_lines, reasons
 from teachpath.commands.work import progress_bar, replay_command
 from teachpath.config import Settings
 from teachpath.errors import PathRefused, TeachpathError, Unreachable, UnusableRecording
@@ -150,6 +150,8 @@ class _Story:
         numbers = {d["id"]: d["number"] for d in self._demonstrations(task)}
         console.print(clusters_table(run, numbers))
         console.print(paths_table(run))
+        for line in reasons(run, numbers):
+            console.print(line, highlight=False)
         return run
 
     def _plan(self, task: str, run: dict[str, Any]) -> dict[str, Any]:

@@ -30,6 +30,18 @@ def clusters_table(run: dict[str, Any], numbers: dict[str, int]) -> Table:
     return table
 
 
+def reasons(run: dict[str, Any], numbers: dict[str, int]) -> list[str]:
+    """Return what an operator should know of a run: who was left out and why, and the notes on clusters and run."""
+    lines = []
+    for cluster in run["learned"]["clusters"]:
+        for score in cluster["scores"]:
+            if score["note"] and not score["selected"]:
+                number = numbers.get(score["demonstration"], score["demonstration"])
+                lines.append(f"demonstration {number} was left out: {score['note']}")
+        lines += [f"cluster {cluster['index']}: {note}" for note in (cluster["note"], cluster["ambiguous"]) if note]
+    return lines + list(run["learned"]["notes"])
+
+
 def paths_table(run: dict[str, Any]) -> Table:
     """Return the learned paths of a run: degree, control points, errors."""
     table = Table(title="Learned paths")

@@ -14,7 +14,7 @@ from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
 from teachpath.commands.options import LOCAL, Url
 from teachpath.commands.rest import Api
-from teachpath.commands.tables import clusters_table, paths_table, plan_lines
+from teachpath.commands.tables import clusters_table, paths_table, plan_lines, reasons
 
 Task = Annotated[str, typer.Argument(help="The task.")]
 console = Console(stderr=True)
@@ -52,8 +52,8 @@ def learn(
     out = Console()
     out.print(clusters_table(run, numbers))
     out.print(paths_table(run))
-    for note in run["learned"]["notes"]:
-        out.print(f"note: {note}")
+    for line in reasons(run, numbers):
+        out.print(line, highlight=False)
 
 
 def plan(path: Annotated[str, typer.Argument(help="Id of a learned path.")], url: Url = LOCAL) -> None:
