@@ -24,8 +24,6 @@ from teachpath.records import Job, JobState
 from teachpath.workers import desk
 from teachpath_proto.keys import Keys
 
-GRACE = 1.0  # [s] for the working process to end by itself
-
 # What a kind of job does: `prepare` gathers its input from the store, `work` (a function of `desk`) runs in the other
 # process, `finish` stores the outcome and marks the job succeeded in one transaction.
 Prepare = Callable[[Job], tuple[Any, ...]]
@@ -96,10 +94,9 @@ class Jobs:
         self._news.put(None)
         workers = active_children()
         self._pool.shutdown(wait=False, cancel_futures=True)
-        deadline = time.monotonic() + GRACE
-        for worker in workers:
-            worker.join(max(0.0, deadline - time.monotonic()))
+        for worker in workers:  # pure work: nothing is lost that would not be done again
             worker.kill()
+            worker.join()
         for thread in self._threads:
             thread.join(timeout=1.0)
         self._news.close()

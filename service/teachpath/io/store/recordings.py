@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import BinaryIO
 
-from mcap.records import Channel, Header, Message, Metadata
+from mcap.records import Channel, Header, Message, Metadata, Statistics
 from mcap.stream_reader import StreamReader
 from mcap.writer import Writer
 from mcap_protobuf.schema import register_schema
@@ -27,7 +27,7 @@ from teachpath.records import Calibration, Sample
 from teachpath_proto import tracker_pb2
 
 TOPIC = "samples"
-HEADER = "teachpath"
+HEADER, FACTS = "teachpath", "facts"  # names of the metadata
 CHUNK = 64 * 1024  # bytes; small chunks lose less when a file is cut off
 
 Opener = Callable[[Path], BinaryIO]
@@ -54,6 +54,13 @@ class Take:
     def __init__(self, part: Path, header: RecordingHeader, opener: Opener = open_new) -> None:
         self._part = part
         self._file = opener(part)
+        try:
+            self._begin(header)
+        except OSError:
+            self.discard()  # an empty file would only puzzle the doctor
+            raise
+
+    def _begin(self, header: RecordingHeader) -> None:
         self._writer = Writer(self._file, chunk_size=CHUNK)
         self._writer.start(profile="", library="teachpath")
         self._writer.add_metadata(HEADER, {"header": documents.encode(header).decode()})
@@ -79,7 +86,7 @@ class Take:
 
     def finish(self, facts: dict[str, str]) -> Path:
         """End the recording with `facts` (verdict, counts) and return its final file."""
-        self._writer.add_metadata("facts", facts)
+        self._writer.add_metadata(FACTS, facts)
         self._writer.finish()  # type: ignore[no-untyped-call]
         self._file.flush()
         os.fsync(self._file.fileno())
@@ -129,6 +136,10 @@ class Recordings:
             raise UnusableRecording(f"recording {place} is damaged ({fault or 'no header'}); run: teachpath doctor")
         return samples
 
+    def finished(self) -> list[Path]:
+        """List the files of recordings that ended."""
+        return sorted(self._root.glob("*/*.mcap"))
+
     def unfinished(self) -> list[Path]:
         """List the `.part` files: takes that are running, or that a crash left."""
         return sorted(self._root.glob("*/*.mcap.part"))
@@ -136,12 +147,18 @@ class Recordings:
 
 def salvage(file: Path) -> tuple[RecordingHeader | None, list[Sample], str]:
     """Read a recording that may be torn: (header, the samples that are whole, what ended the reading or '')."""
+    with file.open("rb") as stream:
+        return salvage_stream(stream)
+
+
+def salvage_stream(stream: BinaryIO) -> tuple[RecordingHeader | None, list[Sample], str]:
+    """Read a recording from an open file; as `salvage`."""
     header: RecordingHeader | None = None
     samples: list[Sample] = []
     fault = ""
     ours: set[int] = set()  # channels that hold samples
     try:
-        for record in _records(file):
+        for record in _records(stream):
             if isinstance(record, Metadata) and record.name == HEADER:
                 header = documents.decode(RecordingHeader, record.metadata["header"].encode())
             elif isinstance(record, Channel) and record.topic == TOPIC:
@@ -149,6 +166,11 @@ def salvage(file: Path) -> tuple[RecordingHeader | None, list[Sample], str]:
             elif isinstance(record, Message) and record.channel_id in ours:
                 message = parse(tracker_pb2.HandSample, record.data)
                 samples.append(sample_from(message, header.tracker if header else "", record.log_time))
+            elif isinstance(record, Statistics):
+                # A reader passes over a record of a kind that it does not know, so a damaged kind hides a whole chunk.
+                written = sum(record.channel_message_counts.get(channel, 0) for channel in ours)
+                if written != len(samples):
+                    fault = f"{len(samples)} of its {written} samples can be read"
     except OSError:
         raise
     except Exception as error:  # damage shows as whatever the reader, its decompressor or the unpacking raises
@@ -156,10 +178,18 @@ def salvage(file: Path) -> tuple[RecordingHeader | None, list[Sample], str]:
     return header, samples, fault
 
 
-def _records(file: Path) -> Iterator[object]:
-    with file.open("rb") as stream:
-        records = StreamReader(stream, validate_crcs=True, record_size_limit=16 * 1024 * 1024).records
-        first = next(iter(records), None)
-        if not isinstance(first, Header):
-            raise UnusableRecording("it has no MCAP header")
-        yield from records
+def read_facts(file: Path) -> dict[str, str]:
+    """Return what a recording said of itself when it was finished; nothing when it is torn before that."""
+    with suppress(Exception), file.open("rb") as stream:  # damage shows as whatever the reader raises
+        for record in _records(stream):
+            if isinstance(record, Metadata) and record.name == FACTS:
+                return dict(record.metadata)
+    return {}
+
+
+def _records(stream: BinaryIO) -> Iterator[object]:
+    records = StreamReader(stream, validate_crcs=True, record_size_limit=16 * 1024 * 1024).records
+    first = next(iter(records), None)
+    if not isinstance(first, Header):
+        raise UnusableRecording("it has no MCAP header")
+    yield from records
