@@ -2,6 +2,7 @@
 #   make demo [SPEED=4] [ARGS=--once]   the main job: tracker -> recorder -> learning -> arm
 #   make test    check and all tests          make bench   measured figures
 #   make check   format, lint, types          make proto   regenerate the messages
+#   make experiments [ARGS=--quick]   the paper's experiments, as a report in reports/
 #   make clean   remove what the above made
 SHELL  := /bin/sh
 SPEED  ?= 4
@@ -11,11 +12,11 @@ PYTHON ?= $(shell for p in python3.13 python3.12 python3.11 python3 python; do \
 BIN    := .venv/bin
 READY  := .venv/.ready
 
-.PHONY: demo serve test check bench proto clean setup browser
+.PHONY: demo serve test check bench experiments proto clean setup browser
 .DEFAULT_GOAL := help
 
 help:
-	@sed -n '1,6s/^# \{0,1\}//p' Makefile
+	@sed -n '1,7s/^# \{0,1\}//p' Makefile
 
 $(READY): pyproject.toml constraints.txt
 	@test -n "$(PYTHON)" || { echo "teachpath needs Python 3.11 or newer; name it: make PYTHON=/path/to/python3.11"; exit 1; }
@@ -52,6 +53,9 @@ test: check browser
 
 bench: $(READY)
 	@$(BIN)/python tests/bench/run.py $(ARGS)
+
+experiments: $(READY)
+	@$(BIN)/python -m tests.experiments.run $(ARGS)
 
 proto: $(READY)
 	cd proto && ../$(BIN)/python -m grpc_tools.protoc -I . --python_out=. --pyi_out=. teachpath_proto/tracker.proto teachpath_proto/motion.proto teachpath_proto/job.proto

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import atexit
+import os
 import sys
+from typing import NoReturn
 
 try:
     import typer
 
-    from teachpath.commands import demo, files, station, work
+    from teachpath.commands import demo, evaluate, files, station, work
 except ModuleNotFoundError as missing:
     sys.exit(f"teachpath: {missing.name} is not installed; the service needs: pip install 'teachpath[service]'")
 
@@ -28,6 +31,8 @@ for command in (
     work.learn,
     work.plan,
     work.run,
+    evaluate.evaluate,
+    evaluate.diff,
     files.export,
     files.doctor,
 ):
@@ -40,8 +45,25 @@ def main() -> None:
     """Run the command line; a refusal ends with its sentence and exit status 1."""
     try:
         app()
+        ending: str | int | None = 0
     except TeachpathError as error:
-        sys.exit(f"teachpath: {error}")
+        ending = f"teachpath: {error}"
+    except SystemExit as leaving:
+        ending = leaving.code
+    if isinstance(ending, str):
+        print(ending, file=sys.stderr)
+    _leave(1 if isinstance(ending, str) else ending or 0)
+
+
+def _leave(status: int) -> NoReturn:
+    """End this process, in which everything that was started has been stopped in order.
+
+    Taking the compiled libraries apart module by module can take seconds on a busy machine, while an operator waits.
+    """
+    atexit._run_exitfuncs()
+    sys.stdout.flush()
+    sys.stderr.flush()
+    os._exit(status)
 
 
 if __name__ == "__main__":

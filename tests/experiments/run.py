@@ -1,0 +1,134 @@
+"""make experiments: the paper's experiments in every mode, as a report with figures in reports/."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import multiprocessing
+import os
+import platform
+import time
+from collections.abc import Callable, Sequence
+from concurrent.futures import Future, ProcessPoolExecutor, as_completed
+from dataclasses import dataclass
+from functools import partial
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+from rich.console import Console
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+
+from tests.experiments import figures, report, results, targets, trials
+from tests.experiments.scenarios import GROUPINGS, HEADLINES, SCENARIOS, SHAPES
+
+REPORTS = Path(__file__).parents[2] / "reports"
+PROCESSES = 2
+CHUNK = 5  # runs sent to a process at once
+SEED = 1  # of the single runs that tables and pictures show
+THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "NUMBA_NUM_THREADS")
+
+
+@dataclass(frozen=True)
+class Sizes:
+    """How often each experiment is run."""
+
+    headline: int = 1000
+    fault: int = 200
+    grouping: int = 100
+    shape: int = 20
+    datasets: int = 30
+    repetitions: int = 40
+
+
+QUICK = Sizes(headline=12, fault=4, grouping=4, shape=1, datasets=3, repetitions=8)
+
+
+def main() -> None:
+    """Run everything and write the report."""
+    parser = argparse.ArgumentParser(description="Run the experiments of the paper in every mode.")
+    parser.add_argument("--quick", action="store_true", help="few runs: to see the report, not to believe it")
+    parser.add_argument("--out", type=Path, default=REPORTS, help="folder of the report")
+    asked = parser.parse_args()
+    for name in THREADS:
+        os.environ[name] = "1"  # read by the processes to come: they are many enough
+    sizes = QUICK if asked.quick else Sizes()
+    asked.out.mkdir(parents=True, exist_ok=True)
+    began = time.monotonic()
+    found = results.summary(*_repeated(sizes), sizes=sizes)
+    shown_1, learned_1 = trials.table_1(SEED)
+    shown_2, learned_2 = trials.experiment_2(SEED)
+    found = {**found, "experiment_1": results.single(learned_1), "experiment_2": results.single(learned_2)}
+    pictures = {
+        "fig4_convergence": partial(figures.convergence, learned=learned_1),
+        "fig5_paths": partial(figures.paths, demonstrations=shown_1, learned=learned_1),
+        "fig6_wiggles": partial(figures.wiggles, demonstrations=shown_2, learned=learned_2),
+        "rejection": partial(figures.rejection, rates=results.outranked(found)),
+        "places": partial(figures.places, rates=results.by_place(found)),
+        "repetitions": partial(figures.repetitions, rates=found["repetitions"]["rates"]),
+        "groupings": partial(figures.groupings, rates=results.right(found)),
+        "shapes": figures.shapes,
+    }
+    _draw(asked.out, pictures)
+    found["made"] = {**_circumstances(asked.quick), "seconds": round(time.monotonic() - began)}
+    (asked.out / "experiments.json").write_text(json.dumps(found, indent=1, allow_nan=False) + "\n")
+    (asked.out / "experiments.html").write_text(report.page(found, asked.out))
+    targets.print_short(found)
+    print(f"{asked.out / 'experiments.html'}, {found['made']['seconds']} s")
+
+
+def _repeated(sizes: Sizes) -> tuple[list[Any], ...]:
+    """Run all that is repeated in processes: selections, groupings, shapes, repetitions on one data set."""
+    work: list[tuple[int, Callable[..., Any], tuple[Any, ...]]] = []
+    for scenario in SCENARIOS:
+        count = sizes.headline if scenario.key in HEADLINES else sizes.fault
+        work += [(0, trials.select_once, (scenario.key, run)) for run in range(count)]
+    work += [(1, trials.group_once, (ways.key, seed)) for ways in GROUPINGS for seed in range(sizes.grouping)]
+    work += [(2, trials.fit_once, (shape, seed)) for shape in SHAPES for seed in range(sizes.shape)]
+    work += [(3, trials.repeat_once, (dataset, sizes.repetitions)) for dataset in range(sizes.datasets)]
+    chunks = [work[at : at + CHUNK] for at in range(0, len(work), CHUNK)]
+    gathered: dict[Future[list[Any]], int] = {}
+    context = multiprocessing.get_context("spawn")
+    with _bar() as bar, ProcessPoolExecutor(PROCESSES, mp_context=context) as pool:
+        row = bar.add_task("runs", total=len(work))
+        for number, chunk in enumerate(chunks):
+            gathered[pool.submit(_chunk, chunk)] = number
+        for done in as_completed(gathered):
+            bar.advance(row, len(done.result()))
+    found: tuple[list[Any], ...] = ([], [], [], [])
+    for done, number in gathered.items():
+        for (kind, _, arguments), outcome in zip(chunks[number], done.result(), strict=True):
+            found[kind].append((arguments, outcome))
+    return found
+
+
+def _chunk(work: Sequence[tuple[int, Callable[..., Any], tuple[Any, ...]]]) -> list[Any]:
+    return [function(*arguments) for _, function, arguments in work]
+
+
+def _draw(folder: Path, pictures: dict[str, Callable[[Path], None]]) -> None:
+    with _bar() as bar:
+        row = bar.add_task("figures", total=len(pictures))
+        for name, draw in pictures.items():
+            draw(folder / f"{name}.png")
+            bar.advance(row)
+
+
+def _bar() -> Progress:
+    columns = (TextColumn("{task.description:<8}"), BarColumn(), MofNCompleteColumn())
+    return Progress(*columns, TimeElapsedColumn(), TimeRemainingColumn(), console=Console(stderr=True))
+
+
+def _circumstances(quick: bool) -> dict[str, Any]:
+    names = ("teachpath", "numpy", "scipy", "hmmlearn", "numba")
+    return {
+        "quick": quick,
+        "processes": PROCESSES,
+        "seed": SEED,
+        "machine": f"{os.cpu_count()} cores, {platform.machine()}, Python {platform.python_version()}",
+        "versions": {name: version(name) for name in names},
+    }
+
+
+if __name__ == "__main__":
+    main()
