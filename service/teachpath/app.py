@@ -96,6 +96,7 @@ class Station:
             log.warning("%d recordings were cut off; look at them with: teachpath doctor", len(unfinished))
         try:
             self.preview.start()
+            self.coach.start()
             self.recorder.start()
             self.executions.start()
             for process in self.processes:
@@ -143,6 +144,7 @@ class Station:
             "bus": asdict(self.settings.bus),
             "processes": {p.name: "running" if p.is_alive() else "ended" for p in self.processes},
             "recording": sorted(running),
+            "backlog": self.recorder.backlog,
             "trackers": [asdict(tracker) for tracker in self.recorder.trackers()],
             "coach": {"task": self._shown, "sentence": self.coach.sentence(self._shown)},
             "executor": asdict(status) if status else None,

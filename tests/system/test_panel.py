@@ -61,7 +61,7 @@ def test_every_demonstration_has_its_verdict_and_what_is_wrong_with_it(visit: Vi
     newest, oldest = visit.page.locator(".takes li").all_inner_texts()
     assert "clean" in oldest
     assert "reject" in newest
-    assert f"samples are faulty, " in newest.replace("\n", " ")
+    assert "samples are faulty, " in newest.replace("\n", " ")
     visit.page.get_by_role("button", name="Discard the last").click()
     within(visit, 5, "document.querySelectorAll('.takes li.discarded').length === 1")
     assert [bool(d["discarded_ns"]) for d in service.demonstrations("judged")] == [False, True]

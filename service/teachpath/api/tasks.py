@@ -85,11 +85,11 @@ def tasks_router(parts: Parts) -> APIRouter:
         task: str,
         request: Request,
         name: Annotated[str, Query(description="name of the source", max_length=200)] = "upload",
-        format: Annotated[str, Query(description="csv or robottasks")] = "csv",
+        format: Annotated[str, Query(description="csv, robottasks or mcap")] = "csv",
         units: Annotated[str, Query(description="of the positions: m, cm, mm or in")] = "m",
         rate: Annotated[float, Query(description="[Hz] for a format without a clock")] = 50.0,
         scene: Annotated[str, Query(description="of a new task")] = "empty",
-        calibration: Annotated[str, Query(description="of the file's frame")] = "identity",
+        calibration: Annotated[str, Query(description="of the file's frame; mcap brings its own")] = "identity",
     ) -> list[Demonstration]:
         """Import a file sent as the request's body; every motion in it becomes a demonstration."""
         content = await request.body()

@@ -23,7 +23,7 @@ from teachpath.records import Trajectory
 def import_(
     task: Annotated[str, typer.Argument(help="Task to add demonstrations to; made when missing.")],
     file: Annotated[list[Path], typer.Argument(help="Files to import.")],
-    format: Annotated[str, typer.Option(help="csv (t,x,y,z[,qw,qx,qy,qz]) or robottasks (.npy).")] = "csv",
+    format: Annotated[str, typer.Option(help="csv (t,x,y,z[,qw,qx,qy,qz]), robottasks (.npy) or mcap.")] = "",
     units: Annotated[str, typer.Option(help="Of the positions: m, cm, mm or in; robottasks is in cm.")] = "",
     rate: Annotated[float, typer.Option(help="[Hz] for a format without a clock.")] = 50.0,
     scene: Annotated[str, typer.Option(help="Scene of a new task.")] = "empty",
@@ -45,7 +45,8 @@ def import_(
                 content = each.read_bytes()
             except OSError as error:
                 raise UnusableRecording(f"cannot read {each}: {error.strerror}") from None
-            source = Source(each.name, content, format, units or ("cm" if robottasks else "m"), rate)
+            kind = format or ("mcap" if each.suffix == ".mcap" else "csv")
+            source = Source(each.name, content, kind, units or ("cm" if robottasks else "m"), rate)
             made = import_file(
                 store, settings.recording, source, task=task, scene=settings.scene(scene), calibration=chosen
             )

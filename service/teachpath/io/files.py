@@ -43,7 +43,7 @@ def read_tracks(content: bytes, name: str, *, kind: str, units: str, rate: float
         UnusableRecording: with the row and column that is wrong.
     """
     if kind not in FORMATS:
-        raise UnusableRecording(f"{name}: format {kind!r} is unknown; known: {', '.join(FORMATS)}")
+        raise UnusableRecording(f"{name}: format {kind!r} is unknown; known: {', '.join(FORMATS)}, mcap")
     if units not in UNITS:
         raise UnusableRecording(f"{name}: units {units!r} are unknown; known: {', '.join(UNITS)}")
     if not 1.0 <= rate <= 10_000.0:

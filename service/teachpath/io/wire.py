@@ -22,12 +22,14 @@ from teachpath.records import (
     Quaternion,
     Sample,
     Setpoint,
+    Vector,
 )
 from teachpath_proto import job_pb2, motion_pb2, tracker_pb2
 
 LARGEST_SAMPLE = 64 * 1024  # bytes; an honest one has about 200
 FLEXION_COUNTS = (0, 18, 22)
 UNIT_TOLERANCE = 0.01
+NOT_MEASURED = (0.0, 0.0, 0.0, 0.0)  # an orientation
 FARTHEST = 100.0  # [m or tracker units]; beyond it the units are wrong
 
 M = TypeVar("M", bound=Message)
@@ -63,45 +65,54 @@ def decode_sample(tracker: str, payload: bytes, receive_ns: int) -> Sample:
 
 def sample_from(message: tracker_pb2.HandSample, tracker: str, receive_ns: int) -> Sample:
     """Check a parsed hand sample; raises UnusableSample."""
-    where = f"sample {message.sequence} of {tracker}"
-    p = message.position
-    position = (p.x, p.y, p.z)
-    if not math.isfinite(p.x + p.y + p.z):
-        raise UnusableSample(f"{where}: position {position} is not finite")
-    if max(map(abs, position)) > FARTHEST:
-        raise UnusableSample(f"{where}: position {position} is over {FARTHEST:g} m away; are its units metres?")
-    if len(message.flexions) not in FLEXION_COUNTS:
-        raise UnusableSample(f"{where}: {len(message.flexions)} flexions; a glove has 18 or 22, or send none")
-    flexions = tuple(message.flexions)
-    if flexions and not (min(flexions) >= 0.0 and max(flexions) <= 1.0 and math.isfinite(sum(flexions))):
-        raise UnusableSample(f"{where}: a flexion is outside 0 (open) to 1 (closed); is the glove calibrated?")
-    if message.device_ns <= 0:
-        raise UnusableSample(f"{where}: device time {message.device_ns} ns; send nanoseconds since the Unix epoch")
+    p, q = message.position, message.orientation
+    position, turn, flexions = (p.x, p.y, p.z), (q.w, q.x, q.y, q.z), tuple(message.flexions)
+    orientation = _unit(turn)
+    fault = _fault(position, flexions, message.device_ns)
+    if fault or (orientation is None and turn != NOT_MEASURED):
+        fault = fault or "orientation ({:g}, {:g}, {:g}, {:g}) is no unit quaternion".format(*turn)
+        raise UnusableSample(f"sample {message.sequence} of {tracker}: {fault}")
     return Sample(
         tracker=tracker,
         sequence=message.sequence,
         device_ns=message.device_ns,
         receive_ns=receive_ns,
         position=position,
-        orientation=_unit(message.orientation, where),
+        orientation=orientation,
         flexions=flexions,
         tracked=message.tracked,
         buttons=message.buttons,
     )
 
 
-def _unit(q: tracker_pb2.Quaternion, where: str) -> Quaternion | None:
-    norm = math.sqrt(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z)
-    if norm == 0.0:
-        return None
+def _fault(position: Vector, flexions: tuple[float, ...], device_ns: int) -> str:
+    """Say what is wrong with a sample, or nothing."""
+    x, y, z = position
+    if not math.isfinite(x + y + z):
+        return f"position {position} is not finite"
+    if not (-FARTHEST <= x <= FARTHEST and -FARTHEST <= y <= FARTHEST and -FARTHEST <= z <= FARTHEST):
+        return f"position {position} is over {FARTHEST:g} m away; are its units metres?"
+    if len(flexions) not in FLEXION_COUNTS:
+        return f"{len(flexions)} flexions; a glove has 18 or 22, or send none"
+    if flexions and not (min(flexions) >= 0.0 and max(flexions) <= 1.0 and math.isfinite(sum(flexions))):
+        return "a flexion is outside 0 (open) to 1 (closed); is the glove calibrated?"
+    if device_ns <= 0:
+        return f"device time {device_ns} ns; send nanoseconds since the Unix epoch"
+    return ""
+
+
+def _unit(q: Quaternion) -> Quaternion | None:
+    """Return a quaternion at unit length, or None when it is not near it."""
+    w, x, y, z = q
+    norm = math.sqrt(w * w + x * x + y * y + z * z)
     if not abs(norm - 1.0) <= UNIT_TOLERANCE:
-        raise UnusableSample(f"{where}: orientation ({q.w:g}, {q.x:g}, {q.y:g}, {q.z:g}) is no unit quaternion")
-    return (q.w / norm, q.x / norm, q.y / norm, q.z / norm)
+        return None
+    return (w / norm, x / norm, y / norm, z / norm)
 
 
 def sample_message(sample: Sample) -> tracker_pb2.HandSample:
     """Return the message of a hand sample; its receive time travels beside it."""
-    w, x, y, z = sample.orientation or (0.0, 0.0, 0.0, 0.0)
+    w, x, y, z = sample.orientation or NOT_MEASURED
     return tracker_pb2.HandSample(
         sequence=sample.sequence,
         device_ns=sample.device_ns,

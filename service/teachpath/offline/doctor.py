@@ -1,15 +1,17 @@
-"""The doctor: finds recordings that a crash left unfinished, says what they hold, and makes demonstrations of them."""
+"""The doctor: finds recordings that a crash left unfinished or without a row, and makes demonstrations of them."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
+from teachpath.errors import TeachpathError
+from teachpath.io.documents import decode
 from teachpath.io.store import Store
-from teachpath.io.store.recordings import salvage
+from teachpath.io.store.recordings import read_facts, salvage
 from teachpath.offline.lock import StationLock
 from teachpath.recording import RecordingSettings
-from teachpath.records import Scene
+from teachpath.records import Demonstration, Scene
 from teachpath.workers.session import RecordingSession
 
 SALVAGED = ".salvaged"
@@ -17,7 +19,7 @@ SALVAGED = ".salvaged"
 
 @dataclass(frozen=True, slots=True)
 class Finding:
-    """One unfinished recording: what it holds and what became of it."""
+    """One recording that a crash left behind: what it holds and what became of it."""
 
     file: str
     samples: int
@@ -27,7 +29,7 @@ class Finding:
 
 
 def examine(store: Store, settings: RecordingSettings, scenes: dict[str, Scene], data_dir: Path) -> list[Finding]:
-    """Repair every unfinished recording of a station whose service does not run.
+    """Repair every unfinished recording of a station whose service does not run, and adopt those without a row.
 
     The samples go through the same cut and verdict as live; the torn file is kept beside the new ones, renamed.
 
@@ -35,7 +37,25 @@ def examine(store: Store, settings: RecordingSettings, scenes: dict[str, Scene],
         Conflict: the service is running; its takes are not torn but in progress.
     """
     with StationLock(data_dir):
-        return [_repair(part, store, settings, scenes) for part in store.recordings.unfinished()]
+        known = {d.recording for task in store.tasks() for d in store.demonstrations(task.name)}
+        orphans = [file for file in store.recordings.finished() if store.recordings.place(file) not in known]
+        adopted = [_adopt(file, store) for file in orphans]
+        return adopted + [_repair(part, store, settings, scenes) for part in store.recordings.unfinished()]
+
+
+def _adopt(file: Path, store: Store) -> Finding:
+    """Store the row of a recording that was finished just before the service was cut off."""
+    place = store.recordings.place(file)
+    try:
+        stated = decode(Demonstration, read_facts(file).get("demonstration", "").encode())
+        store.task(stated.task)
+        row = store.add_demonstration(replace(stated, recording=place))
+    except TeachpathError as error:
+        return Finding(
+            place, 0, 0.0, (), f"{place}: it has no row, and its own facts make none ({error}); left as it is"
+        )
+    sentence = f"{place}: it was whole but for its row; made {row.id}"
+    return Finding(place, row.samples, row.duration, (row.id,), sentence)
 
 
 def _repair(part: Path, store: Store, settings: RecordingSettings, scenes: dict[str, Scene]) -> Finding:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from bisect import bisect_right
 from collections import deque
+from collections.abc import Iterable
 
 from teachpath.recording.clock import REAL_TIME, DeviceClock
 from teachpath.records import Account, Sample
@@ -16,7 +17,7 @@ RESTARTED = 10  # older numbers in a row, each with a newer time: the device cou
 
 
 class StreamAccount:
-    """Counts the samples of one tracker by their sequence numbers.
+    """Counts the samples of one tracker by their sequence numbers, all of them and those of the part that is open.
 
     A sample below the highest number seen fills a gap (reordered) or was there before (duplicated; in conflict when
     it was taken at another time).
@@ -38,10 +39,13 @@ class StreamAccount:
         self._recent: list[tuple[int, int]] = [(-1, 0)] * REMEMBERED_SAMPLES
         self._last_device_ns = self._last_receive_ns = 0
         self._steps = self._device_ns = self._receive_ns = 0  # sums over the steps of the clock that were no jumps
-        self._longest_gap_ns = 0
+        self._longest_gap_ns = self._longest_gap_of_part_ns = 0
         self._clock = DeviceClock()
         self._interrupted = False
         self._notes: deque[str] = deque(maxlen=REMEMBERED_NOTES)
+        self._notes_of_part: deque[str] = deque(maxlen=REMEMBERED_NOTES)
+        self._part_is_empty = True
+        self._before_part = self._counts()
 
     def observe(self, sample: Sample) -> bool:
         """Count one sample; return whether it is newer than all before (neither late nor a duplicate)."""
@@ -65,6 +69,8 @@ class StreamAccount:
             self._observe_clock(sample, step)
         self._last_device_ns, self._last_receive_ns = sample.device_ns, sample.receive_ns
         self._clock.observe(sample)
+        if self._part_is_empty:
+            self._begin_with_this()
         return True
 
     @property
@@ -81,6 +87,13 @@ class StreamAccount:
         self._refused += 1
         self.note(reason)
 
+    def begin_part(self) -> None:
+        """Begin another part: what was lost before its first sample is not lost of it."""
+        self._part_is_empty = True
+        self._before_part = self._counts()
+        self._longest_gap_of_part_ns = 0
+        self._notes_of_part.clear()
+
     def expect(self, last_sequence: int) -> None:
         """Count as lost what the client says it sent after the highest number seen."""
         if self.first is None:
@@ -92,31 +105,53 @@ class StreamAccount:
 
     def note(self, sentence: str) -> None:
         """Keep a sentence for the operator; the newest few are kept."""
-        if sentence not in self._notes:
-            self._notes.append(sentence)
+        for notes in (self._notes, self._notes_of_part):
+            if sentence not in notes:
+                notes.append(sentence)
 
     def account(self) -> Account:
         """Return the counts so far."""
-        clock = self._clock.estimate()
-        notes = tuple(self._notes)
+        return self._stated(self._counts(), self._longest_gap_ns, self._notes)
+
+    def part(self) -> Account:
+        """Return the counts of the part that is open."""
+        counts = {name: max(count - self._before_part[name], 0) for name, count in self._counts().items()}
+        return self._stated(counts, self._longest_gap_of_part_ns, self._notes_of_part)
+
+    def _counts(self) -> dict[str, int]:
+        return {
+            "received": self._received,
+            "lost": self._lost,
+            "duplicated": self._duplicated,
+            "reordered": self._reordered,
+            "refused": self._refused,
+            "untracked": self._untracked,
+            "gaps": self._settled_gaps + len(self._missing),
+            "conflicts": self._conflicts,
+            "clock_jumps": self._clock_jumps,
+            "steps": self._steps,
+            "device_ns": self._device_ns,
+        }
+
+    def _stated(self, counts: dict[str, int], longest_gap_ns: int, kept: Iterable[str]) -> Account:
+        clock, notes = self._clock.estimate(), tuple(kept)
         if clock is not None and abs(clock.rate - 1.0) > REAL_TIME:
             notes = (*notes, f"the device's clock runs {clock.rate:.3g} x ours")
+        steps, device_ns = counts.pop("steps"), counts.pop("device_ns")
         return Account(
-            received=self._received,
-            lost=self._lost,
-            duplicated=self._duplicated,
-            reordered=self._reordered,
-            refused=self._refused,
-            untracked=self._untracked,
-            gaps=self._settled_gaps + len(self._missing),
-            longest_gap_ns=self._longest_gap_ns,
-            conflicts=self._conflicts,
-            clock_jumps=self._clock_jumps,
+            **counts,
+            longest_gap_ns=longest_gap_ns,
             declared_rate=self._declared_rate,
-            seen_rate=1e9 * self._steps / self._device_ns if self._device_ns else 0.0,
+            seen_rate=1e9 * steps / device_ns if device_ns else 0.0,
             clock=clock,
             notes=notes,
         )
+
+    def _begin_with_this(self) -> None:
+        self._part_is_empty = False
+        now = self._counts()
+        self._before_part |= {name: now[name] for name in ("lost", "gaps", "clock_jumps", "steps", "device_ns")}
+        self._longest_gap_of_part_ns = 0
 
     def _count_anew(self, sequence: int) -> None:
         if self.first is not None:
@@ -145,10 +180,8 @@ class StreamAccount:
 
     def _observe_clock(self, sample: Sample, step: int) -> None:
         device, receive = sample.device_ns - self._last_device_ns, sample.receive_ns - self._last_receive_ns
-        period = 1e9 / self._declared_rate if self._declared_rate else self._device_ns / max(self._steps, 1)
-        rate = min(max(self._device_ns / max(self._receive_ns, 1), 1.0), FASTEST)
-        # Loss is explained by the numbers, a pause by our clock; what neither explains is the clock itself.
-        if device < 0 or device - self._largest_clock_step_ns > max(step * period, receive * rate):
+        excess = device - self._largest_clock_step_ns
+        if device < 0 or (excess > 0 and not self._is_explained(excess, step, receive)):
             self._clock_jumps += 1
             self.note(f"the device's clock jumps by {device * 1e-9:+.3g} s at sample {sample.sequence}")
             self._clock.restart()
@@ -156,7 +189,15 @@ class StreamAccount:
         self._steps += step
         self._device_ns += device
         self._receive_ns += receive
-        self._longest_gap_ns = max(self._longest_gap_ns, device)
+        if device > self._longest_gap_of_part_ns:
+            self._longest_gap_of_part_ns = device
+            self._longest_gap_ns = max(self._longest_gap_ns, device)
+
+    def _is_explained(self, device: int, step: int, receive: int) -> bool:
+        """Tell whether the numbers explain a step of the device's clock (loss), or our clock does (a pause)."""
+        period = 1e9 / self._declared_rate if self._declared_rate else self._device_ns / max(self._steps, 1)
+        rate = min(max(self._device_ns / max(self._receive_ns, 1), 1.0), FASTEST)
+        return device <= max(step * period, receive * rate)
 
     def _miss(self, first: int, last: int) -> None:
         self._missing.append((first, last))

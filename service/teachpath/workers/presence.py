@@ -38,8 +38,11 @@ class Presence:
 
     def hear(self, tracker: str) -> None:
         """Take note of a sample."""
+        if tracker in self._heard:
+            self._heard[tracker] = self._clock()
+            return
         with self._lock:
-            if tracker in self._heard or len(self._heard) < MOST:
+            if len(self._heard) < MOST:
                 self._heard[tracker] = self._clock()
             else:
                 limit = self._clock() - HEARD

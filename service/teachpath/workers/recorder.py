@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import logging
 import queue
 import threading
 import time
 from collections.abc import Callable
 
-from teachpath.errors import Conflict, NotFound, TeachpathError, UnusableInput, UnusableSample
+from teachpath.errors import Conflict, NotFound, UnusableInput, UnusableSample
 from teachpath.io.bus import Bus, Handle
 from teachpath.io.store import Store
 from teachpath.io.wire import decode_sample
@@ -23,6 +24,7 @@ from teachpath_proto.keys import Keys, is_name
 FLUSH_EVERY = 0.75  # [s] under a second, with a margin for a busy machine
 LOOK_EVERY = 0.2  # [s] for trackers that have fallen silent
 
+log = logging.getLogger("teachpath")
 Recorded = Callable[[Demonstration, Trajectory], None]
 Report = tracker_pb2.RecordingReport
 
@@ -181,6 +183,11 @@ class Recorder:
         """Return the trackers that are there: those that say so, and those that send."""
         return self._presence.trackers()
 
+    @property
+    def backlog(self) -> int:
+        """How many samples have been received and not yet recorded."""
+        return self._inbox.qsize()
+
     def faults(self) -> list[str]:
         """Say what keeps samples from being recorded now, for the operator."""
         with self._changed:
@@ -273,7 +280,13 @@ class Recorder:
     def _lose(self, tracker: str, reason: str) -> None:
         with self._changed:
             session = self._sessions.get(tracker)
-            finished = session.lose(reason if session.is_carrying else "the tracker has gone") if session else None
+            if session is None:
+                return
+            try:
+                finished = session.lose(reason if session.is_carrying else "the tracker has gone")
+            except Exception as error:  # one take's fault must not end the others
+                finished = None
+                session.fail(f"recording failed: {error!r}")
         if finished is not None:
             self._hand_out([finished])
 
@@ -281,5 +294,5 @@ class Recorder:
         for demonstration, trajectory in finished:
             try:
                 self._recorded(demonstration, trajectory)
-            except TeachpathError:
-                continue  # whoever shows it may fail; the demonstration is stored
+            except Exception:  # whoever shows it may fail; the demonstration is stored, and recording goes on
+                log.exception("demonstration %s is stored, but could not be shown", demonstration.id)

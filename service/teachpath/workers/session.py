@@ -54,8 +54,9 @@ class RecordingSession:
     ) -> None:
         self.task, self.tracker, self.calibration = task, tracker, calibration
         self.state = State.PAUSED if armed else State.RECORDING
-        self._store, self._settings, self._rate = store, settings, rate
-        self.account = self._new_account()  # of the whole recording
+        self._store, self._settings = store, settings
+        # of the whole recording; its open part is that of the open take
+        self.account = StreamAccount(declared_rate=rate, largest_clock_step=settings.largest_clock_step)
         self._carried = scene.carried.position if scene.carried else None
         self._to_world = point_to_world(calibration)
         self._demonstrations: list[str] = []
@@ -65,7 +66,6 @@ class RecordingSession:
         self._buttons = 0
         self._take: Take | None = None
         self._samples: list[Sample] = []
-        self._part = self._new_account()  # of the take that is open
         self._segmenter = Segmenter(settings, self._carried)
 
     @property
@@ -91,7 +91,6 @@ class RecordingSession:
         if self.state is State.PAUSED:
             self._idle += 1
             return None
-        self._part.observe(sample)
         self._write(sample, payload)
         self._samples.append(sample)
         if not fresh:
@@ -114,6 +113,8 @@ class RecordingSession:
 
     def resume(self) -> None:
         """Record again."""
+        if self.state is State.PAUSED:
+            self.account.begin_part()
         if self.state is not State.LOST:
             self.state = State.RECORDING
 
@@ -122,9 +123,8 @@ class RecordingSession:
 
         What was let go before is whole, and repaired at best; what was still carried is rejected.
         """
-        for account in (self.account, self._part):
-            account.note(reason)
-            account.interrupt()
+        self.account.note(reason)
+        self.account.interrupt()
         cut = self._segmenter.finish()
         finished = self._close(cut, fault=reason) if cut is not None else None
         self._drop()
@@ -142,21 +142,19 @@ class RecordingSession:
     def refuse(self, reason: str) -> None:
         """Count a payload that is no sample."""
         self.account.refuse(reason)
-        self._part.refuse(reason)
 
     def expect(self, last_sequence: int) -> None:
         """Count as lost what was sent up to `last_sequence` and did not come."""
         self.account.expect(last_sequence)
-        if self._part.first is not None:
-            self._part.expect(last_sequence)
 
     def remark(self, sentence: str) -> None:
         """Keep a sentence with the recording and its open demonstration."""
         self.account.note(sentence)
-        self._part.note(sentence)
 
     def flush(self) -> None:
-        """Hand what was written to the operating system."""
+        """Hand what was written to the operating system; when nothing could be written, try again."""
+        if self._fault and not self.is_carrying:
+            self._drop()
         if self._take is not None:
             try:
                 self._take.flush()
@@ -231,7 +229,7 @@ class RecordingSession:
             # A device without a glove lets go by ending its recording; a glove would have shown the release.
             if cut.open_ended and not fault and (self._torn or self._samples[-1].flexions):
                 fault = "the recording ended before the hand let go"
-            taken = TakenSamples(self._samples, cut, self._part.account(), self.calibration, self._carried, fault)
+            taken = TakenSamples(self._samples, cut, self.account.part(), self.calibration, self._carried, fault)
             finished = close_take(self._store, self._settings, self._take, taken, self._facts())
         except UnusableRecording as error:
             self.account.note(str(error))
@@ -260,11 +258,8 @@ class RecordingSession:
         self._take = None
         self._fault = ""
         self._samples = []
-        self._part = self._new_account()
+        self.account.begin_part()
         self._segmenter = Segmenter(self._settings, self._carried)
-
-    def _new_account(self) -> StreamAccount:
-        return StreamAccount(declared_rate=self._rate, largest_clock_step=self._settings.largest_clock_step)
 
 
 def _cannot(what: str, error: OSError) -> str:

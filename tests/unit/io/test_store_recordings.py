@@ -1,13 +1,25 @@
+import math
+from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from mcap.reader import make_reader
+from mcap.writer import Writer
+from mcap_protobuf.decoder import DecoderFactory
+from mcap_protobuf.schema import register_schema
+from scipy.spatial.transform import Rotation
 
 from teachpath.errors import NotFound, UnusableRecording
+from teachpath.io.documents import encode
 from teachpath.io.store import RecordingHeader, Recordings, Take
-from teachpath.io.store.recordings import salvage
+from teachpath.io.store.recordings import read_facts, salvage
+from teachpath.io.wire import sample_message
+from teachpath.recording import to_world
 from teachpath.records import Calibration, Sample
+from teachpath_proto import tracker_pb2
 from tests.unit.recording.hands import demonstration
 
 HEADER = RecordingHeader("lift", "glove", Calibration("lab", scale=0.5))
@@ -87,3 +99,59 @@ def test_a_damaged_recording_gives_no_wrong_sample(whole: Path, place: int, valu
     if fault or header is None:
         with pytest.raises(UnusableRecording, match=r"lift/damaged\.mcap is damaged .*teachpath doctor"):
             recordings.samples("lift/damaged.mcap")
+
+
+def test_viewers_find_the_hand_and_its_frame_beside_the_samples(tmp_path: Path) -> None:
+    quarter = (math.sqrt(0.5), 0.0, 0.0, math.sqrt(0.5))
+    lab = Calibration("lab", 0.5, quarter, (1.0, 2.0, 3.0))
+    begun = Recordings(tmp_path).begin("d", RecordingHeader("lift", "glove", lab))
+    for i, sample in enumerate(SAMPLES):
+        begun.write(replace(sample, tracked=i % 10 != 0))
+    file = begun.finish({})
+    with file.open("rb") as stream:
+        drawn = [
+            (schema.name, channel.topic, decoded, message.log_time)
+            for schema, channel, message, decoded in make_reader(
+                stream, decoder_factories=[DecoderFactory()]
+            ).iter_decoded_messages()
+            if channel.topic != "samples"
+        ]
+    (frames,) = [d for _, topic, d, _ in drawn if topic == "frames"]
+    poses = [(d, at) for _, topic, d, at in drawn if topic == "hand_pose"]
+    assert {name for name, *_ in drawn} == {"foxglove.PoseInFrame", "foxglove.FrameTransforms"}
+    assert len(poses) == sum(i % 10 != 0 for i in range(len(SAMPLES)))
+    (frame,) = frames.transforms
+    assert (frame.parent_frame_id, frame.child_frame_id) == ("world", poses[0][0].frame_id) == ("world", "tracker")
+    turn = Rotation.from_quat([frame.rotation.x, frame.rotation.y, frame.rotation.z, frame.rotation.w])
+    offset = [frame.translation.x, frame.translation.y, frame.translation.z]
+    for (pose, at), sample in zip(poses, [s for i, s in enumerate(SAMPLES) if i % 10], strict=True):
+        seen = turn.apply([pose.pose.position.x, pose.pose.position.y, pose.pose.position.z]) + offset
+        np.testing.assert_allclose(seen, to_world(lab, np.array(sample.position)), atol=1e-12)
+        assert pose.timestamp.seconds * 10**9 + pose.timestamp.nanos == at == sample.receive_ns
+
+
+def test_what_came_on_the_wire_is_what_is_kept(tmp_path: Path) -> None:
+    recordings = Recordings(tmp_path)
+    begun = recordings.begin("d", HEADER)
+    payload = sample_message(SAMPLES[0]).SerializeToString() + b"\xfa\x3e\x03new"  # a field of a newer client
+    begun.write(SAMPLES[0], payload)
+    begun.finish({"verdict": "clean"})
+    with recordings.path("lift/d.mcap").open("rb") as stream:
+        ((_, _, message),) = make_reader(stream).iter_messages(topics=["samples"])
+    assert message.data == payload
+    assert same(recordings.samples("lift/d.mcap"), SAMPLES[:1])
+    assert read_facts(recordings.path("lift/d.mcap")) == {"verdict": "clean"}
+
+
+def test_a_recording_of_before_the_drawing_is_read(tmp_path: Path) -> None:
+    file = tmp_path / "lift" / "old.mcap"
+    file.parent.mkdir()
+    writer = Writer(str(file))
+    writer.start(profile="", library="teachpath")
+    writer.add_metadata("teachpath", {"header": encode(HEADER).decode()})
+    schema = register_schema(writer, tracker_pb2.HandSample)
+    channel = writer.register_channel(topic="samples", message_encoding="protobuf", schema_id=schema)
+    for s in SAMPLES:
+        writer.add_message(channel, s.receive_ns, sample_message(s).SerializeToString(), s.device_ns)
+    writer.finish()
+    assert same(Recordings(tmp_path).samples("lift/old.mcap"), SAMPLES)

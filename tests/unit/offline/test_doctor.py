@@ -76,3 +76,19 @@ def test_the_doctor_keeps_away_from_a_running_service(store: Store, data: Path) 
     torn_file(store, 100)
     with StationLock(data), pytest.raises(Conflict, match="stop it first"):
         examine(store, RecordingSettings(), {"paper": SCENE}, data)
+
+
+def test_a_whole_recording_without_a_row_is_adopted_as_it_was_judged(store: Store, data: Path) -> None:
+    torn_file(store, 100)
+    examined(store, data)
+    (row,) = store.demonstrations("lift")
+    other = Store(StoreSettings(data_dir=str(data), database=f"sqlite:///{data / 'other.sqlite'}"))
+    try:
+        assert "has no row, and its own facts make none" in examined(other, data)[0]  # nor a task
+        assert other.demonstrations("lift") == []
+        other.ensure_task("lift", scene="paper", calibration="identity")
+        assert f"made {row.id}" in examined(other, data)[0]
+        assert other.demonstrations("lift") == [row]
+        assert examined(other, data) == []
+    finally:
+        other.close()

@@ -130,3 +130,23 @@ def test_a_device_that_counts_anew_is_told_from_late_samples() -> None:
     assert any("counts anew" in note for note in account.account().notes)
     again = account_of([*range(1, 40), *range(1, 30)])
     assert not again.restarted
+
+
+def test_the_parts_of_a_stream_add_up_but_for_what_was_lost_between_them() -> None:
+    whole = StreamAccount()
+    parts = []
+    for numbers in ([1, 2, 4, 3, 5], [9, 10, 12, 12], [13, 20]):
+        whole.begin_part()
+        for n in numbers:
+            whole.observe(sample(n, (0.0, 0.0, 0.0), tracked=n != 10))
+        whole.note(f"up to {numbers[-1]}")
+        parts.append(whole.part())
+    total = whole.account()
+    for name in ("received", "duplicated", "reordered", "untracked"):
+        assert sum(getattr(part, name) for part in parts) == getattr(total, name)
+    assert [part.lost for part in parts] == [0, 1, 6]
+    assert total.lost == 7 + 3
+    assert [part.longest_gap_ns // PERIOD_NS for part in parts] == [2, 2, 7]
+    assert [part.notes for part in parts] == [("up to 5",), ("up to 12",), ("up to 20",)]
+    assert total.notes == ("up to 5", "up to 12", "up to 20")
+    assert all(part.seen_rate == pytest.approx(50.0) for part in parts)

@@ -19,7 +19,7 @@ SCENE = Scene("paper", (), Shape("block", "box", (0.04, 0.04, 0.04), (0.5, 0.0, 
 class Bench:
     """A recorder on an in-memory bus, and a tracker that speaks to it."""
 
-    def __init__(self, store: Store) -> None:
+    def __init__(self, store: Store, *, recorded: Callable[..., None] | None = None) -> None:
         self.bus, self.store = MemoryBus(), store
         self.recorded: list[tuple[Demonstration, Trajectory]] = []
         self.changed: list[Demonstration] = []
@@ -31,7 +31,7 @@ class Bench:
             RecordingSettings(handshake_timeout=1.0),
             scene=lambda name: {"paper": SCENE}[name],
             calibration=Calibration,
-            recorded=lambda *made: self.recorded.append(made),
+            recorded=recorded or (lambda *made: self.recorded.append(made)),
             changed=self.changed.append,
             clock=lambda: self.now,
         )

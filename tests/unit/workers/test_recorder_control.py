@@ -41,6 +41,7 @@ def test_what_is_shown_while_paused_is_no_demonstration_and_no_loss(bench: Bench
     first, second = bench.store.demonstrations("lift")
     assert (first.verdict, second.verdict) == ("clean", "clean")
     assert first.samples + second.samples + report.idle == report.received
+    assert [d.account.received for d in (first, second)] == [first.samples, second.samples]
     assert bench.store.recordings.samples(second.recording)[0].sequence > 2 * SHOWN
 
 

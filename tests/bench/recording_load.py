@@ -1,0 +1,143 @@
+"""Many trackers at one recorder, paced as live: losses, CPU and latency, beside a Zenoh subscriber that only counts."""
+
+import json
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+
+import crowd
+import numpy as np
+import zenoh
+from report import Figure
+
+from teachpath.commands.serving import free_port
+from teachpath.io.bus import Bus, BusSettings, open_bus
+from teachpath.io.store import Store, StoreSettings
+from teachpath.motion.scenes import empty_scene
+from teachpath.recording import RecordingSettings
+from teachpath.records import Calibration
+from teachpath.workers.recorder import Recorder
+
+TRACKERS = 400
+PROCESSES = 4
+TASK = "load"
+
+
+def measure(*, seconds: float) -> list[Figure]:
+    """Return the figures of `TRACKERS` trackers at 50 Hz that each show one demonstration of `seconds`."""
+    with tempfile.TemporaryDirectory(prefix="teachpath-bench-") as folder:
+        sent, lost, demonstrations, cpu, backlog, transits = _record(folder, seconds)
+    counted_cpu = _count(seconds)
+    what = f"{TRACKERS} trackers at {crowd.RATE:g} Hz for {seconds:g} s"
+    p50, p99, worst = (1e3 * float(v) for v in np.percentile(transits, [50, 99, 100]))
+    return [
+        Figure(f"{what}: samples lost", (lost,), f"of {sent:,}"),
+        Figure(f"{what}: demonstrations made", (demonstrations,), f"of {TRACKERS}"),
+        Figure("latency, sent to received, p50", (p50,), "ms"),
+        Figure("latency, sent to received, p99", (p99,), "ms", f"longest: {worst:.0f} ms"),
+        Figure("largest backlog behind the callback", (backlog,), "samples"),
+        Figure(
+            "CPU of the recorder's process",
+            (100.0 * cpu,),
+            "% of a core",
+            f"a subscriber that only counts: {100.0 * counted_cpu:.0f} %",
+            cpu / counted_cpu,
+        ),
+    ]
+
+
+def _record(folder: str, seconds: float) -> tuple[int, float, float, float, float, np.ndarray]:
+    settings = BusSettings(endpoint=f"tcp/127.0.0.1:{free_port()}")
+    bus = open_bus(settings, listen=True)
+    try:
+        with _recorder(bus, folder) as (recorder, store):
+            for number in range(TRACKERS):
+                recorder.begin(TASK, crowd.name(number), scene="empty")
+            with _watched(recorder) as backlogs:
+                cpu, sent = _crowd(settings.endpoint, seconds)
+                reports = [recorder.end(crowd.name(n), last_sequence=sent) for n in range(TRACKERS)]
+            lost = sum(report.lost for report in reports) + sum(sent - r.received - r.lost for r in reports)
+            made = sum(len(report.demonstrations) for report in reports)
+            return sent * TRACKERS, float(lost), float(made), cpu, float(max(backlogs)), _transits(store)
+    finally:
+        bus.close()
+
+
+@contextmanager
+def _recorder(bus: Bus, folder: str) -> Iterator[tuple[Recorder, Store]]:
+    store = Store(StoreSettings(data_dir=folder))
+    settings = RecordingSettings(handshake_timeout=60.0)
+    recorder = Recorder(bus, crowd.KEYS, store, settings, scene=lambda _: empty_scene(), calibration=Calibration)
+    recorder.start()
+    try:
+        yield recorder, store
+    finally:
+        recorder.stop()
+        store.close()
+
+
+def _transits(store: Store) -> np.ndarray:
+    return np.array(
+        [
+            (sample.receive_ns - sample.device_ns) * 1e-9
+            for row in store.demonstrations(TASK)
+            for sample in store.recordings.samples(row.recording)
+        ]
+    )
+
+
+@contextmanager
+def _watched(recorder: Recorder) -> Iterator[list[int]]:
+    """Look ten times a second how many samples wait."""
+    backlogs, over = [0], threading.Event()
+
+    def watch() -> None:
+        while not over.wait(0.1):
+            backlogs.append(recorder.backlog)
+
+    thread = threading.Thread(target=watch)
+    thread.start()
+    try:
+        yield backlogs
+    finally:
+        over.set()
+        thread.join()
+
+
+def _count(seconds: float) -> float:
+    """Return the CPU, in cores, of a process that only counts the same samples."""
+    endpoint = f"tcp/127.0.0.1:{free_port()}"
+    config = zenoh.Config()
+    for key, value in {"mode": "peer", "listen/endpoints": [endpoint], "scouting/multicast/enabled": False}.items():
+        config.insert_json5(key, json.dumps(value))
+    counted: list[bytes] = []
+    session = zenoh.open(config)
+    try:
+        session.declare_subscriber(crowd.KEYS.all_samples, lambda sample: counted.append(sample.payload.to_bytes()))
+        return _crowd(endpoint, seconds)[0]
+    finally:
+        session.close()  # type: ignore[no-untyped-call]
+
+
+def _crowd(endpoint: str, seconds: float) -> tuple[float, int]:
+    """Let the trackers send; returns our CPU in cores meanwhile, and how many samples each has sent."""
+    share = TRACKERS // PROCESSES
+    began, cpu = time.monotonic(), time.process_time()
+    processes = []
+    for i in range(PROCESSES):
+        words = [sys.executable, str(Path(crowd.__file__)), endpoint, str(i * share), str(share), str(seconds)]
+        processes.append(subprocess.Popen(words, stdout=subprocess.PIPE, text=True))
+    try:
+        sent = [int(process.communicate(timeout=seconds + 120)[0]) for process in processes]
+    finally:
+        for process in processes:
+            with suppress(ProcessLookupError):
+                process.kill()
+    if len(set(sent)) != 1:
+        raise SystemExit(f"bench: the trackers sent {sent} samples each; the figures would be wrong")
+    return (time.process_time() - cpu) / (time.monotonic() - began), sent[0]

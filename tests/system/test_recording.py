@@ -1,0 +1,161 @@
+"""Hostile and unlucky trackers at a running service: killed, malformed, twice under one name, away in time."""
+
+import random
+import signal
+import subprocess
+import sys
+import threading
+import time
+
+import pytest
+
+from teachpath_client import ClientError, Link, Tracker
+from teachpath_proto import tracker_pb2
+from teachpath_proto.keys import Keys
+from tests.system.processes import Service, wait_until
+from tests.system.test_station import FAST, SHOWN, record, shown
+
+pytestmark = pytest.mark.system
+
+KEYS = Keys()
+
+
+def names(service: Service) -> list[str]:
+    return [t["name"] for t in service.call("GET", "/health")["trackers"]]
+
+
+def test_a_tracker_that_is_killed_in_mid_take_leaves_a_reject_that_says_so(service: Service) -> None:
+    words = ["synthetic", "--task", "killed", "--scene", "paper", "--tracker", "glove-killed"]
+    client = subprocess.Popen(
+        [sys.executable, "-m", "teachpath_client", *words, "--endpoint", service.endpoint, "--speed", "1"],
+        stdout=subprocess.DEVNULL,
+    )
+    try:
+
+        def carries() -> bool:
+            known = {task["name"] for task in service.call("GET", "/tasks")}
+            running = service.call("GET", "/tasks/killed/recording") if "killed" in known else []
+            return any(report["phase"] == "transport" and report["received"] > 150 for report in running)
+
+        wait_until(carries, seconds=20, what="the hand has carried for a second")
+        assert "glove-killed" in names(service)
+    finally:
+        client.send_signal(signal.SIGKILL)
+        client.wait(10)
+    wait_until(lambda: "glove-killed" not in names(service), seconds=1.0, what="the tracker has gone")
+    wait_until(lambda: service.demonstrations("killed"), seconds=1.0, what="the take has ended")
+    (only,) = service.demonstrations("killed")
+    assert (only["verdict"], only["reasons"][0]) == ("reject", "the tracker has gone in mid-take")
+    (report,) = service.call("GET", "/tasks/killed/recording")
+    assert report["state"] == "lost"
+    with Link(service.endpoint) as link:  # and the next client of that name may begin
+        tracker = Tracker(link, "glove-killed")
+        tracker.start("killed")
+        tracker.publish(shown(1), speed=FAST)
+        assert len(tracker.stop().demonstrations) == 1
+    assert [d["verdict"] for d in service.demonstrations("killed")] == ["reject", "clean"]
+
+
+def malformed(chance: random.Random) -> bytes:
+    good = next(iter(shown(1))).message(chance.randrange(10**6), 10**18)
+    match chance.randrange(9):
+        case 0:
+            return chance.randbytes(chance.randrange(400))
+        case 1:
+            return good.SerializeToString()[: chance.randrange(100)]
+        case 2:
+            good.position.x = chance.choice([float("nan"), float("inf"), 1e300, -101.0])
+        case 3:
+            good.orientation.w = chance.choice([float("nan"), 5.0, -0.2])
+        case 4:
+            good.flexions.extend([0.5] * chance.randrange(1, 300))
+        case 5:
+            good.flexions[3] = chance.choice([float("nan"), -0.1, 1.1, float("inf")])
+        case 6:
+            good.device_ns = chance.choice([0, -1, -(2**63)])
+        case 7:
+            return good.SerializeToString() + b"\x0a" + chance.randbytes(60)
+        case 8:
+            return bytes(chance.choice([64 * 1024 + 1, 10**6]))
+    return good.SerializeToString()
+
+
+def test_a_thousand_malformed_samples_are_counted_and_other_takes_are_untouched(service: Service) -> None:
+    chance = random.Random(5)
+    payloads = [malformed(chance) for _ in range(1000)]
+    with Link(service.endpoint) as link:
+        fuzzed = Tracker(link, "glove-fuzz")
+        fuzzed.start("fuzzed", scene="paper")
+        publisher = link.publisher(KEYS.samples("glove-fuzz"))
+
+        def rain() -> None:
+            for payload in payloads:
+                publisher.put(payload)
+                time.sleep(0.002)
+
+        raining = threading.Thread(target=rain)
+        raining.start()
+        calm = record(service, "calm", 2)
+        raining.join()
+        fuzzed.publish(shown(1), speed=FAST)
+        report = fuzzed.stop()
+    assert (calm.received, calm.lost, len(calm.demonstrations)) == (2 * SHOWN, 0, 2)
+    assert [d["verdict"] for d in service.demonstrations("calm")] == ["clean", "clean"]
+    assert report.received + report.refused == 1000 + SHOWN
+    assert report.refused > 800
+    assert report.notes
+    assert all(len(note) < 400 for note in report.notes)
+
+
+def test_queries_that_are_malformed_or_misnamed_are_answered_with_a_sentence(service: Service) -> None:
+    chance = random.Random(6)
+    keys = [
+        KEYS.recorder_start,
+        KEYS.recorder_stop,
+        KEYS.recorder_pause,
+        KEYS.recorder_resume,
+        KEYS.recorder_discard,
+        KEYS.recorder_restore,
+        KEYS.recorder_amend,
+    ]
+    hostile = ["a/b", "..", "a\x00b", "*", "**", "a" * 10_000, "", "ü", "a\nb", "$*"]
+    with Link(service.endpoint) as link:
+        for key in keys:
+            for name in hostile:
+                request = tracker_pb2.StartRecording(task=name, tracker=name)
+                with pytest.raises(ClientError) as caught:
+                    link.ask(key, request.SerializeToString())
+                assert len(str(caught.value)) > 10
+            for _ in range(20):
+                with pytest.raises(ClientError):
+                    link.ask(key, chance.randbytes(chance.randrange(1, 60)))
+    assert service.call("GET", "/health")["notes"] == []
+
+
+def test_two_trackers_of_one_name_are_told_and_their_take_is_not_trusted(service: Service) -> None:
+    with Link(service.endpoint) as one, Link(service.endpoint) as other:
+        first, second = Tracker(one, "glove-twin"), Tracker(other, "glove-twin")
+        first.start("twins", scene="paper")
+        with pytest.raises(ClientError, match="already recording twins"):
+            second.start("twins")
+        both = [threading.Thread(target=t.publish, args=(shown(1),), kwargs={"speed": 8.0}) for t in (first, second)]
+        for thread in both:
+            thread.start()
+        for thread in both:
+            thread.join()
+        report = first.stop()
+    assert any("two trackers share this name" in note for note in report.notes), report
+    assert all(d["verdict"] == "reject" for d in service.demonstrations("twins"))
+
+
+def test_a_client_that_stops_without_a_word_is_not_waited_for(service: Service) -> None:
+    with Link(service.endpoint) as link:
+        tracker = Tracker(link, "glove-mute")
+        tracker.start("mute", scene="paper")
+        tracker.publish(list(shown(1))[:200], speed=FAST)
+        wait_until(
+            lambda: service.demonstrations("mute"), seconds=5.0, what="the take ends by itself while the client lives"
+        )
+        (only,) = service.demonstrations("mute")
+        assert (only["verdict"], only["reasons"][0]) == ("reject", "no sample came for 2 s in mid-take")
+        assert tracker.stop().lost == 0
