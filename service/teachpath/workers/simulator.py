@@ -30,8 +30,7 @@ log = logging.getLogger(__name__)
 
 STEP_NS: Final = 1_000_000
 STATE_STEPS: Final = 10  # steps between two joint states: 100 Hz
-# A starved process catches up with the steps it missed, each setpoint applied when it was due: on a busy machine the
-# arm is then late, not wrong. Farther behind (or before) the clock than this, its timing starts anew.
+# A starved process catches up, each setpoint applied when it was due: on a busy machine the arm is late, not wrong.
 LAG_NS: Final = 1_000_000_000
 AHEAD: Final = 500  # setpoints kept until they are due; with more than that the sender's clock is wrong
 ENDED: Final = ("idle", "ended", "faulted")
