@@ -196,11 +196,10 @@ def places(file: Path, rates: Mapping[str, Sequence[Rate | None]]) -> None:
             axis.set_xticks(range(1, 6))
             axis.grid(axis="x", visible=False)
             axis.set_xlim(0.5, 5.5)
-            axis.yaxis.set_major_formatter(PercentFormatter(1.0))
+            axis.yaxis.set_major_formatter(PercentFormatter(1.0, decimals=0))
         lows, highs = zip(*(rate.interval for each in rates.values() for rate in each if rate), strict=True)
         axes[0].set_ylim(min(0.45, *lows) - 0.02, max(0.75, *highs) + 0.02)
         axes[0].set_ylabel("rejected, though like the others")
-        axes[0].text(0.6, 0.535, "chance 60 %", va="top", color=QUOTED, fontsize=8)
 
 
 def groupings(file: Path, rates: Mapping[str, Mapping[str, Rate]]) -> None:
@@ -282,5 +281,5 @@ def _rows(axis: Axes, titles: Sequence[str]) -> None:
     axis.tick_params(axis="y", length=0, labelcolor=INK)
     axis.set_ylim(len(titles) - 0.45, -0.55)
     axis.grid(axis="y", visible=False)
-    axis.xaxis.set_major_formatter(PercentFormatter(1.0))
+    axis.xaxis.set_major_formatter(PercentFormatter(1.0, decimals=0))
     axis.spines["left"].set_visible(False)

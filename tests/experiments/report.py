@@ -199,7 +199,7 @@ def _control(found: Found, folder: Path) -> list[str]:
             "places",
             "Fig. 9.",
             "Rate at which a demonstration like the others is rejected, by its place in the list, with 95 % "
-            "intervals; the grey band is 60 ± 6 %. If the place made no difference, rates so uneven would come up "
+            "intervals; dashed: chance, grey: 60 ± 6 %. If the place made no difference, rates so uneven would come up "
             f"with probability {chances}.",
         ),
     ]
