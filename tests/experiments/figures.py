@@ -223,12 +223,12 @@ def repetitions(file: Path, rates: Mapping[str, Sequence[float]]) -> None:
     """Draw the rejection rate of one data set over repetitions, for many data sets."""
     with _page(file, 1, 1, (8.6, 2.3)) as (_, ((axis,),)):
         for row, mode in enumerate(("paper", "repaired")):
-            stack: dict[float, int] = {}
-            for value in sorted(rates[mode]):
-                near = round(value / 0.025) * 0.025
-                stack[near] = stack.get(near, 0) + 1
-                up = (stack[near] // 2) * (-1) ** stack[near] * 0.09
-                axis.plot(near, row + up, "o", color=MODE[mode], ms=6, mec="white", mew=0.6)
+            near = [round(value * 40) / 40 for value in sorted(rates[mode])]
+            step = min(0.09, 0.8 / max(near.count(value) for value in near))
+            for i, value in enumerate(near):
+                at = near[:i].count(value) + 1
+                up = at // 2 * (-1) ** at * step
+                axis.plot(value, row + up, "o", color=MODE[mode], ms=6, mec="white", mew=0.6)
         axis.axvline(0.6, color=QUOTED, lw=1.2, ls=(0, (2, 2)))
         axis.axvline(quoted.REJECTED, color=INK, lw=1.2)
         axis.text(0.595, 1.62, "chance", ha="right", color=QUOTED, fontsize=8)

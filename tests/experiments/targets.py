@@ -27,6 +27,11 @@ def targets(found: Found) -> list[tuple[str, str, str, bool]]:
         else:
             kept, asked = rate.share >= scenario.target, f"≥ {scenario.target:.0%}"
         rows.append((f"not among the best two: {scenario.title}", asked, str(rate), kept))
+    for scenario in SCENARIOS:
+        if scenario.key != "control":
+            rate = revived(found["selection"][scenario.key]["default"]["rejected"])
+            kept = rate.share >= scenario.target
+            rows.append((f"left out of the path: {scenario.title}", f"≥ {scenario.target:.0%}", str(rate), kept))
     chance = uneven(by_place(found)["default"])
     rows.append(
         ("control does not depend on the place in the list", f"p ≥ {UNEVEN}", f"p = {chance:.2f}", chance >= UNEVEN)
