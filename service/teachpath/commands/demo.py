@@ -77,6 +77,7 @@ class _Story:
         self._held = 0
 
     def tell(self, *, speed: float, seed: int, recordings: Path | None) -> dict[str, Any]:
+        """Tell the whole story and return its summary; raises TeachpathError at the step that failed."""
         self._wait_ready()
         if recordings is None:
             task, reports = self._show_experiment(speed, seed)

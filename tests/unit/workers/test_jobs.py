@@ -45,11 +45,12 @@ def fault(word: str, *, progress: Callable[[float, str], None]) -> str:
 class Bench:
     """Jobs that work on words; `ended` gives them as they end."""
 
-    def __init__(self, store: Store) -> None:
+    def __init__(self, store: Store, **instead: Callable[..., str]) -> None:
         self.store, self.bus = store, MemoryBus()
         self.ended: queue.Queue[Job] = queue.Queue()
         self.outcomes: list[str] = []
-        kinds = {f.__name__: Kind(self.prepare, f, self.finish) for f in (echo, refuse, crash, linger, fault)}
+        works = {f.__name__: f for f in (echo, refuse, crash, linger, fault)} | instead
+        kinds = {name: Kind(self.prepare, work, self.finish) for name, work in works.items()}
         settings = JobSettings(attempts=2)
         self.jobs = Jobs(self.bus, KEYS, store, settings, kinds, finished=self.ended.put)
 
@@ -124,8 +125,7 @@ def test_a_job_survives_a_restart_and_is_done_once(store: Store) -> None:
     first.jobs.stop()
     assert [job.id for job in store.jobs(unfinished=True)] == [running.id, waiting.id]
 
-    second = Bench(store)
-    second.jobs._kinds["linger"] = Kind(second.prepare, echo, second.finish)
+    second = Bench(store, linger=echo)
     second.jobs.start()
     ended = [second.ended.get(timeout=30) for _ in range(2)]
     second.jobs.stop()
