@@ -29,6 +29,7 @@ for command in (
     files.import_,
     work.replay,
     work.learn,
+    work.recut,
     work.plan,
     work.run,
     evaluate.evaluate,

@@ -166,6 +166,7 @@ class Station:
     def _kinds(self) -> dict[str, Kind]:
         return {
             "learn": Kind(self._prepare_learning, desk.learn_paths, self._finish_learning),
+            "recut": Kind(self._prepare_recut, desk.recut_run, self._finish_learning),
             "plan": Kind(self._prepare_planning, desk.plan_path, self._finish_planning),
         }
 
@@ -176,6 +177,12 @@ class Station:
         wanted = job.request.get("settings")
         settings = self.settings.learning_with(wanted if isinstance(wanted, dict) else {})
         return {d.id: self.trajectory(d) for d in demonstrations}, settings
+
+    def _prepare_recut(self, job: Job) -> tuple[Any, ...]:
+        learned = self.store.run(str(job.request["run"])).learned
+        usable = {d.id: d for d in self.store.demonstrations(job.task) if d.is_usable}
+        kept = {key: self.trajectory(usable[key]) for key in learned.demonstrations if key in usable}
+        return learned, kept, job.request["threshold"], job.request["clusters"]
 
     def _finish_learning(self, job: Job, learned: Learned) -> str:
         return self.store.finish_learning(job.id, learned)
@@ -220,7 +227,7 @@ class Station:
             self.coach.consider(demonstration.task)
 
     def _show_outcome(self, job: Job) -> None:
-        if job.kind == "learn" and job.outcome:
+        if job.kind in ("learn", "recut") and job.outcome:
             self._show_task(job.task)
         elif job.kind == "plan" and job.outcome:
             self.preview.highlight(self.store.plan(job.outcome).path)

@@ -59,8 +59,9 @@ def refused(response: Response, status: int, sentence: str) -> None:
     assert "\n" not in detail
 
 
-def csv(points: int = 60, *, step: float = 0.01) -> str:
-    return "t,x,y,z\n" + "".join(f"{i * 0.02},{0.4 + step * i},{0.1 * np.sin(i / 20):.6f},0.6\n" for i in range(points))
+def csv(points: int = 60, *, step: float = 0.01, rise: float = 0.0) -> str:
+    rows = [f"{i * 0.02},{0.4 + step * i},{0.1 * np.sin(i / 20):.6f},{0.6 + rise * i}\n" for i in range(points)]
+    return "t,x,y,z\n" + "".join(rows)
 
 
 def npy(values: Any) -> bytes:

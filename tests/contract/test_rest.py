@@ -25,6 +25,7 @@ from tests.contract.desk import API, Desk, csv, refused
         ("GET", "/tasks/moon/jobs", "task 'moon'"),
         ("GET", "/tasks/moon/runs", "task 'moon'"),
         ("GET", "/tasks/moon/runs/run-1", "run 'run-1'"),
+        ("GET", "/tasks/moon/runs/run-1/dendrogram", "run 'run-1'"),
         ("POST", "/tasks/moon/jobs", "task 'moon'"),
         ("POST", "/tasks/moon/recording", "task 'moon'"),
         ("POST", "/tasks/moon/recording/stop", "task 'moon'"),
@@ -171,7 +172,9 @@ ANY = st.recursive(
     lambda inner: st.lists(inner, max_size=3) | st.dictionaries(st.text(max_size=8), inner, max_size=3),
     max_leaves=6,
 )
-FIELDS = st.sampled_from(["task", "tracker", "plan", "path", "override", "kind", "settings", "scene", "calibration"])
+FIELDS = st.sampled_from(
+    ["task", "tracker", "plan", "path", "run", "clusters", "override", "kind", "settings", "scene", "calibration"]
+)
 
 
 @settings(max_examples=300, deadline=None)

@@ -2,22 +2,30 @@
 
 from __future__ import annotations
 
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
-from fastapi import APIRouter, Response
+from fastapi import APIRouter, Query, Response
 from pydantic import BaseModel, Field
 
 from teachpath.api.parts import Parts
 from teachpath.errors import NotFound
 from teachpath.io.documents import to_document
+from teachpath.learning import dendrogram, recut
 from teachpath.records import Job
 
 
 class NewJob(BaseModel):
     """Work to begin on a task."""
 
-    kind: Literal["learn", "plan"] = Field("learn", description="learn: cluster, select, fit; plan: certify one path")
+    kind: Literal["learn", "recut", "plan"] = Field(
+        "learn",
+        description="learn: cluster, select, fit; recut: cut a run's dendrogram elsewhere, select, fit; "
+        "plan: certify one path",
+    )
     settings: dict[str, Any] = Field(default_factory=dict, description="learn: settings laid over the station's own")
+    run: str = Field("", description="recut: id of the run whose dendrogram is cut; its settings are kept")
+    threshold: float | None = Field(None, description="recut: height of the cut [m]")
+    clusters: int | None = Field(None, description="recut: or the number of clusters")
     path: str = Field("", description="plan: id of the learned path")
 
 
@@ -38,6 +46,12 @@ def jobs_router(parts: Parts) -> APIRouter:
         if new.kind == "learn":
             parts.settings.learning_with(new.settings)
             job = jobs.submit(stored.name, "learn", {"settings": new.settings})
+        elif new.kind == "recut":
+            run = store.run(new.run)
+            _of_task(stored.name, run.task, f"run {run.id!r}")
+            recut(run.learned, threshold=new.threshold, clusters=new.clusters)
+            request = {"run": run.id, "threshold": new.threshold, "clusters": new.clusters}
+            job = jobs.submit(stored.name, "recut", request)
         else:
             path = store.path(new.path)
             _of_task(stored.name, store.run(path.run).task, f"path {path.id!r}")
@@ -74,6 +88,22 @@ def results_router(parts: Parts) -> APIRouter:
         stored = store.run(run)
         _of_task(store.task(task).name, stored.task, f"run {run!r}")
         return to_document(stored)
+
+    @router.get("/tasks/{task}/runs/{run}/dendrogram")
+    def get_dendrogram(
+        task: str,
+        run: str,
+        most: Annotated[int, Query(ge=1, le=200, description="clusters that a listed cut leaves at most")] = 30,
+    ) -> dict[str, Any]:
+        """Return how the run's demonstrations merge, ready to be drawn, and what other cuts would leave.
+
+        `leaves` are the demonstrations from left to right; the members of every cluster of every cut are neighbours
+        there, so `ways` of a cut are slices of it. `merges` are left, right, height [m] and members, numbered on from
+        the demonstrations, which are numbered as listed. A job of kind `recut` makes a new run of another cut.
+        """
+        stored = store.run(run)
+        _of_task(store.task(task).name, stored.task, f"run {run!r}")
+        return to_document(dendrogram(stored.learned, most))
 
     @router.get("/paths/{path}")
     def get_path(path: str) -> dict[str, Any]:

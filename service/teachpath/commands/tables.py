@@ -56,6 +56,20 @@ def paths_table(run: dict[str, Any]) -> Table:
     return table
 
 
+def cuts_table(dendrogram: dict[str, Any]) -> Table:
+    """Return the cuts of a run to choose from, as GET /tasks/{task}/runs/{run}/dendrogram gives them."""
+    table = Table(title=f"Cuts of {len(dendrogram['leaves'])} demonstrations")
+    for name in ("Clusters", "Height", "Members", "Now"):
+        table.add_column(name, justify="left" if name == "Members" else "right")
+    for cut in dendrogram["cuts"]:
+        upper = "" if cut["highest"] is None else f" to {100 * cut['highest']:.2f}"
+        heights = f"{100 * cut['lowest']:.2f}{upper} cm{'' if upper else ' and above'}"
+        sizes = ", ".join(str(end - begin) for begin, end in cut["ways"])
+        now = "*" if cut["clusters"] == dendrogram["clusters"] else ""
+        table.add_row(str(cut["clusters"]), heights, sizes, now)
+    return table
+
+
 def plan_lines(plan: dict[str, Any]) -> str:
     """Return a plan's certificate in a few lines."""
     c = plan["certificate"]

@@ -14,7 +14,7 @@ from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
 from teachpath.commands.options import LOCAL, Url
 from teachpath.commands.rest import Api
-from teachpath.commands.tables import clusters_table, paths_table, plan_lines, reasons
+from teachpath.commands.tables import clusters_table, cuts_table, paths_table, plan_lines, reasons
 
 Task = Annotated[str, typer.Argument(help="The task.")]
 console = Console(stderr=True)
@@ -45,10 +45,40 @@ def learn(
     Clusters the task's demonstrations, selects the consistent ones in each cluster, and fits a NURBS to them.
     """
     settings: dict[str, object] = {"mode": mode} | ({} if threshold is None else {"threshold": threshold})
-    with Api(url) as api, progress_bar("learning") as show:
-        job = api.follow_job(api.call("POST", f"/tasks/{task}/jobs", {"kind": "learn", "settings": settings}), show)
-        run = api.call("GET", f"/tasks/{task}/runs/{job['outcome']}")
-        numbers = {d["id"]: d["number"] for d in api.call("GET", f"/tasks/{task}/demonstrations")}
+    with Api(url) as api:
+        _learned(api, task, "learning", {"kind": "learn", "settings": settings})
+
+
+def recut(
+    task: Task,
+    clusters: Annotated[int | None, typer.Option(min=1, help="Number of ways to cut into.")] = None,
+    threshold: Annotated[float | None, typer.Option(help="Or the height of the cut [m].")] = None,
+    run: Annotated[str, typer.Option(help="Id of the run; empty: the task's newest.")] = "",
+    url: Url = LOCAL,
+) -> None:
+    """Move the cut between the ways, and learn their paths anew.
+
+    Distances are not measured again; the outcome is a new run. Without --clusters and --threshold it lists the cuts
+    to choose from.
+    """
+    with Api(url) as api:
+        runs = [] if run else api.call("GET", f"/tasks/{task}/runs")
+        if not run and not runs:
+            sys.exit(f"teachpath: task {task} has no run whose cut could be moved; first: teachpath learn {task}")
+        chosen = run or runs[0]["id"]
+        if clusters is None and threshold is None:
+            Console().print(cuts_table(api.call("GET", f"/tasks/{task}/runs/{chosen}/dendrogram")))
+        else:
+            request = {"kind": "recut", "run": chosen, "clusters": clusters, "threshold": threshold}
+            _learned(api, task, "cutting", request)
+
+
+def _learned(api: Api, task: str, title: str, request: dict[str, object]) -> None:
+    """Follow a job that learns to its end, and print what it learned."""
+    with progress_bar(title) as show:
+        job = api.follow_job(api.call("POST", f"/tasks/{task}/jobs", request), show)
+    run = api.call("GET", f"/tasks/{task}/runs/{job['outcome']}")
+    numbers = {d["id"]: d["number"] for d in api.call("GET", f"/tasks/{task}/demonstrations")}
     out = Console()
     out.print(clusters_table(run, numbers))
     out.print(paths_table(run))

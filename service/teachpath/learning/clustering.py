@@ -51,15 +51,19 @@ def group(
         progress: is told how far the work has come.
     """
     if settings.clusters is not None and settings.mode == "default":
-        return cut_into(condensed, count, settings.clusters)
+        return cut_into(tree_of(condensed, count), settings.clusters)
     if settings.threshold is not None:
-        return cut_at(condensed, count, settings.threshold)
+        return cut_at(tree_of(condensed, count), settings.threshold)
     return cut_by_silhouette(condensed, count, guard=settings.guard, length=length, progress=progress)
 
 
-def cut_at(condensed: Array, count: int, threshold: float) -> Grouping:
-    """Merge by average link until the two closest clusters are farther apart than `threshold` [m]."""
-    tree = _tree(condensed, count)
+def tree_of(condensed: Array, count: int) -> Array:
+    """Merge by average link until one cluster is left: (count - 1, 4) merges as scipy writes them."""
+    return np.asarray(hierarchy.linkage(condensed, "average")) if count > 1 else np.empty((0, 4))
+
+
+def cut_at(tree: Array, threshold: float) -> Grouping:
+    """Make the merges up to `threshold` [m]: clusters farther apart stay apart."""
     labels = labels_at(tree, threshold)
     rival = _next_merge(tree, int(labels.max()), threshold)
     if rival is None:
@@ -72,9 +76,9 @@ def cut_at(condensed: Array, count: int, threshold: float) -> Grouping:
     return Grouping(tree, threshold, labels, note, rival)
 
 
-def cut_into(condensed: Array, count: int, clusters: int) -> Grouping:
-    """Merge by average link until `clusters` are left, or every demonstration alone when there are fewer."""
-    tree = _tree(condensed, count)
+def cut_into(tree: Array, clusters: int) -> Grouping:
+    """Make merges until `clusters` are left, or none, every demonstration alone, when there are fewer."""
+    count = len(tree) + 1
     left = min(clusters, count)
     height = height_between(tree, left)
     note = f"{count} demonstrations cannot be {clusters} ways; every one is its own" if left < clusters else ""
@@ -99,8 +103,8 @@ def cut_by_silhouette(
         progress: is told how far the work has come.
     """
     if count == 1:
-        return cut_into(condensed, 1, 1)
-    tree = _tree(condensed, count)
+        return cut_into(tree_of(condensed, 1), 1)
+    tree = tree_of(condensed, count)
     top = float(tree[-1, 2])
     wide = top > APART * length
     if count == 2:
@@ -121,10 +125,6 @@ def cut_by_silhouette(
     rivals = _rivals(scores, best, guard)
     note, rival = _doubt_many(best, rivals), rivals[0] if rivals else None
     return Grouping(tree, height_between(tree, best), labels_into(tree, best), note, rival)
-
-
-def _tree(condensed: Array, count: int) -> Array:
-    return np.asarray(hierarchy.linkage(condensed, "average")) if count > 1 else np.empty((0, 4))
 
 
 def _next_merge(tree: Array, clusters: int, height: float) -> int | None:

@@ -11,10 +11,9 @@ from dataclasses import replace
 import numpy as np
 
 from teachpath.learning.clustering import Grouping, group
-from teachpath.learning.dendrogram import Labels, grafted, labels_at
+from teachpath.learning.dendrogram import grafted, labels_at
 from teachpath.learning.distances import distances, nearest_of
 from teachpath.learning.settings import LearningSettings, Progress, ignore
-from teachpath.learning.silhouettes import medoids
 from teachpath.records import Array
 
 MOST_PAIRED = 20_000  # demonstrations above which not every pair is measured
@@ -23,7 +22,7 @@ SAMPLE = 2000
 
 def grouped(
     paths: Array, settings: LearningSettings, *, length: float, metric: str, progress: Progress = ignore
-) -> tuple[Grouping, Labels]:
+) -> Grouping:
     """Cluster paths, by all pairs or from 20,000 on by a sample of 2000.
 
     With a threshold set, those farther than it from all of the sample stay alone; else the cut is found on the
@@ -35,17 +34,12 @@ def grouped(
         length: of a typical path [m].
         metric: see `distances.distances`.
         progress: is told how far the work has come.
-
-    Returns:
-        the grouping, and the medoid of every cluster: its member nearest to the others, of a sample's cluster the
-        one nearest to the others of the sample.
     """
     m = len(paths)
     measure, cut = _part(progress, 0.0, 0.7), _part(progress, 0.7, 1.0)
     if m <= MOST_PAIRED:
         condensed = distances(paths, metric, measure)
-        grouping = group(condensed, m, settings, length=length, progress=cut)
-        return grouping, medoids(condensed, grouping.labels)
+        return group(condensed, m, settings, length=length, progress=cut)
     sample = np.sort(np.random.default_rng(settings.seed).choice(m, SAMPLE, replace=False))
     condensed = distances(paths[sample], metric)
     of_sample = group(condensed, SAMPLE, settings, length=length)
@@ -56,11 +50,9 @@ def grouped(
         apart = np.minimum(apart, of_sample.threshold)
     linkage = grafted(of_sample.linkage, sample, joins, apart)
     labels = labels_at(linkage, of_sample.threshold)
-    central = {labels[at]: at for at in sample[medoids(condensed, of_sample.labels)]}
-    found = np.array([central.get(k, int(np.argmax(labels == k))) for k in range(1, int(labels.max()) + 1)])
     note = f"{m} demonstrations are grouped by a sample of {SAMPLE}"
     notes = "; ".join(part for part in (note, of_sample.note) if part)
-    return replace(of_sample, linkage=linkage, labels=labels, note=notes), found
+    return replace(of_sample, linkage=linkage, labels=labels, note=notes)
 
 
 def _part(progress: Progress, begin: float, end: float) -> Progress:

@@ -7,40 +7,9 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from teachpath.errors import UnusableSettings
-from teachpath.records import Array, Learned
+from teachpath.records import Array
 
 Labels = NDArray[np.int64]
-
-
-def recut(
-    learned: Learned, *, threshold: float | None = None, clusters: int | None = None
-) -> tuple[tuple[str, ...], ...]:
-    """Return the members of every cluster when the dendrogram of a run is cut somewhere else.
-
-    Args:
-        learned: a run; its distances are not needed again.
-        threshold: height of the cut [m].
-        clusters: or their number.
-
-    Returns:
-        for every cluster its demonstrations in listed order; clusters in the order of their first members.
-
-    Raises:
-        UnusableSettings: neither or both are given, or one is outside what the dendrogram allows.
-    """
-    if (threshold is None) == (clusters is None):
-        raise UnusableSettings("a dendrogram is cut at a threshold or into a number of clusters; give one of the two")
-    if threshold is not None:
-        if not threshold > 0:
-            raise UnusableSettings(f"a dendrogram cannot be cut at {threshold:g} m; the threshold is greater than 0")
-        labels = labels_at(learned.linkage, threshold)
-    else:
-        count = len(learned.demonstrations)
-        if clusters is None or not 1 <= clusters <= count:
-            raise UnusableSettings(f"{count} demonstrations cannot be cut into {clusters} clusters; give 1 to {count}")
-        labels = labels_into(learned.linkage, clusters)
-    return groups(learned.demonstrations, labels)
 
 
 def groups(names: Sequence[str], labels: Labels) -> tuple[tuple[str, ...], ...]:
@@ -99,6 +68,24 @@ def grafted(linkage: Array, sample: Labels, joins: Labels, heights: Array) -> Ar
         parent[right] = left
         name[left] = len(joins) + row
     return rows
+
+
+def leaves(linkage: Array) -> Labels:
+    """Return the demonstrations (m,) in the order that draws the merges without a crossing, so that the members of
+    every cluster of every cut are neighbours; of two merged clusters the one that has the first member comes first.
+    """
+    m = len(linkage) + 1
+    first = np.arange(2 * m - 1)
+    for row, (left, right) in enumerate(linkage[:, :2].astype(int)):
+        first[m + row] = min(first[left], first[right])
+    order, waiting = [], [2 * m - 2]
+    while waiting:
+        node = waiting.pop()
+        if node < m:
+            order.append(node)
+        else:
+            waiting += sorted(linkage[node - m, :2].astype(int), key=lambda child: -first[child])
+    return np.array(order, dtype=np.int64)
 
 
 def _after(linkage: Array, merges: int) -> Labels:

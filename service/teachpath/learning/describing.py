@@ -8,7 +8,7 @@ from hashlib import sha256
 import numpy as np
 
 from teachpath.learning.clustering import Grouping
-from teachpath.learning.dendrogram import labels_into
+from teachpath.learning.dendrogram import Labels, labels_into
 from teachpath.learning.resampling import at_equal_arc_length, smoothed
 from teachpath.nurbs import Curve
 from teachpath.records import Array, Trajectory
@@ -37,6 +37,23 @@ def ambiguities(grouping: Grouping) -> list[str]:
         else:
             sentences.append("")
     return sentences
+
+
+def representatives(courses: Array, labels: Labels) -> Labels:
+    """Return for every cluster 1, 2, ... the member that is nearest to the mean of its members.
+
+    Args:
+        courses: (m, n, 3) [m], what the demonstrations are compared by.
+        labels: (m,).
+    """
+    found = []
+    for label in range(1, int(labels.max()) + 1):
+        members = np.flatnonzero(labels == label)
+        own = courses[members]
+        apart = np.linalg.norm(own - own.mean(axis=0), axis=2).mean(axis=1)
+        # The first of those equal but for rounding, as the two of a pair are.
+        found.append(members[np.argmax(apart <= apart.min() * (1 + 1e-9))])
+    return np.array(found)
 
 
 def tube(curve: Curve, selected: Sequence[Trajectory]) -> Array:

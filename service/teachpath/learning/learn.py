@@ -11,7 +11,7 @@ import numpy as np
 from teachpath.learning.clustering import Grouping
 from teachpath.learning.crowd import grouped
 from teachpath.learning.dendrogram import Labels, groups
-from teachpath.learning.describing import ambiguities, fingerprint, tube
+from teachpath.learning.describing import ambiguities, fingerprint, representatives, tube
 from teachpath.learning.paper import models_of_paper, select_as_paper
 from teachpath.learning.resampling import arc_lengths, at_equal_arc_length, smoothed, undersampled
 from teachpath.learning.screening import screen
@@ -42,19 +42,49 @@ def learn(
     """
     screen(demonstrations)
     progress(0.0, f"comparing {len(demonstrations)} demonstrations")
-    names = tuple(demonstrations)
-    by_default = settings.mode == "default"
-    metric = settings.metric if by_default else "undersampled"
+    metric = metric_of(settings)
+    courses, length = courses_of(demonstrations, metric, settings.seed)
+    grouping = grouped(courses, settings, length=length, metric=metric, progress=_part(progress, 0.0, 0.2))
+    return from_ways(demonstrations, courses, grouping, settings, _part(progress, 0.2, 1.0))
+
+
+def metric_of(settings: LearningSettings) -> str:
+    """Return by which distance demonstrations are compared."""
+    return settings.metric if settings.mode == "default" else "undersampled"
+
+
+def courses_of(demonstrations: Mapping[str, Trajectory], metric: str, seed: int) -> tuple[Array, float]:
+    """Return what the demonstrations are compared by, (m, n, 3) [m], and the length of a typical path [m]."""
     if metric == "undersampled":
-        courses = _equalised(demonstrations, settings.seed)
-        length = float(np.median([arc_lengths(smoothed(each))[-1] for each in demonstrations.values()]))
-    else:
-        courses = np.stack([at_equal_arc_length(smoothed(each), PATH_POINTS) for each in demonstrations.values()])
-        length = float(np.median([arc_lengths(course)[-1] for course in courses]))
-    grouping, medoids = grouped(courses, settings, length=length, metric=metric, progress=_part(progress, 0.0, 0.2))
+        lengths = [arc_lengths(smoothed(each))[-1] for each in demonstrations.values()]
+        return _equalised(demonstrations, seed), float(np.median(lengths))
+    courses = np.stack([at_equal_arc_length(smoothed(each), PATH_POINTS) for each in demonstrations.values()])
+    return courses, float(np.median([arc_lengths(course)[-1] for course in courses]))
+
+
+def from_ways(
+    demonstrations: Mapping[str, Trajectory],
+    courses: Array,
+    grouping: Grouping,
+    settings: LearningSettings,
+    progress: Progress,
+) -> Learned:
+    """Select and fit in the clusters of a grouping.
+
+    Args:
+        demonstrations: id -> trajectory, in listed order.
+        courses: what they were compared by, see `courses_of`.
+        grouping: of them.
+        settings: see `LearningSettings`.
+        progress: told the fraction done and a sentence.
+
+    Raises:
+        LearningFailed: a path cannot keep the error bound.
+    """
+    names = tuple(demonstrations)
     ways = groups(names, grouping.labels)
-    choosing = _part(progress, 0.2, 0.8)
-    if by_default:
+    choosing = _part(progress, 0.0, 0.75)
+    if settings.mode == "default":
         tick = _ticker(choosing, models_to_train([len(way) for way in ways], settings.repeats))
         clusters = tuple(
             select(index + 1, {name: demonstrations[name] for name in way}, settings, tick=tick)
@@ -63,14 +93,14 @@ def learn(
     else:
         tick = _ticker(choosing, models_of_paper(len(ways), settings.repeats))
         clusters = select_as_paper(dict(zip(names, courses, strict=True)), ways, settings, tick=tick)
-    paths = _fitted(clusters, demonstrations, settings, _part(progress, 0.8, 1.0))
+    paths = _fitted(clusters, demonstrations, settings, _part(progress, 0.75, 1.0))
     progress(1.0, f"learned {len(paths)} {'path' if len(paths) == 1 else 'paths'}")
     return Learned(
         mode=settings.mode,
         demonstrations=names,
         linkage=grouping.linkage,
         threshold=grouping.threshold,
-        clusters=_described(clusters, paths, grouping, medoids, demonstrations),
+        clusters=_described(clusters, paths, grouping, representatives(courses, grouping.labels), demonstrations),
         paths=paths,
         notes=(grouping.note,) if grouping.note else (),
         settings=asdict(settings),
@@ -106,18 +136,18 @@ def _described(
     clusters: tuple[Cluster, ...],
     paths: tuple[LearnedPath, ...],
     grouping: Grouping,
-    medoids: Labels,
+    central: Labels,
     demonstrations: Mapping[str, Trajectory],
 ) -> tuple[Cluster, ...]:
     names = tuple(demonstrations)
     return tuple(
         replace(
             cluster,
-            representative=names[medoid],
+            representative=names[member],
             spread=tube(path.curve, _selected(cluster, demonstrations)),
             ambiguous=doubt,
         )
-        for cluster, path, medoid, doubt in zip(clusters, paths, medoids, ambiguities(grouping), strict=True)
+        for cluster, path, member, doubt in zip(clusters, paths, central, ambiguities(grouping), strict=True)
     )
 
 

@@ -77,21 +77,6 @@ def sums_to(condensed: Array, labels: Labels, count: int, progress: Progress = i
     return sums
 
 
-def medoids(condensed: Array, labels: Labels) -> Labels:
-    """Return the member of every cluster 1, 2, ... that is nearest to its others on average: (k,)."""
-    m = len(labels)
-    own = np.zeros(m)
-    begin = 0
-    for i in range(m - 1):
-        row = np.where(labels[i + 1 :] == labels[i], condensed[begin : begin + m - i - 1], 0.0)
-        own[i] += row.sum()
-        own[i + 1 :] += row
-        begin += m - i - 1
-    members = [np.flatnonzero(labels == label) for label in range(1, int(labels.max()) + 1)]
-    # The first of those equal but for rounding, so that the medoid of a pair is the same in every frame.
-    return np.array([inside[np.argmax(own[inside] <= own[inside].min() * (1 + 1e-9))] for inside in members])
-
-
 def _values(sums: Array, labels: Labels) -> Array:
     """Return the silhouette of every demonstration; one alone in its cluster counts 0."""
     sizes = np.bincount(labels, minlength=sums.shape[1])

@@ -52,7 +52,7 @@ class Cluster:
         scores: same order as `members`.
         convergence: log-likelihood of the model after each training iteration (Fig. 4).
         note: why selection was skipped or is unreliable; empty when neither.
-        representative: id of the medoid, the member nearest to the others; empty in runs of earlier versions.
+        representative: id of the member nearest to the mean of all; empty in runs of earlier versions.
         spread: (50,) radius [m] at equal arc length of the tube around the learned path in which the selected
             demonstrations lie.
         ambiguous: what the next best cut would do with it, when the choice was close; else empty.

@@ -18,7 +18,7 @@ class JobState(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Job:
-    """Background work on a task: `learn` or `plan`. `outcome` is the id of the run or plan it made."""
+    """Background work on a task: `learn`, `recut` or `plan`. `outcome` is the id of the run or plan it made."""
 
     id: str
     task: str

@@ -11,7 +11,7 @@ from multiprocessing.synchronize import Event
 from typing import Any
 
 from teachpath.errors import Cancelled
-from teachpath.learning import LearningSettings, learn
+from teachpath.learning import LearningSettings, learn, relearn
 from teachpath.motion import MotionSettings, plan
 from teachpath.records import Learned, LearnedPath, Plan, Scene, Trajectory
 
@@ -55,6 +55,18 @@ def work(key: str, function: Callable[..., Any], inputs: tuple[Any, ...]) -> Any
 def learn_paths(demonstrations: dict[str, Trajectory], settings: LearningSettings, *, progress: Progress) -> Learned:
     """Cluster, select and fit."""
     return learn(demonstrations, settings, progress=progress)
+
+
+def recut_run(
+    learned: Learned,
+    demonstrations: dict[str, Trajectory],
+    threshold: float | None,
+    clusters: int | None,
+    *,
+    progress: Progress,
+) -> Learned:
+    """Cut a run's dendrogram elsewhere, select and fit."""
+    return relearn(learned, demonstrations, threshold=threshold, clusters=clusters, progress=progress)
 
 
 def plan_path(path: LearnedPath, scene: Scene, settings: MotionSettings, *, progress: Progress) -> Plan:

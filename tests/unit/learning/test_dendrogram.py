@@ -7,10 +7,8 @@ import pytest
 from scipy.cluster.hierarchy import fcluster, is_valid_linkage, linkage
 from scipy.spatial.distance import pdist
 
-from teachpath.errors import UnusableSettings
-from teachpath.learning import recut
-from teachpath.learning.dendrogram import grafted, height_between, labels_at, labels_into
-from teachpath.records import Array, Learned
+from teachpath.learning.dendrogram import grafted, height_between, labels_at, labels_into, leaves
+from teachpath.records import Array
 
 
 def tree(seed: int = 1, count: int = 15) -> Array:
@@ -46,39 +44,21 @@ def test_a_finer_cut_only_splits() -> None:
         assert all(len(set(coarse[fine == label])) == 1 for label in set(fine))
 
 
-def run(names: str = "abcdefgh") -> Learned:
-    linked = tree(3, len(names))
-    return Learned("default", tuple(names), linked, height_between(linked, 3), (), ())
+@pytest.mark.parametrize("seed", range(4))
+def test_the_members_of_every_cluster_are_neighbours_among_the_leaves(seed: int) -> None:
+    linked = tree(seed)
+    order = leaves(linked)
+    assert sorted(order) == list(range(15))
+    for count in range(1, 16):
+        along = labels_into(linked, count)[order]
+        assert np.count_nonzero(np.diff(along)) == count - 1
 
 
-def test_a_run_is_cut_again_by_height_or_number() -> None:
-    learned = run()
-    three = recut(learned, clusters=3)
-    assert recut(learned, threshold=learned.threshold) == three
-    assert sorted("".join("".join(group) for group in three)) == sorted(learned.demonstrations)
-    assert recut(learned, clusters=8) == tuple((name,) for name in learned.demonstrations)
-    assert recut(learned, threshold=1e3) == (learned.demonstrations,)
-
-
-def test_one_demonstration_can_only_be_one_way() -> None:
-    one = Learned("default", ("a",), np.empty((0, 4)), 0.0, (), ())
-    assert recut(one, clusters=1) == recut(one, threshold=0.1) == (("a",),)
-
-
-@pytest.mark.parametrize(
-    ("cut", "sentence"),
-    [
-        ({}, "give one of the two"),
-        ({"threshold": 0.1, "clusters": 2}, "give one of the two"),
-        ({"threshold": 0.0}, "greater than 0"),
-        ({"threshold": float("nan")}, "greater than 0"),
-        ({"clusters": 0}, "give 1 to 8"),
-        ({"clusters": 9}, "give 1 to 8"),
-    ],
-)
-def test_an_impossible_cut_is_refused_in_words(cut: dict[str, float], sentence: str) -> None:
-    with pytest.raises(UnusableSettings, match=sentence):
-        recut(run(), **cut)  # type: ignore[arg-type]
+def test_a_chain_of_thousands_is_no_obstacle() -> None:
+    count = 3000
+    names = np.concatenate([[0], np.arange(count, 2 * count - 2)])
+    linked = np.column_stack([np.arange(1, count), names, np.arange(1, count), np.arange(2, count + 1)]).astype(float)
+    assert leaves(linked).tolist() == list(range(count))
 
 
 def test_those_outside_the_sample_are_grafted_on_where_they_join() -> None:

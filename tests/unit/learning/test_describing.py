@@ -8,7 +8,7 @@ import numpy as np
 import synthetic
 
 from teachpath.io.documents import from_document, to_document
-from teachpath.learning.describing import fingerprint, tube
+from teachpath.learning.describing import fingerprint, representatives, tube
 from teachpath.learning.fitting import approximate
 from teachpath.records import Learned, Trajectory
 
@@ -27,6 +27,12 @@ def test_a_difference_along_the_path_does_not_widen_the_tube() -> None:
     curve = approximate(LINE, 0.001, degree=3, most=60).curve
     ahead = Trajectory(np.arange(200) * 0.02, LINE * np.array([1.1, 1, 1]))
     np.testing.assert_allclose(tube(curve, [ahead]), 0.0, atol=1e-6)
+
+
+def test_the_representative_is_the_member_in_the_middle() -> None:
+    offsets = np.array([0.3, 0.0, 0.1, 5.0, 5.2, 5.1, 9.0])
+    courses = LINE + offsets[:, None, None]
+    assert representatives(courses, np.array([1, 1, 1, 2, 2, 2, 3])).tolist() == [2, 5, 6]
 
 
 def test_a_fingerprint_follows_every_sample_and_nothing_else() -> None:

@@ -8,7 +8,7 @@ from scipy.cluster.hierarchy import linkage
 from scipy.spatial.distance import pdist, squareform
 
 from teachpath.learning.dendrogram import labels_into
-from teachpath.learning.silhouettes import Silhouettes, medoids
+from teachpath.learning.silhouettes import Silhouettes
 from teachpath.records import Array
 
 
@@ -46,13 +46,3 @@ def test_a_split_is_judged_as_if_its_cluster_were_alone() -> None:
     assert members == len(inside)
     expected = by_definition(squareform(condensed)[np.ix_(inside, inside)], fine[inside])
     assert value == pytest.approx(expected, abs=1e-12)
-
-
-def test_the_medoid_has_the_least_sum_of_distances_within_its_cluster() -> None:
-    condensed = scattered(9, 20)
-    labels = labels_into(linkage(condensed, "average"), 4)
-    square = squareform(condensed)
-    for label, medoid in enumerate(medoids(condensed, labels), 1):
-        inside = np.flatnonzero(labels == label)
-        assert medoid in inside
-        assert square[medoid, inside].sum() == pytest.approx(square[np.ix_(inside, inside)].sum(axis=1).min())

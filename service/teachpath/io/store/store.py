@@ -231,7 +231,7 @@ class Store:
 
         The id follows from the job's, so that a job which is run again never leaves two runs.
         """
-        run, now = key.replace("learn", "run", 1), time.time_ns()
+        run, now = f"run-{key.partition('-')[2]}", time.time_ns()
         with self._change() as session:
             self._claim(session, key, _success(run, now))
             job = session.get_one(JobRow, key)

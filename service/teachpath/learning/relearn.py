@@ -1,0 +1,69 @@
+"""A run cut elsewhere: its dendrogram and settings are kept, selection and fitting are done anew."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import fields, replace
+from typing import Any
+
+from teachpath.errors import LearningFailed
+from teachpath.learning.clustering import Grouping
+from teachpath.learning.cuts import moved
+from teachpath.learning.describing import fingerprint
+from teachpath.learning.learn import courses_of, from_ways, metric_of
+from teachpath.learning.settings import LearningSettings, Progress, ignore
+from teachpath.records import Learned, Trajectory
+
+
+def relearn(
+    learned: Learned,
+    demonstrations: Mapping[str, Trajectory],
+    *,
+    threshold: float | None = None,
+    clusters: int | None = None,
+    progress: Progress = ignore,
+) -> Learned:
+    """Cut the dendrogram of a run elsewhere, then select and fit anew with the run's own settings.
+
+    The settings of the result name the cut, so that learning with them from the beginning gives the same.
+
+    Args:
+        learned: the run; its distances are not needed again.
+        demonstrations: id -> trajectory, those it was learned from.
+        threshold: height of the cut [m].
+        clusters: or their number.
+        progress: as in `learn`.
+
+    Raises:
+        UnusableSettings: see `cuts.moved`.
+        LearningFailed: a demonstration is missing or has changed since, or as in `learn`.
+    """
+    grouping = moved(learned, threshold, clusters)
+    _check_unchanged(learned, demonstrations)
+    progress(0.0, f"cutting the dendrogram at {grouping.threshold * 100:.2f} cm")
+    settings = _with_cut(_settings_of(learned), grouping, clusters)
+    listed = {name: demonstrations[name] for name in learned.demonstrations}
+    courses, _ = courses_of(listed, metric_of(settings), settings.seed)
+    return from_ways(listed, courses, grouping, settings, progress)
+
+
+def _settings_of(learned: Learned) -> LearningSettings:
+    known = {field.name for field in fields(LearningSettings)}
+    kept: dict[str, Any] = {name: value for name, value in learned.settings.items() if name in known}
+    return LearningSettings(**kept)
+
+
+def _with_cut(settings: LearningSettings, grouping: Grouping, clusters: int | None) -> LearningSettings:
+    if clusters is not None and settings.mode == "default":
+        return replace(settings, threshold=None, clusters=clusters)
+    return replace(settings, threshold=grouping.threshold, clusters=None)
+
+
+def _check_unchanged(learned: Learned, demonstrations: Mapping[str, Trajectory]) -> None:
+    for name in learned.demonstrations:
+        known = learned.inputs.get(name)
+        if name not in demonstrations or (known and known != fingerprint(demonstrations[name])):
+            told = "has changed" if name in demonstrations else "is no longer learned from"
+            raise LearningFailed(
+                f"demonstration {name} {told} since that run: its dendrogram is out of date, learn anew"
+            )
