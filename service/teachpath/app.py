@@ -29,7 +29,9 @@ from teachpath.workers import desk
 from teachpath.workers.coach import Coach
 from teachpath.workers.curation import Curation
 from teachpath.workers.executions import Executions
+from teachpath.workers.gate import TrackerGate
 from teachpath.workers.jobs import Jobs, Kind
+from teachpath.workers.joints import JointFeed
 from teachpath.workers.preview import Preview
 from teachpath.workers.processes import WorkerProcess
 from teachpath.workers.recorder import Recorder
@@ -77,6 +79,8 @@ class Station:
         self.coach = Coach(self.store.demonstrations, self.trajectory, settings.learning)
         self.jobs = Jobs(self.bus, self.keys, self.store, settings.jobs, self._kinds(), finished=self._show_outcome)
         self.executions = Executions(self.bus, self.keys, self.store, robot=settings.bus.robot)
+        self.gate = TrackerGate(self.bus, self.keys, self.recorder)
+        self.joints = JointFeed(self.bus, self.keys, robot=settings.bus.robot)
         self.preview = Preview(
             self.bus,
             self.keys,
@@ -99,6 +103,7 @@ class Station:
             self.coach.start()
             self.recorder.start()
             self.executions.start()
+            self.joints.start()
             for process in self.processes:
                 process.start()
             self.jobs.start()
@@ -118,6 +123,7 @@ class Station:
         self.coach.stop()
         self.jobs.stop()
         self.executions.stop()
+        self.joints.stop()
         self.preview.stop()
         for process in self.processes:
             process.stop()
@@ -158,6 +164,8 @@ class Station:
             self.recorder,
             self.jobs,
             self.executions,
+            self.gate,
+            self.joints,
             self.trajectory,
             self.health,
             self._show_demonstration,

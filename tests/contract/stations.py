@@ -28,7 +28,7 @@ def station() -> Iterator[Station]:
     with tempfile.TemporaryDirectory() as folder:
         station = Station(settings(Path(folder)))
         try:
-            for part in (station.recorder, station.executions, station.jobs):
+            for part in (station.recorder, station.executions, station.joints, station.jobs):
                 part.start()
             yield station
         finally:

@@ -10,7 +10,9 @@ from teachpath.config import Settings
 from teachpath.io.store import Store
 from teachpath.records import Demonstration, Trajectory
 from teachpath.workers.executions import Executions
+from teachpath.workers.gate import TrackerGate
 from teachpath.workers.jobs import Jobs
+from teachpath.workers.joints import JointFeed
 from teachpath.workers.recorder import Recorder
 
 
@@ -23,6 +25,8 @@ class Parts:
     recorder: Recorder
     jobs: Jobs
     executions: Executions
+    gate: TrackerGate
+    joints: JointFeed
     trajectory: Callable[[Demonstration], Trajectory]
     health: Callable[[], dict[str, Any]]
     imported: Callable[[Demonstration, Trajectory], None]

@@ -12,7 +12,9 @@ from teachpath.api.executions import executions_router
 from teachpath.api.faults import REFUSALS, answer_errors
 from teachpath.api.guard import Guard
 from teachpath.api.parts import Parts
+from teachpath.api.robot import robot_router
 from teachpath.api.tasks import recording_router, tasks_router
+from teachpath.api.trackers import trackers_router
 from teachpath.api.work import jobs_router, results_router
 from teachpath.io.documents import to_document
 from teachpath.records import Calibration
@@ -30,7 +32,16 @@ def build_api(parts: Parts, view: APIRouter) -> FastAPI:
     app.add_middleware(Guard, largest_upload=parts.settings.web.largest_upload)
     app.add_middleware(TrustedHostMiddleware, allowed_hosts=hosts)
     answer_errors(app)
-    routers = (tasks_router, recording_router, jobs_router, results_router, executions_router, station_router)
+    routers = (
+        tasks_router,
+        recording_router,
+        trackers_router,
+        jobs_router,
+        results_router,
+        executions_router,
+        robot_router,
+        station_router,
+    )
     for router in routers:
         app.include_router(router(parts), prefix="/api/v1", responses=REFUSALS)
     app.include_router(view)

@@ -79,7 +79,7 @@ class Program:
         period: float = 0.004,
     ) -> None:
         verify(plan)
-        self._rest_of: Iterator[Stretch] = iter(_stretches(plan, here, settings, dwell))
+        self._rest_of: Iterator[Stretch] = iter(stretches(plan, here, settings, dwell))
         self._length = float(plan.lengths[-1])
         self._override, self._held, self._period = override, False, period
         self._elapsed = 0.0
@@ -204,7 +204,12 @@ class Program:
                 self._governor.hold()
 
 
-def _stretches(plan: Plan, here: Array, settings: MotionSettings, dwell: float) -> list[Stretch]:
+def stretches(plan: Plan, here: Array, settings: MotionSettings, dwell: float) -> list[Stretch]:
+    """Return what an execution does from `here` (6,) to its end.
+
+    Raises:
+        PathRefused: the way from here to the start of the path, or home from its goal, is not free.
+    """
     carries = plan.scene.carried is not None
     load = Load(placed=plan.scene.carried.position) if plan.scene.carried else None
     model = CollisionModel(plan.scene)

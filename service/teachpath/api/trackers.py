@@ -1,0 +1,127 @@
+"""Trackers over a WebSocket: the page's own hand, and any program that prefers one to Zenoh.
+
+Page to service, binary: a `HandSample` as protobuf. Text: a JSON object with one of
+- `sample`: a `HandSample` with the names of its fields;
+- `ping`: a number, answered at once with `pong` (the same number), `service_ns`, and `samples`, how many were `passed`
+  on and `refused`;
+- `end`: number of the last sample sent, with `discard` if the open demonstration is to be thrown away; answered with
+  `report`, the account of the recording.
+Service to page, text: those answers, and `refused` (a sentence) for every message that cannot be used.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import time
+from contextlib import suppress
+from typing import Any, Final
+
+from fastapi import APIRouter, WebSocket, WebSocketDisconnect
+from starlette.concurrency import run_in_threadpool
+from starlette.websockets import WebSocketState
+
+from teachpath.api.parts import Parts
+from teachpath.api.view import same_origin
+from teachpath.errors import TeachpathError, UnusableInput
+from teachpath.io.wire import LARGEST_SAMPLE
+from teachpath.workers.gate import GatedTracker
+
+SILENCE: Final = 10.0  # [s] after which a page that says nothing, not even a ping, has gone
+REFUSED: Final = 1008  # close code: policy violation
+REASON: Final = 120  # bytes of a close reason, at most 123
+
+LARGEST_PING: Final = 1e18  # what is no number, or infinite, could not be answered in JSON
+
+Answer = dict[str, Any]
+
+
+def trackers_router(parts: Parts, *, silence: float = SILENCE) -> APIRouter:
+    """Return the WebSocket `/trackers/{name}/samples`."""
+    router = APIRouter()
+
+    @router.websocket("/trackers/{name}/samples")
+    async def samples(socket: WebSocket, name: str) -> None:
+        if not same_origin(socket.headers):
+            await socket.close()  # before it was accepted: the handshake is answered with 403
+            return
+        await socket.accept()
+        loop, dismissed = asyncio.get_running_loop(), asyncio.Queue[str]()
+
+        def leave(why: str) -> None:
+            with suppress(RuntimeError):  # the loop has ended meanwhile
+                loop.call_soon_threadsafe(dismissed.put_nowait, why)
+
+        try:
+            tracker = parts.gate.admit(name, leave)
+        except TeachpathError as error:
+            await _close(socket, str(error))
+            return
+        listening = asyncio.create_task(_listen(socket, tracker, silence))
+        leaving = asyncio.create_task(dismissed.get())
+        try:
+            done, _ = await asyncio.wait((listening, leaving), return_when=asyncio.FIRST_COMPLETED)
+            await _close(socket, next(iter(done)).result())
+        finally:
+            parts.gate.let_out(tracker)
+            for task in (listening, leaving):
+                task.cancel()
+            await asyncio.gather(listening, leaving, return_exceptions=True)
+
+    return router
+
+
+async def _listen(socket: WebSocket, tracker: GatedTracker, silence: float) -> str:
+    """Answer message after message; return why the tracker has to leave, or nothing when it left by itself."""
+    try:
+        while True:
+            message = await asyncio.wait_for(socket.receive(), silence)
+            if message["type"] == "websocket.disconnect":
+                return ""
+            # On another thread: the bus may make a publisher wait.
+            answer = await run_in_threadpool(_answer, tracker, message.get("bytes") or message.get("text") or "")
+            if answer:
+                await socket.send_text(json.dumps(answer))
+    except UnusableInput as error:
+        return str(error)
+    except TimeoutError:
+        return f"nothing came for {silence:g} s, not even a ping"
+    except (WebSocketDisconnect, RuntimeError):
+        return ""
+
+
+def _answer(tracker: GatedTracker, content: bytes | str) -> Answer:
+    """Do what a message asks for; raises UnusableInput when the tracker has to leave."""
+    if isinstance(content, bytes):
+        return _refusal(tracker.take(content))
+    order = _parse(content)
+    if isinstance(order.get("sample"), dict):
+        return _refusal(tracker.take(order["sample"]))
+    ping, end = order.get("ping"), order.get("end")
+    if isinstance(ping, int | float) and abs(ping) < LARGEST_PING:
+        counts = {"passed": tracker.passed, "refused": tracker.refused}
+        return {"pong": ping, "service_ns": time.time_ns(), "samples": counts}
+    if isinstance(end, int) and 0 <= end < 2**64:
+        try:
+            return {"report": tracker.end(end, discard=order.get("discard") is True)}
+        except TeachpathError as error:
+            return {"refused": str(error)}
+    return _refusal(tracker.refuse(f"{content[:80]!r} is no message of a tracker: send sample, ping or end"))
+
+
+def _parse(text: str) -> Answer:
+    try:
+        order = json.loads(text) if len(text) <= LARGEST_SAMPLE else None
+    except (ValueError, RecursionError):
+        order = None
+    return order if isinstance(order, dict) else {}
+
+
+def _refusal(sentence: str) -> Answer:
+    return {"refused": sentence} if sentence else {}
+
+
+async def _close(socket: WebSocket, reason: str) -> None:
+    if socket.client_state is WebSocketState.CONNECTED and socket.application_state is WebSocketState.CONNECTED:
+        short = reason.encode(errors="replace")[:REASON].decode(errors="ignore")
+        await socket.close(REFUSED if reason else 1000, short)

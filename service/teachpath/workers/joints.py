@@ -1,0 +1,122 @@
+"""What the arm does, for those who look on: decimated and coalesced, so that no one who looks slows the arm down."""
+
+from __future__ import annotations
+
+import threading
+from collections import deque
+from dataclasses import dataclass
+from typing import Final
+
+from teachpath.errors import UnusableInput
+from teachpath.io.bus import Bus, Handle
+from teachpath.io.wire import decode_setpoint, decode_state
+from teachpath.records import JointState
+from teachpath_proto.keys import Keys
+
+KEPT: Final = 512  # newest messages for one onlooker who does not ask
+
+
+@dataclass(frozen=True, eq=False)
+class JointFrame:
+    """The newest joint state, and the worst since the frame before.
+
+    Attributes:
+        state: the newest joint state.
+        speed: (6,) joint velocity of largest size since the frame before [rad/s].
+        tracking_error: largest since the frame before [rad].
+        lateness: of the setpoints since the frame before, the largest [s], or None when none was sent.
+    """
+
+    state: JointState
+    speed: tuple[float, ...]
+    tracking_error: float
+    lateness: float | None
+
+
+class JointFeed:
+    """Follows one arm on the bus for any number of onlookers."""
+
+    def __init__(self, bus: Bus, keys: Keys, *, robot: str) -> None:
+        self._bus, self._keys, self._robot = bus, keys, robot
+        self._lock = threading.Lock()
+        self._onlookers: tuple[Onlooker, ...] = ()
+        self._last: bytes | None = None
+        self._handles: list[Handle] = []
+
+    def start(self) -> None:
+        """Follow the arm from now on."""
+        self._handles = [
+            self._bus.subscribe(self._keys.state(self._robot), self._hear_state),
+            self._bus.subscribe(self._keys.setpoint(self._robot), self._hear_setpoint),
+        ]
+
+    def stop(self) -> None:
+        """Stop following; a second call does nothing."""
+        for handle in self._handles:
+            handle.close()
+        self._handles.clear()
+
+    def attach(self) -> Onlooker:
+        """Return an onlooker, who begins with the newest joint state."""
+        onlooker = Onlooker()
+        if self._last is not None:
+            onlooker.states.append(self._last)
+        with self._lock:
+            self._onlookers = (*self._onlookers, onlooker)
+        return onlooker
+
+    def detach(self, onlooker: Onlooker) -> None:
+        """Forget an onlooker who has gone."""
+        with self._lock:
+            self._onlookers = tuple(o for o in self._onlookers if o is not onlooker)
+
+    # on the transport's threads: append only
+
+    def _hear_state(self, _: str, payload: bytes) -> None:
+        self._last = payload
+        for onlooker in self._onlookers:
+            onlooker.states.append(payload)
+
+    def _hear_setpoint(self, _: str, payload: bytes) -> None:
+        for onlooker in self._onlookers:
+            onlooker.setpoints.append(payload)
+
+
+class Onlooker:
+    """One who looks at the arm, as often as it likes."""
+
+    def __init__(self) -> None:
+        self.states: deque[bytes] = deque(maxlen=KEPT)
+        self.setpoints: deque[bytes] = deque(maxlen=KEPT)
+
+    def take(self) -> JointFrame | None:
+        """Return what has happened since the last call, or None when no joint state has come."""
+        states = [state for payload in _drain(self.states) if (state := _state(payload)) is not None]
+        lateness = [late for payload in _drain(self.setpoints) if (late := _lateness(payload)) is not None]
+        if not states:
+            return None
+        return JointFrame(
+            states[-1],
+            tuple(max((float(s.velocity[k]) for s in states), key=abs) for k in range(6)),
+            max(state.tracking_error for state in states),
+            max(lateness, default=None),
+        )
+
+
+def _drain(queue: deque[bytes]) -> list[bytes]:
+    return [queue.popleft() for _ in range(len(queue))]
+
+
+def _state(payload: bytes) -> JointState | None:
+    try:
+        return decode_state(payload)
+    except UnusableInput:
+        return None  # the next one comes in 10 ms; whoever commands the arm reports it
+
+
+def _lateness(payload: bytes) -> float | None:
+    try:
+        setpoint = decode_setpoint(payload)
+    except UnusableInput:
+        return None
+    return (setpoint.sent_ns - setpoint.nominal_ns) * 1e-9
