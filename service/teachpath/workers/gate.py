@@ -21,6 +21,8 @@ FASTEST: Final = 1000.0  # samples a second in the long run
 BURST: Final = 2000.0  # samples that may come at once, after a pause of the network
 PATIENCE: Final = 100  # refused messages in a row, after which a tracker has to leave
 
+AFTERGLOW: Final = 5.0  # [s] a tracker that has just been let out may still be seen on the bus
+
 Leave = Callable[[str], None]
 
 
@@ -38,6 +40,7 @@ class TrackerGate:
         self._bus, self._keys, self._recorder, self._clock = bus, keys, recorder, clock
         self._lock = threading.Lock()
         self._here: dict[str, GatedTracker] = {}
+        self._left: dict[str, float] = {}  # when
 
     def admit(self, name: str, leave: Leave) -> GatedTracker:
         """Let a tracker in; one of the same name that came through the gate before has to leave.
@@ -70,10 +73,13 @@ class TrackerGate:
         with self._lock:
             if self._here.get(tracker.name) is tracker:
                 del self._here[tracker.name]
+                recent = {name: at for name, at in self._left.items() if self._clock() - at < AFTERGLOW}
+                self._left = recent | {tracker.name: self._clock()}
         tracker.withdraw()
 
     def _check_free(self, name: str, trackers: Sequence[Tracker]) -> None:
-        if any(tracker.name == name and tracker.announced for tracker in trackers):
+        just_left = self._clock() - self._left.get(name, -AFTERGLOW) < AFTERGLOW
+        if not just_left and any(tracker.name == name and tracker.announced for tracker in trackers):
             raise Conflict(f"a tracker {name} is there already, not from a page; choose another name")
         if len(self._here) >= MOST:
             raise Conflict(f"{len(self._here)} trackers are connected from pages, the most there may be; close some")

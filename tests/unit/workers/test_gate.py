@@ -144,6 +144,23 @@ def test_names_are_kept_apart(door: Door) -> None:
     door.admit("one-more")
 
 
+def test_one_that_comes_back_at_once_is_not_taken_for_another(door: Door) -> None:
+    recorder = door.bench.recorder
+    page = door.admit()
+    while not any(tracker.announced for tracker in recorder.trackers()):
+        pass
+    other = door.bench.bus.announce(KEYS.alive("tracker", "page"))  # as if the bus still told of it
+    door.gate.let_out(page)
+    door.gate.let_out(door.admit())
+    other.close()
+    door.now += gate.AFTERGLOW
+    door.bench.bus.announce(KEYS.alive("tracker", "page"))
+    while not any(tracker.announced for tracker in recorder.trackers()):
+        pass
+    with pytest.raises(Conflict):
+        door.admit()
+
+
 def test_the_newest_page_of_a_name_wins_and_leaving_is_seen_on_the_bus(door: Door) -> None:
     alive: list[tuple[str, bool]] = []
     door.bench.bus.watch(KEYS.all_trackers_alive, lambda key, there: alive.append((key.rsplit("/")[-1], there)))
