@@ -1,36 +1,103 @@
-// The operator's page: puts the 3-D view and the panel together.
-import { Panel } from "./panel.js";
+// The operator's page: puts the 3-D view, the state and the panels together.
+//
+// A panel is a module panels/NAME.js that exports `panel`:
+//   panel = { id, title,
+//             mount(element, context)   called once; element is the panel's own, empty
+//             update(state, changed)    called after every change of the state; changed is the Set of names (store.js)
+//             show(), hide() }          optional: its tab was chosen, or another one
+// context = { store, feed, view, easel, messages,
+//             attempt(order)            do an order; an error becomes a sentence in the message line
+//             open(id) }                choose another tab
+// A panel reads context.store.state, changes it with context.store.set(), and speaks REST through api.js.
+import { at, post } from "./api.js";
+import { Feed } from "./feed.js";
+import { header } from "./header.js";
+import { Messages } from "./messages.js";
+import { panel as demonstrate } from "./panels/demonstrate.js";
+import { panel as edit } from "./panels/edit.js";
+import { panel as run } from "./panels/run.js";
+import { panel as ways } from "./panels/ways.js";
+import { Store, moving } from "./store.js";
+import { Tabs } from "./tabs.js";
 import { View } from "./view.js";
 
 const root = document.documentElement;
-const connection = document.getElementById("connection");
-
-const view = new View(document.getElementById("view"), {
-  connected(state, seconds) {
-    root.dataset.connection = state;
-    connection.textContent = {
-      live: "Connected",
-      connecting: "Connecting to the service …",
-      lost: `No connection to the service; trying again in ${Math.max(1, Math.round(seconds))} s`,
-    }[state];
-  },
+const byId = (id) => document.getElementById(id);
+const store = new Store();
+const feed = new Feed(store);
+const messages = new Messages(byId("message"));
+const view = new View(byId("view"), {
+  connected: (state, seconds) => connected("connection", state, seconds),
   ready() {
     root.dataset.scene = "ready";
   },
 });
 
+// The page is live when both of its WebSockets are; either may come back first.
+function connected(which, state, seconds = 0) {
+  root.dataset[which] = state;
+  const states = [root.dataset.connection, root.dataset.events];
+  const all = states.includes("lost") ? "lost" : states.includes("connecting") ? "connecting" : "live";
+  store.set({ connection: all });
+  byId("connection").textContent = {
+    live: "Connected",
+    connecting: "Connecting to the service …",
+    lost: `No connection to the service; trying again in ${Math.max(1, Math.round(seconds))} s`,
+  }[all];
+}
+
+const tabs = new Tabs(byId("tabs"), byId("panels"), (id) => {
+  for (const panel of panels) panel[panel.id === id ? "show" : "hide"]?.();
+});
+const context = {
+  store,
+  feed,
+  view,
+  easel: view.easel,
+  messages,
+  attempt: (order) => messages.attempt(order),
+  open: (id) => tabs.choose(id),
+};
+const panels = [demonstrate, ways, edit, run];
+for (const panel of panels) panel.mount(tabs.add(panel.id, panel.title), context);
+header(context, { task: byId("task"), stop: byId("stop"), control: byId("control") });
+store.subscribe((state, changed) => {
+  for (const panel of panels) panel.update(state, changed);
+  if (changed.has("focus")) view.highlight(state.focus?.kind, state.focus?.id);
+});
+for (const panel of panels) panel.update(store.state, new Set(Object.keys(store.state)));
+
 for (const box of document.querySelectorAll("[data-layer]")) {
   box.addEventListener("change", () => view.show(box.dataset.layer, box.checked));
 }
-document.getElementById("home").addEventListener("click", () => view.home());
+byId("home").addEventListener("click", () => view.home());
+// The space bar stops the arm wherever the focus is, but in a text field.
+addEventListener(
+  "keydown",
+  (event) => {
+    if (event.code !== "Space" || event.target.matches("input[type=text], input[type=number], textarea") || !moving(store.state)) return;
+    event.preventDefault();
+    event.stopPropagation();
+    if (!event.repeat) stop();
+  },
+  { capture: true },
+);
+byId("stop").addEventListener("click", () => stop());
 
-new Panel(document).start();
+function stop() {
+  const status = moving(store.state);
+  if (status) context.attempt(() => post(`${at("executions", status.execution)}/stop`));
+}
+
+feed.start((state, seconds) => connected("events", state, seconds));
 view.connect();
 
-// What the browser tests, and the curious, may ask: paths drawn, where they are, how often the view was drawn.
+// What the browser tests, and the curious, may ask: the state, paths drawn, where they are, how often the view was drawn.
 globalThis.teachpath = {
+  state: () => store.state,
   paths: () => view.paths(),
   place: (path) => view.place(path),
+  project: (point) => view.easel.project(point),
   get draws() {
     return view.draws;
   },

@@ -1,6 +1,8 @@
 // The 3-D view: meshcat's viewer as a library, fed by our own WebSocket.
 // Server to page: batches of [u32 little-endian length][umsgpack command]; the first batch of a connection is the
 // whole scene. Page to server: the number of batches drawn, as text, from the next animation frame.
+import { socketAddress } from "./api.js";
+import { Easel } from "./easel.js";
 import { dress } from "./stage.js";
 
 const SHORTEST = 250; // [ms] first pause before connecting again
@@ -19,12 +21,12 @@ export class View {
     this.touched = false; // the operator has turned the view: it stays as it is
     this.stage = dress(this.viewer);
     this.#fitTo(element);
+    this.easel = new Easel(this.viewer, element);
   }
 
   connect() {
     this.connected("connecting");
-    const scheme = location.protocol === "https:" ? "wss:" : "ws:";
-    const socket = new WebSocket(`${scheme}//${location.host}/api/v1/view`);
+    const socket = new WebSocket(socketAddress("view"));
     socket.binaryType = "arraybuffer";
     let owed = 0;
     let replayed = false;
@@ -62,6 +64,21 @@ export class View {
     this.stage.look();
   }
 
+  // Draw one demonstration or path in full and the others pale: kind "demonstrations" or "paths"; null: all in full.
+  highlight(kind, id) {
+    this.highlighted = kind && id ? { kind, id } : null;
+    this.#emphasize();
+    this.viewer.set_dirty();
+  }
+
+  // Points [[x, y, z], ...] of a demonstration as it is drawn [m], world; null when it is not drawn.
+  pointsOf(demonstration) {
+    const line = this.viewer.scene_tree.children.demonstrations?.children[demonstration]?.children["<object>"];
+    const array = line?.object.geometry?.attributes.position?.array;
+    if (!array) return null;
+    return Array.from({ length: array.length / 3 }, (_, i) => [array[3 * i], array[3 * i + 1], array[3 * i + 2]]);
+  }
+
   // Paths that hold a drawn object, e.g. "/robot/link2/upper".
   paths() {
     const found = [];
@@ -90,6 +107,23 @@ export class View {
       at += 4 + length;
     }
     this.#hide();
+    this.#emphasize();
+    this.drawn?.();
+  }
+
+  #emphasize() {
+    for (const kind of ["demonstrations", "paths"]) {
+      for (const [id, node] of Object.entries(this.viewer.scene_tree.children[kind]?.children ?? {})) {
+        const material = node.children["<object>"]?.object.material;
+        if (!material) continue;
+        material.userData.opacity ??= material.opacity;
+        const here = this.highlighted;
+        const pale = here && here.kind === kind && here.id !== id;
+        material.opacity = pale ? 0.12 : material.userData.opacity;
+        material.transparent = material.opacity < 1;
+        material.depthWrite = material.opacity === 1;
+      }
+    }
   }
 
   // Only what exists: meshcat makes an empty group of every path it is asked for.

@@ -13,6 +13,7 @@ import numpy as np
 from fastapi import FastAPI
 
 from teachpath import __version__
+from teachpath.api.events import events_router
 from teachpath.api.parts import Parts
 from teachpath.api.station import build_api
 from teachpath.api.view import view_router
@@ -20,6 +21,7 @@ from teachpath.config import Settings
 from teachpath.errors import NotFound
 from teachpath.io.bus import Bus, open_bus
 from teachpath.io.store import Store
+from teachpath.io.wire import report_document
 from teachpath.learning import LearningSettings
 from teachpath.motion import drawing
 from teachpath.offline.lock import StationLock
@@ -32,6 +34,8 @@ from teachpath.workers.executions import Executions
 from teachpath.workers.gate import TrackerGate
 from teachpath.workers.jobs import Jobs, Kind
 from teachpath.workers.joints import JointFeed
+from teachpath.workers.lookout import Look, Lookout
+from teachpath.workers.news import News
 from teachpath.workers.preview import Preview
 from teachpath.workers.processes import WorkerProcess
 from teachpath.workers.recorder import Recorder
@@ -65,7 +69,8 @@ class Station:
             self._lock.__exit__(None, None, None)
             raise
         self.keys = Keys(settings.bus.prefix)
-        self.store = Store(settings.store)
+        self.news = News()
+        self.store = Store(settings.store, changed=self.news.tell)
         self.recorder = Recorder(
             self.bus,
             self.keys,
@@ -90,7 +95,8 @@ class Station:
             to_world=self._to_world,
         )
         self.processes = [WorkerProcess(name, settings.model_dump_json()) for name in ("simulator", "executor")]
-        self.web: FastAPI = build_api(self._parts(), view_router(self.preview))
+        self.web: FastAPI = build_api(self._parts(), view_router(self.preview), events_router(self.news))
+        self._lookout = Lookout(self.news, self._looks())
         self._shown = ""
         self._started = time.monotonic()
 
@@ -104,6 +110,7 @@ class Station:
             self.recorder.start()
             self.executions.start()
             self.joints.start()
+            self._lookout.start()
             for process in self.processes:
                 process.start()
             self.jobs.start()
@@ -117,6 +124,7 @@ class Station:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
+        self._lookout.stop()
         for process in self.processes:
             process.ask_to_stop()
         self.recorder.stop()
@@ -138,23 +146,36 @@ class Station:
     def health(self) -> dict[str, Any]:
         """Say which parts run, and what an operator should know."""
         status = self.executions.status
-        unfinished = [f.name for f in self.store.recordings.unfinished()]
-        running = {r.tracker for r in self.recorder.reports()}
-        notes = [f"the {p.name} has ended: {p.last_words()}" for p in self.processes if not p.is_alive()]
-        notes += self.recorder.faults()
-        if unfinished and not running:
-            notes.append(f"{len(unfinished)} recordings were cut off; stop the service and run: teachpath doctor")
         return {
             "version": __version__,
             "uptime": round(time.monotonic() - self._started, 1),
             "bus": asdict(self.settings.bus),
             "processes": {p.name: "running" if p.is_alive() else "ended" for p in self.processes},
-            "recording": sorted(running),
+            "recording": sorted(r.tracker for r in self.recorder.reports()),
             "backlog": self.recorder.backlog,
             "trackers": [asdict(tracker) for tracker in self.recorder.trackers()],
             "coach": {"task": self._shown, "sentence": self.coach.sentence(self._shown)},
             "executor": asdict(status) if status else None,
-            "notes": notes,
+            "notes": self.notes(),
+        }
+
+    def notes(self) -> list[str]:
+        """Say what an operator should know."""
+        notes = [f"the {p.name} has ended: {p.last_words()}" for p in self.processes if not p.is_alive()]
+        notes += self.recorder.faults()
+        unfinished = self.store.recordings.unfinished()
+        if unfinished and not self.recorder.reports():
+            notes.append(f"{len(unfinished)} recordings were cut off; stop the service and run: teachpath doctor")
+        return notes
+
+    def _looks(self) -> dict[str, Look]:
+        """Return what pages are told of without asking, because no row of the store holds it."""
+        return {
+            "recordings": lambda: {r.tracker: report_document(r) for r in self.recorder.reports()},
+            "trackers": lambda: {t.name: {"announced": t.announced} for t in self.recorder.trackers()},
+            "coach": lambda: {task: {"sentence": said} for task, said in self.coach.sentences().items()},
+            "station": lambda: {"": {"version": __version__, "notes": self.notes()}},
+            "executor": lambda: {"": asdict(status)} if (status := self.executions.status) else {},
         }
 
     def _parts(self) -> Parts:

@@ -38,9 +38,9 @@ def test_a_tracker_that_comes_and_goes_is_shown_within_a_second(visit: Visit, se
         with Link(service.endpoint) as link:
             tracker = Tracker(link, "glove-page")
             began = time.monotonic()
-            within(visit, SOON, f"{text('work')}.includes('glove-page is here')")
+            within(visit, SOON, f"{text('recordings')}.includes('glove-page is here')")
         del tracker
-        within(visit, SOON, f"!{text('work')}.includes('glove-page')")
+        within(visit, SOON, f"!{text('recordings')}.includes('glove-page')")
         assert time.monotonic() - began < 2 * SOON + 0.5
     assert visit.said == []
 
@@ -78,10 +78,10 @@ def test_a_recording_is_paused_and_resumed_from_the_page(visit: Visit, service: 
         visit.page.wait_for_selector("#task option[value=paused]", state="attached")
         visit.page.select_option("#task", "paused")
         visit.page.get_by_role("button", name="Pause").click()
-        within(visit, 5, f"{text('work')}.includes('Recording glove-paused: paused')")
+        within(visit, 5, f"{text('recordings')}.includes('Recording glove-paused: paused')")
         tracker.publish(shown(1), speed=FAST)
         visit.page.get_by_role("button", name="Resume").click()
-        within(visit, 5, f"{text('work')}.includes('Recording glove-paused: reach')")
+        within(visit, 5, f"{text('recordings')}.includes('Recording glove-paused: reach')")
         report = tracker.stop()
     assert (report.received, report.idle, len(report.demonstrations)) == (SHOWN, SHOWN, 0)
     assert visit.said == []

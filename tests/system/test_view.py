@@ -16,6 +16,7 @@ from PIL import Image
 from websockets.exceptions import InvalidStatus
 from websockets.sync.client import connect
 
+from teachpath.api.events import events_router
 from teachpath.api.view import view_router
 from teachpath.io import wire
 from teachpath.io.bus import MemoryBus
@@ -25,6 +26,7 @@ from teachpath.motion.scenes import paper_scene
 from teachpath.motion.settings import MotionSettings
 from teachpath.nurbs import Curve
 from teachpath.records import Fit, JointState, LearnedPath
+from teachpath.workers.news import News
 from teachpath.workers.preview import Preview
 from teachpath_proto.keys import Keys
 
@@ -55,6 +57,7 @@ class Server:
         self.preview.start()
         app = FastAPI()
         app.include_router(view_router(self.preview))
+        app.include_router(events_router(News()))
         for resource in ("tasks", "executions"):
             app.add_api_route(f"/api/v1/{resource}", lambda: [])
         app.add_api_route("/api/v1/health", lambda: {})
@@ -139,7 +142,7 @@ def test_shows_arm_obstacles_paths_and_demonstrations_with_a_clean_console(visit
     assert len([p for p in paths if p.startswith("/robot/link")]) == len(drawing())
     picture = np.asarray(Image.open(io.BytesIO(visit.page.screenshot())).convert("L"), dtype=float)
     assert picture[100:700, 50:850].std() > 10  # a blank canvas has 0
-    visit.page.wait_for_timeout(1500)  # the panel has asked at least once more
+    visit.page.wait_for_timeout(500)  # the panels have asked
     assert visit.said == []
     assert visit.page.locator("#connection").text_content() == "Connected"
     assert "teachpath-client synthetic" in (visit.page.locator("#demonstrations").text_content() or "")
@@ -165,7 +168,7 @@ def test_comes_back_after_a_restart_and_shows_the_truth(visit: Visit, server: Se
     server.stop()
     visit.page.wait_for_selector("html[data-connection=lost]", state="attached")
     server.start(demonstrations=3)
-    visit.page.wait_for_selector("html[data-connection=live]", state="attached", timeout=30_000)
+    visit.page.wait_for_selector("html[data-connection=live][data-events=live]", state="attached", timeout=30_000)
     visit.wait(lambda: len([p for p in visit.paths() if p.startswith("/demonstrations/")]) == 3)
     assert len([p for p in visit.paths() if p.startswith("/robot/link")]) == len(drawing())
 

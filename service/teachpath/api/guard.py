@@ -9,7 +9,7 @@ from starlette.exceptions import HTTPException
 from starlette.responses import JSONResponse
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from teachpath.api.view import same_origin
+from teachpath.api.sockets import same_origin
 
 LARGEST_DOCUMENT: Final = 1024 * 1024  # bytes of a request that is no upload
 SAFE: Final = ("GET", "HEAD", "OPTIONS")

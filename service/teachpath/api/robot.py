@@ -11,7 +11,7 @@ from typing import Any, Final
 from fastapi import APIRouter, WebSocket, WebSocketDisconnect
 
 from teachpath.api.parts import Parts
-from teachpath.api.view import same_origin
+from teachpath.api.sockets import same_origin
 from teachpath.io.documents import to_document
 from teachpath.motion.puma560 import ACCELERATION, FINGER_TRAVEL, JERK, LINKS, LOWER, SPEED, TOOL_LENGTH, TORQUE, UPPER
 from teachpath.motion.rehearsal import rehearse

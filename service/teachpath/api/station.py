@@ -24,8 +24,8 @@ that the arm can follow it, and moves the arm. Metres, radians, seconds; quatern
 are nanoseconds since the Unix epoch. Every refusal has a sentence in `detail`."""
 
 
-def build_api(parts: Parts, view: APIRouter) -> FastAPI:
-    """Return the web application: the REST API under /api/v1 and the page with its view."""
+def build_api(parts: Parts, *pages: APIRouter) -> FastAPI:
+    """Return the web application: the REST API under /api/v1, and what the page needs beside it."""
     app = FastAPI(title="teachpath", version=__version__, description=DESCRIPTION, docs_url=None, redoc_url=None)
     # Another name for this address is how a foreign page would reach a loopback service (DNS rebinding).
     hosts = ["127.0.0.1", "localhost", "[::1]", parts.settings.web.host, *parts.settings.web.hosts]
@@ -44,7 +44,8 @@ def build_api(parts: Parts, view: APIRouter) -> FastAPI:
     )
     for router in routers:
         app.include_router(router(parts), prefix="/api/v1", responses=REFUSALS)
-    app.include_router(view)
+    for page in pages:
+        app.include_router(page)
     return app
 
 

@@ -22,7 +22,7 @@ from starlette.concurrency import run_in_threadpool
 from starlette.websockets import WebSocketState
 
 from teachpath.api.parts import Parts
-from teachpath.api.view import same_origin
+from teachpath.api.sockets import same_origin
 from teachpath.errors import TeachpathError, UnusableInput
 from teachpath.io.wire import LARGEST_SAMPLE
 from teachpath.workers.gate import GatedTracker

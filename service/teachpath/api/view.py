@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-import asyncio
-from collections.abc import Mapping
-from contextlib import suppress
 from pathlib import Path
 from typing import Final
-from urllib.parse import urlsplit
 
-from fastapi import APIRouter, Response, WebSocket, WebSocketDisconnect
+from fastapi import APIRouter, Response, WebSocket
 from fastapi.responses import FileResponse, PlainTextResponse
 
+from teachpath.api import sockets
 from teachpath.errors import NotFound
 from teachpath.workers.preview import Page, Preview, viewer_files
 
@@ -94,64 +91,18 @@ def view_router(preview: Preview) -> APIRouter:
 
     @router.websocket("/api/v1/view")
     async def view(socket: WebSocket) -> None:
-        if not same_origin(socket.headers):
-            await socket.close()  # before it was accepted: the handshake is answered with 403
-            return
-        await socket.accept()
-        await _serve(socket, preview)
+        if await sockets.admit(socket):
+            await sockets.serve(socket, preview.attach, preview.detach, socket.send_bytes, _acknowledge)
 
     return router
 
 
-def same_origin(headers: Mapping[str, str]) -> bool:
-    """Tell whether a WebSocket handshake comes from our own page, or from no page at all (no Origin header)."""
-    origin = headers.get("origin")
-    return origin is None or urlsplit(origin).netloc.lower() == headers.get("host", "").lower()
-
-
-async def _serve(socket: WebSocket, preview: Preview) -> None:
-    loop, news = asyncio.get_running_loop(), asyncio.Event()
-
-    def wake() -> None:
-        with suppress(RuntimeError):  # the loop has ended meanwhile
-            loop.call_soon_threadsafe(news.set)
-
-    page = preview.attach(wake)
-    news.set()
-    listening = asyncio.create_task(_listen(socket, page))
-    sending = asyncio.create_task(_send(socket, page, news))
-    try:
-        await asyncio.wait((listening, sending), return_when=asyncio.FIRST_COMPLETED)
-    finally:
-        preview.detach(page)
-        for task in (listening, sending):
-            task.cancel()
-        await asyncio.gather(listening, sending, return_exceptions=True)
-
-
-async def _listen(socket: WebSocket, page: Page) -> None:
-    """Take the page's acknowledgements until it leaves or says something else."""
-    try:
-        while True:
-            text = await socket.receive_text()
-            if not (text.isascii() and text.isdigit() and len(text) < 9):
-                await socket.close(1008, "only counts of drawn batches are expected here")
-                return
-            page.acknowledge(int(text))
-    except (WebSocketDisconnect, KeyError):
-        return
-
-
-async def _send(socket: WebSocket, page: Page, news: asyncio.Event) -> None:
-    """Send what the page has credit for, as it comes."""
-    try:
-        while True:
-            await news.wait()
-            news.clear()
-            while (batch := page.take()) is not None:
-                await socket.send_bytes(batch)
-    except (WebSocketDisconnect, RuntimeError):
-        return
+def _acknowledge(text: str, page: Page) -> str:
+    """Take how many batches a page has drawn."""
+    if not (text.isascii() and text.isdigit() and len(text) < 9):
+        return "only counts of drawn batches are expected here"
+    page.acknowledge(int(text))
+    return ""
 
 
 def _file(path: Path, suffix: str) -> Response:

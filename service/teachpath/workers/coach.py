@@ -61,6 +61,10 @@ class Coach:
         """Return what was found last for a task, or nothing."""
         return self._sentences.get(task, "")
 
+    def sentences(self) -> dict[str, str]:
+        """Return what was found last, by task."""
+        return dict(self._sentences)
+
     def look_at(self, task: str) -> str:
         """Compare a task's demonstrations now and return the sentence."""
         usable = [d for d in self._demonstrations(task) if d.is_usable][-MOST:]

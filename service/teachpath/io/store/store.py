@@ -14,6 +14,7 @@ from sqlalchemy.orm import Session
 
 from teachpath.errors import Conflict, NotFound
 from teachpath.io.documents import from_document, to_document
+from teachpath.io.store.changes import Changed, note, telling, unheard
 from teachpath.io.store.engine import open_engine
 from teachpath.io.store.recordings import Opener, Recordings, open_new
 from teachpath.io.store.tables import (
@@ -64,13 +65,14 @@ class ExecutionRow:
 class Store:
     """The rows of a station, and its recordings; safe to use from several threads."""
 
-    def __init__(self, settings: StoreSettings, *, opener: Opener = open_new) -> None:
-        """Open the database; `opener` opens the files of new recordings."""
+    def __init__(self, settings: StoreSettings, *, opener: Opener = open_new, changed: Changed = unheard) -> None:
+        """Open the database; `opener` opens the files of new recordings, `changed` hears of every changed row."""
         folder = Path(settings.data_dir)
         folder.mkdir(parents=True, exist_ok=True)
         self.recordings = Recordings(folder / "recordings", opener)
         self._engine = open_engine(settings.database or f"sqlite:///{folder / 'teachpath.sqlite'}")
         self._writing = self._engine.execution_options(writing=True)
+        self._changed = changed
 
     def close(self) -> None:
         """Close every connection."""
@@ -78,7 +80,11 @@ class Store:
 
     @contextmanager
     def _change(self) -> Iterator[Session]:
-        with Session(self._writing, expire_on_commit=False) as session, session.begin():
+        with (
+            Session(self._writing, expire_on_commit=False) as session,
+            telling(session, self._changed),
+            session.begin(),
+        ):
             yield session
 
     def _all(self, question: Any) -> list[Any]:
@@ -259,6 +265,7 @@ class Store:
             if row is None:
                 raise NotFound(f"there is no job {key!r}")
             raise Conflict(f"job {key} has already {row.state}")
+        note(session, JobRow.__tablename__, key)
 
 
 def _success(outcome: str, now: int) -> dict[str, Any]:

@@ -1,0 +1,24 @@
+// The header: which task, who holds control, and the stop button.
+import { element } from "./elements.js";
+import { moving } from "./store.js";
+
+export function header({ store }, { task, stop, control }) {
+  task.addEventListener("change", () => store.set({ task: task.value }));
+  store.subscribe((state, changed) => {
+    if (changed.has("tasks") || changed.has("task")) choose(task, state);
+    if (changed.has("executor")) stop.disabled = !moving(state);
+    if (changed.has("lease")) {
+      control.hidden = !state.lease?.holder;
+      control.textContent = state.lease?.holder ? `${state.lease.holder} holds control` : "";
+    }
+  });
+}
+
+function choose(select, state) {
+  const names = (state.tasks ?? []).map((task) => task.name);
+  if ([...select.options].map((option) => option.value).join("\n") !== names.join("\n")) {
+    select.replaceChildren(...names.map((name) => element("option", { value: name }, name)));
+  }
+  select.value = state.task;
+  select.parentElement.hidden = names.length === 0;
+}

@@ -1,0 +1,40 @@
+// The message line: every error with what to do, every outcome worth a word; read aloud by screen readers.
+import { element } from "./elements.js";
+
+const LASTS = 6000; // [ms] of a note; an error stays until it is closed or another attempt succeeds
+
+export class Messages {
+  constructor(place) {
+    this.place = place;
+  }
+
+  say(text, kind = "note") {
+    clearTimeout(this.timer);
+    const close = element("button", { type: "button", class: "close", "aria-label": "Close this message" }, "×");
+    close.addEventListener("click", () => this.clear());
+    // an error interrupts the screen reader, a note waits its turn
+    this.place.setAttribute("role", kind === "error" ? "alert" : "status");
+    this.place.replaceChildren(element("p", { class: kind }, text), close);
+    this.place.hidden = false;
+    if (kind === "note") this.timer = setTimeout(() => this.clear(), LASTS);
+  }
+
+  clear() {
+    clearTimeout(this.timer);
+    this.place.replaceChildren();
+    this.place.hidden = true;
+  }
+
+  // Do `order`; show its error as a sentence. Returns what it returned, or undefined.
+  async attempt(order) {
+    try {
+      const outcome = await order();
+      this.clear();
+      return outcome;
+    } catch (error) {
+      this.say(error.message, "error");
+      if (error.name === "TypeError" || error.name === "ReferenceError") throw error; // a fault of ours
+      return undefined;
+    }
+  }
+}

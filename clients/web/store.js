@@ -1,0 +1,75 @@
+// The one state of the page: set() merges, subscribers hear once a frame of what has changed.
+//
+// connection   "connecting" | "live" | "lost"                 tasks          [task], oldest first
+// task         name of the chosen task, "" = none             demonstrations [demonstration] of the task
+// runs         [run] of the task, newest first                jobs           [job] of the task, oldest first
+// executions   [execution], newest first                      recordings     [report] of running recordings
+// trackers     [{name, announced}]                            coach          {task: sentence}
+// station      {version, notes} or null                       executor       status or null when it is silent
+// lease        who holds control, or null                     run            id of the run that is looked at
+// path         id of the learned path that is looked at       focus          {kind, id} under the pointer, or null
+// Lists are null until they have been read, and stay as they were while the service is away.
+export const EMPTY = Object.freeze({
+  connection: "connecting",
+  tasks: null,
+  task: "",
+  demonstrations: null,
+  runs: null,
+  jobs: null,
+  executions: null,
+  recordings: [],
+  trackers: [],
+  coach: {},
+  station: null,
+  executor: null,
+  lease: null,
+  run: "",
+  path: "",
+  focus: null,
+});
+
+const RESTING = ["idle", "ended", "faulted"];
+
+export class Store {
+  #changed = new Set();
+  #subscribers = new Set();
+
+  constructor() {
+    this.state = EMPTY;
+  }
+
+  // Merge `changes`; subscribers are called before the next frame is drawn, once for all changes.
+  set(changes) {
+    const news = Object.keys(changes).filter((name) => changes[name] !== this.state[name]);
+    if (!news.length) return;
+    this.state = Object.freeze({ ...this.state, ...changes });
+    if (!this.#changed.size) queueMicrotask(() => this.#tell());
+    for (const name of news) this.#changed.add(name);
+  }
+
+  // `hear(state, changed)`: changed is the Set of the names that differ. Returns what ends it.
+  subscribe(hear) {
+    this.#subscribers.add(hear);
+    return () => this.#subscribers.delete(hear);
+  }
+
+  #tell() {
+    const changed = new Set(this.#changed);
+    this.#changed.clear();
+    for (const hear of this.#subscribers) hear(this.state, changed);
+  }
+}
+
+// Questions that several panels ask of the state.
+
+// The run that is looked at: the chosen one, else the newest; null while there is none.
+export const runOf = (state) => state.runs?.find((run) => run.id === state.run) ?? state.runs?.[0] ?? null;
+
+// The learned path that is looked at: the chosen one, else the first of the run; null while there is none.
+export function pathOf(state) {
+  const paths = runOf(state)?.learned.paths ?? [];
+  return paths.find((path) => path.id === state.path) ?? paths[0] ?? null;
+}
+
+// The status of the execution that moves the arm now, or null.
+export const moving = (state) => (state.executor && !RESTING.includes(state.executor.state) ? state.executor : null);

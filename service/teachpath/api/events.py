@@ -1,0 +1,35 @@
+"""The events: a WebSocket that tells what has changed, so that a page need not ask.
+
+Each message is one JSON document: `{"sequence", "topic", "id"}` says that a resource has changed and may be read anew;
+with `now` it says how it stands (null: it is gone). The topic `all` means: read everything anew. It comes first, and
+again when a listener has fallen behind. Topics are the names of the resources (tasks, demonstrations, runs, paths,
+plans, jobs, executions), and, with `now`, `station`, `executor`, `trackers`, `recordings`, `coach` and `lease`.
+"""
+
+from __future__ import annotations
+
+import json
+
+from fastapi import APIRouter, WebSocket
+
+from teachpath.api import sockets
+from teachpath.workers.news import Document, Listener, News
+
+
+def events_router(news: News) -> APIRouter:
+    """Return the route of the events: `/api/v1/events`."""
+    router = APIRouter(include_in_schema=False)
+
+    @router.websocket("/api/v1/events")
+    async def events(socket: WebSocket) -> None:
+        async def send(piece: Document) -> None:
+            await socket.send_text(json.dumps(piece, separators=(",", ":"), allow_nan=False, default=str))
+
+        if await sockets.admit(socket):
+            await sockets.serve(socket, news.attach, news.detach, send, _refuse)
+
+    return router
+
+
+def _refuse(text: str, listener: Listener) -> str:
+    return "nothing is expected here; give orders over REST"
