@@ -1,4 +1,4 @@
-"""The client's command line: `teachpath-client tracker`, `sources`, `glove-calibrate`, `synthetic` and `replay`."""
+"""The client's command line: `teachpath-client COMMAND`."""
 
 from __future__ import annotations
 
@@ -14,11 +14,12 @@ from teachpath_client.devices import configure, describe_sources, open_source
 from teachpath_client.devices.cyberglove import GloveSettings
 from teachpath_client.link import ClientError, Link
 from teachpath_client.live import calibrate_glove, ended_by_signals, felt, record_live
-from teachpath_client.reading import HandReading
+from teachpath_client.reading import HandReading, Vector
 from teachpath_client.replay import read_mcap
 from teachpath_client.rest import Station
 from teachpath_client.synthetic import experiment_1, experiment_2
 from teachpath_client.tracker import Tracker
+from teachpath_client.tracker_calibration import COLUMNS, calibrate_tracker, lines, measure_points, read_points
 from teachpath_proto import tracker_pb2
 
 
@@ -49,7 +50,8 @@ def _parser() -> argparse.ArgumentParser:
     calibrate = commands.add_parser("glove-calibrate", help="measure an open hand and a fist with a CyberGlove")
     calibrate.add_argument("file", type=Path, metavar="FILE", help="the calibration to write, e.g. glove.toml")
     calibrate.set_defaults(run=_calibrate_glove)
-    for command in (tracker, calibrate):
+    _add_tracker_calibrate(frame := commands.add_parser("tracker-calibrate", help="measure the tracker's frame"))
+    for command in (tracker, calibrate, frame):
         command.add_argument(
             "--option", type=_option, action="append", default=[], metavar="KEY=VALUE", help="of the device; repeatable"
         )
@@ -70,6 +72,30 @@ def _parser() -> argparse.ArgumentParser:
         command.add_argument("--prefix", default="teachpath/station", help="of the station's keys (%(default)s)")
         command.add_argument("--speed", type=_speed, default=1.0, help="1 = real time (default)")
     return parser
+
+
+def _add_tracker_calibrate(frame: argparse.ArgumentParser) -> None:
+    frame.description = (
+        "Measure where the tracker's frame lies in the robot's world: hold the tracker still at three or more known "
+        "points that do not lie on one line, e.g. corners of the table, four or more to see which one is wrong. The "
+        "station keeps every version; demonstrations remember the one that they were recorded under."
+    )
+    frame.add_argument("name", metavar="NAME", help="of the calibration, e.g. lab; then: tracker --calibration lab")
+    frame.add_argument("--source", default="", help="one of those that `teachpath-client sources` lists")
+    frame.add_argument("--point", type=_place, action="append", default=[], metavar="X,Y,Z", help="[m, world]; repeat")
+    frame.add_argument("--points", type=Path, metavar="FILE", help=f"instead: a CSV file of {','.join(COLUMNS)}")
+    frame.add_argument("--fit-scale", action="store_true", help="find the scale too, for a device not in metres")
+    frame.add_argument("--dry-run", action="store_true", help="only show the calibration and its residuals")
+    frame.add_argument("--url", default="http://127.0.0.1:8765", help="of the station (%(default)s)")
+    frame.set_defaults(run=_calibrate_tracker)
+
+
+def _place(text: str) -> Vector:
+    try:
+        x, y, z = map(float, text.split(","))
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{text} is not X,Y,Z in metres, e.g. 0.58,-0.28,0.5") from None
+    return x, y, z
 
 
 def _speed(text: str) -> float:
@@ -117,6 +143,27 @@ def _calibrate_glove(options: argparse.Namespace) -> None:
     calibration.save(options.file)
     telling = sum(gain != 0.0 for gain in calibration.gain)
     print(f"{options.file}: {telling} of {len(calibration.gain)} sensors tell the open hand from the fist")
+
+
+def _calibrate_tracker(options: argparse.Namespace) -> None:
+    if bool(options.points) == bool(options.source and options.point):
+        raise ClientError("name a --source and each --point, or a file of --points that were measured before")
+    if options.points:
+        pairs = read_points(options.points)
+    else:
+        source = open_source(options.source, dict(options.option))
+        pairs = measure_points(source, options.point, lambda sentence: input(f"{sentence}, then press Enter: "))
+    with Station(options.url) as station:
+        measured = calibrate_tracker(
+            station,
+            options.name,
+            pairs,
+            source=options.source or options.points.name,
+            fit_scale=options.fit_scale,
+            keep=not options.dry_run,
+        )
+    for line in lines(measured):
+        print(line)
 
 
 def _synthetic(options: argparse.Namespace) -> None:

@@ -28,6 +28,7 @@ for command in (
     station.serve,
     files.import_,
     work.replay,
+    work.recalibrate,
     work.learn,
     work.recut,
     work.plan,

@@ -28,6 +28,7 @@ from teachpath.offline.lock import StationLock
 from teachpath.recording import to_world
 from teachpath.records import Demonstration, Job, Learned, Plan, Trajectory, Vector
 from teachpath.workers import desk
+from teachpath.workers.calibrations import Calibrations
 from teachpath.workers.coach import Coach
 from teachpath.workers.curation import Curation
 from teachpath.workers.executions import Executions
@@ -71,13 +72,14 @@ class Station:
         self.keys = Keys(settings.bus.prefix)
         self.news = News()
         self.store = Store(settings.store, changed=self.news.tell)
+        self.calibrations = Calibrations(self.store, settings.recording, settings.calibrations, settings.scene)
         self.recorder = Recorder(
             self.bus,
             self.keys,
             self.store,
             settings.recording,
             scene=settings.scene,
-            calibration=settings.calibration,
+            calibration=self.calibrations.get,
             recorded=self._show_demonstration,
             changed=lambda demonstration: self._show_task(demonstration.task),
         )
@@ -183,6 +185,7 @@ class Station:
             self.settings,
             self.store,
             self.recorder,
+            self.calibrations,
             self.jobs,
             self.executions,
             self.gate,
@@ -203,6 +206,8 @@ class Station:
         demonstrations = [d for d in self.store.demonstrations(job.task) if d.is_usable]
         if not demonstrations:
             raise NotFound(f"task {job.task} has no usable demonstrations yet; show it a few times first")
+        if job.request.get("calibrations") != "recorded":
+            self.calibrations.check(demonstrations)
         wanted = job.request.get("settings")
         settings = self.settings.learning_with(wanted if isinstance(wanted, dict) else {})
         return {d.id: self.trajectory(d) for d in demonstrations}, settings

@@ -12,7 +12,7 @@ import tomllib
 from collections.abc import Iterable, Mapping
 from dataclasses import asdict, dataclass, is_dataclass
 from pathlib import Path
-from typing import Annotated, Any, TypeVar, get_args, get_type_hints
+from typing import Annotated, Any, get_args, get_type_hints
 
 from annotated_types import Ge, Le
 from pydantic import BaseModel, ConfigDict, ValidationError
@@ -30,7 +30,6 @@ from teachpath.workers.jobs import JobSettings
 from teachpath.workers.simulator import SimulatorSettings
 from teachpath_proto.keys import is_name
 
-Named = TypeVar("Named", Calibration, Scene)
 PREFIX = "TEACHPATH_"
 SIZES = {"box": 3, "cylinder": 2}  # numbers in the size of a shape
 # RoboTasks (clfd datasets) was recorded in the frame of another arm; this maps it, shrunk, onto the Puma's table.
@@ -70,11 +69,10 @@ class Settings(BaseModel):
 
     def scene(self, name: str) -> Scene:
         """Return the scene `name`; raises NotFound with the known ones."""
-        return _named(self.scenes, name, "scene")
-
-    def calibration(self, name: str) -> Calibration:
-        """Return the calibration `name`; raises NotFound with the known ones."""
-        return _named(self.calibrations, name, "calibration")
+        for scene in self.scenes:
+            if scene.name == name:
+                return scene
+        raise NotFound(f"there is no scene {name!r}; known: {', '.join(scene.name for scene in self.scenes)}")
 
     def learning_with(self, changes: Mapping[str, Any]) -> LearningSettings:
         """Return the settings of learning with `changes` laid over them; raises UnusableSettings."""
@@ -217,10 +215,3 @@ def _check_names(what: str, names: Iterable[str]) -> None:
         known.add(name)
     if not known and what in ("calibration", "scene"):
         raise UnusableSettings(f"a station needs at least one {what}; leave the setting out for the built-in ones")
-
-
-def _named(things: tuple[Named, ...], name: str, what: str) -> Named:
-    for thing in things:
-        if thing.name == name:
-            return thing
-    raise NotFound(f"there is no {what} {name!r}; known: {', '.join(t.name for t in things)}")

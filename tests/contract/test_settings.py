@@ -188,10 +188,8 @@ def test_the_command_line_ends_with_the_sentence(tmp_path: Path) -> None:
     )
 
 
-def test_scenes_and_calibrations_are_found_by_name() -> None:
+def test_scenes_are_found_by_name() -> None:
     settings = Settings()
     assert settings.scene("paper").name == "paper"
     with pytest.raises(NotFound, match="there is no scene 'moon'; known: paper, empty"):
         settings.scene("moon")
-    with pytest.raises(NotFound, match="there is no calibration 'moon'; known: identity"):
-        settings.calibration("moon")

@@ -9,6 +9,7 @@ from typing import Any
 from teachpath.config import Settings
 from teachpath.io.store import Store
 from teachpath.records import Demonstration, Trajectory
+from teachpath.workers.calibrations import Calibrations
 from teachpath.workers.executions import Executions
 from teachpath.workers.gate import TrackerGate
 from teachpath.workers.jobs import Jobs
@@ -23,6 +24,7 @@ class Parts:
     settings: Settings
     store: Store
     recorder: Recorder
+    calibrations: Calibrations
     jobs: Jobs
     executions: Executions
     gate: TrackerGate

@@ -1,4 +1,4 @@
-"""The station as a whole: health, scenes and calibrations; and the application that holds all resources."""
+"""The station as a whole: health and scenes; and the application that holds all resources."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from fastapi import APIRouter, FastAPI
 from starlette.middleware.trustedhost import TrustedHostMiddleware
 
 from teachpath import __version__
+from teachpath.api.calibrations import calibrations_router
 from teachpath.api.executions import executions_router
 from teachpath.api.faults import REFUSALS, answer_errors
 from teachpath.api.guard import Guard
@@ -17,7 +18,6 @@ from teachpath.api.tasks import recording_router, tasks_router
 from teachpath.api.trackers import trackers_router
 from teachpath.api.work import jobs_router, results_router
 from teachpath.io.documents import to_document
-from teachpath.records import Calibration
 
 DESCRIPTION = """Show a task a few times; teachpath finds the different ways it was done, learns a path for each, proves
 that the arm can follow it, and moves the arm. Metres, radians, seconds; quaternions w, x, y, z; times ending in `_ns`
@@ -35,6 +35,7 @@ def build_api(parts: Parts, *pages: APIRouter) -> FastAPI:
     routers = (
         tasks_router,
         recording_router,
+        calibrations_router,
         trackers_router,
         jobs_router,
         results_router,
@@ -62,10 +63,5 @@ def station_router(parts: Parts) -> APIRouter:
     def list_scenes() -> list[dict[str, Any]]:
         """List the scenes: table, obstacles and the object at its start."""
         return [to_document(scene) for scene in parts.settings.scenes]
-
-    @router.get("/calibrations")
-    def list_calibrations() -> list[Calibration]:
-        """List the mappings to the world from the trackers' frames."""
-        return list(parts.settings.calibrations)
 
     return router

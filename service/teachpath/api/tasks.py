@@ -67,7 +67,7 @@ def tasks_router(parts: Parts) -> APIRouter:
         """Make a task; one that exists stays as it is."""
         if not is_name(task):
             raise UnusableInput(f"{task!r} cannot name a task: use letters, digits, '.', '_' or '-', at most 64")
-        scene, calibration = parts.settings.scene(new.scene), parts.settings.calibration(new.calibration)
+        scene, calibration = parts.settings.scene(new.scene), parts.calibrations.get(new.calibration)
         return store.ensure_task(task, scene=scene.name, calibration=calibration.name)
 
     @router.get("/tasks/{task}")
@@ -100,7 +100,7 @@ def tasks_router(parts: Parts) -> APIRouter:
             Source(name, content, format, units, rate),
             task=task,
             scene=parts.settings.scene(scene),
-            calibration=parts.settings.calibration(calibration),
+            calibration=parts.calibrations.get(calibration),
         )
         for demonstration, trajectory in made:
             parts.imported(demonstration, trajectory)

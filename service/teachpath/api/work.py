@@ -26,6 +26,9 @@ class NewJob(BaseModel):
     run: str = Field("", description="recut: id of the run whose dendrogram is cut; its settings are kept")
     threshold: float | None = Field(None, description="recut: height of the cut [m]")
     clusters: int | None = Field(None, description="recut: or the number of clusters")
+    calibrations: Literal["present", "recorded"] = Field(
+        "present", description="learn: present refuses demonstrations under a former version of their calibration"
+    )
     path: str = Field("", description="plan: id of the learned path")
 
 
@@ -45,7 +48,7 @@ def jobs_router(parts: Parts) -> APIRouter:
         stored = store.task(task)
         if new.kind == "learn":
             parts.settings.learning_with(new.settings)
-            job = jobs.submit(stored.name, "learn", {"settings": new.settings})
+            job = jobs.submit(stored.name, "learn", {"settings": new.settings, "calibrations": new.calibrations})
         elif new.kind == "recut":
             run = store.run(new.run)
             _of_task(stored.name, run.task, f"run {run.id!r}")

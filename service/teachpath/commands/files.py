@@ -18,6 +18,7 @@ from teachpath.io.store import Store
 from teachpath.offline.doctor import examine
 from teachpath.offline.importing import Source, import_file
 from teachpath.records import Trajectory
+from teachpath.workers.calibrations import Calibrations
 
 
 def import_(
@@ -37,9 +38,10 @@ def import_(
     """
     settings = settings_of(config, data)
     robottasks = format == "robottasks"
-    chosen = settings.calibration(calibration or ("robottasks" if robottasks else "identity"))
     store = Store(settings.store)
     try:
+        calibrations = Calibrations(store, settings.recording, settings.calibrations, settings.scene)
+        chosen = calibrations.get(calibration or ("robottasks" if robottasks else "identity"))
         for each in file:
             try:
                 content = each.read_bytes()

@@ -39,14 +39,17 @@ def learn(
     url: Url = LOCAL,
     mode: Annotated[str, typer.Option(help="default: to be trusted; paper: Aleotti & Caselli 2005.")] = "default",
     threshold: Annotated[float | None, typer.Option(help="Height of the cut [m]; mode paper needs it.")] = None,
+    as_recorded: Annotated[bool, typer.Option(help="Also those under a former version of their calibration.")] = False,
 ) -> None:
     """Find the ways and learn a path for each.
 
     Clusters the task's demonstrations, selects the consistent ones in each cluster, and fits a NURBS to them.
     """
     settings: dict[str, object] = {"mode": mode} | ({} if threshold is None else {"threshold": threshold})
+    wanted: dict[str, object] = {"kind": "learn", "settings": settings}
+    wanted["calibrations"] = "recorded" if as_recorded else "present"
     with Api(url) as api:
-        _learned(api, task, "learning", {"kind": "learn", "settings": settings})
+        _learned(api, task, "learning", wanted)
 
 
 def recut(
@@ -84,6 +87,21 @@ def _learned(api: Api, task: str, title: str, request: dict[str, object]) -> Non
     out.print(paths_table(run))
     for line in reasons(run, numbers):
         out.print(line, highlight=False)
+
+
+def recalibrate(
+    task: Task,
+    calibration: Annotated[str, typer.Option(help="Name, or name@version; else each one's own, today's.")] = "",
+    url: Url = LOCAL,
+) -> None:
+    """Put demonstrations under another calibration.
+
+    For a task that was recorded before a tracker's frame was measured better: its samples are mapped to the world
+    anew and judged again. Nothing is lost; --calibration NAME@1 puts them back under the first version.
+    """
+    with Api(url) as api:
+        for d in api.call("POST", f"/tasks/{task}/calibration", {"calibration": calibration}):
+            print(f"{task} {d['number']}: {d['calibration']['name']}, {'; '.join([d['verdict'], *d['reasons']])}")
 
 
 def plan(path: Annotated[str, typer.Argument(help="Id of a learned path.")], url: Url = LOCAL) -> None:

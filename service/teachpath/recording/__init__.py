@@ -3,6 +3,7 @@
 from teachpath.recording.account import StreamAccount
 from teachpath.recording.coach import Shown, advise
 from teachpath.recording.demonstration import object_trajectory, point_to_world, to_world, usable
+from teachpath.recording.frame import fit_frame
 from teachpath.recording.phases import GRASP_BUTTON, TOGGLE_BUTTON, Cut, Segmenter
 from teachpath.recording.positions import Faults, faults_of
 from teachpath.recording.settings import RecordingSettings
@@ -20,6 +21,7 @@ __all__ = [
     "Verdict",
     "advise",
     "faults_of",
+    "fit_frame",
     "judge",
     "object_trajectory",
     "point_to_world",

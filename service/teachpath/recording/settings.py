@@ -43,6 +43,8 @@ class RecordingSettings:
     workspace_low: Corner = (-1.5, -1.5, -0.5)
     # [m] its highest corner
     workspace_high: Corner = (1.5, 1.5, 2.5)
+    # [m] how far a taught point of a calibration may lie from where the others put it
+    largest_residual: Positive = 0.02
     # [m] a position farther than this from where its neighbours put it has jumped
     largest_jump: Positive = 0.05
     # share by which the rate may differ from the one that the client declared

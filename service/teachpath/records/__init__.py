@@ -5,16 +5,8 @@ Conventions (ARCHITECTURE.md): metres, radians, seconds inside; integer nanoseco
 """
 
 from teachpath.records.arrays import Array, Quaternion, Vector
-from teachpath.records.demonstrations import (
-    Account,
-    Calibration,
-    Clock,
-    Demonstration,
-    Phase,
-    Sample,
-    Task,
-    Trajectory,
-)
+from teachpath.records.calibrations import Calibration, MeasuredCalibration, TaughtPoint
+from teachpath.records.demonstrations import Account, Clock, Demonstration, Phase, Sample, Task, Trajectory
 from teachpath.records.learned import Cluster, Departure, Fit, Learned, LearnedPath, Score
 from teachpath.records.motion import Certificate, ExecutorStatus, Extreme, JointState, Plan, Scene, Setpoint, Shape
 from teachpath.records.work import Job, JobState
@@ -36,6 +28,7 @@ __all__ = [
     "JointState",
     "Learned",
     "LearnedPath",
+    "MeasuredCalibration",
     "Phase",
     "Plan",
     "Quaternion",
@@ -45,6 +38,7 @@ __all__ = [
     "Setpoint",
     "Shape",
     "Task",
+    "TaughtPoint",
     "Trajectory",
     "Vector",
 ]

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 from teachpath.records.arrays import Array, Quaternion, Vector
+from teachpath.records.calibrations import Calibration
 
 
 class Phase(StrEnum):
@@ -33,16 +34,6 @@ class Sample:
     flexions: tuple[float, ...]
     tracked: bool
     buttons: int = 0
-
-
-@dataclass(frozen=True, slots=True)
-class Calibration:
-    """A named mapping to `world` from `tracker`: p_world = scale * R p_tracker + offset."""
-
-    name: str
-    scale: float = 1.0
-    rotation: Quaternion = (1.0, 0.0, 0.0, 0.0)
-    offset: Vector = (0.0, 0.0, 0.0)
 
 
 @dataclass(frozen=True, slots=True)

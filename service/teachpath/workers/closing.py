@@ -57,7 +57,7 @@ def close_take(
             f"a transport phase of {cut.release - cut.grasp} samples is under the least of "
             f"{settings.shortest_transport}: the object was let go at once"
         )
-    account, left_out = _with_positions(taken, settings)
+    account, left_out = with_positions(taken, settings)
     trajectory = object_trajectory(taken.samples, cut, taken.calibration, taken.carried, left_out=left_out)
     verdict = _judge(account, taken, settings)
     demonstration = Demonstration(
@@ -84,7 +84,8 @@ def close_take(
     return stored, trajectory
 
 
-def _with_positions(taken: TakenSamples, settings: RecordingSettings) -> tuple[Account, tuple[int, ...]]:
+def with_positions(taken: TakenSamples, settings: RecordingSettings) -> tuple[Account, tuple[int, ...]]:
+    """Return a take's account with the faults of its positions, and the numbers of the samples that jumped."""
     ordered = usable(taken.samples[taken.cut.grasp : taken.cut.release])
     if not ordered:
         return taken.account, ()

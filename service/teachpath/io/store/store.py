@@ -14,6 +14,7 @@ from sqlalchemy.orm import Session
 
 from teachpath.errors import Conflict, NotFound
 from teachpath.io.documents import from_document, to_document
+from teachpath.io.store.calibrations import MeasuredCalibrations
 from teachpath.io.store.changes import Changed, note, telling, unheard
 from teachpath.io.store.engine import open_engine
 from teachpath.io.store.recordings import Opener, Recordings, open_new
@@ -73,6 +74,7 @@ class Store:
         self._engine = open_engine(settings.database or f"sqlite:///{folder / 'teachpath.sqlite'}")
         self._writing = self._engine.execution_options(writing=True)
         self._changed = changed
+        self.calibrations = MeasuredCalibrations(self._engine)
 
     def close(self) -> None:
         """Close every connection."""

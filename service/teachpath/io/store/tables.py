@@ -37,6 +37,16 @@ class DemonstrationRow(Base):
     document: Mapped[dict[str, Any]] = mapped_column(JSON)
 
 
+class CalibrationRow(Base):
+    """One version of a calibration that was measured."""
+
+    __tablename__ = "calibrations"
+    name: Mapped[str] = mapped_column(ID, primary_key=True)
+    version: Mapped[int] = mapped_column(Integer, primary_key=True)
+    created_ns: Mapped[int] = mapped_column(BigInteger)
+    document: Mapped[dict[str, Any]] = mapped_column(JSON)
+
+
 class RunTable(Base):
     """A learning run over a task's demonstrations."""
 

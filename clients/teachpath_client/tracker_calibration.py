@@ -1,0 +1,178 @@
+"""The tracker's frame in the world: holds still at taught points, and asks the station for the calibration."""
+
+from __future__ import annotations
+
+import csv
+import math
+import threading
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from statistics import fmean
+from typing import Any
+
+from teachpath_client.devices.source import Source
+from teachpath_client.link import ClientError
+from teachpath_client.reading import HandReading, Vector
+from teachpath_client.rest import Station
+
+HELD = 1.0  # [s] the tracker is held still at a point
+FEWEST = 10  # readings in that time
+STILLEST = 0.005  # [m] from their mean that a reading may lie while it is held still
+PATIENCE = 10.0  # [s] for the readings to come
+COLUMNS = ["tracker_x", "tracker_y", "tracker_z", "x", "y", "z"]
+
+
+@dataclass(frozen=True)
+class Pair:
+    """A point as the tracker saw it, and where it is in the world [m]."""
+
+    tracker: Vector
+    world: Vector
+
+
+def measure_points(
+    source: Source, places: Sequence[Vector], tell: Callable[[str], object], *, held: float = HELD
+) -> list[Pair]:
+    """Measure where the tracker sees each place; `tell` shows a sentence and returns when the tracker is held there.
+
+    It must be held for `held` [s] each; a point at which it moved, or was not tracked, is asked for again.
+
+    Raises:
+        ClientError: no reading comes.
+    """
+    pairs = []
+    with source, _listening(source) as ear:
+        for number, place in enumerate(places, 1):
+            x, y, z = place
+            where = f"point {number} of {len(places)}: hold the tracker still at {x:g}, {y:g}, {z:g} m"
+            fault = ""
+            while True:
+                tell(f"{fault}{where}")
+                readings = ear.hold(held)
+                fault = _fault(readings)
+                if not fault:
+                    break
+            pairs.append(Pair(_mean(readings), place))
+    return pairs
+
+
+def read_points(file: Path) -> list[Pair]:
+    """Read pairs from a CSV file with the columns tracker_x, tracker_y, tracker_z, x, y, z [m].
+
+    Raises:
+        ClientError: with the line that cannot be read.
+    """
+    try:
+        rows = [row for row in csv.reader(file.read_text().splitlines()) if row]
+    except (OSError, UnicodeDecodeError) as error:
+        raise ClientError(f"cannot read {file}: {error}") from None
+    if not rows or [cell.strip() for cell in rows[0]] != COLUMNS:
+        raise ClientError(
+            f"{file}: the first line must be {','.join(COLUMNS)}; it is {','.join(rows[0]) if rows else ''}"
+        )
+    pairs = []
+    for number, row in enumerate(rows[1:], 2):
+        try:
+            a, b, c, x, y, z = map(float, row)
+        except ValueError:
+            raise ClientError(f"{file}, line {number}: {','.join(row)} is not six numbers") from None
+        pairs.append(Pair((a, b, c), (x, y, z)))
+    return pairs
+
+
+def calibrate_tracker(
+    station: Station, name: str, pairs: Iterable[Pair], *, source: str = "", fit_scale: bool = False, keep: bool = True
+) -> dict[str, Any]:
+    """Let the station fit and keep the calibration `name`; return it with the residual of each point.
+
+    Raises:
+        ClientError: the station refuses, with its sentence (points on one line, contradicting points, a bad name).
+    """
+    points = [{"tracker": pair.tracker, "world": pair.world} for pair in pairs]
+    body = {"points": points, "source": source, "fit_scale": fit_scale, "keep": keep}
+    measured: dict[str, Any] = station.call("PUT", f"/calibrations/{name}", body)
+    return measured
+
+
+def lines(measured: dict[str, Any]) -> Iterator[str]:
+    """Yield what was measured, for the operator, and the same as a piece of a settings file."""
+    calibration, points = measured["calibration"], measured["points"]
+    for number, point in enumerate(points, 1):
+        x, y, z = point["world"]
+        yield f"point {number} at {x:g}, {y:g}, {z:g} m: {1000 * point['residual']:.1f} mm off"
+    kept = f"version {measured['version']} is kept" if measured["version"] else "not kept"
+    yield f"{calibration['name']}: {1000 * measured['rms']:.2f} mm rms over {len(points)} points; {kept}"
+    yield "# the same for a settings file:"
+    yield "[[calibrations]]"
+    yield f'name = "{calibration["name"]}"'
+    for key in ("scale", "rotation", "offset"):
+        yield f"{key} = {calibration[key]}"
+
+
+class _Ear:
+    """Hears a source all the time, so that no reading of before is taken for one of now."""
+
+    def __init__(self) -> None:
+        self._news = threading.Condition()
+        self._held: list[HandReading] | None = None
+        self.ended = False
+
+    def hear(self, reading: HandReading) -> None:
+        with self._news:
+            if self._held is not None:
+                self._held.append(reading)
+                self._news.notify()
+
+    def end(self) -> None:
+        with self._news:
+            self.ended = True
+            self._news.notify()
+
+    def hold(self, seconds: float) -> list[HandReading]:
+        """Return the readings of the device's next `seconds`."""
+        with self._news:
+            held = self._held = []
+            enough = lambda: self.ended or (len(held) >= FEWEST and held[-1].time - held[0].time >= seconds)  # noqa: E731
+            came = self._news.wait_for(enough, timeout=PATIENCE)
+            self._held = None
+        if not came or len(held) < FEWEST:
+            raise ClientError(f"only {len(held)} readings came in {PATIENCE:g} s; is the device on, and in view?")
+        return held
+
+
+@contextmanager
+def _listening(source: Source) -> Iterator[_Ear]:
+    ear = _Ear()
+
+    def listen() -> None:
+        try:
+            for reading in source:
+                ear.hear(reading)
+        finally:
+            ear.end()
+
+    thread = threading.Thread(target=listen, name="listen", daemon=True)
+    thread.start()
+    try:
+        yield ear
+    finally:
+        source.close()
+        thread.join(PATIENCE)
+
+
+def _mean(held: Sequence[HandReading]) -> Vector:
+    x, y, z = (fmean(axis) for axis in zip(*(reading.position for reading in held), strict=True))
+    return x, y, z
+
+
+def _fault(held: Sequence[HandReading]) -> str:
+    lost = sum(not reading.tracked for reading in held)
+    if lost:
+        return f"{lost} of {len(held)} readings were not tracked; again, "
+    mean = _mean(held)
+    farthest = max(math.dist(reading.position, mean) for reading in held)
+    if farthest > STILLEST:
+        return f"it moved by {1000 * farthest:.0f} mm, {1000 * STILLEST:.0f} mm are allowed; again, "
+    return ""

@@ -1,0 +1,83 @@
+"""Calibrations: the trackers' frames in the world, measured from taught points; every version is kept."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from fastapi import APIRouter
+from pydantic import BaseModel, Field
+
+from teachpath.api.parts import Parts
+from teachpath.errors import NotFound
+from teachpath.records import Demonstration, MeasuredCalibration, TaughtPoint
+
+MOST_POINTS = 1000
+Coordinate = Annotated[float, Field(allow_inf_nan=False)]
+Place = tuple[Coordinate, Coordinate, Coordinate]
+
+
+class Taught(BaseModel):
+    """One place that was shown to the tracker."""
+
+    tracker: Place = Field(description="where the tracker saw it [m]")
+    world: Place = Field(description="where it is [m, world]")
+
+
+class Measured(BaseModel):
+    """What a calibration is measured with."""
+
+    points: list[Taught] = Field(max_length=MOST_POINTS, description="three or more, not on one line")
+    source: str = Field("", max_length=200, description="tracker that was shown the points")
+    fit_scale: bool = Field(False, description="find the scale too; else it is 1, as for trackers in metres")
+    keep: bool = Field(True, description="false: only say what the calibration and its residuals would be")
+
+
+class Converted(BaseModel):
+    """Under which calibration demonstrations are put."""
+
+    calibration: str = Field(
+        "", description="e.g. lab, or lab@2 for its second version; empty: each one's own, today's"
+    )
+
+
+def calibrations_router(parts: Parts) -> APIRouter:
+    """Return the routes of calibrations."""
+    router = APIRouter(tags=["calibrations"])
+    calibrations, store = parts.calibrations, parts.store
+
+    @router.get("/calibrations")
+    def list_calibrations() -> list[MeasuredCalibration]:
+        """List the mappings to the world from the trackers' frames: of the settings, and the newest measured ones."""
+        return calibrations.known()
+
+    @router.get("/calibrations/{name}")
+    def list_versions(name: str) -> list[MeasuredCalibration]:
+        """List the versions of a calibration, newest first, with the points and residuals of each."""
+        found = store.calibrations.versions(name)
+        return found or [MeasuredCalibration(calibrations.get(name))]
+
+    @router.put("/calibrations/{name}")
+    def measure_calibration(name: str, measured: Measured) -> MeasuredCalibration:
+        """Fit a calibration to taught points and keep it as the next version of its name.
+
+        Demonstrations recorded before keep the version that they were recorded under.
+        """
+        return calibrations.measure(
+            name,
+            [TaughtPoint(point.tracker, point.world) for point in measured.points],
+            source=measured.source,
+            fit_scale=measured.fit_scale,
+            keep=measured.keep,
+        )
+
+    @router.post("/tasks/{task}/calibration")
+    def convert_demonstrations(task: str, converted: Converted) -> list[Demonstration]:
+        """Put all demonstrations of a task under a calibration as it is today and judge them again; can be undone."""
+        stored = store.demonstrations(store.task(task).name)
+        if not stored:
+            raise NotFound(f"task {task} has no demonstrations yet")
+        changed = calibrations.convert(stored, converted.calibration)
+        parts.recorder.curation.changed(changed[-1])
+        return changed
+
+    return router

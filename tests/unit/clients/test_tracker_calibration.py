@@ -1,0 +1,127 @@
+"""Measuring a tracker's frame: what is held still counts, what moved is asked for again."""
+
+import re
+import time
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from teachpath_client.__main__ import main
+from teachpath_client.devices.emulators import Emulator
+from teachpath_client.devices.fastrak import FastrakSettings, FastrakSource
+from teachpath_client.devices.playback import PlaybackSource
+from teachpath_client.devices.twins import FastrakTwin
+from teachpath_client.link import ClientError
+from teachpath_client.reading import HandReading, Vector
+from teachpath_client.tracker_calibration import Pair, calibrate_tracker, lines, measure_points, read_points
+
+PLACES: list[Vector] = [(0.4, -0.3, 0.5), (0.7, -0.3, 0.5), (0.7, 0.3, 0.5)]
+HEADER = "tracker_x,tracker_y,tracker_z,x,y,z\n"
+
+
+def at(place: Vector, *, tracked: bool = True) -> HandReading:
+    return HandReading(0.0, place, (1.0, 0.0, 0.0, 0.0), tracked=tracked)
+
+
+def test_each_point_is_where_the_tracker_was_held_still_after_it_was_told(tmp_path: Path) -> None:
+    told: list[str] = []
+    with Emulator(FastrakTwin(), tmp_path / "port", rate=100.0, hold=True) as device:
+        held = iter([(0.1, 0.0, 0.0), (0.2, 0.1, 0.0), (0.3, 0.0, 0.2)])
+
+        def tell(sentence: str) -> None:
+            told.append(sentence)
+            if "again" in sentence:  # the first time at point 2 it was lost
+                device.show(at((0.2, 0.1, 0.0)))
+                return
+            device.show(at(next(held), tracked="point 2" not in sentence))
+
+        source = FastrakSource(FastrakSettings(str(tmp_path / "port"), pause=0.0))
+        pairs = measure_points(source, PLACES, tell, held=0.1)
+    assert [pair.world for pair in pairs] == PLACES
+    for pair, true in zip(pairs, [(0.1, 0.0, 0.0), (0.2, 0.1, 0.0), (0.3, 0.0, 0.2)], strict=True):
+        assert pair.tracker == pytest.approx(true, abs=1e-3)
+    assert [re.sub(r"\d+ of \d+ readings", "n readings", sentence)[:30] for sentence in told] == [
+        "point 1 of 3: hold the tracker",
+        "point 2 of 3: hold the tracker",
+        "n readings were not tracked; a",
+        "point 3 of 3: hold the tracker",
+    ]
+
+
+class Moving(PlaybackSource):
+    """Moves by 2 cm each second, until it is told that it moved."""
+
+    still = False
+
+    def __iter__(self) -> Any:
+        i = 0
+        while not self._over:
+            i += 1
+            time.sleep(0.0005)
+            yield HandReading(0.02 * i, (0.0 if self.still else 0.0004 * i, 0.0, 0.0))
+
+
+def test_a_tracker_that_moves_is_asked_for_again() -> None:
+    source = Moving([], rate=50.0, sensors=0)
+    told: list[str] = []
+
+    def tell(sentence: str) -> None:
+        told.append(sentence)
+        source.still = len(told) > 1
+
+    (pair,) = measure_points(source, PLACES[:1], tell)
+    assert re.match(r"it moved by \d+ mm, 5 mm are allowed; again, point 1 of 1", told[1])
+    assert pair.tracker == (0.0, 0.0, 0.0)
+
+
+def test_a_source_that_ends_is_said() -> None:
+    with pytest.raises(ClientError, match="readings came"):
+        measure_points(PlaybackSource([at((0.0, 0.0, 0.0))], rate=50.0, sensors=0), PLACES, lambda _: None)
+
+
+def test_points_come_from_a_file(tmp_path: Path) -> None:
+    file = tmp_path / "points.csv"
+    file.write_text(HEADER + "1,2,3,4,5,6\n")
+    assert read_points(file) == [Pair((1.0, 2.0, 3.0), (4.0, 5.0, 6.0))]
+    for text, sentence in (
+        (HEADER + "1,2,3,4,5\n", "line 2: 1,2,3,4,5 is not six numbers"),
+        ("x,y\n", "the first line must be tracker_x"),
+        ("", "the first line must be"),
+    ):
+        file.write_text(text)
+        with pytest.raises(ClientError, match=sentence):
+            read_points(file)
+    with pytest.raises(ClientError, match="cannot read"):
+        read_points(tmp_path / "none.csv")
+
+
+class Asked:
+    """A station that answers with what it was asked."""
+
+    def call(self, method: str, resource: str, body: dict[str, Any]) -> Any:
+        assert (method, resource) == ("PUT", "/calibrations/lab")
+        self.body = body
+        points = [point | {"residual": 0.0012} for point in body["points"]]
+        calibration = {"name": "lab", "scale": 1.0, "rotation": [1.0, 0.0, 0.0, 0.0], "offset": [0.0, 0.0, 0.5]}
+        return {"calibration": calibration, "points": points, "rms": 0.0012, "version": 3}
+
+
+def test_the_operator_sees_the_residuals_and_a_piece_of_a_settings_file() -> None:
+    station = Asked()
+    pairs = [Pair((0.0, 0.0, 0.0), place) for place in PLACES]
+    measured = calibrate_tracker(station, "lab", pairs, source="fastrak", keep=True)  # type: ignore[arg-type]
+    assert station.body["points"][0] == {"tracker": (0.0, 0.0, 0.0), "world": PLACES[0]}
+    said = list(lines(measured))
+    assert said[0] == "point 1 at 0.4, -0.3, 0.5 m: 1.2 mm off"
+    assert said[3] == "lab: 1.20 mm rms over 3 points; version 3 is kept"
+    assert said[-4:] == ['name = "lab"', "scale = 1.0", "rotation = [1.0, 0.0, 0.0, 0.0]", "offset = [0.0, 0.0, 0.5]"]
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [[], ["--point", "0,0,0"], ["--source", "synthetic"], ["--points", "x.csv", "--source", "a", "--point", "0,0,0"]],
+)
+def test_either_a_device_or_a_file(arguments: list[str]) -> None:
+    with pytest.raises(SystemExit, match="name a --source and each --point, or a file"):
+        main(["tracker-calibrate", "lab", *arguments])
