@@ -26,7 +26,7 @@ from teachpath.learning import LearningSettings
 from teachpath.motion import drawing
 from teachpath.offline.lock import StationLock
 from teachpath.recording import to_world
-from teachpath.records import Demonstration, Job, Learned, Plan, Trajectory, Vector
+from teachpath.records import Demonstration, Job, Learned, LearnedPath, Plan, Trajectory, Vector
 from teachpath.workers import desk
 from teachpath.workers.calibrations import Calibrations
 from teachpath.workers.coach import Coach
@@ -193,6 +193,7 @@ class Station:
             self.trajectory,
             self.health,
             self._show_demonstration,
+            self._show_edited,
         )
 
     def _kinds(self) -> dict[str, Kind]:
@@ -222,8 +223,9 @@ class Station:
         return self.store.finish_learning(job.id, learned)
 
     def _prepare_planning(self, job: Job) -> tuple[Any, ...]:
-        path = self.store.path(str(job.request["path"]))
-        return path, self.settings.scene(self.store.task(job.task).scene), self.settings.motion
+        path, version = str(job.request["path"]), job.request.get("version")
+        learned = self.store.versions.get(path, version)[1] if isinstance(version, int) else self.store.path(path)
+        return learned, self.settings.scene(self.store.task(job.task).scene), self.settings.motion
 
     def _finish_planning(self, job: Job, plan: Plan) -> str:
         return self.store.finish_planning(job.id, plan)
@@ -247,8 +249,16 @@ class Station:
         self.preview.show_task(
             self.settings.scene(self.store.task(task).scene),
             [(d.id, self.trajectory(d).positions) for d in self._kept(task)],
-            runs[0].learned.paths if runs else (),
+            self._newest(runs[0].learned) if runs else (),
         )
+
+    def _newest(self, learned: Learned) -> list[LearnedPath]:
+        return [self.store.path(path.id) for path in learned.paths]
+
+    def _show_edited(self, path: str) -> None:
+        run = self.store.run(self.store.path(path).run)
+        if run.task == self._shown and run.id == self.store.runs(run.task)[0].id:
+            self.preview.show_learned(self._newest(run.learned))
 
     def _kept(self, task: str) -> list[Demonstration]:
         return [d for d in self.store.demonstrations(task) if not d.discarded_ns]

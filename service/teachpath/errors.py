@@ -9,6 +9,7 @@
     ├── PathRefused            the arm cannot follow this path; says where and why
     ├── NotFound               no task, demonstration, run, path, plan, job or execution of that name
     ├── Conflict               busy, already there, or a stale version
+    │   ├── Outdated           a newer version was saved meanwhile; carries it
     │   └── Cancelled          the operator cancelled the job
     └── Unreachable            a process or peer does not answer
 
@@ -50,6 +51,14 @@ class NotFound(TeachpathError):
 
 class Conflict(TeachpathError):
     """The thing is busy, already there, or has changed meanwhile."""
+
+
+class Outdated(Conflict):
+    """What was edited has a newer version, which `newer` holds (a record)."""
+
+    def __init__(self, sentence: str, newer: object) -> None:
+        super().__init__(sentence)
+        self.newer = newer
 
 
 class Cancelled(Conflict):

@@ -14,6 +14,7 @@ FLOORS = [
     ["errors"],
     ["nurbs"],
     ["exchange", "records"],
+    ["editing"],
     ["learning", "motion", "recording", "io"],
     ["workers"],
     ["offline", "config"],

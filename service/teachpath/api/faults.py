@@ -15,11 +15,13 @@ from teachpath.errors import (
     Conflict,
     LearningFailed,
     NotFound,
+    Outdated,
     PathRefused,
     TeachpathError,
     Unreachable,
     UnusableInput,
 )
+from teachpath.io.documents import to_document
 
 STATUS: dict[type[TeachpathError], int] = {
     NotFound: 404,
@@ -44,6 +46,7 @@ class Refusal(BaseModel):
     detail: str = Field(description="a sentence for the operator: value, limit, place, way out")
     error: str = Field(description="kind of the error")
     errors: list[Fault] = Field(default=[], description="every unusable field of the request, when that is the reason")
+    newer: dict[str, Any] | None = Field(None, description="the version saved meanwhile, when that is the reason")
 
 
 # What any resource may answer instead of its outcome.
@@ -67,7 +70,8 @@ def answer_errors(app: FastAPI) -> None:
 
     @app.exception_handler(TeachpathError)
     async def answer(_: Request, error: TeachpathError) -> JSONResponse:
-        return _answer(status_of(error), str(error), type(error).__name__)
+        newer = to_document(error.newer) if isinstance(error, Outdated) else None
+        return _answer(status_of(error), str(error), type(error).__name__, newer=newer)
 
     @app.exception_handler(RequestValidationError)
     async def name_fields(_: Request, error: RequestValidationError) -> JSONResponse:
@@ -92,8 +96,10 @@ def answer_errors(app: FastAPI) -> None:
         return _answer(500, f"this is a fault of teachpath, please report it: {error!r}", "InternalError")
 
 
-def _answer(status: int, sentence: str, kind: str, faults: list[Fault] | None = None) -> JSONResponse:
-    refusal = Refusal(detail=_printable(sentence), error=kind, errors=faults or [])
+def _answer(
+    status: int, sentence: str, kind: str, faults: list[Fault] | None = None, newer: dict[str, Any] | None = None
+) -> JSONResponse:
+    refusal = Refusal(detail=_printable(sentence), error=kind, errors=faults or [], newer=newer)
     return JSONResponse(refusal.model_dump(exclude_defaults=True), status)
 
 

@@ -9,6 +9,7 @@ from starlette.middleware.trustedhost import TrustedHostMiddleware
 
 from teachpath import __version__
 from teachpath.api.calibrations import calibrations_router
+from teachpath.api.curves import curves_router
 from teachpath.api.executions import executions_router
 from teachpath.api.faults import REFUSALS, answer_errors
 from teachpath.api.guard import Guard
@@ -16,6 +17,7 @@ from teachpath.api.parts import Parts
 from teachpath.api.robot import robot_router
 from teachpath.api.tasks import recording_router, tasks_router
 from teachpath.api.trackers import trackers_router
+from teachpath.api.versions import versions_router
 from teachpath.api.work import jobs_router, results_router
 from teachpath.io.documents import to_document
 
@@ -39,6 +41,8 @@ def build_api(parts: Parts, *pages: APIRouter) -> FastAPI:
         trackers_router,
         jobs_router,
         results_router,
+        versions_router,
+        curves_router,
         executions_router,
         robot_router,
         station_router,

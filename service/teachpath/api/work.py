@@ -10,8 +10,9 @@ from pydantic import BaseModel, Field
 from teachpath.api.parts import Parts
 from teachpath.errors import NotFound
 from teachpath.io.documents import to_document
+from teachpath.io.store import Store
 from teachpath.learning import dendrogram, recut
-from teachpath.records import Job
+from teachpath.records import Job, LearnedPath
 
 
 class NewJob(BaseModel):
@@ -30,6 +31,15 @@ class NewJob(BaseModel):
         "present", description="learn: present refuses demonstrations under a former version of their calibration"
     )
     path: str = Field("", description="plan: id of the learned path")
+    version: int | None = Field(
+        None, description="plan: number of its version; without it the newest on its main branch"
+    )
+
+
+class NewPlan(BaseModel):
+    """What to plan of a path."""
+
+    version: int | None = Field(None, description="number of the version; without it the newest on the main branch")
 
 
 def jobs_router(parts: Parts) -> APIRouter:
@@ -56,9 +66,9 @@ def jobs_router(parts: Parts) -> APIRouter:
             request = {"run": run.id, "threshold": new.threshold, "clusters": new.clusters}
             job = jobs.submit(stored.name, "recut", request)
         else:
-            path = store.path(new.path)
+            path = _versioned(store, new.path, new.version)
             _of_task(stored.name, store.run(path.run).task, f"path {path.id!r}")
-            job = jobs.submit(stored.name, "plan", {"path": path.id})
+            job = jobs.submit(stored.name, "plan", {"path": path.id, "version": path.version})
         response.headers["Location"] = f"/api/v1/jobs/{job.id}"
         return job
 
@@ -110,7 +120,7 @@ def results_router(parts: Parts) -> APIRouter:
 
     @router.get("/paths/{path}")
     def get_path(path: str) -> dict[str, Any]:
-        """Return the newest version of a learned path: degree, knots, control points, weights, fit."""
+        """Return the newest version of a learned path on its main branch: degree, knots, control points, weights."""
         return to_document(store.path(path))
 
     @router.get("/paths/{path}/plans")
@@ -119,10 +129,10 @@ def results_router(parts: Parts) -> APIRouter:
         return [to_document(plan) for plan in store.plans(store.path(path).id)]
 
     @router.post("/paths/{path}/plans", status_code=202)
-    def begin_plan(path: str, response: Response) -> Job:
-        """Queue the planning of a path; `Location` names the job, its outcome the plan."""
-        stored = store.path(path)
-        job = jobs.submit(store.run(stored.run).task, "plan", {"path": stored.id})
+    def begin_plan(path: str, response: Response, new: NewPlan | None = None) -> Job:
+        """Queue the planning of a version of a path; `Location` names the job, its outcome the plan."""
+        stored = _versioned(store, path, new.version if new else None)
+        job = jobs.submit(store.run(stored.run).task, "plan", {"path": stored.id, "version": stored.version})
         response.headers["Location"] = f"/api/v1/jobs/{job.id}"
         return job
 
@@ -132,6 +142,10 @@ def results_router(parts: Parts) -> APIRouter:
         return to_document(store.plan(plan))
 
     return router
+
+
+def _versioned(store: Store, path: str, version: int | None) -> LearnedPath:
+    return store.path(path) if version is None else store.versions.get(path, version)[1]
 
 
 def _of_task(task: str, owner: str, what: str) -> None:

@@ -129,7 +129,7 @@ def evaluation(learned: Learned) -> dict[str, Any]:
     truth = {name: name.rsplit("/", 1)[0] for name in learned.demonstrations}
     found = {name: cluster.index for cluster in learned.clusters for name in cluster.members}
     names = learned.demonstrations
-    fits = {path.cluster: path for path in learned.paths}
+    fits = {path.cluster: (path, asdict(path.fit) if path.fit else {}) for path in learned.paths}
     return {
         "mode": learned.mode,
         "demonstrations": len(names),
@@ -141,10 +141,10 @@ def evaluation(learned: Learned) -> dict[str, Any]:
                 "cluster": cluster.index,
                 "groups": dict(sorted(Counter(truth[name] for name in cluster.members).items())),
                 "selected": sum(score.selected for score in cluster.scores),
-                "degree": fits[cluster.index].curve.degree,
-                "control_points": len(fits[cluster.index].curve.control_points),
-                **asdict(fits[cluster.index].fit),
-                "flags": _flags(cluster, fits[cluster.index].note),
+                "degree": fits[cluster.index][0].curve.degree,
+                "control_points": len(fits[cluster.index][0].curve.control_points),
+                **fits[cluster.index][1],
+                "flags": _flags(cluster, fits[cluster.index][0].note),
             }
             for cluster in learned.clusters
         ],

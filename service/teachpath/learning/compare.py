@@ -113,8 +113,8 @@ def _paths(pairs: Pairs, a: Learned, b: Learned) -> Iterator[str]:
         yield f"way {one.index}: the path moved by up to {moved * 1e3:.3g} mm{bends}{_fits(before.fit, after.fit)}"
 
 
-def _fits(before: Fit, after: Fit) -> str:
-    if abs(before.tube - after.tube) <= SAME:
+def _fits(before: Fit | None, after: Fit | None) -> str:
+    if before is None or after is None or abs(before.tube - after.tube) <= SAME:
         return ""
     return f", tube {before.tube * 1e3:.3g} mm became {after.tube * 1e3:.3g} mm"
 

@@ -9,9 +9,11 @@ from teachpath.records.calibrations import Calibration, MeasuredCalibration, Tau
 from teachpath.records.demonstrations import Account, Clock, Demonstration, Phase, Sample, Task, Trajectory
 from teachpath.records.learned import Cluster, Departure, Fit, Learned, LearnedPath, Score
 from teachpath.records.motion import Certificate, ExecutorStatus, Extreme, JointState, Plan, Scene, Setpoint, Shape
+from teachpath.records.versions import MAIN, Difference, Moved, Version
 from teachpath.records.work import Job, JobState
 
 __all__ = [
+    "MAIN",
     "Account",
     "Array",
     "Calibration",
@@ -20,6 +22,7 @@ __all__ = [
     "Cluster",
     "Demonstration",
     "Departure",
+    "Difference",
     "ExecutorStatus",
     "Extreme",
     "Fit",
@@ -29,6 +32,7 @@ __all__ = [
     "Learned",
     "LearnedPath",
     "MeasuredCalibration",
+    "Moved",
     "Phase",
     "Plan",
     "Quaternion",
@@ -41,4 +45,5 @@ __all__ = [
     "TaughtPoint",
     "Trajectory",
     "Vector",
+    "Version",
 ]

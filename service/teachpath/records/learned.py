@@ -85,7 +85,9 @@ class LearnedPath:
     """The NURBS of one cluster: the way of the object's centre in the world.
 
     Attributes:
+        version: see `Version`; what was learned is version 1.
         curve: positions [m].
+        fit: None for an edited version: it follows an operator's wish, no demonstrations.
         orientation: quaternions at the same parameter, to be brought to unit length (`nurbs.unit`); None when not all
             selected demonstrations carry orientations.
     """
@@ -95,7 +97,7 @@ class LearnedPath:
     cluster: int
     version: int
     curve: Curve
-    fit: Fit
+    fit: Fit | None
     note: str = ""
     orientation: Curve | None = None
 

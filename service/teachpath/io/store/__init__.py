@@ -2,5 +2,16 @@
 
 from teachpath.io.store.recordings import RecordingHeader, Recordings, Take
 from teachpath.io.store.store import ExecutionRow, RunRow, Store, StoreSettings
+from teachpath.io.store.versions import Edit, Versions
 
-__all__ = ["ExecutionRow", "RecordingHeader", "Recordings", "RunRow", "Store", "StoreSettings", "Take"]
+__all__ = [
+    "Edit",
+    "ExecutionRow",
+    "RecordingHeader",
+    "Recordings",
+    "RunRow",
+    "Store",
+    "StoreSettings",
+    "Take",
+    "Versions",
+]

@@ -23,11 +23,11 @@ from teachpath.io.store.tables import (
     DemonstrationRow,
     ExecutionTable,
     JobRow,
-    PathRow,
     PlanRow,
     RunTable,
     TaskRow,
 )
+from teachpath.io.store.versions import Versions, learned_row
 from teachpath.records import Demonstration, ExecutorStatus, Job, JobState, Learned, LearnedPath, Plan, Task
 
 Row = TypeVar("Row", bound=Base)
@@ -75,6 +75,7 @@ class Store:
         self._writing = self._engine.execution_options(writing=True)
         self._changed = changed
         self.calibrations = MeasuredCalibrations(self._engine)
+        self.versions = Versions(self._engine, changed)
 
     def close(self) -> None:
         """Close every connection."""
@@ -169,11 +170,8 @@ class Store:
         return _run(self._one(RunTable, key, "run"))
 
     def path(self, key: str) -> LearnedPath:
-        """Return the newest version of a learned path; raises NotFound."""
-        rows = self._all(select(PathRow).where(PathRow.id == key).order_by(PathRow.version.desc()).limit(1))
-        if not rows:
-            raise NotFound(f"there is no path {key!r}")
-        return from_document(LearnedPath, rows[0].document)
+        """Return the newest version of a learned path on its main branch; raises NotFound."""
+        return self.versions.newest(key)
 
     def plans(self, path: str) -> list[Plan]:
         """List the plans of a path, newest first."""
@@ -247,8 +245,7 @@ class Store:
             named = replace(learned, paths=paths)
             session.add(RunTable(id=run, task=job.task, created_ns=now, document=to_document(named)))
             session.flush()
-            for p in paths:
-                session.add(PathRow(id=p.id, version=p.version, run=run, created_ns=now, document=to_document(p)))
+            session.add_all(learned_row(path, now) for path in paths)
         return run
 
     def finish_planning(self, key: str, plan: Plan) -> str:

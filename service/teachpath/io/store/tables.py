@@ -64,6 +64,11 @@ class PathRow(Base):
     id: Mapped[str] = mapped_column(ID, primary_key=True)
     version: Mapped[int] = mapped_column(Integer, primary_key=True)
     run: Mapped[str] = mapped_column(ForeignKey("runs.id"), index=True)
+    parent: Mapped[int | None] = mapped_column(Integer)
+    branch: Mapped[str] = mapped_column(ID)
+    name: Mapped[str] = mapped_column(Text)
+    author: Mapped[str] = mapped_column(Text)
+    note: Mapped[str] = mapped_column(Text)
     created_ns: Mapped[int] = mapped_column(BigInteger)
     document: Mapped[dict[str, Any]] = mapped_column(JSON)
 

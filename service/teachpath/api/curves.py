@@ -1,0 +1,76 @@
+"""Operations on a curve as pure calls: nothing is stored."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal
+
+from fastapi import APIRouter
+from pydantic import BaseModel, Field
+
+from teachpath.api.parts import Parts
+from teachpath.editing import MOST_POINTS, Operated, check_editable, elevate, insert, remove
+from teachpath.errors import UnusableInput
+from teachpath.exchange import UNCHANGED
+from teachpath.io.documents import to_document
+from teachpath.nurbs import Curve
+
+MOST_PARAMETERS = 2001
+Point = tuple[float, float, float]
+
+
+class CurveBody(BaseModel):
+    """A clamped NURBS on [0, 1]."""
+
+    degree: int = Field(ge=1, le=7)
+    knots: list[float] = Field(max_length=MOST_POINTS + 8, description="non-decreasing, degree + 1 times 0 and 1")
+    control_points: list[Point] = Field(max_length=MOST_POINTS, description="x, y, z in the world [m]")
+    weights: list[float] = Field(max_length=MOST_POINTS, description="positive")
+
+    def curve(self) -> Curve:
+        """Return the curve; raises UnusableInput when it is none that can be edited."""
+        points: Any = self.control_points  # numpy makes an array of them, and of none at all
+        return check_editable(Curve(self.degree, self.knots, points, self.weights))  # type: ignore[arg-type]
+
+
+class Evaluation(BaseModel):
+    """Where to evaluate a curve."""
+
+    curve: CurveBody
+    u: list[Annotated[float, Field(ge=0.0, le=1.0)]] = Field(max_length=MOST_PARAMETERS, description="parameters")
+
+
+class Operation(BaseModel):
+    """A curve to operate on."""
+
+    curve: CurveBody
+    u: float | None = Field(None, description="insert-knot, remove-knot: the parameter of the knot, in (0, 1)")
+    tolerance: float = Field(UNCHANGED, description="remove-knot: distance by which the curve may move [m]")
+
+
+def curves_router(parts: Parts) -> APIRouter:
+    """Return the routes of operations on curves."""
+    router = APIRouter(tags=["curves"])
+
+    @router.post("/curves/evaluate")
+    def evaluate_curve(evaluation: Evaluation) -> list[list[float]]:
+        """Return the points of a curve [m] at parameters u."""
+        points: list[list[float]] = evaluation.curve.curve()(evaluation.u).tolist() if evaluation.u else []  # type: ignore[arg-type]
+        return points
+
+    @router.post("/curves/{operation}")
+    def operate(operation: Literal["insert-knot", "remove-knot", "elevate"], wanted: Operation) -> dict[str, Any]:
+        """Insert or remove a knot, or raise the degree, and leave the shape; `deviation` is how far it moved [m]."""
+        return to_document(_operated(operation, wanted))
+
+    return router
+
+
+def _operated(operation: str, wanted: Operation) -> Operated:
+    curve = wanted.curve.curve()
+    if operation == "elevate":
+        return elevate(curve)
+    if wanted.u is None:
+        raise UnusableInput(f"{operation} needs the parameter u of the knot, between 0 and 1")
+    if operation == "insert-knot":
+        return insert(curve, wanted.u)
+    return remove(curve, wanted.u, tolerance=wanted.tolerance)

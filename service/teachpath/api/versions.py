@@ -1,0 +1,68 @@
+"""The versions of a learned path: list, read, compare, and save an edited curve as a new one."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from fastapi import APIRouter, Response
+from pydantic import BaseModel, Field
+
+from teachpath.api.curves import CurveBody
+from teachpath.api.parts import Parts
+from teachpath.editing import difference
+from teachpath.io.documents import to_document
+from teachpath.io.store import Edit
+from teachpath.records import Difference, Version
+
+TEXT = r"^[^\x00-\x1f\x7f]*$"  # one line
+BRANCH = r"^([^\W_][\w .-]*)?$"
+
+
+class NewVersion(BaseModel):
+    """An edited curve to save."""
+
+    base: int = Field(description="number of the version that was edited")
+    curve: CurveBody
+    branch: str = Field(
+        "", max_length=64, pattern=BRANCH, description="to continue or to begin; empty: the branch of the base"
+    )
+    name: str = Field("", max_length=80, pattern=TEXT, description="what to call it")
+    author: str = Field("", max_length=80, pattern=TEXT, description="who edited it")
+    note: str = Field("", max_length=2000, description="why")
+
+
+def versions_router(parts: Parts) -> APIRouter:
+    """Return the routes of versions."""
+    router = APIRouter(tags=["versions"])
+    versions = parts.store.versions
+
+    @router.get("/paths/{path}/versions")
+    def list_versions(path: str) -> list[Version]:
+        """List the versions of a path over all its branches, oldest first; the first is the one that was learned."""
+        return versions.list(path)
+
+    @router.get("/paths/{path}/versions/{number}")
+    def get_version(path: str, number: int) -> dict[str, Any]:
+        """Return one version and its curve."""
+        version, learned = versions.get(path, number)
+        return {"version": to_document(version), "path": to_document(learned)}
+
+    @router.post("/paths/{path}/versions", status_code=201)
+    def save_version(path: str, new: NewVersion, response: Response) -> Version:
+        """Save an edited curve as a new version; none is ever saved over another.
+
+        When somebody has saved a newer version on the branch meanwhile, nothing is saved: the answer is 409 with that
+        version in `newer`. Save on a branch of another name, or edit the newer version.
+        """
+        edit = Edit(new.base, new.branch.strip(), new.name.strip(), new.author.strip(), new.note)
+        saved = versions.save(path, new.curve.curve(), edit)
+        parts.edited(path)
+        response.headers["Location"] = f"/api/v1/paths/{path}/versions/{saved.number}"
+        return saved
+
+    @router.get("/paths/{path}/versions/{first}/difference/{second}")
+    def compare_versions(path: str, first: int, second: int) -> Difference:
+        """Say how far the second of two versions lies from the first, and which control points were moved."""
+        return difference(versions.get(path, first)[1].curve, versions.get(path, second)[1].curve)
+
+    return router

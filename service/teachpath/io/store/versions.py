@@ -1,0 +1,157 @@
+"""The versions of learned paths: each stays as it was saved, and none is saved over another."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass, replace
+from typing import Final
+
+import numpy as np
+from sqlalchemy import Engine, func, select
+from sqlalchemy.orm import Session
+
+from teachpath.errors import NotFound, Outdated, UnusableInput
+from teachpath.io.documents import from_document, to_document
+from teachpath.io.store.changes import Changed, telling, unheard
+from teachpath.io.store.tables import PathRow
+from teachpath.nurbs import Curve
+from teachpath.records import MAIN, LearnedPath, Version
+
+MOST: Final = 10_000  # versions of one path
+
+
+@dataclass(frozen=True, slots=True)
+class Edit:
+    """What is said of a version when it is saved.
+
+    Attributes:
+        base: number of the version that was edited.
+        branch: to continue, or to begin with this version; empty: the branch of `base`.
+    """
+
+    base: int
+    branch: str = ""
+    name: str = ""
+    author: str = ""
+    note: str = ""
+
+
+class Versions:
+    """The versions of every learned path."""
+
+    def __init__(self, engine: Engine, changed: Changed = unheard) -> None:
+        self._engine, self._writing = engine, engine.execution_options(writing=True)
+        self._changed = changed
+
+    def list(self, path: str) -> list[Version]:
+        """List the versions of a path, oldest first; raises NotFound."""
+        with Session(self._engine) as session:
+            rows = list(session.scalars(select(PathRow).where(PathRow.id == path).order_by(PathRow.version)))
+        if not rows:
+            raise NotFound(f"there is no path {path!r}")
+        return [_version(row) for row in rows]
+
+    def newest(self, path: str, branch: str = MAIN) -> LearnedPath:
+        """Return the newest version of a branch; raises NotFound."""
+        with Session(self._engine) as session:
+            row = _head(session, path, branch)
+        if row is None:
+            raise NotFound(f"there is no path {path!r}" + (f" with a branch {branch!r}" if branch != MAIN else ""))
+        return from_document(LearnedPath, row.document)
+
+    def get(self, path: str, number: int) -> tuple[Version, LearnedPath]:
+        """Return one version and its curve; raises NotFound."""
+        with Session(self._engine) as session:
+            row = _row(session, path, number)
+        return _version(row), from_document(LearnedPath, row.document)
+
+    def save(self, path: str, curve: Curve, edit: Edit) -> Version:
+        """Save an edited curve as the next version of a path, and return it.
+
+        Raises:
+            NotFound: there is no such path or base.
+            Outdated: the branch has a newer version than the base; nothing was saved.
+            UnusableInput: the curve is that of the base.
+        """
+        with (
+            Session(self._writing, expire_on_commit=False) as session,
+            telling(session, self._changed),
+            session.begin(),
+        ):
+            base = _row(session, path, edit.base)
+            branch = edit.branch or base.branch
+            head = _head(session, path, branch)
+            if head is not None and head.version != base.version:
+                newer = _version(head)
+                raise Outdated(_outdated(newer, edit.base), newer)
+            learned = from_document(LearnedPath, base.document)
+            if head is not None and _same(learned.curve, curve):
+                raise UnusableInput(f"this is the curve of version {base.version}; edit it, or name another branch")
+            number = 1 + (session.scalar(select(func.max(PathRow.version)).where(PathRow.id == path)) or 0)
+            if number > MOST:
+                raise UnusableInput(f"path {path} has {MOST} versions, which is the limit; learn the task anew")
+            edited = replace(learned, version=number, curve=curve, fit=None, note="")
+            row = PathRow(
+                id=path,
+                version=number,
+                run=base.run,
+                parent=base.version,
+                branch=branch,
+                name=edit.name,
+                author=edit.author,
+                note=edit.note,
+                created_ns=time.time_ns(),
+                document=to_document(edited),
+            )
+            session.add(row)
+        return _version(row)
+
+
+def learned_row(path: LearnedPath, created_ns: int) -> PathRow:
+    """Return the row of a path as it was learned: the first version on the main branch."""
+    return PathRow(
+        id=path.id,
+        version=path.version,
+        run=path.run,
+        parent=None,
+        branch=MAIN,
+        name="learned",
+        author="",
+        note="",
+        created_ns=created_ns,
+        document=to_document(path),
+    )
+
+
+def _row(session: Session, path: str, number: int) -> PathRow:
+    row = session.get(PathRow, (path, number)) if 0 < number <= MOST else None
+    if row is None:
+        newest = session.scalar(select(func.max(PathRow.version)).where(PathRow.id == path))
+        if newest is None:
+            raise NotFound(f"there is no path {path!r}")
+        raise NotFound(f"there is no version {number} of path {path!r}; it has 1 to {newest}")
+    return row
+
+
+def _head(session: Session, path: str, branch: str) -> PathRow | None:
+    of_branch = select(PathRow).where(PathRow.id == path, PathRow.branch == branch)
+    return session.scalar(of_branch.order_by(PathRow.version.desc()).limit(1))
+
+
+def _outdated(newer: Version, base: int) -> str:
+    who = f" by {newer.author}" if newer.author else ""
+    name = f" ({newer.name})" if newer.name else ""
+    return (
+        f"version {newer.number}{name} was saved on branch {newer.branch} meanwhile{who}, and your edit began at "
+        f"version {base}; save yours on a branch of its own, or go on from version {newer.number}"
+    )
+
+
+def _same(a: Curve, b: Curve) -> bool:
+    pairs = ((a.knots, b.knots), (a.control_points, b.control_points), (a.weights, b.weights))
+    return a.degree == b.degree and all(np.array_equal(x, y) for x, y in pairs)
+
+
+def _version(row: PathRow) -> Version:
+    facts = ("parent", "branch", "name", "author", "note", "created_ns")
+    return Version(path=row.id, number=row.version, **{fact: getattr(row, fact) for fact in facts})
