@@ -47,20 +47,26 @@ class HandSample(_message.Message):
     def __init__(self, sequence: _Optional[int] = ..., device_ns: _Optional[int] = ..., position: _Optional[_Union[Vector3, _Mapping]] = ..., orientation: _Optional[_Union[Quaternion, _Mapping]] = ..., flexions: _Optional[_Iterable[float]] = ..., tracked: _Optional[bool] = ..., buttons: _Optional[int] = ...) -> None: ...
 
 class StartRecording(_message.Message):
-    __slots__ = ("task", "tracker", "calibration", "scene", "rate", "armed")
+    __slots__ = ("task", "tracker", "calibration", "scene", "rate", "armed", "countdown", "takes", "one_by_one")
     TASK_FIELD_NUMBER: _ClassVar[int]
     TRACKER_FIELD_NUMBER: _ClassVar[int]
     CALIBRATION_FIELD_NUMBER: _ClassVar[int]
     SCENE_FIELD_NUMBER: _ClassVar[int]
     RATE_FIELD_NUMBER: _ClassVar[int]
     ARMED_FIELD_NUMBER: _ClassVar[int]
+    COUNTDOWN_FIELD_NUMBER: _ClassVar[int]
+    TAKES_FIELD_NUMBER: _ClassVar[int]
+    ONE_BY_ONE_FIELD_NUMBER: _ClassVar[int]
     task: str
     tracker: str
     calibration: str
     scene: str
     rate: float
     armed: bool
-    def __init__(self, task: _Optional[str] = ..., tracker: _Optional[str] = ..., calibration: _Optional[str] = ..., scene: _Optional[str] = ..., rate: _Optional[float] = ..., armed: _Optional[bool] = ...) -> None: ...
+    countdown: float
+    takes: int
+    one_by_one: bool
+    def __init__(self, task: _Optional[str] = ..., tracker: _Optional[str] = ..., calibration: _Optional[str] = ..., scene: _Optional[str] = ..., rate: _Optional[float] = ..., armed: _Optional[bool] = ..., countdown: _Optional[float] = ..., takes: _Optional[int] = ..., one_by_one: _Optional[bool] = ...) -> None: ...
 
 class StopRecording(_message.Message):
     __slots__ = ("tracker", "last_sequence", "discard")
@@ -73,7 +79,7 @@ class StopRecording(_message.Message):
     def __init__(self, tracker: _Optional[str] = ..., last_sequence: _Optional[int] = ..., discard: _Optional[bool] = ...) -> None: ...
 
 class RecordingReport(_message.Message):
-    __slots__ = ("task", "tracker", "demonstrations", "received", "lost", "duplicated", "reordered", "refused", "untracked", "longest_gap_ns", "notes", "phase", "idle", "gaps", "conflicts", "clock_jumps", "declared_rate", "seen_rate", "clock_offset_ns", "clock_uncertainty_ns", "clock_rate", "state", "pedal")
+    __slots__ = ("task", "tracker", "demonstrations", "received", "lost", "duplicated", "reordered", "refused", "untracked", "longest_gap_ns", "notes", "phase", "idle", "gaps", "conflicts", "clock_jumps", "declared_rate", "seen_rate", "clock_offset_ns", "clock_uncertainty_ns", "clock_rate", "state", "pedal", "countdown_left", "takes_left", "sign")
     TASK_FIELD_NUMBER: _ClassVar[int]
     TRACKER_FIELD_NUMBER: _ClassVar[int]
     DEMONSTRATIONS_FIELD_NUMBER: _ClassVar[int]
@@ -97,6 +103,9 @@ class RecordingReport(_message.Message):
     CLOCK_RATE_FIELD_NUMBER: _ClassVar[int]
     STATE_FIELD_NUMBER: _ClassVar[int]
     PEDAL_FIELD_NUMBER: _ClassVar[int]
+    COUNTDOWN_LEFT_FIELD_NUMBER: _ClassVar[int]
+    TAKES_LEFT_FIELD_NUMBER: _ClassVar[int]
+    SIGN_FIELD_NUMBER: _ClassVar[int]
     task: str
     tracker: str
     demonstrations: _containers.RepeatedScalarFieldContainer[str]
@@ -120,7 +129,10 @@ class RecordingReport(_message.Message):
     clock_rate: float
     state: str
     pedal: bool
-    def __init__(self, task: _Optional[str] = ..., tracker: _Optional[str] = ..., demonstrations: _Optional[_Iterable[str]] = ..., received: _Optional[int] = ..., lost: _Optional[int] = ..., duplicated: _Optional[int] = ..., reordered: _Optional[int] = ..., refused: _Optional[int] = ..., untracked: _Optional[int] = ..., longest_gap_ns: _Optional[int] = ..., notes: _Optional[_Iterable[str]] = ..., phase: _Optional[str] = ..., idle: _Optional[int] = ..., gaps: _Optional[int] = ..., conflicts: _Optional[int] = ..., clock_jumps: _Optional[int] = ..., declared_rate: _Optional[float] = ..., seen_rate: _Optional[float] = ..., clock_offset_ns: _Optional[int] = ..., clock_uncertainty_ns: _Optional[int] = ..., clock_rate: _Optional[float] = ..., state: _Optional[str] = ..., pedal: _Optional[bool] = ...) -> None: ...
+    countdown_left: float
+    takes_left: int
+    sign: str
+    def __init__(self, task: _Optional[str] = ..., tracker: _Optional[str] = ..., demonstrations: _Optional[_Iterable[str]] = ..., received: _Optional[int] = ..., lost: _Optional[int] = ..., duplicated: _Optional[int] = ..., reordered: _Optional[int] = ..., refused: _Optional[int] = ..., untracked: _Optional[int] = ..., longest_gap_ns: _Optional[int] = ..., notes: _Optional[_Iterable[str]] = ..., phase: _Optional[str] = ..., idle: _Optional[int] = ..., gaps: _Optional[int] = ..., conflicts: _Optional[int] = ..., clock_jumps: _Optional[int] = ..., declared_rate: _Optional[float] = ..., seen_rate: _Optional[float] = ..., clock_offset_ns: _Optional[int] = ..., clock_uncertainty_ns: _Optional[int] = ..., clock_rate: _Optional[float] = ..., state: _Optional[str] = ..., pedal: _Optional[bool] = ..., countdown_left: _Optional[float] = ..., takes_left: _Optional[int] = ..., sign: _Optional[str] = ...) -> None: ...
 
 class PauseRecording(_message.Message):
     __slots__ = ("tracker",)

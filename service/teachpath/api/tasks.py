@@ -14,6 +14,7 @@ from teachpath.errors import UnusableInput
 from teachpath.io.documents import to_document
 from teachpath.io.wire import report_document
 from teachpath.offline.importing import Source, import_file
+from teachpath.recording import Routine
 from teachpath.records import Demonstration, Task
 from teachpath.workers.curation import Amendment
 from teachpath_proto.keys import is_name
@@ -32,7 +33,10 @@ class Recording(BaseModel):
     tracker: str = Field(description="name of the tracker that shows the task")
     calibration: str = Field("", description="start: instead of the task's own")
     rate: float = Field(0.0, ge=0.0, le=10_000.0, description="start: samples a second that it sends; 0 = not said")
-    armed: bool = Field(False, description="start: paused, until the pedal or `resume` begins the first take")
+    armed: bool = Field(False, description="start: paused, until pedal, fist or `resume` begins the first take")
+    countdown: float | None = Field(None, ge=0.0, le=60.0, description="start: [s] before each take; else the setting")
+    takes: int = Field(0, ge=0, le=10_000, description="start: pause by itself after so many demonstrations; 0 = never")
+    one_by_one: bool = Field(False, description="start: pause after each demonstration")
     discard: bool = Field(False, description="stop: throw away the demonstration that is still open")
 
 
@@ -152,7 +156,7 @@ def recording_router(parts: Parts) -> APIRouter:
                 recording.tracker,
                 calibration=recording.calibration,
                 rate=recording.rate,
-                armed=recording.armed,
+                routine=Routine(recording.armed, recording.countdown, recording.takes, recording.one_by_one),
             )
         )
 

@@ -2,9 +2,11 @@
 
 from teachpath.recording.account import StreamAccount
 from teachpath.recording.coach import Shown, advise
+from teachpath.recording.control import Control, Routine, State
 from teachpath.recording.demonstration import object_trajectory, point_to_world, to_world, usable
 from teachpath.recording.frame import fit_frame
-from teachpath.recording.phases import GRASP_BUTTON, TOGGLE_BUTTON, Cut, Segmenter
+from teachpath.recording.gesture import FistGesture, Sign
+from teachpath.recording.phases import GRASP_BUTTON, TOGGLE_BUTTON, Cut, Segmenter, closure_of
 from teachpath.recording.positions import Faults, faults_of
 from teachpath.recording.settings import RecordingSettings
 from teachpath.recording.verdict import Verdict, judge
@@ -12,14 +14,20 @@ from teachpath.recording.verdict import Verdict, judge
 __all__ = [
     "GRASP_BUTTON",
     "TOGGLE_BUTTON",
+    "Control",
     "Cut",
     "Faults",
+    "FistGesture",
     "RecordingSettings",
+    "Routine",
     "Segmenter",
     "Shown",
+    "Sign",
+    "State",
     "StreamAccount",
     "Verdict",
     "advise",
+    "closure_of",
     "faults_of",
     "fit_frame",
     "judge",

@@ -1,4 +1,4 @@
-"""The phases of a demonstration, from the glove: reach, transport (grasp to release), return."""
+"""The phases of a demonstration, from the glove: reach, grasp, transport, release, return."""
 
 from __future__ import annotations
 
@@ -17,17 +17,30 @@ TOGGLE_BUTTON = 2  # pressed: pause or resume
 class Cut:
     """Where a demonstration lies in its stream, as indices into the samples since the last cut."""
 
-    grasp: int  # first sample of the transport phase
+    grasp: int  # first sample with the object in the hand
     release: int  # first sample after it
     open_ended: bool = False  # the stream ended while the hand was closed
+
+
+def closure_of(sample: Sample) -> float:
+    """Return how far a hand is closed, 0 (open) to 1: the mean of its flexions, or the grasp button."""
+    if sample.buttons & GRASP_BUTTON:
+        return 1.0
+    return sum(sample.flexions) / len(sample.flexions) if sample.flexions else 0.0
 
 
 class Segmenter:
     """Follows one hand and says when a demonstration is complete.
 
-    The hand closes when its closure (mean flexion, or the grasp button) rises over `close_at`, opens when it falls
-    under `open_at`; between the two it stays as it is. It grasps only within `grasp_radius` of the object. A
-    demonstration is complete when the hand, open again, rests, or after `longest_return`, or with the next grasp.
+    The hand closes when its closure rises over `close_at`, opens when it falls under `open_at`; between the two it
+    stays as it is. When it closes within `grasp_radius` of the object it grasps: from there the object is in the hand.
+
+    - reach: until the hand grasps.
+    - grasp: until the object has been moved by `lift`; a hand that opens before has let it stand, and reaches again.
+    - transport: until the hand opens.
+    - release: until the hand has been open for `release_time`; one that closes before never let go.
+    - return: until the open hand rests, or for `longest_return`, or until it grasps the object again, which is back in
+      its place. Then the demonstration is complete.
     """
 
     def __init__(self, settings: RecordingSettings, carried: Vector | None, *, closed: bool = False) -> None:
@@ -39,30 +52,41 @@ class Segmenter:
         """
         self._settings, self._carried = settings, carried
         self._closed = closed
+        self._release_ns = round(settings.release_time * 1e9)
+        self._rest_ns = round(settings.rest_time * 1e9)
         self._restart()
 
     def _restart(self) -> None:
         self.phase = Phase.REACH
         self._count = 0
         self._grasp = self._release = 0
-        self._release_ns = 0
+        self._opened_ns = 0
+        self._place: Vector = (0.0, 0.0, 0.0)  # where the hand closed
         self._recent: deque[tuple[int, Vector]] = deque()
 
     def push(self, sample: Sample, position: Vector) -> Cut | None:
         """Take the next sample and its hand position [m, world]; return the cut that it completes.
 
-        The sample that completes a cut is the last one of it.
+        The sample that completes a cut is the last one of it, but a grasp that completes one is the first of the next.
         """
         index, self._count = self._count, self._count + 1
         was_closed = self._closed
-        self._closed = self._closes(sample)
-        if self.phase is Phase.REACH and self._closed and not was_closed and self._near(position):
-            self.phase, self._grasp = Phase.TRANSPORT, index
-        elif self.phase is Phase.TRANSPORT and not self._closed:
-            self.phase, self._release, self._release_ns = Phase.RETURN, index, sample.device_ns
-            self._recent.clear()
-        elif self.phase is Phase.RETURN and self._returned(sample, position, was_closed):
-            return self._complete()
+        self._closed = closure_of(sample) > (self._settings.open_at if was_closed else self._settings.close_at)
+        grasps = self._closed and not was_closed and self._near(position)
+        if self.phase is Phase.REACH:
+            if grasps:
+                self._take_hold(index, position)
+        elif self.phase is Phase.GRASP:
+            self._follow_grasp(position)
+        elif self.phase is Phase.TRANSPORT:
+            if not self._closed:
+                self.phase, self._release, self._opened_ns = Phase.RELEASE, index, sample.device_ns
+                self._recent.clear()
+                self._recent.append((sample.device_ns, position))
+        elif self.phase is Phase.RELEASE and self._closed:
+            self.phase = Phase.TRANSPORT
+        else:
+            return self._follow_return(sample, position, grasps)
         return None
 
     def pass_over(self) -> None:
@@ -73,36 +97,47 @@ class Segmenter:
         """Return the cut that the end of the stream completes, or None when nothing was grasped."""
         if self.phase is Phase.REACH:
             return None
-        if self.phase is Phase.TRANSPORT:
+        if self.phase in (Phase.GRASP, Phase.TRANSPORT):
             self._release = self._count
             return self._complete(open_ended=True)
         return self._complete()
+
+    def _take_hold(self, index: int, position: Vector) -> None:
+        self.phase, self._grasp, self._place = Phase.GRASP, index, position
+
+    def _follow_grasp(self, position: Vector) -> None:
+        if not self._closed:
+            self.phase = Phase.REACH
+        elif math.dist(position, self._place) > self._settings.lift:
+            self.phase = Phase.TRANSPORT
+
+    def _follow_return(self, sample: Sample, position: Vector, grasps: bool) -> Cut | None:
+        self._recent.append((sample.device_ns, position))
+        since = sample.device_ns - self._opened_ns
+        if self.phase is Phase.RELEASE:
+            if since >= self._release_ns:
+                self.phase = Phase.RETURN
+            return None
+        if grasps:
+            cut = self._complete()
+            self._count = 1
+            self._take_hold(0, position)
+            return cut
+        rests = since >= self._rest_ns and self._rests(sample.device_ns)
+        return self._complete() if rests or since > self._settings.longest_return * 1e9 else None
 
     def _complete(self, *, open_ended: bool = False) -> Cut:
         cut = Cut(self._grasp, self._release, open_ended)
         self._restart()
         return cut
 
-    def _closes(self, sample: Sample) -> bool:
-        if sample.buttons & GRASP_BUTTON:
-            return True
-        if not sample.flexions:
-            return False
-        closure = sum(sample.flexions) / len(sample.flexions)
-        return closure > (self._settings.open_at if self._closed else self._settings.close_at)
-
     def _near(self, position: Vector) -> bool:
         if self._carried is None:
             return True
         return math.dist(position, self._carried) <= self._settings.grasp_radius
 
-    def _returned(self, sample: Sample, position: Vector, was_closed: bool) -> bool:
-        self._recent.append((sample.device_ns, position))
-        rest_ns = int(self._settings.rest_time * 1e9)
-        while sample.device_ns - self._recent[0][0] > rest_ns:
+    def _rests(self, now_ns: int) -> bool:
+        while now_ns - self._recent[0][0] > self._rest_ns:
             self._recent.popleft()
-        whole = sample.device_ns - self._release_ns >= rest_ns
-        spread = max(max(axis) - min(axis) for axis in zip(*(p for _, p in self._recent), strict=True))
-        rests = whole and spread <= self._settings.rest_motion
-        late = sample.device_ns - self._release_ns > self._settings.longest_return * 1e9
-        return rests or late or (self._closed and not was_closed)
+        spread: float = max(max(axis) - min(axis) for axis in zip(*(p for _, p in self._recent), strict=True))
+        return spread <= self._settings.rest_motion

@@ -24,6 +24,10 @@ class RecordingSettings:
     open_at: Share = 0.4
     # [m] how near the object's centre the hand must close to grasp it
     grasp_radius: Positive = 0.08
+    # [m] how far a grasped object must be moved to count as carried
+    lift: Positive = 0.01
+    # [s] a hand that opens for less while it carries has not let go
+    release_time: Positive = 0.1
     # [s] how long the open hand must rest to end a demonstration
     rest_time: Positive = 0.3
     # [m] how far it may move while it rests
@@ -53,6 +57,19 @@ class RecordingSettings:
     largest_clock_step: Positive = 0.25
     # [s] a tracker that is silent for longer in mid-take is lost
     longest_silence: Positive = 2.0
+    # [s] counted down before each take, unless a recording says otherwise
+    countdown: Annotated[float, Ge(0), Le(60)] = 0.0
+    # [s] a fist held still for so long, away from the object, pauses or resumes as it opens; held three times as long
+    # it discards the last demonstration; 0: a fist says nothing
+    fist_time: Annotated[float, Ge(0)] = 1.0
+    # mean flexion above which a hand is a fist
+    fist_at: Share = 0.8
+    # [m] least distance of such a fist from the object's centre
+    fist_distance: Positive = 0.2
+    # [m] how far it may move
+    fist_motion: Positive = 0.05
+    # samples of one tracker that may wait to be recorded; more are turned away, and said to be
+    longest_backlog: Annotated[int, Ge(100)] = 5000
     # [s] how long the handshake at the end waits for samples that are still under way
     handshake_timeout: Positive = 2.0
 
@@ -61,6 +78,10 @@ class RecordingSettings:
             raise UnusableSettings(
                 f"recording.open_at is {self.open_at:g}; it must be under close_at, {self.close_at:g}, or the hand "
                 "would flicker between open and closed"
+            )
+        if not self.close_at <= self.fist_at:
+            raise UnusableSettings(
+                f"recording.fist_at is {self.fist_at:g}; it must not be under close_at, {self.close_at:g}"
             )
         for axis, low, high in zip("xyz", self.workspace_low, self.workspace_high, strict=True):
             if not low < high:

@@ -13,7 +13,9 @@ class Phase(StrEnum):
     """What the hand is doing within a demonstration."""
 
     REACH = "reach"
-    TRANSPORT = "transport"  # begins with the grasp, ends with the release
+    GRASP = "grasp"  # the object is in the hand and stands where it stood
+    TRANSPORT = "transport"
+    RELEASE = "release"  # the hand opens
     RETURN = "return"
 
 

@@ -3,26 +3,23 @@
 from __future__ import annotations
 
 import logging
-import queue
-import threading
 import time
 from collections.abc import Callable
 
-from teachpath.errors import Conflict, NotFound, UnusableInput, UnusableSample
+from teachpath.errors import Conflict, UnusableInput
 from teachpath.io.bus import Bus, Handle
 from teachpath.io.store import Store
-from teachpath.io.wire import decode_sample
-from teachpath.recording import RecordingSettings
+from teachpath.recording import RecordingSettings, Routine, State
 from teachpath.records import Calibration, Demonstration, Scene, Trajectory
-from teachpath.workers.curation import Curation
+from teachpath.workers.curation import Amendment, Curation
+from teachpath.workers.intake import Intake
+from teachpath.workers.open_take import Finished
 from teachpath.workers.presence import Presence, Tracker
 from teachpath.workers.recorder_queries import RecorderQueries
-from teachpath.workers.session import Finished, RecordingSession
+from teachpath.workers.scribe import Scribe
+from teachpath.workers.session import RecordingSession
 from teachpath_proto import tracker_pb2
 from teachpath_proto.keys import Keys, is_name
-
-FLUSH_EVERY = 0.75  # [s] under a second, with a margin for a busy machine
-LOOK_EVERY = 0.2  # [s] for trackers that have fallen silent
 
 log = logging.getLogger("teachpath")
 Recorded = Callable[[Demonstration, Trajectory], None]
@@ -57,22 +54,20 @@ class Recorder:
         self._scene, self._calibration, self._recorded, self._clock = scene, calibration, recorded, clock
         self.curation = Curation(store, settings, scene, changed)
         self._queries = RecorderQueries(bus, keys, self)
-        # (key, payload of a sample or whether a tracker is alive, when it was received)
-        self._inbox: queue.SimpleQueue[tuple[str, bytes | bool, int] | None] = queue.SimpleQueue()
-        self._changed = threading.Condition()
-        self._sessions: dict[str, RecordingSession] = {}
         self._presence = Presence(clock)
+        self._intake = Intake(keys, self._presence, settings.longest_backlog)
+        self._scribe = Scribe(
+            self._intake, self._presence, settings, made=self._hand_out, unwanted=self._discard_last_of, clock=clock
+        )
         self._missed = 0
-        self._thread: threading.Thread | None = None
         self._handles: list[Handle] = []
 
     def start(self) -> None:
         """Begin to listen."""
-        self._thread = threading.Thread(target=self._run, name="recorder", daemon=True)
-        self._thread.start()
+        self._scribe.start()
         self._handles = [
-            self._bus.subscribe(self._keys.all_samples, self._receive, missed=self._miss),
-            self._bus.watch(self._keys.all_trackers_alive, self._come_or_go),
+            self._bus.subscribe(self._keys.all_samples, self._intake.receive, missed=self._miss),
+            self._bus.watch(self._keys.all_trackers_alive, self._intake.come_or_go),
         ]
         self._queries.start()
 
@@ -81,14 +76,7 @@ class Recorder:
         self._queries.stop()
         for handle in self._handles:
             handle.close()
-        if self._thread is not None:
-            self._inbox.put(None)
-            self._thread.join()
-            self._thread = None
-        with self._changed:
-            for session in self._sessions.values():
-                session.finish()
-            self._sessions.clear()
+        self._scribe.stop()
 
     def begin(
         self,
@@ -98,7 +86,7 @@ class Recorder:
         calibration: str = "",
         scene: str = "",
         rate: float = 0.0,
-        armed: bool = False,
+        routine: Routine | None = None,
     ) -> Report:
         """Start recording demonstrations of `task` from `tracker`.
 
@@ -106,7 +94,7 @@ class Recorder:
 
         Args:
             rate: [Hz] that the client declares; 0: it says nothing.
-            armed: begin paused; the pedal or `resume` begins the first take.
+            routine: how takes follow each other; None: one after the other, counted down as the settings say.
 
         Raises:
             UnusableInput: a name that cannot be a folder and a key, or no rate.
@@ -122,9 +110,10 @@ class Recorder:
             self._scene(scene)
             self._store.ensure_task(task, scene=scene, calibration=self._calibration(calibration or "identity").name)
         stored = self._store.task(task)
-        with self._changed:
-            before = self._sessions.get(tracker)
-            if before is not None and before.state != "lost":
+        with self._scribe.changed:
+            before = self._scribe.sessions.get(tracker)
+            finished = self._scribe.catch_up(before) if before is not None else []
+            if before is not None and before.state is not State.LOST:
                 raise Conflict(f"{tracker} is already recording {before.task}; stop that first")
             session = RecordingSession(
                 self._store,
@@ -134,10 +123,12 @@ class Recorder:
                 calibration=self._calibration(calibration or stored.calibration),
                 scene=self._scene(stored.scene),
                 rate=rate,
-                armed=armed,
+                routine=routine,
+                clock=self._clock,
             )
-            finished = before.finish() if before is not None else []
-            self._sessions[tracker] = session
+            finished += before.finish() if before is not None else []
+            self._scribe.sessions[tracker] = session
+            self._intake.open(tracker)
             report = session.report()
         self._hand_out(finished)
         return report
@@ -148,36 +139,39 @@ class Recorder:
         Waits up to `handshake_timeout` for samples up to `last_sequence` that are still under way; those that do not
         come are lost. A demonstration whose object was released is kept; one still open is thrown away on `discard`.
         """
-        with self._changed:
-            session = self._session(tracker)
+        with self._scribe.changed:
+            session = self._scribe.session(tracker)
             if last_sequence is not None:
                 arrived = lambda: session.account.highest >= last_sequence  # noqa: E731
-                self._changed.wait_for(arrived, timeout=self._settings.handshake_timeout)
+                self._scribe.changed.wait_for(arrived, timeout=self._settings.handshake_timeout)
+            finished = self._scribe.catch_up(session)
+            if last_sequence is not None:
                 session.expect(last_sequence)
-            if self._sessions.get(tracker) is session:
-                del self._sessions[tracker]
-            finished = session.finish(discard=discard)
+            if self._scribe.sessions.get(tracker) is session:
+                del self._scribe.sessions[tracker]
+                self._intake.close(tracker)
+            finished += session.finish(discard=discard)
         self._hand_out(finished)
         return session.report(ended=True)
 
     def pause(self, tracker: str) -> Report:
         """Record nothing from `tracker` until `resume`; what is carried now is recorded to its end first."""
-        with self._changed:
-            session = self._session(tracker)
+        with self._scribe.changed:
+            session = self._scribe.session(tracker)
             session.pause()
             return session.report()
 
     def resume(self, tracker: str) -> Report:
         """Record from `tracker` again."""
-        with self._changed:
-            session = self._session(tracker)
+        with self._scribe.changed:
+            session = self._scribe.session(tracker)
             session.resume()
             return session.report()
 
     def reports(self) -> list[Report]:
         """Return the accounts of all running recordings."""
-        with self._changed:
-            return [session.report() for session in self._sessions.values()]
+        with self._scribe.changed:
+            return [session.report() for session in self._scribe.sessions.values()]
 
     def trackers(self) -> list[Tracker]:
         """Return the trackers that are there: those that say so, and those that send."""
@@ -186,109 +180,27 @@ class Recorder:
     @property
     def backlog(self) -> int:
         """How many samples have been received and not yet recorded."""
-        return self._inbox.qsize()
+        return self._intake.backlog
 
     def faults(self) -> list[str]:
         """Say what keeps samples from being recorded now, for the operator."""
-        with self._changed:
-            found = [f"{session.tracker}: {session.fault}" for session in self._sessions.values() if session.fault]
+        with self._scribe.changed:
+            found = [
+                f"{session.tracker}: {session.fault}" for session in self._scribe.sessions.values() if session.fault
+            ]
         return found + ([f"Zenoh reports {self._missed} samples that never came"] if self._missed else [])
 
     def calibration_of(self, tracker: str) -> Calibration | None:
         """Return the calibration under which `tracker` is being recorded, or None."""
-        session = self._sessions.get(tracker)
+        session = self._scribe.sessions.get(tracker)
         return session.calibration if session else None
 
     def task_of(self, tracker: str) -> str:
         """Return the task that `tracker` is recording; raises NotFound."""
-        return self._session(tracker).task
+        return self._scribe.session(tracker).task
 
-    def _session(self, tracker: str) -> RecordingSession:
-        session = self._sessions.get(tracker)
-        if session is None:
-            raise NotFound(f"{tracker!r} is not being recorded; running: {sorted(self._sessions) or 'none'}")
-        return session
-
-    # on the transport's threads: append only
-
-    def _receive(self, key: str, payload: bytes) -> None:
-        self._inbox.put((key, payload, time.time_ns()))
-
-    def _come_or_go(self, key: str, alive: bool) -> None:
-        self._inbox.put((key, alive, 0))
-
-    def _miss(self, count: int) -> None:
+    def _miss(self, count: int) -> None:  # on the transport's thread
         self._missed += count
-
-    # on the recorder's thread
-
-    def _run(self) -> None:
-        flushed = looked = self._clock()
-        while True:
-            try:
-                item = self._inbox.get(timeout=LOOK_EVERY)
-            except queue.Empty:
-                item = ("", b"", 0)
-            if item is None:
-                return
-            if item[0]:
-                self._take_in(*item)
-            now = self._clock()
-            if now - flushed >= FLUSH_EVERY:
-                flushed = now
-                with self._changed:
-                    for session in self._sessions.values():
-                        session.flush()
-            # Samples that wait are no silence.
-            if now - looked >= LOOK_EVERY and self._inbox.empty():
-                looked = now
-                self._look_for_silence()
-
-    def _take_in(self, key: str, content: bytes | bool, receive_ns: int) -> None:
-        if isinstance(content, bool):
-            self._follow(self._keys.announced(key), content)
-            return
-        tracker = self._keys.tracker_of(key)
-        self._presence.hear(tracker)
-        finished: Finished | None = None
-        with self._changed:
-            session = self._sessions.get(tracker)
-            if session is None:
-                return
-            try:
-                finished = session.add(decode_sample(tracker, content, receive_ns), content)
-            except UnusableSample as error:
-                session.refuse(str(error))
-            except Exception as error:  # one take's fault must not end the others
-                session.fail(f"recording failed: {error!r}")
-            self._changed.notify_all()
-        if finished is not None:
-            self._hand_out([finished])
-
-    def _follow(self, tracker: str, alive: bool) -> None:
-        self._presence.announce(tracker, alive)
-        if not alive:
-            self._lose(tracker, "the tracker has gone in mid-take")
-
-    def _look_for_silence(self) -> None:
-        limit = self._settings.longest_silence
-        carrying = [t for t, session in list(self._sessions.items()) if session.is_carrying]
-        for tracker in carrying:
-            if self._presence.silence_of(tracker) > limit:
-                self._lose(tracker, f"no sample came for {limit:g} s in mid-take")
-
-    def _lose(self, tracker: str, reason: str) -> None:
-        with self._changed:
-            session = self._sessions.get(tracker)
-            if session is None:
-                return
-            try:
-                finished = session.lose(reason if session.is_carrying else "the tracker has gone")
-            except Exception as error:  # one take's fault must not end the others
-                finished = None
-                session.fail(f"recording failed: {error!r}")
-        if finished is not None:
-            self._hand_out([finished])
 
     def _hand_out(self, finished: list[Finished]) -> None:
         for demonstration, trajectory in finished:
@@ -296,3 +208,9 @@ class Recorder:
                 self._recorded(demonstration, trajectory)
             except Exception:  # whoever shows it may fail; the demonstration is stored, and recording goes on
                 log.exception("demonstration %s is stored, but could not be shown", demonstration.id)
+
+    def _discard_last_of(self, session: RecordingSession) -> None:
+        for key in reversed(session.demonstrations):
+            if not self._store.demonstration(key).discarded_ns:
+                self.curation.amend(key, Amendment(discarded=True))
+                return

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from teachpath.errors import UnusableInput
 from teachpath.io.bus import Bus, Handle
 from teachpath.io.wire import encode_demonstration, parse
+from teachpath.recording import Routine
 from teachpath.workers.curation import Amendment
 from teachpath_proto import tracker_pb2
 from teachpath_proto.keys import Keys
@@ -50,7 +51,12 @@ class RecorderQueries:
             calibration=request.calibration,
             scene=request.scene,
             rate=request.rate,
-            armed=request.armed,
+            routine=Routine(
+                armed=request.armed,
+                countdown=request.countdown if request.HasField("countdown") else None,
+                takes=request.takes,
+                one_by_one=request.one_by_one,
+            ),
         ).SerializeToString()
 
     def _stop(self, payload: bytes) -> bytes:

@@ -1,35 +1,28 @@
-"""One recording that is running: a take, its account and its phases."""
+"""One recording that is running: its account, its phases, and what the operator wants of it."""
 
 from __future__ import annotations
 
-import uuid
-from enum import StrEnum
+import time
+from collections.abc import Callable
 
-from teachpath.errors import UnusableRecording
-from teachpath.io.store import RecordingHeader, Store, Take
+from teachpath.io.store import RecordingHeader, Store
 from teachpath.io.wire import encode_report
 from teachpath.recording import (
     TOGGLE_BUTTON,
+    Control,
     Cut,
+    FistGesture,
     RecordingSettings,
+    Routine,
     Segmenter,
+    Sign,
+    State,
     StreamAccount,
     point_to_world,
 )
-from teachpath.records import Calibration, Demonstration, Phase, Sample, Scene, Trajectory
-from teachpath.workers.closing import TakenSamples, close_take
+from teachpath.records import Calibration, Phase, Sample, Scene, Vector
+from teachpath.workers.open_take import Finished, OpenTake
 from teachpath_proto import tracker_pb2
-
-Finished = tuple[Demonstration, Trajectory]
-
-
-class State(StrEnum):
-    """What a recording does with the samples that come."""
-
-    RECORDING = "recording"
-    PAUSING = "pausing"  # paused as soon as what is carried has been let go
-    PAUSED = "paused"
-    LOST = "lost"  # the tracker has gone; recording goes on when it comes back
 
 
 class RecordingSession:
@@ -37,7 +30,13 @@ class RecordingSession:
 
     Args:
         rate: [Hz] that the client declares; 0: it says nothing.
-        armed: begin paused.
+        routine: how takes follow each other.
+        clock: [s] monotonic.
+
+    Attributes:
+        account: of every sample that came.
+        demonstrations: ids of those made so far, in order.
+        flushed: when its file was last flushed, by the clock.
     """
 
     def __init__(
@@ -50,23 +49,29 @@ class RecordingSession:
         calibration: Calibration,
         scene: Scene,
         rate: float = 0.0,
-        armed: bool = False,
+        routine: Routine | None = None,
+        clock: Callable[[], float] = time.monotonic,
     ) -> None:
         self.task, self.tracker, self.calibration = task, tracker, calibration
-        self.state = State.PAUSED if armed else State.RECORDING
-        self._store, self._settings = store, settings
+        self._store, self._settings, self._clock = store, settings, clock
         # of the whole recording; its open part is that of the open take
         self.account = StreamAccount(declared_rate=rate, largest_clock_step=settings.largest_clock_step)
+        self._control = Control(routine or Routine(), clock(), countdown=settings.countdown)
         self._carried = scene.carried.position if scene.carried else None
         self._to_world = point_to_world(calibration)
-        self._demonstrations: list[str] = []
+        self.demonstrations: list[str] = []
+        self.flushed = clock()
         self._idle = 0
-        self._fault = ""
-        self._torn = self._pedal_was_used = False
+        self._torn = self._pedal_was_used = self._unwanted = False
         self._buttons = 0
-        self._take: Take | None = None
-        self._samples: list[Sample] = []
+        self._take = self._new_take()
         self._segmenter = Segmenter(settings, self._carried)
+        self._gesture = FistGesture(settings, self._carried)
+
+    @property
+    def state(self) -> State:
+        """What is done with the samples that come."""
+        return self._control.state
 
     @property
     def is_carrying(self) -> bool:
@@ -76,7 +81,7 @@ class RecordingSession:
     @property
     def fault(self) -> str:
         """Why the open take is not written, or empty."""
-        return self._fault
+        return self._take.fault
 
     def add(self, sample: Sample, payload: bytes = b"") -> Finished | None:
         """Write one sample, `payload` as it came; return the demonstration that it completes."""
@@ -84,39 +89,32 @@ class RecordingSession:
         if self.account.restarted:
             self._idle += 1
             return self.interrupt("the device began to count anew in mid-take")
-        if self.state is State.LOST:
-            self.state = State.RECORDING
+        self._control.hear()
+        position = self._to_world(sample.position)
         if fresh:
-            self._follow_pedal(sample.buttons)
-        if self.state is State.PAUSED:
+            self._follow_signs(sample, position)
+        if self.state is State.COUNTDOWN and self._control.count_down(self._clock()):
+            self._drop()
+        if self.state in (State.PAUSED, State.COUNTDOWN):
             self._idle += 1
             return None
-        self._write(sample, payload)
-        self._samples.append(sample)
         if not fresh:
             self._segmenter.pass_over()
+            self._take.write(sample, payload)
             return None
-        cut = self._segmenter.push(sample, self._to_world(sample.position))
-        if cut is not None:
-            return self._close(cut)
-        if self._segmenter.phase is Phase.REACH and self._reaches_too_long():
-            self._drop()
-        return None
+        return self._follow_phases(sample, payload, position)
 
     def pause(self) -> None:
         """Record nothing until `resume`; what is carried now is recorded to its end first."""
-        if self.state is State.RECORDING and self.is_carrying:
-            self.state = State.PAUSING
-        elif self.state is not State.PAUSING:
-            self.state = State.PAUSED
+        self._control.pause(carrying=self.is_carrying)
+        if self.state is State.PAUSED:
             self._drop()
 
     def resume(self) -> None:
-        """Record again."""
+        """Record again, after the countdown if there is one."""
         if self.state is State.PAUSED:
             self.account.begin_part()
-        if self.state is not State.LOST:
-            self.state = State.RECORDING
+        self._control.resume(self._clock())
 
     def interrupt(self, reason: str) -> Finished | None:
         """End the open take because its samples ended, never as a silent short one; return what it makes.
@@ -135,8 +133,7 @@ class RecordingSession:
     def lose(self, reason: str) -> Finished | None:
         """Take note that the tracker has gone; as `interrupt`."""
         finished = self.interrupt(reason)
-        if self.state in (State.RECORDING, State.PAUSING):
-            self.state = State.LOST
+        self._control.lose()
         return finished
 
     def refuse(self, reason: str) -> None:
@@ -151,15 +148,16 @@ class RecordingSession:
         """Keep a sentence with the recording and its open demonstration."""
         self.account.note(sentence)
 
-    def flush(self) -> None:
+    def flush(self, now: float) -> None:
         """Hand what was written to the operating system; when nothing could be written, try again."""
-        if self._fault and not self.is_carrying:
+        self.flushed = now
+        if self._take.fault and not self.is_carrying:
             self._drop()
-        if self._take is not None:
-            try:
-                self._take.flush()
-            except OSError as error:
-                self.fail(_cannot("written", error))
+        self._take.flush()
+
+    def fail(self, reason: str) -> None:
+        """Stop writing the open take and leave its file as it is; the next one is tried again."""
+        self._take.fail(reason)
 
     def finish(self, *, discard: bool = False, torn: bool = False) -> list[Finished]:
         """End the recording; return the demonstration that its end completes, if there is one.
@@ -174,95 +172,80 @@ class RecordingSession:
         self._drop()
         return [finished] if finished else []
 
+    def asks_to_discard(self) -> bool:
+        """Return, once, whether a fist has asked for the last demonstration to be discarded."""
+        asked, self._unwanted = self._unwanted, False
+        return asked
+
     def report(self, *, ended: bool = False) -> tracker_pb2.RecordingReport:
         """Return the account of this recording so far."""
         return encode_report(
             self.task,
             self.tracker,
-            self._demonstrations,
+            self.demonstrations,
             self.account.account(),
             idle=self._idle,
             phase="" if ended else self._segmenter.phase.value,
             state="" if ended else self.state.value,
             pedal=self._pedal_was_used,
+            countdown_left=self._control.seconds_left(self._clock()),
+            takes_left=self._control.takes_left,
+            sign=self._gesture.offered or "",
         )
 
-    def fail(self, reason: str) -> None:
-        """Stop writing the open take and leave its file as it is; the next one is tried again."""
-        self._fault = reason
-        self.account.note(reason)
-        if self._take is not None:
-            self._take.leave()
-            self._take = None
-
-    def _follow_pedal(self, buttons: int) -> None:
-        pressed = buttons & TOGGLE_BUTTON and not self._buttons & TOGGLE_BUTTON
-        self._buttons = buttons
-        if pressed:
-            self._pedal_was_used = True
-            if self.state is State.RECORDING:
+    def _follow_signs(self, sample: Sample, position: Vector) -> None:
+        pressed = sample.buttons & TOGGLE_BUTTON and not self._buttons & TOGGLE_BUTTON
+        self._buttons = sample.buttons
+        self._pedal_was_used |= bool(pressed)
+        sign = self._gesture.push(sample, position, carrying=self.is_carrying)
+        self._unwanted |= sign is Sign.DISCARD
+        if pressed or sign is Sign.TOGGLE:
+            if self.state in (State.RECORDING, State.COUNTDOWN):
                 self.pause()
             else:
                 self.resume()
 
-    def _write(self, sample: Sample, payload: bytes) -> None:
-        if self._fault:
-            return
-        try:
-            if self._take is None:
-                self._id = f"demo-{uuid.uuid4().hex[:12]}"
-                header = RecordingHeader(self.task, self.tracker, self.calibration)
-                self._take = self._store.recordings.begin(self._id, header)
+    def _follow_phases(self, sample: Sample, payload: bytes, position: Vector) -> Finished | None:
+        before = self._segmenter.phase
+        cut = self._segmenter.push(sample, position)
+        phase = self._segmenter.phase
+        if cut is not None and phase is Phase.GRASP:  # the first sample of the next take
+            finished = self._close(cut)
             self._take.write(sample, payload)
-        except OSError as error:
-            self.fail(_cannot("written", error))
-
-    def _reaches_too_long(self) -> bool:
-        reach_ns = self._samples[-1].device_ns - self._samples[0].device_ns
-        return reach_ns > self._settings.longest_reach * 1e9
+            return finished
+        self._take.write(sample, payload)
+        if cut is not None:
+            return self._close(cut)
+        if phase is Phase.REACH:
+            if before is Phase.GRASP:
+                self.account.note("the hand opened where it had closed: nothing was carried")
+            if self._take.seconds > self._settings.longest_reach:
+                self._drop()
+        return None
 
     def _close(self, cut: Cut, *, fault: str = "") -> Finished | None:
-        """Finish the take as a demonstration; a take that cannot be one is dropped, with a note that says why."""
-        try:
-            if self._take is None:
-                raise UnusableRecording(f"a demonstration was lost: {self._fault}")
-            # A device without a glove lets go by ending its recording; a glove would have shown the release.
-            if cut.open_ended and not fault and (self._torn or self._samples[-1].flexions):
-                fault = "the recording ended before the hand let go"
-            taken = TakenSamples(self._samples, cut, self.account.part(), self.calibration, self._carried, fault)
-            finished = close_take(self._store, self._settings, self._take, taken, self._facts())
-        except UnusableRecording as error:
-            self.account.note(str(error))
-            self._drop()
-            return None
-        except OSError as error:
-            self.fail(_cannot("finished", error))
-            self._drop()
-            return None
-        self._demonstrations.append(finished[0].id)
+        # A device without a glove lets go by ending its recording; a glove would have shown the release.
+        if cut.open_ended and not fault and (self._torn or self._take.samples[-1].flexions):
+            fault = "the recording ended before the hand let go"
+        finished = self._take.close(cut, self.account.part(), self._carried, fault)
+        if finished is None:
+            self._idle += len(self._take.samples)
+        else:
+            self.demonstrations.append(finished[0].id)
+        self._control.end_one(self._clock(), made=finished is not None)
         self._open_next()
-        if self.state is State.PAUSING:
-            self.state = State.PAUSED
         return finished
 
-    def _facts(self) -> dict[str, str]:
-        return {"id": self._id, "task": self.task, "source": self.tracker}
-
     def _drop(self) -> None:
-        if self._take is not None:
-            self._take.discard()
-        self._idle += len(self._samples)
+        self._take.drop()
+        self._idle += len(self._take.samples)
         self._open_next()
-
-    def _open_next(self) -> None:
-        self._take = None
-        self._fault = ""
-        self._samples = []
-        self.account.begin_part()
         self._segmenter = Segmenter(self._settings, self._carried)
 
+    def _open_next(self) -> None:
+        self._take = self._new_take()
+        self.account.begin_part()
 
-def _cannot(what: str, error: OSError) -> str:
-    return (
-        f"the recording cannot be {what}: {error.strerror or error}; free space or mend the folder, then show it again"
-    )
+    def _new_take(self) -> OpenTake:
+        header = RecordingHeader(self.task, self.tracker, self.calibration)
+        return OpenTake(self._store, self._settings, header, self.account.note)

@@ -69,4 +69,63 @@ def test_phases_come_in_their_order() -> None:
         segmenter.push(s, np.array(s.position))
         if not seen or seen[-1] is not segmenter.phase:
             seen.append(segmenter.phase)
-    assert seen == [Phase.REACH, Phase.TRANSPORT, Phase.RETURN]
+    assert seen == list(Phase)
+
+
+# gloves as they are
+
+
+def closing(closures: list[float], positions: list[tuple[float, float, float]], noise: float = 0.0) -> list[Sample]:
+    random = np.random.default_rng(5)
+    flexions = np.clip(np.array(closures)[:, None] + random.normal(0.0, noise, (len(closures), 22)), 0.0, 1.0)
+    return [sample(i, p, tuple(map(float, f))) for i, (p, f) in enumerate(zip(positions, flexions, strict=True), 1)]
+
+
+def carry(steps: int) -> list[tuple[float, float, float]]:
+    return [(0.5 + 0.01 * i, 0.0, 0.5) for i in range(steps)]
+
+
+@pytest.mark.parametrize("noise", [0.05, 0.15, 0.3])
+def test_a_slow_noisy_closing_and_opening_is_one_grasp(noise: float) -> None:
+    ramp = list(np.linspace(0.1, 0.9, 40))
+    closures = ramp + [0.9] * 60 + ramp[::-1] + [0.1] * 40
+    positions = [OBJECT] * 40 + carry(60) + [carry(60)[-1]] * 80
+    (cut,) = cuts_of(closing(closures, positions, noise))
+    assert 20 <= cut.grasp <= 30
+    assert 110 <= cut.release <= 130
+
+
+def test_a_double_grasp_before_the_object_moves_is_one_demonstration_from_the_second() -> None:
+    closures = [0.1] * 10 + [0.9] * 10 + [0.1] * 10 + [0.9] * 60 + [0.1] * 40
+    positions = [OBJECT] * 30 + carry(60) + [carry(60)[-1]] * 40
+    (cut,) = cuts_of(closing(closures, positions))
+    assert (cut.grasp, cut.release) == (30, 90)
+
+
+def test_fingers_that_flicker_while_they_carry_have_not_let_go() -> None:
+    closures = [0.1] * 10 + [0.9] * 60 + [0.1] * 40
+    for i in (30, 31, 32, 50):
+        closures[i] = 0.1
+    (cut,) = cuts_of(closing(closures, [OBJECT] * 10 + carry(60) + [carry(60)[-1]] * 40))
+    assert (cut.grasp, cut.release) == (10, 70)
+
+
+def test_an_object_that_is_dropped_ends_its_demonstration_and_is_not_picked_up_from_the_floor() -> None:
+    closures = [0.1] * 10 + [0.9] * 40 + [0.1] * 10 + [0.9] * 40 + [0.1] * 40
+    positions = [OBJECT] * 10 + carry(40) + [(0.9, 0.0, 0.5)] * 90
+    (cut,) = cuts_of(closing(closures, positions))
+    assert (cut.grasp, cut.release) == (10, 50)
+
+
+def test_a_grasp_of_the_object_that_is_back_in_its_place_begins_the_next_one() -> None:
+    closures = [0.1] * 10 + [0.9] * 40 + [0.1] * 10 + [0.9] * 40 + [0.1] * 40
+    back = [(0.9 - 0.04 * i, 0.0, 0.5) for i in range(10)]
+    positions = [OBJECT] * 10 + carry(40) + back + carry(40) + [carry(40)[-1]] * 40
+    first, second = cuts_of(closing(closures, positions))
+    assert (first.grasp, first.release) == (10, 50)
+    assert (second.grasp, second.release) == (0, 40)
+
+
+def test_a_hand_that_closes_and_opens_at_the_object_has_carried_nothing() -> None:
+    closures = [0.1] * 10 + [0.9] * 60 + [0.1] * 60
+    assert cuts_of(closing(closures, [OBJECT] * 130, noise=0.1)) == []

@@ -2,6 +2,7 @@
 
 import time
 from collections.abc import Callable
+from typing import Any
 
 from teachpath.io.bus import MemoryBus
 from teachpath.io.store import Store
@@ -41,8 +42,8 @@ class Bench:
         for s in samples:
             self.bus.publish(KEYS.samples(tracker), sample_message(s).SerializeToString())
 
-    def begin(self, tracker: str = "glove", task: str = "lift", *, armed: bool = False, rate: float = 0.0) -> None:
-        request = tracker_pb2.StartRecording(task=task, tracker=tracker, scene="paper", armed=armed, rate=rate)
+    def begin(self, tracker: str = "glove", task: str = "lift", **wishes: Any) -> None:
+        request = tracker_pb2.StartRecording(task=task, tracker=tracker, scene="paper", **wishes)
         self.bus.ask(KEYS.recorder_start, request.SerializeToString())
 
     def end(self, last: int, tracker: str = "glove", *, discard: bool = False) -> tracker_pb2.RecordingReport:

@@ -16,19 +16,18 @@ from typing import BinaryIO
 
 from mcap.records import Channel, Header, Message, Metadata, Statistics
 from mcap.stream_reader import StreamReader
-from mcap.writer import Writer
-from mcap_protobuf.schema import register_schema
 
 from teachpath.errors import NotFound, UnusableRecording
 from teachpath.io import documents
 from teachpath.io.store.drawing import Drawing
+from teachpath.io.store.mcap_file import McapFile, Stamped
 from teachpath.io.wire import parse, sample_from, sample_message
 from teachpath.records import Calibration, Sample
 from teachpath_proto import tracker_pb2
 
 TOPIC = "samples"
 HEADER, FACTS = "teachpath", "facts"  # names of the metadata
-CHUNK = 64 * 1024  # bytes; small chunks lose less when a file is cut off
+BATCH = 400  # messages; small chunks, of about 64 KiB, lose less when a file is cut off
 
 Opener = Callable[[Path], BinaryIO]
 
@@ -61,37 +60,40 @@ class Take:
             raise
 
     def _begin(self, header: RecordingHeader) -> None:
-        self._writer = Writer(self._file, chunk_size=CHUNK)
-        self._writer.start(profile="", library="teachpath")
-        self._writer.add_metadata(HEADER, {"header": documents.encode(header).decode()})
-        schema = register_schema(self._writer, tracker_pb2.HandSample)
-        self._channel = self._writer.register_channel(topic=TOPIC, message_encoding="protobuf", schema_id=schema)
-        self._drawing = Drawing(self._writer, header.calibration)
+        self._mcap = McapFile(self._file)
+        self._mcap.add_metadata(HEADER, {"header": documents.encode(header).decode()})
+        self._channel = self._mcap.add_channel(TOPIC, tracker_pb2.HandSample)
+        self._drawing = Drawing(self._mcap, header.calibration)
+        self._batch: list[Stamped] = []
         self.flush()
 
     def write(self, sample: Sample, payload: bytes = b"") -> None:
         """Append one sample; `payload` is its message as it came, made anew when empty."""
-        self._writer.add_message(
-            self._channel,
-            log_time=sample.receive_ns,
-            data=payload or sample_message(sample).SerializeToString(),
-            publish_time=sample.device_ns,
-            sequence=sample.sequence & 0xFFFFFFFF,
-        )
-        self._drawing.write(sample)
+        data = payload or sample_message(sample).SerializeToString()
+        number = sample.sequence & 0xFFFFFFFF
+        self._batch.append(Stamped(self._channel, number, sample.receive_ns, sample.device_ns, data))
+        self._drawing.draw(sample, self._batch)
+        if len(self._batch) >= BATCH:
+            self._write_batch()
 
     def flush(self) -> None:
         """Hand all that was written to the operating system; a killed process loses none of it."""
-        self._writer.flush()  # type: ignore[no-untyped-call]
+        self._write_batch()
+        self._file.flush()
 
     def finish(self, facts: dict[str, str]) -> Path:
         """End the recording with `facts` (verdict, counts) and return its final file."""
-        self._writer.add_metadata(FACTS, facts)
-        self._writer.finish()  # type: ignore[no-untyped-call]
+        self._write_batch()
+        self._mcap.add_metadata(FACTS, facts)
+        self._mcap.finish()
         self._file.flush()
         os.fsync(self._file.fileno())
         self._file.close()
         return self._part.rename(self._part.with_suffix(""))
+
+    def _write_batch(self) -> None:
+        batch, self._batch = self._batch, []
+        self._mcap.add_messages(batch)
 
     def leave(self) -> None:
         """Stop writing and leave the unfinished file for `teachpath doctor`."""

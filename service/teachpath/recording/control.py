@@ -1,0 +1,106 @@
+"""When the samples of a recording are recorded: armed, counted down, paused, lost, take after take."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+from teachpath.errors import UnusableInput
+
+LONGEST_COUNTDOWN = 60.0  # [s]
+
+
+class State(StrEnum):
+    """What a recording does with the samples that come."""
+
+    RECORDING = "recording"
+    COUNTDOWN = "countdown"  # records as soon as it has been counted down
+    PAUSING = "pausing"  # paused as soon as what is carried has been let go
+    PAUSED = "paused"
+    LOST = "lost"  # the tracker has gone; recording goes on when it comes back
+
+
+@dataclass(frozen=True, slots=True)
+class Routine:
+    """How an operator wants takes to follow each other; raises UnusableInput for a countdown that has no end."""
+
+    armed: bool = False  # begin paused
+    countdown: float | None = None  # [s] before each take; None: as the settings say
+    takes: int = 0  # after so many it pauses by itself; 0: never
+    one_by_one: bool = False  # pause after each take
+
+    def __post_init__(self) -> None:
+        if self.countdown is not None and not 0.0 <= self.countdown <= LONGEST_COUNTDOWN:
+            raise UnusableInput(f"a countdown of {self.countdown:g} s is outside 0 to {LONGEST_COUNTDOWN:g}")
+
+
+class Control:
+    """Follows the state of one recording; `now` is in seconds of a monotonic clock.
+
+    Args:
+        countdown: [s] before each take, where the routine says none.
+    """
+
+    def __init__(self, routine: Routine, now: float, *, countdown: float = 0.0) -> None:
+        self._routine = routine
+        self._countdown = countdown if routine.countdown is None else routine.countdown
+        self._begins_at = 0.0  # the take, while it is counted down
+        self._made = 0
+        self.state = State.PAUSED
+        if not routine.armed:
+            self._arm(now)
+
+    @property
+    def takes_left(self) -> int:
+        """How many takes are still wanted; 0 when nobody has said how many."""
+        return max(self._routine.takes - self._made, 0)
+
+    def seconds_left(self, now: float) -> float:
+        """Return what is left of the countdown [s]."""
+        return max(0.0, self._begins_at - now) if self.state is State.COUNTDOWN else 0.0
+
+    def pause(self, *, carrying: bool) -> None:
+        """Record nothing until `resume`; what is carried is recorded to its end first."""
+        if carrying and self.state in (State.RECORDING, State.PAUSING):
+            self.state = State.PAUSING
+        else:
+            self.state = State.PAUSED
+
+    def resume(self, now: float) -> None:
+        """Record again; a lost tracker has to come back for that, and one that was to pause goes on."""
+        if self.state is State.PAUSING:
+            self.state = State.RECORDING
+        elif self.state is State.PAUSED:
+            if self._routine.takes and not self.takes_left:
+                self._made = 0  # another series
+            self._arm(now)
+
+    def count_down(self, now: float) -> bool:
+        """Return whether this moment ends the countdown."""
+        if self.state is not State.COUNTDOWN or now < self._begins_at:
+            return False
+        self.state = State.RECORDING
+        return True
+
+    def lose(self) -> None:
+        """Take note that the tracker has gone."""
+        if self.state in (State.RECORDING, State.PAUSING):
+            self.state = State.LOST
+
+    def hear(self) -> None:
+        """Take note that the tracker sends."""
+        if self.state is State.LOST:
+            self.state = State.RECORDING
+
+    def end_one(self, now: float, *, made: bool) -> None:
+        """Take note that a take has ended, as a demonstration or as nothing, and make ready for the next."""
+        self._made += made
+        enough = self._routine.takes and not self.takes_left
+        if self.state is State.PAUSING or (made and (enough or self._routine.one_by_one)):
+            self.state = State.PAUSED
+        elif self.state is State.RECORDING:
+            self._arm(now)
+
+    def _arm(self, now: float) -> None:
+        self._begins_at = now + self._countdown
+        self.state = State.COUNTDOWN if self._countdown else State.RECORDING

@@ -1,0 +1,77 @@
+"""The batch writer against the library's readers."""
+
+import io
+
+import pytest
+from google.protobuf.message import Message as ProtobufMessage
+from mcap.reader import make_reader
+from mcap.records import Chunk, ChunkIndex, Message, MessageIndex
+from mcap.stream_reader import StreamReader, get_chunk_data_stream
+
+from teachpath.io.store.mcap_file import McapFile, Stamped
+from teachpath_proto import tracker_pb2
+
+KINDS: list[type[ProtobufMessage]] = [tracker_pb2.HandSample, tracker_pb2.Vector3]
+BATCHES = [
+    [Stamped(1 + i % 2, i, 1000 * batch + 10 * i, i + 1, bytes([i]) * (i + batch)) for i in range(20)]
+    for batch in range(1, 4)
+]
+
+
+@pytest.fixture
+def written() -> bytes:
+    stream = io.BytesIO()
+    file = McapFile(stream)
+    for i, kind in enumerate(KINDS):
+        assert file.add_channel(f"topic-{i}", kind) == i + 1
+    file.add_metadata("facts", {"a": "1"})
+    for batch in BATCHES:
+        file.add_messages(batch)
+        file.add_messages([])
+    file.finish()
+    return stream.getvalue()
+
+
+def test_a_reader_with_the_index_finds_every_message_of_a_topic_and_of_a_time(written: bytes) -> None:
+    reader = make_reader(io.BytesIO(written), validate_crcs=True)
+    summary = reader.get_summary()
+    assert summary is not None
+    assert summary.statistics is not None
+    assert (summary.statistics.message_count, summary.statistics.chunk_count) == (60, 3)
+    assert summary.statistics.channel_message_counts == {1: 30, 2: 30}
+    assert [s.name for s in summary.schemas.values()] == [kind.DESCRIPTOR.full_name for kind in KINDS]
+    sent = [m for batch in BATCHES for m in batch]
+    for topic, channel in (("topic-0", 1), ("topic-1", 2)):
+        found = [m for _, _, m in reader.iter_messages(topics=[topic])]
+        assert [(m.sequence, m.log_time, m.publish_time, m.data) for m in found] == [
+            (m.sequence, m.log_time, m.publish_time, m.data) for m in sent if m.channel == channel
+        ]
+    late = [m.log_time for _, _, m in reader.iter_messages(starting_at=2050, ending_before=3050)]
+    assert late == [m.log_time for m in sent if 2050 <= m.log_time < 3050]
+    assert [m.metadata for m in reader.iter_metadata()] == [{"a": "1"}]
+
+
+def test_the_index_of_every_chunk_points_at_its_messages(written: bytes) -> None:
+    stream = io.BytesIO(written)
+    summary = make_reader(stream).get_summary()
+    assert summary is not None
+    for index in summary.chunk_indexes:
+        assert isinstance(index, ChunkIndex)
+        chunk = _record_at(written, index.chunk_start_offset)
+        assert isinstance(chunk, Chunk)
+        content, _ = get_chunk_data_stream(chunk, validate_crc=True)
+        plain = content.read(chunk.uncompressed_size)
+        for channel, offset in index.message_index_offsets.items():
+            entries = _record_at(written, offset)
+            assert isinstance(entries, MessageIndex)
+            assert entries.channel_id == channel
+            assert len(entries.records) == 10
+            for log_time, at in entries.records:
+                message = _record_at(plain, at)
+                assert isinstance(message, Message)
+                assert (message.channel_id, message.log_time) == (channel, log_time)
+
+
+def _record_at(content: bytes, offset: int) -> object:
+    reader = StreamReader(io.BytesIO(content[offset:]), skip_magic=True, emit_chunks=True)
+    return next(reader.records)
