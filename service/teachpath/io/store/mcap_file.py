@@ -10,10 +10,9 @@ import struct
 import zlib
 from collections import Counter
 from collections.abc import Sequence
-from typing import BinaryIO, NamedTuple
+from typing import Any, BinaryIO, NamedTuple
 
 import zstandard
-from google.protobuf.message import Message
 from mcap.data_stream import RecordBuilder
 from mcap.opcode import Opcode
 from mcap.records import (
@@ -61,7 +60,7 @@ class McapFile:
         self._counts: Counter[int] = Counter()
         self._put(MAGIC + _laid_out(Header(profile="", library="teachpath")))
 
-    def add_channel(self, topic: str, kind: type[Message]) -> int:
+    def add_channel(self, topic: str, kind: type[Any]) -> int:
         """Declare a topic of protobuf messages and return its channel."""
         name, description = kind.DESCRIPTOR.full_name, _description(kind)
         number = len(self._channels) + 1
@@ -174,6 +173,6 @@ def _laid_out(*records: McapRecord) -> bytes:
     return laid_out
 
 
-def _description(kind: type[Message]) -> bytes:
+def _description(kind: type[Any]) -> bytes:
     description: bytes = build_file_descriptor_set(kind).SerializeToString()
     return description
