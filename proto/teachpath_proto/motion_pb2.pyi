@@ -8,7 +8,7 @@ from typing import ClassVar as _ClassVar, Optional as _Optional, Union as _Union
 DESCRIPTOR: _descriptor.FileDescriptor
 
 class Setpoint(_message.Message):
-    __slots__ = ("cycle", "nominal_ns", "sent_ns", "position", "velocity", "acceleration", "gripper_closed", "execution")
+    __slots__ = ("cycle", "nominal_ns", "sent_ns", "position", "velocity", "acceleration", "gripper_closed", "execution", "on_path")
     CYCLE_FIELD_NUMBER: _ClassVar[int]
     NOMINAL_NS_FIELD_NUMBER: _ClassVar[int]
     SENT_NS_FIELD_NUMBER: _ClassVar[int]
@@ -17,6 +17,7 @@ class Setpoint(_message.Message):
     ACCELERATION_FIELD_NUMBER: _ClassVar[int]
     GRIPPER_CLOSED_FIELD_NUMBER: _ClassVar[int]
     EXECUTION_FIELD_NUMBER: _ClassVar[int]
+    ON_PATH_FIELD_NUMBER: _ClassVar[int]
     cycle: int
     nominal_ns: int
     sent_ns: int
@@ -25,10 +26,11 @@ class Setpoint(_message.Message):
     acceleration: _containers.RepeatedScalarFieldContainer[float]
     gripper_closed: bool
     execution: str
-    def __init__(self, cycle: _Optional[int] = ..., nominal_ns: _Optional[int] = ..., sent_ns: _Optional[int] = ..., position: _Optional[_Iterable[float]] = ..., velocity: _Optional[_Iterable[float]] = ..., acceleration: _Optional[_Iterable[float]] = ..., gripper_closed: _Optional[bool] = ..., execution: _Optional[str] = ...) -> None: ...
+    on_path: bool
+    def __init__(self, cycle: _Optional[int] = ..., nominal_ns: _Optional[int] = ..., sent_ns: _Optional[int] = ..., position: _Optional[_Iterable[float]] = ..., velocity: _Optional[_Iterable[float]] = ..., acceleration: _Optional[_Iterable[float]] = ..., gripper_closed: _Optional[bool] = ..., execution: _Optional[str] = ..., on_path: _Optional[bool] = ...) -> None: ...
 
 class JointState(_message.Message):
-    __slots__ = ("stamp_ns", "cycle", "position", "velocity", "torque", "tracking_error", "missed", "holding", "gripper_closed", "object_position", "object_orientation", "execution")
+    __slots__ = ("stamp_ns", "cycle", "position", "velocity", "torque", "tracking_error", "missed", "holding", "gripper_closed", "object_position", "object_orientation", "execution", "late")
     STAMP_NS_FIELD_NUMBER: _ClassVar[int]
     CYCLE_FIELD_NUMBER: _ClassVar[int]
     POSITION_FIELD_NUMBER: _ClassVar[int]
@@ -41,6 +43,7 @@ class JointState(_message.Message):
     OBJECT_POSITION_FIELD_NUMBER: _ClassVar[int]
     OBJECT_ORIENTATION_FIELD_NUMBER: _ClassVar[int]
     EXECUTION_FIELD_NUMBER: _ClassVar[int]
+    LATE_FIELD_NUMBER: _ClassVar[int]
     stamp_ns: int
     cycle: int
     position: _containers.RepeatedScalarFieldContainer[float]
@@ -53,10 +56,11 @@ class JointState(_message.Message):
     object_position: _containers.RepeatedScalarFieldContainer[float]
     object_orientation: _containers.RepeatedScalarFieldContainer[float]
     execution: str
-    def __init__(self, stamp_ns: _Optional[int] = ..., cycle: _Optional[int] = ..., position: _Optional[_Iterable[float]] = ..., velocity: _Optional[_Iterable[float]] = ..., torque: _Optional[_Iterable[float]] = ..., tracking_error: _Optional[float] = ..., missed: _Optional[int] = ..., holding: _Optional[bool] = ..., gripper_closed: _Optional[bool] = ..., object_position: _Optional[_Iterable[float]] = ..., object_orientation: _Optional[_Iterable[float]] = ..., execution: _Optional[str] = ...) -> None: ...
+    late: int
+    def __init__(self, stamp_ns: _Optional[int] = ..., cycle: _Optional[int] = ..., position: _Optional[_Iterable[float]] = ..., velocity: _Optional[_Iterable[float]] = ..., torque: _Optional[_Iterable[float]] = ..., tracking_error: _Optional[float] = ..., missed: _Optional[int] = ..., holding: _Optional[bool] = ..., gripper_closed: _Optional[bool] = ..., object_position: _Optional[_Iterable[float]] = ..., object_orientation: _Optional[_Iterable[float]] = ..., execution: _Optional[str] = ..., late: _Optional[int] = ...) -> None: ...
 
 class ExecutorCommand(_message.Message):
-    __slots__ = ("verb", "execution", "plan", "override")
+    __slots__ = ("verb", "execution", "plan", "override", "length", "nodes", "lease", "who", "plan_id", "reason", "mirror")
     class Verb(int, metaclass=_enum_type_wrapper.EnumTypeWrapper):
         __slots__ = ()
         UNSPECIFIED: _ClassVar[ExecutorCommand.Verb]
@@ -66,6 +70,9 @@ class ExecutorCommand(_message.Message):
         RESUME: _ClassVar[ExecutorCommand.Verb]
         STOP: _ClassVar[ExecutorCommand.Verb]
         REVERSE: _ClassVar[ExecutorCommand.Verb]
+        STEP: _ClassVar[ExecutorCommand.Verb]
+        REVOKE: _ClassVar[ExecutorCommand.Verb]
+        MIRROR: _ClassVar[ExecutorCommand.Verb]
     UNSPECIFIED: ExecutorCommand.Verb
     START: ExecutorCommand.Verb
     OVERRIDE: ExecutorCommand.Verb
@@ -73,18 +80,93 @@ class ExecutorCommand(_message.Message):
     RESUME: ExecutorCommand.Verb
     STOP: ExecutorCommand.Verb
     REVERSE: ExecutorCommand.Verb
+    STEP: ExecutorCommand.Verb
+    REVOKE: ExecutorCommand.Verb
+    MIRROR: ExecutorCommand.Verb
     VERB_FIELD_NUMBER: _ClassVar[int]
     EXECUTION_FIELD_NUMBER: _ClassVar[int]
     PLAN_FIELD_NUMBER: _ClassVar[int]
     OVERRIDE_FIELD_NUMBER: _ClassVar[int]
+    LENGTH_FIELD_NUMBER: _ClassVar[int]
+    NODES_FIELD_NUMBER: _ClassVar[int]
+    LEASE_FIELD_NUMBER: _ClassVar[int]
+    WHO_FIELD_NUMBER: _ClassVar[int]
+    PLAN_ID_FIELD_NUMBER: _ClassVar[int]
+    REASON_FIELD_NUMBER: _ClassVar[int]
+    MIRROR_FIELD_NUMBER: _ClassVar[int]
     verb: ExecutorCommand.Verb
     execution: str
     plan: bytes
     override: float
-    def __init__(self, verb: _Optional[_Union[ExecutorCommand.Verb, str]] = ..., execution: _Optional[str] = ..., plan: _Optional[bytes] = ..., override: _Optional[float] = ...) -> None: ...
+    length: float
+    nodes: int
+    lease: str
+    who: str
+    plan_id: str
+    reason: str
+    mirror: bytes
+    def __init__(self, verb: _Optional[_Union[ExecutorCommand.Verb, str]] = ..., execution: _Optional[str] = ..., plan: _Optional[bytes] = ..., override: _Optional[float] = ..., length: _Optional[float] = ..., nodes: _Optional[int] = ..., lease: _Optional[str] = ..., who: _Optional[str] = ..., plan_id: _Optional[str] = ..., reason: _Optional[str] = ..., mirror: _Optional[bytes] = ...) -> None: ...
+
+class LeaseRequest(_message.Message):
+    __slots__ = ("action", "name", "token", "seconds", "hold_when_lost")
+    class Action(int, metaclass=_enum_type_wrapper.EnumTypeWrapper):
+        __slots__ = ()
+        UNSPECIFIED: _ClassVar[LeaseRequest.Action]
+        ACQUIRE: _ClassVar[LeaseRequest.Action]
+        BEAT: _ClassVar[LeaseRequest.Action]
+        RELEASE: _ClassVar[LeaseRequest.Action]
+        ASK: _ClassVar[LeaseRequest.Action]
+        KEEP: _ClassVar[LeaseRequest.Action]
+    UNSPECIFIED: LeaseRequest.Action
+    ACQUIRE: LeaseRequest.Action
+    BEAT: LeaseRequest.Action
+    RELEASE: LeaseRequest.Action
+    ASK: LeaseRequest.Action
+    KEEP: LeaseRequest.Action
+    ACTION_FIELD_NUMBER: _ClassVar[int]
+    NAME_FIELD_NUMBER: _ClassVar[int]
+    TOKEN_FIELD_NUMBER: _ClassVar[int]
+    SECONDS_FIELD_NUMBER: _ClassVar[int]
+    HOLD_WHEN_LOST_FIELD_NUMBER: _ClassVar[int]
+    action: LeaseRequest.Action
+    name: str
+    token: str
+    seconds: float
+    hold_when_lost: bool
+    def __init__(self, action: _Optional[_Union[LeaseRequest.Action, str]] = ..., name: _Optional[str] = ..., token: _Optional[str] = ..., seconds: _Optional[float] = ..., hold_when_lost: _Optional[bool] = ...) -> None: ...
+
+class Lease(_message.Message):
+    __slots__ = ("holder", "expires_in", "hold_when_lost", "asking", "granted_in", "token")
+    HOLDER_FIELD_NUMBER: _ClassVar[int]
+    EXPIRES_IN_FIELD_NUMBER: _ClassVar[int]
+    HOLD_WHEN_LOST_FIELD_NUMBER: _ClassVar[int]
+    ASKING_FIELD_NUMBER: _ClassVar[int]
+    GRANTED_IN_FIELD_NUMBER: _ClassVar[int]
+    TOKEN_FIELD_NUMBER: _ClassVar[int]
+    holder: str
+    expires_in: float
+    hold_when_lost: bool
+    asking: str
+    granted_in: float
+    token: str
+    def __init__(self, holder: _Optional[str] = ..., expires_in: _Optional[float] = ..., hold_when_lost: _Optional[bool] = ..., asking: _Optional[str] = ..., granted_in: _Optional[float] = ..., token: _Optional[str] = ...) -> None: ...
+
+class JournalEntry(_message.Message):
+    __slots__ = ("at_ns", "who", "verb", "execution", "answer")
+    AT_NS_FIELD_NUMBER: _ClassVar[int]
+    WHO_FIELD_NUMBER: _ClassVar[int]
+    VERB_FIELD_NUMBER: _ClassVar[int]
+    EXECUTION_FIELD_NUMBER: _ClassVar[int]
+    ANSWER_FIELD_NUMBER: _ClassVar[int]
+    at_ns: int
+    who: str
+    verb: str
+    execution: str
+    answer: str
+    def __init__(self, at_ns: _Optional[int] = ..., who: _Optional[str] = ..., verb: _Optional[str] = ..., execution: _Optional[str] = ..., answer: _Optional[str] = ...) -> None: ...
 
 class ExecutorStatus(_message.Message):
-    __slots__ = ("execution", "state", "reason", "progress", "override", "cycles", "late", "missed", "lateness_p50_us", "lateness_p99_us", "lateness_max_us", "limit_use", "tracking_error", "limit_place", "duration")
+    __slots__ = ("execution", "state", "reason", "progress", "override", "cycles", "late", "missed", "lateness_p50_us", "lateness_p99_us", "lateness_max_us", "limit_use", "tracking_error", "limit_place", "duration", "length", "stretch", "operator", "asking", "scheduling")
     EXECUTION_FIELD_NUMBER: _ClassVar[int]
     STATE_FIELD_NUMBER: _ClassVar[int]
     REASON_FIELD_NUMBER: _ClassVar[int]
@@ -100,6 +182,11 @@ class ExecutorStatus(_message.Message):
     TRACKING_ERROR_FIELD_NUMBER: _ClassVar[int]
     LIMIT_PLACE_FIELD_NUMBER: _ClassVar[int]
     DURATION_FIELD_NUMBER: _ClassVar[int]
+    LENGTH_FIELD_NUMBER: _ClassVar[int]
+    STRETCH_FIELD_NUMBER: _ClassVar[int]
+    OPERATOR_FIELD_NUMBER: _ClassVar[int]
+    ASKING_FIELD_NUMBER: _ClassVar[int]
+    SCHEDULING_FIELD_NUMBER: _ClassVar[int]
     execution: str
     state: str
     reason: str
@@ -115,4 +202,9 @@ class ExecutorStatus(_message.Message):
     tracking_error: float
     limit_place: str
     duration: float
-    def __init__(self, execution: _Optional[str] = ..., state: _Optional[str] = ..., reason: _Optional[str] = ..., progress: _Optional[float] = ..., override: _Optional[float] = ..., cycles: _Optional[int] = ..., late: _Optional[int] = ..., missed: _Optional[int] = ..., lateness_p50_us: _Optional[float] = ..., lateness_p99_us: _Optional[float] = ..., lateness_max_us: _Optional[float] = ..., limit_use: _Optional[float] = ..., tracking_error: _Optional[float] = ..., limit_place: _Optional[str] = ..., duration: _Optional[float] = ...) -> None: ...
+    length: float
+    stretch: str
+    operator: str
+    asking: str
+    scheduling: str
+    def __init__(self, execution: _Optional[str] = ..., state: _Optional[str] = ..., reason: _Optional[str] = ..., progress: _Optional[float] = ..., override: _Optional[float] = ..., cycles: _Optional[int] = ..., late: _Optional[int] = ..., missed: _Optional[int] = ..., lateness_p50_us: _Optional[float] = ..., lateness_p99_us: _Optional[float] = ..., lateness_max_us: _Optional[float] = ..., limit_use: _Optional[float] = ..., tracking_error: _Optional[float] = ..., limit_place: _Optional[str] = ..., duration: _Optional[float] = ..., length: _Optional[float] = ..., stretch: _Optional[str] = ..., operator: _Optional[str] = ..., asking: _Optional[str] = ..., scheduling: _Optional[str] = ...) -> None: ...

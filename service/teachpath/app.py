@@ -85,9 +85,9 @@ class Station:
         )
         self.coach = Coach(self.store.demonstrations, self.trajectory, settings.learning)
         self.jobs = Jobs(self.bus, self.keys, self.store, settings.jobs, self._kinds(), finished=self._show_outcome)
-        self.executions = Executions(self.bus, self.keys, self.store, robot=settings.bus.robot)
         self.gate = TrackerGate(self.bus, self.keys, self.recorder)
         self.joints = JointFeed(self.bus, self.keys, robot=settings.bus.robot)
+        self.executions = Executions(self.bus, self.keys, self.store, robot=settings.bus.robot, scene=settings.scene)
         self.preview = Preview(
             self.bus,
             self.keys,

@@ -27,7 +27,7 @@ FLOOR = {room: level for level, rooms in enumerate(FLOORS) for room in rooms}
 
 DOORS = {
     "zenoh": ["io/bus.py"],
-    "google": ["io/wire.py"],
+    "google": ["io/wire"],
     "cattrs": ["io/documents.py"],
     "sqlalchemy": ["io/store"],
     "alembic": ["io/store"],

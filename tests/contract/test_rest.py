@@ -42,6 +42,7 @@ from tests.contract.desk import API, Desk, csv, refused
         ("GET", "/executions/moon", "execution 'moon'"),
         ("POST", "/executions/moon/override", "execution 'moon'"),
         ("POST", "/executions/moon/stop", "execution 'moon'"),
+        ("POST", "/executions/moon/hold", "execution 'moon'"),
     ],
 )
 def test_what_is_not_there_is_404_and_named(desk: Desk, method: str, resource: str, what: str) -> None:

@@ -1,12 +1,15 @@
 """Jobs, their outcomes and executions over REST."""
 
-from dataclasses import replace
+import time
+from dataclasses import asdict, replace
 from typing import Any
 
 import pytest
 
 from teachpath.app import Station
-from teachpath.records import Job, JobState
+from teachpath.io.wire import decode_lease_request, encode_lease
+from teachpath.records import Job, JobState, JournalEntry
+from teachpath.workers.executor.lease import ControlLease
 from tests.contract.desk import API, Desk, csv, refused
 from tests.unit.io.test_documents import a_plan
 
@@ -146,11 +149,65 @@ def test_without_an_executor_an_execution_is_503_and_kept_with_its_reason(desk: 
     assert (newest["plan"], newest["status"]["state"]) == (plan, "faulted")
     assert "nobody answered" in newest["status"]["reason"]
     assert desk.get(f"/executions/{newest['id']}").json() == newest
-    for verb in ("hold", "resume", "reverse", "stop"):
+    for verb in ("hold", "resume", "reverse"):
         refused(desk.post(f"/executions/{newest['id']}/{verb}"), 409, "is not running")
+    for _ in range(2):
+        assert desk.post(f"/executions/{newest['id']}/stop").json() == newest  # a stop is always answered
+    refused(desk.post(f"/executions/{newest['id']}/step", {"nodes": 1}), 409, "is not running")
+    refused(desk.post(f"/executions/{newest['id']}/step", {}), 422, "one of the two")
+    refused(desk.post(f"/executions/{newest['id']}/step", {"nodes": 1, "length": 0.1}), 422, "one of the two")
+    refused(desk.post("/stop"), 503, "nobody answered")
     refused(desk.post(f"/executions/{newest['id']}/override", {"override": 0.5}), 409, "is not running")
     refused(
         desk.post(f"/executions/{newest['id']}/jump"),
         422,
         "path.verb: it should be 'hold', 'resume', 'reverse' or 'stop'",
     )
+
+
+def test_a_plan_that_was_revoked_is_not_started_again(desk: Desk) -> None:
+    plan = planned(desk.station, "plan-revoked")
+    for reason in ("the table was moved", "again"):
+        assert desk.post(f"/plans/{plan}/revoke", {"reason": reason}).status_code == 204
+    refused(desk.post("/executions", {"plan": plan}), 422, "was revoked: the table was moved; plan the path again")
+    refused(desk.post("/plans/moon/revoke", {"reason": "x"}), 404, "no plan 'moon'")
+    refused(desk.post(f"/plans/{plan}/revoke", {}), 422, "body.reason")
+
+
+def test_a_plan_of_a_scene_that_has_changed_since_is_not_started(desk: Desk) -> None:
+    job = Job("plan-moved", "t", "plan", {}, JobState.QUEUED, 0.0, "", "", 0, 1, 0)
+    desk.station.store.add_job(job)
+    moved = replace(a_plan(), id="plan-moved", scene=replace(a_plan().scene, name="paper"))
+    desk.station.store.finish_planning(job.id, moved)
+    refused(desk.post("/executions", {"plan": "plan-moved"}), 422, "scene paper has changed since plan-moved")
+
+
+def test_control_over_rest_is_that_of_the_executor(desk: Desk) -> None:
+    refused(desk.get("/lease"), 503, "nobody answered")
+    lease, bus, keys = ControlLease(time.monotonic_ns), desk.station.bus, desk.station.keys
+    handle = bus.serve(keys.executor_lease, lambda payload: encode_lease(lease.answer(decode_lease_request(payload))))
+    try:
+        taken = desk.post("/lease", {"name": "Ada", "seconds": 30})
+        assert taken.status_code == 201
+        assert taken.json()["holder"] == desk.get("/lease").json()["holder"] == "Ada"
+        assert desk.get("/lease").json()["token"] == ""
+        refused(desk.post("/lease", {"name": "Bea"}), 409, "Ada is in control; ask for it")
+        assert desk.post("/lease/ask", {"name": "Bea"}).json()["asking"] == "Bea"
+        mine = {"Teachpath-Lease": taken.json()["token"]}
+        assert desk.post("/lease/keep", headers=mine).json()["asking"] == ""
+        assert desk.post("/lease/beat", headers=mine).json()["expires_in"] == pytest.approx(30, abs=1)
+        refused(desk.post("/lease/beat", headers={"Teachpath-Lease": "stale"}), 409, "acquire it again")
+        refused(desk.post("/lease/beat"), 422, "header.Teachpath-Lease")
+        assert desk.post("/lease/release", headers=mine).json()["holder"] == ""
+    finally:
+        handle.close()
+
+
+def test_the_journal_is_stored_and_listed(desk: Desk) -> None:
+    entries = [JournalEntry(n, "Ada", "hold", f"execution-{n}", "done") for n in (1, 2)]
+    for entry in entries:
+        desk.station.store.journal.write(entry)
+    listed = [e for e in desk.get("/journal").json() if e["who"] == "Ada"]
+    assert listed == [asdict(entry) for entry in reversed(entries)]
+    assert desk.get("/journal?execution=execution-1").json() == [asdict(entries[0])]
+    refused(desk.get("/journal?limit=0"), 422, "query.limit")

@@ -2,13 +2,24 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import Annotated, Literal
 
-from fastapi import APIRouter, Response
+from fastapi import APIRouter, Header, Response
 from pydantic import BaseModel, Field
 
 from teachpath.api.parts import Parts
+from teachpath.errors import UnusableInput
 from teachpath.io.store import ExecutionRow
+from teachpath.records import Command, ExecutorStatus
+
+Token = Annotated[
+    str,
+    Header(alias="Teachpath-Lease", max_length=64, description="token of POST /lease, when somebody holds control"),
+]
+Who = Annotated[
+    str,
+    Header(alias="Teachpath-Operator", max_length=64, description="your name, for the journal, without a lease"),
+]
 
 
 class NewExecution(BaseModel):
@@ -24,6 +35,13 @@ class Speed(BaseModel):
     override: float = Field(ge=0.0, le=1.0, description="share of the planned speed")
 
 
+class Step(BaseModel):
+    """A step on the path, of one kind."""
+
+    length: float | None = Field(None, ge=-10.0, le=10.0, description="metres along the path; negative is back")
+    nodes: int | None = Field(None, ge=-10_000, le=10_000, description="nodes of the plan; negative is back")
+
+
 def executions_router(parts: Parts) -> APIRouter:
     """Return the routes of executions."""
     router = APIRouter(tags=["executions"])
@@ -35,9 +53,9 @@ def executions_router(parts: Parts) -> APIRouter:
         return [executions.get(row.id) for row in store.executions()]
 
     @router.post("/executions", status_code=202)
-    def begin_execution(new: NewExecution, response: Response) -> ExecutionRow:
+    def begin_execution(new: NewExecution, response: Response, lease: Token = "", who: Who = "") -> ExecutionRow:
         """Move the arm: approach, grasp, follow the path, release, retreat."""
-        row = executions.begin(new.plan, override=new.override)
+        row = executions.begin(new.plan, override=new.override, lease=lease, who=who)
         response.headers["Location"] = f"/api/v1/executions/{row.id}"
         return row
 
@@ -47,13 +65,34 @@ def executions_router(parts: Parts) -> APIRouter:
         return executions.get(execution)
 
     @router.post("/executions/{execution}/override")
-    def set_override(execution: str, speed: Speed) -> ExecutionRow:
+    def set_override(execution: str, speed: Speed, lease: Token = "", who: Who = "") -> ExecutionRow:
         """Change the speed while the arm moves; 0 is a hold on the path."""
-        return executions.command(execution, "override", override=speed.override)
+        return executions.command(
+            execution, Command("override", execution, override=speed.override, lease=lease, who=who)
+        )
+
+    @router.post("/executions/{execution}/step")
+    def step(execution: str, wanted: Step, lease: Token = "", who: Who = "") -> ExecutionRow:
+        """Go a length or a number of nodes along the path from where the arm is held, and hold there."""
+        if (wanted.length is None) == (wanted.nodes is None):
+            raise UnusableInput("a step has a length in metres or a number of nodes: one of the two")
+        command = Command("step", execution, length=wanted.length or 0.0, nodes=wanted.nodes or 0, lease=lease, who=who)
+        return executions.command(execution, command)
 
     @router.post("/executions/{execution}/{verb}")
-    def steer(execution: str, verb: Literal["hold", "resume", "reverse", "stop"]) -> ExecutionRow:
-        """Hold on the path, resume, go back along it, or stop and end. This is not an emergency stop."""
-        return executions.command(execution, verb)
+    def steer(
+        execution: str, verb: Literal["hold", "resume", "reverse", "stop"], lease: Token = "", who: Who = ""
+    ) -> ExecutionRow:
+        """Hold on the path, resume, go back along it, or stop and end.
+
+        A stop is open to everybody and may be said twice. It brings the arm to rest on its path: it is not an emergency
+        stop. Resume brings an arm that was pushed away while it was held back to the path first.
+        """
+        return executions.command(execution, Command(verb, execution, lease=lease, who=who))
+
+    @router.post("/stop")
+    def stop_whatever_moves(lease: Token = "", who: Who = "") -> ExecutorStatus:
+        """Stop whatever moves the arm, on its path; open to everybody. This is not an emergency stop."""
+        return executions.halt(lease=lease, who=who)
 
     return router

@@ -9,6 +9,7 @@ from starlette.middleware.trustedhost import TrustedHostMiddleware
 
 from teachpath import __version__
 from teachpath.api.calibrations import calibrations_router
+from teachpath.api.control import control_router
 from teachpath.api.curves import curves_router
 from teachpath.api.executions import executions_router
 from teachpath.api.faults import REFUSALS, answer_errors
@@ -44,6 +45,7 @@ def build_api(parts: Parts, *pages: APIRouter) -> FastAPI:
         versions_router,
         curves_router,
         executions_router,
+        control_router,
         robot_router,
         station_router,
     )

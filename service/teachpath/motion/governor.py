@@ -100,6 +100,18 @@ class Governor:
         """Go back along the path to its beginning."""
         self._held, self._back = False, True
 
+    def place(self, tau: float) -> None:
+        """Stand at plan time `tau` [s], held; only for an arm that rests there already."""
+        self._rest(min(max(tau, 0.0), self._end))
+        kernels.motion(self._table, self._step, self._state, self._motion)
+        self._sent[:] = self._motion[0, :6]
+        self._held, self._back = True, False
+
+    @property
+    def tau(self) -> float:
+        """The present plan time [s]."""
+        return float(self._state[0])
+
     def step(self) -> Progress:
         """Advance by one control period; never raises."""
         wish = 0.0 if self.held else (-self._override if self._back else self._override)

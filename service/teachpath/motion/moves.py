@@ -41,20 +41,42 @@ def straight(start: Array, goal: Array, limits: Limits, *, reserve: tuple[float,
     direction = (goal - start) / turn
     slowest = np.maximum(np.abs(direction), 1e-12)
     shared = limits.scaled(*reserve)
-    inputs = InputParameter(1)
-    inputs.target_position = [turn]
-    inputs.max_velocity = [float(np.min(shared.speed / slowest))]
-    inputs.max_acceleration = [float(np.min(shared.acceleration / slowest))]
-    inputs.max_jerk = [float(np.min(shared.jerk / slowest))]
-    run = Trajectory(1)
-    Ruckig(1).calculate(inputs, run)
-    count = max(1, int(np.ceil(run.duration / INSTANT)))
-    instants = np.linspace(0.0, run.duration, count + 1)
-    place, speed, acceleration, jerk = _phases(run, instants)
-    place[-1], speed[-1], acceleration[-1] = turn, 0.0, 0.0
+    run = rest_to_rest(
+        turn,
+        float(np.min(shared.speed / slowest)),
+        float(np.min(shared.acceleration / slowest)),
+        float(np.min(shared.jerk / slowest)),
+        INSTANT,
+    )
+    place, speed, acceleration, jerk, step = run
+    count = len(place) - 1
     ahead, still = np.append(direction, 1.0), np.zeros((count + 1, 7))
     line = [np.append(start, 0.0) + place[:, None] * ahead, np.tile(ahead, (count + 1, 1)), still, still]
-    return Track(composed(line, speed, acceleration, jerk), run.duration / count, limits)
+    return Track(composed(line, speed, acceleration, jerk), step, limits)
+
+
+def rest_to_rest(
+    distance: float, speed: float, acceleration: float, jerk: float, step: float
+) -> tuple[Array, Array, Array, Array, float]:
+    """Go a distance in one dimension from rest to rest, as fast as limits allow (one call of Ruckig).
+
+    Args:
+        distance: to go, positive.
+        speed: limit, per second; `acceleration` and `jerk` likewise.
+        step: between two instants at most [s].
+
+    Returns:
+        (n,) place, speed, acceleration and jerk at even instants, and the time between two of them [s].
+    """
+    inputs = InputParameter(1)
+    inputs.target_position = [distance]
+    inputs.max_velocity, inputs.max_acceleration, inputs.max_jerk = [speed], [acceleration], [jerk]
+    run = Trajectory(1)
+    Ruckig(1).calculate(inputs, run)
+    count = max(1, int(np.ceil(run.duration / step)))
+    place, rate, slope, third = _phases(run, np.linspace(0.0, run.duration, count + 1))
+    place[-1], rate[-1], slope[-1] = distance, 0.0, 0.0
+    return place, rate, slope, third, float(run.duration) / count
 
 
 def _phases(run: Trajectory, instants: Array) -> tuple[Array, Array, Array, Array]:
@@ -92,6 +114,7 @@ def approach(
     *,
     load: Load | None = None,
     gripper_open: bool = False,
+    what: str = "on the way to the path's start",
 ) -> Sequence[Array]:
     """Find the stops on the way from one configuration to another: straight, or over the arm's home.
 
@@ -106,7 +129,6 @@ def approach(
     for stops in ((here, goal), (here, home, goal)):
         samples = np.concatenate([line(a, b) for a, b in pairwise(stops)])
         try:
-            what = "on the way to the path's start"
             check_free(model, samples, settings, load=load, gripper_open=gripper_open, what=what)
             return stops
         except PathRefused as error:

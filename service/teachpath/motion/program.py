@@ -2,45 +2,24 @@
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Iterator
 from dataclasses import dataclass
-from itertools import pairwise
 from typing import Final
 
 import numpy as np
 
-from teachpath.motion.certificate import track, verify
+from teachpath.errors import Conflict
+from teachpath.motion.certificate import verify
 from teachpath.motion.governor import SLOWEST, Governor
-from teachpath.motion.joints import ARM
-from teachpath.motion.moves import approach, retreat, straight
 from teachpath.motion.puma560 import Array
-from teachpath.motion.scene import CollisionModel, Load
 from teachpath.motion.settings import MotionSettings
-from teachpath.motion.timing import RESERVE
+from teachpath.motion.stepping import place_of, stepped
+from teachpath.motion.stretches import Stretch, stretches, way_back
 from teachpath.motion.track import Track
 from teachpath.records import Plan
 
-NOWHERE: Final = 1e-9  # rad, a move shorter than this is none
-
-
-@dataclass(frozen=True, eq=False)
-class Stretch:
-    """A piece of an execution: motion along a track, or a rest when `track` is None.
-
-    Attributes:
-        name: in words, for the operator.
-        before: whether it comes before the path is followed.
-        taught: whether this is the learned path itself.
-        gripper_closed: while it lasts.
-        rest: how long a rest lasts [s].
-    """
-
-    name: str
-    before: bool
-    gripper_closed: bool
-    track: Track | None = None
-    rest: float = 0.0
-    taught: bool = False
+REACHED: Final = 1e-5  # m, a node as near as this is where the arm is
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,6 +30,22 @@ class Moment:
     velocity: Array
     acceleration: Array
     gripper_closed: bool
+    on_path: bool = False
+
+
+@dataclass(frozen=True, eq=False)
+class Aside:
+    """Motion that is not the next stretch: a step on the path, or the way back to it.
+
+    Attributes:
+        name: in words, for the operator; empty on the path.
+        tracks: one behind the other.
+        landing: plan time [s] at which a step ends; None for a way back, behind which the program goes on.
+    """
+
+    name: str
+    tracks: tuple[Track, ...]
+    landing: float | None = None
 
 
 class Program:
@@ -79,6 +74,7 @@ class Program:
         period: float = 0.004,
     ) -> None:
         verify(plan)
+        self._plan, self._settings = plan, settings
         self._rest_of: Iterator[Stretch] = iter(stretches(plan, here, settings, dwell))
         self._length = float(plan.lengths[-1])
         self._override, self._held, self._period = override, False, period
@@ -87,7 +83,9 @@ class Program:
         still = np.zeros(6)
         self._moment = Moment(np.array(here, dtype=np.float64), still, still, False)
         self._stretch: Stretch | None = None
-        self._governor: Governor | None = None
+        self._governor: Governor | None = None  # of the stretch
+        self._aside: Aside | None = None
+        self._aside_governors: deque[Governor] = deque()
         self._advance()
 
     @property
@@ -96,19 +94,15 @@ class Program:
         return self._stretch
 
     @property
-    def finished(self) -> bool:
-        """Whether all is done."""
-        return self._stretch is None
-
-    @property
     def standing(self) -> bool:
         """Whether the arm's nominal motion is at rest."""
-        return self._governor is None or self._governor.progress.standing
+        governor = self._driver
+        return governor is None or governor.progress.standing
 
     @property
     def held(self) -> bool:
         """Whether rest was asked for, by `hold` or an override of zero, or nothing is left of the way back."""
-        governor = self._governor
+        governor = self._driver
         returned = governor is not None and governor.backward and governor.progress.standing
         return self._held or self._override < SLOWEST or returned
 
@@ -140,41 +134,107 @@ class Program:
         return min(self._done / self._length, 1.0)
 
     @property
+    def length(self) -> float:
+        """How far along the learned path it is [m]."""
+        return self._done
+
+    @property
+    def doing(self) -> str:
+        """What it does, in words."""
+        if self._aside is not None and self._aside.name:
+            return self._aside.name
+        return self._stretch.name if self._stretch is not None else ""
+
+    @property
     def place(self) -> str:
         """Where the execution is, in words."""
         if self._stretch is None:
             return "at its end"
-        return f"at s = {self._done:.3f} m" if self._stretch.taught else self._stretch.name
+        return f"at s = {self._done:.3f} m" if self.doing == "on the path" else self.doing
 
     def hold(self) -> None:
         """Come to rest on the path as soon as the limits allow."""
         self._held = True
-        if self._governor is not None:
-            self._governor.hold()
+        for governor in self._governors():
+            governor.hold()
 
     def resume(self) -> None:
         """Go on."""
         self._held = False
-        if self._governor is not None:
-            self._governor.resume()
+        for governor in self._governors():
+            governor.resume()
 
     def reverse(self) -> None:
-        """Go back to the beginning of this stretch and wait there; between two stretches, wait."""
+        """Go back to the beginning of this stretch or step and wait there; between two stretches, wait."""
         if self._governor is None:
             self.hold()
             return
         self._held = False
-        self._governor.reverse()
+        step = self._aside is not None and self._aside.landing is not None
+        for governor in self._aside_governors if step else [*self._aside_governors, self._governor]:
+            if governor is self._governor or step:
+                governor.reverse()
+            else:
+                governor.resume()
 
     def set_override(self, share: float) -> None:
         """Go at `share` of the full speed from now on."""
         self._override = share
-        if self._governor is not None:
-            self._governor.set_override(share)
+        for governor in self._governors():
+            governor.set_override(share)
+
+    def plan_step(self, *, length: float = 0.0, nodes: int = 0) -> Aside:
+        """Work out a step from where the arm is held on the path; `take_aside` begins it.
+
+        Args:
+            length: along the path [m], negative is back; a step beyond an end goes to the end.
+            nodes: the same in nodes of the plan, from the one where the arm is or just was.
+
+        Raises:
+            Conflict: the arm is not held on the path, or the path ends there.
+        """
+        stretch, governor = self._stretch, self._governor
+        if stretch is None or stretch.track is None or governor is None or not stretch.taught:
+            raise Conflict(
+                f"steps are taken on the path; the arm is {self.doing or 'at rest'}: resume, and hold it there"
+            )
+        if self._aside is not None and self._aside.landing is None:
+            raise Conflict(f"the arm is {self.doing}; resume, and hold it on the path")
+        if not (self.held and self.standing):
+            raise Conflict("the arm still moves; hold it first, then step")
+        goal = self._node(nodes) if nodes else self._done + length
+        landing = place_of(stretch.track, min(max(goal, 0.0), self._length))
+        begin = governor.tau if self._aside is None else place_of(stretch.track, self._done)
+        return Aside("", (stepped(stretch.track, begin, landing, 1.0 / self._period),), landing)
+
+    def _node(self, count: int) -> float:
+        """Return the length [m] of the node that is `count` nodes away; one that is reached already does not count."""
+        lengths = self._plan.lengths
+        if count > 0:
+            node = int(np.searchsorted(lengths, self._done + REACHED, side="right")) + count - 1
+        else:
+            node = int(np.searchsorted(lengths, self._done - REACHED, side="left")) + count
+        return float(lengths[min(max(node, 0), len(lengths) - 1)])
+
+    def plan_return(self, here: Array) -> Aside:
+        """Work out the way back from `here` (6,) to the point where the arm was held; `take_aside` begins it.
+
+        Raises:
+            PathRefused: the way is not free.
+        """
+        assert self._stretch is not None
+        tracks = way_back(self._plan, self._stretch, here, self.here, self._settings)
+        return Aside("on the way back to the path", tuple(tracks))
+
+    def take_aside(self, aside: Aside) -> None:
+        """Begin a step or a way back; the arm rests at its beginning."""
+        self._aside = aside if aside.tracks else None
+        self._aside_governors = deque(Governor(t, self._period, override=self._override) for t in aside.tracks)
+        self._held = False
 
     def step(self) -> Moment:
         """Advance by one control period and return the nominal motion; never raises."""
-        stretch, governor = self._stretch, self._governor
+        stretch, governor = self._stretch, self._driver
         if stretch is None:
             return self._moment
         if governor is None:
@@ -183,13 +243,34 @@ class Program:
                 self._advance()
             return self._moment
         state = governor.step()
-        if stretch.taught:
+        on_path = stretch.taught and self.doing == stretch.name
+        if on_path:
             self._done = state.s
         position, velocity, acceleration = governor.motion[:, :6].copy()
-        self._moment = Moment(position, velocity, acceleration, stretch.gripper_closed)
-        if state.finished:
-            self._advance()
+        self._moment = Moment(position, velocity, acceleration, stretch.gripper_closed, on_path)
+        if state.finished and not self.held:
+            self._finish()
         return self._moment
+
+    @property
+    def _driver(self) -> Governor | None:
+        return self._aside_governors[0] if self._aside_governors else self._governor
+
+    def _governors(self) -> list[Governor]:
+        return [*self._aside_governors, *([self._governor] if self._governor is not None else [])]
+
+    def _finish(self) -> None:
+        aside = self._aside
+        if aside is None:
+            self._advance()
+            return
+        self._aside_governors.popleft()
+        if self._aside_governors:
+            return
+        self._aside = None
+        if aside.landing is not None and self._governor is not None:
+            self._governor.place(aside.landing)
+            self._held = True
 
     def _advance(self) -> None:
         self._stretch = next(self._rest_of, None)
@@ -202,34 +283,3 @@ class Program:
             self._governor = Governor(self._stretch.track, self._period, override=self._override)
             if self._held:
                 self._governor.hold()
-
-
-def stretches(plan: Plan, here: Array, settings: MotionSettings, dwell: float) -> list[Stretch]:
-    """Return what an execution does from `here` (6,) to its end.
-
-    Raises:
-        PathRefused: the way from here to the start of the path, or home from its goal, is not free.
-    """
-    carries = plan.scene.carried is not None
-    load = Load(placed=plan.scene.carried.position) if plan.scene.carried else None
-    model = CollisionModel(plan.scene)
-    stops = approach(model, here, plan.above_start, settings, load=load, gripper_open=carries)
-    start, goal = plan.joints[0], plan.joints[-1]
-    leave = retreat(model, start, goal, plan.above_goal, settings)
-    closed = not carries
-    return [
-        *[piece for a, b in pairwise(stops) for piece in _move("on the approach", a, b, True, closed, settings)],
-        *_move("on the way down", plan.above_start, start, True, closed, settings),
-        Stretch("closing the gripper", True, True, rest=dwell if carries else 0.0),
-        Stretch("on the path", False, True, track(plan), taught=True),
-        Stretch("opening the gripper", False, closed, rest=dwell if carries else 0.0),
-        *_move("on the way up", goal, plan.above_goal, False, closed, settings),
-        *_move("on the way home", *leave, False, closed, settings),
-    ]
-
-
-def _move(name: str, start: Array, goal: Array, before: bool, closed: bool, settings: MotionSettings) -> list[Stretch]:
-    if np.abs(goal - start).max() < NOWHERE:
-        return []
-    limits = ARM.scaled(*[settings.move_share] * 3)
-    return [Stretch(name, before, closed, straight(start, goal, limits, reserve=RESERVE))]

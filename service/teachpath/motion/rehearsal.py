@@ -11,9 +11,9 @@ from scipy.spatial.transform import Rotation
 
 from teachpath.motion.certificate import verify
 from teachpath.motion.kinematics import tool_pose
-from teachpath.motion.program import Stretch, stretches
 from teachpath.motion.puma560 import Array
 from teachpath.motion.settings import MotionSettings
+from teachpath.motion.stretches import Stretch, stretches
 from teachpath.records import Plan
 
 MOST: Final = 6000  # instants; a plan that takes longer has them farther apart

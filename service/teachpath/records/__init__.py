@@ -6,6 +6,7 @@ Conventions (ARCHITECTURE.md): metres, radians, seconds inside; integer nanoseco
 
 from teachpath.records.arrays import Array, Quaternion, Vector
 from teachpath.records.calibrations import Calibration, MeasuredCalibration, TaughtPoint
+from teachpath.records.control import Command, JournalEntry, Lease, LeaseRequest
 from teachpath.records.demonstrations import Account, Clock, Demonstration, Phase, Sample, Task, Trajectory
 from teachpath.records.learned import Cluster, Departure, Fit, Learned, LearnedPath, Score
 from teachpath.records.motion import Certificate, ExecutorStatus, Extreme, JointState, Plan, Scene, Setpoint, Shape
@@ -20,6 +21,7 @@ __all__ = [
     "Certificate",
     "Clock",
     "Cluster",
+    "Command",
     "Demonstration",
     "Departure",
     "Difference",
@@ -29,8 +31,11 @@ __all__ = [
     "Job",
     "JobState",
     "JointState",
+    "JournalEntry",
     "Learned",
     "LearnedPath",
+    "Lease",
+    "LeaseRequest",
     "MeasuredCalibration",
     "Moved",
     "Phase",

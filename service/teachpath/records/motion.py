@@ -94,6 +94,7 @@ class Setpoint:
     acceleration: Array
     gripper_closed: bool
     execution: str
+    on_path: bool = False
 
 
 @dataclass(frozen=True, eq=False)
@@ -112,6 +113,7 @@ class JointState:
     object_position: Vector
     object_orientation: Quaternion
     execution: str = ""
+    late: int = 0
 
 
 @dataclass(frozen=True, slots=True)
@@ -133,3 +135,8 @@ class ExecutorStatus:
     tracking_error: float = 0.0
     limit_place: str = ""
     duration: float = 0.0
+    length: float = 0.0
+    stretch: str = ""
+    operator: str = ""
+    asking: str = ""
+    scheduling: str = ""

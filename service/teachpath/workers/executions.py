@@ -2,21 +2,29 @@
 
 from __future__ import annotations
 
+import queue
 import threading
 import time
 import uuid
+from collections.abc import Callable
 from contextlib import suppress
 
-from teachpath.errors import Conflict, NotFound, Unreachable, UnusableInput
+from teachpath.errors import Conflict, NotFound, PathRefused, TeachpathError, Unreachable, UnusableInput
 from teachpath.io.bus import Bus, Handle
 from teachpath.io.documents import encode
 from teachpath.io.store import ExecutionRow, Store
-from teachpath.io.wire import decode_status, encode_command
-from teachpath.records import ExecutorStatus
+from teachpath.io.wire import (
+    decode_entry,
+    decode_lease,
+    decode_status,
+    encode_command,
+    encode_lease_request,
+)
+from teachpath.records import Command, ExecutorStatus, JournalEntry, Lease, LeaseRequest, Plan, Scene
 from teachpath_proto.keys import Keys
 
 RESTING = frozenset({"idle", "ended", "faulted"})
-VERBS = ("override", "hold", "resume", "reverse", "stop")
+VERBS = ("override", "hold", "resume", "step", "reverse", "stop")
 
 
 class Executions:
@@ -24,73 +32,115 @@ class Executions:
 
     Args:
         robot: name of the robot that is moved.
+        scene: returns the scene of a name as it is now; raises NotFound.
     """
 
-    def __init__(self, bus: Bus, keys: Keys, store: Store, *, robot: str) -> None:
-        self._bus, self._keys, self._store, self._robot = bus, keys, store, robot
+    def __init__(self, bus: Bus, keys: Keys, store: Store, *, robot: str, scene: Callable[[str], Scene]) -> None:
+        self._bus, self._keys, self._store, self._robot, self._scene = bus, keys, store, robot, scene
         self._changed = threading.Condition()
         self._status: ExecutorStatus | None = None
         self._heard = 0.0
-        self._plans: dict[str, str] = {}
-        self._handle: Handle | None = None
+        self._plans: dict[str, str | None] = {}
+        self._handles: list[Handle] = []
+        self._news: queue.SimpleQueue[ExecutorStatus | JournalEntry | None] = queue.SimpleQueue()
+        self._writer: threading.Thread | None = None
 
     def start(self) -> None:
         """Begin to listen to the executor."""
-        self._handle = self._bus.subscribe(self._keys.executor_status, self._receive)
+        self._handles = [
+            self._bus.subscribe(self._keys.executor_status, self._receive),
+            self._bus.subscribe(self._keys.executor_journal, self._note),
+        ]
+        self._writer = threading.Thread(target=self._write, name="executions", daemon=True)
+        self._writer.start()
 
     def stop(self) -> None:
         """Stop listening."""
-        if self._handle is not None:
-            self._handle.close()
+        for handle in self._handles:
+            handle.close()
+        if self._writer is not None:
+            self._news.put(None)
+            self._writer.join()
+            self._writer = None
 
     @property
     def status(self) -> ExecutorStatus | None:
         """What the executor said last, or None when it has been silent for over a second."""
         return self._status if time.monotonic() - self._heard < 1.0 else None
 
-    def begin(self, plan: str, *, override: float = 1.0) -> ExecutionRow:
+    def begin(self, plan: str, *, override: float = 1.0, lease: str = "", who: str = "") -> ExecutionRow:
         """Move the robot along a plan.
+
+        Args:
+            plan: id of a stored plan.
+            override: share of the planned speed.
+            lease: token of the one who holds control, when somebody does.
+            who: name for the journal without a lease.
 
         Raises:
             NotFound: no such plan.
-            Conflict: another execution is running.
-            PathRefused: the certificate does not match the plan, or the way to its start is not free.
+            Conflict: another execution is running, or somebody else is in control.
+            PathRefused: the certificate does not hold, or the way to its start is not free.
             Unreachable: the executor does not answer.
         """
         stored = self._store.plan(plan)
+        self._check_certificate(stored)
         status = self.status
         if status is not None and status.state not in RESTING:
             raise Conflict(f"execution {status.execution} is {status.state}; stop it first")
-        with suppress(Unreachable):  # only the simulated robot has a scene to put back
-            self._bus.ask(self._keys.reset(self._robot), encode(stored.scene), timeout=5.0)
         key = f"execution-{uuid.uuid4().hex[:12]}"
-        self._store.put_execution(key, plan, ExecutorStatus(execution=key, state="starting", override=override))
-        self._plans[key] = plan
-        command = encode_command("start", key, plan=encode(stored), override=override)
-        try:
-            self._bus.ask(self._keys.executor_command, command, timeout=10.0)
-        except Exception as error:
-            refused = ExecutorStatus(execution=key, state="faulted", reason=str(error))
-            self._store.put_execution(key, plan, refused)
-            raise
-        return self._store.execution(key)
+        command = Command("start", key, plan=encode(stored), override=override, lease=lease, who=who)
+        return self._begin(command, plan)
 
-    def command(self, execution: str, verb: str, *, override: float = 1.0) -> ExecutionRow:
-        """Steer an execution: override (speed, 0 to 1), hold, resume, reverse or stop.
+    def command(self, execution: str, command: Command) -> ExecutionRow:
+        """Steer an execution: override (speed, 0 to 1), hold, resume, step, reverse or stop.
+
+        A stop is always answered: an execution that has ended is stopped.
 
         Raises:
             UnusableInput: an unknown verb.
             NotFound: no such execution.
-            Conflict: it is not the one that is running.
+            Conflict: it is not the one that is running, or somebody else is in control.
         """
-        if verb not in VERBS:
-            raise UnusableInput(f"{verb!r} is no command; say {', '.join(VERBS)}")
-        self._store.execution(execution)
+        if command.verb not in VERBS:
+            raise UnusableInput(f"{command.verb!r} is no command; say {', '.join(VERBS)}")
+        row = self.get(execution)
+        if command.verb == "stop":
+            if row.status.state not in RESTING:
+                self._bus.ask(self._keys.executor_stop, encode_command(command))
+            return self.get(execution)
         status = self.status
         if status is None or status.execution != execution:
             raise Conflict(f"execution {execution} is not running")
-        self._bus.ask(self._keys.executor_command, encode_command(verb, execution, override=override))
-        return self._store.execution(execution)
+        self._bus.ask(self._keys.executor_command, encode_command(command))
+        return self.get(execution)
+
+    def halt(self, *, lease: str = "", who: str = "") -> ExecutorStatus:
+        """Stop whatever moves; raises Unreachable when the executor does not answer."""
+        command = Command("stop", lease=lease, who=who)
+        return decode_status(self._bus.ask(self._keys.executor_stop, encode_command(command)))
+
+    def control(self, request: LeaseRequest) -> Lease:
+        """Say a word about who is in control.
+
+        Raises:
+            Conflict: somebody else is, or the token is out of date.
+            Unreachable: the executor does not answer.
+        """
+        return decode_lease(self._bus.ask(self._keys.executor_lease, encode_lease_request(request)))
+
+    def revoke(self, plan: str, *, reason: str, who: str = "") -> None:
+        """Take a plan's certificate back: it is never started again, and held for good where it moves the arm now.
+
+        Raises:
+            NotFound: no such plan.
+        """
+        stored = self._store.plan(plan)
+        self._store.journal.revoke(stored.id, who=who, reason=reason)
+        status = self.status
+        if status is not None and status.state not in RESTING:
+            command = Command("revoke", plan_id=stored.id, reason=reason, who=who)
+            self._bus.ask(self._keys.executor_command, encode_command(command))
 
     def get(self, execution: str) -> ExecutionRow:
         """Return an execution as it stands now; raises NotFound."""
@@ -117,6 +167,28 @@ class Executions:
             assert self._status is not None
             return self._status
 
+    def _begin(self, command: Command, plan: str | None) -> ExecutionRow:
+        key = command.execution
+        self._store.put_execution(key, plan, ExecutorStatus(execution=key, state="starting", override=command.override))
+        self._plans[key] = plan
+        try:
+            self._bus.ask(self._keys.executor_command, encode_command(command), timeout=10.0)
+        except TeachpathError as error:
+            refused = ExecutorStatus(execution=key, state="faulted", reason=str(error))
+            self._store.put_execution(key, plan, refused)
+            raise
+        return self.get(key)
+
+    def _check_certificate(self, plan: Plan) -> None:
+        reason = self._store.journal.revoked(plan.id)
+        if reason:
+            raise PathRefused(f"the certificate of {plan.id} was revoked: {reason}; plan the path again")
+        with suppress(NotFound):
+            if self._scene(plan.scene.name) != plan.scene:
+                raise PathRefused(
+                    f"scene {plan.scene.name} has changed since {plan.id} was certified; plan the path again"
+                )
+
     def _receive(self, _: str, payload: bytes) -> None:
         with suppress(UnusableInput):
             status = decode_status(payload)
@@ -124,7 +196,17 @@ class Executions:
                 before, self._status = self._status, status
                 self._heard = time.monotonic()
                 self._changed.notify_all()
-            turned = before is None or before.state != status.state
-            if turned and status.execution in self._plans:
-                with suppress(NotFound):
-                    self._store.put_execution(status.execution, self._plans[status.execution], status)
+            if before is None or (before.execution, before.state) != (status.execution, status.state):
+                self._news.put(status)
+
+    def _note(self, _: str, payload: bytes) -> None:
+        with suppress(UnusableInput):
+            self._news.put(decode_entry(payload))
+
+    def _write(self) -> None:
+        """Store what came; a thread of its own, because the bus's must not wait for the disk."""
+        while (news := self._news.get()) is not None:
+            if isinstance(news, JournalEntry):
+                self._store.journal.write(news)
+            elif news.execution in self._plans:
+                self._store.put_execution(news.execution, self._plans[news.execution], news)

@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 
 from teachpath.errors import UnusableInput, UnusableSample
 from teachpath.io import wire
+from teachpath.records import Command, JournalEntry, Lease, LeaseRequest
 from tests.unit.recording.hands import sample
 
 GOOD = sample(7, (0.1, 0.2, 0.3))
@@ -76,11 +77,22 @@ def test_setpoints_states_and_commands_never_let_rubbish_through(noise: bytes) -
             decode(noise)
 
 
-@pytest.mark.parametrize("verb", ["start", "override", "hold", "resume", "stop"])
+@pytest.mark.parametrize("verb", wire.VERBS)
 def test_commands_survive_the_wire(verb: str) -> None:
-    assert wire.decode_command(wire.encode_command(verb, "e1", plan=b"{}", override=0.5)) == (verb, "e1", b"{}", 0.5)
+    command = Command(verb, "e1", b"{}", 0.5, -0.25, -3, "token", "Ada", "plan-1", "moved", b"[]")
+    assert wire.decode_command(wire.encode_command(command)) == command
+
+
+def test_words_about_control_survive_the_wire() -> None:
+    for action in wire.ACTIONS:
+        request = LeaseRequest(action, "Ada", "token", 2.5, True)
+        assert wire.decode_lease_request(wire.encode_lease_request(request)) == request
+    lease = Lease("Ada", 2.5, True, "Bea", 7.5, "token")
+    assert wire.decode_lease(wire.encode_lease(lease)) == lease
+    entry = JournalEntry(5, "Ada", "hold", "e1", "done")
+    assert wire.decode_entry(wire.encode_entry(entry)) == entry
 
 
 def test_an_override_outside_its_range_is_refused() -> None:
     with pytest.raises(UnusableInput, match=r"override 1\.5"):
-        wire.decode_command(wire.encode_command("override", "e1", override=1.5))
+        wire.decode_command(wire.encode_command(Command("override", "e1", override=1.5)))

@@ -4,6 +4,9 @@ from pathlib import Path
 import pytest
 
 from teachpath.io.store import Store, StoreSettings
+from teachpath.motion import paper_scene, plan
+from teachpath.records import Plan
+from tests.unit.motion.ways import MIDDLE, way
 from tests.unit.workers.recorders import Bench
 
 
@@ -19,3 +22,9 @@ def bench(store: Store) -> Iterator[Bench]:
     bench = Bench(store)
     yield bench
     bench.recorder.stop()
+
+
+@pytest.fixture(scope="session")
+def middle() -> Plan:
+    """A plan between the obstacles of the paper's scene."""
+    return plan(way(MIDDLE), paper_scene())

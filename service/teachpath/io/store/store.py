@@ -17,6 +17,7 @@ from teachpath.io.documents import from_document, to_document
 from teachpath.io.store.calibrations import MeasuredCalibrations
 from teachpath.io.store.changes import Changed, note, telling, unheard
 from teachpath.io.store.engine import open_engine
+from teachpath.io.store.journal import Journal
 from teachpath.io.store.recordings import Opener, Recordings, open_new
 from teachpath.io.store.tables import (
     Base,
@@ -55,10 +56,10 @@ class RunRow:
 
 @dataclass(frozen=True, slots=True)
 class ExecutionRow:
-    """An execution as stored."""
+    """An execution as stored; `plan` is None when the arm followed a live hand."""
 
     id: str
-    plan: str
+    plan: str | None
     created_ns: int
     status: ExecutorStatus
 
@@ -76,6 +77,7 @@ class Store:
         self._changed = changed
         self.calibrations = MeasuredCalibrations(self._engine)
         self.versions = Versions(self._engine, changed)
+        self.journal = Journal(self._engine)
 
     def close(self) -> None:
         """Close every connection."""
@@ -184,7 +186,7 @@ class Store:
 
     # executions
 
-    def put_execution(self, key: str, plan: str, status: ExecutorStatus) -> None:
+    def put_execution(self, key: str, plan: str | None, status: ExecutorStatus) -> None:
         """Store how an execution stands."""
         with self._change() as session:
             row = session.get(ExecutionTable, key)

@@ -101,10 +101,32 @@ class JobRow(Base):
 
 
 class ExecutionTable(Base):
-    """An execution of a plan and its last known status."""
+    """An execution of a plan, or without one of a live hand, and its last known status."""
 
     __tablename__ = "executions"
     id: Mapped[str] = mapped_column(ID, primary_key=True)
-    plan: Mapped[str] = mapped_column(ForeignKey("plans.id"), index=True)
+    plan: Mapped[str | None] = mapped_column(ForeignKey("plans.id"), index=True)
     created_ns: Mapped[int] = mapped_column(BigInteger)
     document: Mapped[dict[str, Any]] = mapped_column(JSON)
+
+
+class RevocationRow(Base):
+    """A plan whose certificate holds no longer."""
+
+    __tablename__ = "revocations"
+    plan: Mapped[str] = mapped_column(ForeignKey("plans.id"), primary_key=True)
+    at_ns: Mapped[int] = mapped_column(BigInteger)
+    who: Mapped[str] = mapped_column(ID)
+    reason: Mapped[str] = mapped_column(Text)
+
+
+class JournalRow(Base):
+    """Who did what to the arm, and how that was answered."""
+
+    __tablename__ = "journal"
+    number: Mapped[int] = mapped_column(Integer, primary_key=True, autoincrement=True)
+    at_ns: Mapped[int] = mapped_column(BigInteger)
+    who: Mapped[str] = mapped_column(ID)
+    verb: Mapped[str] = mapped_column(String(32))
+    execution: Mapped[str] = mapped_column(ID, index=True)
+    answer: Mapped[str] = mapped_column(Text)

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from typing import Final
 
-from teachpath.motion.program import Program
-from teachpath.records import ExecutorStatus, Setpoint
+from teachpath.motion.program import Aside, Program
+from teachpath.records import Array, ExecutorStatus, Setpoint
 from teachpath.workers.executor.meter import LimitMeter
 from teachpath.workers.executor.pacing import Pacer
 
 RESTING: Final = ("idle", "ended", "faulted")
+SETTLED: Final = 0.3  # s after which an arm that is held has come to rest
 
 
 class Execution:
@@ -18,17 +19,23 @@ class Execution:
     Args:
         execution: its id.
         program: what to run through.
+        plan: id of its plan.
         rate: setpoints a second [Hz].
         offset: added to the loop's clock to get nanoseconds since the Unix epoch.
     """
 
-    def __init__(self, execution: str, program: Program, *, rate: float, offset: int) -> None:
+    def __init__(self, execution: str, program: Program, *, plan: str, rate: float, offset: int) -> None:
         self.execution = execution
         self.program = program
+        self.plan = plan
         self.state = "approaching"
         self.reason = ""
         self.tracking_error = 0.0
-        self._period, self._offset = 1.0 / rate, offset
+        self.revoked = ""  # why its certificate holds no longer
+        self.displaced = 0.0  # [rad] that the arm was pushed off while it was held; nothing is sent then
+        self._rate, self._offset = rate, offset
+        self._nominal = 0  # [ns since the Unix epoch] of the newest setpoint
+        self._still = 0  # setpoints since the arm's nominal motion came to rest
         self._ending = ""  # the state to end in as soon as the arm stands
         self._sent = 0
         self._meter = LimitMeter(rate, program.here)
@@ -37,6 +44,11 @@ class Execution:
     def resting(self) -> bool:
         """Whether it is over."""
         return self.state in RESTING
+
+    @property
+    def settled(self) -> bool:
+        """Whether it is held for so long that the arm itself rests."""
+        return self.state == "held" and self._still > SETTLED * self._rate
 
     def override(self, share: float) -> None:
         """Go at `share` of the full speed."""
@@ -60,11 +72,31 @@ class Execution:
             self.reason = ""
             self.program.reverse()
 
+    def revoke(self, reason: str) -> None:
+        """Hold for good: its certificate holds no longer."""
+        self.revoked = f"the certificate of {self.plan} was revoked: {reason}; stop, and plan the path again"
+        self.program.hold()
+        if not self._ending:
+            self.reason = self.revoked
+
+    def take_aside(self, aside: Aside, here: Array) -> None:
+        """Begin a step, or a way back from `here` (6,), unless it is being ended or moves already."""
+        if self._ending or not self.program.standing:
+            return
+        if self.displaced:
+            self._meter = LimitMeter(self._rate, here, self._meter)
+        self.displaced, self.reason = 0.0, ""
+        self.program.take_aside(aside)
+
     def end(self, state: str, reason: str) -> None:
         """Come to rest on the path and end there as `ended` or `faulted`."""
         if not self._ending:
             self._ending, self.reason = state, reason
             self.program.hold()
+
+    def wait(self) -> None:
+        """Let a period pass in which nothing is sent: the arm was pushed away and stays where it is."""
+        self.state = self._state_now()
 
     def step(self, due: int, sent_ns: int) -> Setpoint:
         """Advance by one control period and return its setpoint.
@@ -73,21 +105,32 @@ class Execution:
             due: when the period began [ns of the loop's clock].
             sent_ns: now [ns since the Unix epoch].
         """
+        rested = self.program.standing
         moment = self.program.step()
         self._meter.add(moment.position, self.program)
+        self._nominal = self._due(due + self._offset, rested and self.program.standing)
+        self._still = self._still + 1 if self.program.standing else 0
         setpoint = Setpoint(
             cycle=self._sent,
-            nominal_ns=due + self._offset,
+            nominal_ns=self._nominal,
             sent_ns=sent_ns,
             position=moment.position,
             velocity=moment.velocity,
             acceleration=moment.acceleration,
             gripper_closed=moment.gripper_closed,
             execution=self.execution,
+            on_path=moment.on_path,
         )
         self._sent += 1
-        self.state = self._settled()
+        self.state = self._state_now()
         return setpoint
+
+    def _due(self, now: int, at_rest: bool) -> int:
+        """Return when this setpoint is due on the clock of the motion, which loses what the loop oversleeps.
+
+        So position, velocity and acceleration belong to their times whatever happens; at rest the lost time is let go.
+        """
+        return now if at_rest or not self._sent else self._nominal + round(1e9 / self._rate)
 
     def status(self, pacer: Pacer) -> ExecutorStatus:
         """Tell where it stands, with the account of the loop that runs it."""
@@ -95,7 +138,7 @@ class Execution:
         return ExecutorStatus(
             execution=self.execution,
             state=self.state,
-            reason=self.reason or (self.program.why_held if self.state == "held" else ""),
+            reason=self._why(),
             progress=self.program.progress,
             override=self.program.override,
             cycles=self._sent,
@@ -107,10 +150,18 @@ class Execution:
             limit_use=self._meter.largest,
             limit_place=self._meter.place,
             tracking_error=self.tracking_error,
-            duration=self._sent * self._period,
+            duration=self._sent / self._rate,
+            length=self.program.length,
+            stretch=self.program.doing,
         )
 
-    def _settled(self) -> str:
+    def _why(self) -> str:
+        if self.displaced:
+            pushed = f"the arm was pushed {self.displaced:.3f} rad off the point where it was held"
+            return f"{pushed}; resume brings it back slowly, stop ends here"
+        return self.reason or (self.program.why_held if self.state == "held" else "")
+
+    def _state_now(self) -> str:
         program = self.program
         if self._ending:
             return self._ending if program.standing else "stopping"

@@ -28,13 +28,14 @@ class LimitMeter:
     Args:
         rate: setpoints a second [Hz].
         here: (6,) where the arm rests at the beginning [rad].
+        before: a meter whose largest use counts on; the arm was moved by hand since.
     """
 
-    def __init__(self, rate: float, here: Array) -> None:
+    def __init__(self, rate: float, here: Array, before: LimitMeter | None = None) -> None:
         self._scale = np.array([rate, rate**2, rate**3])[:, None] / _LIMITS  # (3, 6)
         self._last: deque[Array] = deque([here] * 3, maxlen=3)  # newest last
-        self.largest = 0.0
-        self.place = ""
+        self.largest: float = before.largest if before else 0.0
+        self.place: str = before.place if before else ""
 
     def add(self, position: Array, where: Placed) -> None:
         """Measure the setpoint `position` (6,) [rad]; its place is asked of `where` when it is the largest."""

@@ -1,50 +1,22 @@
-"""The wire: protobuf messages to records and back, with every value checked on the way in."""
+"""What trackers send and the recorder answers, with every value checked on the way in."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
-from typing import Any, TypeVar
+from typing import Any
 
-import numpy as np
 from google.protobuf.json_format import MessageToDict
-from google.protobuf.message import DecodeError, Message
 
 from teachpath.errors import UnusableInput, UnusableSample
-from teachpath.records import (
-    Account,
-    Array,
-    Clock,
-    Demonstration,
-    ExecutorStatus,
-    Job,
-    JointState,
-    Quaternion,
-    Sample,
-    Setpoint,
-    Vector,
-)
-from teachpath_proto import job_pb2, motion_pb2, tracker_pb2
+from teachpath.io.wire.parsing import parse
+from teachpath.records import Account, Clock, Demonstration, Quaternion, Sample, Vector
+from teachpath_proto import tracker_pb2
 
 LARGEST_SAMPLE = 4096  # bytes; an honest one has about 200
 FLEXION_COUNTS = (0, 18, 22)
 UNIT_TOLERANCE = 0.01
 NOT_MEASURED = (0.0, 0.0, 0.0, 0.0)  # an orientation
 FARTHEST = 100.0  # [m or tracker units]; beyond it the units are wrong
-
-M = TypeVar("M", bound=Message)
-
-
-def parse(kind: type[M], payload: bytes) -> M:
-    """Parse a protobuf message of `kind`.
-
-    Raises:
-        UnusableInput: the payload is not such a message.
-    """
-    try:
-        return kind.FromString(payload)
-    except DecodeError as error:
-        raise UnusableInput(f"{len(payload)} bytes are not a {kind.DESCRIPTOR.name}: {error}") from None
 
 
 def decode_sample(tracker: str, payload: bytes, receive_ns: int) -> Sample:
@@ -176,118 +148,3 @@ def report_document(report: tracker_pb2.RecordingReport) -> dict[str, Any]:
     # protobuf's JSON writes 64-bit integers as text
     wide = {f.name for f in report.DESCRIPTOR.fields if f.cpp_type in (f.CPPTYPE_INT64, f.CPPTYPE_UINT64)}
     return {key: int(value) if key in wide else value for key, value in document.items()}
-
-
-def encode_setpoint(setpoint: Setpoint) -> bytes:
-    """Return a setpoint's message."""
-    return motion_pb2.Setpoint(
-        cycle=setpoint.cycle,
-        nominal_ns=setpoint.nominal_ns,
-        sent_ns=setpoint.sent_ns,
-        position=setpoint.position.tolist(),
-        velocity=setpoint.velocity.tolist(),
-        acceleration=setpoint.acceleration.tolist(),
-        gripper_closed=setpoint.gripper_closed,
-        execution=setpoint.execution,
-    ).SerializeToString()
-
-
-def decode_setpoint(payload: bytes) -> Setpoint:
-    """Check a setpoint; raises UnusableInput when it is malformed or not finite."""
-    m = parse(motion_pb2.Setpoint, payload)
-    where = f"setpoint {m.cycle}"
-    return Setpoint(
-        cycle=m.cycle,
-        nominal_ns=m.nominal_ns,
-        sent_ns=m.sent_ns,
-        position=_joints(m.position, where),
-        velocity=_joints(m.velocity, where),
-        acceleration=_joints(m.acceleration, where),
-        gripper_closed=m.gripper_closed,
-        execution=m.execution,
-    )
-
-
-def encode_state(state: JointState) -> bytes:
-    """Return a joint state's message."""
-    return motion_pb2.JointState(
-        stamp_ns=state.stamp_ns,
-        cycle=state.cycle,
-        position=state.position.tolist(),
-        velocity=state.velocity.tolist(),
-        torque=state.torque.tolist(),
-        tracking_error=state.tracking_error,
-        missed=state.missed,
-        holding=state.holding,
-        gripper_closed=state.gripper_closed,
-        object_position=state.object_position,
-        object_orientation=state.object_orientation,
-        execution=state.execution,
-    ).SerializeToString()
-
-
-def decode_state(payload: bytes) -> JointState:
-    """Check a joint state; raises UnusableInput when it is malformed or not finite."""
-    m = parse(motion_pb2.JointState, payload)
-    where = f"joint state after setpoint {m.cycle}"
-    if len(m.object_position) != 3 or len(m.object_orientation) != 4:
-        raise UnusableInput("joint state: the object needs a position of 3 numbers and an orientation of 4")
-    x, y, z = m.object_position
-    w, i, j, k = m.object_orientation
-    return JointState(
-        stamp_ns=m.stamp_ns,
-        cycle=m.cycle,
-        position=_joints(m.position, where),
-        velocity=_joints(m.velocity, where),
-        torque=_joints(m.torque, where),
-        tracking_error=m.tracking_error,
-        missed=m.missed,
-        holding=m.holding,
-        gripper_closed=m.gripper_closed,
-        object_position=(x, y, z),
-        object_orientation=(w, i, j, k),
-        execution=m.execution,
-    )
-
-
-def _joints(values: Iterable[float], where: str) -> Array:
-    joints = np.array(list(values), dtype=np.float64)
-    if joints.shape != (6,) or not np.all(np.isfinite(joints)):
-        raise UnusableInput(f"{where}: needs 6 finite numbers a joint array, got {joints.tolist()}")
-    return joints
-
-
-def encode_command(verb: str, execution: str, *, plan: bytes = b"", override: float = 1.0) -> bytes:
-    """Return the message of a command: `verb` is start, override, hold, resume, reverse or stop."""
-    return motion_pb2.ExecutorCommand(
-        verb=verb.upper(), execution=execution, plan=plan, override=override
-    ).SerializeToString()
-
-
-def decode_command(payload: bytes) -> tuple[str, str, bytes, float]:
-    """Return (verb in lower case, execution, plan in JSON, override) of a command; raises UnusableInput."""
-    m = parse(motion_pb2.ExecutorCommand, payload)
-    if m.verb not in motion_pb2.ExecutorCommand.Verb.values() or not m.verb:
-        raise UnusableInput(f"command {m.verb} is unknown: say start, override, hold, resume, reverse or stop")
-    if not 0.0 <= m.override <= 1.0:
-        raise UnusableInput(f"override {m.override:g} is outside 0 to 1")
-    return motion_pb2.ExecutorCommand.Verb.Name(m.verb).lower(), m.execution, m.plan, m.override
-
-
-def encode_status(status: ExecutorStatus) -> bytes:
-    """Return the message of an executor's status."""
-    fields = {name: getattr(status, name) for name in ExecutorStatus.__dataclass_fields__}
-    return motion_pb2.ExecutorStatus(**fields).SerializeToString()
-
-
-def decode_status(payload: bytes) -> ExecutorStatus:
-    """Return the executor's status; raises UnusableInput when malformed."""
-    m = parse(motion_pb2.ExecutorStatus, payload)
-    return ExecutorStatus(**{name: getattr(m, name) for name in ExecutorStatus.__dataclass_fields__})
-
-
-def encode_progress(job: Job) -> bytes:
-    """Return the message that tells of a job's progress."""
-    return job_pb2.JobProgress(
-        id=job.id, kind=job.kind, state=job.state.value, fraction=job.fraction, message=job.message
-    ).SerializeToString()

@@ -1,0 +1,68 @@
+"""Control: who may move the arm, who did, and certificates taken back."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from fastapi import APIRouter, Query
+from pydantic import BaseModel, Field
+
+from teachpath.api.executions import Token, Who
+from teachpath.api.parts import Parts
+from teachpath.records import JournalEntry, Lease, LeaseRequest
+
+
+class Claim(BaseModel):
+    """A claim to control."""
+
+    name: str = Field(min_length=1, max_length=64, description="shown to everybody")
+    seconds: float = Field(5.0, ge=0.5, le=60.0, description="between two beats at most; then the lease lapses")
+    hold_when_lost: bool = Field(False, description="hold a moving arm on its path when the beats stop")
+
+
+class Reason(BaseModel):
+    """Why something is taken back."""
+
+    reason: str = Field(min_length=1, max_length=500)
+
+
+def control_router(parts: Parts) -> APIRouter:
+    """Return the routes of control."""
+    router = APIRouter(tags=["control"])
+    executions, store = parts.executions, parts.store
+
+    @router.get("/lease")
+    def get_lease() -> Lease:
+        """Say who is in control. With an empty `holder` everybody may command, as scripts do."""
+        return executions.control(LeaseRequest("look"))
+
+    @router.post("/lease", status_code=201)
+    def acquire_lease(claim: Claim) -> Lease:
+        """Take control, when nobody has it; send `token` as header Teachpath-Lease from now on, and beats in time."""
+        return executions.control(LeaseRequest("acquire", claim.name, "", claim.seconds, claim.hold_when_lost))
+
+    @router.post("/lease/ask")
+    def ask_for_lease(claim: Claim) -> Lease:
+        """Ask the holder for control; everybody sees who asks.
+
+        Send beats with `token`: the answer says who holds control. A holder who says nothing loses it after
+        `granted_in` seconds; one who keeps it ends the request, and the next beat is refused.
+        """
+        return executions.control(LeaseRequest("ask", claim.name, "", claim.seconds, claim.hold_when_lost))
+
+    @router.post("/lease/{word}")
+    def speak(word: Literal["beat", "release", "keep"], lease: Token) -> Lease:
+        """Beat (still here), release control or the request for it, or keep control when somebody asks."""
+        return executions.control(LeaseRequest(word, token=lease))
+
+    @router.get("/journal")
+    def list_journal(execution: str = "", limit: Annotated[int, Query(ge=1, le=1000)] = 100) -> list[JournalEntry]:
+        """List who did what to the arm, and how it was answered, newest first."""
+        return store.journal.entries(execution=execution, limit=limit)
+
+    @router.post("/plans/{plan}/revoke", status_code=204)
+    def revoke_plan(plan: str, why: Reason, who: Who = "") -> None:
+        """Take back a plan's certificate: it never starts again, and an arm that follows it is held for good."""
+        executions.revoke(plan, reason=why.reason, who=who)
+
+    return router

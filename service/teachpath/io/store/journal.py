@@ -1,0 +1,45 @@
+"""Who did what to the arm, and which certificates were revoked."""
+
+from __future__ import annotations
+
+import time
+
+from sqlalchemy import Engine, select
+from sqlalchemy.orm import Session
+
+from teachpath.io.store.tables import JournalRow, RevocationRow
+from teachpath.records import JournalEntry
+
+
+class Journal:
+    """The journal of a station."""
+
+    def __init__(self, engine: Engine) -> None:
+        self._engine, self._writing = engine, engine.execution_options(writing=True)
+
+    def write(self, entry: JournalEntry) -> None:
+        """Append an entry."""
+        fields = {name: getattr(entry, name) for name in JournalEntry.__dataclass_fields__}
+        with Session(self._writing) as session, session.begin():
+            session.add(JournalRow(**fields))
+
+    def entries(self, *, execution: str = "", limit: int = 100) -> list[JournalEntry]:
+        """List the newest entries, newest first: all, or those of one execution."""
+        question = select(JournalRow).order_by(JournalRow.number.desc()).limit(limit)
+        if execution:
+            question = question.where(JournalRow.execution == execution)
+        with Session(self._engine) as session:
+            rows = list(session.scalars(question))
+        return [JournalEntry(r.at_ns, r.who, r.verb, r.execution, r.answer) for r in rows]
+
+    def revoke(self, plan: str, *, who: str, reason: str) -> None:
+        """Note that the certificate of a stored plan holds no longer; the first reason stays."""
+        with Session(self._writing) as session, session.begin():
+            if session.get(RevocationRow, plan) is None:
+                session.add(RevocationRow(plan=plan, at_ns=time.time_ns(), who=who, reason=reason))
+
+    def revoked(self, plan: str) -> str:
+        """Return why the certificate of a plan holds no longer; empty when it holds."""
+        with Session(self._engine) as session:
+            row = session.get(RevocationRow, plan)
+        return row.reason if row is not None else ""

@@ -1,0 +1,107 @@
+"""Setpoints, joint states and statuses, with every value checked on the way in."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import numpy as np
+
+from teachpath.errors import UnusableInput
+from teachpath.io.wire.parsing import parse
+from teachpath.records import Array, ExecutorStatus, JointState, Setpoint
+from teachpath_proto import motion_pb2
+
+
+def encode_setpoint(setpoint: Setpoint) -> bytes:
+    """Return a setpoint's message."""
+    return motion_pb2.Setpoint(
+        cycle=setpoint.cycle,
+        nominal_ns=setpoint.nominal_ns,
+        sent_ns=setpoint.sent_ns,
+        position=setpoint.position.tolist(),
+        velocity=setpoint.velocity.tolist(),
+        acceleration=setpoint.acceleration.tolist(),
+        gripper_closed=setpoint.gripper_closed,
+        execution=setpoint.execution,
+        on_path=setpoint.on_path,
+    ).SerializeToString()
+
+
+def decode_setpoint(payload: bytes) -> Setpoint:
+    """Check a setpoint; raises UnusableInput when it is malformed or not finite."""
+    m = parse(motion_pb2.Setpoint, payload)
+    where = f"setpoint {m.cycle}"
+    return Setpoint(
+        cycle=m.cycle,
+        nominal_ns=m.nominal_ns,
+        sent_ns=m.sent_ns,
+        position=_joints(m.position, where),
+        velocity=_joints(m.velocity, where),
+        acceleration=_joints(m.acceleration, where),
+        gripper_closed=m.gripper_closed,
+        execution=m.execution,
+        on_path=m.on_path,
+    )
+
+
+def encode_state(state: JointState) -> bytes:
+    """Return a joint state's message."""
+    return motion_pb2.JointState(
+        stamp_ns=state.stamp_ns,
+        cycle=state.cycle,
+        position=state.position.tolist(),
+        velocity=state.velocity.tolist(),
+        torque=state.torque.tolist(),
+        tracking_error=state.tracking_error,
+        missed=state.missed,
+        holding=state.holding,
+        gripper_closed=state.gripper_closed,
+        object_position=state.object_position,
+        object_orientation=state.object_orientation,
+        execution=state.execution,
+        late=state.late,
+    ).SerializeToString()
+
+
+def decode_state(payload: bytes) -> JointState:
+    """Check a joint state; raises UnusableInput when it is malformed or not finite."""
+    m = parse(motion_pb2.JointState, payload)
+    where = f"joint state after setpoint {m.cycle}"
+    if len(m.object_position) != 3 or len(m.object_orientation) != 4:
+        raise UnusableInput("joint state: the object needs a position of 3 numbers and an orientation of 4")
+    x, y, z = m.object_position
+    w, i, j, k = m.object_orientation
+    return JointState(
+        stamp_ns=m.stamp_ns,
+        cycle=m.cycle,
+        position=_joints(m.position, where),
+        velocity=_joints(m.velocity, where),
+        torque=_joints(m.torque, where),
+        tracking_error=m.tracking_error,
+        missed=m.missed,
+        holding=m.holding,
+        gripper_closed=m.gripper_closed,
+        object_position=(x, y, z),
+        object_orientation=(w, i, j, k),
+        execution=m.execution,
+        late=m.late,
+    )
+
+
+def _joints(values: Iterable[float], where: str) -> Array:
+    joints = np.array(list(values), dtype=np.float64)
+    if joints.shape != (6,) or not np.all(np.isfinite(joints)):
+        raise UnusableInput(f"{where}: needs 6 finite numbers a joint array, got {joints.tolist()}")
+    return joints
+
+
+def encode_status(status: ExecutorStatus) -> bytes:
+    """Return the message of an executor's status."""
+    fields = {name: getattr(status, name) for name in ExecutorStatus.__dataclass_fields__}
+    return motion_pb2.ExecutorStatus(**fields).SerializeToString()
+
+
+def decode_status(payload: bytes) -> ExecutorStatus:
+    """Return the executor's status; raises UnusableInput when malformed."""
+    m = parse(motion_pb2.ExecutorStatus, payload)
+    return ExecutorStatus(**{name: getattr(m, name) for name in ExecutorStatus.__dataclass_fields__})

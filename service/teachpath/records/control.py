@@ -1,0 +1,56 @@
+"""What moves the arm by word: commands to the executor, the control lease, and the journal of who did what."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class Command:
+    """One command to the executor; see proto/teachpath_proto/motion.proto for what goes with which verb."""
+
+    verb: str
+    execution: str = ""
+    plan: bytes = b""  # in JSON
+    override: float = 1.0
+    length: float = 0.0  # [m]
+    nodes: int = 0
+    lease: str = ""
+    who: str = ""
+    plan_id: str = ""
+    reason: str = ""
+    mirror: bytes = b""  # in JSON
+
+
+@dataclass(frozen=True, slots=True)
+class LeaseRequest:
+    """A word about who is in control: look, acquire, beat, release, ask or keep."""
+
+    action: str
+    name: str = ""
+    token: str = ""
+    seconds: float = 0.0
+    hold_when_lost: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Lease:
+    """Who is in control; `token` is told only to whom it belongs."""
+
+    holder: str = ""
+    expires_in: float = 0.0  # [s] without a beat
+    hold_when_lost: bool = False
+    asking: str = ""
+    granted_in: float = 0.0  # [s] until the one who asks gets it, unless the holder keeps it
+    token: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class JournalEntry:
+    """Who did what to the arm, and how that was answered."""
+
+    at_ns: int
+    who: str
+    verb: str
+    execution: str
+    answer: str

@@ -1,0 +1,53 @@
+"""What the executor hears of the arm: its newest joint state, and for how long it has been silent."""
+
+from __future__ import annotations
+
+import logging
+from collections import deque
+from collections.abc import Callable
+
+from teachpath.errors import Unreachable, UnusableInput
+from teachpath.io import wire
+from teachpath.records import JointState
+
+log = logging.getLogger(__name__)
+
+
+class Hearing:
+    """Keeps the newest joint state.
+
+    Args:
+        robot: name of the arm.
+        silence: after which it counts as gone [s].
+        clock: monotonic nanoseconds.
+    """
+
+    def __init__(self, robot: str, silence: float, clock: Callable[[], int]) -> None:
+        self._robot, self._silence, self._clock = robot, silence, clock
+        self._payloads: deque[tuple[int, bytes]] = deque(maxlen=1)
+        self._heard: tuple[int, JointState] | None = None
+
+    def receive(self, _: str, payload: bytes) -> None:
+        """Take a joint state from the bus; it is read by the loop."""
+        self._payloads.append((self._clock(), payload))
+
+    def listen(self) -> None:
+        """Read what came."""
+        if not self._payloads:
+            return
+        when, payload = self._payloads.pop()
+        try:
+            self._heard = (when, wire.decode_state(payload))
+        except UnusableInput as error:
+            log.warning("left out: %s", error)
+
+    def newest(self, now: int) -> tuple[float, JointState] | None:
+        """Return how long the arm has been silent [s] and what it said last, or None when it never spoke."""
+        return None if self._heard is None else ((now - self._heard[0]) / 1e9, self._heard[1])
+
+    def present(self) -> JointState:
+        """Return how the arm stands now; raises Unreachable when it is silent."""
+        heard = self.newest(self._clock())
+        if heard is None or heard[0] > self._silence:
+            raise Unreachable(f"no joint state from {self._robot}; is the simulator or the arm's driver running?")
+        return heard[1]

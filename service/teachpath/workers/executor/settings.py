@@ -1,0 +1,30 @@
+"""How plans are executed."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Annotated
+
+from annotated_types import Ge, Gt, Le
+
+
+@dataclass(frozen=True)
+class ExecutorSettings:
+    """How plans are executed."""
+
+    # [Hz] setpoints a second
+    rate: Annotated[float, Ge(125), Le(500)] = 250.0
+    # [Hz] statuses a second
+    status_rate: Annotated[float, Gt(0), Le(50)] = 10.0
+    # [s] that the gripper takes to close or open
+    dwell: Annotated[float, Ge(0), Le(10)] = 0.5
+    # [s] without a joint state after which the arm is held
+    silence: Annotated[float, Gt(0), Le(5)] = 0.2
+    # [rad] tracking error of a joint at which the execution is given up
+    largest_error: Annotated[float, Gt(0), Le(0.5)] = 0.05
+    # [rad/s] that the arm may still move when an execution starts
+    rest_speed: Annotated[float, Gt(0), Le(0.5)] = 0.05
+    # [rad] that the arm may be off its setpoint when a held execution goes on; farther off it is brought back first
+    regain: Annotated[float, Gt(0), Le(0.5)] = 0.02
+    # whether to ask for real-time scheduling
+    realtime: bool = True
