@@ -1,0 +1,109 @@
+// Where the operator of a headset stands: at the free side of the table, facing the arm. Draws the view's own scene with
+// a renderer and a camera of its own, so that the view on the page stays as it is.
+const STAND = [1.25, 0, 0]; // [m] robot coordinates, on the floor
+
+export class Rig {
+  constructor(viewer) {
+    const { THREE } = globalThis.MeshCat;
+    Object.assign(this, { viewer, THREE });
+    this.renderer = new THREE.WebGLRenderer({ antialias: true }); // without it three of this age fails on some headsets
+    this.renderer.xr.enabled = true;
+    this.camera = new THREE.PerspectiveCamera(70, 1, 0.02, 30);
+    // The room of the headset: x right, y up, -z ahead; turned so that ahead is against the robot's x.
+    this.room = new THREE.Group();
+    const [x, y, z] = STAND;
+    this.room.position.set(x, z, -y);
+    this.room.rotation.y = Math.PI / 2;
+    this.room.add(this.camera);
+    this.room.updateMatrixWorld(true);
+    this.marker = new THREE.Mesh(new THREE.SphereGeometry(0.012, 20, 14), new THREE.MeshLambertMaterial({ color: 0x3f7fbf }));
+    viewer.scene.add(this.marker);
+    this.board = new Board(THREE);
+    viewer.scene.add(this.board.sprite);
+  }
+
+  say(text) {
+    this.board.say(text);
+  }
+
+  // `frame(time, XRFrame)` is called before each frame is drawn.
+  async present(session, frame) {
+    this.renderer.setAnimationLoop((time, xr) => {
+      if (!xr) return;
+      if (!this.placed) this.#place(xr);
+      frame(time, xr);
+      this.renderer.render(this.viewer.scene, this.camera);
+    });
+    this.renderer.xr.setReferenceSpaceType("local-floor");
+    await this.renderer.xr.setSession(session); // after the loop was set, else every frame would come twice
+    this.space = this.renderer.xr.getReferenceSpace();
+  }
+
+  // The head's first place becomes the stand at the table, wherever in the room the operator is.
+  #place(xr) {
+    const head = xr.getViewerPose(this.space);
+    if (!head) return;
+    const { x, z } = head.transform.position;
+    const { x: a, y: b, z: c, w } = head.transform.orientation;
+    const yaw = Math.atan2(2 * (w * b + a * c), 1 - 2 * (b * b + a * a)); // about y, to the left
+    this.room.rotation.y = Math.PI / 2 - yaw;
+    const [cos, sin] = [Math.cos(this.room.rotation.y), Math.sin(this.room.rotation.y)];
+    this.room.position.set(STAND[0] - (x * cos + z * sin), STAND[2], -STAND[1] + x * sin - z * cos);
+    this.room.updateMatrixWorld(true);
+    this.placed = true;
+  }
+
+  // A pose of the reference space in robot coordinates; {position, orientation: [w, x, y, z]}.
+  toRobot([x, y, z], orientation) {
+    const { THREE, viewer } = this;
+    const place = viewer.scene.worldToLocal(this.room.localToWorld(new THREE.Vector3(x, y, z)));
+    this.marker.position.copy(place);
+    const turn = viewer.scene
+      .getWorldQuaternion(new THREE.Quaternion())
+      .invert()
+      .multiply(this.room.getWorldQuaternion(new THREE.Quaternion()))
+      .multiply(new THREE.Quaternion(orientation.x, orientation.y, orientation.z, orientation.w))
+      .normalize();
+    return { position: place.toArray(), orientation: [turn.w, turn.x, turn.y, turn.z] };
+  }
+
+  leave() {
+    this.renderer.setAnimationLoop(null);
+    this.viewer.scene.remove(this.marker, this.board.sprite);
+    this.marker.geometry.dispose();
+    this.marker.material.dispose();
+    this.board.dispose();
+    this.renderer.dispose();
+    this.viewer.set_dirty();
+  }
+}
+
+// A sentence behind the table, for eyes that cannot see the page.
+class Board {
+  constructor(THREE) {
+    this.canvas = Object.assign(document.createElement("canvas"), { width: 1024, height: 128 });
+    this.texture = new THREE.CanvasTexture(this.canvas);
+    this.sprite = new THREE.Sprite(new THREE.SpriteMaterial({ map: this.texture }));
+    this.sprite.position.set(0.1, 0, 1.25);
+    this.sprite.scale.set(1.2, 0.15, 1);
+  }
+
+  say(text) {
+    if (text === this.text) return;
+    this.text = text;
+    const pen = this.canvas.getContext("2d");
+    pen.fillStyle = "#1d242c";
+    pen.fillRect(0, 0, 1024, 128);
+    pen.fillStyle = "#ffffff";
+    pen.font = "44px system-ui, sans-serif";
+    pen.textAlign = "center";
+    pen.textBaseline = "middle";
+    pen.fillText(text, 512, 64, 990);
+    this.texture.needsUpdate = true;
+  }
+
+  dispose() {
+    this.texture.dispose();
+    this.sprite.material.dispose();
+  }
+}

@@ -1,0 +1,43 @@
+// Calls `take(seconds)` at an even rate whatever the view is drawing: a timer whose drift is corrected, never a frame.
+export const RATE = 60; // [Hz]
+
+export class Sampler {
+  #timer = 0;
+  #due = 0;
+  #before = 0;
+
+  constructor(take, { rate = RATE } = {}) {
+    this.period = 1000 / rate;
+    this.take = take;
+  }
+
+  get running() {
+    return this.#timer !== 0;
+  }
+
+  start() {
+    if (this.running) return;
+    this.#due = this.#before = performance.now();
+    this.#plan();
+  }
+
+  stop() {
+    clearTimeout(this.#timer);
+    this.#timer = 0;
+  }
+
+  #plan() {
+    this.#due += this.period;
+    // After a stall the missed ones are not made up: a sample says where the hand is, not where it was.
+    const now = performance.now();
+    if (this.#due < now - this.period) this.#due = now;
+    this.#timer = setTimeout(() => this.#tick(), Math.max(0, this.#due - now));
+  }
+
+  #tick() {
+    const now = performance.now();
+    this.#plan(); // first, so that a fault in `take` does not end the sampling
+    this.take((now - this.#before) / 1000);
+    this.#before = now;
+  }
+}

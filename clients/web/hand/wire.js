@@ -1,0 +1,46 @@
+// A hand sample as the tracker's protobuf message (proto/teachpath_proto/tracker.proto, HandSample).
+export const GRASP = 1; // button bit: grasp held
+
+// {sequence, ms, position: [x, y, z], orientation: [w, x, y, z] or null, tracked, grasp} -> Uint8Array
+// `ms` is the device's clock in milliseconds since the Unix epoch; microseconds are kept.
+export function encode({ sequence, ms, position, orientation, tracked, grasp }) {
+  const out = new Writer();
+  out.varint(1, BigInt(sequence));
+  out.varint(2, BigInt(Math.round(ms * 1000)) * 1000n);
+  out.doubles(3, position);
+  if (orientation) out.doubles(4, orientation);
+  if (tracked) out.varint(6, 1n);
+  if (grasp) out.varint(7, BigInt(GRASP));
+  return out.bytes();
+}
+
+class Writer {
+  #view = new DataView(new ArrayBuffer(128));
+  #at = 0;
+
+  // Field `number` with wire type 0.
+  varint(number, value) {
+    this.#byte(number << 3);
+    for (; value > 127n; value >>= 7n) this.#byte(Number(value & 127n) | 128);
+    this.#byte(Number(value));
+  }
+
+  // Field `number` with a message of doubles, numbered from 1: wire type 2, inside it wire type 1.
+  doubles(number, values) {
+    this.#byte((number << 3) | 2);
+    this.#byte(9 * values.length);
+    values.forEach((value, i) => {
+      this.#byte(((i + 1) << 3) | 1);
+      this.#view.setFloat64(this.#at, value, true);
+      this.#at += 8;
+    });
+  }
+
+  bytes() {
+    return new Uint8Array(this.#view.buffer, 0, this.#at);
+  }
+
+  #byte(value) {
+    this.#view.setUint8(this.#at++, value);
+  }
+}
