@@ -13,7 +13,7 @@ export class Refusal extends Error {
 }
 
 export const get = (path) => call("GET", path);
-export const post = (path, body = {}) => call("POST", path, body);
+export const post = (path, body = {}, headers = {}) => call("POST", path, body, headers);
 export const put = (path, body = {}) => call("PUT", path, body);
 export const patch = (path, body = {}) => call("PATCH", path, body);
 export const remove = (path) => call("DELETE", path);
@@ -25,8 +25,8 @@ export function socketAddress(path) {
   return `${location.protocol === "https:" ? "wss:" : "ws:"}//${location.host}/api/v1/${path}`;
 }
 
-async function call(method, path, body) {
-  const headers = { Accept: "application/json", ...(body !== undefined && { "Content-Type": "application/json" }) };
+async function call(method, path, body, further = {}) {
+  const headers = { ...further, Accept: "application/json", ...(body !== undefined && { "Content-Type": "application/json" }) };
   let answer;
   try {
     answer = await fetch(`/api/v1/${path}`, { method, headers, body: body && JSON.stringify(body), signal: AbortSignal.timeout(PATIENCE) });

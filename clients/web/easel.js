@@ -8,7 +8,8 @@
 // unproject(x, y, {through, normal})   the point under a pixel on a plane; normal defaults to the view's direction
 // ray(x, y)        {origin, direction} under a pixel
 // capture(hand)    hand = {down(event), move(event), up(event)}: while down() has returned true the camera stays;
-//                  up(null) when the gesture was broken off. Returns what ends it.
+//                  up(null) when the gesture was broken off. Further fingers are asked for in down() too and each
+//                  has its up(). Returns what ends it.
 // hold(value)      keep the camera still (true) while e.g. TransformControls drags, or let it go (false)
 
 export class Easel {
@@ -88,23 +89,29 @@ export class Easel {
 
   // The viewer's own controls listen to mousedown and touchstart on the element; pointerdown comes before both.
   #listen() {
-    const release = (event) => {
+    const pressed = new Set(); // pointers of the gesture: fingers may come and go while it lasts
+    const lift = (id, event) => {
+      if (!pressed.delete(id)) return;
       const hand = this.#held;
-      this.#held = null;
-      this.hold(false);
+      if (!pressed.size) {
+        this.#held = null;
+        this.hold(false);
+      }
       hand?.up(event);
     };
+    const breakOff = (event) => lift(event.pointerId, null);
     this.element.addEventListener("pointerdown", (event) => {
-      const hand = this.#hands.find((other) => other.down(event));
+      const hand = this.#held ? this.#held.down(event) && this.#held : this.#hands.find((other) => other.down(event));
       if (!hand) return;
       this.#held = hand;
+      pressed.add(event.pointerId);
       this.hold(true);
       this.element.setPointerCapture(event.pointerId);
     });
     this.element.addEventListener("pointermove", (event) => this.#held?.move(event));
-    this.element.addEventListener("pointerup", (event) => this.#held && release(event));
-    for (const name of ["pointercancel", "lostpointercapture"]) this.element.addEventListener(name, () => this.#held && release(null));
-    addEventListener("blur", () => this.#held && release(null));
+    this.element.addEventListener("pointerup", (event) => lift(event.pointerId, event));
+    for (const name of ["pointercancel", "lostpointercapture"]) this.element.addEventListener(name, breakOff);
+    addEventListener("blur", () => [...pressed].forEach((id) => lift(id, null)));
   }
 
   #rayInWorld(x, y) {

@@ -98,6 +98,9 @@ globalThis.teachpath = {
   paths: () => view.paths(),
   place: (path) => view.place(path),
   project: (point) => view.easel.project(point),
+  ghost: () => run.ghost(),
+  headset: () => demonstrate.headset(),
+  unproject: (x, y, plane) => view.easel.unproject(x, y, plane),
   get draws() {
     return view.draws;
   },

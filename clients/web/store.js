@@ -8,6 +8,7 @@
 // station      {version, notes} or null                       executor       status or null when it is silent
 // lease        who holds control, or null                     run            id of the run that is looked at
 // path         id of the learned path that is looked at       focus          {kind, id} under the pointer, or null
+// plan         certified plan of the path that is looked at, or null
 // Lists are null until they have been read, and stay as they were while the service is away.
 export const EMPTY = Object.freeze({
   connection: "connecting",
@@ -25,6 +26,7 @@ export const EMPTY = Object.freeze({
   lease: null,
   run: "",
   path: "",
+  plan: null,
   focus: null,
 });
 

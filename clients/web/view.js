@@ -17,6 +17,8 @@ export class View {
     this.hidden = new Set();
     this.pause = SHORTEST;
     this.draws = 0;
+    this.drawnAt = 0; // [ms]
+    this.least = 0; // [ms] between two draws
     this.framed = ""; // what the camera was last set up for
     this.touched = false; // the operator has turned the view: it stays as it is
     this.stage = dress(this.viewer);
@@ -57,6 +59,13 @@ export class View {
     if (visible) this.hidden.delete(layer);
     else this.hidden.add(layer);
     this.#hide();
+  }
+
+  // Draw no more often than every so many milliseconds, and shadows as they are: where the machine cannot draw and sample
+  // a hand at once, the samples come first. 0: as often as wanted.
+  spare(milliseconds) {
+    this.least = milliseconds;
+    this.viewer.renderer.shadowMap.autoUpdate = milliseconds === 0;
   }
 
   home() {
@@ -154,6 +163,8 @@ export class View {
     });
     const render = Object.getPrototypeOf(viewer).render.bind(viewer);
     viewer.render = () => {
+      if (performance.now() - this.drawnAt < this.least) return; // it stays dirty and is asked again with the next frame
+      this.drawnAt = performance.now();
       const here = Object.keys(viewer.scene_tree.children).filter((name) => ["robot", "scene", "paths"].includes(name)).join();
       if (here !== this.framed && !this.touched) {
         this.framed = here;

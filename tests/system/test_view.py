@@ -107,8 +107,10 @@ def server() -> Iterator[Server]:
 class Visit:
     """The page as opened in the browser, with all its console said."""
 
-    def __init__(self, browser: Any, address: str) -> None:
+    def __init__(self, browser: Any, address: str, *, script: str = "") -> None:
         self.page = browser.new_page(viewport={"width": 1280, "height": 800})
+        if script:
+            self.page.add_init_script(script)
         self.said: list[str] = []
         self.page.on("console", lambda message: self.said.append(f"{message.type}: {message.text}"))
         self.page.on("pageerror", lambda error: self.said.append(f"error: {error}"))

@@ -55,8 +55,7 @@ export function pointer(easel, carry, { may, grasp, release }) {
     up(event) {
       if (first === null) return;
       if (event && second?.id === event.pointerId) {
-        second = null; // the other finger still carries
-        plane = null;
+        second = plane = null; // the other finger still carries
         return;
       }
       first = second = plane = null;

@@ -47,7 +47,7 @@ export class Prop {
   }
 }
 
-function solid(THREE, { kind, size }) {
+export function solid(THREE, { kind, size }) {
   if (kind === "sphere") return new THREE.SphereGeometry(size[0], 24, 16);
   if (kind !== "cylinder") return new THREE.BoxGeometry(...size);
   const upright = new THREE.CylinderGeometry(size[0], size[0], size[1], 32);

@@ -1,11 +1,14 @@
 // Where the operator of a headset stands: at the free side of the table, facing the arm. Draws the view's own scene with
 // a renderer and a camera of its own, so that the view on the page stays as it is.
+const LATE = 40; // [ms] between two frames that no headset has by itself
+const SELDOM = 1000; // [ms] between two pictures at most
 const STAND = [1.25, 0, 0]; // [m] robot coordinates, on the floor
 
 export class Rig {
   constructor(viewer) {
     const { THREE } = globalThis.MeshCat;
     Object.assign(this, { viewer, THREE });
+    this.least = this.drawnAt = 0; // [ms]
     this.renderer = new THREE.WebGLRenderer({ antialias: true }); // without it three of this age fails on some headsets
     this.renderer.xr.enabled = true;
     this.camera = new THREE.PerspectiveCamera(70, 1, 0.02, 30);
@@ -32,11 +35,22 @@ export class Rig {
       if (!xr) return;
       if (!this.placed) this.#place(xr);
       frame(time, xr);
-      this.renderer.render(this.viewer.scene, this.camera);
+      if (this.#affords(time)) this.renderer.render(this.viewer.scene, this.camera);
     });
     this.renderer.xr.setReferenceSpaceType("local-floor");
     await this.renderer.xr.setSession(session); // after the loop was set, else every frame would come twice
     this.space = this.renderer.xr.getReferenceSpace();
+  }
+
+  // Whether this frame is drawn: always, unless drawing makes the frames late. The samples come first, and with them the
+  // frames; a picture a second is drawn all the same.
+  #affords(time) {
+    const apart = time - (this.before ?? time);
+    this.before = time;
+    this.least = apart > LATE ? Math.min(SELDOM, Math.max(this.least, 4 * apart)) : 0.98 * this.least;
+    if (this.least > LATE && time - this.drawnAt < this.least) return false;
+    this.drawnAt = time;
+    return true;
   }
 
   // The head's first place becomes the stand at the table, wherever in the room the operator is.

@@ -6,9 +6,10 @@ export class Sampler {
   #due = 0;
   #before = 0;
 
-  constructor(take, { rate = RATE } = {}) {
+  // `late(ms)` is told how far apart two calls were when that was more than it should be.
+  constructor(take, { rate = RATE, late = () => {} } = {}) {
+    Object.assign(this, { take, late });
     this.period = 1000 / rate;
-    this.take = take;
   }
 
   get running() {
@@ -37,7 +38,9 @@ export class Sampler {
   #tick() {
     const now = performance.now();
     this.#plan(); // first, so that a fault in `take` does not end the sampling
-    this.take((now - this.#before) / 1000);
+    const apart = now - this.#before;
     this.#before = now;
+    this.take(apart / 1000);
+    if (apart > 2 * this.period) this.late(apart);
   }
 }

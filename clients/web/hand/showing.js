@@ -7,11 +7,13 @@ import { Carry } from "./carry.js";
 import { HandLink, clock } from "./link.js";
 import { pointer } from "./pointer.js";
 import { Prop } from "./prop.js";
-import { RATE, Sampler } from "./sampler.js";
+import { Sampler } from "./sampler.js";
 import { steering } from "./steering.js";
 
 const UNDECIDED = 4; // [s] after which a take of which nothing was heard is asked for
 const ASK = 0.25; // [s] between two questions whether a take has been judged
+const SELDOM = 1000; // [ms] between two pictures at most, and COST times what one takes at least
+const COST = 4;
 const REACH = 0.08; // [m] within which the recorder lets a hand grasp the object
 const NOTHING = { kind: "sphere", size: [0.02], position: [0.58, -0.28, 0.6] }; // stands for the object of an empty scene
 
@@ -30,20 +32,21 @@ export class Showing {
   #asked = 0;
 
   // `changed()` is called when phase or takes change; `failed(sentence)` ends the sitting.
-  constructor(easel, scene, task, { changed, failed }) {
-    Object.assign(this, { easel, task, changed, failed, name });
+  constructor({ easel, view }, scene, task, { changed, failed }) {
+    Object.assign(this, { easel, view, task, changed, failed, name });
     const shown = { ...scene, carried: scene.carried ?? NOTHING };
     this.carry = new Carry(shown);
     this.prop = new Prop(easel, shown.carried);
     this.link = new HandLink(name, { changed: (state, sentence) => this.#connection(state, sentence), refused: failed });
-    this.sampler = new Sampler((seconds) => this.#tick(seconds));
+    this.sampler = new Sampler((seconds) => this.#tick(seconds), { late: (ms) => this.#spare(ms) });
   }
 
-  // Connect and begin an armed recording; samples flow from now on.
-  async begin() {
+  // Connect and begin an armed recording; samples flow from now on. `rate` [Hz] is what they are declared to come at; a
+  // headset's is not known: 0.
+  async begin({ rate }) {
     await this.link.connect();
     this.#before = new Set((await this.#shown()).map((one) => one.id));
-    await post(at("tasks", this.task, "recording"), { tracker: name, rate: RATE, armed: true });
+    await post(at("tasks", this.task, "recording"), { tracker: name, rate, armed: true });
     const deeds = { may: () => this.phase === "ready", grasp: () => this.grasp(), release: () => this.release() };
     this.steering = steering(this.easel, this.carry, deeds);
     this.#ends.push(pointer(this.easel, this.carry, deeds), () => this.steering.end());
@@ -74,6 +77,7 @@ export class Showing {
   async finish({ discard = false } = {}) {
     this.sampler.stop();
     for (const end of this.#ends.splice(0)) end();
+    this.view.spare(0);
     try {
       return this.link.live ? await this.link.end({ discard }) : null;
     } finally {
@@ -118,6 +122,11 @@ export class Showing {
     if (this.carry.step(seconds)) this.#draw();
     this.link.send({ position: this.carry.position, orientation: null, tracked: true, grasp: this.carry.grasped, ms: clock() });
     this.#live(seconds);
+  }
+
+  // Samples that come late: draw less, by as much as drawing seems to cost; a picture a second is drawn all the same.
+  #spare(ms) {
+    this.view.spare(Math.min(SELDOM, Math.max(this.view.least, COST * ms)));
   }
 
   // What this page has shown of the task in this sitting.

@@ -1,6 +1,7 @@
 // Demonstrate: who is there, what is being recorded, and the demonstrations so far with their verdicts.
 import { section } from "../elements.js";
 import { recordings } from "./recordings.js";
+import { show } from "./show.js";
 import { takes } from "./takes.js";
 
 let parts = [];
@@ -11,10 +12,14 @@ export const panel = {
 
   mount(place, context) {
     parts = [
+      show(section(place, "show", "Show it here"), context),
       recordings(section(place, "recordings", "Recording"), context),
       takes(section(place, "demonstrations", "Demonstrations"), context),
     ];
   },
+
+  // The headset that is worn now, or null: for tests, and the curious.
+  headset: () => parts[0].headset(),
 
   update(state, changed) {
     for (const part of parts) part.update(state, changed);

@@ -15,6 +15,6 @@ export const panel = {
   update(state, changed) {
     if (!["runs", "run", "path"].some((name) => changed.has(name))) return;
     const path = pathOf(state);
-    replace(body, hint(path ? `${path.id}: ${path.curve.points.length} control points.` : "Nothing to edit yet. Learn the ways of a task first; each has a path."));
+    replace(body, hint(path ? `${path.id}: ${path.curve.control_points.length} control points.` : "Nothing to edit yet. Learn the ways of a task first; each has a path."));
   },
 };

@@ -1,0 +1,71 @@
+// The ghost: a pale copy of the drawn arm and of what it carries, placed by the page alone. Nothing of it is sent.
+import { solid } from "../hand/prop.js";
+import { linkFrames } from "./kinematics.js";
+
+const COLOR = 0x2f7fb5;
+
+export class Ghost {
+  #links = [];
+  #fingers = [];
+
+  // `arm` as GET /robot gives it; `carried` is the scene's object, or null.
+  constructor(easel, view, arm, carried) {
+    const { THREE } = easel;
+    Object.assign(this, { easel, arm });
+    this.material = new THREE.MeshLambertMaterial({ color: COLOR, transparent: true, opacity: 0.34, depthWrite: false });
+    this.group = new THREE.Group();
+    const robot = view.viewer.scene_tree.children.robot?.children ?? {};
+    for (let i = 0; i <= arm.links.length; i++) this.#links.push(this.#copy(robot[`link${i}`]));
+    if (carried) {
+      this.object = new THREE.Mesh(solid(THREE, carried), this.material);
+      this.group.add(this.object);
+    }
+    easel.group.add(this.group);
+  }
+
+  // Show the arm at configuration `q` [rad], its gripper open or closed, and the object at its pose, if there is one.
+  place(q, { closed, position, orientation }) {
+    linkFrames(this.arm.links, q).forEach((frame, i) => this.#links[i].matrix.fromArray(frame));
+    for (const finger of this.#fingers) finger.node.position.y = closed ? 0 : finger.side * this.arm.finger_travel;
+    if (this.object && position) {
+      this.object.position.set(...position);
+      const [w, x, y, z] = orientation;
+      this.object.quaternion.set(x, y, z, w);
+    }
+    this.easel.dirty();
+  }
+
+  // Poses of the links as they are drawn, column by column, robot coordinates: for tests, and the curious.
+  frames() {
+    return this.#links.map((link) => link.matrix.toArray());
+  }
+
+  remove() {
+    this.easel.group.remove(this.group);
+    this.object?.geometry.dispose();
+    this.material.dispose(); // the other shapes belong to the view
+    this.easel.dirty();
+  }
+
+  #copy(node) {
+    const link = new this.easel.THREE.Group();
+    link.matrixAutoUpdate = false;
+    for (const [name, part] of Object.entries(node?.children ?? {})) {
+      const copy = part.object.clone(true);
+      copy.traverse((mesh) => {
+        if (mesh.isMesh) Object.assign(mesh, { material: this.material, castShadow: false, receiveShadow: false });
+      });
+      const side = { "left-finger": 1, "right-finger": -1 }[name];
+      const holder = new this.easel.THREE.Group();
+      if (side) {
+        copy.position.y = 0; // the view's own gripper may be open now
+        copy.matrixAutoUpdate = true;
+        this.#fingers.push({ node: holder, side });
+      }
+      holder.add(copy);
+      link.add(holder);
+    }
+    this.group.add(link);
+    return link;
+  }
+}

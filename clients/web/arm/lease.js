@@ -1,0 +1,72 @@
+// Control of the arm: taken, kept with beats, given back. Whoever holds it alone gives orders; everybody may stop.
+import { post } from "../api.js";
+
+const SECONDS = 6; // [s] that the service waits for a beat
+const BEAT = 2000; // [ms]
+const HEADER = "Teachpath-Lease";
+
+export class ControlLease {
+  token = "";
+  waiting = false; // asked for, and not yet given
+
+  // `changed()` is called when control was gained, lost or asked for.
+  constructor(changed) {
+    this.changed = changed;
+  }
+
+  get held() {
+    return this.token !== "" && !this.waiting;
+  }
+
+  // Headers of an order; without control they are none, which suffices while nobody holds it.
+  get headers() {
+    return this.token ? { [HEADER]: this.token } : {};
+  }
+
+  async take(name) {
+    this.name = name;
+    this.#begin(await post("lease", { name, seconds: SECONDS }));
+  }
+
+  // Ask the holder; who says nothing loses control after a while.
+  async ask(name) {
+    const lease = await post("lease/ask", { name, seconds: SECONDS });
+    this.name = name;
+    this.waiting = true;
+    this.#begin(lease);
+  }
+
+  async release() {
+    const { headers } = this;
+    this.#end();
+    await post("lease/release", {}, headers);
+  }
+
+  async keep() {
+    await post("lease/keep", {}, this.headers);
+  }
+
+  #begin(lease) {
+    this.token = lease.token;
+    clearInterval(this.timer);
+    this.timer = setInterval(() => this.#beat(), BEAT);
+    this.changed();
+  }
+
+  async #beat() {
+    try {
+      const lease = await post("lease/beat", {}, this.headers);
+      if (lease.holder === this.name) this.waiting = false;
+      this.changed();
+    } catch (error) {
+      if (error.status) this.#end(); // refused: it has lapsed, or somebody was given it
+    }
+  }
+
+  #end() {
+    clearInterval(this.timer);
+    this.token = "";
+    this.waiting = false;
+    this.changed();
+  }
+}

@@ -1,0 +1,188 @@
+// The arm: its state in words, a start that has to be meant, hold, resume, step, reverse, the speed; who holds control.
+import { at, post } from "../api.js";
+import { ControlLease } from "../arm/lease.js";
+import { bar, element, facts, number, percent, replace, sentence } from "../elements.js";
+import { moving } from "../store.js";
+
+const HOLD = 800; // [ms] that the start must be held
+const STEP = 0.01; // [m]
+const WORDS = {
+  idle: "At rest",
+  starting: "Starting",
+  approaching: "On the way to the path",
+  following: "On the path",
+  held: "Held on the path",
+  stopping: "Coming to rest",
+  ended: "Ended",
+  faulted: "Given up",
+};
+
+export function control(place, context) {
+  const panel = new ControlPanel(place, context);
+  return { update: (state, changed) => panel.update(state, changed) };
+}
+
+class ControlPanel {
+  constructor(place, context) {
+    Object.assign(this, { place, context });
+    this.lease = new ControlLease(() => this.#paint(context.store.state));
+    this.parts = parts();
+    place.append(...this.parts.all);
+    this.parts.buttons.addEventListener("click", (event) => {
+      const verb = event.target.closest("button[data-verb]")?.dataset.verb;
+      if (verb) this.#steer(verb);
+    });
+    this.parts.who.addEventListener("click", (event) => {
+      const word = event.target.closest("button[data-word]")?.dataset.word;
+      if (word) context.attempt(() => this.lease[word](this.#name()));
+    });
+    this.parts.speed.addEventListener("input", () => this.#slow());
+    this.#deliberate(this.parts.start);
+  }
+
+  update(state, changed) {
+    if (["executor", "executions", "plan", "lease", "connection"].some((name) => changed.has(name))) this.#paint(state);
+  }
+
+  // The start begins only when the button has been held for a while, by pointer or key; letting go takes it back.
+  #deliberate(button) {
+    const begin = (event) => {
+      if (button.disabled || this.holding || (event.type === "keydown" && (event.repeat || !["Enter", " "].includes(event.key)))) return;
+      event.preventDefault();
+      button.classList.add("holding");
+      this.holding = setTimeout(() => {
+        this.#let(button);
+        this.#start();
+      }, HOLD);
+    };
+    const end = () => this.#let(button);
+    for (const name of ["pointerdown", "keydown"]) button.addEventListener(name, begin);
+    for (const name of ["pointerup", "pointerleave", "pointercancel", "keyup", "blur"]) button.addEventListener(name, end);
+  }
+
+  #let(button) {
+    clearTimeout(this.holding);
+    this.holding = null;
+    button.classList.remove("holding");
+  }
+
+  #start() {
+    const { context, lease, parts } = this;
+    const { plan } = context.store.state;
+    context.attempt(async () => {
+      await post("executions", { plan: plan.id, override: Number(parts.speed.value) / 100 }, lease.headers);
+      await context.feed.read("executions");
+    });
+  }
+
+  #steer(verb) {
+    const status = moving(this.context.store.state);
+    if (!status) return;
+    const [word, body] = { back: ["step", { length: -STEP }], step: ["step", { length: STEP }] }[verb] ?? [verb, {}];
+    this.context.attempt(() => post(at("executions", status.execution, word), body, this.lease.headers));
+  }
+
+  // While the slider moves the newest wish is sent, one order at a time.
+  async #slow() {
+    this.parts.share.textContent = percent(Number(this.parts.speed.value) / 100);
+    if (this.sending) {
+      this.again = true;
+      return;
+    }
+    this.sending = true;
+    do {
+      this.again = false;
+      const status = moving(this.context.store.state);
+      const override = Number(this.parts.speed.value) / 100;
+      if (status) await this.context.attempt(() => post(at("executions", status.execution, "override"), { override }, this.lease.headers));
+    } while (this.again);
+    this.sending = false;
+  }
+
+  #name() {
+    const name = this.parts.name.value.trim() || "this page";
+    localStorage.setItem("operator", name);
+    return name;
+  }
+
+  #paint(state) {
+    const { parts, lease } = this;
+    const busy = moving(state);
+    const status = busy ?? (state.executor?.execution ? state.executor : state.executions?.[0]?.status);
+    const away = state.connection === "lost";
+    replace(parts.state, content(status, away));
+    parts.start.disabled = Boolean(busy) || !state.plan || away || (state.lease?.holder && !lease.held);
+    parts.start.title = state.plan ? "" : "Plan the motion first.";
+    for (const button of parts.buttons.children) button.disabled = !busy || !possible(button.dataset.verb, busy.state);
+    replace(parts.who, holder(state.lease, lease));
+    parts.name.parentElement.hidden = lease.token !== "";
+  }
+}
+
+// What makes sense now: the arm is held before it steps, and runs before it is held.
+function possible(verb, state) {
+  if (verb === "resume") return state === "held";
+  if (verb === "step" || verb === "back") return state === "held";
+  return verb === "reverse" || state !== "held";
+}
+
+function content(status, away) {
+  if (away) return [element("p", { class: "state" }, "Not known: the service does not answer. On a lost link the arm holds.")];
+  if (!status) return [element("p", { class: "state" }, element("span", { class: "dot idle" }), "At rest. Nothing has been executed yet.")];
+  return [
+    element("p", { class: "state" }, element("span", { class: `dot ${status.state}` }), WORDS[status.state] ?? sentence(status.state), status.reason && `: ${status.reason}`),
+    bar(status.progress, "progress along the path"),
+    facts([
+      ["Speed", percent(status.override)],
+      ["Duration", status.duration > 0 && number(status.duration, 1, "s")],
+      ["Largest tracking error", status.tracking_error > 0 && number(status.tracking_error * 1000, 2, "mrad")],
+      ["Largest limit use", status.limit_use > 0 && percent(status.limit_use)],
+      ["Setpoints late, missed", status.cycles > 0 && `${status.late}, ${status.missed} of ${number(status.cycles, 0)}`],
+    ]),
+  ];
+}
+
+function holder(there, lease) {
+  const order = (word, text) => element("button", { type: "button", "data-word": word, "data-key": word }, text);
+  if (lease.waiting) return [`${there?.holder || "Somebody"} holds control and was asked for it. `, order("release", "Ask no more")];
+  if (lease.held) return ["You hold control. ", there?.asking && `${there.asking} asks for it. `, there?.asking && order("keep", "Keep it"), order("release", "Give it back")];
+  if (there?.holder) return [`${there.holder} holds control. `, order("ask", "Ask for it")];
+  return ["Nobody holds control; every page may give orders. ", order("take", "Take control")];
+}
+
+function parts() {
+  const order = (verb, text, label) => element("button", { type: "button", "data-verb": verb, ...(label && { "aria-label": label }) }, text);
+  const state = element("div", { role: "status" });
+  const start = element("button", { type: "button", class: "primary hold", disabled: "" }, "Hold to start the arm");
+  const buttons = element(
+    "p",
+    { class: "orders steer" },
+    order("hold", "Hold"),
+    order("resume", "Resume"),
+    order("back", "− 1 cm", "Step back by a centimetre"),
+    order("step", "+ 1 cm", "Step ahead by a centimetre"),
+    order("reverse", "Reverse"),
+    order("stop", "Stop"),
+  );
+  const speed = element("input", { type: "range", id: "speed", min: "0", max: "100", step: "1", value: "100" });
+  const share = element("output", { for: "speed" }, percent(1));
+  const who = element("p", { class: "who" });
+  const name = element("input", { type: "text", id: "operator", maxlength: "64", value: localStorage.getItem("operator") ?? "", placeholder: "shown to everybody", autocomplete: "off" });
+  return {
+    all: [
+      state,
+      element("p", { class: "orders" }, start),
+      buttons,
+      element("p", { class: "field" }, element("label", { for: "speed" }, "Speed"), speed, share),
+      who,
+      element("p", { class: "field" }, element("label", { for: "operator" }, "Your name"), name),
+    ],
+    state,
+    start,
+    buttons,
+    speed,
+    share,
+    who,
+    name,
+  };
+}

@@ -1,0 +1,141 @@
+// Preview: the plan of the chosen path as a ghost in the view, before anything moves.
+import { at, get, post } from "../api.js";
+import { Ghost } from "../arm/ghost.js";
+import { Motion, play } from "../arm/motion.js";
+import { bar, element, facts, hint, number, percent, replace } from "../elements.js";
+import { pathOf } from "../store.js";
+
+export function preview(place, context) {
+  const panel = new PreviewPanel(place, context);
+  return { update: (state, changed) => panel.update(state, changed), hide: () => panel.close(), panel };
+}
+
+class PreviewPanel {
+  plan = null; // of the path that is looked at, newest first; null: there is none
+
+  constructor(place, context) {
+    Object.assign(this, { place, context });
+    this.facts = element("div", {});
+    this.scrub = element("input", { type: "range", min: "0", max: "1", step: "0.01", value: "0", "aria-label": "Instant of the motion" });
+    this.words = element("output", { class: "words" });
+    this.play = element("button", { type: "button" }, "Play");
+    this.shut = element("button", { type: "button" }, "Close preview");
+    this.open = element("button", { type: "button", class: "primary" }, "Preview");
+    this.make = element("button", { type: "button", class: "primary" }, "Plan the motion");
+    this.bench = element("div", { class: "scrub", hidden: "" }, this.scrub, this.words, element("p", { class: "orders" }, this.play, this.shut));
+    place.append(this.facts, element("p", { class: "orders" }, this.make, this.open), this.bench);
+    this.make.addEventListener("click", () => this.#plan());
+    this.open.addEventListener("click", () => context.attempt(() => this.#open()));
+    this.shut.addEventListener("click", () => this.close());
+    this.play.addEventListener("click", () => (this.stop ? this.#pause() : this.#start()));
+    this.scrub.addEventListener("input", () => {
+      this.#pause();
+      this.#show(Number(this.scrub.value));
+    });
+    this.#paint();
+  }
+
+  update(state, changed) {
+    if (!["runs", "run", "path", "jobs", "task"].some((name) => changed.has(name))) return;
+    const path = pathOf(state);
+    const planned = (state.jobs ?? []).filter((job) => job.kind === "plan" && job.request?.path === path?.id);
+    this.job = planned.at(-1) ?? null;
+    const key = path ? `${path.id} ${path.version} ${planned.filter((job) => job.state === "succeeded").length}` : "";
+    if (key !== this.key) {
+      this.key = key;
+      this.#fetch(path);
+    }
+    this.#paint();
+  }
+
+  close() {
+    this.#pause();
+    this.ghost?.remove();
+    this.ghost = this.motion = null;
+    this.#paint();
+  }
+
+  // The newest plan of the path's newest version.
+  async #fetch(path) {
+    const before = this.plan?.id;
+    this.path = path;
+    const plans = path ? await get(at("paths", path.id, "plans")).catch(() => []) : [];
+    if (path !== this.path) return; // another one was chosen meanwhile
+    this.plan = plans.find((plan) => plan.path_version === path?.version) ?? null;
+    if (this.plan?.id !== before) this.close();
+    this.context.store.set({ plan: this.plan });
+    this.#paint();
+  }
+
+  #plan() {
+    const { path, context } = this;
+    context.attempt(async () => {
+      await post(at("paths", path.id, "plans"));
+      await context.feed.read("jobs");
+    });
+  }
+
+  async #open() {
+    const { plan, context } = this;
+    const [rows, arm] = await Promise.all([get(at("plans", plan.id, "motion")), get("robot")]);
+    if (plan !== this.plan || this.ghost) return;
+    this.motion = new Motion(rows);
+    this.ghost = new Ghost(context.easel, context.view, arm, plan.scene.carried);
+    this.scrub.max = String(this.motion.duration);
+    this.#paint();
+    this.#start();
+  }
+
+  #start() {
+    const { duration } = this.motion;
+    const from = Number(this.scrub.value) >= duration - 0.01 ? 0 : Number(this.scrub.value);
+    this.stop = play(from, duration, (seconds) => this.#show(seconds), () => this.#pause());
+    this.play.textContent = "Pause";
+  }
+
+  #pause() {
+    this.stop?.();
+    this.stop = null;
+    this.play.textContent = "Play";
+  }
+
+  #show(seconds) {
+    const here = this.motion.at(seconds);
+    this.ghost.place(here.q, here);
+    this.scrub.value = String(seconds);
+    const words = `${number(seconds, 1, "s")} of ${number(this.motion.duration, 1, "s")}: ${here.words}`;
+    this.scrub.setAttribute("aria-valuetext", words);
+    this.words.textContent = words;
+  }
+
+  #paint() {
+    const { plan, path, job } = this;
+    const working = job?.state === "queued" || job?.state === "running";
+    replace(this.facts, content(path, plan, job, working));
+    this.make.hidden = !path || Boolean(plan) || working;
+    this.open.hidden = !plan || Boolean(this.ghost);
+    this.bench.hidden = !this.ghost;
+  }
+}
+
+function content(path, plan, job, working) {
+  if (!path) return [hint("Nothing to run yet. Show a task, learn its ways and choose one: its motion is planned and certified before the arm may move.")];
+  const who = element("p", {}, `Way ${path.cluster}, version ${path.version}.`);
+  if (working) return [who, element("p", { class: "hint" }, job.message || "Planning …"), bar(job.fraction, "planning")];
+  if (!plan) {
+    const why = job?.state === "failed" && element("p", { class: "failed" }, `It cannot be run: ${job.message}`);
+    return [who, why || hint("This path has no certified motion yet.")];
+  }
+  const { certificate } = plan;
+  const uses = ["position_use", "velocity_use", "acceleration_use", "jerk_use", "torque_use"].map((name) => certificate[name]);
+  const most = uses.reduce((a, b) => (a.value >= b.value ? a : b));
+  return [
+    who,
+    facts([
+      ["Along the path", number(plan.duration, 2, "s")],
+      ["Least clearance", number(1000 * certificate.clearance.value, 0, "mm")],
+      ["Most of a limit", `${percent(most.value)}, ${most.place}`],
+      ["Way of the arm", certificate.branch],
+    ]),
+  ];
+}
