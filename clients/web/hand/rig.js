@@ -1,14 +1,15 @@
 // Where the operator of a headset stands: at the free side of the table, facing the arm. Draws the view's own scene with
 // a renderer and a camera of its own, so that the view on the page stays as it is.
 const LATE = 40; // [ms] between two frames that no headset has by itself
-const SELDOM = 1000; // [ms] between two pictures at most
+const HOLE = 120; // [ms] without a sample that is no good for a take
 const STAND = [1.25, 0, 0]; // [m] robot coordinates, on the floor
 
 export class Rig {
   constructor(viewer) {
     const { THREE } = globalThis.MeshCat;
     Object.assign(this, { viewer, THREE });
-    this.least = this.drawnAt = 0; // [ms]
+    this.cost = this.drawnAt = 0; // [ms] what drawing costs, and when it was done last
+    this.drew = this.carrying = false;
     this.renderer = new THREE.WebGLRenderer({ antialias: true }); // without it three of this age fails on some headsets
     this.renderer.xr.enabled = true;
     this.camera = new THREE.PerspectiveCamera(70, 1, 0.02, 30);
@@ -42,15 +43,16 @@ export class Rig {
     this.space = this.renderer.xr.getReferenceSpace();
   }
 
-  // Whether this frame is drawn: always, unless drawing makes the frames late. The samples come first, and with them the
-  // frames; a picture a second is drawn all the same.
+  // Whether this frame is drawn: always, unless drawing makes the frames late. Samples come with the frames, so they come
+  // first: pictures get fewer, and where one would tear a hole into a take there is none until the object is let go.
   #affords(time) {
     const apart = time - (this.before ?? time);
     this.before = time;
-    this.least = apart > LATE ? Math.min(SELDOM, Math.max(this.least, 4 * apart)) : 0.98 * this.least;
-    if (this.least > LATE && time - this.drawnAt < this.least) return false;
-    this.drawnAt = time;
-    return true;
+    if (this.drew) this.cost = Math.max(apart, 0.9 * this.cost);
+    const least = this.cost > LATE ? 4 * this.cost : 0;
+    this.drew = time - this.drawnAt >= least && !(this.carrying && this.cost > HOLE);
+    if (this.drew) this.drawnAt = time;
+    return this.drew;
   }
 
   // The head's first place becomes the stand at the table, wherever in the room the operator is.

@@ -103,6 +103,7 @@ class ShowPanel {
     const hand = new HeadsetHand(this.context.view.viewer, {
       hear: (sample) => {
         if (this.showing?.link.live) this.showing.follow(sample);
+        hand.rig.carrying = this.showing?.phase === "carrying";
         hand.rig.say(this.#sentence());
       },
       ended: () => {
