@@ -47,6 +47,7 @@ DOORS = {
     "typer": ["__main__.py", "commands"],
     "rich": ["commands"],
     "httpx": ["commands/rest.py"],
+    "pyarrow": ["io/lerobot.py"],
     "pydantic": ["config.py", "api"],
 }
 

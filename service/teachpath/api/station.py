@@ -12,6 +12,7 @@ from teachpath.api.calibrations import calibrations_router
 from teachpath.api.control import control_router
 from teachpath.api.curves import curves_router
 from teachpath.api.executions import executions_router
+from teachpath.api.exports import exports_router
 from teachpath.api.faults import REFUSALS, answer_errors
 from teachpath.api.guard import Guard
 from teachpath.api.parts import Parts
@@ -38,6 +39,7 @@ def build_api(parts: Parts, *pages: APIRouter) -> FastAPI:
     routers = (
         tasks_router,
         recording_router,
+        exports_router,
         calibrations_router,
         trackers_router,
         jobs_router,

@@ -2,29 +2,30 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import sys
 from pathlib import Path
 from typing import Annotated
 
-import numpy as np
 import typer
 
 from teachpath.app import trajectory_of
 from teachpath.commands.options import Config, Data, settings_of
+from teachpath.commands.work import progress_bar
 from teachpath.errors import UnusableRecording
 from teachpath.io.store import Store
 from teachpath.offline.doctor import examine
+from teachpath.offline.exporting import chosen, export_demonstrations
 from teachpath.offline.importing import Source, import_file
-from teachpath.records import Trajectory
 from teachpath.workers.calibrations import Calibrations
 
 
 def import_(
     task: Annotated[str, typer.Argument(help="Task to add demonstrations to; made when missing.")],
     file: Annotated[list[Path], typer.Argument(help="Files to import.")],
-    format: Annotated[str, typer.Option(help="csv (t,x,y,z[,qw,qx,qy,qz]), robottasks (.npy) or mcap.")] = "",
+    format: Annotated[
+        str,
+        typer.Option(help="csv or npy (t,x,y,z[,qw,qx,qy,qz]; csv also what export wrote), robottasks (.npy), mcap."),
+    ] = "",
     units: Annotated[str, typer.Option(help="Of the positions: m, cm, mm or in; robottasks is in cm.")] = "",
     rate: Annotated[float, typer.Option(help="[Hz] for a format without a clock.")] = 50.0,
     scene: Annotated[str, typer.Option(help="Scene of a new task.")] = "empty",
@@ -47,7 +48,7 @@ def import_(
                 content = each.read_bytes()
             except OSError as error:
                 raise UnusableRecording(f"cannot read {each}: {error.strerror}") from None
-            kind = format or ("mcap" if each.suffix == ".mcap" else "csv")
+            kind = format or (each.suffix[1:] if each.suffix in (".mcap", ".npy") else "csv")
             source = Source(each.name, content, kind, units or ("cm" if robottasks else "m"), rate)
             made = import_file(
                 store, settings.recording, source, task=task, scene=settings.scene(scene), calibration=chosen
@@ -59,29 +60,35 @@ def import_(
 
 
 def export(
-    demonstration: Annotated[str, typer.Argument(help="Id of the demonstration.")],
-    format: Annotated[str, typer.Option(help="csv (the object's trajectory) or mcap (every sample).")] = "csv",
-    out: Annotated[Path | None, typer.Option(help="File to write; csv goes to the terminal without it.")] = None,
+    what: Annotated[str, typer.Argument(help="A task, or the id of one demonstration.")],
+    format: Annotated[
+        str, typer.Option(help="csv or mcap (every sample), lerobot (a dataset), trajectory (of the object, as csv).")
+    ] = "mcap",
+    into: Annotated[Path, typer.Option(help="Folder to write into; made when missing.")] = Path(),
+    number: Annotated[list[int] | None, typer.Option(help="Only these demonstrations; may be repeated.")] = None,
+    all_: Annotated[bool, typer.Option("--all", help="Also rejected, discarded and bad ones.")] = False,
     config: Config = None,
     data: Data = None,
 ) -> None:
-    """Write a demonstration to a file."""
+    """Write demonstrations to files.
+
+    csv and mcap can be imported again without a loss. Nothing is overwritten, and nothing half written stays.
+    """
     settings = settings_of(config, data)
     store = Store(settings.store)
     try:
-        row = store.demonstration(demonstration)
-        if format == "mcap":
-            content = store.recordings.path(row.recording).read_bytes()
-        elif format == "csv":
-            content = _csv(trajectory_of(store, settings, row)).encode()
-        else:
-            raise UnusableRecording(f"format {format!r} is unknown; known: csv, mcap")
+        known = what in {task.name for task in store.tasks()}
+        rows = chosen(store, what, numbers=number or (), all_=all_) if known else [store.demonstration(what)]
+        with progress_bar("exporting") as show:
+            trajectory = lambda row: trajectory_of(store, settings, row)  # noqa: E731
+            written = export_demonstrations(store, rows, format, into, trajectory=trajectory, progress=show)
+        left_out = len(store.demonstrations(what)) - len(rows) if known and not number else 0
     finally:
         store.close()
-    if out is not None:
-        out.write_bytes(content)
-    else:
-        sys.stdout.buffer.write(content)
+    for file in written:
+        print(file)
+    if left_out:
+        print(f"{left_out} rejected, discarded or bad ones are left out; --all writes them too", file=sys.stderr)
 
 
 def doctor(config: Config = None, data: Data = None) -> None:
@@ -100,13 +107,3 @@ def doctor(config: Config = None, data: Data = None) -> None:
         print(finding.sentence)
     if not findings:
         print(f"{settings.store.data_dir}: every recording is whole")
-
-
-def _csv(trajectory: Trajectory) -> str:
-    turned = trajectory.orientations
-    columns = [trajectory.times[:, None], trajectory.positions] + ([] if turned is None else [turned])
-    text = io.StringIO()
-    writer = csv.writer(text)
-    writer.writerow(["t", "x", "y", "z"] + ([] if turned is None else ["qw", "qx", "qy", "qz"]))
-    writer.writerows([repr(v) for v in row] for row in np.hstack(columns).tolist())
-    return text.getvalue()

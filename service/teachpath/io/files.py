@@ -1,4 +1,4 @@
-"""Recordings that other programs wrote: CSV and RoboTasks arrays, read whole and checked before anything is stored."""
+"""Recordings that other programs wrote, CSV files and arrays, read whole and checked before anything is stored."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from teachpath.io.wire import FARTHEST
 from teachpath.records import Array
 
 UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254}
-FORMATS = ("csv", "robottasks")
+FORMATS = ("csv", "npy", "robottasks")
 LARGEST_FILE = 64 * 1024 * 1024  # bytes
 LONGEST = 86400.0  # [s]
 COLUMNS = ["t", "x", "y", "z"]
@@ -34,8 +34,9 @@ def read_tracks(content: bytes, name: str, *, kind: str, units: str, rate: float
     """Read the motions of a file.
 
     Args:
-        kind: "csv" (one motion, columns t, x, y, z and perhaps qw, qx, qy, qz) or "robottasks" (an .npy array
-            (demonstrations, samples, 7) of x, y, z, qw, qx, qy, qz without a clock).
+        kind: "csv" (one motion, columns t, x, y, z and perhaps qw, qx, qy, qz), "npy" (the same columns as an array
+            (samples, 4 or 8), or (motions, samples, 4 or 8)) or "robottasks" (an .npy array (motions, samples, 7) of
+            x, y, z, qw, qx, qy, qz without a clock).
         units: of the positions: m, cm, mm or in.
         rate: [Hz] of a format without a clock.
 
@@ -52,7 +53,7 @@ def read_tracks(content: bytes, name: str, *, kind: str, units: str, rate: float
         raise UnusableRecording(f"{name}: {len(content)} bytes are over the limit of {LARGEST_FILE}; split the file")
     if not content:
         raise UnusableRecording(f"{name}: the file is empty")
-    tracks = _read_csv(content, name) if kind == "csv" else _read_robottasks(content, name, rate)
+    tracks = _read_csv(content, name) if kind == "csv" else _read_arrays(content, name, kind, rate)
     scaled = [Track(t.times, t.positions * UNITS[units], t.orientations) for t in tracks]
     for number, track in enumerate(scaled, 1):
         _check(track, name if len(scaled) == 1 else f"{name}, demonstration {number}")
@@ -83,18 +84,26 @@ def _numbers(row: list[str], count: int, where: str) -> list[float]:
         raise UnusableRecording(f"{where}: {error}") from None
 
 
-def _read_robottasks(content: bytes, name: str, rate: float) -> list[Track]:
+def _read_arrays(content: bytes, name: str, kind: str, rate: float) -> list[Track]:
     try:
         values = np.load(io.BytesIO(content), allow_pickle=False)
     except Exception as error:  # a damaged header ends in whatever its tokens, sizes and archive make numpy raise
         raise UnusableRecording(f"{name}: not a whole .npy array of numbers: {error}") from None
-    if not isinstance(values, np.ndarray) or values.dtype.kind != "f" or values.ndim != 3 or values.shape[2] != 7:
+    is_array = isinstance(values, np.ndarray) and values.dtype.kind == "f"
+    if is_array and kind == "npy" and values.ndim == 2:
+        values = values[None]
+    columns = (7,) if kind == "robottasks" else (4, 8)
+    if not is_array or values.ndim != 3 or values.shape[2] not in columns:
         shape = getattr(values, "shape", "several arrays")
-        raise UnusableRecording(f"{name}: the array must be floats (demonstrations, samples, 7); it is {shape}")
+        wanted = " or ".join(map(str, columns))
+        raise UnusableRecording(f"{name}: the array must be floats (motions, samples, {wanted}); it is {shape}")
     if len(values) == 0:
         raise UnusableRecording(f"{name}: the array holds no demonstrations")
-    times = np.arange(values.shape[1]) / rate
-    return [Track(times, np.array(v[:, :3], dtype=np.float64), np.array(v[:, 3:], dtype=np.float64)) for v in values]
+    motions = values.astype(np.float64)
+    if kind == "robottasks":
+        times = np.arange(values.shape[1]) / rate
+        return [Track(times, v[:, :3], v[:, 3:]) for v in motions]
+    return [Track(v[:, 0] - v[:1, 0], v[:, 1:4], v[:, 4:] if v.shape[1] == 8 else None) for v in motions]
 
 
 def _check(track: Track, where: str) -> None:

@@ -7,13 +7,17 @@ import time
 from dataclasses import dataclass
 
 from teachpath.errors import UnusableInput, UnusableRecording
+from teachpath.io.documents import decode
 from teachpath.io.files import Track, read_tracks
+from teachpath.io.sample_files import holds_samples, read_samples
 from teachpath.io.store import Store
-from teachpath.io.store.recordings import salvage_stream
-from teachpath.recording import GRASP_BUTTON, RecordingSettings, Segmenter, point_to_world
+from teachpath.io.store.recordings import read_facts_stream, salvage_stream
+from teachpath.recording import GRASP_BUTTON, RecordingSettings, Segmenter, Verdict, judge_again, point_to_world
 from teachpath.records import Calibration, Demonstration, Sample, Scene, Trajectory
 from teachpath.workers.session import RecordingSession
 from teachpath_proto.keys import is_name
+
+MOST_REFUSED = 100_000  # of a file that says so
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,45 +31,87 @@ class Source:
     rate: float = 50.0
 
 
+@dataclass(frozen=True, eq=False)
+class _Read:
+    """What a file holds: its motions, and what it says of them when it was written here."""
+
+    tracker: str
+    calibration: Calibration
+    motions: list[list[Sample]]
+    stated: Demonstration | None = None
+
+
 def import_file(
     store: Store, settings: RecordingSettings, source: Source, *, task: str, scene: Scene, calibration: Calibration
 ) -> list[tuple[Demonstration, Trajectory]]:
     """Make a demonstration of each motion in a file; the whole motion counts as grasped.
 
-    A recording (mcap) brings its own samples, tracker and calibration, and is cut as it was live. The task is made
-    when it does not exist. The file is read and checked whole before the first one is stored.
+    A recording of ours (mcap, or a CSV file of samples) brings its own samples, tracker and calibration, is cut as it
+    was live, and is judged no better than it was. The task is made when it does not exist. The file is read and
+    checked whole before the first one is stored.
 
     Raises:
         UnusableInput: a bad task name, or a file that cannot be used (with its row and column).
     """
     if not is_name(task):
         raise UnusableInput(f"{task!r} cannot name a task: use letters, digits, '.', '_' or '-', at most 64")
-    if source.kind == "mcap":
-        tracker, calibration, motions = _read_recording(source)
-    else:
-        tracks = read_tracks(source.content, source.name, kind=source.kind, units=source.units, rate=source.rate)
-        tracker, motions = source.name, [_samples(track, source.name) for track in tracks]
-    for number, samples in enumerate(motions, 1):
-        where = source.name if len(motions) == 1 else f"{source.name}, motion {number} of {len(motions)}"
-        _check(samples, settings, scene, calibration, where)
-    store.ensure_task(task, scene=scene.name, calibration=calibration.name)
+    read = _read(source, calibration)
+    for number, samples in enumerate(read.motions, 1):
+        where = source.name if len(read.motions) == 1 else f"{source.name}, motion {number} of {len(read.motions)}"
+        _check(samples, settings, scene, read.calibration, where)
+    store.ensure_task(task, scene=scene.name, calibration=read.calibration.name)
     made: list[tuple[Demonstration, Trajectory]] = []
-    for samples in motions:
-        session = RecordingSession(store, settings, task=task, tracker=tracker, calibration=calibration, scene=scene)
+    for samples in read.motions:
+        session = RecordingSession(
+            store,
+            settings,
+            task=task,
+            tracker=read.tracker,
+            calibration=read.calibration,
+            scene=scene,
+            rate=read.stated.account.declared_rate if read.stated else 0.0,
+        )
+        for _ in range(min(read.stated.account.refused, MOST_REFUSED) if read.stated else 0):
+            session.refuse("some samples were refused when it was recorded")
         finished = [session.add(sample) for sample in samples]
         made += [f for f in finished if f is not None] + session.finish()
-    return made
+    return [_judged(store, settings, each, read.stated) for each in made]
 
 
-def _read_recording(source: Source) -> tuple[str, Calibration, list[list[Sample]]]:
-    """Return the tracker, the calibration and the samples of a recording, as they were received then."""
+def _read(source: Source, calibration: Calibration) -> _Read:
+    if source.kind == "mcap":
+        return _read_recording(source)
+    if source.kind == "csv" and holds_samples(source.content):
+        stated, samples = read_samples(source.content, source.name)
+        return _Read(stated.source, stated.calibration, [samples], stated)
+    tracks = read_tracks(source.content, source.name, kind=source.kind, units=source.units, rate=source.rate)
+    return _Read(source.name, calibration, [_samples(track, source.name) for track in tracks])
+
+
+def _read_recording(source: Source) -> _Read:
     header, samples, fault = salvage_stream(io.BytesIO(source.content))
     if header is None or fault or not samples:
         raise UnusableRecording(
             f"{source.name}: no whole recording of hand samples ({fault or 'there are none in it'}); a torn one that "
             "is still in its data folder can be repaired with: teachpath doctor"
         )
-    return header.tracker, header.calibration, [samples]
+    stated = read_facts_stream(io.BytesIO(source.content)).get("demonstration")
+    return _Read(
+        header.tracker, header.calibration, [samples], decode(Demonstration, stated.encode()) if stated else None
+    )
+
+
+def _judged(
+    store: Store, settings: RecordingSettings, made: tuple[Demonstration, Trajectory], stated: Demonstration | None
+) -> tuple[Demonstration, Trajectory]:
+    """Keep what only the recorder could see, e.g. that the tracker went away in mid-take."""
+    if stated is None:
+        return made
+    row, trajectory = made
+    verdict = judge_again(Verdict(stated.verdict, stated.reasons), stated.account, row.account, settings)
+    if verdict == Verdict(row.verdict, row.reasons):
+        return made
+    return store.change_demonstration(row.id, verdict=verdict.word, reasons=verdict.reasons), trajectory
 
 
 def _check(

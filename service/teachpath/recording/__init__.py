@@ -9,7 +9,7 @@ from teachpath.recording.gesture import FistGesture, Sign
 from teachpath.recording.phases import GRASP_BUTTON, TOGGLE_BUTTON, Cut, Segmenter, closure_of
 from teachpath.recording.positions import Faults, faults_of
 from teachpath.recording.settings import RecordingSettings
-from teachpath.recording.verdict import Verdict, judge
+from teachpath.recording.verdict import Verdict, judge, judge_again
 
 __all__ = [
     "GRASP_BUTTON",
@@ -31,6 +31,7 @@ __all__ = [
     "faults_of",
     "fit_frame",
     "judge",
+    "judge_again",
     "object_trajectory",
     "point_to_world",
     "to_world",

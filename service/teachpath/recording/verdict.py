@@ -40,6 +40,23 @@ def judge(account: Account, settings: RecordingSettings) -> Verdict:
     return Verdict(word, (*rejections, *repairs))
 
 
+def judge_again(former: Verdict, before: Account, now: Account, settings: RecordingSettings) -> Verdict:
+    """Return the verdict on a changed account; what was said for other reasons (a torn end) is said again.
+
+    Args:
+        former: the verdict so far.
+        before: the account that it was on.
+        now: the account as it is.
+        settings: limits of the recording.
+    """
+    judged, fresh = judge(before, settings), judge(now, settings)
+    kept = tuple(reason for reason in former.reasons if reason not in judged.reasons)
+    if not kept:
+        return fresh
+    rejected = fresh.word == "reject" or (former.word == "reject" and judged.word != "reject")
+    return Verdict("reject" if rejected else "repaired", (*kept, *fresh.reasons))
+
+
 def _too_many(account: Account, settings: RecordingSettings) -> list[str]:
     total = account.received + account.lost
     faults = sum(getattr(account, name) for name in FAULTS)

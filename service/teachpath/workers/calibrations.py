@@ -8,8 +8,8 @@ from typing import Any
 
 from teachpath.errors import Conflict, NotFound, UnusableInput
 from teachpath.io.store import Store
-from teachpath.recording import Cut, RecordingSettings, Verdict, fit_frame, judge
-from teachpath.records import Account, Calibration, Demonstration, MeasuredCalibration, Scene, TaughtPoint
+from teachpath.recording import Cut, RecordingSettings, Verdict, fit_frame, judge_again
+from teachpath.records import Calibration, Demonstration, MeasuredCalibration, Scene, TaughtPoint
 from teachpath.workers.closing import TakenSamples, with_positions
 from teachpath.workers.curation import Curation
 from teachpath_proto.keys import is_name
@@ -126,7 +126,8 @@ class Calibrations:
         cut = Cut(demonstration.grasp, demonstration.release)
         taken = TakenSamples(samples, cut, demonstration.account, calibration, None)
         account, left_out = with_positions(taken, self.settings)
-        verdict = self._judged_again(demonstration, account)
+        former = Verdict(demonstration.verdict, demonstration.reasons)
+        verdict = judge_again(former, demonstration.account, account, self.settings)
         changed = replace(demonstration, calibration=calibration, left_out=left_out)
         times = Curation(self.store, self.settings, self.scene).trajectory(changed).times
         return {
@@ -143,12 +144,3 @@ class Calibrations:
             return self.get(calibration.name)
         except NotFound:  # of another station: nothing here contradicts it
             return calibration
-
-    def _judged_again(self, demonstration: Demonstration, account: Account) -> Verdict:
-        """Return the verdict on changed positions; what ended the take early still counts."""
-        before, now = judge(demonstration.account, self.settings), judge(account, self.settings)
-        kept = tuple(reason for reason in demonstration.reasons if reason not in before.reasons)
-        if not kept:
-            return now
-        rejected = now.word == "reject" or (demonstration.verdict == "reject" and before.word != "reject")
-        return Verdict("reject" if rejected else "repaired", (*kept, *now.reasons))

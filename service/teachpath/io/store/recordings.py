@@ -182,7 +182,14 @@ def salvage_stream(stream: BinaryIO) -> tuple[RecordingHeader | None, list[Sampl
 
 def read_facts(file: Path) -> dict[str, str]:
     """Return what a recording said of itself when it was finished; nothing when it is torn before that."""
-    with suppress(Exception), file.open("rb") as stream:  # damage shows as whatever the reader raises
+    with suppress(OSError), file.open("rb") as stream:
+        return read_facts_stream(stream)
+    return {}
+
+
+def read_facts_stream(stream: BinaryIO) -> dict[str, str]:
+    """Return what a recording says of itself, from an open file; as `read_facts`."""
+    with suppress(Exception):  # damage shows as whatever the reader raises
         for record in _records(stream):
             if isinstance(record, Metadata) and record.name == FACTS:
                 return dict(record.metadata)

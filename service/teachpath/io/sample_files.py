@@ -1,0 +1,89 @@
+"""Every sample of a demonstration as a CSV file, and back without a loss.
+
+The first line is a comment that states the demonstration (tracker, calibration, verdict, account) as JSON; then comes
+a header, and a row a sample in the order received. Numbers are written so that they are read to the last bit.
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+from dataclasses import replace
+
+from teachpath.errors import UnusableInput, UnusableRecording, UnusableSample
+from teachpath.io.documents import decode, encode
+from teachpath.io.wire import sample_from
+from teachpath.records import Demonstration, Sample
+from teachpath_proto import tracker_pb2
+
+MARK = "# teachpath "
+COLUMNS = ["sequence", "device_ns", "receive_ns", "x", "y", "z", "qw", "qx", "qy", "qz", "tracked", "buttons"]
+MOST_SENSORS = 22
+LARGEST_NS = 2**63 - 1
+
+
+def holds_samples(content: bytes) -> bool:
+    """Tell whether a CSV file is one of samples."""
+    return content.startswith(MARK.encode())
+
+
+def write_samples(stated: Demonstration, samples: list[Sample]) -> bytes:
+    """Return the file of a demonstration."""
+    sensors = max((len(s.flexions) for s in samples), default=0)
+    text = io.StringIO()
+    text.write(f"{MARK}{encode(stated).decode()}\n")
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(COLUMNS + [f"f{i + 1}" for i in range(sensors)])
+    for s in samples:
+        turn = map(repr, s.orientation) if s.orientation else ("",) * 4
+        row = [s.sequence, s.device_ns, s.receive_ns, *map(repr, s.position), *turn, int(s.tracked), s.buttons]
+        writer.writerow(row + [repr(f) for f in s.flexions] + [""] * (sensors - len(s.flexions)))
+    return text.getvalue().encode()
+
+
+def read_samples(content: bytes, name: str) -> tuple[Demonstration, list[Sample]]:
+    """Return the demonstration that a file states, and its samples.
+
+    Raises:
+        UnusableRecording: the file is no such one, or torn; names the line.
+    """
+    try:
+        first, *rest = content.decode("utf-8").split("\n")
+        stated = decode(Demonstration, first.removeprefix(MARK).encode())
+        header, *rows = csv.reader(rest)
+    except (UnicodeDecodeError, csv.Error, ValueError, UnusableInput) as error:
+        raise UnusableRecording(f"{name}: not the samples of a demonstration: {error}") from None
+    sensors = len(header) - len(COLUMNS)
+    if header[: len(COLUMNS)] != COLUMNS or not 0 <= sensors <= MOST_SENSORS:
+        raise UnusableRecording(f"{name}, line 2: the columns must be {','.join(COLUMNS)}, then flexions f1, f2, ...")
+    if not content.endswith(b"\n"):
+        raise UnusableRecording(f"{name}: the last line does not end; is the file truncated?")
+    read = [_sample(row, len(header), stated.source, f"{name}, line {i}") for i, row in enumerate(rows, 3) if row]
+    if len(read) != stated.samples:
+        raise UnusableRecording(f"{name}: {len(read)} samples, {stated.samples} stated in the first line")
+    return stated, read
+
+
+def _sample(row: list[str], count: int, tracker: str, where: str) -> Sample:
+    if len(row) != count:
+        raise UnusableRecording(f"{where}: {len(row)} values, the header has {count} columns; is the file truncated?")
+    try:
+        sequence, device_ns, receive_ns = map(int, row[:3])
+        x, y, z = map(float, row[3:6])
+        turn = [float(cell) for cell in row[6:10] if cell]
+        if len(turn) not in (0, 4) or row[10] not in ("0", "1") or not 0 <= receive_ns <= LARGEST_NS:
+            raise ValueError(f"{','.join(row[2:11])} is no receive time, place, quaternion (or none) and 0 or 1")
+        message = tracker_pb2.HandSample(
+            sequence=sequence,
+            device_ns=device_ns,
+            position=tracker_pb2.Vector3(x=x, y=y, z=z),
+            orientation=tracker_pb2.Quaternion(**dict(zip("wxyz", turn, strict=False))),
+            flexions=[float(cell) for cell in row[12:] if cell],
+            tracked=row[10] == "1",
+            buttons=int(row[11]),
+        )
+        sample = sample_from(message, tracker, receive_ns)
+    except (ValueError, UnusableSample) as error:
+        raise UnusableRecording(f"{where}: {error}") from None
+    # It was of unit length when it was written; to make it so again would change its last bit.
+    return replace(sample, orientation=(turn[0], turn[1], turn[2], turn[3])) if turn else sample

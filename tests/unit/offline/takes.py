@@ -1,0 +1,78 @@
+"""Stored takes to export: whole, lossy, torn, without a glove, without orientations."""
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from teachpath.io.store import Store
+from teachpath.recording import GRASP_BUTTON, RecordingSettings
+from teachpath.records import Calibration, Demonstration, Sample, Scene, Trajectory
+from teachpath.workers.curation import Curation
+from teachpath.workers.session import RecordingSession
+from tests.unit.recording.hands import demonstration
+
+EMPTY = Scene("empty")
+LAB = Calibration("lab", 0.5, (0.6, 0.0, 0.8, 0.0), (0.1, 0.2, 0.3))
+SETTINGS = RecordingSettings()
+
+
+def exact(samples: Sequence[Sample]) -> list[Sample]:
+    """Return samples whose numbers need every digit, as the wire carries them: flexions in single precision."""
+    random = np.random.default_rng(1)
+    return [
+        replace(
+            s,
+            position=tuple((np.array(s.position) + random.normal(0.0, 1e-3, 3)).tolist()),
+            flexions=tuple(np.float32(s.flexions).tolist()),
+            receive_ns=s.receive_ns + int(random.integers(0, 500_000)),
+        )
+        for s in samples
+    ]
+
+
+def whole() -> list[Sample]:
+    return exact(demonstration())
+
+
+def lossy() -> list[Sample]:
+    """Lose one sample, send one twice and one late."""
+    shown = exact(demonstration(transport=80))
+    del shown[60]
+    shown.insert(70, shown[69])
+    shown[40], shown[41] = shown[41], shown[40]
+    return [replace(s, tracked=i != 50) for i, s in enumerate(shown)]
+
+
+def bare() -> list[Sample]:
+    """Show with a button, without a glove and orientations."""
+    return [
+        replace(s, flexions=(), orientation=None, buttons=GRASP_BUTTON if s.flexions[0] > 0.5 else 0)
+        for s in exact(demonstration())
+    ]
+
+
+TAKES: dict[str, Callable[[], list[Sample]]] = {"whole": whole, "lossy": lossy, "bare": bare}
+
+
+def record(store: Store, samples: Sequence[Sample], *, gone: bool = False, rate: float = 50.0) -> Demonstration:
+    """Record a take under a calibration of its own; `gone`: the tracker leaves before the hand has come to rest."""
+    store.ensure_task("lift", scene="empty", calibration="lab")
+    session = RecordingSession(store, SETTINGS, task="lift", tracker="glove", calibration=LAB, scene=EMPTY, rate=rate)
+    session.refuse("a payload was no sample")
+    finished = [session.add(sample) for sample in (samples[:-20] if gone else samples)]
+    finished += [session.lose("the tracker has gone in mid-take")] if gone else session.finish()
+    ((row, _),) = [f for f in finished if f is not None]
+    return row
+
+
+def trajectory(store: Store) -> Callable[[Demonstration], Trajectory]:
+    return Curation(store, SETTINGS, lambda _: EMPTY).trajectory
+
+
+def said(row: Demonstration) -> Iterator[object]:
+    """Yield what must be the same of a demonstration that was exported and imported."""
+    account = row.account
+    yield from (row.verdict, row.reasons, row.left_out, row.transport, row.samples, row.duration, row.calibration)
+    yield from (row.source, account.received, account.lost, account.duplicated, account.reordered, account.refused)
+    yield from (account.untracked, account.gaps, account.longest_gap_ns, account.declared_rate, account.seen_rate)
