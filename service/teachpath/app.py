@@ -28,6 +28,7 @@ from teachpath.offline.lock import StationLock
 from teachpath.recording import to_world
 from teachpath.records import Demonstration, Job, Learned, LearnedPath, Plan, Trajectory, Vector
 from teachpath.workers import desk
+from teachpath.workers.assessor import Assessor
 from teachpath.workers.calibrations import Calibrations
 from teachpath.workers.coach import Coach
 from teachpath.workers.curation import Curation
@@ -85,6 +86,7 @@ class Station:
         )
         self.coach = Coach(self.store.demonstrations, self.trajectory, settings.learning)
         self.jobs = Jobs(self.bus, self.keys, self.store, settings.jobs, self._kinds(), finished=self._show_outcome)
+        self.assessor = Assessor()
         self.gate = TrackerGate(self.bus, self.keys, self.recorder)
         self.joints = JointFeed(self.bus, self.keys, robot=settings.bus.robot)
         self.executions = Executions(self.bus, self.keys, self.store, robot=settings.bus.robot, scene=settings.scene)
@@ -132,6 +134,7 @@ class Station:
         self.recorder.stop()
         self.coach.stop()
         self.jobs.stop()
+        self.assessor.stop()
         self.executions.stop()
         self.joints.stop()
         self.preview.stop()
@@ -187,6 +190,7 @@ class Station:
             self.recorder,
             self.calibrations,
             self.jobs,
+            self.assessor,
             self.executions,
             self.gate,
             self.joints,

@@ -7,9 +7,10 @@ from optimum import shortest_stop
 from report import Figure, against
 
 from teachpath.motion import MotionSettings
+from teachpath.motion.branches import Candidate, candidates, usable
 from teachpath.motion.governor import Governor, warm_up
 from teachpath.motion.joints import ARM, JointPath
-from teachpath.motion.route import Candidate, Route, candidates, route, usable
+from teachpath.motion.route import Route, route
 from teachpath.motion.timing import lower_bound, timed, uses
 from teachpath.motion.track import Track, paced
 from teachpath.nurbs import Curve
@@ -62,7 +63,7 @@ def _clamped(points: np.ndarray, degree: int) -> Curve:
 def _path(name: str, curve: Curve, repeats: int) -> list[Figure]:
     settings = MotionSettings()
     found = route(curve, settings)
-    candidate = max((c for c in candidates(found, settings) if usable(c, settings)), key=lambda c: c.singular)
+    candidate = max((c for c in candidates(found, settings) if usable(c, settings)), key=lambda c: c.conditioned)
     seconds = []
     for _ in range(repeats):
         began = time.perf_counter()

@@ -75,6 +75,8 @@ def test_one_single_demonstration_is_learned_and_its_outcome_is_found(desk: Desk
     assert path["fit"]["largest"] <= path["fit"]["bound"]
     assert desk.get(f"/paths/{path['id']}/plans").json() == []
 
+    assess_while_editing(desk, path)
+
     desk.put("/tasks/other", {})
     refused(desk.get(f"/tasks/other/runs/{run['id']}"), 404, "it is of task single")
     refused(desk.post("/tasks/other/jobs", {"kind": "plan", "path": path["id"]}), 404, "it is of task single")
@@ -85,6 +87,24 @@ def test_one_single_demonstration_is_learned_and_its_outcome_is_found(desk: Desk
         ended = desk.ended(accepted)
         assert ended["state"] in ("succeeded", "failed")
         assert (ended["state"] == "succeeded") == bool(ended["outcome"]) == (not ended["message"])
+
+
+def assess_while_editing(desk: Desk, path: dict[str, Any]) -> None:
+    """An edited curve is looked at and nothing is stored of it."""
+    place = f"/paths/{path['id']}/assessment"
+    looked = desk.post(place, {"version": 1}).json()
+    samples = len(looked["lengths"])
+    assert all(len(looked[name]) == samples for name in ("parameters", "positions", "faults", "clearance", "singular"))
+    away = path["curve"] | {"control_points": [[x + 3.0, y, z] for x, y, z in path["curve"]["control_points"]]}
+    failed = desk.post(place, {"curve": away}).json()
+    assert (failed["failure"]["fault"], failed["duration"]) == ("reach", None)
+    assert failed["failure"]["remedy"]["sentence"] in failed["sentence"]
+    assert desk.get(f"/paths/{path['id']}").json() == path
+    refused(desk.post(place, {"version": 99}), 404, "99")
+    refused(desk.post(place, {"curve": away | {"weights": [-1.0]}}), 422, "weights")
+    refused(desk.post("/paths/none/assessment", {}), 404, "none")
+    point = away | {"control_points": [away["control_points"][0]] * len(away["control_points"])}
+    refused(desk.post(place, {"curve": point}), 422, "all control points lie in one place")
 
 
 @pytest.mark.parametrize("settings_", [{}, {"mode": "paper", "threshold": 0.06}])

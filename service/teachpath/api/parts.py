@@ -9,6 +9,7 @@ from typing import Any
 from teachpath.config import Settings
 from teachpath.io.store import Store
 from teachpath.records import Demonstration, Trajectory
+from teachpath.workers.assessor import Assessor
 from teachpath.workers.calibrations import Calibrations
 from teachpath.workers.executions import Executions
 from teachpath.workers.gate import TrackerGate
@@ -26,6 +27,7 @@ class Parts:
     recorder: Recorder
     calibrations: Calibrations
     jobs: Jobs
+    assessor: Assessor
     executions: Executions
     gate: TrackerGate
     joints: JointFeed

@@ -8,6 +8,7 @@ from fastapi import APIRouter, FastAPI
 from starlette.middleware.trustedhost import TrustedHostMiddleware
 
 from teachpath import __version__
+from teachpath.api.assessments import assessments_router
 from teachpath.api.calibrations import calibrations_router
 from teachpath.api.control import control_router
 from teachpath.api.curves import curves_router
@@ -46,6 +47,7 @@ def build_api(parts: Parts, *pages: APIRouter) -> FastAPI:
         results_router,
         versions_router,
         curves_router,
+        assessments_router,
         executions_router,
         control_router,
         robot_router,

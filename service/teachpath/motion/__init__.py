@@ -1,5 +1,6 @@
 """The motion room: from a learned path to a certified plan, and the arm along it, live."""
 
+from teachpath.motion.assessment import assess
 from teachpath.motion.certificate import verify
 from teachpath.motion.drawing import Part, drawing
 from teachpath.motion.mjcf import mjcf
@@ -10,6 +11,7 @@ from teachpath.motion.settings import MotionSettings
 __all__ = [
     "MotionSettings",
     "Part",
+    "assess",
     "drawing",
     "empty_scene",
     "mjcf",

@@ -3,24 +3,29 @@
 from __future__ import annotations
 
 import uuid
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
 
 from teachpath.errors import PathRefused, UnusableSettings
+from teachpath.motion.branches import Candidate, candidates, cost, least_wrong, usable
 from teachpath.motion.certificate import digest, largest_use, limit_uses
+from teachpath.motion.failure import collision_failure, in_words, kinematic_failure, start_failure
 from teachpath.motion.joints import ARM, JointPath, Limits
-from teachpath.motion.kinematics import downward, inverse, tool_pose
+from teachpath.motion.kinematics import inverse, tool_pose
 from teachpath.motion.moves import approach, check_free, left_behind, line, retreat
-from teachpath.motion.puma560 import LOWER, SPEED, TORQUE, UPPER, Array
-from teachpath.motion.route import Candidate, Route, candidates, explain, route, usable
-from teachpath.motion.scene import Clearance, CollisionModel, Load
+from teachpath.motion.puma560 import LOWER, TORQUE, UPPER, Array
+from teachpath.motion.remedy import influences
+from teachpath.motion.route import Route, route
+from teachpath.motion.scene import Clearance, CollisionModel, Load, grasp_of
 from teachpath.motion.settings import MotionSettings
 from teachpath.motion.timing import timed
 from teachpath.motion.torque import Dynamics
 from teachpath.motion.track import paced
-from teachpath.records import Certificate, Extreme, LearnedPath, Plan, Scene
+from teachpath.nurbs import Curve
+from teachpath.records import Certificate, Extreme, Failure, LearnedPath, Plan, Scene
 
 NEAR_FINGERS: Final = 0.001  # m, that open fingers stay away from the object between them
 # A branch and roll that keeps more clearance is worth so much per metre, up to what is enough.
@@ -30,7 +35,6 @@ EVERY: Final = 8  # instant of a track is looked at for its torques
 SLOWER: Final = 4  # times that a path is timed at most, each time with lower limits of acceleration
 LESS: Final = 0.97  # of the acceleration that the torques leave, because a slower path has other torques
 LEAST_LEFT: Final = 0.05  # of the limits of acceleration with which a path is still worth following
-PROOF: Final = 0.002  # m, between two places of a path where clearances are measured
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,20 +68,19 @@ def plan(path: LearnedPath, scene: Scene, settings: MotionSettings | None = None
     """
     settings = settings or MotionSettings()
     _home_within_limits(settings)
-    way = route(path.curve, settings)
-    _starts_at_object(way, scene, settings)
+    way = route(path.curve, settings, turn=_turn(path, settings))
+    _refuse(start_failure(way, scene, settings))
     every = candidates(way, settings)
     fit = [candidate for candidate in every if usable(candidate, settings)]
     if not fit:
-        nearest = min(every, key=lambda c: (max(c.excess, 0.0), c.jump >= 0, -c.singular))
-        raise PathRefused(explain(way, nearest, settings))
+        _refuse(kinematic_failure(way, least_wrong(every), settings))
     job = _Job(path, scene, settings, way, CollisionModel(scene))
     refused: PathRefused | None = None
     free: list[tuple[float, Candidate, Extreme]] = []
-    for candidate in sorted(fit, key=lambda c: _cost(c, settings)):
+    for candidate in sorted(fit, key=lambda c: cost(c, settings)):
         try:
-            clearance = _path_clearance(job, JointPath(way.lengths, way.lengths, candidate.joints))
-            free.append((_cost(candidate, settings) - GAIN * min(clearance.value, ENOUGH), candidate, clearance))
+            clearance = _path_clearance(job, candidate)
+            free.append((cost(candidate, settings) - GAIN * min(clearance.value, ENOUGH), candidate, clearance))
         except PathRefused as error:
             refused = refused or error
     for _, candidate, clearance in sorted(free, key=lambda trial: trial[0]):
@@ -96,13 +99,6 @@ def _home_within_limits(settings: MotionSettings) -> None:
             raise UnusableSettings(f"motion.home puts joint {joint + 1} to {angle:.3f} rad, limits {limits}")
 
 
-def _cost(candidate: Candidate, settings: MotionSettings) -> float:
-    """Prefer branches far from singular poses and joint limits, and near to the arm's home (a second counts 0.2)."""
-    use = np.abs(candidate.joints - (LOWER + UPPER) / 2).max(axis=0) / ((UPPER - LOWER) / 2)
-    travel = np.abs(candidate.joints[0] - np.array(settings.home)) / SPEED
-    return float(0.1 / candidate.singular + use.max() + 0.2 * travel.max())
-
-
 def _certified(job: _Job, candidate: Candidate, clearance: Extreme) -> Plan:
     settings, way = job.settings, job.way
     joints, pace, limits, torque = _within_torques(job, candidate)
@@ -111,7 +107,7 @@ def _certified(job: _Job, candidate: Candidate, clearance: Extreme) -> Plan:
     above_start = _above(way.positions[0], start, candidate, settings, "start")
     above_goal = _above(way.positions[-1], goal, candidate, settings, "goal")
     _moves_clear(job, joints, above_start, above_goal)
-    singular_s = float(way.lengths[candidate.singular_at])
+    singular_s = float(way.lengths[int(np.argmin(candidate.singular))])
     track = paced(joints, pace, limits)
     position, velocity, acceleration, jerk = limit_uses(track.setpoints(settings.rate), settings.rate)
     worst = max((velocity, acceleration, jerk), key=lambda extreme: extreme.value)
@@ -140,7 +136,7 @@ def _certified(job: _Job, candidate: Candidate, clearance: Extreme) -> Plan:
             acceleration_use=acceleration,
             jerk_use=jerk,
             torque_use=torque,
-            least_singular=Extreme(candidate.singular, f"s = {singular_s:.3f} m", singular_s),
+            least_singular=Extreme(candidate.conditioned, f"s = {singular_s:.3f} m", singular_s),
             clearance=clearance,
         ),
     )
@@ -168,17 +164,6 @@ def _within_torques(job: _Job, candidate: Candidate) -> tuple[JointPath, Array, 
     )
 
 
-def _starts_at_object(way: Route, scene: Scene, settings: MotionSettings) -> None:
-    if scene.carried is None:
-        return
-    off = float(np.linalg.norm(way.positions[0] - np.array(scene.carried.position)))
-    if off > settings.grasp_tolerance:
-        raise PathRefused(
-            f"the path starts {100 * off:.1f} cm from where {scene.carried.name} stands, at most "
-            f"{100 * settings.grasp_tolerance:.1f} cm; move control point 1 of {len(way.curve.control_points)} there"
-        )
-
-
 def _tool_on_path(way: Route, joints: JointPath, settings: MotionSettings) -> None:
     samples = joints.dense()
     reached = joints(samples)
@@ -187,13 +172,18 @@ def _tool_on_path(way: Route, joints: JointPath, settings: MotionSettings) -> No
     worst = int(np.argmax(off))
     if off[worst] > settings.path_tolerance:
         node = int(np.argmin(np.abs(way.lengths - reached[worst, 6])))
-        raise PathRefused(f"the path bends too sharply to be followed within its tolerance {way.place(node)}")
+        raise PathRefused(
+            f"the path bends too sharply to be followed within its tolerance {way.place(node)}; "
+            f"move control point {int(np.argmax(influences(way.curve, float(way.parameters[node])))) + 1}"
+        )
 
 
 def _above(position: Array, q: Array, candidate: Candidate, settings: MotionSettings, what: str) -> Array:
     """Find the configuration above an end of the path, on the same branch as configuration `q` there."""
     lifted = position + np.array([0.0, 0.0, settings.lift])
-    solutions = inverse(downward(lifted[None], candidate.roll), q4_before=float(q[3]))
+    pose = tool_pose(q)
+    pose[:3, 3] = lifted
+    solutions = inverse(pose[None], q4_before=float(q[3]))
     turned = solutions.joints[0] + 2 * np.pi * np.round((q - solutions.joints[0]) / (2 * np.pi))
     best = turned[int(np.argmin(np.abs(turned - q).max(axis=1)))]
     if solutions.excess[0, 0] > 0 or np.any(best < LOWER) or np.any(best > UPPER):
@@ -203,35 +193,34 @@ def _above(position: Array, q: Array, candidate: Candidate, settings: MotionSett
     return np.asarray(best, dtype=np.float64)
 
 
-def _path_clearance(job: _Job, joints: JointPath) -> Extreme:
-    samples = np.linspace(0.0, joints.end, max(2, int(np.ceil(joints.end / PROOF)) + 1))
-    q, load = joints(samples)[:, :6], _grasp(job, joints)
+def _path_clearance(job: _Job, candidate: Candidate) -> Extreme:
+    q, load, settings = candidate.joints, grasp_of(job.scene, candidate.joints[0]), job.settings
     least = job.model.clearance(q, load=load)
-    if least.distance < job.settings.clearance_min:
-        raise _too_near(job, samples, least, job.settings.clearance_min)
-    if load is not None:
-        support = job.model.support(q, load)
-        if support.distance < -job.settings.contact_tolerance:
-            raise _too_near(job, samples, support, -job.settings.contact_tolerance)
-    s = float(samples[least.index])
+    if least.distance < settings.clearance_min:
+        _too_near(job, candidate, settings.clearance_min, lambda q: job.model.profile(q, load=load))
+    if load is not None and job.model.support(q, load).distance < -settings.contact_tolerance:
+        _too_near(job, candidate, -settings.contact_tolerance, lambda q: job.model.supports(q, load))
+    s = float(job.way.lengths[least.index])
     return Extreme(least.distance, f"{least.part} to {least.other} at s = {s:.3f} m" if least.part else "far", s)
 
 
-def _too_near(job: _Job, samples: Array, least: Clearance, limit: float) -> PathRefused:
-    node = int(np.argmin(np.abs(job.way.lengths - samples[least.index])))
-    return PathRefused(
-        f"{least.part} comes within {1000 * least.distance:.1f} mm of {least.other}, least allowed "
-        f"{1000 * limit:.1f} mm, {job.way.place(node)} away from {least.other}"
+def _too_near(job: _Job, candidate: Candidate, least: float, measure: Callable[[Array], list[Clearance]]) -> None:
+    nodes = np.arange(len(candidate.joints))
+    rows = measure(candidate.joints)
+    _refuse(
+        collision_failure(
+            job.way, candidate, nodes, rows, least, lambda q: np.array([row.distance for row in measure(q)])
+        )
     )
 
 
-def _grasp(job: _Job, joints: JointPath) -> Load | None:
-    carried = job.scene.carried
-    if carried is None:
-        return None
-    upright = np.eye(4)
-    upright[:3, 3] = carried.position
-    return Load(grasp=np.linalg.inv(tool_pose(joints.joints[0])) @ upright)
+def _turn(path: LearnedPath, settings: MotionSettings) -> Curve | None:
+    return path.orientation if settings.orientation == "demonstrated" else None
+
+
+def _refuse(failure: Failure | None) -> None:
+    if failure is not None:
+        raise PathRefused(in_words(failure))
 
 
 def _moves_clear(job: _Job, joints: JointPath, above_start: Array, above_goal: Array) -> None:

@@ -1,10 +1,9 @@
-"""From a curve to configurations: even lengths along it, and every way the arm can hold its tool down on it."""
+"""The curve as the arm must follow it: even arc lengths along it, and the tool's pose at each of them."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from itertools import pairwise
-from math import degrees
 from typing import Final
 
 import numpy as np
@@ -12,17 +11,15 @@ from numpy.polynomial.legendre import leggauss
 from scipy.interpolate import CubicHermiteSpline, make_interp_spline
 
 from teachpath.errors import PathRefused
-from teachpath.motion.kinematics import BRANCHES, downward, explain_reach, inverse, least_singular_value
-from teachpath.motion.puma560 import LOWER, UPPER, Array
+from teachpath.motion.kinematics import downward
+from teachpath.motion.puma560 import Array
 from teachpath.motion.settings import MotionSettings
-from teachpath.nurbs import Curve
+from teachpath.nurbs import Curve, unit
 
 SHORTEST: Final = 0.01  # m, of a path that is worth following
 FEWEST_NODES: Final = 60
 FINEST: Final = 3  # times that the nodes are doubled where the curve bends sharply
 STANDSTILL: Final = 1e-4  # share of the mean speed |dc/du| below which a curve has a cusp
-# A joint that turns more than this between two nodes has jumped: the branch ends there.
-LARGEST_STEP: Final = 0.35  # rad
 
 
 class ArcLength:
@@ -65,55 +62,70 @@ class Route:
 
     Attributes:
         curve: what was sampled.
-        arc: its arc length.
+        turn: quaternions of what is carried, at the same parameter; None when the tool points down all the way.
+        arc: the curve's arc length.
         lengths: (n,) arc length of the nodes [m].
+        parameters: (n,) of the curve at the nodes.
         positions: (n, 3) [m], world.
     """
 
     curve: Curve
+    turn: Curve | None
     arc: ArcLength
     lengths: Array
+    parameters: Array
     positions: Array
 
+    @staticmethod
+    def sampled(curve: Curve, turn: Curve | None, arc: ArcLength, count: int) -> Route:
+        """Sample a curve at `count` + 1 nodes."""
+        lengths = np.linspace(0.0, arc.total, count + 1)
+        parameters = arc.parameters(lengths)
+        return Route(curve, turn, arc, lengths, parameters, curve(parameters))
+
+    def poses(self, u: Array) -> Array:
+        """Return the tool's poses (m, 4, 4) to world at parameters (m,), before any roll about its own axis.
+
+        The tool points down with its fingers closing along y, and from there turns as what is carried turns from its
+        own orientation at the start.
+        """
+        poses = downward(self.curve(u), 0.0)
+        if self.turn is not None:
+            turned = matrices(unit(self.turn, u))
+            start = matrices(unit(self.turn, np.zeros(1)))[0]
+            poses[:, :3, :3] = turned @ start.T @ poses[:, :3, :3]
+        return poses
+
     def place(self, index: int) -> str:
-        """Name a node and the control point nearest to it."""
+        """Name a node."""
         x, y, z = self.positions[index]
-        return f"at s = {self.lengths[index]:.3f} m ({x:.3f}, {y:.3f}, {z:.3f}); {self.remedy(index)}"
-
-    def remedy(self, index: int) -> str:
-        """Name the control point nearest to a node."""
-        points = self.curve.control_points
-        nearest = int(np.argmin(np.linalg.norm(points - self.positions[index], axis=1)))
-        return f"move control point {nearest + 1} of {len(points)}"
+        return f"at s = {self.lengths[index]:.3f} m ({x:.3f}, {y:.3f}, {z:.3f})"
 
 
-@dataclass(frozen=True, eq=False)
-class Candidate:
-    """One way to hold the arm along a whole route.
-
-    Attributes:
-        branch: shoulder, elbow, wrist and tool roll in words.
-        index: of shoulder, elbow and wrist in `BRANCHES`.
-        roll: of the tool [rad].
-        joints: (n, 6) continuous configurations [rad].
-        excess: largest violation of a joint limit [rad], at most 0 when all hold.
-        worst: (node, joint) where a joint comes nearest to a limit, or is farthest beyond.
-        singular: least singular value of the Jacobian, and `singular_at` its node.
-    """
-
-    branch: str
-    index: int
-    roll: float
-    joints: Array
-    excess: float
-    worst: tuple[int, int]
-    singular: float
-    singular_at: int
-    jump: int  # node at which a joint jumps, or -1
-
-
-def route(curve: Curve, settings: MotionSettings) -> Route:
+def route(curve: Curve, settings: MotionSettings, *, turn: Curve | None = None) -> Route:
     """Sample a curve at even arc lengths, as densely as its sharpest bend needs.
+
+    Args:
+        curve: positions [m].
+        settings: how dense.
+        turn: quaternions of what is carried, at the same parameter; None to keep the tool pointing down.
+
+    Raises:
+        PathRefused: it has no 3 dimensions, is too short or stands still on its way.
+    """
+    arc = measured(curve)
+    count = max(FEWEST_NODES, int(np.ceil(arc.total / settings.node_spacing)))
+    found = Route.sampled(curve, turn, arc, count)
+    for _ in range(FINEST):
+        if _spline_error(found) <= settings.path_tolerance / 10:
+            break
+        count *= 2
+        found = Route.sampled(curve, turn, arc, count)
+    return found
+
+
+def measured(curve: Curve) -> ArcLength:
+    """Return the arc length of a curve that an arm can follow.
 
     Raises:
         PathRefused: it has no 3 dimensions, is too short or stands still on its way.
@@ -130,83 +142,18 @@ def route(curve: Curve, settings: MotionSettings) -> Route:
         raise PathRefused(
             f"the curve stands still at s = {still:.3f} m: control points coincide there, move them apart"
         )
-    count = max(FEWEST_NODES, int(np.ceil(arc.total / settings.node_spacing)))
-    found = _sampled(curve, arc, count)
-    for _ in range(FINEST):
-        if _spline_error(found) <= settings.path_tolerance / 10:
-            break
-        count *= 2
-        found = _sampled(curve, arc, count)
-    return found
+    return arc
 
 
-def candidates(way: Route, settings: MotionSettings) -> list[Candidate]:
-    """Find every branch and tool roll along a route, with how well each does.
-
-    Raises:
-        PathRefused: the wrist cannot get there on any branch.
-    """
-    found = []
-    for roll in settings.rolls:
-        solutions = inverse(downward(way.positions, roll))
-        worst = int(np.argmax(solutions.excess[:, 0]))
-        if solutions.excess[worst, 0] > 0:
-            reason = explain_reach(
-                float(solutions.excess[worst, 0]), bool(solutions.beyond[worst]), float(way.lengths[worst])
-            )
-            raise PathRefused(f"{reason}, {way.remedy(worst)} towards the middle of the table")
-        for index, branch in enumerate(BRANCHES):
-            name = f"{branch}, roll {degrees(roll):.0f} deg"
-            found.append(_candidate(name, index, roll, solutions.joints[:, index]))
-    return found
-
-
-def usable(candidate: Candidate, settings: MotionSettings) -> bool:
-    """Tell whether a candidate keeps the joint limits, has no jump and stays away from singular poses."""
-    return candidate.excess <= 0 and candidate.jump < 0 and candidate.singular >= settings.least_singular
-
-
-def explain(way: Route, candidate: Candidate, settings: MotionSettings) -> str:
-    """Say why a candidate is not usable, where, and which control point to move."""
-    if candidate.excess > 0:
-        node, joint = candidate.worst
-        angle = candidate.joints[node, joint]
-        limit = UPPER[joint] if angle > UPPER[joint] else LOWER[joint]
-        return (
-            f"joint {joint + 1} needs {degrees(angle):.1f} deg, limit {degrees(limit):.1f}, "
-            f"{way.place(candidate.worst[0])} ({candidate.branch} comes nearest)"
-        )
-    if candidate.jump >= 0:
-        return f"the wrist would have to turn over {way.place(candidate.jump)} ({candidate.branch})"
-    return (
-        f"the arm is nearly singular (least singular value {candidate.singular:.3f}, limit "
-        f"{settings.least_singular:g}) {way.place(candidate.singular_at)} ({candidate.branch})"
-    )
-
-
-def within_limits(joints: Array) -> Array:
-    """Shift each joint of continuous configurations (n, 6) by whole turns, nearest to the middle of its range."""
-    middle = (joints.max(axis=0) + joints.min(axis=0)) / 2
-    turns = np.round(((LOWER + UPPER) / 2 - middle) / (2 * np.pi))
-    return np.asarray(joints + 2 * np.pi * turns, dtype=np.float64)
-
-
-def _candidate(name: str, index: int, roll: float, joints: Array) -> Candidate:
-    continuous = within_limits(np.unwrap(joints, axis=0))
-    over = np.maximum(continuous - UPPER, LOWER - continuous)
-    node, joint = np.unravel_index(int(np.argmax(over)), over.shape)
-    steps = np.abs(np.diff(continuous, axis=0)).max(axis=1)
-    jump = int(np.argmax(steps)) if steps.max() > LARGEST_STEP else -1
-    values = least_singular_value(continuous)
-    lowest = int(np.argmin(values))
-    return Candidate(
-        name, index, roll, continuous, float(over.max()), (int(node), int(joint)), float(values[lowest]), lowest, jump
-    )
-
-
-def _sampled(curve: Curve, arc: ArcLength, count: int) -> Route:
-    lengths = np.linspace(0.0, arc.total, count + 1)
-    return Route(curve, arc, lengths, curve(arc.parameters(lengths)))
+def matrices(quaternions: Array) -> Array:
+    """Return the rotation matrices (m, 3, 3) of unit quaternions (m, 4), w first."""
+    w, x, y, z = quaternions.T
+    rows = [
+        [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+        [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+        [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
+    ]
+    return np.moveaxis(np.array(rows), 2, 0)
 
 
 def _spline_error(found: Route) -> float:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from itertools import combinations
 from typing import Final
@@ -79,8 +79,32 @@ class CollisionModel:
             load: where the carried object is; None when there is none.
             gripper_open: whether the fingers are apart.
         """
-        supports = self._supports()
-        pairs = self._arm_pairs()
+        return min(self._rows(q, self._pairs(load), load, gripper_open, alone=False), key=lambda row: row.distance)
+
+    def profile(self, q: Array, *, load: Load | None = None, gripper_open: bool = False) -> list[Clearance]:
+        """Measure the same for each configuration by itself."""
+        return list(self._rows(q, self._pairs(load), load, gripper_open, alone=True))
+
+    def support(self, q: Array, load: Load) -> Clearance:
+        """Measure the least distance of the carried object to what it stands on at its start (0: they touch)."""
+        return min(self.supports(q, load), key=lambda row: row.distance)
+
+    def supports(self, q: Array, load: Load) -> list[Clearance]:
+        """Measure the same for each configuration by itself."""
+        pairs = [(self._object, other) for other in self._standing_on()]
+        return list(self._rows(q, pairs, load, False, alone=True))
+
+    def straddle(self, q: Array, load: Load) -> Clearance:
+        """Measure the least distance of the open fingers to the object that stands between them."""
+        fingers = [geom for geom, part in self._parts.items() if part.opens[1]]
+        pairs = [(finger, self._object) for finger in fingers]
+        return min(self._rows(q, pairs, load, True, alone=False), key=lambda row: row.distance)
+
+    def _id(self, name: str) -> int:
+        return int(self._model.geom(name).id)
+
+    def _pairs(self, load: Load | None) -> list[tuple[int, int]]:
+        supports, pairs = self._standing_on(), self._arm_pairs()
         if load is not None and load.grasp is not None:
             pairs += [(self._object, other) for other in self._obstacles if other not in supports]
             pairs += [(self._object, geom) for geom, part in self._parts.items() if part.link <= 4]
@@ -88,19 +112,7 @@ class CollisionModel:
             pairs += [
                 (geom, self._object) for geom, part in self._parts.items() if part.link >= 2 and not part.opens[1]
             ]
-        return self._least(q, pairs, load, gripper_open)
-
-    def support(self, q: Array, load: Load) -> Clearance:
-        """Measure the least distance of the carried object to what it stands on at its start (0: they touch)."""
-        return self._least(q, [(self._object, other) for other in self._supports()], load, False)
-
-    def straddle(self, q: Array, load: Load) -> Clearance:
-        """Measure the least distance of the open fingers to the object that stands between them."""
-        fingers = [geom for geom, part in self._parts.items() if part.opens[1]]
-        return self._least(q, [(finger, self._object) for finger in fingers], load, True)
-
-    def _id(self, name: str) -> int:
-        return int(self._model.geom(name).id)
+        return pairs
 
     def _arm_pairs(self) -> list[tuple[int, int]]:
         moving = [geom for geom, part in self._parts.items() if part.link >= 1 and part.name != _TURNS_IN_PLACE]
@@ -110,7 +122,7 @@ class CollisionModel:
                 pairs.append((one, two))
         return pairs
 
-    def _supports(self, touching: float = 0.003) -> set[int]:
+    def _standing_on(self, touching: float = 0.003) -> set[int]:
         carried = self.scene.carried
         if carried is None:
             return set()
@@ -131,7 +143,10 @@ class CollisionModel:
     def _distance(self, one: int, two: int, furthest: float) -> float:
         return float(mujoco.mj_geomDistance(self._model, self._data, one, two, furthest, None))
 
-    def _least(self, q: Array, pairs: Iterable[tuple[int, int]], load: Load | None, gripper_open: bool) -> Clearance:
+    def _rows(
+        self, q: Array, pairs: Iterable[tuple[int, int]], load: Load | None, gripper_open: bool, *, alone: bool
+    ) -> Iterator[Clearance]:
+        """Measure row by row; unless each stands `alone`, a row that is farther than one before says only that."""
         self._model.geom_pos[:] = self._closed
         if gripper_open:
             for geom, part in self._parts.items():
@@ -142,18 +157,29 @@ class CollisionModel:
             held = tool_pose(q) @ load.grasp
         pair = np.array(list(pairs), dtype=np.int64).reshape(-1, 2)
         reach = self._model.geom_rbound[pair].sum(axis=1)  # (pairs,) of the two bounding spheres
-        best = Clearance(FAR, 0, "", "")
+        furthest = FAR
         for index, row in enumerate(q):
             self._place(row, None if held is None else held[index], None if load is None else load.placed)
             centres = self._data.geom_xpos[pair]
             gap = np.linalg.norm(centres[:, 0] - centres[:, 1], axis=1) - reach
+            best = Clearance(furthest, index, "", "")
             for k in np.argsort(gap):
                 if gap[k] >= best.distance:
                     break
                 distance = self._distance(int(pair[k, 0]), int(pair[k, 1]), max(best.distance, 0.001))
                 if distance < best.distance:
                     best = Clearance(distance, index, *(self._names[int(g)] for g in pair[k]))
-        return best
+            furthest = FAR if alone else best.distance
+            yield best
+
+
+def grasp_of(scene: Scene, start: Array) -> Load | None:
+    """Return how the scene's object is held once it was grasped at configuration `start` (6,); None without one."""
+    if scene.carried is None:
+        return None
+    upright = np.eye(4)
+    upright[:3, 3] = scene.carried.position
+    return Load(grasp=np.linalg.inv(tool_pose(start)) @ upright)
 
 
 def _may_meet(a: Part, b: Part) -> bool:

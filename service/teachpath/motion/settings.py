@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Annotated
+from typing import Annotated, Literal
 
 from annotated_types import Ge, Gt, Le, Len
 
@@ -28,6 +28,8 @@ class MotionSettings:
     move_share: Annotated[float, Gt(0), Le(1)] = 0.5
     # [rad] turns of the gripper about the vertical to try; 0 closes the fingers along y
     rolls: Annotated[tuple[float, ...], Len(1)] = (0.0, 1.5707963267948966, 3.141592653589793, -1.5707963267948966)
+    # `fixed`: the gripper points down all the way; `demonstrated`: it turns as the carried object was turned
+    orientation: Literal["fixed", "demonstrated"] = "fixed"
     # least singular value of the Jacobian that still counts as away from singular poses
     least_singular: Annotated[float, Ge(0)] = 0.03
     # [m] the tool may be off the path between two nodes of its spline

@@ -14,12 +14,12 @@ from scipy.interpolate import BSpline, make_interp_spline
 from scipy.ndimage import uniform_filter1d
 
 from teachpath.errors import PathRefused
+from teachpath.motion.branches import Candidate, configurations
 from teachpath.motion.joints import JointPath, Limits
-from teachpath.motion.kinematics import downward, inverse
 from teachpath.motion.pace import fastest_pace
 from teachpath.motion.profile import squared_rates, times
 from teachpath.motion.puma560 import Array
-from teachpath.motion.route import Candidate, Route
+from teachpath.motion.route import Route
 from teachpath.motion.track import Track, paced
 
 # Shares of the speed, acceleration and jerk limits that a plan uses: the rest is for changing its rate. Speed has the
@@ -28,6 +28,7 @@ RESERVE: Final = (0.99, 0.93, 0.87)
 GUESSED: Final = (0.98, 0.90)  # shares of speed and acceleration limits that the guess uses
 PLACES: Final = 400  # of the curve in the guess, at least so many ...
 PER_SPAN: Final = 24  # ... and so many between two knots
+FEWER: Final = 150  # places of the estimate
 MARGIN: Final = 0.1  # s, that the guess is too short for want of jerk limits
 WINDOW: Final = 0.05  # s, of the filter that takes the jumps of acceleration out of the guess
 KNOT: Final = 0.05  # s, between two knots of the smooth guess
@@ -72,19 +73,17 @@ def timed(way: Route, candidate: Candidate, limits: Limits, *, rate: float) -> t
     return path, pace
 
 
-def configurations(way: Route, candidate: Candidate, u: Array) -> Array:
-    """Return the configurations (m, 6) of a candidate at parameters (m,) of its curve."""
-    poses = downward(way.curve(u), candidate.roll)
-    joints = np.unwrap(inverse(poses).joints[:, candidate.index], axis=0)
-    return np.asarray(joints + 2 * np.pi * np.round((candidate.joints[0] - joints[0]) / (2 * np.pi)), dtype=np.float64)
-
-
 def lower_bound(way: Route, candidate: Candidate, limits: Limits) -> float:
     """Return the shortest time [s] that speed and acceleration limits alone allow: no jerk limit, no reserve."""
     u = _places(way, 4 * PLACES)
     spline = make_interp_spline(u, configurations(way, candidate, u), k=5)
     free = np.full(len(u), np.inf)
     return float(times(u, squared_rates(u, spline(u, 1), spline(u, 2), limits.speed, limits.acceleration, free))[-1])
+
+
+def estimate(way: Route, candidate: Candidate, limits: Limits) -> float:
+    """Guess quickly how long the fastest motion takes [s]; `timed` finds out."""
+    return float(_profile(way, candidate, limits, FEWER)[1][-1] + MARGIN)
 
 
 def uses(setpoints: Array, limits: Limits, rate: float) -> tuple[Array, Array, Array]:
@@ -98,11 +97,7 @@ def uses(setpoints: Array, limits: Limits, rate: float) -> tuple[Array, Array, A
 
 def _guess(way: Route, candidate: Candidate, limits: Limits) -> BSpline[np.float64]:
     """Return the curve's parameter by nearly proportional time, from 0 to 1; it grows with the cube at both ends."""
-    u = _places(way, PLACES)
-    spline = make_interp_spline(u, configurations(way, candidate, u), k=5)
-    slow = np.min(limits.jerk / np.maximum(np.abs(spline(u, 3)), 1e-9), axis=1) ** (2 / 3)
-    speed, acceleration = GUESSED[0] * limits.speed, GUESSED[1] * limits.acceleration
-    reached = times(u, squared_rates(u, spline(u, 1), spline(u, 2), speed, acceleration, slow))
+    u, reached = _profile(way, candidate, limits, PLACES)
     duration = reached[-1] + MARGIN
     instants = np.linspace(0.0, duration, 50 * min(max(FEWEST, int(np.ceil(duration / KNOT))), MOST) + 1)
     smooth = np.interp(instants - MARGIN / 2, reached, u)
@@ -117,10 +112,22 @@ def _guess(way: Route, candidate: Candidate, limits: Limits) -> BSpline[np.float
     return BSpline(knots, coefficients, 5)
 
 
+def _profile(way: Route, candidate: Candidate, limits: Limits, places: int) -> tuple[Array, Array]:
+    """Return places of the curve and when each is reached [s], jerk being limited only where the curve itself bends."""
+    u = _places(way, places)
+    spline = make_interp_spline(u, configurations(way, candidate, u), k=5)
+    slow = np.min(limits.jerk / np.maximum(np.abs(spline(u, 3)), 1e-9), axis=1) ** (2 / 3)
+    speed, acceleration = GUESSED[0] * limits.speed, GUESSED[1] * limits.acceleration
+    reached = times(u, squared_rates(u, spline(u, 1), spline(u, 2), speed, acceleration, slow))
+    return u, reached
+
+
 def _places(way: Route, least: int) -> Array:
     knots = np.unique(way.curve.knots)
     lengths = way.arc.lengths(knots)
-    counts = np.maximum(PER_SPAN, np.ceil(least * np.diff(lengths) / lengths[-1])).astype(np.int64)
+    counts = np.maximum(min(PER_SPAN, 3 * least // len(knots)), np.ceil(least * np.diff(lengths) / lengths[-1])).astype(
+        np.int64
+    )
     spans = zip(knots[:-1], knots[1:], counts, strict=True)
     return np.unique(np.concatenate([np.linspace(a, b, count + 1) for a, b, count in spans]))
 

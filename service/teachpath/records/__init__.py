@@ -5,11 +5,21 @@ Conventions (ARCHITECTURE.md): metres, radians, seconds inside; integer nanoseco
 """
 
 from teachpath.records.arrays import Array, Quaternion, Vector
+from teachpath.records.assessments import Assessment, Failure, Remedy
 from teachpath.records.calibrations import Calibration, MeasuredCalibration, TaughtPoint
 from teachpath.records.control import Command, JournalEntry, Lease, LeaseRequest
 from teachpath.records.demonstrations import Account, Clock, Demonstration, Phase, Sample, Task, Trajectory
 from teachpath.records.learned import Cluster, Departure, Fit, Learned, LearnedPath, Score
-from teachpath.records.motion import Certificate, ExecutorStatus, Extreme, JointState, Plan, Scene, Setpoint, Shape
+from teachpath.records.motion import (
+    Certificate,
+    ExecutorStatus,
+    Extreme,
+    JointState,
+    Plan,
+    Scene,
+    Setpoint,
+    Shape,
+)
 from teachpath.records.versions import MAIN, Difference, Moved, Version
 from teachpath.records.work import Job, JobState
 
@@ -17,6 +27,7 @@ __all__ = [
     "MAIN",
     "Account",
     "Array",
+    "Assessment",
     "Calibration",
     "Certificate",
     "Clock",
@@ -27,6 +38,7 @@ __all__ = [
     "Difference",
     "ExecutorStatus",
     "Extreme",
+    "Failure",
     "Fit",
     "Job",
     "JobState",
@@ -41,6 +53,7 @@ __all__ = [
     "Phase",
     "Plan",
     "Quaternion",
+    "Remedy",
     "Sample",
     "Scene",
     "Score",

@@ -25,6 +25,11 @@ def sit_down(news: Queue[tuple[str, float, str]], cancel: Event) -> None:
     """Prepare this process: it ignores Ctrl-C, which its parent handles, and never outlives its parent."""
     global _news, _cancel
     _news, _cancel = news, cancel
+    live_with_parent()
+
+
+def live_with_parent() -> None:
+    """Ignore Ctrl-C, which the parent handles, and never outlive it."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     threading.Thread(target=_leave_with_parent, name="parent", daemon=True).start()
 

@@ -8,11 +8,12 @@ import ruckig
 
 import teachpath.motion
 from teachpath.motion import MotionSettings
+from teachpath.motion.branches import candidates, usable
 from teachpath.motion.governor import Governor
 from teachpath.motion.joints import ARM
 from teachpath.motion.kinematics import tool_pose
 from teachpath.motion.moves import straight
-from teachpath.motion.route import candidates, route, usable
+from teachpath.motion.route import route
 from teachpath.motion.timing import RESERVE, timed, uses
 from teachpath.motion.track import Track, paced
 from teachpath.nurbs import Curve

@@ -3,10 +3,10 @@ import pytest
 
 from teachpath.errors import PathRefused
 from teachpath.motion import MotionSettings, paper_scene
+from teachpath.motion.branches import within_limits
 from teachpath.motion.joints import ARM
 from teachpath.motion.kinematics import downward, inverse, tool_pose
 from teachpath.motion.moves import STEP, approach, left_behind, line, retreat, straight
-from teachpath.motion.route import within_limits
 from teachpath.motion.scene import CollisionModel
 from teachpath.motion.timing import uses
 from teachpath.records import Scene, Shape

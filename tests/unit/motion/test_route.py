@@ -5,9 +5,10 @@ import pytest
 
 from teachpath.errors import UnusableInput, UnusableSettings
 from teachpath.motion import MotionSettings, paper_scene, plan
+from teachpath.motion.branches import candidates, within_limits
 from teachpath.motion.kinematics import tool_pose
 from teachpath.motion.puma560 import LOWER, UPPER
-from teachpath.motion.route import ArcLength, candidates, route, within_limits
+from teachpath.motion.route import ArcLength, route
 from teachpath.records import Scene, Shape
 from tests.unit.motion.ways import MIDDLE, clamped, way
 
@@ -39,9 +40,9 @@ def test_every_candidate_is_continuous_and_on_the_path() -> None:
     assert len(every) == 8 * len(SETTINGS.rolls)
     for candidate in every:
         np.testing.assert_allclose(tool_pose(candidate.joints)[:, :3, 3], found.positions, atol=1e-9)
-        assert (candidate.jump >= 0) == (np.abs(np.diff(candidate.joints, axis=0)).max() > 0.35)
+        assert candidate.arm.jumps.any() == (np.abs(np.diff(candidate.joints, axis=0)).max() > 0.35)
         inside = np.all((candidate.joints >= LOWER) & (candidate.joints <= UPPER))
-        assert inside == (candidate.excess <= 0)
+        assert inside == (candidate.over.max() <= 0)
 
 
 def test_whole_turns_bring_a_joint_back_into_its_range() -> None:

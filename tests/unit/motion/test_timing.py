@@ -2,12 +2,13 @@ import numpy as np
 import pytest
 
 from teachpath.motion import MotionSettings
+from teachpath.motion.branches import Candidate, candidates, usable
 from teachpath.motion.joints import ARM, JointPath, Limits
 from teachpath.motion.kinematics import tool_pose
 from teachpath.motion.pace import fastest_pace
 from teachpath.motion.profile import squared_rates, times
 from teachpath.motion.puma560 import ACCELERATION, JERK, SPEED
-from teachpath.motion.route import Candidate, Route, candidates, route, usable
+from teachpath.motion.route import Route, route
 from teachpath.motion.timing import RESERVE, lower_bound, timed, uses
 from teachpath.motion.track import Track, paced
 from teachpath.nurbs import Curve
@@ -19,7 +20,7 @@ RATE = 250.0
 def on_a_branch(curve: Curve) -> tuple[Route, Candidate]:
     settings = MotionSettings()
     found = route(curve, settings)
-    return found, max((c for c in candidates(found, settings) if usable(c, settings)), key=lambda c: c.singular)
+    return found, max((c for c in candidates(found, settings) if usable(c, settings)), key=lambda c: c.conditioned)
 
 
 def fastest(curve: Curve, limits: Limits = ARM) -> tuple[Track, float]:

@@ -1,0 +1,39 @@
+"""Quick looks at a curve that is being edited: could the arm follow it, and if not, what should be moved?"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from fastapi import APIRouter
+from pydantic import BaseModel, Field
+
+from teachpath.api.curves import CurveBody
+from teachpath.api.parts import Parts
+from teachpath.io.documents import to_document
+
+
+class Edited(BaseModel):
+    """A curve that is being edited."""
+
+    curve: CurveBody | None = Field(None, description="left out: that of the version")
+    version: int | None = Field(None, description="that was edited; without it the newest on the main branch")
+
+
+def assessments_router(parts: Parts) -> APIRouter:
+    """Return the route of assessments."""
+    router = APIRouter(tags=["curves"])
+    store = parts.store
+
+    @router.post("/paths/{path}/assessment")
+    def assess_path(path: str, edited: Edited) -> dict[str, Any]:
+        """Look quickly at a curve: reach, joint limits and clearance along it, what fails first and what to move.
+
+        Nothing is stored and nothing certified: that is for a plan. When a newer curve of the same path comes while
+        one still waits, the older one is refused with 409.
+        """
+        stored = store.path(path) if edited.version is None else store.versions.get(path, edited.version)[1]
+        scene = parts.settings.scene(store.task(store.run(stored.run).task).scene)
+        curve = edited.curve.curve() if edited.curve else stored.curve
+        return to_document(parts.assessor.assess(stored, scene, parts.settings.motion, curve=curve))
+
+    return router

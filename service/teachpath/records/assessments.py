@@ -1,0 +1,63 @@
+"""What a quick look at a path says."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from teachpath.records.arrays import Array, Vector
+
+
+@dataclass(frozen=True, slots=True)
+class Remedy:
+    """What to change on a path: a control point (from 0), the move proposed for it [m], and both in a sentence."""
+
+    control_point: int
+    move: Vector
+    sentence: str
+
+
+@dataclass(frozen=True, slots=True)
+class Failure:
+    """Where a path fails: the first sample and the stretch [m], why, and what to change."""
+
+    fault: str  # reach, limit, turn, singular, collision, start or end
+    s: float
+    stretch: tuple[float, float]
+    position: Vector
+    reason: str
+    remedy: Remedy
+
+
+@dataclass(frozen=True, eq=False)
+class Assessment:
+    """A quick look at a path that is being edited: whether the arm could follow it. Only a plan certifies.
+
+    Attributes:
+        lengths: (n,) arc length of the samples [m].
+        parameters: (n,) of the curve there.
+        positions: (n, 3) [m].
+        faults: (n,) what is wrong at each sample, empty when nothing.
+        reach: (n,) how far the wrist is within the arm's reach [m]; negative when out of it.
+        limits: (n,) how far the joints are from their nearest limit [rad]; negative beyond.
+        singular: (n,) least singular value of the Jacobian.
+        clearance: (n,) of arm and carried object to scene and self [m]; at most 0.5 is looked for.
+        nearest: (n,) who comes nearest to whom, in words.
+        branch: of the arm, in words.
+        duration: at full speed, estimated [s]; None when the path fails.
+        failure: where it fails first; None when nothing was found.
+        sentence: all of this for the operator.
+    """
+
+    lengths: Array
+    parameters: Array
+    positions: Array
+    faults: tuple[str, ...]
+    reach: Array
+    limits: Array
+    singular: Array
+    clearance: Array
+    nearest: tuple[str, ...]
+    branch: str
+    duration: float | None
+    failure: Failure | None
+    sentence: str
