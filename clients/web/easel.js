@@ -5,6 +5,7 @@
 // dirty()          ask for one draw; nothing is drawn otherwise
 // ghost(name, points, {color, opacity, dashed, width})   draw a line or replace it; points null takes it away
 // project(point)   [x, y] in CSS pixels of the window, or null when it is behind the camera
+// projector()      the same for many points of one moment
 // unproject(x, y, {through, normal})   the point under a pixel on a plane; normal defaults to the view's direction
 // ray(x, y)        {origin, direction} under a pixel
 // capture(hand)    hand = {down(event), move(event), up(event)}: while down() has returned true the camera stays;
@@ -54,10 +55,18 @@ export class Easel {
   }
 
   project(point) {
-    const seen = this.#toWorld(point).project(this.viewer.camera);
-    if (seen.z > 1) return null;
+    return this.projector()(point);
+  }
+
+  projector() {
     const box = this.element.getBoundingClientRect();
-    return [box.left + ((seen.x + 1) / 2) * box.width, box.top + ((1 - seen.y) / 2) * box.height];
+    const { scene, camera } = this.viewer;
+    const place = camera.matrixWorldInverse.clone().premultiply(camera.projectionMatrix).multiply(scene.matrixWorld);
+    const at = new this.THREE.Vector3();
+    return (point) => {
+      at.set(...point).applyMatrix4(place);
+      return at.z > 1 ? null : [box.left + ((at.x + 1) / 2) * box.width, box.top + ((1 - at.y) / 2) * box.height];
+    };
   }
 
   ray(x, y) {

@@ -48,9 +48,9 @@ export function sentence(words) {
   return words ? words[0].toUpperCase() + words.slice(1) : "";
 }
 
-// Names with their values; a pair without a value is left out.
+// Names with their values; a pair without a value is left out, and what is no pair.
 export function facts(pairs) {
-  const shown = pairs.filter(([, value]) => value);
+  const shown = pairs.filter((pair) => pair && pair[1]);
   return element("dl", {}, shown.map(([name, value]) => [element("dt", {}, name), element("dd", {}, value)]));
 }
 

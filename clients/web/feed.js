@@ -1,5 +1,6 @@
 // Keeps the store true: hears of changes over the events' WebSocket and reads what has changed.
 import { at, get, socketAddress } from "./api.js";
+import { runOf } from "./store.js";
 
 const SHORTEST = 250; // [ms] first pause before connecting again
 const LONGEST = 5000;
@@ -28,8 +29,9 @@ export class Feed {
       if (this.connection !== "live" && !document.hidden) this.readAll();
     }, ASK);
     this.store.subscribe((state, changed) => {
+      if (changed.has("runs") || changed.has("run")) this.#readNewest(state);
       if (!changed.has("task")) return;
-      this.store.set({ demonstrations: null, runs: null, jobs: null, run: "", path: "", focus: null });
+      this.store.set({ demonstrations: null, runs: null, jobs: null, newest: {}, run: "", path: "", focus: null });
       this.read(...OF_TASK);
     });
   }
@@ -66,6 +68,13 @@ export class Feed {
     } catch {
       // the connection's state says so already, and it is read again when it is back
     }
+  }
+
+  // Paths may have been edited since they were learned.
+  async #readNewest(state) {
+    const paths = runOf(state)?.learned.paths ?? [];
+    const read = await Promise.all(paths.map((path) => get(at("paths", path.id)).catch(() => path)));
+    this.store.set({ newest: { ...this.store.state.newest, ...Object.fromEntries(read.map((path) => [path.id, path])) } });
   }
 
   // A task that is gone, or none, gives way to the newest.

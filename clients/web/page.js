@@ -5,18 +5,20 @@
 //             mount(element, context)   called once; element is the panel's own, empty
 //             update(state, changed)    called after every change of the state; changed is the Set of names (store.js)
 //             show(), hide() }          optional: its tab was chosen, or another one
-// context = { store, feed, view, easel, messages,
+// context = { store, feed, view, gallery, easel, messages,
 //             attempt(order)            do an order; an error becomes a sentence in the message line
 //             open(id) }                choose another tab
 // A panel reads context.store.state, changes it with context.store.set(), and speaks REST through api.js.
 import { at, post } from "./api.js";
 import { Feed } from "./feed.js";
+import { Gallery } from "./gallery.js";
 import { header } from "./header.js";
 import { Messages } from "./messages.js";
 import { panel as demonstrate } from "./panels/demonstrate.js";
 import { panel as edit } from "./panels/edit.js";
 import { panel as run } from "./panels/run.js";
 import { panel as ways } from "./panels/ways.js";
+import { point } from "./pointing.js";
 import { Store, moving } from "./store.js";
 import { Tabs } from "./tabs.js";
 import { View } from "./view.js";
@@ -29,9 +31,11 @@ const messages = new Messages(byId("message"));
 const view = new View(byId("view"), {
   connected: (state, seconds) => connected("connection", state, seconds),
   ready() {
-    root.dataset.scene = "ready";
+    if (gallery.settled) root.dataset.scene = "ready";
   },
 });
+const gallery = new Gallery(view, store);
+point(view, store, gallery);
 
 // The page is live when both of its WebSockets are; either may come back first.
 function connected(which, state, seconds = 0) {
@@ -53,6 +57,7 @@ const context = {
   store,
   feed,
   view,
+  gallery,
   easel: view.easel,
   messages,
   attempt: (order) => messages.attempt(order),
@@ -63,7 +68,7 @@ for (const panel of panels) panel.mount(tabs.add(panel.id, panel.title), context
 header(context, { task: byId("task"), stop: byId("stop"), control: byId("control") });
 store.subscribe((state, changed) => {
   for (const panel of panels) panel.update(state, changed);
-  if (changed.has("focus")) view.highlight(state.focus?.kind, state.focus?.id);
+  gallery.update(state, changed);
 });
 for (const panel of panels) panel.update(store.state, new Set(Object.keys(store.state)));
 

@@ -7,8 +7,11 @@
 // trackers     [{name, announced}]                            coach          {task: sentence}
 // station      {version, notes} or null                       executor       status or null when it is silent
 // lease        who holds control, or null                     run            id of the run that is looked at
-// path         id of the learned path that is looked at       focus          {kind, id} under the pointer, or null
 // plan         certified plan of the path that is looked at, or null
+// path         id of the learned path that is looked at       focus          {kind, id} under the pointer, or null;
+// courses      how many courses of demonstrations have come                  kind is demonstrations or paths
+// newest       {path id: its newest version}, of the run
+// prospects    {path: what lies before it, see panels/prospects.js}
 // Lists are null until they have been read, and stay as they were while the service is away.
 export const EMPTY = Object.freeze({
   connection: "connecting",
@@ -28,6 +31,9 @@ export const EMPTY = Object.freeze({
   path: "",
   plan: null,
   focus: null,
+  courses: 0,
+  newest: {},
+  prospects: {},
 });
 
 const RESTING = ["idle", "ended", "faulted"];
@@ -67,9 +73,12 @@ export class Store {
 // The run that is looked at: the chosen one, else the newest; null while there is none.
 export const runOf = (state) => state.runs?.find((run) => run.id === state.run) ?? state.runs?.[0] ?? null;
 
+// The learned paths of the run that is looked at, each in its newest version.
+export const pathsOf = (state) => (runOf(state)?.learned.paths ?? []).map((path) => state.newest[path.id] ?? path);
+
 // The learned path that is looked at: the chosen one, else the first of the run; null while there is none.
 export function pathOf(state) {
-  const paths = runOf(state)?.learned.paths ?? [];
+  const paths = pathsOf(state);
   return paths.find((path) => path.id === state.path) ?? paths[0] ?? null;
 }
 

@@ -7,14 +7,17 @@ import { dress } from "./stage.js";
 
 const SHORTEST = 250; // [ms] first pause before connecting again
 const LONGEST = 5000;
+const SERVED = ["robot", "object", "hand"]; // what the service draws; the rest is the page's own
+const LAYERS = ["demonstrations", "paths", "departures", "spread", "hand"];
 
 export class View {
   constructor(element, { connected, ready }) {
     this.viewer = new MeshCat.Viewer(element);
-    this.own = new Set(Object.keys(this.viewer.scene_tree.children)); // what the server does not own
+    this.own = new Set(Object.keys(this.viewer.scene_tree.children)); // meshcat's own
     this.connected = connected;
     this.ready = ready;
-    this.hidden = new Set();
+    this.hidden = new Set(["spread"]);
+    this.picked = null;
     this.pause = SHORTEST;
     this.draws = 0;
     this.drawnAt = 0; // [ms]
@@ -58,7 +61,7 @@ export class View {
   show(layer, visible) {
     if (visible) this.hidden.delete(layer);
     else this.hidden.add(layer);
-    this.#hide();
+    this.refresh();
   }
 
   // Draw no more often than every so many milliseconds, and shadows as they are: where the machine cannot draw and sample
@@ -73,19 +76,36 @@ export class View {
     this.stage.look();
   }
 
-  // Draw one demonstration or path in full and the others pale: kind "demonstrations" or "paths"; null: all in full.
-  highlight(kind, id) {
-    this.highlighted = kind && id ? { kind, id } : null;
-    this.#emphasize();
+  isShown(layer) {
+    return !this.hidden.has(layer);
+  }
+
+  // Names like "paths/ID" that are drawn in full while the others are pale; null: all are.
+  set vivid(names) {
+    this.picked = names;
+    this.refresh();
+  }
+
+  // Let layers and paleness hold for what has just been drawn, and draw.
+  refresh() {
+    for (const layer of LAYERS) {
+      const node = this.viewer.scene_tree.children[layer];
+      if (node) node.object.visible = !this.hidden.has(layer);
+    }
+    for (const kind of ["demonstrations", "paths", "departures", "spread"]) {
+      for (const [id, node] of Object.entries(this.viewer.scene_tree.children[kind]?.children ?? {})) {
+        this.#fade(node.children["<object>"]?.object.material, this.picked && !this.picked.has(`${kind}/${id}`));
+      }
+    }
     this.viewer.set_dirty();
   }
 
-  // Points [[x, y, z], ...] of a demonstration as it is drawn [m], world; null when it is not drawn.
-  pointsOf(demonstration) {
-    const line = this.viewer.scene_tree.children.demonstrations?.children[demonstration]?.children["<object>"];
-    const array = line?.object.geometry?.attributes.position?.array;
-    if (!array) return null;
-    return Array.from({ length: array.length / 3 }, (_, i) => [array[3 * i], array[3 * i + 1], array[3 * i + 2]]);
+  #fade(material, pale) {
+    if (!material) return;
+    material.userData.opacity ??= material.opacity;
+    material.opacity = material.userData.opacity * (pale ? 0.16 : 1);
+    material.transparent = material.opacity < 1 || !material.depthTest;
+    material.depthWrite = material.opacity === 1;
   }
 
   // Paths that hold a drawn object, e.g. "/robot/link2/upper".
@@ -115,37 +135,12 @@ export class View {
       this.viewer.handle_command_bytearray(new Uint8Array(data, at + 4, length));
       at += 4 + length;
     }
-    this.#hide();
-    this.#emphasize();
-    this.drawn?.();
-  }
-
-  #emphasize() {
-    for (const kind of ["demonstrations", "paths"]) {
-      for (const [id, node] of Object.entries(this.viewer.scene_tree.children[kind]?.children ?? {})) {
-        const material = node.children["<object>"]?.object.material;
-        if (!material) continue;
-        material.userData.opacity ??= material.opacity;
-        const here = this.highlighted;
-        const pale = here && here.kind === kind && here.id !== id;
-        material.opacity = pale ? 0.12 : material.userData.opacity;
-        material.transparent = material.opacity < 1;
-        material.depthWrite = material.opacity === 1;
-      }
-    }
+    this.viewer.set_dirty();
   }
 
   // Only what exists: meshcat makes an empty group of every path it is asked for.
   #clear() {
-    for (const name of Object.keys(this.viewer.scene_tree.children)) if (!this.own.has(name)) this.viewer.delete_path([name]);
-  }
-
-  #hide() {
-    for (const layer of ["demonstrations", "paths", "hand"]) {
-      const node = this.viewer.scene_tree.children[layer];
-      if (node) node.object.visible = !this.hidden.has(layer);
-    }
-    this.viewer.set_dirty();
+    for (const name of SERVED) if (this.viewer.scene_tree.children[name]) this.viewer.delete_path([name]);
   }
 
   #fitTo(element) {

@@ -26,7 +26,7 @@ from teachpath.learning import LearningSettings
 from teachpath.motion import drawing
 from teachpath.offline.lock import StationLock
 from teachpath.recording import to_world
-from teachpath.records import Demonstration, Job, Learned, LearnedPath, Plan, Trajectory, Vector
+from teachpath.records import Demonstration, Job, Learned, Plan, Trajectory, Vector
 from teachpath.workers import desk
 from teachpath.workers.assessor import Assessor
 from teachpath.workers.calibrations import Calibrations
@@ -81,11 +81,11 @@ class Station:
             settings.recording,
             scene=settings.scene,
             calibration=self.calibrations.get,
-            recorded=self._show_demonstration,
-            changed=lambda demonstration: self._show_task(demonstration.task),
+            recorded=lambda demonstration, trajectory: self._turn_to(demonstration.task),
+            changed=lambda demonstration: self._turn_to(demonstration.task),
         )
         self.coach = Coach(self.store.demonstrations, self.trajectory, settings.learning)
-        self.jobs = Jobs(self.bus, self.keys, self.store, settings.jobs, self._kinds(), finished=self._show_outcome)
+        self.jobs = Jobs(self.bus, self.keys, self.store, settings.jobs, self._kinds())
         self.assessor = Assessor()
         self.gate = TrackerGate(self.bus, self.keys, self.recorder)
         self.joints = JointFeed(self.bus, self.keys, robot=settings.bus.robot)
@@ -118,8 +118,10 @@ class Station:
             for process in self.processes:
                 process.start()
             self.jobs.start()
-            tasks = self.store.tasks()
-            self._show_task(tasks[-1].name if tasks else "")
+            if tasks := self.store.tasks():
+                self._turn_to(tasks[-1].name)
+            else:
+                self.preview.show_object(self.settings.scenes[0].carried)
         except BaseException:
             self.__exit__(None, None, None)
             raise
@@ -196,8 +198,7 @@ class Station:
             self.joints,
             self.trajectory,
             self.health,
-            self._show_demonstration,
-            self._show_edited,
+            lambda demonstration, trajectory: self._turn_to(demonstration.task),
         )
 
     def _kinds(self) -> dict[str, Kind]:
@@ -243,39 +244,8 @@ class Station:
         x, y, z = to_world(calibration, np.array(position))
         return float(x), float(y), float(z)
 
-    def _show_task(self, task: str) -> None:
-        if not task:
-            self.preview.show_scene(self.settings.scenes[0])
-            return
+    def _turn_to(self, task: str) -> None:
+        """Let coach and preview turn to a task: its demonstrations have changed."""
         self._shown = task
         self.coach.consider(task)
-        runs = self.store.runs(task)
-        self.preview.show_task(
-            self.settings.scene(self.store.task(task).scene),
-            [(d.id, self.trajectory(d).positions) for d in self._kept(task)],
-            self._newest(runs[0].learned) if runs else (),
-        )
-
-    def _newest(self, learned: Learned) -> list[LearnedPath]:
-        return [self.store.path(path.id) for path in learned.paths]
-
-    def _show_edited(self, path: str) -> None:
-        run = self.store.run(self.store.path(path).run)
-        if run.task == self._shown and run.id == self.store.runs(run.task)[0].id:
-            self.preview.show_learned(self._newest(run.learned))
-
-    def _kept(self, task: str) -> list[Demonstration]:
-        return [d for d in self.store.demonstrations(task) if not d.discarded_ns]
-
-    def _show_demonstration(self, demonstration: Demonstration, trajectory: Trajectory) -> None:
-        if self._shown != demonstration.task:
-            self._show_task(demonstration.task)
-        else:
-            self.preview.show_demonstration(demonstration.id, trajectory.positions)
-            self.coach.consider(demonstration.task)
-
-    def _show_outcome(self, job: Job) -> None:
-        if job.kind in ("learn", "recut") and job.outcome:
-            self._show_task(job.task)
-        elif job.kind == "plan" and job.outcome:
-            self.preview.highlight(self.store.plan(job.outcome).path)
+        self.preview.show_object(self.settings.scene(self.store.task(task).scene).carried)

@@ -146,3 +146,13 @@ def test_what_is_not_usable_is_not_learned_from(desk: Desk) -> None:
     desk.send("PATCH", f"/api/v1/demonstrations/{only['id']}", json={"mark": "bad"})
     job = desk.ended(desk.post("/tasks/unusable/jobs", {"kind": "learn"}))
     assert (job["state"], "no usable demonstrations" in job["message"]) == ("failed", True)
+
+
+def test_a_trajectory_is_thinned_to_what_is_asked_for(desk: Desk) -> None:
+    (made,) = desk.import_("thinned", csv(120, step=0.002)).json()
+    address = f"/demonstrations/{made['id']}/trajectory"
+    whole, few = desk.get(address).json(), desk.get(address, params={"most": 10}).json()
+    assert len(few["times"]) == len(few["positions"]) == 10
+    assert (few["times"][0], few["times"][-1]) == (whole["times"][0], whole["times"][-1])
+    assert all(position in whole["positions"] for position in few["positions"])
+    refused(desk.get(address, params={"most": 1}), 422, "query.most")

@@ -1,4 +1,4 @@
-"""The page and its 3-D view in headless Chromium, on a real server: what is shown, what moves, what comes back."""
+"""The page and its 3-D view in headless Chromium: what is shown, what moves, what comes back, what is refused."""
 
 import io
 import socket
@@ -20,15 +20,17 @@ from teachpath.api.events import events_router
 from teachpath.api.view import view_router
 from teachpath.io import wire
 from teachpath.io.bus import MemoryBus
+from teachpath.io.documents import to_document
 from teachpath.motion.drawing import drawing
 from teachpath.motion.kinematics import link_frames
 from teachpath.motion.scenes import paper_scene
 from teachpath.motion.settings import MotionSettings
 from teachpath.nurbs import Curve
-from teachpath.records import Fit, JointState, LearnedPath
+from teachpath.records import Cluster, Fit, JointState, Learned, LearnedPath, Task, Trajectory
 from teachpath.workers.news import News
 from teachpath.workers.preview import Preview
 from teachpath_proto.keys import Keys
+from tests.contract.rows import demonstration
 
 pytestmark = pytest.mark.system
 
@@ -50,17 +52,13 @@ class Server:
         self.preview = Preview(
             self.bus, KEYS, drawing(), robot=ROBOT, home=HOME, to_world=lambda tracker, position: position
         )
-        paths = [way(cluster) for cluster in (1, 2, 3)]
-        u = np.linspace(0, 1, 100)
-        shown = [(f"d{i}", paths[i % 3].curve(u)) for i in range(demonstrations)]
-        self.preview.show_task(paper_scene(), shown, paths)
+        self.preview.show_object(paper_scene().carried)
         self.preview.start()
         app = FastAPI()
         app.include_router(view_router(self.preview))
         app.include_router(events_router(News()))
-        for resource in ("tasks", "executions"):
-            app.add_api_route(f"/api/v1/{resource}", lambda: [])
-        app.add_api_route("/api/v1/health", lambda: {})
+        for resource, document in documents(demonstrations).items():
+            app.add_api_route(f"/api/v1/{resource}", lambda document=document: document)
         config = uvicorn.Config(app, host="127.0.0.1", port=self.port, log_level="warning", ws="websockets-sansio")
         self._server = uvicorn.Server(config)
         self._thread = threading.Thread(target=self._server.run, daemon=True)
@@ -81,6 +79,31 @@ class Server:
         zero = np.zeros(6)
         state = JointState(1, 1, q, zero, zero, 0.0, 0, False, True, at, (1.0, 0.0, 0.0, 0.0))
         self.bus.publish(KEYS.state(ROBOT), wire.encode_state(state))
+
+
+def documents(count: int) -> dict[str, Any]:
+    """What the REST API says of a task with `count` demonstrations and three ways, without an id in the address."""
+    shown = [demonstration(f"d{i}", number=i + 1) for i in range(count)]
+    u = np.linspace(0, 1, 100)
+    courses = {d.id: Trajectory(u, way(i % 3 + 1).curve(u)) for i, d in enumerate(shown)}
+    found = Learned(
+        mode="default",
+        demonstrations=tuple(courses),
+        linkage=np.zeros((0, 4)),
+        threshold=0.1,
+        clusters=tuple(Cluster(k, (), ()) for k in (1, 2, 3)),
+        paths=tuple(way(k) for k in (1, 2, 3)),
+    )
+    return {
+        "tasks": [to_document(Task("t", "paper", "identity", 1))],
+        "scenes": [to_document(paper_scene())],
+        "executions": [],
+        **{f"paths/{path.id}": to_document(path) for path in found.paths},
+        "tasks/t/jobs": [],
+        "tasks/t/demonstrations": [to_document(d) for d in shown],
+        "tasks/t/runs": [{"id": "run", "task": "t", "created_ns": 1, "learned": to_document(found)}],
+        **{f"demonstrations/{key}/trajectory": to_document(course) for key, course in courses.items()},
+    }
 
 
 def way(cluster: int) -> LearnedPath:
@@ -147,7 +170,6 @@ def test_shows_arm_obstacles_paths_and_demonstrations_with_a_clean_console(visit
     visit.page.wait_for_timeout(500)  # the panels have asked
     assert visit.said == []
     assert visit.page.locator("#connection").text_content() == "Connected"
-    assert "teachpath-client synthetic" in (visit.page.locator("#demonstrations").text_content() or "")
 
 
 def test_the_arm_and_what_it_carries_move_and_then_the_page_rests(visit: Visit, server: Server) -> None:
@@ -158,7 +180,14 @@ def test_the_arm_and_what_it_carries_move_and_then_the_page_rests(visit: Visit, 
         visit.page.wait_for_timeout(20)
     visit.wait(lambda: np.allclose(visit.place("/robot/link6"), link_frames(goal)[6], atol=1e-4))
     assert np.allclose(visit.place("/object")[:3, 3], (0.4, 0.1, 0.6), atol=1e-4)
-    visit.page.wait_for_timeout(300)
+    counts = [-1]
+
+    def rests() -> bool:
+        counts.append(visit.page.evaluate("teachpath.draws"))
+        visit.page.wait_for_timeout(500)
+        return counts[-1] == counts[-2]
+
+    visit.wait(rests)
     drawn = visit.page.evaluate("teachpath.draws")
     for _ in range(20):
         server.publish_state(goal, (0.4, 0.1, 0.6))
@@ -176,8 +205,8 @@ def test_comes_back_after_a_restart_and_shows_the_truth(visit: Visit, server: Se
 
 
 def test_what_is_cleared_disappears_and_layers_can_be_hidden(visit: Visit, server: Server) -> None:
-    server.preview.clear("/demonstrations")
-    visit.wait(lambda: not any(p.startswith("/demonstrations") for p in visit.paths()))
+    server.preview.clear("/object")
+    visit.wait(lambda: not any(p.startswith("/object") for p in visit.paths()))
     before = visit.page.screenshot()
     visit.page.get_by_label("learned paths").uncheck()
     visit.wait(lambda: visit.page.screenshot() != before)
@@ -202,7 +231,7 @@ def test_a_page_that_talks_nonsense_is_closed_and_the_others_stay(server: Server
         bad.send(b"\xff")
         wait_until(lambda: bad.state.name == "CLOSED")
         good.send("1")
-        server.preview.clear("/paths")
+        server.preview.clear("/object")
         assert isinstance(good.recv(timeout=5), bytes)
 
 

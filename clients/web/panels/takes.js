@@ -1,22 +1,34 @@
 // The demonstrations of the task: number, path in small, verdict with its reasons, duration, losses.
-import { at, post } from "../api.js";
+import { at, patch, post } from "../api.js";
 import { command, element, facts, hint, number, plural, replace, sentence } from "../elements.js";
+import { runOf } from "../store.js";
+import { flattening, thumbnail } from "../thumbnails.js";
+import { markFocus, pointAt, wayClass } from "./cards.js";
 
 const LISTED = 60; // newest demonstrations
 
-export function takes(place, { store, attempt }) {
+export function takes(place, { store, gallery, attempt }) {
+  pointAt(place, store);
   place.addEventListener("click", (event) => {
-    const { verb } = event.target.closest("button")?.dataset ?? {};
+    const { verb, discard, restore } = event.target.closest("button")?.dataset ?? {};
+    if (discard || restore) attempt(() => patch(at("demonstrations", discard ?? restore), { discarded: Boolean(discard) }));
     if (verb) attempt(() => post(at("tasks", store.state.task, "recording", verb)));
   });
   return {
     update(state, changed) {
-      if (["demonstrations", "coach", "task", "tasks"].some((name) => changed.has(name))) replace(place, content(state));
+      if (["demonstrations", "coach", "task", "tasks", "runs", "run", "courses"].some((name) => changed.has(name))) {
+        const list = place.querySelector(".takes");
+        const scrolled = list?.scrollTop ?? 0;
+        replace(place, content(state, gallery));
+        place.querySelector(".takes")?.scrollTo(0, scrolled);
+      }
+      if (changed.has("focus")) markFocus(place, state.focus);
     },
   };
 }
 
-function content({ task, tasks, demonstrations, coach }) {
+function content(state, gallery) {
+  const { task, tasks, demonstrations, coach } = state;
   if (demonstrations === null && tasks === null) return hint("The demonstrations cannot be read yet: the service does not answer.");
   if (!demonstrations?.length) {
     return [hint("No demonstrations yet. Show the task with a tracker, or let a synthetic hand do it:"), command(`teachpath-client synthetic --task ${task || "demo"} --scene paper`)];
@@ -24,6 +36,10 @@ function content({ task, tasks, demonstrations, coach }) {
   const kept = demonstrations.filter((d) => !d.discarded_ns);
   const count = (verdict) => kept.filter((d) => d.verdict === verdict).length;
   const mean = kept.reduce((sum, d) => sum + d.duration, 0) / kept.length;
+  const ways = new Map((runOf(state)?.learned.clusters ?? []).flatMap((cluster) => cluster.members.map((id) => [id, cluster.index])));
+  const courses = new Map(demonstrations.map((d) => [d.id, gallery.course(d.id)]).filter(([, course]) => course?.length > 1));
+  const flat = flattening([...courses.values()]);
+  const small = (d) => courses.has(d.id) && thumbnail(courses.get(d.id), flat, ways.has(d.id) ? wayClass(ways.get(d.id)) : "");
   return [
     element("p", { class: "count" }, element("strong", {}, String(kept.length)), ` ${plural(kept.length, "demonstration")}`),
     coach[task] && element("p", { class: "coach" }, `${sentence(coach[task])}.`),
@@ -34,7 +50,7 @@ function content({ task, tasks, demonstrations, coach }) {
       ["Mean transport", kept.length > 0 && number(mean, 1, "s")],
       ["Samples lost", String(kept.reduce((sum, d) => sum + (d.account?.lost ?? 0), 0))],
     ]),
-    element("ol", { class: "takes", "aria-label": "demonstrations, newest first" }, demonstrations.slice(-LISTED).reverse().map(take)),
+    element("ol", { class: "takes", "aria-label": "demonstrations, newest first" }, demonstrations.slice(-LISTED).reverse().map((d) => take(d, small(d)))),
     element(
       "p",
       { class: "orders" },
@@ -44,15 +60,20 @@ function content({ task, tasks, demonstrations, coach }) {
   ];
 }
 
-function take(d) {
+function take(d, small) {
   const why = [d.mark && `marked ${d.mark}`, ...(d.reasons ?? [])].filter(Boolean).join("; ");
   const word = d.discarded_ns ? "discarded" : d.verdict;
+  const [verb, sign, name] = d.discarded_ns ? ["restore", "↶", "Restore"] : ["discard", "×", "Discard"];
+  const lost = d.account?.lost ?? 0;
   return element(
     "li",
-    { class: word, value: String(d.number), "data-demonstration": d.id },
+    { class: word, value: String(d.number), "data-focus": `demonstrations ${d.id}` },
     element("span", { class: "number" }, String(d.number)),
+    element("span", { class: "small" }, small),
     element("span", { class: "verdict" }, word),
+    element("span", { class: "figure" }, lost > 0 && `${lost} lost`),
     element("span", { class: "figure" }, number(d.duration, 1, "s")),
+    element("button", { type: "button", class: "close", [`data-${verb}`]: d.id, "data-key": `take ${d.id}`, "aria-label": `${name} demonstration ${d.number}`, title: name }, sign),
     why && element("span", { class: "why" }, sentence(why)),
   );
 }

@@ -34,4 +34,3 @@ class Parts:
     trajectory: Callable[[Demonstration], Trajectory]
     health: Callable[[], dict[str, Any]]
     imported: Callable[[Demonstration, Trajectory], None]
-    edited: Callable[[str], None]  # called with the id of a path that has a new version

@@ -123,9 +123,12 @@ def tasks_router(parts: Parts) -> APIRouter:
         )
 
     @router.get("/demonstrations/{demonstration}/trajectory")
-    def get_trajectory(demonstration: str) -> dict[str, Any]:
+    def get_trajectory(
+        demonstration: str,
+        most: Annotated[int, Query(ge=2, le=100_000, description="points; further ones are left out evenly")] = 100_000,
+    ) -> dict[str, Any]:
         """Return the object's trajectory in its transport phase: times [s], positions [m], orientations, world."""
-        return to_document(parts.trajectory(store.demonstration(demonstration)))
+        return to_document(parts.trajectory(store.demonstration(demonstration)).thinned(most))
 
     @router.get("/demonstrations/{demonstration}/recording", response_class=FileResponse)
     def get_recording(demonstration: str) -> FileResponse:

@@ -56,7 +56,6 @@ def versions_router(parts: Parts) -> APIRouter:
         """
         edit = Edit(new.base, new.branch.strip(), new.name.strip(), new.author.strip(), new.note)
         saved = versions.save(path, new.curve.curve(), edit)
-        parts.edited(path)
         response.headers["Location"] = f"/api/v1/paths/{path}/versions/{saved.number}"
         return saved
 

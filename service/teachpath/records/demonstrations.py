@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import StrEnum
 
+import numpy as np
+
 from teachpath.records.arrays import Array, Quaternion, Vector
 from teachpath.records.calibrations import Calibration
 
@@ -64,6 +66,14 @@ class Trajectory:
 
     def __len__(self) -> int:
         return len(self.times)
+
+    def thinned(self, most: int) -> Trajectory:
+        """Return at most `most` (2 or more) of its samples, evenly picked, the first and the last among them."""
+        if len(self) <= most:
+            return self
+        kept = np.linspace(0, len(self) - 1, most).round().astype(int)
+        turned = None if self.orientations is None else self.orientations[kept]
+        return Trajectory(self.times[kept], self.positions[kept], turned)
 
 
 @dataclass(frozen=True, slots=True)

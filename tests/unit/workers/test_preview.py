@@ -16,8 +16,7 @@ from teachpath.motion.drawing import drawing
 from teachpath.motion.kinematics import link_frames
 from teachpath.motion.scenes import empty_scene, paper_scene
 from teachpath.motion.settings import MotionSettings
-from teachpath.nurbs import Curve
-from teachpath.records import Fit, JointState, LearnedPath, Sample
+from teachpath.records import JointState, Sample
 from teachpath.workers.preview import WAYS, Page, Preview, PreviewSettings, commands
 from teachpath.workers.preview.tree import CREDIT, SceneTree
 from teachpath_proto.keys import Keys
@@ -74,12 +73,6 @@ class Station:
     def publish_sample(self, tracker: str, x: float, *, buttons: int = 0) -> None:
         sample = Sample(tracker, 1, 1, 1, (x, 0.0, 0.6), None, (), True, buttons)
         self.bus.publish(KEYS.samples(tracker), wire.sample_message(sample).SerializeToString())
-
-
-def learned(name: str, cluster: int) -> LearnedPath:
-    points = np.array([[0.4, -0.3, 0.5], [0.5, 0.0, 0.5 + 0.1 * cluster], [0.5, 0.1, 0.6], [0.4, 0.3, 0.5]])
-    curve = Curve(3, np.array([0, 0, 0, 0, 1, 1, 1, 1.0]), points, np.ones(4))
-    return LearnedPath(name, "run", cluster, 1, curve, Fit(0.0, 0.0, 0.0, 0.0))
 
 
 # the tree
@@ -170,15 +163,12 @@ def test_the_same_transform_twice_is_sent_once() -> None:
 # what is drawn
 
 
-def test_a_new_page_gets_arm_scene_demonstrations_and_paths() -> None:
+def test_a_new_page_gets_arm_and_object() -> None:
     preview = Station().preview
-    u = np.linspace(0, 1, 20)
-    ways = [learned("p1", 1), learned("p2", 2)]
-    preview.show_task(paper_scene(), [("d1", ways[0].curve(u)), ("d2", ways[1].curve(u))], ways)
+    preview.show_object(paper_scene().carried)
     sent = take(preview.attach(ignore))
     objects = {c["path"] for c in sent if c["type"] == "set_object"}
-    assert {"/scene/table", "/scene/box", "/scene/cylinder", "/object"} <= objects
-    assert {"/demonstrations/d1", "/demonstrations/d2", "/paths/p1", "/paths/p2"} <= objects
+    assert "/object" in objects
     assert len([path for path in objects if path.startswith("/robot/link")]) == len(drawing())
     assert objects == set(preview.paths())
 
@@ -203,7 +193,7 @@ def test_the_arm_follows_the_newest_joint_state() -> None:
 def test_the_object_follows_and_the_fingers_close() -> None:
     station = Station()
     with station.preview as preview:
-        preview.show_scene(paper_scene())
+        preview.show_object(paper_scene().carried)
         page = preview.attach(ignore)
         take(page)
         station.publish_state(HOME, closed=True, at=(0.1, 0.2, 0.7))
@@ -216,7 +206,7 @@ def test_the_object_follows_and_the_fingers_close() -> None:
 def test_the_object_stays_when_the_arm_knows_of_none() -> None:
     station = Station()
     with station.preview as preview:
-        preview.show_scene(paper_scene())
+        preview.show_object(paper_scene().carried)
         page = preview.attach(ignore)
         take(page)
         zero = np.zeros(6)
@@ -229,12 +219,11 @@ def test_the_object_stays_when_the_arm_knows_of_none() -> None:
 def test_a_scene_without_an_object_shows_none() -> None:
     station = Station()
     with station.preview as preview:
-        preview.show_scene(paper_scene())
-        preview.show_scene(empty_scene())
+        preview.show_object(paper_scene().carried)
+        preview.show_object(empty_scene().carried)
         station.publish_state(HOME)
         preview.update()
         assert preview.paths("/object") == []
-        assert preview.paths("/scene") == ["/scene/table"]
 
 
 def test_malformed_states_and_samples_are_left_out() -> None:
@@ -274,26 +263,12 @@ def test_stops_listening_when_stopped() -> None:
     assert take(page) == []
 
 
-def test_learned_paths_have_the_colours_of_their_clusters_and_can_be_picked_out() -> None:
-    preview = Station().preview
-    preview.show_learned([learned("p1", 1), learned("p2", 2)])
-    page = preview.attach(ignore)
-
-    def paint() -> dict[str, tuple[int, float]]:
-        sent = [c for c in take(page) if c["path"].startswith("/paths")]
-        return {c["path"]: (c["object"]["materials"][0]["color"], c["object"]["materials"][0]["opacity"]) for c in sent}
-
-    assert paint() == {"/paths/p1": (WAYS[0], 1.0), "/paths/p2": (WAYS[1], 1.0)}
-    preview.highlight("p2")
-    painted = paint()
-    assert painted["/paths/p2"] == (WAYS[1], 1.0)
-    assert painted["/paths/p1"][1] < 1.0
-
-
-def test_the_page_uses_the_same_colours() -> None:
-    style = (Path(__file__).parents[3] / "clients" / "web" / "style.css").read_text()
-    colours = dict(re.findall(r"--way-(\d): #([0-9a-f]{6});", style))
-    assert [int(colours[str(i)], 16) for i in range(len(WAYS))] == list(WAYS)
+def test_the_page_uses_the_same_colours_everywhere() -> None:
+    web = Path(__file__).parents[3] / "clients" / "web"
+    style = dict(re.findall(r"--way-(\d): #([0-9a-f]{6});", (web / "style.css").read_text()))
+    (drawn,) = re.findall(r"WAYS = \[(.*?)\]", (web / "shapes.js").read_text())
+    assert [int(style[str(i)], 16) for i in range(len(WAYS))] == list(WAYS)
+    assert [int(colour, 16) for colour in drawn.split(",")] == list(WAYS)
 
 
 # the meshes

@@ -1,7 +1,7 @@
-"""The preview: draws scene, demonstrations, learned paths, hand and arm for every connected page.
+"""The preview: draws what moves, arm, object and hands, for every connected page.
 
-Names in its tree, on which pages and tests may rely: `/scene/<name>` (table and obstacles), `/object` (the carried
-one), `/robot/link<i>/<part>` (blanks as `-`), `/demonstrations/<id>`, `/paths/<id>`, `/hand/<tracker>/{marker,trail}`.
+Names in its tree, on which pages and tests may rely: `/object` (the carried one), `/robot/link<i>/<part>` (blanks as
+`-`), `/hand/<tracker>/{marker,trail}`. Everything else a page draws by itself, for the task that it looks at.
 """
 
 from teachpath.workers.preview.commands import WAYS, viewer_files

@@ -1,11 +1,11 @@
-"""The running preview: one thread that lets arm, object and hands follow the bus, and the verbs that show the rest."""
+"""The running preview: one thread that lets arm, object and hands follow the bus."""
 
 from __future__ import annotations
 
 import threading
 import time
 from collections import deque
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from types import TracebackType
 from typing import Annotated
@@ -18,12 +18,11 @@ from teachpath.io.bus import Bus, Handle
 from teachpath.io.wire import decode_sample, decode_state
 from teachpath.motion.drawing import Part
 from teachpath.motion.kinematics import link_frames
-from teachpath.records import Array, LearnedPath, Scene, Vector
+from teachpath.records import Array, Shape, Vector
 from teachpath.workers.preview import commands
 from teachpath.workers.preview.tree import Page, SceneTree
 from teachpath_proto.keys import Keys
 
-DEMONSTRATION = 0x7A8694
 HAND_OPEN, HAND_CLOSED = 0x3F7FBF, 0xE08A00
 
 ToWorld = Callable[[str, Vector], Vector | None]
@@ -41,8 +40,6 @@ class PreviewSettings:
     trail_points: Annotated[int, Ge(2), Le(10_000)] = 600
     # [s] without a sample after which a hand disappears
     hand_silence: Annotated[float, Gt(0)] = 2.0
-    # [m] radius of a learned path as drawn
-    path_radius: Annotated[float, Gt(0)] = 0.005
 
 
 @dataclass
@@ -87,7 +84,6 @@ class Preview:
         self._state: bytes | None = None
         self._samples: deque[tuple[str, bytes]] = deque(maxlen=512)
         self._hands: dict[str, _Hand] = {}
-        self._learned: dict[str, tuple[Array, int]] = {}
         self._handles: list[Handle] = []
         self._stopped = threading.Event()
         self._thread: threading.Thread | None = None
@@ -137,58 +133,16 @@ class Preview:
         """Return the names in the tree, at and below `prefix`, that hold an object."""
         return self._tree.paths(prefix)
 
-    def show_task(
-        self, scene: Scene, demonstrations: Iterable[tuple[str, Array]] = (), learned: Sequence[LearnedPath] = ()
-    ) -> None:
-        """Show one task and nothing of another: its scene, demonstrations (id, positions) and learned paths."""
-        self.clear("/demonstrations")
-        self.show_scene(scene)
-        for name, positions in demonstrations:
-            self.show_demonstration(name, positions)
-        self.show_learned(learned)
-
-    def show_scene(self, scene: Scene) -> None:
-        """Show the obstacles of `scene`, and its carried object at the start, instead of those shown before."""
-        self.clear("/scene")
+    def show_object(self, carried: Shape | None) -> None:
+        """Show this object at its start instead of the one shown before; None: there is none."""
         self.clear("/object")
-        for shape in scene.obstacles:
-            path = f"/scene/{shape.name}"
-            pose = commands.pose_of(shape.position)
-            self._tree.put_object(path, commands.solid(path, shape.kind, shape.size, pose=pose, color=shape.color))
-        if scene.carried is not None:
-            carried = scene.carried
+        if carried is not None:
             self._tree.put_object("/object", commands.solid("/object", carried.kind, carried.size, color=carried.color))
             self._place("/object", commands.pose_of(carried.position))
             self._tree.flush()
 
-    def show_demonstration(self, name: str, positions: Array, *, color: int = DEMONSTRATION) -> None:
-        """Show the way of one demonstration: (n, 3) [m], world; fewer than two points are not drawn."""
-        if len(positions) >= 2:
-            path = f"/demonstrations/{name}"
-            self._tree.put_object(path, commands.line(path, positions, color=color))
-
-    def show_learned(self, learned: Sequence[LearnedPath]) -> None:
-        """Show these learned paths instead of those shown before, each in the colour of its cluster."""
-        self.clear("/paths")
-        u = np.linspace(0.0, 1.0, 161)
-        self._learned = {p.id: (p.curve(u), commands.WAYS[(p.cluster - 1) % len(commands.WAYS)]) for p in learned}
-        self.highlight("")
-
-    def highlight(self, path: str) -> None:
-        """Draw the learned path `path` (its id) in full and the others pale; empty: all in full."""
-        radius = self._settings.path_radius
-        for name, (points, color) in self._learned.items():
-            chosen = path in ("", name)
-            at = f"/paths/{name}"
-            body = commands.tube(
-                at, points, radius=radius if chosen else radius / 2, color=color, opacity=1.0 if chosen else 0.45
-            )
-            self._tree.put_object(at, body)
-
     def clear(self, prefix: str) -> None:
-        """Take away all at and below `prefix`, e.g. `/demonstrations`."""
-        if prefix == "/paths":
-            self._learned = {}
+        """Take away all at and below `prefix`, e.g. `/hand`."""
         self._tree.delete(prefix, commands.delete(prefix))
 
     def update(self) -> None:

@@ -1,0 +1,66 @@
+// The dendrogram: how the demonstrations merge, with a cut that can be dragged to make more ways or fewer.
+import { at, get, post } from "../api.js";
+import { element, number, plural, replace } from "../elements.js";
+import { runOf } from "../store.js";
+import { markFocus, pointAt } from "./cards.js";
+import { Tree } from "./tree.js";
+
+export function cut(place, { store, attempt }) {
+  const tree = new Tree(place);
+  const slider = element("input", { type: "range", min: "0", max: "1", step: "any", "aria-label": "height of the cut" });
+  const said = element("output", {});
+  const orders = element("p", { class: "orders" });
+  const asked = new Set();
+  let shown = null; // the dendrogram and its run
+  let height = 0;
+  place.append(tree.element, element("label", { class: "cut" }, "Cut ", slider, said), orders);
+  pointAt(tree.element, store);
+
+  const move = (to) => {
+    height = Math.min(Math.max(to, shown.top / 1000), shown.top);
+    const chosen = cutAt(shown.dendrogram, height);
+    slider.value = String(height / shown.top);
+    const count = chosen?.clusters ?? shown.dendrogram.leaves.length;
+    said.textContent = `${count} ${plural(count, "way")}, at ${number(height * 100, 1, "cm")}`;
+    slider.setAttribute("aria-valuetext", said.textContent);
+    tree.color(chosen, height);
+    const same = count === shown.dendrogram.clusters;
+    replace(
+      orders,
+      !same && chosen && element("button", { type: "button", class: "main", "data-cut": "1", "data-key": "cut" }, `Make ${count} ${plural(count, "way")}`),
+      !same && element("button", { type: "button", "data-back": "1", "data-key": "back" }, "Put it back"),
+    );
+  };
+  slider.addEventListener("input", () => shown && move(Number(slider.value) * shown.top));
+  tree.dragged = (to) => move(to);
+  orders.addEventListener("click", (event) => {
+    const { cut: make, back } = event.target.closest("button")?.dataset ?? {};
+    if (back) move(shown.dendrogram.threshold);
+    if (make) attempt(() => post(at("tasks", store.state.task, "jobs"), { kind: "recut", run: shown.run, threshold: height }));
+  });
+
+  const show = (state, run, dendrogram) => {
+    const highest = dendrogram.merges.at(-1)?.[2] ?? 0;
+    shown = { run, dendrogram, top: 1.12 * Math.max(highest, dendrogram.threshold) || 1 };
+    const numbers = new Map((state.demonstrations ?? []).map((d) => [d.id, d.number]));
+    tree.draw(dendrogram, shown.top, numbers);
+    move(dendrogram.threshold);
+  };
+  return {
+    async update(state, changed) {
+      if (changed.has("focus")) markFocus(place, state.focus);
+      const run = runOf(state);
+      place.parentElement.hidden = !(run?.learned.demonstrations.length > 1);
+      if (place.parentElement.hidden || run.id === shown?.run || asked.has(run.id) || !state.demonstrations) return;
+      asked.add(run.id);
+      const dendrogram = await attempt(() => get(at("tasks", state.task, "runs", run.id, "dendrogram")));
+      asked.delete(run.id);
+      if (dendrogram && runOf(store.state)?.id === run.id) show(store.state, run.id, dendrogram);
+    },
+  };
+}
+
+// The listed cut that a height falls into; null below the lowest that is listed.
+function cutAt(dendrogram, height) {
+  return dendrogram.cuts.find((one) => height >= one.lowest && (one.highest === null || height < one.highest)) ?? null;
+}
