@@ -13,6 +13,7 @@ import pytest
 import uvicorn
 from fastapi import FastAPI
 from PIL import Image
+from scipy.cluster.hierarchy import linkage
 from websockets.exceptions import InvalidStatus
 from websockets.sync.client import connect
 
@@ -21,6 +22,7 @@ from teachpath.api.view import view_router
 from teachpath.io import wire
 from teachpath.io.bus import MemoryBus
 from teachpath.io.documents import to_document
+from teachpath.learning import dendrogram
 from teachpath.motion.drawing import drawing
 from teachpath.motion.kinematics import link_frames
 from teachpath.motion.scenes import paper_scene
@@ -89,7 +91,7 @@ def documents(count: int) -> dict[str, Any]:
     found = Learned(
         mode="default",
         demonstrations=tuple(courses),
-        linkage=np.zeros((0, 4)),
+        linkage=linkage(np.arange(count)[:, None]),
         threshold=0.1,
         clusters=tuple(Cluster(k, (), ()) for k in (1, 2, 3)),
         paths=tuple(way(k) for k in (1, 2, 3)),
@@ -100,6 +102,7 @@ def documents(count: int) -> dict[str, Any]:
         "executions": [],
         **{f"paths/{path.id}": to_document(path) for path in found.paths},
         "tasks/t/jobs": [],
+        "tasks/t/runs/run/dendrogram": to_document(dendrogram(found, 30)),
         "tasks/t/demonstrations": [to_document(d) for d in shown],
         "tasks/t/runs": [{"id": "run", "task": "t", "created_ns": 1, "learned": to_document(found)}],
         **{f"demonstrations/{key}/trajectory": to_document(course) for key, course in courses.items()},
@@ -136,6 +139,7 @@ class Visit:
             self.page.add_init_script(script)
         self.said: list[str] = []
         self.page.on("console", lambda message: self.said.append(f"{message.type}: {message.text}"))
+        self.page.on("response", lambda answer: answer.ok or self.said.append(f"{answer.status}: {answer.url}"))
         self.page.on("pageerror", lambda error: self.said.append(f"error: {error}"))
         self.page.goto(address)
         self.page.wait_for_selector("html[data-scene=ready]", state="attached", timeout=30_000)
