@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from teachpath.learning.features import Family
-from teachpath.learning.hmm import TiedGaussianHmm
+from teachpath.learning.gaussian import TiedGaussianHmm
 from teachpath.records import Array
 
 FLOOR = 0.02  # share of the overall variance that a state's variance keeps at least
