@@ -16,7 +16,7 @@ from teachpath.learning.paper import models_of_paper, select_as_paper
 from teachpath.learning.resampling import arc_lengths, at_equal_arc_length, smoothed, undersampled
 from teachpath.learning.screening import screen
 from teachpath.learning.selection import models_to_train, select
-from teachpath.learning.settings import LearningSettings, Progress, ignore
+from teachpath.learning.settings import LearningSettings, Progress, ignore, part
 from teachpath.learning.synthesis import synthesise, synthesise_as_paper
 from teachpath.records import Array, Cluster, Learned, LearnedPath, Trajectory
 
@@ -44,8 +44,8 @@ def learn(
     progress(0.0, f"comparing {len(demonstrations)} demonstrations")
     metric = metric_of(settings)
     courses, length = courses_of(demonstrations, metric, settings.seed)
-    grouping = grouped(courses, settings, length=length, metric=metric, progress=_part(progress, 0.0, 0.2))
-    return from_ways(demonstrations, courses, grouping, settings, _part(progress, 0.2, 1.0))
+    grouping = grouped(courses, settings, length=length, metric=metric, progress=part(progress, 0.0, 0.2))
+    return from_ways(demonstrations, courses, grouping, settings, part(progress, 0.2, 1.0))
 
 
 def metric_of(settings: LearningSettings) -> str:
@@ -83,7 +83,7 @@ def from_ways(
     """
     names = tuple(demonstrations)
     ways = groups(names, grouping.labels)
-    choosing = _part(progress, 0.0, 0.75)
+    choosing = part(progress, 0.0, 0.75)
     if settings.mode == "default":
         tick = _ticker(choosing, models_to_train([len(way) for way in ways], settings.repeats))
         clusters = tuple(
@@ -93,7 +93,7 @@ def from_ways(
     else:
         tick = _ticker(choosing, models_of_paper(len(ways), settings.repeats))
         clusters = select_as_paper(dict(zip(names, courses, strict=True)), ways, settings, tick=tick)
-    paths = _fitted(clusters, demonstrations, settings, _part(progress, 0.75, 1.0))
+    paths = _fitted(clusters, demonstrations, settings, part(progress, 0.75, 1.0))
     progress(1.0, f"learned {len(paths)} {'path' if len(paths) == 1 else 'paths'}")
     return Learned(
         mode=settings.mode,
@@ -153,10 +153,6 @@ def _described(
 
 def _selected(cluster: Cluster, demonstrations: Mapping[str, Trajectory]) -> Sequence[Trajectory]:
     return [demonstrations[score.demonstration] for score in cluster.scores if score.selected]
-
-
-def _part(progress: Progress, begin: float, end: float) -> Progress:
-    return lambda fraction, sentence: progress(begin + fraction * (end - begin), sentence)
 
 
 def _ticker(progress: Progress, total: int) -> Callable[[], None]:

@@ -21,6 +21,11 @@ def ignore(_fraction: float, _sentence: str) -> None:
     """Take no notice of progress."""
 
 
+def part(progress: Progress, begin: float, end: float) -> Progress:
+    """Return the progress of a part of the work, from `begin` to `end` of the whole."""
+    return lambda fraction, sentence: progress(begin + fraction * (end - begin), sentence)
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LearningSettings:
     """How paths are learned from demonstrations.
