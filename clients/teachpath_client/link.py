@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable
 from typing import Any
 
 import zenoh
@@ -61,6 +62,10 @@ class Link:
         )
         self._publishers.append(publisher)
         return publisher
+
+    def subscribe(self, key: str, receive: Callable[[bytes], object]) -> Any:
+        """Call `receive` with all that is published on `key`; it runs on Zenoh's thread and should only append."""
+        return self._session.declare_subscriber(key, lambda sample: receive(sample.payload.to_bytes()))
 
     def announce(self, key: str) -> Any:
         """Show on `key` that this client is alive, until it leaves or dies."""

@@ -98,7 +98,8 @@ class Station:
             home=np.array(settings.motion.home),
             to_world=self._to_world,
         )
-        self.processes = [WorkerProcess(name, settings.model_dump_json()) for name in ("simulator", "executor")]
+        ours = ("simulator", "executor") if settings.simulator.start else ("executor",)
+        self.processes = [WorkerProcess(name, settings.model_dump_json()) for name in ours]
         self.web: FastAPI = build_api(self._parts(), view_router(self.preview), events_router(self.news))
         self._lookout = Lookout(self.news, self._looks())
         self._shown = ""
@@ -170,7 +171,7 @@ class Station:
     def notes(self) -> list[str]:
         """Say what an operator should know."""
         notes = [f"the {p.name} has ended: {p.last_words()}" for p in self.processes if not p.is_alive()]
-        notes += self.recorder.faults()
+        notes += self.recorder.faults() + self.executions.faults()
         unfinished = self.store.recordings.unfinished()
         if unfinished and not self.recorder.reports():
             notes.append(f"{len(unfinished)} recordings were cut off; stop the service and run: teachpath doctor")

@@ -38,7 +38,7 @@ DOORS = {
     "geomdl": ["exchange.py"],
     "ruckig": ["motion/governor.py", "motion/moves.py"],
     "numba": ["learning/kernels.py", "motion/kernels.py"],
-    "mujoco": ["motion/scene.py", "motion/torque.py", "workers/simulator.py"],
+    "mujoco": ["motion/scene.py", "motion/torque.py", "workers/simulator/arm.py"],
     "meshcat": ["workers/preview"],
     "umsgpack": ["workers/preview"],
     "fastapi": ["api", "app.py"],

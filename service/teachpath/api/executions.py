@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
-from fastapi import APIRouter, Header, Response
+from fastapi import APIRouter, Header, Query, Response
+from fastapi.responses import FileResponse
 from pydantic import BaseModel, Field
 
 from teachpath.api.parts import Parts
 from teachpath.errors import UnusableInput
+from teachpath.io.documents import to_document
 from teachpath.io.store import ExecutionRow
 from teachpath.records import Command, ExecutorStatus
 
@@ -63,6 +65,25 @@ def executions_router(parts: Parts) -> APIRouter:
     def get_execution(execution: str) -> ExecutionRow:
         """Return how an execution stands."""
         return executions.get(execution)
+
+    @router.get("/executions/{execution}/recording", response_class=FileResponse)
+    def get_recording(execution: str) -> FileResponse:
+        """Return all that was sent and done as an MCAP file: setpoints, states, statuses, journal; plan and path in it.
+
+        `teachpath run --check FILE` judges it. While the execution runs, the file has no end yet.
+        """
+        file = executions.recording(execution)
+        return FileResponse(file, media_type="application/octet-stream", filename=f"{execution}.mcap")
+
+    @router.get("/executions/{execution}/series")
+    def get_series(
+        execution: str, points: Annotated[int, Query(ge=2, le=20_000, description="at most")] = 500
+    ) -> dict[str, Any]:
+        """Return what the arm did over time, for plots and for showing it again.
+
+        Joints, velocities, torques, tool and object, tracking error, and the lateness of setpoints; no peak is lost.
+        """
+        return to_document(executions.series(execution, points))
 
     @router.post("/executions/{execution}/override")
     def set_override(execution: str, speed: Speed, lease: Token = "", who: Who = "") -> ExecutionRow:

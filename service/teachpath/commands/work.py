@@ -6,15 +6,18 @@ import subprocess
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from pathlib import Path
 from typing import Annotated
 
 import typer
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
+from teachpath.commands.checking import judge_file
 from teachpath.commands.options import LOCAL, Url
 from teachpath.commands.rest import Api
 from teachpath.commands.tables import clusters_table, cuts_table, paths_table, plan_lines, reasons
+from teachpath.errors import UnusableInput
 
 Task = Annotated[str, typer.Argument(help="The task.")]
 console = Console(stderr=True)
@@ -112,14 +115,25 @@ def plan(path: Annotated[str, typer.Argument(help="Id of a learned path.")], url
 
 
 def run(
-    plan: Annotated[str, typer.Argument(help="Id of a plan.")],
+    plan: Annotated[str | None, typer.Argument(help="Id of a plan; with --check, the one that was meant.")] = None,
     url: Url = LOCAL,
     override: Annotated[float, typer.Option(min=0.0, max=1.0, help="Share of the planned speed.")] = 1.0,
+    check: Annotated[
+        Path | None,
+        typer.Option(
+            help="Move nothing; judge this log of setpoints against limits and path: MCAP, or CSV t,q1,...,q6."
+        ),
+    ] = None,
 ) -> None:
-    """Move the arm along a certified plan.
+    """Move the arm along a certified plan, or judge what was sent to one.
 
     Ctrl-C stops it on the path. This is not an emergency stop.
     """
+    if check is not None:
+        judge_file(check, plan, url)
+        return
+    if plan is None:
+        raise UnusableInput("name the plan to run; teachpath plan PATH makes one")
     with Api(url) as api, progress_bar("running") as show:
         execution = api.call("POST", "/executions", {"plan": plan, "override": override})
         try:

@@ -8,11 +8,12 @@ import time
 import uuid
 from collections.abc import Callable
 from contextlib import suppress
+from pathlib import Path
 
 from teachpath.errors import Conflict, NotFound, PathRefused, TeachpathError, Unreachable, UnusableInput
 from teachpath.io.bus import Bus, Handle
 from teachpath.io.documents import encode
-from teachpath.io.store import ExecutionRow, Store
+from teachpath.io.store import ExecutionRow, MotionHeader, Store, read_motion
 from teachpath.io.wire import (
     decode_entry,
     decode_lease,
@@ -20,7 +21,9 @@ from teachpath.io.wire import (
     encode_command,
     encode_lease_request,
 )
+from teachpath.motion.series import Series, series
 from teachpath.records import Command, ExecutorStatus, JournalEntry, Lease, LeaseRequest, Plan, Scene
+from teachpath.workers.motion_recorder import MotionRecorder
 from teachpath_proto.keys import Keys
 
 RESTING = frozenset({"idle", "ended", "faulted"})
@@ -37,6 +40,7 @@ class Executions:
 
     def __init__(self, bus: Bus, keys: Keys, store: Store, *, robot: str, scene: Callable[[str], Scene]) -> None:
         self._bus, self._keys, self._store, self._robot, self._scene = bus, keys, store, robot, scene
+        self._recorder = MotionRecorder(bus, keys, store.motions, robot=robot)
         self._changed = threading.Condition()
         self._status: ExecutorStatus | None = None
         self._heard = 0.0
@@ -47,6 +51,7 @@ class Executions:
 
     def start(self) -> None:
         """Begin to listen to the executor."""
+        self._recorder.start()
         self._handles = [
             self._bus.subscribe(self._keys.executor_status, self._receive),
             self._bus.subscribe(self._keys.executor_journal, self._note),
@@ -62,6 +67,20 @@ class Executions:
             self._news.put(None)
             self._writer.join()
             self._writer = None
+        self._recorder.stop()
+
+    def faults(self) -> list[str]:
+        """Say why something is not recorded, for the operator."""
+        return [self._recorder.fault] if self._recorder.fault else []
+
+    def recording(self, execution: str) -> Path:
+        """Return the file of all that an execution sent and the arm did; raises NotFound."""
+        return self._store.motions.path(self._store.execution(execution).id)
+
+    def series(self, execution: str, points: int) -> Series:
+        """Return what the arm did over time in an execution; raises NotFound."""
+        motion = read_motion(self.recording(execution))
+        return series(motion.setpoints, motion.states, points)
 
     @property
     def status(self) -> ExecutorStatus | None:
@@ -90,7 +109,10 @@ class Executions:
             raise Conflict(f"execution {status.execution} is {status.state}; stop it first")
         key = f"execution-{uuid.uuid4().hex[:12]}"
         command = Command("start", key, plan=encode(stored), override=override, lease=lease, who=who)
-        return self._begin(command, plan)
+        path = None
+        with suppress(NotFound):  # a file without it is judged by its limits alone
+            path = self._store.versions.get(stored.path, stored.path_version)[1]
+        return self._begin(command, MotionHeader(key, self._robot, stored, path))
 
     def command(self, execution: str, command: Command) -> ExecutionRow:
         """Steer an execution: override (speed, 0 to 1), hold, resume, step, reverse or stop.
@@ -167,15 +189,17 @@ class Executions:
             assert self._status is not None
             return self._status
 
-    def _begin(self, command: Command, plan: str | None) -> ExecutionRow:
-        key = command.execution
+    def _begin(self, command: Command, header: MotionHeader) -> ExecutionRow:
+        key, plan = command.execution, header.plan.id if header.plan else None
         self._store.put_execution(key, plan, ExecutorStatus(execution=key, state="starting", override=command.override))
         self._plans[key] = plan
+        self._recorder.begin(header)
         try:
             self._bus.ask(self._keys.executor_command, encode_command(command), timeout=10.0)
         except TeachpathError as error:
             refused = ExecutorStatus(execution=key, state="faulted", reason=str(error))
             self._store.put_execution(key, plan, refused)
+            self._recorder.abandon()
             raise
         return self.get(key)
 

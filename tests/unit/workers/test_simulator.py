@@ -144,7 +144,8 @@ def test_the_end_of_an_execution_is_no_silence() -> None:
 def test_counts_the_setpoints_that_never_came() -> None:
     bench = Bench()
     states = bench.move(HOME + 0.2, 1.0, skip=10)
-    assert states[-1].missed == states[-1].cycle // 10 > 20
+    assert states[-1].missed == pytest.approx(bench.cycle // 10, abs=1)
+    assert states[-1].missed > 20
     assert max(s.tracking_error for s in states) < 0.005  # one left out is bridged by extrapolation
 
 

@@ -18,6 +18,7 @@ from teachpath.io.store.calibrations import MeasuredCalibrations
 from teachpath.io.store.changes import Changed, note, telling, unheard
 from teachpath.io.store.engine import open_engine
 from teachpath.io.store.journal import Journal
+from teachpath.io.store.motions import Motions
 from teachpath.io.store.recordings import Opener, Recordings, open_new
 from teachpath.io.store.tables import (
     Base,
@@ -72,6 +73,7 @@ class Store:
         folder = Path(settings.data_dir)
         folder.mkdir(parents=True, exist_ok=True)
         self.recordings = Recordings(folder / "recordings", opener)
+        self.motions = Motions(folder / "executions", opener)
         self._engine = open_engine(settings.database or f"sqlite:///{folder / 'teachpath.sqlite'}")
         self._writing = self._engine.execution_options(writing=True)
         self._changed = changed

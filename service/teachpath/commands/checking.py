@@ -1,0 +1,73 @@
+"""run --check: judge a log of setpoints."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import numpy as np
+
+from teachpath.commands.rest import Api
+from teachpath.errors import UnusableRecording
+from teachpath.io.documents import from_document
+from teachpath.io.setpoints import read_setpoints
+from teachpath.io.store import read_motion
+from teachpath.motion.judgement import SetpointLog, judge
+from teachpath.nurbs import Curve
+from teachpath.records import LearnedPath
+
+
+def judge_file(file: Path, plan: str | None, url: str) -> None:
+    """Judge a log of setpoints, print what was measured, and end with status 1 and a sentence when it breaks something.
+
+    Args:
+        file: a recording of an execution (MCAP), or a CSV.
+        plan: id of the plan that was meant, when the file does not say.
+        url: of the service that has it.
+    """
+    try:
+        content = file.read_bytes()
+    except OSError as error:
+        raise UnusableRecording(f"{file} cannot be read: {error.strerror}") from None
+    log, path = _read_motion(file) if content[1:5] == b"MCAP" else (_read_csv(content, file.name), None)
+    if plan is not None:
+        path = _path_of(plan, url)
+    judgement = judge(log, path)
+    for sentence in judgement.measured:
+        print(sentence)
+    if judgement.faults:
+        for sentence in judgement.faults:
+            print(f"BROKEN: {sentence}")
+        sys.exit(f"teachpath: {file.name} breaks {len(judgement.faults)} of what it must keep: {judgement.faults[0]}")
+    print(f"{file.name} keeps every limit" + (" and the path" if path is not None else ""))
+
+
+def _read_motion(file: Path) -> tuple[SetpointLog, Curve | None]:
+    motion = read_motion(file)
+    if len(motion.setpoints) < 4:
+        why = motion.fault or f"it has {len(motion.setpoints)} setpoints"
+        raise UnusableRecording(f"{file.name} holds no motion that could be judged: {why}")
+    if motion.fault:
+        print(f"{file.name} is damaged ({motion.fault}); judged up to there")
+    sent = motion.setpoints
+    cycles = np.array([s.cycle for s in sent])
+    log = SetpointLog(
+        times=np.array([s.nominal_ns - sent[0].nominal_ns for s in sent]) / 1e9,
+        positions=np.array([s.position for s in sent]),
+        on_path=np.array([s.on_path for s in sent]),
+        missing=int(np.sum(np.diff(cycles) - 1)),
+    )
+    path = motion.header.path if motion.header else None
+    return log, path.curve if path else None
+
+
+def _read_csv(content: bytes, name: str) -> SetpointLog:
+    times, positions, on_path = read_setpoints(content, name)
+    return SetpointLog(times, positions, on_path != 0.0 if on_path is not None else None)
+
+
+def _path_of(plan: str, url: str) -> Curve:
+    with Api(url) as api:
+        stored = api.call("GET", f"/plans/{plan}")
+        document = api.call("GET", f"/paths/{stored['path']}/versions/{stored['path_version']}")
+    return from_document(LearnedPath, document).curve

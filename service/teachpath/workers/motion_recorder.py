@@ -1,0 +1,161 @@
+"""Records everything that is executed: setpoints, joint states, statuses and journal, one file an execution."""
+
+from __future__ import annotations
+
+import logging
+import threading
+import time
+from collections import deque
+from collections.abc import Callable
+from contextlib import suppress
+from typing import Final
+
+from teachpath.errors import TeachpathError, UnusableInput
+from teachpath.io.bus import Bus, Handle
+from teachpath.io.store import MotionHeader, Motions, MotionTake
+from teachpath.io.wire import decode_setpoint, decode_status
+from teachpath_proto.keys import Keys
+
+log = logging.getLogger(__name__)
+
+ROUND: Final = 0.05  # [s] between two looks at what came
+FLUSH_NS: Final = 1_000_000_000  # between two flushes
+AFTER_NS: Final = 500_000_000  # behind the end of an execution, in which the arm still settles
+OVER: Final = ("ended", "faulted")
+
+
+class MotionRecorder:
+    """Writes what is on the bus while an execution runs; start it, then `begin` each execution.
+
+    Args:
+        robot: name of the arm in its keys.
+        clock: nanoseconds since the Unix epoch.
+    """
+
+    def __init__(
+        self, bus: Bus, keys: Keys, motions: Motions, *, robot: str, clock: Callable[[], int] = time.time_ns
+    ) -> None:
+        self._bus, self._keys, self._motions, self._robot, self._clock = bus, keys, motions, robot, clock
+        self._came: deque[tuple[str, int, bytes]] = deque()
+        self._lock = threading.Lock()
+        self._take: MotionTake | None = None
+        self._execution = ""
+        self._setpoints = self._lost = 0
+        self._last_cycle = -1
+        self._flushed = 0
+        self._until = 0  # [ns] when the file is ended; 0: not known yet
+        self._handles: list[Handle] = []
+        self._stop = threading.Event()
+        self._thread: threading.Thread | None = None
+        self.fault = ""  # why nothing is recorded now, for the operator
+
+    def start(self) -> None:
+        """Begin to listen; files that a crash cut off are made whole first."""
+        for part in self._motions.unfinished():
+            try:
+                log.warning("made a whole recording of one that was cut off: %s", self._motions.mend(part).name)
+            except (TeachpathError, OSError) as error:
+                log.warning("left as it is: %s", error)
+        topics = {
+            "setpoints": self._keys.setpoint(self._robot),
+            "states": self._keys.state(self._robot),
+            "statuses": self._keys.executor_status,
+            "journal": self._keys.executor_journal,
+        }
+        self._handles = [self._bus.subscribe(key, self._receiver(topic)) for topic, key in topics.items()]
+        self._thread = threading.Thread(target=self._run, name="motion recorder", daemon=True)
+        self._thread.start()
+
+    def stop(self) -> None:
+        """End the recording that is under way, and stop."""
+        for handle in self._handles:
+            handle.close()
+        self._handles.clear()
+        if self._thread is not None:
+            self._stop.set()
+            self._thread.join()
+            self._thread = None
+        with self._lock:
+            self._finish()
+
+    def begin(self, header: MotionHeader) -> None:
+        """Record an execution from now on; a disk that refuses is told in `fault` and keeps no arm from moving."""
+        with self._lock:
+            self._finish()
+            self._came.clear()
+            self._execution, self._setpoints, self._lost, self._last_cycle = header.execution, 0, 0, -1
+            try:
+                self._take, self.fault = self._motions.begin(header), ""
+            except OSError as error:
+                self._fail(error)
+
+    def abandon(self) -> None:
+        """End the recording of an execution that was refused before it began."""
+        with self._lock:
+            self._until = self._until or self._clock() + AFTER_NS
+
+    def work(self) -> None:
+        """Write what came; the thread calls it all the time."""
+        with self._lock:
+            now = self._clock()
+            while self._came:
+                topic, at_ns, payload = self._came.popleft()
+                if self._take is not None:
+                    self._keep(topic, at_ns, payload)
+            if self._take is None:
+                return
+            try:
+                if now - self._flushed >= FLUSH_NS:
+                    self._take.flush()
+                    self._flushed = now
+            except OSError as error:
+                self._fail(error)
+            if self._until and now >= self._until:
+                self._finish()
+
+    def _receiver(self, topic: str) -> Callable[[str, bytes], None]:
+        return lambda _, payload: self._came.append((topic, self._clock(), payload))
+
+    def _run(self) -> None:
+        while not self._stop.wait(ROUND):
+            self.work()
+        self.work()
+
+    def _keep(self, topic: str, at_ns: int, payload: bytes) -> None:
+        assert self._take is not None
+        with suppress(UnusableInput):
+            if topic == "setpoints":
+                setpoint = decode_setpoint(payload)
+                if setpoint.execution != self._execution:
+                    return
+                self._setpoints += 1
+                self._lost += max(setpoint.cycle - self._last_cycle - 1, 0)
+                self._last_cycle = setpoint.cycle
+            elif topic == "statuses":
+                status = decode_status(payload)
+                if status.execution != self._execution:
+                    return
+                if status.state in OVER and not self._until:
+                    self._until = at_ns + AFTER_NS
+            try:
+                self._take.write(topic, payload, at_ns)
+            except OSError as error:
+                self._fail(error)
+
+    def _finish(self) -> None:
+        take, self._take, self._until = self._take, None, 0
+        if take is None:
+            return
+        facts = {"execution": self._execution, "setpoints": str(self._setpoints), "lost": str(self._lost)}
+        try:
+            take.finish(facts)
+        except OSError as error:
+            take.leave()
+            self._fail(error)
+
+    def _fail(self, error: OSError) -> None:
+        if self._take is not None:
+            self._take.leave()
+        self._take = None
+        self.fault = f"execution {self._execution} is not recorded: {error}; make room on the disk"
+        log.error("%s", self.fault)

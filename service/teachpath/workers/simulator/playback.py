@@ -1,0 +1,171 @@
+"""Plays setpoints as a driver should: a fixed delay behind, through gaps and starvation, without a jump.
+
+Setpoints carry position, velocity and acceleration at even times of the motion's own clock. Between the two that are
+next to the played instant runs the polynomial of fifth degree that meets all three at both, however many are missing
+in between. The played instant runs with real time; when the store of setpoints gets low it runs slower, smoothly, and
+with nothing left it comes to rest, going on in the direction it had. So a late setpoint slows the arm down on its path
+instead of throwing it about.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from teachpath.records import Array, Setpoint
+
+BRAKE: Final = 5.0  # 1/s, change of the playing rate: at full speed within the joints' limits of acceleration
+LOW: Final = 0.35  # share of the delay, with less than which in store the playing slows down
+HANDED: Final = 0.12  # s, over which the way that was gone without setpoints is handed back to the stream
+KEPT: Final = 2000  # setpoints that wait at most; with more the sender's clock is wrong
+WRONG: Final = 1.0  # s, of a clock that is so far off that its times cannot be meant
+
+
+@dataclass(frozen=True, eq=False)
+class Wanted:
+    """The motion that is wanted now: (6,) in rad, rad/s, rad/s^2."""
+
+    position: Array
+    velocity: Array
+    acceleration: Array
+
+
+class Playback:
+    """The motion of one arm over its own time.
+
+    Args:
+        position: (6,) where the arm rests [rad].
+        delay: between a setpoint's nominal time and its playing [s].
+        silence: beyond the newest setpoint after which `holding` is said [s].
+    """
+
+    def __init__(self, position: Array, *, delay: float, silence: float) -> None:
+        still = np.zeros(6)
+        self._delay, self._silence = delay, silence
+        self._waiting: deque[Setpoint] = deque()
+        self._last: Setpoint | None = None  # the newest that was reached
+        self._begin, self._played, self._rate = 0, 0.0, 1.0  # first nominal time [ns], instant behind it [s]
+        self._offset: tuple[Array, Array, float] = (still, still, HANDED)  # what is handed back, and for how long
+        self.wanted = Wanted(np.array(position), still, still)
+        self.missed = self.late = 0
+        self._newest = -1
+        self._period = 0.004  # s, between two setpoints, as seen
+        self._starved = 0.0  # s, for which nothing has been left to play
+        self._slope = 0.0  # 1/s, of the playing rate
+        self._alone = True  # whether the wanted motion was no stream, but a rest or what was gone without one
+
+    @property
+    def reached(self) -> Setpoint | None:
+        """The newest setpoint that was reached."""
+        return self._last
+
+    @property
+    def holding(self) -> bool:
+        """Whether nothing has been left to play for a while: the arm comes to rest, or rests."""
+        return self._starved > self._silence
+
+    @property
+    def overdue(self) -> int:
+        """How many setpoints should have come while it is holding."""
+        return int(self._starved / self._period) if self.holding else 0
+
+    def take(self, setpoint: Setpoint, now: int) -> None:
+        """Take a setpoint that came at `now` [ns]; one that is older than those before changes nothing."""
+        newest = self._waiting[-1] if self._waiting else self._last
+        if newest is None or newest.execution != setpoint.execution:
+            self._start(setpoint, now)
+        elif setpoint.cycle <= self._newest or setpoint.nominal_ns <= newest.nominal_ns:
+            return
+        else:
+            ahead = setpoint.cycle - self._newest
+            self.missed += ahead - 1
+            self._period = (setpoint.nominal_ns - newest.nominal_ns) / 1e9 / ahead
+        self._newest = setpoint.cycle
+        if self._at(setpoint) < self._played:
+            self.late += 1
+        if len(self._waiting) < KEPT:
+            self._waiting.append(setpoint)
+
+    def play(self, dt: float) -> Setpoint | None:
+        """Go on by `dt` [s] of real time; returns the newest setpoint that was reached by that, if any."""
+        if self._last is None and not self._waiting:
+            return None
+        self._pace(dt)
+        self._played += self._rate * dt
+        reached = None
+        while self._waiting and self._at(self._waiting[0]) <= self._played:
+            self._last = reached = self._waiting.popleft()
+        self._starved = self._starved + dt if self._ahead() < 0.0 else 0.0
+        if self._last is not None:
+            self._want(dt, handing=self._alone and (reached is not None or bool(self._waiting)))
+        return reached
+
+    def _start(self, setpoint: Setpoint, now: int) -> None:
+        """Begin another execution: the arm rests, and so does its first setpoint."""
+        self._waiting.clear()
+        self._last, self._begin = None, setpoint.nominal_ns
+        waited = (now - setpoint.nominal_ns) / 1e9
+        self._played = (waited if 0.0 <= waited <= WRONG else 0.0) - self._delay
+        self._rate, self.missed, self.late = 1.0, 0, 0
+        self._alone = True
+
+    def _at(self, setpoint: Setpoint) -> float:
+        return (setpoint.nominal_ns - self._begin) / 1e9
+
+    def _ahead(self) -> float:
+        newest = self._waiting[-1] if self._waiting else self._last
+        return self._at(newest) - self._played if newest is not None else 0.0
+
+    def _pace(self, dt: float) -> None:
+        """Let the playing rate follow the store: 1 with half a delay or more, 0 with nothing left."""
+        newest = self._waiting[-1] if self._waiting else self._last
+        resting = newest is not None and not np.any(newest.velocity) and not np.any(newest.acceleration)
+        rate = 1.0 if resting else min(max(self._ahead() / (LOW * self._delay), 0.0), 1.0)
+        change = min(max(rate - self._rate, -BRAKE * dt), BRAKE * dt)
+        self._rate += change
+        self._slope = change / dt
+
+    def _want(self, dt: float, *, handing: bool) -> None:
+        assert self._last is not None
+        before, rate, last = self.wanted, self._rate, self._last
+        if self._waiting:
+            span = self._at(self._waiting[0]) - self._at(last)
+            p, v, a = _between(last, self._waiting[0], span, self._played - self._at(last))
+        else:
+            p, v, a = last.position + (self._played - self._at(last)) * last.velocity, last.velocity, np.zeros(6)
+        v, a = rate * v, rate**2 * a + self._slope * v
+        self._alone = not self._waiting
+        if handing:
+            self._offset = (before.position + before.velocity * dt - p, before.velocity - v, 0.0)
+        error, drift, since = self._offset
+        if since < HANDED:
+            p, v, a = (value + part for value, part in zip((p, v, a), _handed(error, drift, since), strict=True))
+            self._offset = (error, drift, since + dt)
+        self.wanted = Wanted(p, v, a)
+
+
+def _between(one: Setpoint, two: Setpoint, span: float, t: float) -> tuple[Array, Array, Array]:
+    """Evaluate the quintic Hermite polynomial between two setpoints `span` [s] apart, `t` behind the first."""
+    x = min(t / span, 1.0)
+    p0, v0, a0 = one.position, one.velocity * span, one.acceleration * span**2
+    p1, v1, a1 = two.position, two.velocity * span, two.acceleration * span**2
+    d, e, f = p1 - p0 - v0 - a0 / 2, v1 - v0 - a0, a1 - a0
+    c3, c4, c5 = 10 * d - 4 * e + f / 2, -15 * d + 7 * e - f, 6 * d - 3 * e + f / 2
+    p = p0 + x * (v0 + x * (a0 / 2 + x * (c3 + x * (c4 + x * c5))))
+    v = v0 + x * (a0 + x * (3 * c3 + x * (4 * c4 + x * 5 * c5)))
+    a = a0 + x * (6 * c3 + x * (12 * c4 + x * 20 * c5))
+    return p, v / span, a / span**2
+
+
+def _handed(error: Array, drift: Array, since: float) -> tuple[Array, Array, Array]:
+    """Let an offset of position and velocity die away to rest, as a quintic over `HANDED`."""
+    h = HANDED
+    x, e, g = since / h, error, drift * h
+    c3, c4, c5 = -10 * e - 6 * g, 15 * e + 8 * g, -6 * e - 3 * g
+    p = e + x * (g + x * x * (c3 + x * (c4 + x * c5)))
+    v = g + x * x * (3 * c3 + x * (4 * c4 + x * 5 * c5))
+    a = x * (6 * c3 + x * (12 * c4 + x * 20 * c5))
+    return p, v / h, a / h**2
