@@ -102,7 +102,7 @@ def test_a_start_must_be_meant_and_the_space_bar_stops(visit: Visit, service: Se
     hold_start(visit, 200)
     visit.page.wait_for_timeout(800)
     assert len(service.call("GET", "/executions")) == count
-    visit.page.get_by_label("Speed").fill("30")
+    visit.page.get_by_role("slider", name="Speed").fill("30")
     hold_start(visit, 1000)
     wait_until(lambda: len(service.call("GET", "/executions")) > count, seconds=10, what="it begins")
     moving = "document.querySelector('#arm .dot.approaching, #arm .dot.following')"

@@ -18,9 +18,17 @@ START, GOAL = (0.58, -0.28, 0.52), (0.58, 0.28, 0.52)  # of the box in the paper
 OVER = 0.62  # [m] height at which it is carried between the obstacles
 
 
-@pytest.fixture
+# A gamepad that the tests hold: standard mapping, plugged in when `pad.connected` is set.
+GAMEPAD = """
+globalThis.pad = {connected: false, axes: [0, 0, 0, 0], buttons: Array.from({length: 17}, () => ({pressed: false}))};
+navigator.getGamepads = () => [pad];
+"""
+
+
+@pytest.fixture(scope="module")
 def visit(browser: Any, service: Service) -> Iterator[Visit]:
-    visit = Visit(browser, service.url)
+    """One page for the tests; each of them finishes its sitting."""
+    visit = Visit(browser, service.url, script=GAMEPAD)
     # Without a graphics card every pixel costs: a small view leaves the machine to the sampling.
     visit.page.set_viewport_size({"width": 900, "height": 420})
     visit.page.wait_for_timeout(300)
@@ -74,6 +82,15 @@ def seen(visit: Visit, point: tuple[float, float, float], off: list[float]) -> t
     return tuple(visit.page.evaluate(f"teachpath.project({under})"))
 
 
+def finish(visit: Visit) -> str:
+    """End the sitting; return what the page says of it."""
+    visit.page.get_by_role("button", name="Finish").click()
+    visit.page.wait_for_selector("html[data-showing='']", state="attached")
+    visit.page.wait_for_selector("#message p")
+    said: str = visit.page.locator("#message").inner_text()
+    return said
+
+
 def has_no_gaps(take: dict[str, Any]) -> bool:
     return take["account"]["lost"] == take["account"]["gaps"] == take["account"]["refused"] == 0
 
@@ -83,10 +100,12 @@ def test_takes_by_mouse_are_judged_at_once_discarded_and_brought_back(visit: Vis
     for _ in range(2):
         carry(visit)
         phase(visit, "ready")
-    assert visit.page.locator("#show .takes li .verdict").all_inner_texts() == ["clean", "clean"]
     takes = service.demonstrations("by-mouse")
-    assert [take["verdict"] for take in takes] == ["clean", "clean"]
-    assert all(has_no_gaps(take) for take in takes)
+    words = [take["verdict"] for take in takes]
+    assert visit.page.locator("#show .takes li .verdict").all_inner_texts() == words
+    for take in takes:  # a machine that is too busy for the declared rate makes it a repaired one
+        assert take["verdict"] in ("clean", "repaired"), take["reasons"]
+        assert has_no_gaps(take)
     goal = service.call("GET", f"/demonstrations/{takes[0]['id']}/trajectory")["positions"][-1]
     assert math.dist(goal, GOAL) < 0.05
     visit.page.get_by_role("button", name="Discard the take").click()
@@ -94,9 +113,7 @@ def test_takes_by_mouse_are_judged_at_once_discarded_and_brought_back(visit: Vis
     assert [bool(take["discarded_ns"]) for take in service.demonstrations("by-mouse")] == [False, True]
     visit.page.get_by_role("button", name="Undo", exact=True).click()
     visit.page.wait_for_selector("#show .takes li.discarded", state="detached")
-    visit.page.get_by_role("button", name="Finish").click()
-    visit.page.wait_for_selector("#message p")
-    assert "Recorded 2 demonstrations" in visit.page.locator("#message").inner_text()
+    assert "Recorded 2 demonstrations" in finish(visit)
     assert service.call("GET", "/tasks/by-mouse/recording") == []
     assert visit.said == []
 
@@ -112,11 +129,57 @@ def test_a_take_by_keyboard(visit: Visit, service: Service) -> None:
         keys.up(key)
     keys.press("Enter")
     phase(visit, "ready")
-    (take,) = service.demonstrations("by-keys")
+    finish(visit)
+    was_carried(service, "by-keys")
+
+
+def was_carried(service: Service, task: str) -> None:
+    (take,) = service.demonstrations(task)
     assert take["verdict"] != "reject", take["reasons"]
+    assert has_no_gaps(take)
     ways = service.call("GET", f"/demonstrations/{take['id']}/trajectory")["positions"]
-    assert max(z for _, _, z in ways) > START[2] + 0.1
-    assert math.dist(ways[-1][:2], START[:2]) > 0.1
+    assert max(z for _, _, z in ways) > START[2] + 0.05
+    assert math.dist(ways[-1][:2], START[:2]) > 0.05
+
+
+def test_a_take_by_gamepad(visit: Visit, service: Service) -> None:
+    begin(visit, service, "by-pad")
+    visit.page.evaluate("pad.connected = true; pad.buttons[0].pressed = true; 0")
+    phase(visit, "carrying")
+    for axes in ("0, 0, 0, -1", "-1, 0.1, 0, 0"):  # the right stick up, then the left one to the left
+        visit.page.evaluate(f"pad.axes = [{axes}]; 0")
+        visit.page.wait_for_timeout(500)
+    visit.page.evaluate("pad.axes = [0, 0, 0, 0]; pad.buttons[0].pressed = false; 0")
+    phase(visit, "ready")
+    visit.page.evaluate("pad.connected = false; 0")
+    finish(visit)
+    was_carried(service, "by-pad")
+
+
+def test_a_take_by_touch_with_a_second_finger_for_the_height(visit: Visit, service: Service) -> None:
+    begin(visit, service, "by-touch")
+    fingers = visit.page.context.new_cdp_session(visit.page)
+
+    def touch(kind: str, *points: tuple[float, float]) -> None:
+        at = [{"x": x, "y": y, "id": number} for number, (x, y) in enumerate(points)]
+        fingers.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": at})
+
+    x, y = visit.page.evaluate(f"teachpath.project({list(START)})")
+    touch("touchStart", (x, y))
+    phase(visit, "carrying")
+    second = (x + 120, y)
+    touch("touchStart", (x, y), second)
+    for k in range(1, 5):
+        touch("touchMove", (x, y), (second[0], second[1] - 30 * k))
+        visit.page.wait_for_timeout(60)
+    for k in range(1, 6):
+        touch("touchMove", (x + 12 * k, y - 4 * k))  # without the second finger, which is lifted; the first still carries
+        visit.page.wait_for_timeout(60)
+    visit.page.wait_for_timeout(200)
+    touch("touchEnd")
+    phase(visit, "ready")
+    finish(visit)
+    was_carried(service, "by-touch")
 
 
 def test_a_hidden_page_stops_and_throws_away_what_was_carried(visit: Visit, service: Service) -> None:
@@ -130,6 +193,7 @@ def test_a_hidden_page_stops_and_throws_away_what_was_carried(visit: Visit, serv
     assert "The page was hidden" in visit.page.locator("#message").inner_text()
     assert service.call("GET", "/tasks/hidden/recording") == []
     assert service.demonstrations("hidden") == []
+    visit.page.evaluate("delete document.hidden")
 
 
 # a headset, emulated

@@ -1,5 +1,6 @@
 // The hand as the page moves it: it follows what the operator points at, never faster than a hand, never into the table.
 const FASTEST = 1.2; // [m/s] a recorder takes a faster step for a jump of the tracker
+const LONGEST = 0.03; // [s] that one step makes good after a stall: more would be a leap
 const LAG = 0.04; // [s] in which the hand follows, so that the steps of a mouse are no corners of the path
 const NEAR = 0.004; // [m] at which it counts as arrived
 
@@ -36,8 +37,9 @@ export class Carry {
     this.target = [...this.home];
   }
 
-  // Advance by `seconds`; true when the hand has moved.
-  step(seconds) {
+  // Advance by the seconds since the last step; true when the hand has moved.
+  step(elapsed) {
+    const seconds = Math.min(elapsed, LONGEST);
     const share = 1 - Math.exp(-seconds / LAG);
     const wish = this.target.map((value, i) => (value - this.position[i]) * share);
     const far = Math.hypot(...wish);

@@ -2,14 +2,15 @@
 // a renderer and a camera of its own, so that the view on the page stays as it is.
 const LATE = 40; // [ms] between two frames that no headset has by itself
 const HOLE = 120; // [ms] without a sample that is no good for a take
+const SELDOM = 10_000; // [ms] between two pictures where each tears such a hole
 const STAND = [1.25, 0, 0]; // [m] robot coordinates, on the floor
 
 export class Rig {
   constructor(viewer) {
     const { THREE } = globalThis.MeshCat;
     Object.assign(this, { viewer, THREE });
-    this.cost = this.drawnAt = 0; // [ms] what drawing costs, and when it was done last
-    this.drew = this.carrying = false;
+    this.cost = this.drawnAt = 0; // [ms] what a picture seems to cost, and when one was drawn last
+    this.carrying = false;
     this.renderer = new THREE.WebGLRenderer({ antialias: true }); // without it three of this age fails on some headsets
     this.renderer.xr.enabled = true;
     this.camera = new THREE.PerspectiveCamera(70, 1, 0.02, 30);
@@ -44,15 +45,15 @@ export class Rig {
   }
 
   // Whether this frame is drawn: always, unless drawing makes the frames late. Samples come with the frames, so they come
-  // first: pictures get fewer, and where one would tear a hole into a take there is none until the object is let go.
+  // first: pictures get fewer, and where one would tear a hole into a take there are next to none.
   #affords(time) {
     const apart = time - (this.before ?? time);
     this.before = time;
-    if (this.drew) this.cost = Math.max(apart, 0.9 * this.cost);
-    const least = this.cost > LATE ? 4 * this.cost : 0;
-    this.drew = time - this.drawnAt >= least && !(this.carrying && this.cost > HOLE);
-    if (this.drew) this.drawnAt = time;
-    return this.drew;
+    this.cost = apart > LATE ? Math.max(apart, this.cost) : 0.995 * this.cost;
+    const least = this.cost > HOLE ? SELDOM : this.cost > LATE ? 4 * this.cost : 0;
+    if (time - this.drawnAt < least || (this.carrying && this.cost > HOLE)) return false;
+    this.drawnAt = time;
+    return true;
   }
 
   // The head's first place becomes the stand at the table, wherever in the room the operator is.

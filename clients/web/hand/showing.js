@@ -12,8 +12,10 @@ import { steering } from "./steering.js";
 
 const UNDECIDED = 4; // [s] after which a take of which nothing was heard is asked for
 const ASK = 0.25; // [s] between two questions whether a take has been judged
-const SELDOM = 1000; // [ms] between two pictures at most, and COST times what one takes at least
-const COST = 4;
+const COST = 4; // times what a picture seems to take lie between two pictures, where they make samples late
+const SELDOM = 10_000; // [ms] at most
+const LITTLE = 20; // [ms] that need no sparing
+const FORGET = 0.999; // with every sample in time
 const REACH = 0.08; // [m] within which the recorder lets a hand grasp the object
 const NOTHING = { kind: "sphere", size: [0.02], position: [0.58, -0.28, 0.6] }; // stands for the object of an empty scene
 
@@ -118,13 +120,14 @@ export class Showing {
   }
 
   #tick(seconds) {
+    if (this.view.least) this.view.spare(this.view.least < LITTLE ? 0 : FORGET * this.view.least);
     this.steering.step(seconds);
     if (this.carry.step(seconds)) this.#draw();
     this.link.send({ position: this.carry.position, orientation: null, tracked: true, grasp: this.carry.grasped, ms: clock() });
     this.#live(seconds);
   }
 
-  // Samples that come late: draw less, by as much as drawing seems to cost; a picture a second is drawn all the same.
+  // Samples that come late: draw less, by as much as drawing seems to cost.
   #spare(ms) {
     this.view.spare(Math.min(SELDOM, Math.max(this.view.least, COST * ms)));
   }

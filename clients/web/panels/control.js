@@ -1,10 +1,11 @@
 // The arm: its state in words, a start that has to be meant, hold, resume, step, reverse, the speed; who holds control.
-import { at, post } from "../api.js";
+import { at, get, post } from "../api.js";
 import { ControlLease } from "../arm/lease.js";
 import { bar, element, facts, number, percent, replace, sentence } from "../elements.js";
 import { moving } from "../store.js";
 
 const HOLD = 800; // [ms] that the start must be held
+const LOOK = 2000; // [ms]
 const STEP = 0.01; // [m]
 const WORDS = {
   idle: "At rest",
@@ -19,13 +20,13 @@ const WORDS = {
 
 export function control(place, context) {
   const panel = new ControlPanel(place, context);
-  return { update: (state, changed) => panel.update(state, changed) };
+  return { update: (state, changed) => panel.update(state, changed), show: () => panel.show(), hide: () => panel.hide() };
 }
 
 class ControlPanel {
   constructor(place, context) {
     Object.assign(this, { place, context });
-    this.lease = new ControlLease(() => this.#paint(context.store.state));
+    this.lease = new ControlLease(() => this.#look());
     this.parts = parts();
     place.append(...this.parts.all);
     this.parts.buttons.addEventListener("click", (event) => {
@@ -40,8 +41,24 @@ class ControlPanel {
     this.#deliberate(this.parts.start);
   }
 
+  show() {
+    this.looking = setInterval(() => document.hidden || this.#look(), LOOK);
+    this.#look();
+  }
+
+  hide() {
+    clearInterval(this.looking);
+  }
+
   update(state, changed) {
     if (["executor", "executions", "plan", "lease", "connection"].some((name) => changed.has(name))) this.#paint(state);
+  }
+
+  // Who holds control: the executor alone knows.
+  async #look() {
+    const lease = await get("lease").catch(() => null);
+    this.context.store.set({ lease });
+    this.#paint(this.context.store.state);
   }
 
   // The start begins only when the button has been held for a while, by pointer or key; letting go takes it back.

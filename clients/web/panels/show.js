@@ -13,7 +13,6 @@ const PHASES = {
   returning: "The box goes back to its start.",
   lost: "The connection broke off; what was carried is lost. Connecting again …",
 };
-const IN_HEADSET = 1000; // [ms] between two pictures on the page while a headset shows the scene
 const HOW = [
   ["Mouse", "press and drag; shift or the wheel changes the height"],
   ["Touch", "one finger drags, a second one changes the height"],
@@ -103,7 +102,7 @@ class ShowPanel {
     const hand = new HeadsetHand(this.context.view.viewer, {
       hear: (sample) => {
         if (this.showing?.link.live) this.showing.follow(sample);
-        hand.rig.carrying = this.showing?.phase === "carrying";
+        hand.rig.carrying = ["carrying", "judging"].includes(this.showing?.phase); // a take ends when the hand rests
         hand.rig.say(this.#sentence());
       },
       ended: () => {
@@ -115,7 +114,7 @@ class ShowPanel {
       failed: (why) => this.#stop(why),
     });
     await hand.start();
-    this.context.view.spare(IN_HEADSET);
+    this.context.view.spare(Infinity); // nobody looks at the page meanwhile
     this.hand = hand;
     return hand;
   }

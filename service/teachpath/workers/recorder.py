@@ -33,8 +33,7 @@ class Recorder:
         scene: gives the scene of a name; raises NotFound.
         calibration: gives the calibration of a name; raises NotFound.
         changed: called with each demonstration that an operator has discarded, restored, marked or trimmed.
-        recorded: called with each new demonstration, on the recorder's thread or that of the caller of `end`, which
-            wait for it: it must not wait for anybody.
+        recorded: called with each new demonstration, on the recorder's thread or that of the caller of `end`.
         clock: [s] monotonic.
     """
 
@@ -180,7 +179,7 @@ class Recorder:
 
     @property
     def backlog(self) -> int:
-        """How many samples have been received and not yet recorded; of each tracker at most `longest_backlog`."""
+        """How many samples have been received and not yet recorded."""
         return self._intake.backlog
 
     def faults(self) -> list[str]:
@@ -189,9 +188,7 @@ class Recorder:
             found = [
                 f"{session.tracker}: {session.fault}" for session in self._scribe.sessions.values() if session.fault
             ]
-        if self._missed:
-            found.append(f"Zenoh reports {self._missed} samples that never came")
-        return found + [said for said in [self._intake.misnamed()] if said]
+        return found + ([f"Zenoh reports {self._missed} samples that never came"] if self._missed else [])
 
     def calibration_of(self, tracker: str) -> Calibration | None:
         """Return the calibration under which `tracker` is being recorded, or None."""
