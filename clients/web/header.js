@@ -6,11 +6,11 @@ export function header({ store }, { task, stop, control }) {
   task.addEventListener("change", () => store.set({ task: task.value }));
   store.subscribe((state, changed) => {
     if (changed.has("tasks") || changed.has("task")) choose(task, state);
-    if (changed.has("executor")) stop.disabled = !moving(state);
-    if (changed.has("lease")) {
-      control.hidden = !state.lease?.holder;
-      control.textContent = state.lease?.holder ? `${state.lease.holder} holds control` : "";
-    }
+    if (!changed.has("executor")) return;
+    stop.disabled = !moving(state);
+    const { operator, asking } = state.executor ?? {};
+    control.hidden = !operator;
+    control.textContent = operator ? `${operator} has control${asking ? `, ${asking} asks for it` : ""}` : "";
   });
 }
 

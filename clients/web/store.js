@@ -6,7 +6,7 @@
 // executions   [execution], newest first                      recordings     [report] of running recordings
 // trackers     [{name, announced}]                            coach          {task: sentence}
 // station      {version, notes} or null                       executor       status or null when it is silent
-// lease        who holds control, or null                     run            id of the run that is looked at
+// run          id of the run that is looked at, "" = the newest
 // plan         certified plan of the path that is looked at, or null
 // path         id of the learned path that is looked at       focus          {kind, id} under the pointer, or null;
 // courses      how many courses of demonstrations have come                  kind is demonstrations or paths
@@ -26,7 +26,6 @@ export const EMPTY = Object.freeze({
   coach: {},
   station: null,
   executor: null,
-  lease: null,
   run: "",
   path: "",
   plan: null,

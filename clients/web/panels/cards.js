@@ -20,9 +20,11 @@ export function cards(place, { store, attempt, open }) {
     if (event.target.matches("select")) store.set({ run: event.target.value });
   });
   pointAt(place, store);
+  const seen = () => !place.closest("[role=tabpanel]").hidden;
   return {
+    show: () => prospects.look(store.state),
     update(state, changed) {
-      if (changed.has("runs") || changed.has("run") || changed.has("jobs")) prospects.look(state);
+      if (seen() && ["runs", "run", "newest", "jobs"].some((name) => changed.has(name))) prospects.look(state);
       if (["runs", "run", "newest", "path", "jobs", "task", "demonstrations", "prospects"].some((name) => changed.has(name))) replace(place, content(state));
       if (changed.has("focus")) markFocus(place, state.focus);
     },
@@ -92,10 +94,10 @@ function card(state, cluster) {
     { class: `card ${chosen ? "chosen" : ""}`, "data-focus": `paths ${path.id}` },
     element("header", {}, head, element("button", { type: "button", class: "pick", "aria-pressed": String(chosen), "data-path": path.id, "data-key": `pick ${path.id}`, "aria-label": `Choose way ${cluster.index}` }, chosen ? "chosen" : "choose")),
     facts([
-      ["Agree", `${kept} of ${cluster.members.length}${path.fit.tube > 0 ? `, within ${number(path.fit.tube * 1000, 0, "mm")}` : ""}`],
+      ["Agree", `${kept} of ${cluster.members.length}${path.fit?.tube > 0 ? `, within ${number(path.fit.tube * 1000, 0, "mm")}` : ""}`],
       ["Spread", spread.length > 0 && `${number(median(spread) * 1000, 0, "mm")}, at most ${number(Math.max(...spread) * 1000, 0, "mm")}`],
       path.version > 1 && ["Edited", `version ${path.version}`],
-      ["Fit", `${path.curve.control_points.length} points, error ${number(path.fit.largest * 1000, 1, "mm")}`],
+      ["Fit", `${path.curve.control_points.length} points${path.fit ? `, error ${number(path.fit.largest * 1000, 1, "mm")}` : ""}`],
       ...outlook.facts ?? [],
     ]),
     outlook.fault && element("p", { class: "failed" }, sentence(outlook.fault)),

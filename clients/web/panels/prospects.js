@@ -1,10 +1,11 @@
-// What lies before each path: duration, clearance and reach, from its newest plan.
-import { at, get } from "../api.js";
+// What lies before each path: duration, clearance and reach, from its newest plan, else from a quick look at it.
+import { at, get, post } from "../api.js";
 import { number, percent } from "../elements.js";
 import { pathsOf } from "../store.js";
 
 export class Prospects {
-  #known = new Map(); // plan -> what it says
+  #known = new Map(); // what was asked about, a plan or a version of a path -> what was found
+  #last = Promise.resolve(); // one question at a time: a look costs the service a moment
   #asking = new Set();
 
   constructor(store) {
@@ -18,20 +19,25 @@ export class Prospects {
       const last = jobs.at(-1);
       const planning = ["queued", "running"].includes(last?.state);
       const plan = last?.state === "succeeded" ? last.outcome : "";
-      if (plan && !this.#known.has(plan)) this.#ask(plan);
+      const key = plan || `${path.id} ${path.version}`;
+      this.#ask(key, plan ? () => get(at("plans", plan)).then(ofPlan) : () => post(`${at("paths", path.id)}/assessment`, { version: path.version, curve: path.curve }).then(ofLook));
       const refused = last?.state === "failed" ? { fault: `Not certified: ${last.message}` } : {};
-      found[path.id] = { ...this.#known.get(plan), ...refused, planning, planned: Boolean(plan) };
+      found[path.id] = { ...this.#known.get(key), ...refused, planning, planned: Boolean(plan) };
     }
     if (JSON.stringify(found) !== JSON.stringify(this.store.state.prospects)) this.store.set({ prospects: found });
   }
 
-  async #ask(plan) {
-    if (this.#asking.has(plan)) return;
-    this.#asking.add(plan);
-    const found = await get(at("plans", plan)).catch(() => null); // asked again with the next change
-    this.#asking.delete(plan);
-    if (found) this.#known.set(plan, ofPlan(found));
-    if (found) this.look(this.store.state);
+  async #ask(key, question) {
+    if (this.#asking.has(key) || this.#known.has(key)) return;
+    this.#asking.add(key);
+    this.#last = this.#last.then(question).then(
+      (found) => this.#known.set(key, found),
+      // a refusal says what is wrong with the path; without an answer it is asked again with the next change
+      (error) => error.status === 422 && this.#known.set(key, { fault: error.message }),
+    );
+    await this.#last;
+    this.#asking.delete(key);
+    if (this.#known.has(key)) this.look(this.store.state);
   }
 }
 
@@ -42,5 +48,16 @@ function ofPlan({ duration, certificate }) {
       ["Clearance", number(certificate.clearance.value * 1000, 0, "mm")],
       ["Reach", `${percent(certificate.position_use.value)} of the joints' range`],
     ],
+  };
+}
+
+function ofLook({ duration, clearance, reach, failure, sentence }) {
+  return {
+    facts: [
+      ["Duration", duration !== null && `about ${number(duration, 1, "s")}`],
+      ["Clearance", clearance.length > 0 && `about ${number(Math.min(...clearance) * 1000, 0, "mm")}`],
+      ["Reach", reach.length > 0 && (Math.min(...reach) >= 0 ? "the whole way" : `${number(-Math.min(...reach) * 1000, 0, "mm")} short`)],
+    ],
+    fault: failure ? sentence : "",
   };
 }

@@ -4,7 +4,7 @@ import { runOf } from "../store.js";
 import { wayColor } from "../shapes.js";
 import { plot } from "../plot.js";
 
-export function scores(place) {
+export function scores(place, { store }) {
   let shown = "";
   const [growth, ranks] = [element("div", { class: "plot" }), element("div", { class: "plot" })];
   place.append(growth, ranks);
@@ -19,7 +19,7 @@ export function scores(place) {
     convergence(growth, run.learned.clusters);
     likelihoods(ranks, run.learned.clusters, numbers);
   };
-  return { update: (state) => draw(state) };
+  return { show: () => draw(store.state), update: (state) => draw(state) };
 }
 
 function convergence(place, clusters) {

@@ -25,4 +25,8 @@ export const panel = {
   update(state, changed) {
     for (const part of parts) part.update(state, changed);
   },
+
+  show() {
+    for (const part of parts) part.show?.();
+  },
 };

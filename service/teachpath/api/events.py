@@ -3,7 +3,8 @@
 Each message is one JSON document: `{"sequence", "topic", "id"}` says that a resource has changed and may be read anew;
 with `now` it says how it stands (null: it is gone). The topic `all` means: read everything anew. It comes first, and
 again when a listener has fallen behind. Topics are the names of the resources (tasks, demonstrations, runs, paths,
-plans, jobs, executions), and, with `now`, `station`, `executor`, `trackers`, `recordings`, `coach` and `lease`.
+plans, jobs, executions), and, with `now`, `station`, `executor` (also who has control), `trackers`, `recordings` and
+`coach`.
 """
 
 from __future__ import annotations

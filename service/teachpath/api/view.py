@@ -9,8 +9,7 @@ from fastapi import APIRouter, Response, WebSocket
 from fastapi.responses import FileResponse, PlainTextResponse
 
 from teachpath.api import sockets
-from teachpath.errors import NotFound
-from teachpath.workers.preview import Page, Preview, viewer_files
+from teachpath.workers.preview import Page, Preview, viewer_files, web_files
 
 # The two hashes are the style elements that meshcat's bundle puts into the page: its own (empty) one and dat.gui's.
 STYLE_HASHES: Final = (
@@ -47,23 +46,10 @@ _VENDORED: Final = {
 }
 
 
-def web_root() -> Path:
-    """Return the folder of the page's files: `teachpath/web` when installed, `clients/web` in a checkout.
-
-    Raises:
-        NotFound: neither is there.
-    """
-    here = Path(__file__).resolve()
-    for folder in (here.parents[1] / "web", here.parents[3] / "clients" / "web"):
-        if (folder / "index.html").is_file():
-            return folder
-    raise NotFound("the files of the operator's page are missing; reinstall teachpath")
-
-
 def view_router(preview: Preview) -> APIRouter:
     """Return the routes of the pages, their files and the view: `/`, `/docs`, `/web/`, `/vendor/`, `/api/v1/view`."""
     router = APIRouter(include_in_schema=False)
-    root, viewer = web_root(), viewer_files()
+    root, viewer = web_files(), viewer_files()
 
     @router.get("/")
     def page() -> Response:

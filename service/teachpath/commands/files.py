@@ -1,4 +1,4 @@
-"""import, export and doctor: work on the data folder itself."""
+"""import, export, report and doctor: work on the data folder itself."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import sys
 from pathlib import Path
 from typing import Annotated
 
+import numpy as np
 import typer
 
 from teachpath.app import trajectory_of
@@ -16,6 +17,7 @@ from teachpath.io.store import Store
 from teachpath.offline.doctor import examine
 from teachpath.offline.exporting import chosen, export_demonstrations
 from teachpath.offline.importing import Source, import_file
+from teachpath.offline.report import review_of, write
 from teachpath.workers.calibrations import Calibrations
 
 
@@ -89,6 +91,34 @@ def export(
         print(file)
     if left_out:
         print(f"{left_out} rejected, discarded or bad ones are left out; --all writes them too", file=sys.stderr)
+
+
+def report(
+    run: Annotated[str, typer.Argument(help="Id of a learning run, or a task: its newest run.")],
+    into: Annotated[Path | None, typer.Option(help="File to write; RUN.html without it.")] = None,
+    config: Config = None,
+    data: Data = None,
+) -> None:
+    """Write a review package: one HTML file about a learning run.
+
+    It holds the animated 3-D scene, tables and plots, opens in any browser without the service, and fetches nothing.
+    """
+    settings = settings_of(config, data)
+    store = Store(settings.store)
+    try:
+        review = review_of(
+            store,
+            run,
+            scene=settings.scene,
+            trajectory=lambda row: trajectory_of(store, settings, row),
+            motion=settings.motion,
+            dwell=settings.executor.dwell,
+        )
+    finally:
+        store.close()
+    file = into or Path(f"{run}.html")
+    size = write(review, file, home=np.array(settings.motion.home))
+    print(f"{file}: {size / 1e6:.1f} MB, {len(review.paths)} paths, {len(review.motions)} of them move")
 
 
 def doctor(config: Config = None, data: Data = None) -> None:

@@ -4,8 +4,9 @@ Names in its tree, on which pages and tests may rely: `/object` (the carried one
 `-`), `/hand/<tracker>/{marker,trail}`. Everything else a page draws by itself, for the task that it looks at.
 """
 
-from teachpath.workers.preview.commands import WAYS, viewer_files
+from teachpath.workers.preview.commands import WAYS
+from teachpath.workers.preview.files import viewer_files, web_files
 from teachpath.workers.preview.tree import Page
 from teachpath.workers.preview.worker import Preview, PreviewSettings
 
-__all__ = ["WAYS", "Page", "Preview", "PreviewSettings", "viewer_files"]
+__all__ = ["WAYS", "Page", "Preview", "PreviewSettings", "viewer_files", "web_files"]

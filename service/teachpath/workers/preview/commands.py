@@ -6,15 +6,13 @@ listens on every interface.
 
 from __future__ import annotations
 
-import importlib.util
 import warnings
 from collections.abc import Sequence
-from pathlib import Path
 
 import numpy as np
 import umsgpack
 
-from teachpath.errors import NotFound, UnusableInput
+from teachpath.errors import UnusableInput
 from teachpath.records import Array, Quaternion, Vector
 
 with warnings.catch_warnings():
@@ -30,18 +28,6 @@ WAYS = (0x0072B2, 0xD55E00, 0x009E73, 0xCC79A7, 0xE69F00, 0x56B4E9)
 
 # three.js lays a cylinder along y; ours stand along z.
 _UPRIGHT = np.array([[1.0, 0, 0, 0], [0, 0, -1, 0], [0, 1, 0, 0], [0, 0, 0, 1]])
-
-
-def viewer_files() -> Path:
-    """Return the folder of meshcat's viewer: `dist/main.min.js` with its third-party notices, and `LICENSE`.
-
-    Raises:
-        NotFound: meshcat is not installed as files.
-    """
-    spec = importlib.util.find_spec("meshcat")
-    if spec is None or not spec.submodule_search_locations:
-        raise NotFound("meshcat's viewer is not installed; get it with: pip install 'teachpath[service]'")
-    return Path(spec.submodule_search_locations[0]) / "viewer"
 
 
 def solid(

@@ -8,10 +8,15 @@ from __future__ import annotations
 
 import struct
 import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
 
 CREDIT = 2  # batches sent ahead of their acknowledgement
+
+
+def pack(commands: Iterable[bytes]) -> bytes:
+    """Return one batch: `[u32 little-endian length][command]` of each."""
+    return b"".join(struct.pack("<I", len(command)) + command for command in commands)
 
 
 @dataclass
@@ -42,7 +47,7 @@ class Page:
             self._ordered.clear()
             self._transforms.clear()
             self._owed += 1
-        return b"".join(struct.pack("<I", len(command)) + command for command in commands)
+        return pack(commands)
 
     def acknowledge(self, batches: int = 1) -> None:
         """Give credit back: the page has drawn `batches` more batches."""

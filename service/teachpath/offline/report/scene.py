@@ -1,0 +1,65 @@
+"""The 3-D scene of a review package: one batch of the viewer's commands, and the arm's poses against time."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from teachpath.io.bus import MemoryBus
+from teachpath.motion import drawing
+from teachpath.motion.kinematics import link_frames
+from teachpath.motion.rehearsal import Rehearsal
+from teachpath.offline.report.content import Review
+from teachpath.records import Array
+from teachpath.workers.preview import WAYS, Preview, commands
+from teachpath.workers.preview.tree import pack
+from teachpath_proto.keys import Keys
+
+POINTS = 160  # of a path and of a demonstration as drawn
+FRAMES = 240  # of a motion; the viewer goes evenly from one to the next
+
+
+def way_color(cluster: int) -> int:
+    """Return the colour of a way, 0xRRGGBB."""
+    return WAYS[(cluster - 1) % len(WAYS)]
+
+
+def scene_batch(review: Review, home: Array) -> bytes:
+    """Return the commands that draw all that stands: arm, scene, demonstrations and paths."""
+    preview = Preview(MemoryBus(), Keys(), drawing(), robot="", home=home, to_world=lambda tracker, position: None)
+    preview.show_object(review.scene.carried)
+    arm = preview.attach(lambda: None).take() or b""
+    drawn = [
+        commands.solid(f"/scene/{s.name}", s.kind, s.size, pose=commands.pose_of(s.position), color=s.color)
+        for s in review.scene.obstacles
+    ]
+    ways = {member: cluster.index for cluster in review.run.learned.clusters for member in cluster.members}
+    for key, trajectory in review.trajectories.items():
+        positions = trajectory.thinned(POINTS).positions
+        if len(positions) > 1:
+            color = way_color(ways[key]) if key in ways else 0x7A8694
+            drawn.append(commands.line(f"/demonstrations/{key}", positions, color=color, opacity=0.7))
+    u = np.linspace(0.0, 1.0, POINTS)
+    for path in review.paths:
+        color = way_color(path.cluster)
+        drawn.append(commands.tube(f"/paths/{path.id}", path.curve(u), radius=0.005, color=color))
+    return arm + pack(drawn)
+
+
+def frames(motion: Rehearsal) -> dict[str, Any]:
+    """Return the poses of links and object: times [s] and, for each, 4 x 4 matrices column by column."""
+    at = np.linspace(0, len(motion.times) - 1, min(FRAMES, len(motion.times))).round().astype(int)
+    links = np.array([link_frames(q) for q in motion.joints[at]])  # (n, 7, 4, 4)
+    document = {
+        "times": np.round(motion.times[at], 3).tolist(),
+        "links": np.round(links.transpose(0, 1, 3, 2).reshape(len(at), -1, 16), 5).tolist(),
+        "stretches": [{"name": s.name, "begin": round(s.begin, 3), "end": round(s.end, 3)} for s in motion.stretches],
+    }
+    if len(motion.object_position):
+        poses = [
+            commands.pose_of(tuple(position), tuple(turned))
+            for position, turned in zip(motion.object_position[at], motion.object_orientation[at], strict=True)
+        ]
+        document["object"] = np.round(np.array(poses).transpose(0, 2, 1).reshape(-1, 16), 5).tolist()
+    return document

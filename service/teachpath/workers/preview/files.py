@@ -1,0 +1,33 @@
+"""Where the files of the page and of meshcat's viewer lie."""
+
+from __future__ import annotations
+
+import importlib.util
+from pathlib import Path
+
+from teachpath.errors import NotFound
+
+
+def viewer_files() -> Path:
+    """Return the folder of meshcat's viewer: `dist/main.min.js` with its third-party notices, and `LICENSE`.
+
+    Raises:
+        NotFound: meshcat is not installed as files.
+    """
+    spec = importlib.util.find_spec("meshcat")
+    if spec is None or not spec.submodule_search_locations:
+        raise NotFound("meshcat's viewer is not installed; get it with: pip install 'teachpath[service]'")
+    return Path(spec.submodule_search_locations[0]) / "viewer"
+
+
+def web_files() -> Path:
+    """Return the folder of the page's files: `teachpath/web` when installed, `clients/web` in a checkout.
+
+    Raises:
+        NotFound: neither is there.
+    """
+    here = Path(__file__).resolve()
+    for folder in (here.parents[2] / "web", here.parents[4] / "clients" / "web"):
+        if (folder / "index.html").is_file():
+            return folder
+    raise NotFound("the files of the operator's page are missing; reinstall teachpath")
