@@ -8,7 +8,7 @@
   viewer.gui.domElement.remove(); // meshcat's own control panel covers the view
   const resize = Object.getPrototypeOf(viewer).set_3d_pane_size.bind(viewer);
   viewer.set_3d_pane_size = () => resize(view.clientWidth, view.clientHeight);
-  viewer.set_property(["Axes"], "visible", false);
+  for (const name of ["Axes", "Grid"]) viewer.set_property([name], "visible", false);
   viewer.scene.background = new THREE.Color(0xe9edf1);
 
   const bytes = Uint8Array.from(atob(scene), (letter) => letter.charCodeAt(0));
@@ -20,8 +20,8 @@
   }
   viewer.set_3d_pane_size();
   viewer.camera.fov = 30;
-  viewer.camera.position.set(2.3, 1.9, 2.1); // three's frame: y up
-  viewer.controls.target.set(0.3, 0.55, 0);
+  viewer.camera.position.set(1.95, 1.55, 1.8); // three's frame: y up
+  viewer.controls.target.set(0.22, 0.5, 0);
   viewer.camera.updateProjectionMatrix();
   viewer.controls.update();
   new ResizeObserver(() => viewer.set_3d_pane_size()).observe(view);
