@@ -2,6 +2,6 @@
 
 from teachpath_client.link import ClientError, Link
 from teachpath_client.reading import HandReading
-from teachpath_client.tracker import Tracker
+from teachpath_client.tracker import Routine, Tracker
 
-__all__ = ["ClientError", "HandReading", "Link", "Tracker"]
+__all__ = ["ClientError", "HandReading", "Link", "Routine", "Tracker"]

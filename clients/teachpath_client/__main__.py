@@ -5,22 +5,27 @@ from __future__ import annotations
 import argparse
 import logging
 import sys
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
+from typing import cast
 
 from google.protobuf.json_format import MessageToJson
 
-from teachpath_client.devices import configure, describe_sources, open_source
+from teachpath_client.devices import TouchSource, configure, describe_sources, open_source
 from teachpath_client.devices.cyberglove import GloveSettings
 from teachpath_client.link import ClientError, Link
-from teachpath_client.live import calibrate_glove, ended_by_signals, felt, record_live
+from teachpath_client.live import Feeling, calibrate_glove, ended_by_signals, record_live
+from teachpath_client.pedal import pedal_or_none
 from teachpath_client.reading import HandReading, Vector
 from teachpath_client.replay import read_mcap
 from teachpath_client.rest import Station
+from teachpath_client.status import Status
 from teachpath_client.synthetic import experiment_1, experiment_2
-from teachpath_client.tracker import Tracker
+from teachpath_client.tracker import Routine, Tracker
 from teachpath_client.tracker_calibration import COLUMNS, calibrate_tracker, lines, measure_points, read_points
 from teachpath_proto import tracker_pb2
+
+Passed = Callable[[Iterator[HandReading]], Iterator[HandReading]]
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
@@ -44,6 +49,12 @@ def _parser() -> argparse.ArgumentParser:
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
     tracker = commands.add_parser("tracker", help="publish from a device until Ctrl-C")
     tracker.add_argument("--source", required=True, help="one of those that `teachpath-client sources` lists")
+    tracker.add_argument("--pedal", default="", metavar="KEY", help="space, enter, a letter, or /dev/input/eventN")
+    tracker.add_argument("--rate", type=float, default=0.0, metavar="HZ", help="of the device: takes are judged by it")
+    tracker.add_argument("--armed", action="store_true", help="begin paused: pedal, fist or page begins the first take")
+    tracker.add_argument("--countdown", type=float, metavar="S", help="[s] before each take; else as the station says")
+    tracker.add_argument("--takes", type=_count, default=0, metavar="N", help="pause by itself after so many takes")
+    tracker.add_argument("--one-by-one", action="store_true", help="pause after each take")
     tracker.set_defaults(run=_tracker)
     sources = commands.add_parser("sources", help="list the sources that there are")
     sources.set_defaults(run=_sources)
@@ -98,6 +109,13 @@ def _place(text: str) -> Vector:
     return x, y, z
 
 
+def _count(text: str) -> int:
+    count = int(text)
+    if not 0 <= count <= 10_000:
+        raise argparse.ArgumentTypeError(f"{text} is outside 0 to 10000")
+    return count
+
+
 def _speed(text: str) -> float:
     speed = float(text)
     if not 0.01 <= speed <= 100:
@@ -116,20 +134,33 @@ def _tracker(options: argparse.Namespace) -> None:
     source = open_source(options.source, dict(options.option))
     if source.capabilities.live and options.speed != 1.0:
         raise ClientError(f"{options.source} measures in real time; leave out --speed {options.speed:g}")
-    with ended_by_signals(source), source, Link(options.endpoint) as link:
+    routine = Routine(options.armed, options.countdown, options.takes, options.one_by_one)
+    status = Status(sys.stderr)
+    with ended_by_signals(source), source, Link(options.endpoint) as link, pedal_or_none(options.pedal) as pedalled:
         tracker = Tracker(link, options.tracker, prefix=options.prefix)
         print(f"recording {options.task} from {options.source}; Ctrl-C ends it", file=sys.stderr)
-        with felt(source, link, options.tracker, options.prefix):
-            _print(
-                record_live(
-                    tracker,
-                    source,
-                    options.task,
-                    scene=options.scene,
-                    calibration=options.calibration,
-                    speed=options.speed,
-                )
-            )
+        tracker.hear(status.take)
+        if source.capabilities.touch:
+            feeling = Feeling(cast("TouchSource", source))
+            tracker.hear(feeling.take)
+            pedalled = _one_after_the_other(feeling.readings, pedalled)
+        report = record_live(
+            tracker,
+            source,
+            options.task,
+            scene=options.scene,
+            calibration=options.calibration,
+            speed=options.speed,
+            rate=options.rate,
+            routine=routine,
+            pedalled=pedalled,
+        )
+        status.end()
+        _print(report)
+
+
+def _one_after_the_other(first: Passed, second: Passed) -> Passed:
+    return lambda readings: second(first(readings))
 
 
 def _sources(_options: argparse.Namespace) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import signal
-import threading
+import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from types import FrameType
@@ -11,13 +11,11 @@ from types import FrameType
 from teachpath_client.devices.cyberglove import GloveDialogue, GloveSettings, Raw, connect
 from teachpath_client.devices.glove_calibration import GloveCalibration
 from teachpath_client.devices.source import Source, TouchSource
-from teachpath_client.link import ClientError, Link
-from teachpath_client.tracker import Tracker
+from teachpath_client.reading import HandReading
+from teachpath_client.tracker import Routine, Tracker
 from teachpath_proto import tracker_pb2
-from teachpath_proto.keys import Keys
 
-ASK = 0.1  # [s] between questions for the phase
-TRANSPORT = "transport"
+FORGOTTEN = 3.0  # [s] after which a station that said the hand holds something counts as gone; it says so each second
 MEASURED = 100  # samples of a hand that is held still
 PATIENCE = 5.0  # [s] without a sample
 
@@ -41,43 +39,58 @@ def ended_by_signals(source: Source) -> Iterator[None]:
 
 
 def record_live(
-    tracker: Tracker, source: Source, task: str, *, scene: str = "", calibration: str = "", speed: float = 1.0
+    tracker: Tracker,
+    source: Source,
+    task: str,
+    *,
+    scene: str = "",
+    calibration: str = "",
+    speed: float = 1.0,
+    rate: float = 0.0,
+    routine: Routine | None = None,
+    pedalled: Callable[[Iterator[HandReading]], Iterator[HandReading]] = lambda readings: readings,
 ) -> tracker_pb2.RecordingReport:
-    """Record `task` from a source until it ends, and return the station's account, whatever ended it."""
-    tracker.start(task, scene=scene, calibration=calibration)
+    """Record `task` from a source until it ends, and return the station's account, whatever ended it.
+
+    `rate` [Hz] is declared to the station, which judges the takes by it (0: it is not); `pedalled` puts a pedal into
+    the readings.
+    """
+    tracker.start(task, scene=scene, calibration=calibration, rate=rate, routine=routine)
     try:
-        tracker.publish(source, speed=speed)
+        tracker.publish(pedalled(iter(source)), speed=speed)
     finally:
         report = tracker.stop()
     return report
 
 
-@contextmanager
-def felt(source: Source, link: Link, tracker: str, prefix: str) -> Iterator[None]:
-    """Let the hand feel, as far as the source can, that it carries the object by what the station says."""
-    if not source.capabilities.touch:
-        yield
-        return
-    over = threading.Event()
-    arguments = (source, link, tracker, Keys(prefix).recorder_status, over)
-    thread = threading.Thread(target=_follow_phase, args=arguments, name="feel")
-    thread.start()
-    try:
-        yield
-    finally:
-        over.set()
-        thread.join()
+class Feeling:
+    """Lets the hand feel that it holds the object, as the station says; never longer than the station lives.
 
+    Args:
+        source: what is felt.
+        clock: [s] that never runs back.
+    """
 
-def _follow_phase(source: TouchSource, link: Link, tracker: str, key: str, over: threading.Event) -> None:
-    while not over.wait(ASK):
+    def __init__(self, source: TouchSource, clock: Callable[[], float] = time.monotonic) -> None:
+        self._source, self._clock = source, clock
+        self._until = float("inf")
+
+    def take(self, payload: bytes) -> None:
+        """Follow a `HandFeedback`."""
+        holding = tracker_pb2.HandFeedback.FromString(payload).holding
+        self._until = self._clock() + FORGOTTEN if holding else float("inf")
+        self._source.touch(holding)
+
+    def readings(self, readings: Iterator[HandReading]) -> Iterator[HandReading]:
+        """Pass readings on, and end the feeling when the station has not spoken of it for long, or with the last."""
         try:
-            status = tracker_pb2.RecorderStatus.FromString(link.ask(key, timeout=1.0))
-        except ClientError:  # the recording itself tells when the station is gone
-            continue
-        phases = [recording.phase for recording in status.recordings if recording.tracker == tracker]
-        source.touch(TRANSPORT in phases)
-    source.touch(False)
+            for reading in readings:
+                if self._clock() > self._until:
+                    self._until = float("inf")
+                    self._source.touch(False)
+                yield reading
+        finally:
+            self._source.touch(False)
 
 
 def calibrate_glove(settings: GloveSettings, tell: Callable[[str], object]) -> GloveCalibration:

@@ -4,11 +4,22 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterable
+from dataclasses import dataclass
 
 from teachpath_client.link import Link
 from teachpath_client.reading import HandReading
 from teachpath_proto import tracker_pb2
 from teachpath_proto.keys import Keys
+
+
+@dataclass(frozen=True, slots=True)
+class Routine:
+    """How takes follow each other without a hand on the keyboard."""
+
+    armed: bool = False  # begin paused: the pedal, a fist or the page begins the first take
+    countdown: float | None = None  # [s] before each take; None: as the station's settings say
+    takes: int = 0  # after so many it pauses by itself; 0: never
+    one_by_one: bool = False  # pause after each take
 
 
 class Tracker:
@@ -36,12 +47,34 @@ class Tracker:
         self._publisher = link.publisher(self._keys.samples(name))
         self._token = link.announce(self._keys.alive("tracker", name))
         self._next = 1
+        self._heard: list[object] = []
 
-    def start(self, task: str, *, scene: str = "", calibration: str = "") -> tracker_pb2.RecordingReport:
-        """Ask the station to record `task` from this tracker; a new task is made when `scene` is named."""
-        request = tracker_pb2.StartRecording(task=task, tracker=self.name, scene=scene, calibration=calibration)
+    def start(
+        self, task: str, *, scene: str = "", calibration: str = "", rate: float = 0.0, routine: Routine | None = None
+    ) -> tracker_pb2.RecordingReport:
+        """Ask the station to record `task` from this tracker.
+
+        Args:
+            task: what is demonstrated.
+            scene: makes a new task with this scene.
+            calibration: of the tracker's frame; empty: the task's own.
+            rate: [Hz] of readings that the source means to give; 0: not known.
+            routine: how takes follow each other; None: as the station does it.
+        """
+        request = tracker_pb2.StartRecording(
+            task=task, tracker=self.name, scene=scene, calibration=calibration, rate=rate
+        )
+        if routine is not None:
+            request.armed, request.takes, request.one_by_one = routine.armed, routine.takes, routine.one_by_one
+            if routine.countdown is not None:
+                request.countdown = routine.countdown
         answer = self._link.ask(self._keys.recorder_start, request.SerializeToString())
         return tracker_pb2.RecordingReport.FromString(answer)
+
+    def hear(self, receive: Callable[[bytes], object]) -> None:
+        """Call `receive` with each `HandFeedback` that the station sends to this tracker."""
+        # A subscriber that nobody keeps hears no more.
+        self._heard.append(self._link.subscribe(self._keys.feedback(self.name), receive))
 
     def publish(self, readings: Iterable[HandReading], *, speed: float = 1.0) -> int:
         """Publish readings when they are due, `speed` times as fast as they were taken; return how many.

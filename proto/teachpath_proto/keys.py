@@ -40,6 +40,10 @@ class Keys:
         """Key on which `tracker` publishes its `HandSample`s."""
         return f"{self.prefix}/trackers/{tracker}/samples"
 
+    def feedback(self, tracker: str) -> str:
+        """Key on which the recorder tells `tracker` its `HandFeedback`."""
+        return f"{self.prefix}/trackers/{tracker}/feedback"
+
     def tracker_of(self, key: str) -> str:
         """Name of the tracker that published on `key` (a key of `samples`)."""
         return key.removeprefix(f"{self.prefix}/trackers/").split("/", 1)[0]

@@ -193,3 +193,25 @@ class RecorderStatus(_message.Message):
     RECORDINGS_FIELD_NUMBER: _ClassVar[int]
     recordings: _containers.RepeatedCompositeFieldContainer[RecordingReport]
     def __init__(self, recordings: _Optional[_Iterable[_Union[RecordingReport, _Mapping]]] = ...) -> None: ...
+
+class HandFeedback(_message.Message):
+    __slots__ = ("task", "phase", "state", "holding", "countdown_left", "takes_left", "takes", "newest", "sign")
+    TASK_FIELD_NUMBER: _ClassVar[int]
+    PHASE_FIELD_NUMBER: _ClassVar[int]
+    STATE_FIELD_NUMBER: _ClassVar[int]
+    HOLDING_FIELD_NUMBER: _ClassVar[int]
+    COUNTDOWN_LEFT_FIELD_NUMBER: _ClassVar[int]
+    TAKES_LEFT_FIELD_NUMBER: _ClassVar[int]
+    TAKES_FIELD_NUMBER: _ClassVar[int]
+    NEWEST_FIELD_NUMBER: _ClassVar[int]
+    SIGN_FIELD_NUMBER: _ClassVar[int]
+    task: str
+    phase: str
+    state: str
+    holding: bool
+    countdown_left: float
+    takes_left: int
+    takes: int
+    newest: DemonstrationReport
+    sign: str
+    def __init__(self, task: _Optional[str] = ..., phase: _Optional[str] = ..., state: _Optional[str] = ..., holding: _Optional[bool] = ..., countdown_left: _Optional[float] = ..., takes_left: _Optional[int] = ..., takes: _Optional[int] = ..., newest: _Optional[_Union[DemonstrationReport, _Mapping]] = ..., sign: _Optional[str] = ...) -> None: ...

@@ -57,6 +57,7 @@ def test_the_first_demonstration_of_the_paper_through_fastrak_and_cyberglove(
         [
             *(sys.executable, "-m", "teachpath_client", "tracker", "--source", "hand", "--task", "devices"),
             *itertools.chain.from_iterable(("--option", f"{key}={tmp_path / name}") for key, name in options.items()),
+            *("--option", "glove.touch=phase"),  # so that it is asked for each sample
             *("--scene", "paper", "--tracker", TRACKER, "--endpoint", service.endpoint),
         ],
         stdout=subprocess.PIPE,
@@ -82,6 +83,11 @@ def test_the_first_demonstration_of_the_paper_through_fastrak_and_cyberglove(
     assert client.returncode == 0, err
     assert "Ctrl-C ends it" in err
     assert "Traceback" not in err
+    assert "devices: recording: transport; 0 takes\n" in err
+    assert "  + take 1 clean\n" in err
+    felt = devices[1].twin.felt
+    assert [amplitude for amplitude in felt if amplitude] == [128], felt  # once, while the object was in the hand
+    assert felt[-1] == 0
     report = json.loads(out)
     assert (int(report["lost"]), int(report["refused"]), len(report["demonstrations"])) == (0, 0, 1), report
     assert int(report["received"]) > SHOWN

@@ -110,6 +110,10 @@ class Emulator:
             due = due + 1.0 / self._rate if now - due < 1.0 / self._rate else now + 1.0 / self._rate
             if self.twin.streaming:
                 self._stream(now)
+            elif self._script:  # a hand moves on whether it is asked for or not
+                self._now = self._script.popleft()
+                if not self._script:
+                    self.played.set()
 
     def _stream(self, now: float) -> None:
         fresh = bool(self._script)

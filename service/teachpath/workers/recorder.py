@@ -12,6 +12,7 @@ from teachpath.io.store import Store
 from teachpath.recording import RecordingSettings, Routine, State
 from teachpath.records import Calibration, Demonstration, Scene, Trajectory
 from teachpath.workers.curation import Amendment, Curation
+from teachpath.workers.feedback import Feedback, Standing
 from teachpath.workers.intake import Intake
 from teachpath.workers.open_take import Finished
 from teachpath.workers.presence import Presence, Tracker
@@ -59,12 +60,14 @@ class Recorder:
         self._scribe = Scribe(
             self._intake, self._presence, settings, made=self._hand_out, unwanted=self._discard_last_of, clock=clock
         )
+        self._feedback = Feedback(bus, keys, self.standings, store.demonstration, clock=clock)
         self._missed = 0
         self._handles: list[Handle] = []
 
     def start(self) -> None:
         """Begin to listen."""
         self._scribe.start()
+        self._feedback.start()
         self._handles = [
             self._bus.subscribe(self._keys.all_samples, self._intake.receive, missed=self._miss),
             self._bus.watch(self._keys.all_trackers_alive, self._intake.come_or_go),
@@ -77,6 +80,7 @@ class Recorder:
         for handle in self._handles:
             handle.close()
         self._scribe.stop()
+        self._feedback.stop()
 
     def begin(
         self,
@@ -172,6 +176,11 @@ class Recorder:
         """Return the accounts of all running recordings."""
         with self._scribe.changed:
             return [session.report() for session in self._scribe.sessions.values()]
+
+    def standings(self) -> list[Standing]:
+        """Return how each running recording stands, for its hand."""
+        with self._scribe.changed:
+            return [session.standing() for session in self._scribe.sessions.values()]
 
     def trackers(self) -> list[Tracker]:
         """Return the trackers that are there: those that say so, and those that send."""

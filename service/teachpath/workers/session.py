@@ -21,6 +21,7 @@ from teachpath.recording import (
     point_to_world,
 )
 from teachpath.records import Calibration, Phase, Sample, Scene, Vector
+from teachpath.workers.feedback import Standing
 from teachpath.workers.open_take import Finished, OpenTake
 from teachpath_proto import tracker_pb2
 
@@ -191,6 +192,20 @@ class RecordingSession:
             countdown_left=self._control.seconds_left(self._clock()),
             takes_left=self._control.takes_left,
             sign=self._gesture.offered or "",
+        )
+
+    def standing(self) -> Standing:
+        """Return what the hand and its operator should know at once."""
+        return Standing(
+            self.tracker,
+            self.task,
+            self._segmenter.phase.value,
+            self.state.value,
+            self._control.seconds_left(self._clock()),
+            self._control.takes_left,
+            len(self.demonstrations),
+            self.demonstrations[-1] if self.demonstrations else "",
+            self._gesture.offered or "",
         )
 
     def _follow_signs(self, sample: Sample, position: Vector) -> None:

@@ -1,6 +1,5 @@
 import os
 import signal
-import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -15,11 +14,10 @@ from teachpath_client.devices.playback import PlaybackSource
 from teachpath_client.devices.source import Capabilities
 from teachpath_client.devices.twins import GloveTwin
 from teachpath_client.link import ClientError
-from teachpath_client.live import calibrate_glove, ended_by_signals, felt, record_live
+from teachpath_client.live import Feeling, calibrate_glove, ended_by_signals, record_live
 from teachpath_client.reading import HandReading
 from teachpath_client.tracker import Tracker
 from teachpath_proto import tracker_pb2
-from teachpath_proto.keys import Keys
 from tests.unit.clients.devices.hands import calibration, readings, until
 from tests.unit.clients.test_tracker import MemoryLink
 
@@ -41,21 +39,6 @@ class Touched(PlaybackSource):
     def touch(self, holding: bool) -> None:
         if self.felt[-1:] != [holding]:
             self.felt.append(holding)
-
-
-class PhaseLink(MemoryLink):
-    """A station whose recorder says a phase."""
-
-    phase = "reach"
-
-    def ask(self, key: str, payload: bytes = b"", timeout: float = 1.0) -> bytes:
-        if key != Keys("lab").recorder_status:
-            return super().ask(key, payload)
-        if self.phase == "broken":
-            raise ClientError("no answer")
-        other = tracker_pb2.RecordingReport(tracker="other", phase="transport")
-        mine = tracker_pb2.RecordingReport(tracker="glove", phase=self.phase)
-        return tracker_pb2.RecorderStatus(recordings=[other, mine]).SerializeToString()
 
 
 def tracker(link: MemoryLink) -> Tracker:
@@ -98,20 +81,32 @@ def test_a_source_that_fails_leaves_what_it_showed() -> None:
     assert (stop.last_sequence, stop.discard) == (5, False)
 
 
-def test_the_hand_feels_the_phase_of_its_own_recording() -> None:
-    link, source = PhaseLink(), Touched()
-    with felt(source, link, "glove", "lab"):  # type: ignore[arg-type]
-        for phase, feelings in (("reach", [False]), ("transport", [False, True]), ("broken", [False, True])):
-            link.phase = phase
-            until(lambda feelings=feelings: source.felt == feelings, f"{feelings} in phase {phase}")
-    assert source.felt == [False, True, False]
-    assert not [thread for thread in threading.enumerate() if thread.name == "feel"]
+def told(holding: bool) -> bytes:
+    return tracker_pb2.HandFeedback(holding=holding).SerializeToString()
 
 
-def test_a_source_without_touch_is_not_asked_for_it() -> None:
-    source = PlaybackSource(readings(3), rate=50.0, sensors=22)
-    with felt(source, MemoryLink(), "glove", "lab"):  # type: ignore[arg-type]
-        assert not [thread for thread in threading.enumerate() if thread.name == "feel"]
+def test_the_hand_feels_what_the_station_says_and_nothing_after_the_last_reading() -> None:
+    source, now = Touched(), [0.0]
+    feeling = Feeling(source, clock=lambda: now[0])
+    stream = feeling.readings(iter(readings(5)))
+    next(stream)
+    for holding in (True, True, False, True):
+        feeling.take(told(holding))
+        next(stream, None)
+    assert source.felt == [True, False, True]
+    assert list(stream) == []
+    assert source.felt == [True, False, True, False]
+
+
+def test_the_feeling_ends_when_the_station_is_gone() -> None:
+    source, now = Touched(), [0.0]
+    feeling = Feeling(source, clock=lambda: now[0])
+    stream = feeling.readings(iter(readings(4)))
+    feeling.take(told(True))
+    for seconds, felt in ((0.9, [True]), (2.9, [True]), (3.1, [True, False])):
+        now[0] = seconds
+        next(stream)
+        assert source.felt == felt
 
 
 def test_a_glove_is_calibrated_by_an_open_hand_and_a_fist(tmp_path: Path) -> None:

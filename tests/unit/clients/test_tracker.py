@@ -4,7 +4,7 @@ from typing import Any
 import pytest
 
 from teachpath_client.reading import HandReading
-from teachpath_client.tracker import Tracker
+from teachpath_client.tracker import Routine, Tracker
 from teachpath_proto import tracker_pb2
 from teachpath_proto.keys import Keys
 
@@ -19,6 +19,7 @@ class MemoryLink:
         self.sent: list[tuple[float, tracker_pb2.HandSample]] = []
         self.asked: list[tuple[str, bytes]] = []
         self.alive: list[str] = []
+        self.heard: list[tuple[str, Any]] = []
         self.key = ""
 
     def publisher(self, key: str) -> Any:
@@ -31,6 +32,9 @@ class MemoryLink:
     def announce(self, key: str) -> object:
         self.alive.append(key)
         return object()
+
+    def subscribe(self, key: str, receive: Any) -> None:
+        self.heard.append((key, receive))
 
     def ask(self, key: str, payload: bytes) -> bytes:
         self.asked.append((key, payload))
@@ -101,6 +105,21 @@ def test_sequence_numbers_go_on_and_stop_names_the_last(tracker: Tracker, link: 
     assert (begun.task, begun.tracker, begun.scene, begun.calibration) == ("lift", "glove", "paper", "lab")
     ended = tracker_pb2.StopRecording.FromString(stop)
     assert (ended.tracker, ended.last_sequence, ended.discard) == ("glove", 5, True)
+
+
+@pytest.mark.parametrize("countdown", [None, 0.0, 3.0])
+def test_a_routine_is_told_and_a_countdown_that_is_not_said_is_not_sent(
+    tracker: Tracker, link: MemoryLink, countdown: float | None
+) -> None:
+    tracker.start("lift", rate=50.0, routine=Routine(armed=True, countdown=countdown, takes=5, one_by_one=True))
+    begun = tracker_pb2.StartRecording.FromString(link.asked[-1][1])
+    assert (begun.rate, begun.armed, begun.takes, begun.one_by_one) == (50.0, True, 5, True)
+    assert (begun.countdown if begun.HasField("countdown") else None) == countdown
+
+
+def test_a_tracker_hears_the_feedback_to_its_name(tracker: Tracker, link: MemoryLink) -> None:
+    tracker.hear(print)
+    assert link.heard == [(KEYS.feedback("glove"), print)]
 
 
 def test_a_tracker_shows_that_it_is_alive_and_publishes_under_its_name(tracker: Tracker, link: MemoryLink) -> None:

@@ -129,6 +129,18 @@ def encode_report(
 
 def encode_demonstration(demonstration: Demonstration) -> bytes:
     """Return the report of a demonstration."""
+    return _reported(demonstration).SerializeToString()
+
+
+def encode_feedback(newest: Demonstration | None, **feedback: Any) -> bytes:
+    """Return what a hand should know; `feedback` are the fields of the message, `newest` its last demonstration."""
+    told = tracker_pb2.HandFeedback(**feedback)
+    if newest is not None:
+        told.newest.CopyFrom(_reported(newest))
+    return told.SerializeToString()
+
+
+def _reported(demonstration: Demonstration) -> tracker_pb2.DemonstrationReport:
     begin, end = demonstration.transport
     return tracker_pb2.DemonstrationReport(
         demonstration=demonstration.id,
@@ -139,7 +151,7 @@ def encode_demonstration(demonstration: Demonstration) -> bytes:
         mark=demonstration.mark,
         discarded=bool(demonstration.discarded_ns),
         transport=tracker_pb2.Span(begin=begin, end=end),
-    ).SerializeToString()
+    )
 
 
 def report_document(report: tracker_pb2.RecordingReport) -> dict[str, Any]:

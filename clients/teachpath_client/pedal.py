@@ -1,0 +1,185 @@
+"""A foot pedal as the operator's second hand: pedals are keyboards, read from the terminal or from the kernel.
+
+Pressing it sets the pedal's bit in the samples, which tells the recorder to pause or to go on. A key of the terminal
+has no release, so it counts as held for a moment; the kernel's device tells both.
+"""
+
+from __future__ import annotations
+
+import errno
+import fcntl
+import os
+import select
+import struct
+import termios
+import threading
+import time
+import tty
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
+from dataclasses import replace
+from typing import Protocol
+
+from teachpath_client.link import ClientError
+from teachpath_client.reading import HandReading
+
+PEDAL_BIT = 2  # of HandSample.buttons
+HELD = 0.15  # [s] that a key of the terminal counts as held: some samples must carry it
+EVENT = struct.Struct("llHHi")  # struct input_event of linux/input.h: time, type, code, value
+KEY_EVENT, RELEASED, PRESSED = 0x01, 0, 1  # EV_KEY; value 2 repeats a key that is held
+GRAB = 0x40044590  # EVIOCGRAB: nobody else gets the keys, so that the pedal does not type into the terminal
+NAMES = {"space": b" ", "enter": b"\n", "tab": b"\t"}  # of keys that a letter cannot name
+PATIENCE = 0.1  # [s] between looks whether it is over
+
+
+class Pedal(Protocol):
+    """Something that is pressed and released; use it as a context manager."""
+
+    @property
+    def is_down(self) -> bool:
+        """Whether it is pressed now."""
+
+
+def open_pedal(where: str) -> TerminalPedal | EventPedal:
+    """Return the pedal at `where`: a device like /dev/input/event5, or a key of the terminal: space, enter, a letter.
+
+    Raises:
+        ClientError: it is neither.
+    """
+    if where.startswith("/"):
+        return EventPedal(where)
+    return TerminalPedal(where)
+
+
+class _Pressed:
+    """Reads a file descriptor on a thread of its own while the context is open."""
+
+    def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
+        self._clock = clock
+        self._over = threading.Event()
+        self._thread: threading.Thread | None = None
+        self._fd = -1
+
+    def _listen(self) -> None:
+        while not self._over.is_set():
+            if not select.select([self._fd], [], [], PATIENCE)[0]:
+                continue
+            try:
+                content = os.read(self._fd, 4096)
+            except BlockingIOError:
+                continue
+            except OSError as error:
+                if error.errno in (errno.ENODEV, errno.EIO):  # it was unplugged: it is not pressed
+                    self._take(b"")
+                return
+            if not content:
+                return
+            self._take(content)
+
+    def _take(self, content: bytes) -> None:
+        raise NotImplementedError
+
+    def _start(self) -> None:
+        self._over.clear()
+        self._thread = threading.Thread(target=self._listen, name="pedal", daemon=True)
+        self._thread.start()
+
+    def _stop(self) -> None:
+        self._over.set()
+        if self._thread is not None:
+            self._thread.join()
+            self._thread = None
+
+
+class TerminalPedal(_Pressed):
+    """One key of the terminal; Ctrl-C still ends the program."""
+
+    def __init__(self, key: str, *, fd: int = 0, clock: Callable[[], float] = time.monotonic) -> None:
+        super().__init__(clock)
+        self._key = NAMES.get(key, key.encode())
+        if len(self._key) != 1:
+            raise ClientError(
+                f"--pedal {key} is no key: name {', '.join(NAMES)}, a letter, or a device like /dev/input/event5"
+            )
+        self._fd = fd
+        self._until = float("-inf")
+
+    def __enter__(self) -> TerminalPedal:
+        if not os.isatty(self._fd):
+            raise ClientError("--pedal needs a terminal to read the key from; name a device such as /dev/input/event5")
+        self._before = termios.tcgetattr(self._fd)
+        tty.setcbreak(self._fd)
+        self._start()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._stop()
+        termios.tcsetattr(self._fd, termios.TCSANOW, self._before)
+
+    @property
+    def is_down(self) -> bool:
+        """Whether the key came a moment ago."""
+        return self._clock() < self._until
+
+    def _take(self, content: bytes) -> None:
+        if self._key in content.replace(b"\r", b"\n"):
+            self._until = self._clock() + HELD
+
+
+class EventPedal(_Pressed):
+    """A pedal's own device; any of its keys counts. Nobody else gets its keys meanwhile."""
+
+    def __init__(self, path: str) -> None:
+        super().__init__()
+        self._path = path
+        self._down: set[int] = set()
+        self._rest = b""
+
+    def __enter__(self) -> EventPedal:
+        try:
+            self._fd = os.open(self._path, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC)
+        except OSError as error:
+            raise ClientError(
+                f"cannot open the pedal {self._path}: {error.strerror}; is it plugged in, and are you in group input?"
+            ) from None
+        with suppress(OSError):  # what is no input device cannot be grabbed, and types nowhere
+            fcntl.ioctl(self._fd, GRAB, 1)
+        self._start()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._stop()
+        os.close(self._fd)
+
+    @property
+    def is_down(self) -> bool:
+        """Whether one of its keys is pressed."""
+        return bool(self._down)
+
+    def _take(self, content: bytes) -> None:
+        if not content:
+            self._down.clear()
+        self._rest += content
+        whole = len(self._rest) - len(self._rest) % EVENT.size
+        for _, _, kind, code, value in EVENT.iter_unpack(self._rest[:whole]):
+            if kind == KEY_EVENT and value == PRESSED:
+                self._down.add(code)
+            elif kind == KEY_EVENT and value == RELEASED:
+                self._down.discard(code)
+        self._rest = self._rest[whole:]
+
+
+def with_pedal(readings: Iterator[HandReading], pedal: Pedal) -> Iterator[HandReading]:
+    """Yield the readings with the pedal's bit as it is pressed; at least one carries every press that lasts one."""
+    for reading in readings:
+        yield replace(reading, buttons=reading.buttons | PEDAL_BIT) if pedal.is_down else reading
+
+
+@contextmanager
+def pedal_or_none(where: str) -> Iterator[Callable[[Iterator[HandReading]], Iterator[HandReading]]]:
+    """Open the pedal at `where`, if one is named; yields what puts its bit into readings."""
+    if not where:
+        yield lambda readings: readings
+        return
+    with open_pedal(where) as pedal:
+        yield lambda readings: with_pedal(readings, pedal)

@@ -1,0 +1,87 @@
+"""What the operator sees while demonstrating: state, countdown, takes and verdicts, on one line that changes.
+
+Where the output is no terminal, each change is a line of its own. A press of the pedal or a countdown sounds the bell.
+"""
+
+from __future__ import annotations
+
+import threading
+from typing import TextIO
+
+from teachpath_proto import tracker_pb2
+
+BELL = "\a"
+CLEARED = "\r\x1b[K"
+MARKS = {"clean": "+", "repaired": "~", "reject": "x"}
+WORDS = {
+    "recording": "recording",
+    "pausing": "pauses after this take",
+    "paused": "paused: pedal, fist or `resume` to go on",
+    "lost": "the tracker is lost",
+    "": "ended",
+}
+
+
+class Status:
+    """Shows a recording's feedback; may be told from any thread.
+
+    Args:
+        out: where it is shown.
+        live: whether the line may be written over; default: when `out` is a terminal.
+    """
+
+    def __init__(self, out: TextIO, *, live: bool | None = None) -> None:
+        self._out = out
+        self._live = out.isatty() if live is None else live
+        self._lock = threading.Lock()
+        self._shown = self._newest = ""
+
+    def take(self, payload: bytes) -> None:
+        """Show a `HandFeedback` as it came."""
+        feedback = tracker_pb2.HandFeedback.FromString(payload)
+        with self._lock:
+            newest = feedback.newest
+            if newest.demonstration != self._newest:
+                self._newest = newest.demonstration
+                self._line(verdict_line(newest))
+            shown = standing_line(feedback)
+            if shown == self._shown:
+                return
+            self._shown = shown
+            if self._live:
+                bell = BELL if feedback.state == "countdown" else ""
+                self._out.write(f"{CLEARED}{shown}{bell}")
+            else:
+                self._out.write(f"{shown}\n")
+            self._out.flush()
+
+    def end(self) -> None:
+        """Leave the line."""
+        with self._lock:
+            if self._live and self._shown:
+                self._out.write("\n")
+                self._out.flush()
+
+    def _line(self, text: str) -> None:
+        self._out.write(f"{CLEARED if self._live else ''}{text}\n")
+        self._shown = ""
+
+
+def verdict_line(newest: tracker_pb2.DemonstrationReport) -> str:
+    """Return a line on a take that was made."""
+    reasons = f": {'; '.join(newest.reasons)}" if newest.reasons else ""
+    return f"  {MARKS.get(newest.verdict, '?')} take {newest.number} {newest.verdict}{reasons}"
+
+
+def standing_line(feedback: tracker_pb2.HandFeedback) -> str:
+    """Return the line on what is going on."""
+    if feedback.state == "countdown":
+        doing = f"begins in {feedback.countdown_left:.0f} s"
+    elif feedback.state in ("recording", "pausing") and feedback.phase != "reach":
+        doing = f"{WORDS[feedback.state]}: {feedback.phase}"
+    else:
+        doing = WORDS.get(feedback.state, feedback.state)
+    takes = f"{feedback.takes} take{'s' if feedback.takes != 1 else ''}"
+    left = f", {feedback.takes_left} to go" if feedback.takes_left else ""
+    sign = f"; open the fist now to {feedback.sign}" if feedback.sign else ""
+    return f"{feedback.task}: {doing}; {takes}{left}{sign}"

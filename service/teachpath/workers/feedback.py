@@ -1,0 +1,119 @@
+"""What a hand is told while it demonstrates: phase, countdown, takes and verdicts, on a thread of its own.
+
+Whoever listens may be slow or stuck; the recorder's thread never waits for it.
+"""
+
+from __future__ import annotations
+
+import math
+import threading
+import time
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+
+from teachpath.errors import TeachpathError
+from teachpath.io.bus import Bus
+from teachpath.io.wire import encode_feedback
+from teachpath.records import Demonstration, Phase
+from teachpath_proto.keys import Keys
+
+LOOK = 0.03  # [s] between looks: what a hand feels it should feel at once
+AGAIN = 1.0  # [s] after which a hand that holds something is told so again
+HOLDING = (Phase.GRASP, Phase.TRANSPORT)
+
+
+@dataclass(frozen=True, slots=True)
+class Standing:
+    """How the recording of one tracker stands."""
+
+    tracker: str
+    task: str
+    phase: str
+    state: str
+    countdown_left: float = 0.0
+    takes_left: int = 0
+    takes: int = 0
+    newest: str = ""  # id of the last demonstration
+    sign: str = ""
+
+    @property
+    def told_as(self) -> tuple[object, ...]:
+        """What of it is worth telling when it changes: of the countdown each second that begins."""
+        return (self.phase, self.state, math.ceil(self.countdown_left), self.takes_left, self.newest, self.sign)
+
+
+class Feedback:
+    """Publishes how each recording stands, whenever that changes.
+
+    Args:
+        standings: gives how the running recordings stand.
+        demonstration: gives the demonstration of an id.
+        clock: [s] monotonic.
+    """
+
+    def __init__(
+        self,
+        bus: Bus,
+        keys: Keys,
+        standings: Callable[[], Iterable[Standing]],
+        demonstration: Callable[[str], Demonstration],
+        *,
+        clock: Callable[[], float] = time.monotonic,
+    ) -> None:
+        self._bus, self._keys, self._clock = bus, keys, clock
+        self._standings, self._demonstration = standings, demonstration
+        self._told: dict[str, tuple[Standing, float]] = {}
+        self._stopped = threading.Event()
+        self._thread: threading.Thread | None = None
+
+    def start(self) -> None:
+        """Tell from now on."""
+        self._stopped.clear()
+        self._thread = threading.Thread(target=self._run, name="feedback", daemon=True)
+        self._thread.start()
+
+    def stop(self) -> None:
+        """Tell no more, after a last look; a second call does nothing."""
+        self._stopped.set()
+        if self._thread is not None:
+            self._thread.join()
+            self._thread = None
+            self.look()
+
+    def look(self) -> None:
+        """Publish what has changed since the last look."""
+        now, standings = self._clock(), {standing.tracker: standing for standing in self._standings()}
+        for tracker, (before, _) in list(self._told.items()):
+            if tracker not in standings:
+                del self._told[tracker]
+                self._tell(Standing(tracker, before.task, "", "", takes=before.takes, newest=before.newest))
+        for tracker, standing in standings.items():
+            last = self._told.get(tracker)
+            again = last is not None and standing.phase in HOLDING and now - last[1] >= AGAIN
+            if last is None or last[0].told_as != standing.told_as or again:
+                self._told[tracker] = (standing, now)
+                self._tell(standing)
+
+    def _run(self) -> None:
+        while not self._stopped.wait(LOOK):
+            self.look()
+
+    def _tell(self, standing: Standing) -> None:
+        payload = encode_feedback(
+            self._newest(standing.newest),
+            task=standing.task,
+            phase=standing.phase,
+            state=standing.state,
+            holding=standing.phase in HOLDING,
+            countdown_left=standing.countdown_left,
+            takes_left=standing.takes_left,
+            takes=standing.takes,
+            sign=standing.sign,
+        )
+        self._bus.publish(self._keys.feedback(standing.tracker), payload)
+
+    def _newest(self, key: str) -> Demonstration | None:
+        try:
+            return self._demonstration(key) if key else None
+        except TeachpathError:  # its row is not there yet, or no longer: the hand is told the rest
+            return None
