@@ -35,7 +35,7 @@ def devices(tmp_path: Path) -> Iterator[tuple[Emulator, Emulator]]:
     GLOVE.save(tmp_path / "glove.toml")
     with ExitStack() as stack:
         tracker = stack.enter_context(Emulator(FastrakTwin(), tmp_path / "fastrak", rate=RATE, hold=True))
-        glove = stack.enter_context(Emulator(GloveTwin(GLOVE), tmp_path / "glove", rate=RATE, hold=True))
+        glove = stack.enter_context(Emulator(GloveTwin(GLOVE), tmp_path / "glove", rate=RATE, moving=True))
         yield tracker, glove
 
 

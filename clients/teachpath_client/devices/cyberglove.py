@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from statistics import fmean
-from typing import Literal, Self
+from typing import Literal
 
 from teachpath_client.devices.connection import Connection
 from teachpath_client.devices.cyberglove_wire import CYBERTOUCH, READY, SENSORS, STOP, GloveParser, period, vibration
 from teachpath_client.devices.glove_calibration import GloveCalibration
+from teachpath_client.devices.live_device import PATIENCE, LiveDevice, Polling
 from teachpath_client.devices.serial_line import SerialLine
 from teachpath_client.devices.source import Capabilities, configure
 from teachpath_client.link import ClientError
@@ -20,7 +21,6 @@ from teachpath_client.reading import HandReading
 Raw = tuple[int, ...]
 
 ATTEMPTS = 3
-PATIENCE = 0.1  # [s] a read waits
 ANSWER = 0.5  # [s] the glove may take to answer
 QUIET = 0.05  # [s] without a byte after which a stream counts as ended
 HOLDS, LETS_GO = 0.6, 0.4  # mean flexion over and under which the hand counts as closed and open
@@ -70,7 +70,7 @@ class GloveDialogue:
     def __init__(self, settings: GloveSettings, sensors: int, clock: Callable[[], float] = time.monotonic) -> None:
         self._settings, self._sensors, self._clock = settings, sensors, clock
         self._polled = settings.mode == "polled" or settings.touch != "off"
-        self._due = float("-inf")
+        self._polling = Polling(settings.rate, clock)
         self._felt = 0
         self.amplitude = 0  # what the hand should feel now
 
@@ -104,11 +104,9 @@ class GloveDialogue:
             line.write(vibration(self._felt))
         if not self._polled:
             return PATIENCE
-        now, step = self._clock(), 1.0 / self._settings.rate
-        if now >= self._due:
-            self._due = self._due + step if now - self._due < step else now + step
+        if self._polling.is_due:
             line.write(b"G" if self._settings.format == "binary" else b"g")
-        return max(0.0, self._due - now)
+        return self._polling.wait
 
     def leave(self, line: SerialLine) -> None:
         """End the stream and the vibration."""
@@ -143,7 +141,7 @@ def cyberglove(**options: str) -> GloveSource:
     return GloveSource(configure(GloveSettings, options))
 
 
-class GloveSource:
+class GloveSource(LiveDevice[Raw]):
     """A glove, live. No reading is tracked, because a glove does not measure where it is."""
 
     def __init__(self, settings: GloveSettings, *, clock: Callable[[], float] = time.monotonic) -> None:
@@ -154,8 +152,7 @@ class GloveSource:
         self.settings = settings
         self.calibration = GloveCalibration.load(Path(settings.calibration))
         self._dialogue = GloveDialogue(settings, len(self.calibration.offset), clock)
-        self.connection = connect(settings, self._dialogue, clock)
-        self._over = False
+        super().__init__(connect(settings, self._dialogue, clock))
 
     @property
     def capabilities(self) -> Capabilities:
@@ -168,41 +165,17 @@ class GloveSource:
             touch=self.settings.touch == "phase",
         )
 
-    def __enter__(self) -> Self:
-        self.connection.__enter__()
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.close()
-        self.connection.__exit__()
-
-    def close(self) -> None:
-        """End the iteration soon."""
-        self._over = True
-
     def touch(self, holding: bool) -> None:
         """Let the hand feel that it holds the object, or no longer."""
         self._dialogue.amplitude = self.settings.amplitude if holding else 0
 
-    def __iter__(self) -> Iterator[HandReading]:
-        start: float | None = None
-        while not self._over:
-            if (taken := self.take(PATIENCE)) is not None:
-                date, flexions = taken
-                start = date if start is None else start
-                yield HandReading(date - start, (0.0, 0.0, 0.0), None, flexions, tracked=False)
-
-    def take(self, timeout: float) -> tuple[float, tuple[float, ...]] | None:
-        """Return the next flexions and their date [s] on the clock; None after `timeout` [s]."""
-        taken = self.connection.take(timeout)
-        if taken is None:
-            return None
-        flexions = self.calibration.flexions(taken[1])
+    def _reading(self, record: Raw) -> HandReading:
+        flexions = self.calibration.flexions(record)
         if self.settings.touch == "closure":
             closure = fmean(flexions)
             if closure > HOLDS or closure < LETS_GO:
                 self.touch(closure > HOLDS)
-        return taken[0], flexions
+        return HandReading(0.0, (0.0, 0.0, 0.0), None, flexions, tracked=False)
 
 
 def connect(

@@ -34,6 +34,7 @@ class Emulator:
         twin: the device.
         link: path of the port: a link to the pty, which comes and goes as a real device node does.
         rate: [Hz] of its stream.
+        moving: what is to be played goes on whether the device streams or not, for one that is polled.
         hold: when nothing is left to play, send the last reading again and again; otherwise be silent.
         mischief: what becomes of a record on the wire.
         clock: [s] that never runs back.
@@ -45,11 +46,13 @@ class Emulator:
         link: Path,
         *,
         rate: float,
+        moving: bool = False,
         hold: bool = False,
         mischief: Mischief | None = None,
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
         self.twin, self._link, self._rate, self._hold = twin, link, rate, hold
+        self._moving = moving
         self.mischief, self._clock = mischief, clock
         self._script: deque[HandReading] = deque()
         self._now = HandReading(0.0, (0.0, 0.0, 0.0), None, (0.0,) * 22)
@@ -110,7 +113,7 @@ class Emulator:
             due = due + 1.0 / self._rate if now - due < 1.0 / self._rate else now + 1.0 / self._rate
             if self.twin.streaming:
                 self._stream(now)
-            elif self._script:  # a hand moves on whether it is asked for or not
+            elif self._moving and self._script:
                 self._now = self._script.popleft()
                 if not self._script:
                     self.played.set()

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
-from typing import Literal, Self
+from dataclasses import dataclass
+from typing import Literal
 
 from teachpath_client.devices.connection import Connection
 from teachpath_client.devices.fastrak_wire import (
@@ -17,6 +17,7 @@ from teachpath_client.devices.fastrak_wire import (
     Pose,
     read_status,
 )
+from teachpath_client.devices.live_device import PATIENCE, LiveDevice, Polling
 from teachpath_client.devices.serial_line import SerialLine
 from teachpath_client.devices.source import Capabilities, configure
 from teachpath_client.link import ClientError
@@ -25,7 +26,6 @@ from teachpath_client.reading import HandReading
 METRES = {"cm": 0.01, "in": 0.0254}
 SAMPLES_A_SECOND = 120.0  # all stations together
 ATTEMPTS = 3
-PATIENCE = 0.1  # [s] a read waits
 
 
 @dataclass(frozen=True)
@@ -69,7 +69,7 @@ class FastrakDialogue:
 
     def __init__(self, settings: FastrakSettings, clock: Callable[[], float] = time.monotonic) -> None:
         self._settings, self._clock = settings, clock
-        self._due = float("-inf")
+        self._polling = Polling(settings.rate, clock)
 
     def greet(self, line: SerialLine) -> BinaryParser | AsciiParser:
         """Set the device up; raises ClientError when it does not answer or does not take the unit or the format."""
@@ -100,11 +100,9 @@ class FastrakDialogue:
         """Ask for a record when it is time to; return the seconds until the next time."""
         if self._settings.mode == "continuous":
             return PATIENCE
-        now, period = self._clock(), 1.0 / self._settings.rate
-        if now >= self._due:
-            self._due = self._due + period if now - self._due < period else now + period
+        if self._polling.is_due:
             line.write(b"P")
-        return max(0.0, self._due - now)
+        return self._polling.wait
 
     def leave(self, line: SerialLine) -> None:
         """End the continuous output."""
@@ -145,18 +143,13 @@ def fastrak(**options: str) -> FastrakSource:
     return FastrakSource(configure(FastrakSettings, options))
 
 
-class FastrakSource:
+class FastrakSource(LiveDevice[Pose]):
     """One receiver of a FASTRAK, live; a reading is not tracked when the device reports an error with it."""
 
     def __init__(self, settings: FastrakSettings, *, clock: Callable[[], float] = time.monotonic) -> None:
+        line, dialogue = SerialLine(settings.port, settings.baud), FastrakDialogue(settings, clock)
+        super().__init__(Connection(line, dialogue, silence=settings.silence, clock=clock))
         self.settings = settings
-        self.connection = Connection[Pose](
-            SerialLine(settings.port, settings.baud),
-            FastrakDialogue(settings, clock),
-            silence=settings.silence,
-            clock=clock,
-        )
-        self._over = False
 
     @property
     def capabilities(self) -> Capabilities:
@@ -165,31 +158,8 @@ class FastrakSource:
         rate = streams if self.settings.mode == "continuous" else self.settings.rate
         return Capabilities(rate=rate, sensors=0, orientation=True, live=True)
 
-    def __enter__(self) -> Self:
-        self.connection.__enter__()
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.close()
-        self.connection.__exit__()
-
-    def close(self) -> None:
-        """End the iteration soon."""
-        self._over = True
-
-    def __iter__(self) -> Iterator[HandReading]:
-        start: float | None = None
-        while not self._over:
-            if (taken := self.take(PATIENCE)) is not None:
-                date, reading = taken
-                start = date if start is None else start
-                yield replace(reading, time=date - start)
-
-    def take(self, timeout: float) -> tuple[float, HandReading] | None:
-        """Return the next reading of the hand's station and its date [s] on the clock; None after `timeout` [s]."""
-        taken = self.connection.take(timeout)
-        if taken is None or taken[1].station != self.settings.stations[0]:
+    def _reading(self, record: Pose) -> HandReading | None:
+        if record.station != self.settings.stations[0]:
             return None
-        date, pose = taken
-        x, y, z = (METRES[self.settings.unit] * value for value in pose.position)
-        return date, HandReading(0.0, (x, y, z), pose.orientation, tracked=pose.error == " ")
+        x, y, z = (METRES[self.settings.unit] * value for value in record.position)
+        return HandReading(0.0, (x, y, z), record.orientation, tracked=record.error == " ")

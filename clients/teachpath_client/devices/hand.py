@@ -72,16 +72,36 @@ class HandSource:
         self._glove.touch(holding)
 
     def __iter__(self) -> Iterator[HandReading]:
-        start: float | None = None
-        newest = following = self._glove.take(0.0)
+        pairing, start = Pairing(lambda: self._glove.take(0.0), self._oldest), None
         while not self._over:
             taken = self._fastrak.take(PATIENCE)
             # While no pose comes, flexions that are too old for the next one are thrown away.
             date = taken[0] if taken else self._clock() - self._oldest
-            following = following or self._glove.take(0.0)
-            while following is not None and following[0] <= date:
-                newest, following = following, self._glove.take(0.0)
-            if taken is None or newest is None or not 0.0 <= date - newest[0] <= self._oldest:
+            flexions = pairing.before(date)
+            if taken is None or flexions is None:
                 continue
             start = date if start is None else start
-            yield replace(taken[1], time=date - start, flexions=newest[1])
+            yield replace(taken[1], time=date - start, flexions=flexions)
+
+
+class Pairing:
+    """Finds the flexions that were measured last before a pose.
+
+    Args:
+        take: gives the next reading of the glove that waits, with its date [s], or None.
+        oldest: [s] how long before the pose they may have been measured.
+    """
+
+    def __init__(self, take: Callable[[], tuple[float, HandReading] | None], oldest: float) -> None:
+        self._take, self._oldest = take, oldest
+        self._newest: tuple[float, HandReading] | None = None  # the last one before the pose
+        self._following: tuple[float, HandReading] | None = None  # the first one after it
+
+    def before(self, date: float) -> tuple[float, ...] | None:
+        """Return the flexions for a pose of `date` [s]; None when they are missing or too old. Dates must not fall."""
+        self._following = self._following or self._take()
+        while self._following is not None and self._following[0] <= date:
+            self._newest, self._following = self._following, self._take()
+        if self._newest is None or date - self._newest[0] > self._oldest:
+            return None
+        return self._newest[1].flexions

@@ -1,66 +1,32 @@
-"""The drivers against devices that misbehave, over ptys."""
+"""The FASTRAK driver against a device that misbehaves, over a pty."""
 
 import time
-from collections.abc import Iterator
-from contextlib import contextmanager
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
 import pytest
 
-from teachpath_client.devices.cyberglove import GloveSettings, GloveSource
+from teachpath_client.devices.cyberglove import GloveSource
 from teachpath_client.devices.emulators import Emulator, Spoiler
-from teachpath_client.devices.fastrak import FastrakSettings, FastrakSource
-from teachpath_client.devices.hand import HandSource
+from teachpath_client.devices.fastrak import FastrakSource
 from teachpath_client.devices.twins import FastrakTwin, GloveTwin
 from teachpath_client.link import ClientError
 from teachpath_client.reading import HandReading
-from tests.unit.clients.devices.hands import calibration, gather, readings, until
+from tests.unit.clients.devices.benches import (
+    GLOVE,
+    RATE,
+    ends_with,
+    fastrak,
+    fastrak_settings,
+    glove,
+    glove_settings,
+    place,
+    whole,
+)
+from tests.unit.clients.devices.hands import gather, readings, until
 
-RATE = 400.0  # [Hz] of the emulators
-GLOVE = calibration()
 FORMATS = pytest.mark.parametrize("form", ["binary", "ascii"])
-
-
-@contextmanager
-def fastrak(folder: Path, twin: FastrakTwin | None = None, **emulated: Any) -> Iterator[Emulator]:
-    with Emulator(twin or FastrakTwin(), folder / "fastrak", rate=RATE, **emulated) as emulator:
-        yield emulator
-
-
-@contextmanager
-def glove(folder: Path, twin: GloveTwin | None = None, **emulated: Any) -> Iterator[Emulator]:
-    GLOVE.save(folder / "glove.toml")
-    with Emulator(twin or GloveTwin(GLOVE), folder / "glove", rate=RATE, **emulated) as emulator:
-        yield emulator
-
-
-def fastrak_settings(folder: Path, **chosen: Any) -> FastrakSettings:
-    return FastrakSettings(str(folder / "fastrak"), pause=0.0, **{"silence": 30.0, **chosen})
-
-
-def glove_settings(folder: Path, **chosen: Any) -> GloveSettings:
-    return GloveSettings(str(folder / "glove"), str(folder / "glove.toml"), **{"silence": 30.0, **chosen})
-
-
-def place(reading: HandReading) -> tuple[float, ...]:
-    """Return the position in whole steps of the coarsest record, 0.1 mm."""
-    return tuple(round(value * 1e4) for value in reading.position)
-
-
-def seen(flexions: tuple[float, ...]) -> tuple[float, ...]:
-    """Return the flexions as the glove shows them."""
-    return GLOVE.flexions(GLOVE.raw(flexions))
-
-
-def whole(emulator: Emulator) -> list[tuple[float, ...]]:
-    return [place(reading) for _, reading in emulator.whole]
-
-
-def ends_with(emulator: Emulator) -> Any:
-    """Tell when the last whole record of an emulator that has played all was read."""
-    return lambda reading: emulator.played.is_set() and place(reading) == place(emulator.whole[-1][1])
 
 
 @FORMATS
@@ -86,36 +52,6 @@ def test_every_whole_record_comes_out_once_and_right_among_torn_ones_and_noise(t
         assert reading.position == pytest.approx(true.position, abs=1e-4)
         assert reading.orientation == pytest.approx(true.orientation, abs=2e-4)
         assert reading.tracked
-
-
-@FORMATS
-def test_every_whole_sample_of_a_glove_comes_out_once_and_right(tmp_path: Path, form: Any) -> None:
-    with (
-        glove(tmp_path, mischief=Spoiler(2, torn=0.2, noise=0.0)) as device,
-        GloveSource(glove_settings(tmp_path, format=form)) as source,
-    ):
-        device.play(readings(99))
-        until(device.played.is_set, "all but the last was played")
-        device.mischief = None
-        device.play(readings(100)[-1:])
-        until(device.played.is_set, "the last was played")
-        stream = iter(source)
-        found = [next(stream) for _ in device.whole]
-    assert device.spoiled > 5
-    sent = [seen(reading.flexions) for _, reading in device.whole]
-    assert [reading.flexions for reading in found] == [pytest.approx(flexions) for flexions in sent]
-    assert not any(reading.tracked for reading in found)
-
-
-@FORMATS
-def test_a_polled_glove_is_asked_for_each_sample(tmp_path: Path, form: Any) -> None:
-    with glove(tmp_path) as device, GloveSource(glove_settings(tmp_path, format=form, mode="polled")) as source:
-        stream = iter(source)
-        for shown in readings(5):
-            device.show(shown)
-            flexions = seen(shown.flexions)
-            until(lambda flexions=flexions: next(stream).flexions == pytest.approx(flexions), "the sample is asked for")
-        assert not device.twin.streaming
 
 
 def test_times_begin_at_0_and_never_run_back(tmp_path: Path) -> None:
@@ -254,80 +190,3 @@ def test_a_silent_or_missing_or_taken_device_is_said(tmp_path: Path) -> None:
             pass
         with GloveSource(glove_settings(tmp_path)), pytest.raises(ClientError, match="another program is using"):
             GloveSource(glove_settings(tmp_path)).__enter__()
-
-
-def test_a_glove_that_does_not_fit_is_said(tmp_path: Path) -> None:
-    with glove(tmp_path, GloveTwin(calibration(18), cybertouch=False)):
-        with pytest.raises(ClientError, match="has 18 sensors, not 22"), GloveSource(glove_settings(tmp_path)):
-            pass
-        calibration(18).save(tmp_path / "glove.toml")
-        with pytest.raises(ClientError, match="no CyberTouch"), GloveSource(glove_settings(tmp_path, touch="phase")):
-            pass
-
-
-def test_a_cybertouch_vibrates_while_the_hand_is_closed_and_never_after_the_end(tmp_path: Path) -> None:
-    twin = GloveTwin(GLOVE)
-    with glove(tmp_path, twin) as device:
-        with GloveSource(glove_settings(tmp_path, touch="closure", amplitude=200)) as source:
-            stream = iter(source)
-            for flexion, felt in ((0.1, []), (0.9, [200]), (0.5, [200]), (0.1, [200, 0]), (0.9, [200, 0, 200])):
-                device.show(HandReading(0.0, (0.0, 0.0, 0.0), None, (flexion,) * 22))
-                until(lambda felt=felt: next(stream) and twin.felt == felt, f"{felt} is felt at {flexion}")
-                for _ in range(5):
-                    next(stream)
-                assert twin.felt == felt
-        until(lambda: twin.felt[-1] == 0, "the vibration ends")
-
-
-def test_a_hand_has_every_pose_once_with_the_whole_flexions_of_one_moment(tmp_path: Path) -> None:
-    shown = readings(150)
-    with fastrak(tmp_path, hold=True) as tracker, glove(tmp_path, hold=True) as gloved:
-        with HandSource(fastrak_settings(tmp_path), glove_settings(tmp_path)) as source:
-            stream = iter(source)
-            for device in (tracker, gloved):
-                device.show(shown[0])
-            assert seen(next(stream).flexions)
-            for device in (tracker, gloved):
-                device.play(shown)
-            got = gather(stream, lambda reading: place(reading) == place(shown[-1]))
-        assert source.capabilities.sensors == 22
-    index = {place(reading): i for i, reading in enumerate(shown)}
-    moved = [reading for reading in got if place(reading) != place(shown[0])]
-    assert [index[place(reading)] for reading in moved] == list(range(1, 150))
-    moment = 0
-    for reading in moved:  # each has the flexions of one moment, unmixed, and time never goes back
-        same = [k for k, r in enumerate(shown) if reading.flexions == pytest.approx(seen(r.flexions))]
-        assert [k for k in same if k >= moment], f"the flexions go back before moment {moment}"
-        moment = min(k for k in same if k >= moment)
-
-
-def test_half_a_hand_gives_no_reading(tmp_path: Path) -> None:
-    shown = readings(2)
-    with (
-        fastrak(tmp_path, hold=True) as tracker,
-        glove(tmp_path, hold=True) as gloved,
-        HandSource(fastrak_settings(tmp_path), glove_settings(tmp_path)) as source,
-    ):
-        stream = iter(source)
-        for device in (tracker, gloved):
-            device.show(shown[0])
-        next(stream)
-        gloved.unplug()
-        tracker.show(shown[1])
-        gone = len(tracker.whole)
-        until(lambda: len(tracker.whole) > gone + RATE / 4, "the tracker goes on alone")
-        gloved.plug()
-        gloved.show(shown[1])
-        got = gather(stream, lambda reading: reading.flexions == pytest.approx(seen(shown[1].flexions)))
-    alone = max(b.time - a.time for a, b in pairwise(got))
-    assert alone > 0.1
-
-
-def test_a_hand_opens_both_devices_or_none(tmp_path: Path) -> None:
-    with fastrak(tmp_path, hold=True) as device:
-        GLOVE.save(tmp_path / "glove.toml")
-        with pytest.raises(ClientError, match="glove as a serial line"):
-            HandSource(fastrak_settings(tmp_path), glove_settings(tmp_path)).__enter__()
-        until(lambda: not device.twin.streaming, "the tracker is quiet")
-        with FastrakSource(fastrak_settings(tmp_path)) as source:
-            assert next(iter(source)).time == 0.0
