@@ -173,7 +173,9 @@ def test_a_take_by_touch_with_a_second_finger_for_the_height(visit: Visit, servi
         touch("touchMove", (x, y), (second[0], second[1] - 30 * k))
         visit.page.wait_for_timeout(60)
     for k in range(1, 6):
-        touch("touchMove", (x + 12 * k, y - 4 * k))  # without the second finger, which is lifted; the first still carries
+        touch(
+            "touchMove", (x + 12 * k, y - 4 * k)
+        )  # without the second finger, which is lifted; the first still carries
         visit.page.wait_for_timeout(60)
     visit.page.wait_for_timeout(200)
     touch("touchEnd")
