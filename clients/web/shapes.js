@@ -14,11 +14,23 @@ function paint(color, opacity = 1) {
   return new THREE.MeshPhongMaterial({ color, opacity, transparent: opacity < 1, depthWrite: opacity === 1, shininess: 28, specular: 0x2a2a2a });
 }
 
-export function solid({ kind, size, position, color }) {
+const GEOMETRIES = {
+  box: (THREE, { size }) => new THREE.BoxGeometry(...size),
+  cylinder: (THREE, { size }) => new THREE.CylinderGeometry(size[0], size[0], size[1], 48).rotateX(Math.PI / 2),
+  sphere: (THREE, { size }) => new THREE.SphereGeometry(size[0], 32, 24),
+  mesh: (THREE, { size, vertices }) => {
+    const geometry = new THREE.BufferGeometry().setFromPoints(vertices.map((p) => new THREE.Vector3(...p).multiplyScalar(size[0])));
+    geometry.computeVertexNormals(); // three corners a face, none shared: sharp edges
+    return geometry;
+  },
+};
+
+export function solid(shape) {
   const { THREE } = globalThis.MeshCat;
-  const geometry = kind === "box" ? new THREE.BoxGeometry(...size) : new THREE.CylinderGeometry(size[0], size[0], size[1], 48).rotateX(Math.PI / 2);
-  const mesh = new THREE.Mesh(geometry, paint(color));
-  mesh.position.set(...position);
+  const mesh = new THREE.Mesh(GEOMETRIES[shape.kind](THREE, shape), paint(shape.color));
+  mesh.position.set(...shape.position);
+  const [w, x, y, z] = shape.orientation;
+  mesh.quaternion.set(x, y, z, w);
   mesh.castShadow = mesh.receiveShadow = true;
   return mesh;
 }

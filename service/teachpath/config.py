@@ -10,7 +10,7 @@ import math
 import os
 import tomllib
 from collections.abc import Iterable, Mapping
-from dataclasses import asdict, dataclass, is_dataclass
+from dataclasses import asdict, dataclass, is_dataclass, replace
 from pathlib import Path
 from typing import Annotated, Any, get_args, get_type_hints
 
@@ -19,6 +19,7 @@ from pydantic import BaseModel, ConfigDict, ValidationError
 
 from teachpath.errors import NotFound, UnusableSettings
 from teachpath.io.bus import BusSettings
+from teachpath.io.meshes import read_hull
 from teachpath.io.store import StoreSettings
 from teachpath.learning import LearningSettings
 from teachpath.motion import MotionSettings, paper_scene
@@ -31,7 +32,7 @@ from teachpath.workers.simulator import SimulatorSettings
 from teachpath_proto.keys import is_name
 
 PREFIX = "TEACHPATH_"
-SIZES = {"box": 3, "cylinder": 2}  # numbers in the size of a shape
+SIZES = {"box": 3, "cylinder": 2, "sphere": 1, "mesh": 1}  # numbers in the size of a shape
 # RoboTasks (clfd datasets) was recorded in the frame of another arm; this maps it, shrunk, onto the Puma's table.
 ROBOTTASKS = Calibration("robottasks", scale=0.8, rotation=(1.0, 0.0, 0.0, 0.0), offset=(0.15, 0.17, 0.42))
 
@@ -95,7 +96,7 @@ def load(file: Path | None = None, *, document: dict[str, Any] | None = None) ->
     for layer in (_read(file), _variables(), document or {}):
         _refuse_unknown(layer, Settings, "")
         given = _laid_over(given, layer)
-    settings = _checked(given)
+    settings = _with_meshes(_checked(given), _folder(file))
     _check_names("robot", [settings.bus.robot])
     _check_calibrations(settings.calibrations)
     _check_scenes(settings.scenes)
@@ -117,8 +118,29 @@ def _checked(document: dict[str, Any]) -> Settings:
         raise UnusableSettings("a number is too large for any setting; look for one of over 300 digits") from None
 
 
+def _named_file(file: Path | None) -> Path | None:
+    return file or (Path(os.environ["TEACHPATH_CONFIG"]) if os.environ.get("TEACHPATH_CONFIG") else None)
+
+
+def _folder(file: Path | None) -> Path:
+    return (_named_file(file) or Path("teachpath.toml")).parent
+
+
+def _with_meshes(settings: Settings, folder: Path) -> Settings:
+    """Read the files of meshes; settings that a process hands to another have their vertices already."""
+
+    def read(shape: Shape) -> Shape:
+        return replace(shape, vertices=read_hull(folder / shape.file)) if shape.file and not shape.vertices else shape
+
+    scenes = tuple(
+        replace(scene, obstacles=tuple(map(read, scene.obstacles)), carried=scene.carried and read(scene.carried))
+        for scene in settings.scenes
+    )
+    return settings.model_copy(update={"scenes": scenes})
+
+
 def _read(file: Path | None) -> dict[str, Any]:
-    named = file or (Path(os.environ["TEACHPATH_CONFIG"]) if os.environ.get("TEACHPATH_CONFIG") else None)
+    named = _named_file(file)
     chosen = named or Path("teachpath.toml")
     if named is None and not chosen.is_file():
         return {}
@@ -203,6 +225,10 @@ def _check_shape(shape: Shape, scene: str) -> None:
         raise UnusableSettings(f"{who} is a {shape.kind!r}; known are {', '.join(SIZES)}")
     if len(shape.size) != SIZES[shape.kind] or min(shape.size) <= 0:
         raise UnusableSettings(f"{who} has size {shape.size}; a {shape.kind} has {SIZES[shape.kind]} lengths over 0")
+    if not math.isclose(norm := math.hypot(*shape.orientation), 1.0, abs_tol=1e-6):
+        raise UnusableSettings(f"{who} has an orientation of length {norm:g}; a unit quaternion has 1")
+    if (shape.kind == "mesh") != bool(shape.vertices):
+        raise UnusableSettings(f"{who} is a {shape.kind}; a mesh, and only a mesh, has a file")
 
 
 def _check_names(what: str, names: Iterable[str]) -> None:

@@ -24,8 +24,12 @@ HEADER = """\
 """
 MORE = {
     "calibrations": "# rotation: unit quaternion w, x, y, z; offset [m]; scale 0.0254 is for a device in inches",
-    "scenes": "# Positions are of centres [m], sizes of a box x, y, z, of an upright cylinder radius, height",
+    "scenes": """\
+# Positions are of centres [m], sizes of a box x, y, z, of a cylinder radius, height, of a sphere its radius; a shape
+# is turned by its `orientation` (quaternion w, x, y, z). A `mesh` has a `file` beside this one (.obj, .stl), and as
+# size the factor from its units to metres; its convex hull takes its place""",
 }
+RARE = ("orientation", "file", "vertices")  # of a shape, not shown
 # A setting without a default shows one that it could have.
 EXAMPLES = {"learning.threshold": 0.06, "learning.clusters": 3, "learning.degree": 3}
 WORDS = {Ge: ("ge", "at least"), Gt: ("gt", "over"), Le: ("le", "at most"), Lt: ("lt", "under")}
@@ -70,7 +74,8 @@ def _tables(room: str, values: tuple[Calibration | Scene, ...]) -> Iterator[str]
             mark = f"[[{room}.{name}]]" if isinstance(getattr(value, name), tuple) else f"[{room}.{name}]"
             for shape in shapes:
                 yield mark
-                yield from (f"{f.name} = {_toml(getattr(shape, f.name), f.name)}" for f in fields(shape))
+                shown = [f.name for f in fields(shape) if f.name not in RARE]
+                yield from (f"{name} = {_toml(getattr(shape, name), name)}" for name in shown)
         yield ""
 
 

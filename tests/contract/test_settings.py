@@ -15,7 +15,7 @@ from typing import Any
 import pytest
 
 from teachpath.config import Settings, load
-from teachpath.errors import NotFound, UnusableSettings
+from teachpath.errors import NotFound, UnusableInput, UnusableSettings
 from tests.contract import settings_file
 
 ROOMS = [(room, type(getattr(Settings(), room))) for room in Settings.model_fields]
@@ -193,3 +193,20 @@ def test_scenes_are_found_by_name() -> None:
     assert settings.scene("paper").name == "paper"
     with pytest.raises(NotFound, match="there is no scene 'moon'; known: paper, empty"):
         settings.scene("moon")
+
+
+def test_a_mesh_is_read_beside_the_settings_and_a_wrong_shape_is_named(tmp_path: Path) -> None:
+    (tmp_path / "cube.obj").write_text("".join(f"v {x} {y} {z}\n" for x in (0, 9) for y in (0, 9) for z in (0, 9)))
+    shape = 'scenes = [{name = "s", obstacles = [{name = "cube", kind = "mesh", size = [0.001], position = [0, 0, 0]'
+    settings = load(toml(tmp_path, f'{shape}, file = "cube.obj"}}]}}]\n'))
+    (cube,) = settings.scene("s").obstacles
+    assert len(set(cube.vertices)) == 8
+    handed_on = load(document=settings.model_dump(mode="json"))
+    assert handed_on.scenes == settings.scenes
+    for wrong, sentence in (
+        ("}]}]\n", "cube in scene s is a mesh; a mesh, and only a mesh, has a file"),
+        (', file = "none.obj"}]}]\n', "No such file"),
+        (', file = "cube.obj", orientation = [1, 1, 0, 0]}]}]\n', "has an orientation of length 1.41421"),
+    ):
+        with pytest.raises(UnusableInput, match=sentence):
+            load(toml(tmp_path, shape + wrong))

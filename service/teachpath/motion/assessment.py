@@ -85,7 +85,7 @@ def _best(
         fit = [least_wrong(every)]
     best: tuple[float, Candidate, list[Clearance]] | None = None
     for candidate in fit[:TRIED]:
-        rows = model.profile(candidate.joints[nodes], load=_load(model, candidate))
+        rows = model.clearances(candidate.joints[nodes], load=_load(model, candidate))
         least = min(row.distance for row in rows)
         if best is None or least > best[0]:
             best = least, candidate, rows
@@ -110,7 +110,7 @@ def _collision(
     load = _load(model, candidate)
 
     def distances(q: Array) -> Array:
-        return np.array([row.distance for row in model.profile(q, load=load)])
+        return np.array([row.distance for row in model.clearances(q, load=load)])
 
     return collision_failure(way, candidate, nodes, rows, settings.clearance_min, distances)
 

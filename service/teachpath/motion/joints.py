@@ -51,9 +51,13 @@ class JointPath:
         return float(self.lengths[-1])
 
     @cached_property
+    def spline(self) -> BSpline[np.float64]:
+        """The six joints and the length by the parameter."""
+        return make_interp_spline(self.nodes, np.column_stack([self.joints, self.lengths]), k=DEGREE)
+
+    @cached_property
     def _derivatives(self) -> tuple[BSpline[np.float64], ...]:
-        spline = make_interp_spline(self.nodes, np.column_stack([self.joints, self.lengths]), k=DEGREE)
-        return (spline, *(spline.derivative(k) for k in (1, 2, 3)))
+        return (self.spline, *(self.spline.derivative(k) for k in (1, 2, 3)))
 
     def __call__(self, parameter: Array | float, order: int = 0) -> Array:
         """Evaluate (..., 7) the six joints and the length, or their derivative of `order` 0 to 3."""

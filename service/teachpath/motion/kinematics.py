@@ -151,6 +151,17 @@ def explain_reach(excess: float, beyond: bool, s: float) -> str:
     return f"wrist centre {100 * excess:.1f} cm {where} at s = {s:.3f} m"
 
 
+def rotations(quaternions: Array) -> Array:
+    """Return the rotation matrices (m, 3, 3) of unit quaternions (m, 4), w first."""
+    w, x, y, z = quaternions.T
+    rows = [
+        [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+        [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+        [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
+    ]
+    return np.moveaxis(np.array(rows), 2, 0)
+
+
 def _wrist(arm: Array, poses: Array, *, flip: bool, before: float) -> Array:
     frame = np.broadcast_to(np.eye(4), (len(arm), 4, 4))
     for i in range(3):

@@ -36,7 +36,7 @@ def mjcf(scene: Scene, *, timestep: float = 0.001) -> str:
         timestep: of the simulation [s].
 
     Raises:
-        UnusableInput: a shape of the scene is neither a box nor a cylinder.
+        UnusableInput: a shape of the scene is neither box, cylinder, sphere nor mesh.
     """
     return "\n".join(
         [
@@ -45,6 +45,7 @@ def mjcf(scene: Scene, *, timestep: float = 0.001) -> str:
             f'<option timestep="{timestep}" gravity="0 0 -9.81" integrator="implicitfast"/>',
             "<asset>",
             *[_mesh(part) for part in drawing() if part.kind == "prism"],
+            *[_hull(shape, name) for name, shape in _bodies(scene) if shape.kind == "mesh"],
             "</asset>",
             "<worldbody>",
             *_parts_of(0),
@@ -123,18 +124,28 @@ def _mesh(part: Part) -> str:
     return f'<mesh name={quoteattr(part.name)} vertex="{_text(np.ravel(corners))}"/>'
 
 
+def _bodies(scene: Scene) -> list[tuple[str, Shape]]:
+    carried = [(CARRIED, scene.carried)] if scene.carried else []
+    return [(f"obstacle:{shape.name}", shape) for shape in scene.obstacles] + carried
+
+
+def _hull(shape: Shape, name: str) -> str:
+    return f'<mesh name={quoteattr(name)} vertex="{_text(shape.size[0] * np.ravel(shape.vertices))}"/>'
+
+
 def _obstacle(shape: Shape) -> str:
+    name = f"obstacle:{shape.name}"
     return (
-        f'<geom name={quoteattr("obstacle:" + shape.name)} {_solid(shape)} pos="{_text(shape.position)}" '
-        f'rgba="{_color(shape.color)}" {_OBSTACLE}/>'
+        f'<geom name={quoteattr(name)} {_solid(shape, name)} pos="{_text(shape.position)}" '
+        f'quat="{_text(shape.orientation)}" rgba="{_color(shape.color)}" {_OBSTACLE}/>'
     )
 
 
 def _carried(shape: Shape) -> str:
     return (
-        f'<body name="{CARRIED}" pos="{_text(shape.position)}"><freejoint name="{CARRIED}"/>'
-        f'<geom name="{CARRIED}" {_solid(shape)} density="{OBJECT_DENSITY}" rgba="{_color(shape.color)}" {_OBJECT}/>'
-        "</body>"
+        f'<body name="{CARRIED}" pos="{_text(shape.position)}" quat="{_text(shape.orientation)}">'
+        f'<freejoint name="{CARRIED}"/><geom name="{CARRIED}" {_solid(shape, CARRIED)} density="{OBJECT_DENSITY}" '
+        f'rgba="{_color(shape.color)}" {_OBJECT}/></body>'
     )
 
 
@@ -146,13 +157,18 @@ def _motor(number: int, link: Link) -> str:
     return f'<motor name="motor{number}" joint="joint{number}" ctrlrange="{-link.torque} {link.torque}"/>'
 
 
-def _solid(shape: Shape) -> str:
+def _solid(shape: Shape, name: str) -> str:
     if shape.kind == "box" and len(shape.size) == 3:
         return f'type="box" size="{_text(np.array(shape.size) / 2)}"'
     if shape.kind == "cylinder" and len(shape.size) == 2:
         return f'type="cylinder" size="{shape.size[0]!r} {shape.size[1] / 2!r}"'
+    if shape.kind == "sphere" and len(shape.size) == 1:
+        return f'type="sphere" size="{shape.size[0]!r}"'
+    if shape.kind == "mesh" and len(shape.size) == 1 and len(shape.vertices) > 3:
+        return f'type="mesh" mesh={quoteattr(name)}'
     raise UnusableInput(
-        f"{shape.name!r} is a {shape.kind} of {len(shape.size)} sizes; a scene has boxes of 3 and cylinders of 2"
+        f"{shape.name!r} is a {shape.kind} of {len(shape.size)} sizes and {len(shape.vertices)} vertices; a scene has "
+        "boxes of 3, cylinders of 2, spheres of 1 and meshes of 1 and 4 vertices at least"
     )
 
 

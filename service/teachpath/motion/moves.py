@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from itertools import pairwise
-from typing import Final
 
 import numpy as np
 from ruckig import InputParameter, Ruckig, Trajectory
@@ -12,20 +10,12 @@ from ruckig import InputParameter, Ruckig, Trajectory
 from teachpath.errors import PathRefused
 from teachpath.motion.joints import Limits
 from teachpath.motion.kinematics import tool_pose
+from teachpath.motion.proof import Sweep, least
 from teachpath.motion.puma560 import Array
-from teachpath.motion.scene import CollisionModel, Load
+from teachpath.motion.scene import Clearance, CollisionModel, Load, standing
 from teachpath.motion.settings import MotionSettings
-from teachpath.motion.track import STEP as INSTANT
-from teachpath.motion.track import Track, composed
+from teachpath.motion.track import STEP, Track, composed
 from teachpath.records import Scene
-
-STEP: Final = 0.01  # rad, largest turn of a joint between two configurations that are checked
-
-
-def line(start: Array, goal: Array) -> Array:
-    """Sample the straight line (n, 6) between two configurations, densely enough to be checked."""
-    count = 1 + max(1, int(np.ceil(np.abs(goal - start).max() / STEP)))
-    return start + np.linspace(0.0, 1.0, count)[:, None] * (goal - start)
 
 
 def straight(start: Array, goal: Array, limits: Limits, *, reserve: tuple[float, float, float]) -> Track:
@@ -46,7 +36,7 @@ def straight(start: Array, goal: Array, limits: Limits, *, reserve: tuple[float,
         float(np.min(shared.speed / slowest)),
         float(np.min(shared.acceleration / slowest)),
         float(np.min(shared.jerk / slowest)),
-        INSTANT,
+        STEP,
     )
     place, speed, acceleration, jerk, step = run
     count = len(place) - 1
@@ -90,20 +80,25 @@ def _phases(run: Trajectory, instants: Array) -> tuple[Array, Array, Array, Arra
 
 
 def check_free(
-    model: CollisionModel, samples: Array, settings: MotionSettings, *, load: Load | None, gripper_open: bool, what: str
+    model: CollisionModel, stops: Array, settings: MotionSettings, *, load: Load | None, gripper_open: bool, what: str
 ) -> float:
-    """Return the least clearance [m] of configurations (n, 6) on a move.
+    """Return the clearance [m] that is proved for straight lines of the joints between configurations (n, 6).
 
     Raises:
         PathRefused: something comes too near; `what` names the move.
     """
-    least = model.clearance(samples, load=load, gripper_open=gripper_open)
-    if least.distance < settings.clearance_min:
+
+    def measure(q: Array) -> list[Clearance]:
+        return model.clearances(q, load=load, gripper_open=gripper_open)
+
+    proved = least(Sweep.through(stops, model.levers(load)), measure, settings.clearance_min)
+    if proved.distance < settings.clearance_min:
+        near = proved.measured
         raise PathRefused(
-            f"{what}: {least.part} comes within {1000 * least.distance:.1f} mm of {least.other}, "
+            f"{what}: {near.part} comes within {1000 * proved.distance:.1f} mm of {near.other}, "
             f"least allowed {1000 * settings.clearance_min:.1f} mm"
         )
-    return least.distance
+    return proved.distance
 
 
 def approach(
@@ -127,9 +122,8 @@ def approach(
     home = np.array(settings.home)
     refused: PathRefused | None = None
     for stops in ((here, goal), (here, home, goal)):
-        samples = np.concatenate([line(a, b) for a, b in pairwise(stops)])
         try:
-            check_free(model, samples, settings, load=load, gripper_open=gripper_open, what=what)
+            check_free(model, np.array(stops), settings, load=load, gripper_open=gripper_open, what=what)
             return stops
         except PathRefused as error:
             refused = refused or error
@@ -155,7 +149,7 @@ def retreat(
     home = np.array(settings.home)
     load = left_behind(model.scene, start, goal)
     what = "on the way home from the goal"
-    check_free(model, line(above_goal, home), settings, load=load, gripper_open=load is not None, what=what)
+    check_free(model, np.stack([above_goal, home]), settings, load=load, gripper_open=load is not None, what=what)
     return above_goal, home
 
 
@@ -163,5 +157,6 @@ def left_behind(scene: Scene, start: Array, goal: Array) -> Load | None:
     """Say where the carried object stands once it was moved along a path between two configurations."""
     if scene.carried is None:
         return None
-    x, y, z = np.array(scene.carried.position) + tool_pose(goal)[:3, 3] - tool_pose(start)[:3, 3]
-    return Load(placed=(float(x), float(y), float(z)))
+    pose = tool_pose(goal) @ np.linalg.inv(tool_pose(start)) @ standing(scene.carried)
+    x, y, z = (float(value) for value in pose[:3, 3])
+    return Load(placed=(x, y, z), turned=pose[:3, :3])

@@ -5,6 +5,7 @@ from __future__ import annotations
 import uuid
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Final
 
 import numpy as np
@@ -15,7 +16,8 @@ from teachpath.motion.certificate import digest, largest_use, limit_uses
 from teachpath.motion.failure import collision_failure, in_words, kinematic_failure, start_failure
 from teachpath.motion.joints import ARM, JointPath, Limits
 from teachpath.motion.kinematics import inverse, tool_pose
-from teachpath.motion.moves import approach, check_free, left_behind, line, retreat
+from teachpath.motion.moves import approach, check_free, left_behind, retreat
+from teachpath.motion.proof import FINEST, Sweep, least
 from teachpath.motion.puma560 import LOWER, TORQUE, UPPER, Array
 from teachpath.motion.remedy import influences
 from teachpath.motion.route import Route, route
@@ -76,16 +78,16 @@ def plan(path: LearnedPath, scene: Scene, settings: MotionSettings | None = None
         _refuse(kinematic_failure(way, least_wrong(every), settings))
     job = _Job(path, scene, settings, way, CollisionModel(scene))
     refused: PathRefused | None = None
-    free: list[tuple[float, Candidate, Extreme]] = []
+    free: list[tuple[float, Candidate]] = []
     for candidate in sorted(fit, key=lambda c: cost(c, settings)):
         try:
             clearance = _path_clearance(job, candidate)
-            free.append((cost(candidate, settings) - GAIN * min(clearance.value, ENOUGH), candidate, clearance))
+            free.append((cost(candidate, settings) - GAIN * min(clearance.value, ENOUGH), candidate))
         except PathRefused as error:
             refused = refused or error
-    for _, candidate, clearance in sorted(free, key=lambda trial: trial[0]):
+    for _, candidate in sorted(free, key=lambda trial: trial[0]):
         try:
-            return _certified(job, candidate, clearance)
+            return _certified(job, candidate)
         except PathRefused as error:
             refused = refused or error
     assert refused is not None
@@ -99,10 +101,11 @@ def _home_within_limits(settings: MotionSettings) -> None:
             raise UnusableSettings(f"motion.home puts joint {joint + 1} to {angle:.3f} rad, limits {limits}")
 
 
-def _certified(job: _Job, candidate: Candidate, clearance: Extreme) -> Plan:
+def _certified(job: _Job, candidate: Candidate) -> Plan:
     settings, way = job.settings, job.way
     joints, pace, limits, torque = _within_torques(job, candidate)
     _tool_on_path(way, joints, settings)
+    clearance = _path_clearance(job, candidate, joints)
     start, goal = joints.joints[0], joints.joints[-1]
     above_start = _above(way.positions[0], start, candidate, settings, "start")
     above_goal = _above(way.positions[-1], goal, candidate, settings, "goal")
@@ -193,23 +196,36 @@ def _above(position: Array, q: Array, candidate: Candidate, settings: MotionSett
     return np.asarray(best, dtype=np.float64)
 
 
-def _path_clearance(job: _Job, candidate: Candidate) -> Extreme:
-    q, load, settings = candidate.joints, grasp_of(job.scene, candidate.joints[0]), job.settings
-    least = job.model.clearance(q, load=load)
-    if least.distance < settings.clearance_min:
-        _too_near(job, candidate, settings.clearance_min, lambda q: job.model.profile(q, load=load))
-    if load is not None and job.model.support(q, load).distance < -settings.contact_tolerance:
-        _too_near(job, candidate, -settings.contact_tolerance, lambda q: job.model.supports(q, load))
-    s = float(job.way.lengths[least.index])
-    return Extreme(least.distance, f"{least.part} to {least.other} at s = {s:.3f} m" if least.part else "far", s)
+def _path_clearance(job: _Job, candidate: Candidate, joints: JointPath | None = None) -> Extreme:
+    """Prove the clearance along the path; without `joints` along straight lines between a candidate's nodes."""
+    load, model = grasp_of(job.scene, candidate.joints[0]), job.model
+    levers = model.levers(load)
+    sweep = Sweep.through(candidate.joints, levers) if joints is None else Sweep.along(joints, levers)
+
+    def measure(q: Array) -> list[Clearance]:
+        return model.clearances(q, load=load)
+
+    proved = least(sweep, measure, job.settings.clearance_min)
+    if proved.distance < job.settings.clearance_min:
+        _too_near(job, candidate, job.settings.clearance_min, measure)
+    if load is not None:
+        deepest = least(sweep, lambda q: model.supports(q, load), -job.settings.contact_tolerance)
+        if deepest.distance < -job.settings.contact_tolerance:
+            _too_near(job, candidate, -job.settings.contact_tolerance, lambda q: model.supports(q, load))
+    share = (proved.place - sweep.places[0]) / (sweep.places[-1] - sweep.places[0])
+    s = float(job.way.lengths[round(share * (len(job.way.lengths) - 1))] if joints is None else joints(proved.place)[6])
+    near = proved.measured
+    return Extreme(proved.distance, f"{near.part} to {near.other} at s = {s:.3f} m" if near.part else "far", s)
 
 
-def _too_near(job: _Job, candidate: Candidate, least: float, measure: Callable[[Array], list[Clearance]]) -> None:
+def _too_near(job: _Job, candidate: Candidate, asked: float, measure: Callable[[Array], list[Clearance]]) -> None:
     nodes = np.arange(len(candidate.joints))
     rows = measure(candidate.joints)
+    # What was proved may be less than what is measured at the nodes: then the least of them is the place to tell.
+    asked = max(asked, min(row.distance for row in rows) + FINEST)
     _refuse(
         collision_failure(
-            job.way, candidate, nodes, rows, least, lambda q: np.array([row.distance for row in measure(q)])
+            job.way, candidate, nodes, rows, asked, lambda q: np.array([row.distance for row in measure(q)])
         )
     )
 
@@ -231,8 +247,11 @@ def _moves_clear(job: _Job, joints: JointPath, above_start: Array, above_goal: A
     gripper_open = carried is not None
     approach(model, np.array(settings.home), above_start, settings, load=before, gripper_open=gripper_open)
     for load, low, high, what in ((before, start, above_start, "start"), (behind, goal, above_goal, "goal")):
-        samples = line(low, high)
-        check_free(model, samples, settings, load=load, gripper_open=gripper_open, what=f"above the {what}")
-        if load is not None and model.straddle(samples, load).distance < NEAR_FINGERS:
+        stops = np.stack([low, high])
+        check_free(model, stops, settings, load=load, gripper_open=gripper_open, what=f"above the {what}")
+        if load is None:
+            continue
+        fingers = least(Sweep.through(stops, model.levers()), partial(model.straddles, load=load), NEAR_FINGERS)
+        if fingers.distance < NEAR_FINGERS:
             raise PathRefused(f"the open fingers would hit the object at the {what}; is the path centred on it?")
     retreat(model, start, goal, above_goal, settings)

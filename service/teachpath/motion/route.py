@@ -11,7 +11,7 @@ from numpy.polynomial.legendre import leggauss
 from scipy.interpolate import CubicHermiteSpline, make_interp_spline
 
 from teachpath.errors import PathRefused
-from teachpath.motion.kinematics import downward
+from teachpath.motion.kinematics import downward, rotations
 from teachpath.motion.puma560 import Array
 from teachpath.motion.settings import MotionSettings
 from teachpath.nurbs import Curve, unit
@@ -91,8 +91,8 @@ class Route:
         """
         poses = downward(self.curve(u), 0.0)
         if self.turn is not None:
-            turned = matrices(unit(self.turn, u))
-            start = matrices(unit(self.turn, np.zeros(1)))[0]
+            turned = rotations(unit(self.turn, u))
+            start = rotations(unit(self.turn, np.zeros(1)))[0]
             poses[:, :3, :3] = turned @ start.T @ poses[:, :3, :3]
         return poses
 
@@ -143,17 +143,6 @@ def measured(curve: Curve) -> ArcLength:
             f"the curve stands still at s = {still:.3f} m: control points coincide there, move them apart"
         )
     return arc
-
-
-def matrices(quaternions: Array) -> Array:
-    """Return the rotation matrices (m, 3, 3) of unit quaternions (m, 4), w first."""
-    w, x, y, z = quaternions.T
-    rows = [
-        [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
-        [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
-        [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
-    ]
-    return np.moveaxis(np.array(rows), 2, 0)
 
 
 def _spline_error(found: Route) -> float:

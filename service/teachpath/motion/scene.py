@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from dataclasses import dataclass
 from itertools import combinations
 from typing import Final
@@ -12,12 +12,12 @@ import numpy as np
 
 from teachpath.errors import UnusableInput
 from teachpath.motion.drawing import Part, drawing
-from teachpath.motion.kinematics import tool_pose
+from teachpath.motion.kinematics import link_frames, rotations, tool_pose
 from teachpath.motion.mjcf import CARRIED, mjcf
-from teachpath.motion.puma560 import Array
-from teachpath.records import Scene, Vector
+from teachpath.motion.puma560 import LINKS, TOOL_LENGTH, Array
+from teachpath.records import Scene, Shape, Vector
 
-FAR: Final = 0.5  # m, distances are not looked at beyond this
+FAR: Final = 0.3  # m, distances are not looked at beyond this
 # Neighbours touch by design, and of these pairs of links the distance hardly changes: their joints' limits keep them.
 _NEVER_MEET: Final = {(0, 1), (0, 2), (1, 2), (2, 3), (3, 4), (3, 5), (4, 5), (4, 6), (5, 6)}
 _TURNS_IN_PLACE: Final = "trunk"
@@ -25,10 +25,9 @@ _TURNS_IN_PLACE: Final = "trunk"
 
 @dataclass(frozen=True, slots=True)
 class Clearance:
-    """A least distance [m] (negative: how deep they overlap), at which of the configurations, and between whom."""
+    """A least distance [m] (negative: how deep they overlap), and between whom; without names it is at least that."""
 
     distance: float
-    index: int
     part: str
     other: str
 
@@ -39,11 +38,13 @@ class Load:
 
     Attributes:
         grasp: (4, 4) pose to tool from object.
-        placed: centre of the object, upright [m].
+        placed: centre of the object [m].
+        turned: (3, 3) its orientation there; None as it stands at its start.
     """
 
     grasp: Array | None = None
     placed: Vector | None = None
+    turned: Array | None = None
 
 
 class CollisionModel:
@@ -68,37 +69,45 @@ class CollisionModel:
             self._names[self._object] = scene.carried.name
         self._closed = self._model.geom_pos.copy()
 
-    def clearance(self, q: Array, *, load: Load | None = None, gripper_open: bool = False) -> Clearance:
-        """Measure the least distance of everything that should stay apart.
+    def clearances(self, q: Array, *, load: Load | None = None, gripper_open: bool = False) -> list[Clearance]:
+        """Measure the least distance of everything that should stay apart, for each configuration.
 
         Left out are pairs that touch on purpose: gripper and object, and the object on what it stands on at its
-        start (see `support`).
+        start (see `supports`).
 
         Args:
             q: (n, 6) configurations [rad].
             load: where the carried object is; None when there is none.
             gripper_open: whether the fingers are apart.
         """
-        return min(self._rows(q, self._pairs(load), load, gripper_open, alone=False), key=lambda row: row.distance)
-
-    def profile(self, q: Array, *, load: Load | None = None, gripper_open: bool = False) -> list[Clearance]:
-        """Measure the same for each configuration by itself."""
-        return list(self._rows(q, self._pairs(load), load, gripper_open, alone=True))
-
-    def support(self, q: Array, load: Load) -> Clearance:
-        """Measure the least distance of the carried object to what it stands on at its start (0: they touch)."""
-        return min(self.supports(q, load), key=lambda row: row.distance)
+        return self._rows(q, self._pairs(load), load, gripper_open)
 
     def supports(self, q: Array, load: Load) -> list[Clearance]:
-        """Measure the same for each configuration by itself."""
-        pairs = [(self._object, other) for other in self._standing_on()]
-        return list(self._rows(q, pairs, load, False, alone=True))
+        """Measure the distance of the carried object to what it stands on at its start (0: they touch)."""
+        return self._rows(q, [(self._object, other) for other in self._standing_on()], load, False)
 
-    def straddle(self, q: Array, load: Load) -> Clearance:
-        """Measure the least distance of the open fingers to the object that stands between them."""
+    def straddles(self, q: Array, load: Load) -> list[Clearance]:
+        """Measure the distance of the open fingers to the object that stands between them."""
         fingers = [geom for geom, part in self._parts.items() if part.opens[1]]
-        pairs = [(finger, self._object) for finger in fingers]
-        return min(self._rows(q, pairs, load, True, alone=False), key=lambda row: row.distance)
+        return self._rows(q, [(finger, self._object) for finger in fingers], load, True)
+
+    def levers(self, load: Load | None = None) -> Array:
+        """Bound how far from each joint's axis any moving point can be (6,) [m], whatever the configuration."""
+        self._place(np.zeros(6), None)
+        origins = link_frames(np.zeros(6))[:, :3, 3]
+        radius = np.zeros(7)
+        for geom, part in self._parts.items():
+            off = np.linalg.norm(self._data.geom_xpos[geom] - origins[part.link]) + np.linalg.norm(part.opens)
+            radius[part.link] = max(radius[part.link], off + self._model.geom_rbound[geom])
+        if load is not None and load.grasp is not None:
+            off = np.linalg.norm(load.grasp[:3, 3] + np.array([0.0, 0.0, TOOL_LENGTH]))
+            radius[6] = max(radius[6], off + self._model.geom_rbound[self._object])
+        levers, far = np.zeros(6), 0.0  # far: from the frame behind a joint to any point that it moves
+        for joint in range(5, -1, -1):
+            far = max(far, radius[joint + 1])
+            levers[joint] = LINKS[joint].a + far
+            far += float(np.hypot(LINKS[joint].a, LINKS[joint].d))
+        return levers
 
     def _id(self, name: str) -> int:
         return int(self._model.geom(name).id)
@@ -126,60 +135,72 @@ class CollisionModel:
         carried = self.scene.carried
         if carried is None:
             return set()
-        self._place(np.zeros(6), None, carried.position)
+        self._place(np.zeros(6), standing(carried))
         return {other for other in self._obstacles if self._distance(self._object, other, FAR) <= touching}
 
-    def _place(self, q: Array, held: Array | None, placed: Vector | None) -> None:
+    def _standing(self, load: Load | None) -> Array | None:
+        """Return the pose (4, 4) of the object where it stands in the world, or None."""
+        carried = self.scene.carried
+        if load is None or load.placed is None or carried is None:
+            return None
+        pose = standing(carried)
+        pose[:3, 3] = load.placed
+        if load.turned is not None:
+            pose[:3, :3] = load.turned
+        return pose
+
+    def _place(self, q: Array, pose: Array | None) -> None:
         data = self._data
         data.qpos[:6] = q
-        if held is not None:
-            data.qpos[6:9] = held[:3, 3]
-            mujoco.mju_mat2Quat(data.qpos[9:13], np.ascontiguousarray(held[:3, :3]).ravel())
-        elif placed is not None:
-            data.qpos[6:9] = placed
-            data.qpos[9:13] = (1.0, 0.0, 0.0, 0.0)
+        if pose is not None:
+            data.qpos[6:9] = pose[:3, 3]
+            mujoco.mju_mat2Quat(data.qpos[9:13], np.ascontiguousarray(pose[:3, :3]).ravel())
         mujoco.mj_kinematics(self._model, data)
 
     def _distance(self, one: int, two: int, furthest: float) -> float:
         return float(mujoco.mj_geomDistance(self._model, self._data, one, two, furthest, None))
 
     def _rows(
-        self, q: Array, pairs: Iterable[tuple[int, int]], load: Load | None, gripper_open: bool, *, alone: bool
-    ) -> Iterator[Clearance]:
-        """Measure row by row; unless each stands `alone`, a row that is farther than one before says only that."""
+        self, q: Array, pairs: Iterable[tuple[int, int]], load: Load | None, gripper_open: bool
+    ) -> list[Clearance]:
         self._model.geom_pos[:] = self._closed
         if gripper_open:
             for geom, part in self._parts.items():
                 self._model.geom_pos[geom] += part.opens
         q = np.atleast_2d(q)
-        held = None
-        if load is not None and load.grasp is not None:
-            held = tool_pose(q) @ load.grasp
+        held = tool_pose(q) @ load.grasp if load is not None and load.grasp is not None else None
         pair = np.array(list(pairs), dtype=np.int64).reshape(-1, 2)
         reach = self._model.geom_rbound[pair].sum(axis=1)  # (pairs,) of the two bounding spheres
-        furthest = FAR
+        standing = self._standing(load)
+        rows = []
         for index, row in enumerate(q):
-            self._place(row, None if held is None else held[index], None if load is None else load.placed)
+            self._place(row, standing if held is None else held[index])
             centres = self._data.geom_xpos[pair]
             gap = np.linalg.norm(centres[:, 0] - centres[:, 1], axis=1) - reach
-            best = Clearance(furthest, index, "", "")
+            best = Clearance(FAR, "", "")
             for k in np.argsort(gap):
                 if gap[k] >= best.distance:
                     break
                 distance = self._distance(int(pair[k, 0]), int(pair[k, 1]), max(best.distance, 0.001))
                 if distance < best.distance:
-                    best = Clearance(distance, index, *(self._names[int(g)] for g in pair[k]))
-            furthest = FAR if alone else best.distance
-            yield best
+                    best = Clearance(distance, *(self._names[int(g)] for g in pair[k]))
+            rows.append(best)
+        return rows
 
 
 def grasp_of(scene: Scene, start: Array) -> Load | None:
     """Return how the scene's object is held once it was grasped at configuration `start` (6,); None without one."""
     if scene.carried is None:
         return None
-    upright = np.eye(4)
-    upright[:3, 3] = scene.carried.position
-    return Load(grasp=np.linalg.inv(tool_pose(start)) @ upright)
+    return Load(grasp=np.linalg.inv(tool_pose(start)) @ standing(scene.carried))
+
+
+def standing(shape: Shape) -> Array:
+    """Return the pose (4, 4) to world of a shape where its scene has it."""
+    pose = np.eye(4)
+    pose[:3, :3] = rotations(np.array([shape.orientation]))[0]
+    pose[:3, 3] = shape.position
+    return pose
 
 
 def _may_meet(a: Part, b: Part) -> bool:

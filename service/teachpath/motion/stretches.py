@@ -10,10 +10,9 @@ import numpy as np
 
 from teachpath.motion.certificate import track
 from teachpath.motion.joints import ARM
-from teachpath.motion.kinematics import tool_pose
 from teachpath.motion.moves import approach, left_behind, retreat, straight
 from teachpath.motion.puma560 import Array
-from teachpath.motion.scene import CollisionModel, Load
+from teachpath.motion.scene import CollisionModel, Load, grasp_of
 from teachpath.motion.settings import MotionSettings
 from teachpath.motion.timing import RESERVE
 from teachpath.motion.track import Track
@@ -75,9 +74,7 @@ def way_back(plan: Plan, stretch: Stretch, here: Array, there: Array, settings: 
     carried = plan.scene.carried
     load = None
     if carried is not None and stretch.gripper_closed:
-        upright = np.eye(4)
-        upright[:3, 3] = carried.position
-        load = Load(grasp=np.linalg.inv(tool_pose(plan.joints[0])) @ upright)
+        load = grasp_of(plan.scene, plan.joints[0])
     elif carried is not None and stretch.before:
         load = Load(placed=carried.position)
     elif carried is not None:

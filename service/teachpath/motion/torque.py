@@ -7,6 +7,7 @@ from typing import Final
 
 import mujoco
 import numpy as np
+from scipy.spatial import ConvexHull
 
 from teachpath.motion.kinematics import jacobian, tool_pose
 from teachpath.motion.mjcf import OBJECT_DENSITY, mjcf
@@ -89,4 +90,8 @@ def _turning(q: Array, velocity: Array, step: float = 1e-4) -> Array:
 
 
 def _volume(shape: Shape) -> float:
+    if shape.kind == "mesh":
+        return float(ConvexHull(shape.size[0] * np.array(shape.vertices)).volume)
+    if shape.kind == "sphere":
+        return 4 / 3 * pi * shape.size[0] ** 3
     return float(np.prod(shape.size)) if shape.kind == "box" else pi * shape.size[0] ** 2 * shape.size[1]

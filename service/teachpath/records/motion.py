@@ -9,13 +9,26 @@ from teachpath.records.arrays import Array, Quaternion, Vector
 
 @dataclass(frozen=True, slots=True)
 class Shape:
-    """One body of a scene: a `box` (size = full edges x, y, z) or an upright `cylinder` (size = radius, height)."""
+    """One body of a scene.
+
+    Attributes:
+        kind: `box` (size: full edges x, y, z), `cylinder` (radius, height; axis along its z), `sphere` (radius) or
+            `mesh` (factor from its units to metres).
+        size: what its kind says [m].
+        position: of its centre, of a mesh its origin [m].
+        orientation: of the shape in the world.
+        file: OBJ or STL file of a mesh, beside the settings.
+        vertices: of the mesh's convex hull, which takes its place: three a triangle, in the file's units.
+    """
 
     name: str
     kind: str
     size: tuple[float, ...]
-    position: Vector  # of its centre [m]
+    position: Vector
     color: int = 0x8090A0
+    orientation: Quaternion = (1.0, 0.0, 0.0, 0.0)
+    file: str = ""
+    vertices: tuple[Vector, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

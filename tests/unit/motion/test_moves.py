@@ -6,7 +6,7 @@ from teachpath.motion import MotionSettings, paper_scene
 from teachpath.motion.branches import within_limits
 from teachpath.motion.joints import ARM
 from teachpath.motion.kinematics import downward, inverse, tool_pose
-from teachpath.motion.moves import STEP, approach, left_behind, line, retreat, straight
+from teachpath.motion.moves import approach, left_behind, retreat, straight
 from teachpath.motion.scene import CollisionModel
 from teachpath.motion.timing import uses
 from teachpath.records import Scene, Shape
@@ -29,13 +29,6 @@ def scene_with(*shapes: Shape) -> CollisionModel:
 def block_at(q: np.ndarray) -> Shape:
     x, y, z = (float(v) for v in tool_pose(q)[:3, 3])
     return Shape("post", "box", (0.03, 0.03, 0.03), (x, y, z))
-
-
-def test_a_line_is_straight_and_dense() -> None:
-    samples = line(LEFT, RIGHT)
-    np.testing.assert_array_equal(samples[[0, -1]], [LEFT, RIGHT])
-    assert np.abs(np.diff(samples, axis=0)).max() <= STEP
-    np.testing.assert_allclose(np.diff(samples, 2, axis=0), 0.0, atol=1e-12)
 
 
 @pytest.mark.parametrize("share", [1e-8, 1e-4, 0.1, 1.0])

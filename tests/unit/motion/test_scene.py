@@ -1,11 +1,13 @@
 import numpy as np
 import pytest
 
-from teachpath.motion import MotionSettings, paper_scene, plan
+from teachpath.motion import MotionSettings, paper_scene
 from teachpath.motion.kinematics import downward, inverse, tool_pose
+from teachpath.motion.moves import left_behind
+from teachpath.motion.puma560 import LOWER, UPPER
 from teachpath.motion.scene import FAR, CollisionModel, Load
 from teachpath.records import Scene, Shape
-from tests.unit.motion.ways import MIDDLE, way
+from tests.unit.motion.solids import Surface
 
 HOME = np.array(MotionSettings().home)
 
@@ -19,7 +21,7 @@ def test_the_distance_of_the_fingers_to_a_table_is_the_gap_below_them() -> None:
     table = Shape("table", "box", (0.9, 1.2, 0.04), (0.6, 0.0, 0.48))
     for gap in (0.01, 0.03):
         tip = 0.135 - 0.13  # of the fingers below the grasp point
-        least = CollisionModel(Scene("s", (table,))).clearance(over(0.5, 0.1, 0.5 + tip + gap))
+        least = CollisionModel(Scene("s", (table,))).clearances(over(0.5, 0.1, 0.5 + tip + gap))[0]
         assert least.distance == pytest.approx(gap, abs=1e-6)
         assert least.other == "table"
         assert "finger" in least.part
@@ -29,18 +31,17 @@ def test_a_place_is_free_in_the_middle_and_struck_at_its_worst() -> None:
     post = Shape("post", "cylinder", (0.02, 0.3), (0.5, 0.0, 0.65))
     model = CollisionModel(Scene("s", (post,)))
     q = np.concatenate([over(0.5, y, 0.7) for y in (-0.3, -0.15, 0.0, 0.15)])
-    least = model.clearance(q)
-    assert least.index == 2
-    assert least.distance < 0
-    assert model.clearance(q[:1]).distance > 0.05
+    distances = [row.distance for row in model.clearances(q)]
+    assert int(np.argmin(distances)) == 2
+    assert distances[2] < 0 < 0.05 < distances[0]
 
 
 def test_the_arm_at_home_is_clear_of_itself() -> None:
-    assert CollisionModel(Scene("s")).clearance(HOME).distance > 0.02
+    assert CollisionModel(Scene("s")).clearances(HOME)[0].distance > 0.02
 
 
 def test_a_folded_arm_meets_itself() -> None:
-    least = CollisionModel(Scene("s")).clearance(over(0.15, -0.05, 0.4))
+    least = CollisionModel(Scene("s")).clearances(over(0.15, -0.05, 0.4))[0]
     assert least.distance < 0.0
     assert {least.part, least.other} & {"pedestal", "trunk", "shoulder", "upper arm"}
 
@@ -53,23 +54,63 @@ def test_the_block_may_touch_the_table_it_stands_on_but_not_what_is_beside_it() 
     upright[:3, 3] = scene.carried.position
     load = Load(grasp=np.linalg.inv(tool_pose(q[0])) @ upright)
     model = CollisionModel(scene)
-    assert model.support(q, load).distance == pytest.approx(0.0, abs=1e-6)
-    assert model.clearance(q, load=load).distance > 0.01
-    assert model.straddle(q, Load(placed=scene.carried.position)).distance > 0.005
-    beside = model.clearance(over(0.445 - 0.02 - 0.002, 0.0, 0.6), load=load)  # the box's face is at x = 0.445
+    assert model.supports(q, load)[0].distance == pytest.approx(0.0, abs=1e-6)
+    assert model.clearances(q, load=load)[0].distance > 0.01
+    assert model.straddles(q, Load(placed=scene.carried.position))[0].distance > 0.005
+    (beside,) = model.clearances(over(0.445 - 0.02 - 0.002, 0.0, 0.6), load=load)  # the box's face is at x = 0.445
     assert beside.distance == pytest.approx(0.002, abs=1e-6)
     assert (beside.part, beside.other) == ("block", "box")
 
 
-def test_the_clearance_of_a_plan_is_the_least_of_all_its_configurations_one_by_one() -> None:
-    made = plan(way(MIDDLE), paper_scene())
-    model = CollisionModel(paper_scene())
-    q = made.joints[::20]
-    each = [model.clearance(row).distance for row in q]
-    together = model.clearance(q)
-    assert together.distance == pytest.approx(min(each), abs=1e-9)
-    assert together.index == int(np.argmin(each))
+def test_no_moving_point_is_farther_from_an_axis_than_its_lever() -> None:
+    surface, levers = Surface(), CollisionModel(paper_scene()).levers()
+    q = np.random.default_rng(5).uniform(LOWER, UPPER, (60, 6))
+    longest = np.zeros(6)
+    for joint in range(6):
+        step = np.zeros(6)
+        step[joint] = 1e-6
+        for one, other in zip(surface(q), surface(q + step), strict=True):
+            longest[joint] = max(longest[joint], float(np.linalg.norm(other - one, axis=1).max() / 1e-6))
+    assert np.all(longest <= levers + 1e-6)
+    assert np.all(longest > 0.35 * levers)
+
+
+BALL = Shape("ball", "sphere", (0.05,), (0.5, 0.0, 0.75))
+CUBE = tuple((x, y, z) for x in (-1.0, 1.0) for y in (-1.0, 1.0) for z in (-1.0, 1.0))
+
+
+TURNED = (np.cos(np.pi / 8), 0.0, 0.0, np.sin(np.pi / 8))
+
+
+@pytest.mark.parametrize(
+    ("shape", "distance"),
+    [
+        # A finger's edge is 7 cm before and 2 cm beside the middle of the shape.
+        (BALL, np.hypot(0.07, 0.02) - 0.05),
+        (Shape("box", "box", (0.1, 0.1, 0.1), BALL.position), 0.02),
+        (
+            Shape("turned", "box", (0.1, 0.1, 0.1), BALL.position, orientation=TURNED),
+            (0.09 - np.sqrt(0.005)) / np.sqrt(2),
+        ),
+        (Shape("mesh", "mesh", (0.05,), BALL.position, vertices=CUBE), 0.02),
+    ],
+)
+def test_every_kind_of_shape_is_met_where_it_is(shape: Shape, distance: float) -> None:
+    model = CollisionModel(Scene("s", (shape,)))
+    (least,) = model.clearances(over(0.5 - 0.07 - 0.011, 0.0, 0.75))
+    assert least.other == shape.name
+    assert least.distance == pytest.approx(distance, abs=2e-5)
+
+
+def test_the_object_stands_turned_where_a_turned_tool_left_it() -> None:
+    scene = paper_scene()
+    assert scene.carried is not None
+    start, goal = over(*scene.carried.position)[0], over(0.6, 0.2, 0.6)[0]
+    load = left_behind(scene, start, goal + np.array([0, 0, 0, 0, 0, 0.5]))
+    assert load is not None
+    assert load.turned is not None
+    assert np.arctan2(load.turned[1, 0], load.turned[0, 0]) == pytest.approx(-0.5, abs=1e-9)
 
 
 def test_nothing_near_is_far() -> None:
-    assert CollisionModel(Scene("s")).clearance(over(0.5, 0.0, 0.8)).distance <= FAR
+    assert CollisionModel(Scene("s")).clearances(over(0.5, 0.0, 0.8))[0].distance <= FAR

@@ -38,13 +38,15 @@ def solid(
     pose: Array | None = None,
     color: int = 0x8090A0,
     outline: Outline = (),
+    vertices: Sequence[Vector] = (),
 ) -> bytes:
     """Draw one solid body.
 
     Args:
         path: place in the tree, e.g. `/scene/table`.
-        kind: `box` (size: edges x, y, z), `cylinder` (radius, height; along z), `sphere` (radius) or `prism`
-            (thickness along z, with a convex, counter-clockwise `outline` in its xy plane) [m].
+        kind: `box` (size: edges x, y, z), `cylinder` (radius, height; along z), `sphere` (radius), `prism`
+            (thickness along z, with a convex, counter-clockwise `outline` in its xy plane) or `mesh` (factor to
+            metres, with `vertices`, three a triangle) [m].
         pose: (4, 4) to the frame of `path` from the body's centre; None is the identity.
         color: 0xRRGGBB.
 
@@ -62,8 +64,11 @@ def solid(
         shape = geometry.Sphere(float(size[0]))
     elif kind == "prism":
         shape = geometry.TriangularMeshGeometry(*prism_mesh(outline, size[0]))
+    elif kind == "mesh":
+        corners = size[0] * np.array(vertices)
+        shape = geometry.TriangularMeshGeometry(corners, np.arange(len(corners)).reshape(-1, 3))
     else:
-        raise UnusableInput(f"{path} cannot be drawn: {kind!r} is no box, cylinder, sphere or prism")
+        raise UnusableInput(f"{path} cannot be drawn: {kind!r} is no box, cylinder, sphere, prism or mesh")
     return _object(path, geometry.Mesh(shape, _paint(color, 1.0)), pose)
 
 

@@ -137,8 +137,9 @@ class Preview:
         """Show this object at its start instead of the one shown before; None: there is none."""
         self.clear("/object")
         if carried is not None:
-            self._tree.put_object("/object", commands.solid("/object", carried.kind, carried.size, color=carried.color))
-            self._place("/object", commands.pose_of(carried.position))
+            body = commands.solid("/object", carried.kind, carried.size, color=carried.color, vertices=carried.vertices)
+            self._tree.put_object("/object", body)
+            self._place("/object", commands.pose_of(carried.position, carried.orientation))
             self._tree.flush()
 
     def clear(self, prefix: str) -> None:

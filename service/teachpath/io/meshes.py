@@ -1,0 +1,71 @@
+"""Meshes from OBJ and STL files, as their convex hull."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import ConvexHull, QhullError
+
+from teachpath.errors import UnusableInput
+
+LARGEST: Final = 50_000_000  # bytes
+HEADER: Final = 84  # bytes before the triangles of a binary STL: a comment and their number
+TRIANGLE: Final = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
+
+
+def read_hull(file: Path) -> tuple[tuple[float, float, float], ...]:
+    """Return the convex hull of a mesh in the file's units: three corners a triangle, counter-clockwise from outside.
+
+    Raises:
+        UnusableInput: the file is missing, too large, neither OBJ nor STL, torn, or flat.
+    """
+    try:
+        if file.stat().st_size > LARGEST:
+            raise UnusableInput(f"mesh {file} has {file.stat().st_size} bytes, limit {LARGEST}; simplify it")
+        content = file.read_bytes()
+    except OSError as error:
+        raise UnusableInput(f"cannot read the mesh {file}: {error.strerror}") from None
+    corners = _corners(content, file)
+    if len(corners) < 4:
+        raise UnusableInput(f"mesh {file} has {len(corners)} corners; a body needs 4 at least")
+    if not np.all(np.isfinite(corners)):
+        raise UnusableInput(f"mesh {file} has a corner that is not finite")
+    try:
+        hull = ConvexHull(corners)
+    except QhullError:
+        raise UnusableInput(f"mesh {file} is flat; a body has three dimensions") from None
+    triangles = corners[hull.simplices]
+    normals = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
+    inward = np.einsum("ij,ij->i", normals, hull.equations[:, :3]) < 0
+    triangles[inward] = triangles[inward][:, ::-1]
+    return tuple((float(x), float(y), float(z)) for x, y, z in triangles.reshape(-1, 3))
+
+
+def _corners(content: bytes, file: Path) -> NDArray[np.float64]:
+    kind = file.suffix.lower()
+    if kind == ".obj":
+        found = re.findall(rb"^v\s+(\S+)\s+(\S+)\s+(\S+)", content, re.MULTILINE)
+    elif kind == ".stl" and content[:5] == b"solid" and b"facet" in content[:1000]:
+        found = re.findall(rb"^\s*vertex\s+(\S+)\s+(\S+)\s+(\S+)", content, re.MULTILINE)
+    elif kind == ".stl":
+        return _binary_stl(content, file)
+    else:
+        raise UnusableInput(f"mesh {file} ends in {kind!r}; known: .obj, .stl")
+    try:
+        return np.array(found, dtype=np.float64).reshape(-1, 3)
+    except ValueError:
+        raise UnusableInput(f"mesh {file} has a corner that is no number") from None
+
+
+def _binary_stl(content: bytes, file: Path) -> NDArray[np.float64]:
+    count = int.from_bytes(content[HEADER - 4 : HEADER], "little")
+    if len(content) < HEADER or len(content) != HEADER + count * TRIANGLE.itemsize:
+        raise UnusableInput(
+            f"mesh {file} is torn: {count} triangles need {HEADER + 50 * count} bytes, {len(content)} are there"
+        )
+    triangles = np.frombuffer(content, TRIANGLE, offset=HEADER)
+    return triangles["corners"].reshape(-1, 3).astype(np.float64)
