@@ -1,10 +1,9 @@
 """How long the demo's twelve demonstrations take to learn, and each of their paths to plan, in this process."""
 
-import time
-from collections.abc import Callable
 from functools import partial
 
 import numpy as np
+from learning_peers import timed
 from report import Figure, against
 
 from teachpath.learning import LearningSettings, learn
@@ -18,7 +17,7 @@ def measure(trajectories: dict[str, Trajectory], *, repeats: int) -> list[Figure
     shown = sum(float(t.times[-1]) for t in trajectories.values())
     lengths = [len(t) for t in trajectories.values()]
     what = f"learning {len(lengths)} x {round(np.mean(lengths))} samples, {len(learned.paths)} paths"
-    seconds = _times(lambda: learn(trajectories, LearningSettings()), repeats)
+    seconds = timed(lambda: learn(trajectories, LearningSettings()), repeats)
     return [
         against(what, seconds, "s", name="time it took to show", value=shown),
         *_planning(learned, repeats),
@@ -29,16 +28,7 @@ def _planning(learned: Learned, repeats: int) -> list[Figure]:
     figures = []
     for path in learned.paths:
         planned = plan(path, paper_scene(), MotionSettings())
-        seconds = _times(partial(plan, path, paper_scene(), MotionSettings()), repeats)
+        seconds = timed(partial(plan, path, paper_scene(), MotionSettings()), repeats)
         what = f"planning path {path.cluster} with its certificate"
         figures.append(against(what, seconds, "s", name="time the arm needs for it", value=planned.duration))
     return figures
-
-
-def _times(work: Callable[[], object], repeats: int) -> list[float]:
-    seconds = []
-    for _ in range(repeats):
-        began = time.perf_counter()
-        work()
-        seconds.append(time.perf_counter() - began)
-    return seconds

@@ -5,11 +5,15 @@ import math
 import time
 
 import learning
+import learning_peers
+import learning_scale
 import motion
 import recording
 import recording_load
 import timing
-from report import machine, print_report
+from report import Figure, machine, print_report
+
+from teachpath.records import Trajectory
 
 
 def main() -> None:
@@ -27,6 +31,8 @@ def main() -> None:
         "Learning and planning, in this process",
         learning.measure(trajectories, repeats=3 if quick else 7),
     )
+    print_report("Learning beside other libraries: the same data, the same bound", _peers(trajectories, quick=quick))
+    print_report("Learning from thousands", learning_scale.measure(quick=quick))
     print_report(
         "Timing: how near to the limits, how soon it stops, what a cycle costs",
         timing.measure(repeats=1 if quick else 3),
@@ -36,6 +42,11 @@ def main() -> None:
         motion.measure(repeats=1 if quick else 3, seconds=2.0 if quick else math.inf),
     )
     print(f"took {time.monotonic() - began:.0f} s")
+
+
+def _peers(trajectories: dict[str, Trajectory], *, quick: bool) -> list[Figure]:
+    repeats = 3 if quick else 7
+    return learning_peers.fits(repeats=repeats) + learning_peers.pipeline(trajectories, repeats=repeats)
 
 
 if __name__ == "__main__":

@@ -1,0 +1,138 @@
+"""Learning from thousands, in a process of its own so that its memory is its own: prints figures as JSON."""
+
+import json
+import resource
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numba
+import numpy as np
+from report import Figure, against
+
+from teachpath.learning import LearningSettings
+from teachpath.learning.crowd import grouped
+from teachpath.learning.distances import distances
+from teachpath.learning.kernels import _mean_distance
+from teachpath.learning.selection import select
+from teachpath.records import Array, Trajectory
+
+POINTS = 150
+
+
+def measure(*, quick: bool) -> list[Figure]:
+    """Return the figures of clustering 10,000 and 25,000 demonstrations, and of selecting among 600."""
+    sizes = (3000, 21_000, 60) if quick else (10_000, 25_000, 600)
+    values = {}
+    for part, size in zip(("pairs", "crowd", "selection"), sizes, strict=True):
+        command = [sys.executable, str(Path(__file__)), part, str(size)]
+        values |= json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout)
+    many, crowd, chosen = sizes
+    return [
+        against(
+            f"distances of {many:,} x {POINTS}", [values["pairs"]], "sample pairs/s",
+            name="the kernel in the cache", value=values["ceiling"],
+        ),
+        against(f"clustering {many:,} x {POINTS}", [values["clustering"]], "s", name="limit", value=20.0),
+        against("  its memory", [values["clustering_memory"]], "GB", name="limit", value=2.0),
+        against("  longest wait for a cancel", [values["clustering_wait"]], "s", name="limit", value=1.0),
+        Figure(f"clustering {crowd:,} x {POINTS} by a sample of 2,000", (values["crowd"],), "s"),
+        Figure("  its memory", (values["crowd_memory"],), "GB"),
+        Figure(f"selecting among {chosen} of one way", (values["selection"],), "s"),
+        against("  longest wait for a cancel", [values["selection_wait"]], "s", name="limit", value=1.0),
+    ]  # fmt: skip
+
+
+class Waits:
+    """The longest time between two looks at whether the work is cancelled."""
+
+    def __init__(self) -> None:
+        self.longest, self._last = 0.0, time.perf_counter()
+
+    def __call__(self, *_: object) -> None:
+        now = time.perf_counter()
+        self.longest, self._last = max(self.longest, now - self._last), now
+
+
+def paths(count: int) -> Array:
+    """Return smooth random paths of five ways: (count, 150, 3) [m]."""
+    rng = np.random.default_rng(1)
+    t = np.linspace(0, 1, POINTS)
+    waves = np.sin(np.pi * np.outer(t, np.arange(1, 5)))
+    ways = rng.normal(0, 0.2, (5, 4, 3))[rng.integers(0, 5, count)]
+    return np.asarray(waves @ (ways + rng.normal(0, 0.02, (count, 4, 3))) + t[:, None])
+
+
+def pairs(count: int) -> dict[str, float]:
+    """Measure the distances of all pairs beside the same arithmetic within the cache, and the clustering."""
+    shown = paths(count)
+    distances(shown[:300])  # compiles
+    grouped(shown[:300], LearningSettings(), length=1.0, metric="arc")
+    few = np.ascontiguousarray(shown[:64].transpose(0, 2, 1), dtype=np.float32)
+    ceiling(few, 1)
+    began = time.perf_counter()
+    ceiling(few, 400)
+    best = 400 * numba.get_num_threads() * len(few) ** 2 * POINTS / (time.perf_counter() - began)
+    began = time.perf_counter()
+    distances(shown)
+    rate = count * (count - 1) / 2 * POINTS / (time.perf_counter() - began)
+    began, waits = time.perf_counter(), Waits()
+    grouping = grouped(shown, LearningSettings(), length=1.0, metric="arc", progress=waits)
+    waits()
+    seconds = time.perf_counter() - began
+    assert grouping.labels.max() == 5
+    return {
+        "pairs": rate, "ceiling": best, "clustering": seconds, "clustering_memory": memory(),
+        "clustering_wait": waits.longest,
+    }  # fmt: skip
+
+
+@numba.njit(parallel=True)
+def ceiling(few: np.ndarray, rounds: int) -> float:
+    """Work out the distances of the same few paths again and again on every core."""
+    threads = numba.get_num_threads()
+    totals = np.zeros(threads)
+    for thread in numba.prange(threads):
+        for _ in range(rounds):
+            for i in range(len(few)):
+                for j in range(len(few)):
+                    totals[thread] += _mean_distance(few[i], few[j])
+    return totals.sum()
+
+
+def crowd(count: int) -> dict[str, float]:
+    """Measure the clustering of more than are compared pair by pair."""
+    shown = paths(count)
+    grouped(shown[:300], LearningSettings(), length=1.0, metric="arc")
+    began = time.perf_counter()
+    grouping = grouped(shown, LearningSettings(), length=1.0, metric="arc")
+    seconds = time.perf_counter() - began
+    assert grouping.labels.max() == 5
+    return {"crowd": seconds, "crowd_memory": memory()}
+
+
+def selection(count: int) -> dict[str, float]:
+    """Measure the selection within one way that was shown very often."""
+    rng = np.random.default_rng(1)
+    t = np.linspace(0, 1, POINTS)
+    waves = np.sin(np.pi * np.outer(t, np.arange(1, 4)))
+    steady = t[:, None] * np.array([0.6, 0.2, 0.1])
+    times = 0.02 * np.arange(POINTS)
+    members = {
+        f"{i:04}": Trajectory(times, steady + waves @ rng.normal(0, 0.015, (3, 3)) + rng.normal(0, 0.001, (POINTS, 3)))
+        for i in range(count)
+    }
+    began, waits = time.perf_counter(), Waits()
+    select(1, members, LearningSettings(), tick=waits)
+    waits()
+    return {"selection": time.perf_counter() - began, "selection_wait": waits.longest}
+
+
+def memory() -> float:
+    """Return the most memory that this process has had [GB]."""
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e6
+
+
+if __name__ == "__main__":
+    print(json.dumps(globals()[sys.argv[1]](int(sys.argv[2]))))
