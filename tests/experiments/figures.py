@@ -53,7 +53,8 @@ STYLE = {
 
 
 @contextmanager
-def _page(file: Path, rows: int, columns: int, size: tuple[float, float], **more: Any) -> Iterator[Any]:
+def sheet(file: Path, rows: int, columns: int, size: tuple[float, float], **more: Any) -> Iterator[Any]:
+    """Open a figure in the report's style, and write it to `file` at the end."""
     with plt.rc_context(STYLE):
         figure, axes = plt.subplots(rows, columns, figsize=size, squeeze=False, layout="constrained", **more)
         yield figure, axes
@@ -63,7 +64,7 @@ def _page(file: Path, rows: int, columns: int, size: tuple[float, float], **more
 
 def convergence(file: Path, learned: Mapping[str, Learned]) -> None:
     """Fig. 4: log-likelihood of every cluster's model after each iteration."""
-    with _page(file, 1, 3, (9.6, 3.0)) as (_, (axes,)):
+    with sheet(file, 1, 3, (9.6, 3.0)) as (_, (axes,)):
         for axis, mode in zip(axes, MODES, strict=True):
             axis.set_title(f"mode {mode}")
             axis.set_xlabel("iteration")
@@ -94,7 +95,7 @@ def convergence(file: Path, learned: Mapping[str, Learned]) -> None:
 
 def paths(file: Path, demonstrations: Mapping[str, Trajectory], learned: Mapping[str, Learned]) -> None:
     """Fig. 5: the learned curves and the sampled points, from two sides."""
-    with _page(file, 2, 3, (10.2, 5.8), sharex=True, sharey="row", height_ratios=(1.1, 1)) as (figure, axes):
+    with sheet(file, 2, 3, (10.2, 5.8), sharex=True, sharey="row", height_ratios=(1.1, 1)) as (figure, axes):
         for column, mode in zip(axes.T, MODES, strict=True):
             column[0].set_title(f"mode {mode}")
             for axis, (_, across, up) in zip(column, VIEWS, strict=True):
@@ -133,7 +134,7 @@ def _label_views(axes: Any) -> None:
 
 def wiggles(file: Path, demonstrations: Mapping[str, Trajectory], learned: Mapping[str, Learned]) -> None:
     """Fig. 6: five demonstrations, the fifth of which wiggles, and the learned curve."""
-    with _page(file, 2, 3, (10.2, 4.0), sharex=True, sharey="row", height_ratios=(0.28, 1)) as (figure, axes):
+    with sheet(file, 2, 3, (10.2, 4.0), sharex=True, sharey="row", height_ratios=(0.28, 1)) as (figure, axes):
         for column, mode in zip(axes.T, MODES, strict=True):
             kept = sorted(s.demonstration for c in learned[mode].clusters for s in c.scores if s.selected)
             column[0].set_title(f"mode {mode}", loc="left")
@@ -160,7 +161,7 @@ def wiggles(file: Path, demonstrations: Mapping[str, Trajectory], learned: Mappi
 
 def rejection(file: Path, rates: Mapping[str, Mapping[str, Rate]]) -> None:
     """Draw how often the marked demonstration is rejected, by scenario and mode, with 95 % intervals."""
-    with _page(file, 1, 1, (8.6, 5.6)) as (figure, ((axis,),)):
+    with sheet(file, 1, 1, (8.6, 5.6)) as (figure, ((axis,),)):
         for row, scenario in enumerate(SCENARIOS):
             _ladder(axis, row, {mode: rates[scenario.key][mode] for mode in MODES})
             axis.plot([scenario.chance] * 2, [row - 0.42, row + 0.42], color=QUOTED, lw=1.4, ls=(0, (2, 2)))
@@ -181,7 +182,7 @@ def rejection(file: Path, rates: Mapping[str, Mapping[str, Rate]]) -> None:
 
 def places(file: Path, rates: Mapping[str, Sequence[Rate | None]]) -> None:
     """Draw the control: how often a demonstration like the others is rejected, by its place in the list."""
-    with _page(file, 1, 3, (9.0, 2.7), sharey=True) as (_, (axes,)):
+    with sheet(file, 1, 3, (9.0, 2.7), sharey=True) as (_, (axes,)):
         for axis, mode in zip(axes, MODES, strict=True):
             axis.axhspan(0.54, 0.66, color="#f0f0f0", zorder=0)
             axis.axhline(0.6, color=QUOTED, lw=1.2, ls=(0, (2, 2)))
@@ -204,7 +205,7 @@ def places(file: Path, rates: Mapping[str, Sequence[Rate | None]]) -> None:
 
 def groupings(file: Path, rates: Mapping[str, Mapping[str, Rate]]) -> None:
     """Draw how often the grouping is exactly right."""
-    with _page(file, 1, 1, (8.6, 2.9)) as (figure, ((axis,),)):
+    with sheet(file, 1, 1, (8.6, 2.9)) as (figure, ((axis,),)):
         for row, ways in enumerate(GROUPINGS):
             _ladder(axis, row, {mode: rates[ways.key][mode] for mode in ("paper", "default")})
             axis.plot([ways.target] * 2, [row - 0.42, row + 0.42], color=INK, lw=1.2)
@@ -221,7 +222,7 @@ def groupings(file: Path, rates: Mapping[str, Mapping[str, Rate]]) -> None:
 
 def repetitions(file: Path, rates: Mapping[str, Sequence[float]]) -> None:
     """Draw the rejection rate of one data set over repetitions, for many data sets."""
-    with _page(file, 1, 1, (8.6, 2.3)) as (_, ((axis,),)):
+    with sheet(file, 1, 1, (8.6, 2.3)) as (_, ((axis,),)):
         for row, mode in enumerate(("paper", "repaired")):
             near = [round(value * 40) / 40 for value in sorted(rates[mode])]
             step = min(0.09, 0.8 / max(near.count(value) for value in near))
@@ -241,7 +242,7 @@ def repetitions(file: Path, rates: Mapping[str, Sequence[float]]) -> None:
 
 def shapes(file: Path) -> None:
     """Draw what modes paper and default make of paths that loop, come back or close."""
-    with _page(file, 1, len(SHAPES), (10.4, 3.2)) as (figure, (axes,)):
+    with sheet(file, 1, len(SHAPES), (10.4, 3.2)) as (figure, (axes,)):
         for axis, shape in zip(axes, SHAPES, strict=True):
             demonstrations, mean = along(shape, 1)
             across, up = _widest(mean)

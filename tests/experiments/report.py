@@ -9,7 +9,7 @@ from typing import Any
 
 from scipy.stats import binom
 
-from tests.experiments import quoted
+from tests.experiments import quoted, rule, scale
 from tests.experiments.markup import STYLE, figure, listed, short
 from tests.experiments.results import Found, by_place, outranked, revived, right, uneven
 from tests.experiments.scenarios import GROUPINGS, SCENARIOS
@@ -73,6 +73,7 @@ def _clusters(found: Found, folder: Path) -> list[str]:
         "<p>Twelve demonstrations of 159 samples (3.16 s at 50 Hz) go three ways, which of them as in the "
         "publication, with 0.15 cm of tremor and 0.1 cm of tracker noise. The seed is fixed, not chosen.</p>",
         _table_1(found["experiment_1"]),
+        scale.paragraph(found["scale"]),
         figure(
             folder,
             "fig4_convergence",
@@ -165,8 +166,16 @@ def _selection(found: Found, folder: Path) -> list[str]:
         *_failures(found),
         figure(
             folder,
-            "repetitions",
+            "rule",
             "Fig. 8.",
+            "What mode default leaves out of the path, over the limit of z; grey: the limit shipped. Left the spoilt "
+            "ones, right the others in the same runs.",
+        ),
+        rule.table(found["rule"]),
+        figure(
+            folder,
+            "repetitions",
+            "Fig. 9.",
             f"The published protocol: {sizes['repetitions']} repetitions of the selection on one data set, for "
             f"{sizes['datasets']} data sets. In mode paper the rate is {min(spread):.0%} to {max(spread):.0%}; of "
             f"blind choices 95 % lie from {low / sizes['repetitions']:.0%} to {high / sizes['repetitions']:.0%}.",
@@ -197,7 +206,7 @@ def _control(found: Found, folder: Path) -> list[str]:
         figure(
             folder,
             "places",
-            "Fig. 9.",
+            "Fig. 10.",
             "Rate at which a demonstration like the others is rejected, by its place in the list, with 95 % "
             "intervals; dashed: chance, grey: 60 ± 6 %. If the place made no difference, rates so uneven would come up "
             f"with probability {chances}.",
@@ -220,8 +229,8 @@ def _grouping(found: Found, folder: Path) -> list[str]:
         f"and repaired cut at a constant distance of {100 * THRESHOLD:.0f} cm, which suits demonstrations alike in "
         "speed; randomly undersampled points of a fast and a slow demonstration do not correspond. Mode default "
         "compares at equal arc length and cuts by silhouette.</p>",
-        figure(folder, "groupings", "Fig. 10.", "Share of seeds with a perfect grouping, with 95 % intervals."),
-        "<table><caption><b>Table III.</b> Perfect groupings, and how many clusters were found how "
+        figure(folder, "groupings", "Fig. 11.", "Share of seeds with a perfect grouping, with 95 % intervals."),
+        "<table><caption><b>Table IV.</b> Perfect groupings, and how many clusters were found how "
         "often.</caption><tr><th class=l>Shown<th class=l>Mode<th>right<th class=l>clusters: "
         f"seeds{''.join(rows)}</table>",
     ]
@@ -235,8 +244,8 @@ def _shapes(found: Found, folder: Path) -> list[str]:
         "<h2>Paths that come back towards their start</h2>",
         "<p>The publication pools the selected points and sorts them by their distance to the start, which folds a "
         "path that comes back. Mode default averages at equal arc length.</p>",
-        figure(folder, "shapes", "Fig. 11.", "Five demonstrations of each shape and what is learned from them."),
-        "<table><caption><b>Table IV.</b> Fréchet distance of the learned path from the mean of the demonstrations "
+        figure(folder, "shapes", "Fig. 12.", "Five demonstrations of each shape and what is learned from them."),
+        "<table><caption><b>Table V.</b> Fréchet distance of the learned path from the mean of the demonstrations "
         f"without tremor and noise: median and largest of {found['sizes']['shape']} seeds.</caption><tr><th "
         f"class=l>Shape{''.join(f'<th>mode {mode}' for mode in MODES)}{''.join(rows)}</table>",
     ]

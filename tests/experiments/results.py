@@ -12,6 +12,7 @@ import numpy as np
 from scipy.stats import chi2_contingency
 
 from teachpath.records import Learned
+from tests.experiments import rule, scale
 from tests.experiments.scenarios import GROUPINGS, SCENARIOS, SHAPES
 from tests.experiments.trials import MODES, Outcome, Rate, rate, settled
 
@@ -19,12 +20,18 @@ Found = dict[str, Any]
 
 
 def summary(
-    selections: list[Any], groupings: list[Any], shapes: list[Any], repeated: list[Any], *, sizes: Any
+    selections: list[Any],
+    groupings: list[Any],
+    shapes: list[Any],
+    repeated: list[Any],
+    scales: list[Any],
+    *,
+    sizes: Any,
 ) -> Found:
     """Return every repeated figure, ready for JSON.
 
     Args:
-        selections, groupings, shapes, repeated: pairs of arguments and outcome, see `trials`.
+        selections, groupings, shapes, repeated, scales: pairs of arguments and outcome, see `trials`.
         sizes: how often each was run.
     """
     outcomes = [outcome for _, several in selections for outcome in several]
@@ -42,6 +49,8 @@ def summary(
             shape: {mode: _spread(found[mode] for (key, _), found in shapes if key == shape) for mode in MODES}
             for shape in SHAPES
         },
+        "rule": rule.summary(outcomes),
+        "scale": scale.summary([found for _, found in scales]),
         "repetitions": {"rates": {mode: [found[mode] for _, found in repeated] for mode in ("paper", "repaired")}},
     }
 

@@ -19,7 +19,7 @@ from typing import Any
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
-from tests.experiments import figures, report, results, targets, trials
+from tests.experiments import figures, report, results, rule, scale, targets, trials
 from tests.experiments.scenarios import GROUPINGS, HEADLINES, SCENARIOS, SHAPES
 
 REPORTS = Path(__file__).parents[2] / "reports"
@@ -64,6 +64,7 @@ def main() -> None:
         "fig5_paths": partial(figures.paths, demonstrations=shown_1, learned=learned_1),
         "fig6_wiggles": partial(figures.wiggles, demonstrations=shown_2, learned=learned_2),
         "rejection": partial(figures.rejection, rates=results.outranked(found)),
+        "rule": partial(rule.draw, rule=found["rule"]),
         "places": partial(figures.places, rates=results.by_place(found)),
         "repetitions": partial(figures.repetitions, rates=found["repetitions"]["rates"]),
         "groupings": partial(figures.groupings, rates=results.right(found)),
@@ -78,7 +79,7 @@ def main() -> None:
 
 
 def _repeated(sizes: Sizes) -> tuple[list[Any], ...]:
-    """Run all that is repeated in processes: selections, groupings, shapes, repetitions on one data set."""
+    """Run all that is repeated in processes: selections, groupings, shapes, repetitions on one data set, scales."""
     work: list[tuple[int, Callable[..., Any], tuple[Any, ...]]] = []
     for scenario in SCENARIOS:
         count = sizes.headline if scenario.key in HEADLINES else sizes.fault
@@ -86,6 +87,7 @@ def _repeated(sizes: Sizes) -> tuple[list[Any], ...]:
     work += [(1, trials.group_once, (ways.key, seed)) for ways in GROUPINGS for seed in range(sizes.grouping)]
     work += [(2, trials.fit_once, (shape, seed)) for shape in SHAPES for seed in range(sizes.shape)]
     work += [(3, trials.repeat_once, (dataset, sizes.repetitions)) for dataset in range(sizes.datasets)]
+    work += [(4, scale.scale_once, (dataset,)) for dataset in range(sizes.datasets)]
     chunks = [work[at : at + CHUNK] for at in range(0, len(work), CHUNK)]
     gathered: dict[Future[list[Any]], int] = {}
     context = multiprocessing.get_context("spawn")
@@ -95,7 +97,7 @@ def _repeated(sizes: Sizes) -> tuple[list[Any], ...]:
             gathered[pool.submit(_chunk, chunk)] = number
         for done in as_completed(gathered):
             bar.advance(row, len(done.result()))
-    found: tuple[list[Any], ...] = ([], [], [], [])
+    found: tuple[list[Any], ...] = ([], [], [], [], [])
     for done, number in gathered.items():
         for (kind, _, arguments), outcome in zip(chunks[number], done.result(), strict=True):
             found[kind].append((arguments, outcome))

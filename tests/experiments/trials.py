@@ -36,6 +36,7 @@ class Outcome:
         rejected: whether none of them goes into a learned path.
         unmarked_rejected: share of the others that goes into no learned path.
         whole: whether the five were taken for one way.
+        marked_z, unmarked_z: rank and z of each of them, z only where the mode gives it.
         failed: why nothing was learned, which counts as not rejected; empty when something was.
     """
 
@@ -46,6 +47,8 @@ class Outcome:
     rejected: bool
     unmarked_rejected: float
     whole: bool
+    marked_z: tuple[tuple[int, float], ...] = ()
+    unmarked_z: tuple[tuple[int, float], ...] = ()
     failed: str = ""
 
 
@@ -57,7 +60,7 @@ def select_once(key: str, run: int) -> list[Outcome]:
         try:
             learned = learn(demonstrations, settings(mode, run))
         except LearningFailed as failure:
-            outcomes.append(Outcome(key, mode, _places(marked), False, False, 0.0, False, str(failure)))
+            outcomes.append(Outcome(key, mode, _places(marked), False, False, 0.0, False, failed=str(failure)))
             continue
         scores = {score.demonstration: score for cluster in learned.clusters for score in cluster.scores}
         others = [not score.selected for name, score in scores.items() if name not in marked]
@@ -70,6 +73,8 @@ def select_once(key: str, run: int) -> list[Outcome]:
                 all(not scores[name].selected for name in marked),
                 float(np.mean(others)),
                 len(learned.clusters) == 1,
+                tuple((scores[name].rank, scores[name].z or 0.0) for name in sorted(marked)),
+                tuple((score.rank, score.z or 0.0) for name, score in sorted(scores.items()) if name not in marked),
             )
         )
     return outcomes
