@@ -1,0 +1,54 @@
+"""A client against a recorder over real sockets: takes and verdicts on the terminal, a source of one's own."""
+
+import runpy
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from teachpath.io.bus import BusSettings, open_bus
+from teachpath.io.store import Store, StoreSettings
+from teachpath.motion import paper_scene
+from teachpath.recording import RecordingSettings
+from teachpath.records import Calibration
+from teachpath.workers.recorder import Recorder
+from teachpath_client.__main__ import main
+from teachpath_proto.keys import Keys
+from tests.system.processes import free_ports
+
+pytestmark = pytest.mark.system
+
+EXAMPLE = Path(__file__).parents[2] / "clients" / "examples" / "05_a_source_of_your_own.py"
+
+
+@pytest.fixture
+def endpoint(tmp_path: Path) -> Iterator[str]:
+    """Where a recorder listens."""
+    (port,) = free_ports(1)
+    endpoint = f"tcp/127.0.0.1:{port}"
+    bus, store = open_bus(BusSettings(endpoint=endpoint), listen=True), Store(StoreSettings(data_dir=str(tmp_path)))
+    recorder = Recorder(bus, Keys(), store, RecordingSettings(), scene=lambda _: paper_scene(), calibration=Calibration)
+    recorder.start()
+    yield endpoint
+    recorder.stop()
+    bus.close()
+    store.close()
+
+
+def test_a_series_of_takes_is_followed_on_the_terminal(endpoint: str, capsys: pytest.CaptureFixture[str]) -> None:
+    tracker = ["tracker", "--source", "synthetic", "--endpoint", endpoint, "--speed", "20", "--takes", "2"]
+    main([*tracker, "--task", "series", "--scene", "paper"])
+    lines = capsys.readouterr().err.splitlines()
+    takes = [line for line in lines if line.startswith("  ")]
+    assert takes == ["  + take 1 clean", "  + take 2 clean"]
+    assert lines.index("series: recording; 1 take, 1 to go") == lines.index(takes[0]) + 1
+    assert lines[-1] == "series: paused: pedal, fist or `resume` to go on; 2 takes"
+
+
+def test_the_example_of_a_source_shows_one_demonstration(
+    endpoint: str, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(sys, "argv", [str(EXAMPLE), "--endpoint", endpoint])
+    runpy.run_path(str(EXAMPLE), run_name="__main__")
+    assert capsys.readouterr().out == "1 demonstrations of 200 samples, 0 lost\n"
