@@ -55,7 +55,6 @@ def arc(**options: str) -> Arc:
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description="Publish one demonstration from a source.")
     parser.add_argument("--endpoint", default="tcp/127.0.0.1:7447")
-    endpoint = parser.parse_args().endpoint
-    with arc(height="0.12") as source, Link(endpoint) as link:
+    with arc(height="0.12") as source, Link(parser.parse_args().endpoint) as link:
         report = record_live(Tracker(link, "arc-source"), source, "arc", scene="paper", speed=4.0)
     print(f"{len(report.demonstrations)} demonstrations of {report.received} samples, {report.lost} lost")
