@@ -161,6 +161,7 @@ class Station:
             "processes": {p.name: "running" if p.is_alive() else "ended" for p in self.processes},
             "recording": sorted(r.tracker for r in self.recorder.reports()),
             "backlog": self.recorder.backlog,
+            "longest_backlog": self.settings.recording.longest_backlog,
             "trackers": [asdict(tracker) for tracker in self.recorder.trackers()],
             "coach": {"task": self._shown, "sentence": self.coach.sentence(self._shown)},
             "executor": asdict(status) if status else None,
@@ -180,7 +181,9 @@ class Station:
         """Return what pages are told of without asking, because no row of the store holds it."""
         return {
             "recordings": lambda: {r.tracker: report_document(r) for r in self.recorder.reports()},
-            "trackers": lambda: {t.name: {"announced": t.announced} for t in self.recorder.trackers()},
+            "trackers": lambda: {
+                t.name: {"announced": t.announced, "silent": t.is_silent} for t in self.recorder.trackers()
+            },
             "coach": lambda: {task: {"sentence": said} for task, said in self.coach.sentences().items()},
             "station": lambda: {"": {"version": __version__, "notes": self.notes()}},
             "executor": lambda: {"": asdict(status)} if (status := self.executions.status) else {},

@@ -6,6 +6,7 @@ import subprocess
 import sys
 import threading
 import time
+from typing import Any
 
 import pytest
 
@@ -54,6 +55,37 @@ def test_a_tracker_that_is_killed_in_mid_take_leaves_a_reject_that_says_so(servi
         tracker.publish(shown(1), speed=FAST)
         assert len(tracker.stop().demonstrations) == 1
     assert [d["verdict"] for d in service.demonstrations("killed")] == ["reject", "clean"]
+
+
+def test_a_tracker_whose_process_is_stopped_is_silent_within_a_second_and_its_take_ends(service: Service) -> None:
+    words = ["synthetic", "--task", "stopped", "--scene", "paper", "--tracker", "glove-stopped"]
+    client = subprocess.Popen(
+        [sys.executable, "-m", "teachpath_client", *words, "--endpoint", service.endpoint, "--speed", "1"],
+        stdout=subprocess.DEVNULL,
+    )
+
+    def report() -> dict[str, Any]:
+        known = {task["name"] for task in service.call("GET", "/tasks")}
+        running = service.call("GET", "/tasks/stopped/recording") if "stopped" in known else []
+        return running[0] if running else {"phase": "", "received": 0, "state": ""}
+
+    def silent() -> bool:
+        trackers = {t["name"]: t for t in service.call("GET", "/health")["trackers"]}
+        return bool(trackers["glove-stopped"]["silence"] > 0.8)
+
+    try:
+        wait_until(lambda: report()["phase"] == "transport", seconds=20, what="the hand carries")
+        client.send_signal(signal.SIGSTOP)
+        wait_until(silent, seconds=1.2, what="the tracker is silent")
+        wait_until(lambda: service.demonstrations("stopped"), seconds=3.0, what="the take has ended")
+        (only,) = service.demonstrations("stopped")
+        assert (only["verdict"], only["reasons"][0]) == ("reject", "no sample came for 2 s in mid-take")
+        client.send_signal(signal.SIGCONT)
+        wait_until(lambda: report()["state"] == "recording", seconds=5.0, what="it is recorded again")
+        assert not silent()
+    finally:
+        client.send_signal(signal.SIGKILL)
+        client.wait(10)
 
 
 def malformed(chance: random.Random) -> bytes:

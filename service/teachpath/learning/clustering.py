@@ -5,10 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.cluster import hierarchy
 
 from teachpath.learning.dendrogram import Labels, height_between, labels_at, labels_into
-from teachpath.learning.settings import LearningSettings, Progress, ignore
+from teachpath.learning.distances import Distances
+from teachpath.learning.merging import average_linkage
+from teachpath.learning.settings import LearningSettings, Progress, ignore, part
 from teachpath.learning.silhouettes import Silhouettes
 from teachpath.records import Array
 
@@ -39,7 +40,7 @@ class Grouping:
 
 
 def group(
-    condensed: Array, count: int, settings: LearningSettings, *, length: float, progress: Progress = ignore
+    condensed: Distances, count: int, settings: LearningSettings, *, length: float, progress: Progress = ignore
 ) -> Grouping:
     """Merge by average link and cut as the settings say: at a height, into a number, or where the silhouette is best.
 
@@ -51,15 +52,10 @@ def group(
         progress: is told how far the work has come.
     """
     if settings.clusters is not None and settings.mode == "default":
-        return cut_into(tree_of(condensed, count), settings.clusters)
+        return cut_into(average_linkage(condensed, count, progress), settings.clusters)
     if settings.threshold is not None:
-        return cut_at(tree_of(condensed, count), settings.threshold)
+        return cut_at(average_linkage(condensed, count, progress), settings.threshold)
     return cut_by_silhouette(condensed, count, guard=settings.guard, length=length, progress=progress)
-
-
-def tree_of(condensed: Array, count: int) -> Array:
-    """Merge by average link until one cluster is left: (count - 1, 4) merges as scipy writes them."""
-    return np.asarray(hierarchy.linkage(condensed, "average")) if count > 1 else np.empty((0, 4))
 
 
 def cut_at(tree: Array, threshold: float) -> Grouping:
@@ -86,7 +82,7 @@ def cut_into(tree: Array, clusters: int) -> Grouping:
 
 
 def cut_by_silhouette(
-    condensed: Array, count: int, *, guard: float, length: float, progress: Progress = ignore
+    condensed: Distances, count: int, *, guard: float, length: float, progress: Progress = ignore
 ) -> Grouping:
     """Merge by average link and cut where the mean silhouette is best (Rousseeuw 1987).
 
@@ -103,15 +99,15 @@ def cut_by_silhouette(
         progress: is told how far the work has come.
     """
     if count == 1:
-        return cut_into(tree_of(condensed, 1), 1)
-    tree = tree_of(condensed, count)
+        return cut_into(np.empty((0, 4)), 1)
+    tree = average_linkage(condensed, count, part(progress, 0.0, 0.6))
     top = float(tree[-1, 2])
     wide = top > APART * length
     if count == 2:
         threshold = top / 2 if wide else top
         return Grouping(tree, threshold, labels_at(tree, threshold), _pair_note(top, wide), 1 if wide else 2)
     most = min(MOST_CLUSTERS, count - 1)
-    silhouettes = Silhouettes(condensed, tree, most, progress)
+    silhouettes = Silhouettes(condensed, tree, most, part(progress, 0.6, 1.0))
     scores = {k: silhouettes.mean(k) for k in range(2, most + 1)}
     best = max(scores, key=lambda k: scores[k])
     if scores[best] < guard:

@@ -13,7 +13,7 @@ import numpy as np
 from teachpath.learning.clustering import Grouping, group
 from teachpath.learning.dendrogram import grafted, labels_at
 from teachpath.learning.distances import distances, nearest_of
-from teachpath.learning.settings import LearningSettings, Progress, ignore
+from teachpath.learning.settings import LearningSettings, Progress, ignore, part
 from teachpath.records import Array
 
 MOST_PAIRED = 20_000  # demonstrations above which not every pair is measured
@@ -36,7 +36,7 @@ def grouped(
         progress: is told how far the work has come.
     """
     m = len(paths)
-    measure, cut = _part(progress, 0.0, 0.7), _part(progress, 0.7, 1.0)
+    measure, cut = part(progress, 0.0, 0.7), part(progress, 0.7, 1.0)
     if m <= MOST_PAIRED:
         condensed = distances(paths, metric, measure)
         return group(condensed, m, settings, length=length, progress=cut)
@@ -53,7 +53,3 @@ def grouped(
     note = f"{m} demonstrations are grouped by a sample of {SAMPLE}"
     notes = "; ".join(part for part in (note, of_sample.note) if part)
     return replace(of_sample, linkage=linkage, labels=labels, note=notes)
-
-
-def _part(progress: Progress, begin: float, end: float) -> Progress:
-    return lambda fraction, sentence: progress(begin + fraction * (end - begin), sentence)

@@ -59,14 +59,27 @@ def grafted(linkage: Array, sample: Labels, joins: Labels, heights: Array) -> Ar
         member.append(member[int(left)])
     merges += [(float(heights[i]), i, int(joins[i])) for i in map(int, np.flatnonzero(joins != np.arange(len(joins))))]
     merges.sort()
-    parent, name, size = np.arange(len(joins)), np.arange(len(joins)), np.ones(len(joins), dtype=int)
+    return named(merges, len(joins))
+
+
+def named(merges: Sequence[tuple[float, int, int]], count: int) -> Array:
+    """Return merges of clusters, each named by any member, as scipy writes them.
+
+    Args:
+        merges: height [m], a member of one and a member of the other, by height.
+        count: number m of demonstrations.
+
+    Returns:
+        (m - 1, 4).
+    """
+    parent, name, size = np.arange(count), np.arange(count), np.ones(count, dtype=int)
     rows = np.empty((len(merges), 4))
     for row, (height, one, other) in enumerate(merges):
         left, right = sorted((_root(parent, one), _root(parent, other)), key=lambda at: name[at])
         size[left] += size[right]
         rows[row] = name[left], name[right], height, size[left]
         parent[right] = left
-        name[left] = len(joins) + row
+        name[left] = count + row
     return rows
 
 

@@ -10,6 +10,7 @@ import numpy as np
 from teachpath.learning.clustering import Grouping
 from teachpath.learning.dendrogram import Labels, labels_into
 from teachpath.learning.resampling import at_equal_arc_length, smoothed
+from teachpath.learning.settings import Tick
 from teachpath.nurbs import Curve
 from teachpath.records import Array, Trajectory
 
@@ -56,12 +57,13 @@ def representatives(courses: Array, labels: Labels) -> Labels:
     return np.array(found)
 
 
-def tube(curve: Curve, selected: Sequence[Trajectory]) -> Array:
+def tube(curve: Curve, selected: Sequence[Trajectory], *, tick: Tick) -> Array:
     """Return how far the selected demonstrations are from the path across its direction, at equal arc length.
 
     Args:
         curve: the learned path.
         selected: what it was learned from.
+        tick: called once for each of them.
 
     Returns:
         (50,) [m], the largest distance at each place.
@@ -74,6 +76,7 @@ def tube(curve: Curve, selected: Sequence[Trajectory]) -> Array:
         apart = at_equal_arc_length(smoothed(trajectory), TUBE_POINTS) - course
         across = apart - (apart * along).sum(axis=1, keepdims=True) * along
         radius = np.maximum(radius, np.linalg.norm(across, axis=1))
+        tick()
     return radius
 
 

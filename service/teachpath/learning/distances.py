@@ -8,6 +8,8 @@ from numpy.typing import NDArray
 from teachpath.learning.settings import Progress, ignore
 from teachpath.records import Array
 
+Distances = NDArray[np.float64] | NDArray[np.float32]  # of all pairs [m], condensed in scipy's order
+
 KINDS = {"arc": 0, "undersampled": 0, "frechet": 1, "dtw": 2}
 FEW = (200, 24, 24)  # paths of each kind up to which numpy is done before the compiled kernels are loaded
 STRIP = 64  # rows that a kernel does between two looks at progress
@@ -15,7 +17,7 @@ CHUNK = 128  # pairs that are warped at a time
 SENTENCE = "measuring the distances between demonstrations"
 
 
-def distances(paths: Array, metric: str = "arc", progress: Progress = ignore) -> Array:
+def distances(paths: Array, metric: str = "arc", progress: Progress = ignore) -> Distances:
     """Return the distance of every pair of paths.
 
     Metric `arc` or `undersampled` is the mean distance of corresponding points (Aleotti & Caselli, eq. (1)),
@@ -28,7 +30,7 @@ def distances(paths: Array, metric: str = "arc", progress: Progress = ignore) ->
         progress: is told how far the work has come; what it raises passes through.
 
     Returns:
-        (m (m - 1) / 2,) [m], condensed in scipy's order.
+        (m (m - 1) / 2,) [m], condensed in scipy's order, those of large sets in single precision.
     """
     kind = KINDS[metric]
     if len(paths) > FEW[kind]:
@@ -56,12 +58,12 @@ def frechet(one: Array, other: Array) -> float:
     return float(_widest(np.linalg.norm(one[:, None] - other, axis=2)[None])[0])
 
 
-def _compiled(paths: Array, kind: int, progress: Progress) -> Array:
+def _compiled(paths: Array, kind: int, progress: Progress) -> Distances:
     from teachpath.learning import kernels
 
     m = len(paths)
     single = _single(paths, paths.mean(axis=(0, 1)))
-    out = np.empty(m * (m - 1) // 2)
+    out = np.empty(m * (m - 1) // 2, dtype=np.float32)
     for begin in range(0, m, STRIP):
         progress(1 - ((m - begin) / m) ** 2, SENTENCE)
         kernels.fill_rows(single, out, begin, kind)

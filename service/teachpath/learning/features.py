@@ -10,6 +10,7 @@ from numpy.lib.stride_tricks import sliding_window_view
 from scipy.signal.windows import hamming
 
 from teachpath.learning.resampling import arc_lengths, at_equal_arc_length, at_equal_times, smoothed
+from teachpath.learning.settings import Tick
 from teachpath.records import Array, Trajectory
 
 WINDOW = 40  # samples of a stretch, or fewer when a demonstration is shorter
@@ -33,39 +34,45 @@ class Family:
         sequences: for each member (frames, features).
         times: for each member (frames,) [s], when the frames are, since the first sample.
         states: of the models of it.
+        alike: whether the consistent members of a cluster hardly differ in it.
     """
 
     quality: str
     sequences: list[Array]
     times: list[Array]
     states: int
+    alike: bool = False
 
 
-def families(trajectories: Sequence[Trajectory], period: float) -> list[Family]:
+def families(trajectories: Sequence[Trajectory], period: float, tick: Tick) -> list[Family]:
     """Return the features of the members of a cluster; without smoothness when one is shorter than the window.
 
     Args:
         trajectories: of one cluster.
         period: sampling period [s] they are brought to for smoothness.
+        tick: called at most twice for each trajectory.
     """
     durations = [float(trajectory.times[-1] - trajectory.times[0]) for trajectory in trajectories]
     equal = [np.linspace(0.0, duration, INSTANTS) for duration in durations]
-    paths = [smoothed(trajectory) for trajectory in trajectories]
+    paths = []
+    for trajectory in trajectories:
+        paths.append(smoothed(trajectory))
+        tick()
     found = [
         Family("course", positions_and_velocities(trajectories), equal, 10),
         Family("shape", shapes(paths), [_when(t, path) for t, path in zip(trajectories, paths, strict=True)], 10),
     ]
-    energies = band_energies(trajectories, period)
+    energies = band_energies(trajectories, period, tick)
     if energies is not None:
         centres = [
             (np.arange(len(frames)) + 0.5) * duration / len(frames)
             for frames, duration in zip(energies, durations, strict=True)
         ]
-        found.append(Family("smoothness", energies, centres, 5))
+        found.append(Family("smoothness", energies, centres, 5, alike=True))
     return found
 
 
-def band_energies(trajectories: Sequence[Trajectory], period: float) -> list[Array] | None:
+def band_energies(trajectories: Sequence[Trajectory], period: float, tick: Tick) -> list[Array] | None:
     """Return the log energy in four frequency bands of short stretches, freed of the intended motion.
 
     A cubic is taken off every stretch: the course of a hand over 0.8 s is nearly one, a wiggle of 1.5 Hz is not.
@@ -74,6 +81,7 @@ def band_energies(trajectories: Sequence[Trajectory], period: float) -> list[Arr
     Args:
         trajectories: of one cluster.
         period: sampling period [s] they are brought to.
+        tick: called once for each trajectory.
 
     Returns:
         for each trajectory (frames, 4), or None when one is shorter than 20 periods.
@@ -92,6 +100,7 @@ def band_energies(trajectories: Sequence[Trajectory], period: float) -> list[Arr
         power = np.square(np.abs(np.fft.rfft(residual, SPECTRUM, axis=2))).sum(axis=1)  # (frames, bins)
         energies = np.column_stack([power[:, low:high].sum(axis=1) for low, high in BANDS])
         features.append(np.log(energies + floor))
+        tick()
     return features
 
 

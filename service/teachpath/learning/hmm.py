@@ -1,14 +1,14 @@
-"""Left-right hidden Markov models on hmmlearn's compiled forward-backward, with emissions that cannot collapse.
+"""The door to hmmlearn: left-right hidden Markov models on its compiled forward-backward.
 
-Rabiner 1989, section III; the regularised M-step keeps every variance away from zero and every allowed transition
-possible, so no likelihood is ever infinite.
+Rabiner 1989, section III; the M-step keeps every allowed transition possible, and that of the emissions every
+variance away from zero, so no likelihood is ever infinite.
 """
 
 from __future__ import annotations
 
 from abc import abstractmethod
 from collections.abc import Sequence
-from itertools import pairwise
+from itertools import accumulate, pairwise
 from typing import Any
 
 import numpy as np
@@ -19,9 +19,14 @@ from scipy.special import logsumexp
 from teachpath.records import Array
 
 Statistics = dict[str, Any]
+# Of one sequence: its log-likelihood, how probable each state is in each frame (frames, Q) but for a factor a frame,
+# and how often each transition is expected (Q, Q).
+Passes = tuple[float, Array, Array]
 
 LOG_2PI = float(np.log(2 * np.pi))
-ONE_ONLY = 4.0  # factor on the variance of a model of one sequence
+# Nats by which the best way through the chain may be behind the best state of every frame, for numbers instead of their
+# logarithms to do: what rounds to nought there is at least 45 nats less likely than that way.
+LINEAR = -700.0
 
 
 class LeftRightHmm(BaseHMM):  # type: ignore[misc]
@@ -57,18 +62,44 @@ class LeftRightHmm(BaseHMM):  # type: ignore[misc]
         self.n_components = min(self.states, *(len(sequence) for sequence in sequences))
         self.fit(np.concatenate(sequences), [len(sequence) for sequence in sequences])
 
+    def fit(self, X: Array, lengths: Sequence[int] | None = None) -> LeftRightHmm:
+        """Fit the model to concatenated sequences (frames, features) by Baum-Welch; what `train` calls.
+
+        hmmlearn's own checks its input and itself again in every call, which takes longer than such small models do.
+        """
+        lengths = [len(X)] if lengths is None else lengths
+        self._init(X, lengths)
+        self.monitor_._reset()
+        while not self.monitor_.converged:
+            stats, likelihood = self._do_estep(X, lengths)
+            self._do_mstep(stats)
+            self.monitor_.report(likelihood)
+        return self
+
     def log_likelihood(self, sequence: Array) -> float:
         """Return log p(O | model) of one sequence of shape (frames, features) by the forward procedure."""
-        return float(self.score(sequence))
+        return float(self.log_likelihoods(sequence).sum())
 
     def log_likelihoods(self, sequence: Array) -> Array:
         """Return log p(o_t | o_1 ... o_t-1, model) for every frame: (frames,); their sum is the log-likelihood."""
-        forward = _hmmc.forward_log(self.startprob_, self.transmat_, self._compute_log_likelihood(sequence))[1]
+        lattice = self._compute_log_likelihood(sequence)
+        best = lattice.max(axis=1)
+        try:
+            total, _, scales = _hmmc.forward_scaling(self.startprob_, self.transmat_, np.exp(lattice - best[:, None]))
+        except ValueError:  # underflow
+            total = -np.inf
+        if total > LINEAR:
+            return np.asarray(best - np.log(scales))
+        forward = _hmmc.forward_log(self.startprob_, self.transmat_, lattice)[1]
         return np.diff(logsumexp(forward, axis=1), prepend=0.0)
 
     @abstractmethod
     def _begin(self, slices: list[Array], frames: Array) -> None:
         """Set the emissions from the frames of each state's time slice."""
+
+    @abstractmethod
+    def _maximise(self, frames: Array, posteriors: Array) -> None:
+        """Set the emissions to the likeliest for frames (n, features) that are in each state as often as (n, Q)."""
 
     def _init(self, X: Array, lengths: Sequence[int]) -> None:
         states = self.n_components
@@ -77,77 +108,50 @@ class LeftRightHmm(BaseHMM):  # type: ignore[misc]
         self.transmat_ = np.eye(states) + np.eye(states, k=1)
         self.transmat_ /= self.transmat_.sum(axis=1, keepdims=True)
         bounds = np.concatenate([[0], np.cumsum(lengths)])
-        edges = [np.linspace(begin, end, states + 1).astype(int) for begin, end in pairwise(bounds)]
+        edges = np.linspace(bounds[:-1], bounds[1:], states + 1, axis=1).astype(int).tolist()
         slices = [np.concatenate([X[edge[q] : edge[q + 1]] for edge in edges]) for q in range(states)]
         self._begin(slices, X)
 
-    def _compute_posteriors_log(self, fwdlattice: Array, bwdlattice: Array) -> Array:
-        # hmmlearn's own goes through scipy's logsumexp, which takes longer than the compiled recursions.
-        log_gamma = fwdlattice + bwdlattice
-        gamma = np.exp(log_gamma - log_gamma.max(axis=1, keepdims=True))
-        return np.asarray(gamma / gamma.sum(axis=1, keepdims=True))
+    def _do_estep(self, X: Array, lengths: Sequence[int]) -> tuple[Statistics, float]:
+        lattice = self._compute_log_likelihood(X)
+        best = lattice.max(axis=1)
+        # Each frame's largest is 1. hmmlearn's recursions on densities are 20 times as fast as on their logarithms.
+        densities = np.exp(lattice - best[:, None])
+        gamma, often, total = np.empty_like(lattice), np.zeros_like(self.transmat_), float(best.sum())
+        for begin, end in pairwise(accumulate(lengths, initial=0)):
+            part = slice(begin, end)
+            passed = self._scaled_passes(densities[part]) or self._log_passes(lattice[part] - best[part, None])
+            gamma[part] = passed[1]
+            often += passed[2]
+            total += passed[0]
+        gamma /= gamma.sum(axis=1, keepdims=True)
+        return {"frames": X, "posteriors": gamma, "trans": often}, total
 
-    def _compute_lower_bound(self, curr_logprob: float) -> float:
-        return curr_logprob
+    def _scaled_passes(self, densities: Array) -> Passes | None:
+        """Run forward and backward over one sequence; None where numbers are too small for it."""
+        start, moves = self.startprob_, self.transmat_
+        try:
+            total, forward, scales = _hmmc.forward_scaling(start, moves, densities)
+        except ValueError:  # underflow
+            return None
+        if total < LINEAR:
+            return None
+        backward = _hmmc.backward_scaling(start, moves, densities, scales)
+        return total, forward * backward, _hmmc.compute_scaling_xi_sum(forward, moves, backward, densities)
+
+    def _log_passes(self, lattice: Array) -> Passes:
+        start, moves = self.startprob_, self.transmat_
+        total, forward = _hmmc.forward_log(start, moves, lattice)
+        backward = _hmmc.backward_log(start, moves, lattice)
+        often = np.exp(_hmmc.compute_log_xi_sum(forward, moves, backward, lattice))
+        together = forward + backward
+        return total, np.exp(together - together.max(axis=1, keepdims=True)), often
 
     def _do_mstep(self, stats: Statistics) -> None:
         counts = np.where(self.transmat_ > 0, stats["trans"] + self.pseudo_count, 0.0)
         rows = counts.sum(axis=1, keepdims=True)
         self.transmat_ = np.where(rows > 0, counts / np.where(rows > 0, rows, 1.0), self.transmat_)
-
-
-class TiedGaussianHmm(LeftRightHmm):
-    """One Gaussian per state, with one diagonal covariance that all states share.
-
-    Args:
-        floor: (features,) least variance.
-        options: see `LeftRightHmm`.
-    """
-
-    def __init__(self, floor: Array, **options: Any) -> None:
-        super().__init__(**options)
-        self.floor = floor
-
-    def widen(self, sequences: int) -> None:
-        """Widen the variance to what a new sequence shows against means that were estimated from so few.
-
-        The variance about the estimated means is too small by (n - 1) / n, that of a new sequence larger than the true
-        one by (n + 1) / n.
-        """
-        self.variance_ *= (sequences + 1) / (sequences - 1) if sequences > 1 else ONE_ONLY
-
-    def _begin(self, slices: list[Array], frames: Array) -> None:
-        self.means_ = np.stack([part.mean(axis=0) for part in slices])
-        squares = sum(np.square(part - mean).sum(axis=0) for part, mean in zip(slices, self.means_, strict=True))
-        self.variance_ = np.maximum(squares / len(frames), self.floor)
-
-    def _compute_log_likelihood(self, X: Array) -> Array:
-        scaled = np.square(X[:, None, :] - self.means_) / self.variance_  # (frames, states, features)
-        constant = self.n_features * LOG_2PI + np.log(self.variance_).sum()
-        return np.asarray(-0.5 * (scaled.sum(axis=2) + constant))
-
-    def _initialize_sufficient_statistics(self) -> Statistics:
-        stats: Statistics = super()._initialize_sufficient_statistics()
-        stats["weight"] = np.zeros(self.n_components)
-        stats["first"] = np.zeros((self.n_components, self.n_features))
-        stats["frames"] = []
-        return stats
-
-    def _accumulate_sufficient_statistics(
-        self, stats: Statistics, X: Array, lattice: Array, posteriors: Array, fwdlattice: Array, bwdlattice: Array
-    ) -> None:
-        super()._accumulate_sufficient_statistics(stats, X, lattice, posteriors, fwdlattice, bwdlattice)
-        stats["weight"] += posteriors.sum(axis=0)
-        stats["first"] += posteriors.T @ X
-        stats["frames"].append((X, posteriors))
-
-    def _do_mstep(self, stats: Statistics) -> None:
-        super()._do_mstep(stats)
-        weight = stats["weight"][:, None]
-        self.means_ = np.where(weight > 1e-8, stats["first"] / np.maximum(weight, 1e-8), self.means_)
-        X, posteriors = (np.concatenate(parts) for parts in zip(*stats["frames"], strict=True))
-        squares = np.einsum("tq,tqd->d", posteriors, np.square(X[:, None, :] - self.means_))
-        self.variance_ = np.maximum(squares / weight.sum(), self.floor)
+        self._maximise(stats["frames"], stats["posteriors"])
 
 
 class _RelativeChange(ConvergenceMonitor):  # type: ignore[misc]

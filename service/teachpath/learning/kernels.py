@@ -16,6 +16,7 @@ from teachpath.records import Array
 
 F = TypeVar("F", bound=Callable[..., Any])
 
+Labels = NDArray[np.int64]
 Paths = NDArray[np.float32]  # (m, 3, n): one row a coordinate, so that the inner loops run along memory
 
 BLOCK = 64  # paths compared with as many: both sets stay in the cache
@@ -69,7 +70,7 @@ def _warped_distance(a: Paths, b: Paths, widest: bool) -> np.float32:
 
 
 @compiled(parallel=True)
-def _fill(paths: Paths, out: Array, begin: int, kind: int) -> None:
+def _fill(paths: Paths, out: NDArray[np.float32], begin: int, kind: int) -> None:
     m = len(paths)
     end = min(begin + BLOCK, m)
     for block in numba.prange((m - begin + BLOCK - 1) // BLOCK):
@@ -97,7 +98,62 @@ def _assign(paths: Paths, chosen: Paths, nearest: NDArray[np.int64], apart: Arra
                 nearest[i] = j
 
 
-def fill_rows(paths: Paths, out: Array, begin: int, kind: int) -> None:
+@compiled()
+def _between(row: int, column: int, count: int) -> int:
+    low, high = min(row, column), max(row, column)
+    return low * (2 * count - low - 1) // 2 + high - low - 1
+
+
+@compiled()
+def _merge(apart: NDArray[np.float32], sizes: Labels, chain: Labels, state: Labels, merges: Array, budget: int) -> None:
+    count = len(sizes)
+    length, done = state
+    for _ in range(min(budget, count - 1 - done)):
+        if length == 0:
+            chain[0], length = np.argmax(sizes > 0), 1
+        while True:  # on to the nearest neighbour, until two are each other's
+            here = chain[length - 1]
+            nearest, least = here, np.float32(np.inf)
+            if length > 1:
+                nearest = chain[length - 2]
+                least = apart[_between(here, nearest, count)]
+            for other in range(count):
+                if sizes[other] > 0 and other != here and apart[_between(here, other, count)] < least:
+                    nearest, least = other, apart[_between(here, other, count)]
+            if length > 1 and nearest == chain[length - 2]:
+                break
+            chain[length] = nearest
+            length += 1
+        length -= 2
+        gone, stays = min(here, nearest), max(here, nearest)
+        merges[done, 0], merges[done, 1], merges[done, 2] = gone, stays, least
+        done += 1
+        one, two = sizes[gone], sizes[stays]
+        sizes[gone], sizes[stays] = 0, one + two
+        for other in range(count):
+            if sizes[other] > 0 and other != stays:
+                mine, theirs = _between(other, stays, count), _between(other, gone, count)
+                apart[mine] = (one * np.float64(apart[theirs]) + two * np.float64(apart[mine])) / (one + two)
+    state[0], state[1] = length, done
+
+
+def merge(apart: NDArray[np.float32], sizes: Labels, chain: Labels, state: Labels, merges: Array, budget: int) -> None:
+    """Make the next `budget` merges of average linkage along chains of nearest neighbours (Murtagh 1983).
+
+    Merges come in no order of height, and name clusters by one of their members.
+
+    Args:
+        apart: (m (m - 1) / 2,) distances, condensed in scipy's order; overwritten by those of clusters.
+        sizes: (m,) of the clusters, at first 1; 0 of those that are gone.
+        chain: (m,) the chain that is being followed.
+        state: its length, and the merges made; at first 0 and 0.
+        merges: (m - 1, 4) is filled with two members, and the height.
+        budget: merges to make.
+    """
+    _merge(apart, sizes, chain, state, merges, budget)
+
+
+def fill_rows(paths: Paths, out: NDArray[np.float32], begin: int, kind: int) -> None:
     """Write the distances of paths `begin` to `begin` + 64 from all later ones into `out`, condensed in scipy's order.
 
     Args:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import asdict, replace
 from importlib.metadata import version
 
@@ -10,17 +10,18 @@ import numpy as np
 
 from teachpath.learning.clustering import Grouping
 from teachpath.learning.crowd import grouped
-from teachpath.learning.dendrogram import Labels, groups
+from teachpath.learning.dendrogram import groups
 from teachpath.learning.describing import ambiguities, fingerprint, representatives, tube
 from teachpath.learning.paper import models_of_paper, select_as_paper
 from teachpath.learning.resampling import arc_lengths, at_equal_arc_length, smoothed, undersampled
 from teachpath.learning.screening import screen
-from teachpath.learning.selection import models_to_train, select
-from teachpath.learning.settings import LearningSettings, Progress, ignore
+from teachpath.learning.selection import pieces_of_work, select
+from teachpath.learning.settings import LearningSettings, Progress, ignore, part, ticker
 from teachpath.learning.synthesis import synthesise, synthesise_as_paper
 from teachpath.records import Array, Cluster, Learned, LearnedPath, Trajectory
 
 PATH_POINTS = 100  # at equal arc length, for the distance of two paths
+CHOOSING = "looking for inconsistent demonstrations"
 LIBRARIES = ("teachpath", "numpy", "scipy", "hmmlearn", "numba")
 
 
@@ -43,9 +44,9 @@ def learn(
     screen(demonstrations)
     progress(0.0, f"comparing {len(demonstrations)} demonstrations")
     metric = metric_of(settings)
-    courses, length = courses_of(demonstrations, metric, settings.seed)
-    grouping = grouped(courses, settings, length=length, metric=metric, progress=_part(progress, 0.0, 0.2))
-    return from_ways(demonstrations, courses, grouping, settings, _part(progress, 0.2, 1.0))
+    courses, length = courses_of(demonstrations, metric, settings.seed, part(progress, 0.0, 0.05))
+    grouping = grouped(courses, settings, length=length, metric=metric, progress=part(progress, 0.05, 0.2))
+    return from_ways(demonstrations, courses, grouping, settings, part(progress, 0.2, 1.0))
 
 
 def metric_of(settings: LearningSettings) -> str:
@@ -53,13 +54,19 @@ def metric_of(settings: LearningSettings) -> str:
     return settings.metric if settings.mode == "default" else "undersampled"
 
 
-def courses_of(demonstrations: Mapping[str, Trajectory], metric: str, seed: int) -> tuple[Array, float]:
+def courses_of(
+    demonstrations: Mapping[str, Trajectory], metric: str, seed: int, progress: Progress = ignore
+) -> tuple[Array, float]:
     """Return what the demonstrations are compared by, (m, n, 3) [m], and the length of a typical path [m]."""
-    if metric == "undersampled":
-        lengths = [arc_lengths(smoothed(each))[-1] for each in demonstrations.values()]
-        return _equalised(demonstrations, seed), float(np.median(lengths))
-    courses = np.stack([at_equal_arc_length(smoothed(each), PATH_POINTS) for each in demonstrations.values()])
-    return courses, float(np.median([arc_lengths(course)[-1] for course in courses]))
+    tick = ticker(progress, len(demonstrations), "smoothing the demonstrations")
+    courses, lengths = [], []
+    for trajectory in demonstrations.values():
+        path = smoothed(trajectory)
+        courses.append(at_equal_arc_length(path, PATH_POINTS))
+        lengths.append(arc_lengths(courses[-1])[-1])
+        tick()
+    paired = _equalised(demonstrations, seed) if metric == "undersampled" else np.stack(courses)
+    return paired, float(np.median(lengths))
 
 
 def from_ways(
@@ -83,24 +90,30 @@ def from_ways(
     """
     names = tuple(demonstrations)
     ways = groups(names, grouping.labels)
-    choosing = _part(progress, 0.0, 0.75)
+    choosing = part(progress, 0.0, 0.75)
     if settings.mode == "default":
-        tick = _ticker(choosing, models_to_train([len(way) for way in ways], settings.repeats))
+        tick = ticker(choosing, pieces_of_work([len(way) for way in ways], settings.repeats), CHOOSING)
         clusters = tuple(
             select(index + 1, {name: demonstrations[name] for name in way}, settings, tick=tick)
             for index, way in enumerate(ways)
         )
     else:
-        tick = _ticker(choosing, models_of_paper(len(ways), settings.repeats))
+        tick = ticker(choosing, models_of_paper(len(ways), settings.repeats), CHOOSING)
         clusters = select_as_paper(dict(zip(names, courses, strict=True)), ways, settings, tick=tick)
-    paths = _fitted(clusters, demonstrations, settings, _part(progress, 0.75, 1.0))
+    central = representatives(courses, grouping.labels)
+    found = _fitted(clusters, demonstrations, settings, part(progress, 0.75, 1.0))
+    paths = tuple(path for path, _ in found)
+    described = [
+        replace(cluster, representative=names[member], spread=spread, ambiguous=doubt)
+        for cluster, (_, spread), member, doubt in zip(clusters, found, central, ambiguities(grouping), strict=True)
+    ]
     progress(1.0, f"learned {len(paths)} {'path' if len(paths) == 1 else 'paths'}")
     return Learned(
         mode=settings.mode,
         demonstrations=names,
         linkage=grouping.linkage,
         threshold=grouping.threshold,
-        clusters=_described(clusters, paths, grouping, representatives(courses, grouping.labels), demonstrations),
+        clusters=tuple(described),
         paths=paths,
         notes=(grouping.note,) if grouping.note else (),
         settings=asdict(settings),
@@ -123,48 +136,14 @@ def _fitted(
     demonstrations: Mapping[str, Trajectory],
     settings: LearningSettings,
     progress: Progress,
-) -> tuple[LearnedPath, ...]:
+) -> list[tuple[LearnedPath, Array]]:
+    """Return the path of every cluster, and the radius of the tube around it."""
     fit = synthesise if settings.mode == "default" else synthesise_as_paper
-    paths = []
+    found = []
     for done, cluster in enumerate(clusters):
-        progress(done / len(clusters), f"fitting the path of way {cluster.index}")
-        paths.append(fit(cluster.index, _selected(cluster, demonstrations), settings))
-    return tuple(paths)
-
-
-def _described(
-    clusters: tuple[Cluster, ...],
-    paths: tuple[LearnedPath, ...],
-    grouping: Grouping,
-    central: Labels,
-    demonstrations: Mapping[str, Trajectory],
-) -> tuple[Cluster, ...]:
-    names = tuple(demonstrations)
-    return tuple(
-        replace(
-            cluster,
-            representative=names[member],
-            spread=tube(path.curve, _selected(cluster, demonstrations)),
-            ambiguous=doubt,
-        )
-        for cluster, path, member, doubt in zip(clusters, paths, central, ambiguities(grouping), strict=True)
-    )
-
-
-def _selected(cluster: Cluster, demonstrations: Mapping[str, Trajectory]) -> Sequence[Trajectory]:
-    return [demonstrations[score.demonstration] for score in cluster.scores if score.selected]
-
-
-def _part(progress: Progress, begin: float, end: float) -> Progress:
-    return lambda fraction, sentence: progress(begin + fraction * (end - begin), sentence)
-
-
-def _ticker(progress: Progress, total: int) -> Callable[[], None]:
-    done = 0
-
-    def tick() -> None:
-        nonlocal done
-        done += 1
-        progress(min(done / max(total, 1), 1.0), "looking for inconsistent demonstrations")
-
-    return tick
+        selected = [demonstrations[score.demonstration] for score in cluster.scores if score.selected]
+        own = part(progress, done / len(clusters), (done + 1) / len(clusters))
+        tick = ticker(own, 3 * len(selected), f"fitting the path of way {cluster.index}")
+        path = fit(cluster.index, selected, settings, tick=tick)
+        found.append((path, tube(path.curve, selected, tick=tick)))
+    return found

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from scipy.special import logsumexp
 
-from teachpath.learning.hmm import LOG_2PI, LeftRightHmm, Statistics
+from teachpath.learning.hmm import LOG_2PI, LeftRightHmm
 from teachpath.records import Array
 
 KMEANS_ROUNDS = 5
@@ -68,30 +68,17 @@ class MixtureHmm(LeftRightHmm):
     def _compute_log_likelihood(self, X: Array) -> Array:
         return np.asarray(logsumexp(self._log_components(X), axis=2))
 
-    def _initialize_sufficient_statistics(self) -> Statistics:
-        stats: Statistics = super()._initialize_sufficient_statistics()
-        stats["frames"] = []
-        return stats
-
-    def _accumulate_sufficient_statistics(
-        self, stats: Statistics, X: Array, lattice: Array, posteriors: Array, fwdlattice: Array, bwdlattice: Array
-    ) -> None:
-        super()._accumulate_sufficient_statistics(stats, X, lattice, posteriors, fwdlattice, bwdlattice)
-        components = self._log_components(X)
+    def _maximise(self, frames: Array, posteriors: Array) -> None:
+        components = self._log_components(frames)
         shares = np.exp(components - logsumexp(components, axis=2, keepdims=True))
-        stats["frames"].append((X, posteriors[:, :, None] * shares))
-
-    def _do_mstep(self, stats: Statistics) -> None:
-        super()._do_mstep(stats)
-        X = np.concatenate([frames for frames, _ in stats["frames"]])
-        shares = np.concatenate([shares for _, shares in stats["frames"]])  # (frames, Q, M)
+        shares *= posteriors[:, :, None]  # (frames, Q, M)
         weight = shares.sum(axis=0)
         used = weight > 1e-8
         divisor = np.where(used, weight, 1.0)
-        means = np.einsum("tqm,td->qmd", shares, X) / divisor[..., None]
+        means = np.einsum("tqm,td->qmd", shares, frames) / divisor[..., None]
         self.means_ = np.where(used[..., None], means, self.means_)
-        offsets = X[:, None, None, :] - self.means_
-        scatter = np.einsum("tqm,tqmi,tqmj->qmij", shares, offsets, offsets, optimize=True) / divisor[..., None, None]
+        offsets = frames[:, None, None, :] - self.means_
+        scatter = np.einsum("tqm,tqmi,tqmj->qmij", shares, offsets, offsets) / divisor[..., None, None]
         scatter = scatter + self.ridge * np.eye(self.n_features)
         self.covariances_ = np.where(used[..., None, None], scatter, self.covariances_)
         floor = np.maximum(weight, 1e-10)

@@ -6,14 +6,14 @@ which are then scored by it (section III-B).
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from teachpath.learning.mixture import MixtureHmm
 from teachpath.learning.scoring import robust_z
-from teachpath.learning.settings import LearningSettings
+from teachpath.learning.settings import LearningSettings, Tick
 from teachpath.learning.symbols import WINDOW, spectra, symbol_sequences
 from teachpath.records import Array, Cluster, Score
 
@@ -21,8 +21,6 @@ RIDGE = 0.01  # squared codeword numbers, added to every covariance
 ITERATIONS = 10
 TOLERANCE = 1e-4
 REPAIRED_STATES, REPAIRED_MIXTURES = 5, 1
-
-Tick = Callable[[], None]
 
 
 def select_as_paper(

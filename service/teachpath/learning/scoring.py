@@ -2,21 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from teachpath.learning.features import Family
-from teachpath.learning.hmm import TiedGaussianHmm
+from teachpath.learning.gaussian import TiedGaussianHmm
+from teachpath.learning.settings import Tick
 from teachpath.records import Array
 
 FLOOR = 0.02  # share of the overall variance that a state's variance keeps at least
 USUAL_SPREAD = 1.0  # nats a frame, of the scores of demonstrations that are alike
+FEWEST_WITH_CORE = 4  # members
 BELIEF = 4  # members that the usual spread counts for beside the measured one
-
-Tick = Callable[[], None]
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,6 +47,9 @@ class Effort:
 def judge(families: Sequence[Family], members: Sequence[int], folds: int, *, effort: Effort, tick: Tick) -> Judgement:
     """Score members by models that were trained on the others.
 
+    In families in which all are alike, they are scored once more by models of the better half, and the worse of the two
+    z scores counts: the members that agree best judge the rest (as in Hadi 1992).
+
     Args:
         families: the features of all members of the cluster.
         members: which of them take part.
@@ -57,13 +60,27 @@ def judge(families: Sequence[Family], members: Sequence[int], folds: int, *, eff
     profiles = []
     for family in families:
         sequences = [family.sequences[i] for i in members]
-        profiles.append(_left_out(sequences, family.states, folds, effort, tick))
-    scores = np.array([[profile.mean() for profile in row] for row in profiles])
-    z = np.stack([robust_z(row) for row in scores])
-    measure = np.minimum(z, 0.0).sum(axis=0)
+        profiles.append(_left_out(sequences, range(len(members)), family.states, folds, effort, tick))
+    z = np.stack([robust_z(_means(row)) for row in profiles])
+    if len(members) >= FEWEST_WITH_CORE:
+        # Spoilt in the same way, two of five lend each other a model; those that agree best lend them none.
+        core = np.sort(_order(z, profiles)[: len(members) // 2 + 1])
+        for k, family in enumerate(families):
+            if family.alike:
+                sequences = [family.sequences[i] for i in members]
+                profiles[k] = _left_out(sequences, core, family.states, folds, effort, tick)
+                z[k] = np.minimum(z[k], robust_z(_means(profiles[k]), core))
+    return Judgement(profiles, z, np.minimum(z, 0.0).sum(axis=0), _order(z, profiles))
+
+
+def _order(z: Array, profiles: list[list[Array]]) -> NDArray[np.int64]:
+    scores = np.sum([_means(row) for row in profiles], axis=0)
     # Exact ties are common, for the median and the median deviation are members' own; rounding must not break them.
-    order = np.lexsort((-scores.sum(axis=0), -np.round(z.sum(axis=0), 9), -np.round(measure, 9)))
-    return Judgement(profiles, z, measure, order)
+    return np.lexsort((-scores, -np.round(z.sum(axis=0), 9), -np.round(np.minimum(z, 0.0).sum(axis=0), 9)))
+
+
+def _means(profiles: list[Array]) -> Array:
+    return np.array([profile.mean() for profile in profiles])
 
 
 def fitted(sequences: Sequence[Array], states: int, effort: Effort) -> TiedGaussianHmm:
@@ -79,22 +96,33 @@ def fitted(sequences: Sequence[Array], states: int, effort: Effort) -> TiedGauss
     return model
 
 
-def robust_z(scores: Array) -> Array:
+def robust_z(scores: Array, core: NDArray[np.int64] | None = None) -> Array:
     """Return how many spreads a score is above the median; the spread is that of the median deviation, and believed
     only as far as the number of members goes.
+
+    Args:
+        scores: (m,).
+        core: whose median and spread are taken; None = everybody's.
     """
-    offsets = scores - np.median(scores)
-    measured = 1.4826 * float(np.median(np.abs(offsets)))
-    count = len(scores)
-    return np.asarray(offsets / np.sqrt((count * measured**2 + BELIEF * USUAL_SPREAD**2) / (count + BELIEF)))
+    known = scores if core is None else scores[core]
+    measured = 1.4826 * float(np.median(np.abs(known - np.median(known))))
+    spread = np.sqrt((len(known) * measured**2 + BELIEF * USUAL_SPREAD**2) / (len(known) + BELIEF))
+    return np.asarray((scores - np.median(known)) / spread)
 
 
-def _left_out(sequences: list[Array], states: int, folds: int, effort: Effort, tick: Tick) -> list[Array]:
-    part = np.arange(len(sequences)) % folds
+def _left_out(
+    sequences: list[Array], core: Sequence[int] | NDArray[np.int64], states: int, folds: int, effort: Effort, tick: Tick
+) -> list[Array]:
+    """Return the profile of each sequence under a model of the core, without itself where it belongs to the core."""
+    folds = min(folds, len(core))
+    part = np.full(len(sequences), folds)
+    part[core] = np.arange(len(core)) % folds
     profiles = [np.empty(0)] * len(sequences)
-    for fold in range(folds):
-        model = fitted([sequences[i] for i in np.flatnonzero(part != fold)], states, effort)
-        for i in np.flatnonzero(part == fold):
-            profiles[i] = model.log_likelihoods(sequences[i])
-        tick()
+    for fold in range(folds + 1):
+        scored = np.flatnonzero(part == fold)
+        if len(scored):
+            model = fitted([sequences[i] for i in core if part[i] != fold], states, effort)
+            for i in scored:
+                profiles[i] = model.log_likelihoods(sequences[i])
+            tick()
     return profiles

@@ -9,8 +9,8 @@ import numpy as np
 from teachpath.learning.departures import departure
 from teachpath.learning.features import Family, families
 from teachpath.learning.paper import unscored
-from teachpath.learning.scoring import Effort, Judgement, Tick, fitted, judge
-from teachpath.learning.settings import LearningSettings
+from teachpath.learning.scoring import Effort, Judgement, fitted, judge
+from teachpath.learning.settings import LearningSettings, Tick
 from teachpath.records import Cluster, Score, Trajectory
 
 FEW = 4  # members below which the ranking is unreliable
@@ -28,7 +28,8 @@ Ranked = list[tuple[int, bool]]  # member and whether it is selected, most consi
 def select(index: int, members: Mapping[str, Trajectory], settings: LearningSettings, *, tick: Tick) -> Cluster:
     """Rank the members of a cluster by consistency and keep all that are not inconsistent.
 
-    Every member is scored by models trained on the others: a model cannot be lenient to what it never saw. The
+    Every member is scored by models trained on the others: a model cannot be lenient to what it never saw; in their
+    smoothness also by models of the better half, so that two that shake do not excuse each other. The
     scores per frame of three kinds of features, course, shape and smoothness, become robust z values; their sum,
     better than the median counting as the median, is the measure.
 
@@ -37,13 +38,13 @@ def select(index: int, members: Mapping[str, Trajectory], settings: LearningSett
         members: id -> trajectory.
         settings: `keep` members are kept at least, and all above `inconsistent`, which is half as much again for two
             or three members, for the spread of so few scores says little; `repeats` is for the stability.
-        tick: called once per model trained.
+        tick: called after each model trained, and three times for each member.
     """
     names = sorted(members)
     if len(names) == 1:
         return unscored(index, names, "one demonstration only: nothing to compare it with")
     trajectories = [members[name] for name in names]
-    kinds = families(trajectories, settings.period)
+    kinds = families(trajectories, settings.period, tick)
     notes = []
     if len(kinds) < 3:
         notes.append("a demonstration is shorter than the analysis window: judged by course and shape only")
@@ -52,22 +53,22 @@ def select(index: int, members: Mapping[str, Trajectory], settings: LearningSett
     judgement = judge(kinds, range(len(names)), _folds(len(names)), effort=Effort(), tick=tick)
     stabilities = _stabilities(kinds, len(names), settings, tick)
     limit = _limit(len(names), settings)
-    scores = tuple(
-        _score(names[i], i, rank, keep, judgement, stabilities, limit, kinds, trajectories)
-        for rank, (i, keep) in enumerate(_ranked(judgement, settings))
-    )
+    scores = []
+    for rank, (i, keep) in enumerate(_ranked(judgement, settings)):
+        scores.append(_score(names[i], i, rank, keep, judgement, stabilities, limit, kinds, trajectories))
+        tick()
     history = fitted(kinds[0].sequences, kinds[0].states, Effort()).history
     tick()
-    return Cluster(index, tuple(score.demonstration for score in scores), scores, history, "; ".join(notes))
+    return Cluster(index, tuple(score.demonstration for score in scores), tuple(scores), history, "; ".join(notes))
 
 
-def models_to_train(sizes: Sequence[int], repeats: int) -> int:
+def pieces_of_work(sizes: Sequence[int], repeats: int) -> int:
     """Return how often `select` ticks at most for clusters of these sizes."""
     total = 0
     for size in sizes:
         if size > 1:
-            again = len(_drops(size, repeats, 0)) * min(size - 1, REPEATED_FOLDS)
-            total += 3 * (_folds(size) + again) + 1
+            again = len(_drops(size, repeats, 0)) * (4 * min(size - 1, REPEATED_FOLDS) + 1)
+            total += 4 * _folds(size) + 1 + again + 1 + 3 * size
     return total
 
 

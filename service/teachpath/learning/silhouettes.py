@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from teachpath.learning.dendrogram import Labels, labels_into
+from teachpath.learning.distances import Distances
 from teachpath.learning.settings import Progress, ignore
 from teachpath.records import Array
 
@@ -22,7 +23,7 @@ class Silhouettes:
         progress: is told how far the work has come.
     """
 
-    def __init__(self, condensed: Array, linkage: Array, most: int, progress: Progress = ignore) -> None:
+    def __init__(self, condensed: Distances, linkage: Array, most: int, progress: Progress = ignore) -> None:
         self._linkage = linkage
         self._finest = labels_into(linkage, most) - 1
         self._sums = sums_to(condensed, self._finest, most, progress)
@@ -55,7 +56,7 @@ class Silhouettes:
         return labels, self._sums @ membership
 
 
-def sums_to(condensed: Array, labels: Labels, count: int, progress: Progress = ignore) -> Array:
+def sums_to(condensed: Distances, labels: Labels, count: int, progress: Progress = ignore) -> Array:
     """Return the sums of the distances from every demonstration to the members of every cluster: (m, count) [m].
 
     Args:

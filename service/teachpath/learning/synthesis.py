@@ -11,10 +11,12 @@ from teachpath.learning.distances import frechet
 from teachpath.learning.fitting import DENSE, Approximation, approximate, distances_to
 from teachpath.learning.orienting import mean_orientations, orient
 from teachpath.learning.resampling import SMOOTHING, arc_lengths, at_equal_arc_length, smoothed
-from teachpath.learning.settings import LearningSettings
+from teachpath.learning.settings import LearningSettings, Tick
 from teachpath.records import Array, Fit, LearnedPath, Trajectory
 
 CONSENSUS_POINTS = 200
+FINE = 4  # times as many, where those are too few for the bound
+NOISES = 4.5  # standard deviations that a bound on the largest of hundreds of errors has to allow noise
 LEAST_LENGTH = 0.05  # of the mean path, as share of the longest that went into it
 SMOOTH_COST = 3  # more control points that degree 5 may take than degree 3
 PAPER_DEGREE = 3
@@ -27,13 +29,25 @@ def consensus(paths: Sequence[Array], count: int = CONSENSUS_POINTS) -> Array:
     return np.asarray(np.mean([at_equal_arc_length(path, count) for path in paths], axis=0))
 
 
-def synthesise(cluster: int, selected: Sequence[Trajectory], settings: LearningSettings) -> LearnedPath:
+def synthesise(cluster: int, selected: Sequence[Trajectory], settings: LearningSettings, *, tick: Tick) -> LearnedPath:
     """Fit the consensus of the selected demonstrations within the error bound (mode default).
 
+    A mean that is too wiggly for the bound, though not by noise, is followed as closely as `most_control_points` can,
+    and the note says how closely.
+
+    Args:
+        cluster: its number.
+        selected: demonstrations.
+        settings: `error_bound`, `most_control_points` and `degree`.
+        tick: called twice for each of them.
+
     Raises:
-        LearningFailed: the bound cannot be kept with `most_control_points`, or the demonstrations cancel out.
+        LearningFailed: the bound is below what noise leaves in the mean, or the demonstrations cancel out.
     """
-    paths = [smoothed(trajectory) for trajectory in selected]
+    paths = []
+    for trajectory in selected:
+        paths.append(smoothed(trajectory))
+        tick()
     course = consensus(paths)
     length, usual = _length(course), max(_length(path) for path in paths)
     if length < LEAST_LENGTH * usual:
@@ -41,22 +55,30 @@ def synthesise(cluster: int, selected: Sequence[Trajectory], settings: LearningS
             f"the mean of way {cluster} is {length * 1e3:.3g} mm long, its demonstrations up to {usual * 1e3:.3g} mm: "
             "they lead in opposite directions; lower learning.threshold"
         )
-    bound, most = settings.error_bound, settings.most_control_points
-    degrees = (3, 5) if settings.degree is None else (settings.degree,)
-    fits = [approximate(course, bound, degree=degree, most=most) for degree in degrees]
-    kept = [fit for fit in fits if fit.largest <= bound]
-    if not kept:
-        least = min(fit.largest for fit in fits)
-        raise LearningFailed(
-            f"way {cluster} cannot be followed within {bound * 1e3:.3g} mm by {most} control points, which reach "
-            f"{least * 1e3:.3g} mm, when noise leaves some {noise_left(selected) * 1e3:.2g} mm in the mean of "
-            "its demonstrations; raise learning.error_bound or learning.most_control_points"
+    bound, note = settings.error_bound, ""
+    best = _best(course, settings)
+    if best.largest > bound:
+        noise = noise_left(selected)
+        if bound < NOISES * noise:
+            raise LearningFailed(
+                f"way {cluster} cannot be followed within {bound * 1e3:.3g} mm: noise leaves some {noise * 1e3:.2g} mm "
+                f"in the mean of its demonstrations, and a path within {bound * 1e3:.3g} mm would follow the noise; "
+                f"raise learning.error_bound to {NOISES * noise * 1e3:.2g} mm, or show it more often"
+            )
+        course = consensus(paths, FINE * CONSENSUS_POINTS)
+        best = _best(course, settings)
+    if best.largest > bound:
+        note = (
+            f"the demonstrations wiggle: their mean is followed within {best.largest * 1e3:.3g} mm only, not "
+            f"{bound * 1e3:.3g} mm, by {settings.most_control_points} control points; show it more smoothly, or raise "
+            "learning.error_bound or learning.most_control_points"
         )
-    best = min(kept, key=_cost)
-    return _path(cluster, best, course, selected, settings, "")
+    return _path(cluster, best, course, selected, settings, note, tick)
 
 
-def synthesise_as_paper(cluster: int, selected: Sequence[Trajectory], settings: LearningSettings) -> LearnedPath:
+def synthesise_as_paper(
+    cluster: int, selected: Sequence[Trajectory], settings: LearningSettings, *, tick: Tick
+) -> LearnedPath:
     """Pool the points of the selected, sort them by distance to the start and approximate (Aleotti & Caselli, III-C).
 
     The global approximation of The NURBS Book returns more control points than points when such a list zigzags
@@ -80,7 +102,7 @@ def synthesise_as_paper(cluster: int, selected: Sequence[Trajectory], settings: 
             f"{share:.0%} of the motion leads back towards the start: sorting by distance to it scrambles the path, "
             "use mode default"
         )
-    return _path(cluster, fit, points, selected, settings, "; ".join(notes))
+    return _path(cluster, fit, points, selected, settings, "; ".join(notes), tick)
 
 
 def noise_left(selected: Sequence[Trajectory]) -> float:
@@ -96,6 +118,15 @@ def noise_left(selected: Sequence[Trajectory]) -> float:
 
 def _length(path: Array) -> float:
     return float(arc_lengths(path)[-1])
+
+
+def _best(course: Array, settings: LearningSettings) -> Approximation:
+    """Return the fit that keeps the bound at the least cost, or that comes nearest to it."""
+    degrees = (3, 5) if settings.degree is None else (settings.degree,)
+    bound, most = settings.error_bound, settings.most_control_points
+    fits = [approximate(course, bound, degree=degree, most=most) for degree in degrees]
+    kept = [fit for fit in fits if fit.largest <= bound]
+    return min(kept, key=_cost) if kept else min(fits, key=lambda fit: fit.largest)
 
 
 def _cost(fit: Approximation) -> int:
@@ -115,10 +146,14 @@ def _path(
     selected: Sequence[Trajectory],
     settings: LearningSettings,
     note: str,
+    tick: Tick,
 ) -> LearnedPath:
     apart = distances_to(fit.curve, fitted)
     course = consensus([smoothed(trajectory) for trajectory in selected])
-    tube = max(float(distances_to(fit.curve, trajectory.positions).max()) for trajectory in selected)
+    tube = 0.0
+    for trajectory in selected:
+        tube = max(tube, float(distances_to(fit.curve, trajectory.positions).max()))
+        tick()
     mean, orientation, turn = mean_orientations(selected, len(course)), None, None
     s = arc_lengths(course)
     if mean is not None and s[-1] > 0:

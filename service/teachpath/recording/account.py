@@ -7,10 +7,12 @@ from collections import deque
 from collections.abc import Iterable
 
 from teachpath.recording.clock import REAL_TIME, DeviceClock
+from teachpath.recording.refusals import Refusals
 from teachpath.records import Account, Sample
 
 LARGEST_JUMP = 100_000  # sequence numbers; a larger gap is a restarted device, not loss
 REMEMBERED_NOTES = 20
+NAMED_GAPS = 20
 REMEMBERED_SAMPLES = 512
 FASTEST = 100.0  # device seconds in one of ours; beyond it the receive times come from a burst
 RESTARTED = 10  # older numbers in a row, each with a newer time: the device counts anew
@@ -33,7 +35,8 @@ class StreamAccount:
         self._declared_rate = declared_rate
         self._largest_clock_step_ns = round(largest_clock_step * 1e9)
         self._missing: list[tuple[int, int]] = []  # stretches of numbers, rising, first and last of each
-        self._lost = self._settled_gaps = 0
+        self._settled: list[tuple[int, int]] = []  # those of before the device counted anew
+        self._lost = 0
         self._received = self._duplicated = self._reordered = self._refused = self._untracked = 0
         self._conflicts = self._clock_jumps = self._late_in_a_row = 0
         self._recent: list[tuple[int, int]] = [(-1, 0)] * REMEMBERED_SAMPLES
@@ -44,7 +47,9 @@ class StreamAccount:
         self._interrupted = False
         self._notes: deque[str] = deque(maxlen=REMEMBERED_NOTES)
         self._notes_of_part: deque[str] = deque(maxlen=REMEMBERED_NOTES)
+        self._refusals, self._refusals_of_part = Refusals(), Refusals()
         self._part_is_empty = True
+        self._first_of_part = 0
         self._before_part = self._counts()
 
     def observe(self, sample: Sample) -> bool:
@@ -70,7 +75,7 @@ class StreamAccount:
         self._last_device_ns, self._last_receive_ns = sample.device_ns, sample.receive_ns
         self._clock.observe(sample)
         if self._part_is_empty:
-            self._begin_with_this()
+            self._begin_with_this(sample.sequence)
         return True
 
     @property
@@ -85,7 +90,8 @@ class StreamAccount:
     def refuse(self, reason: str) -> None:
         """Count a payload that is no usable sample."""
         self._refused += 1
-        self.note(reason)
+        self._refusals.add(reason)
+        self._refusals_of_part.add(reason)
 
     def begin_part(self) -> None:
         """Begin another part: what was lost before its first sample is not lost of it."""
@@ -93,6 +99,7 @@ class StreamAccount:
         self._before_part = self._counts()
         self._longest_gap_of_part_ns = 0
         self._notes_of_part.clear()
+        self._refusals_of_part = Refusals()
 
     def expect(self, last_sequence: int) -> None:
         """Count as lost what the client says it sent after the highest number seen."""
@@ -111,12 +118,14 @@ class StreamAccount:
 
     def account(self) -> Account:
         """Return the counts so far."""
-        return self._stated(self._counts(), self._longest_gap_ns, self._notes)
+        notes = [*self._refusals.sentences(), *self._notes]
+        return self._stated(self._counts(), self._longest_gap_ns, notes, first=0)
 
     def part(self) -> Account:
         """Return the counts of the part that is open."""
         counts = {name: max(count - self._before_part[name], 0) for name, count in self._counts().items()}
-        return self._stated(counts, self._longest_gap_of_part_ns, self._notes_of_part)
+        notes = [*self._refusals_of_part.sentences(), *self._notes_of_part]
+        return self._stated(counts, self._longest_gap_of_part_ns, notes, first=self._first_of_part)
 
     def _counts(self) -> dict[str, int]:
         return {
@@ -126,20 +135,22 @@ class StreamAccount:
             "reordered": self._reordered,
             "refused": self._refused,
             "untracked": self._untracked,
-            "gaps": self._settled_gaps + len(self._missing),
+            "gaps": len(self._settled) + len(self._missing),
             "conflicts": self._conflicts,
             "clock_jumps": self._clock_jumps,
             "steps": self._steps,
             "device_ns": self._device_ns,
         }
 
-    def _stated(self, counts: dict[str, int], longest_gap_ns: int, kept: Iterable[str]) -> Account:
+    def _stated(self, counts: dict[str, int], longest_gap_ns: int, kept: Iterable[str], *, first: int) -> Account:
         clock, notes = self._clock.estimate(), tuple(kept)
         if clock is not None and abs(clock.rate - 1.0) > REAL_TIME:
             notes = (*notes, f"the device's clock runs {clock.rate:.3g} x ours")
         steps, device_ns = counts.pop("steps"), counts.pop("device_ns")
+        missing = self._missing if first else self._settled + self._missing
         return Account(
             **counts,
+            missing=tuple(stretch for stretch in missing if stretch[1] >= first)[:NAMED_GAPS],
             longest_gap_ns=longest_gap_ns,
             declared_rate=self._declared_rate,
             seen_rate=1e9 * steps / device_ns if device_ns else 0.0,
@@ -147,8 +158,9 @@ class StreamAccount:
             notes=notes,
         )
 
-    def _begin_with_this(self) -> None:
+    def _begin_with_this(self, sequence: int) -> None:
         self._part_is_empty = False
+        self._first_of_part = sequence
         now = self._counts()
         self._before_part |= {name: now[name] for name in ("lost", "gaps", "clock_jumps", "steps", "device_ns")}
         self._longest_gap_of_part_ns = 0
@@ -157,7 +169,7 @@ class StreamAccount:
         if self.first is not None:
             self.note(f"the device counts anew from number {sequence}")
         self.first, self.highest = sequence, sequence - 1
-        self._settled_gaps += len(self._missing)
+        self._settled += self._missing
         self._missing.clear()
         self._recent = [(-1, 0)] * REMEMBERED_SAMPLES
         self._last_device_ns = self._late_in_a_row = 0

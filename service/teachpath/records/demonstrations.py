@@ -106,6 +106,7 @@ class Account:
     refused: int = 0
     untracked: int = 0
     gaps: int = 0  # stretches of numbers that never came
+    missing: tuple[tuple[int, int], ...] = ()  # first and last number of each of them, of the first 20
     longest_gap_ns: int = 0  # device clock
     jumps: int = 0  # positions that their neighbours contradict; left out of the trajectory
     leaps: int = 0  # places where the position jumps and stays

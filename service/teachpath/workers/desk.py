@@ -17,6 +17,8 @@ from teachpath.records import Learned, LearnedPath, Plan, Scene, Trajectory
 
 Progress = Callable[[float, str], None]
 
+STEP = 0.005  # of progress, that is worth telling
+
 _news: Queue[tuple[str, float, str]] | None = None
 _cancel: Event | None = None
 
@@ -46,13 +48,19 @@ def warm_up() -> None:
 
 
 def work(key: str, function: Callable[..., Any], inputs: tuple[Any, ...]) -> Any:
-    """Call `function(*inputs, progress=...)` for job `key`."""
+    """Call `function(*inputs, progress=...)` for job `key`.
+
+    The work may tell its progress as often as it likes, and is cancelled there; only steps that are seen are passed on.
+    """
+    told = (-1.0, "")
 
     def progress(fraction: float, sentence: str) -> None:
+        nonlocal told
         if _cancel is not None and _cancel.is_set():
             raise Cancelled("cancelled by the operator")
-        if _news is not None:
+        if _news is not None and (sentence != told[1] or fraction >= told[0] + STEP or fraction >= 1.0):
             _news.put((key, fraction, sentence))
+            told = (fraction, sentence)
 
     return function(*inputs, progress=progress)
 

@@ -11,7 +11,7 @@ from collections import deque
 from typing import NamedTuple
 
 from teachpath.workers.presence import Presence
-from teachpath_proto.keys import Keys
+from teachpath_proto.keys import Keys, is_name
 
 
 class Received(NamedTuple):
@@ -39,6 +39,8 @@ class Intake:
     def __init__(self, keys: Keys, presence: Presence, longest: int) -> None:
         self._keys, self._presence, self.longest = keys, presence, longest
         self._lines: dict[str, _Line] = {}  # by the key of the samples
+        self._misnamed = 0
+        self._misname = ""
 
     # on the transport's threads: append only
 
@@ -46,7 +48,7 @@ class Intake:
         """Take a payload from the bus."""
         line = self._lines.get(key)
         if line is None:
-            self._presence.hear(self._keys.tracker_of(key))
+            self._hear(self._keys.tracker_of(key))
         elif len(line.waiting) < self.longest:
             line.waiting.append(Received(payload, time.time_ns()))
         else:
@@ -55,10 +57,19 @@ class Intake:
     def come_or_go(self, key: str, alive: bool) -> None:
         """Take from the bus that a tracker came or went; what it sent before is recorded before."""
         tracker = self._keys.announced(key)
+        if not is_name(tracker):
+            self._misnamed, self._misname = self._misnamed + 1, tracker
+            return
         self._presence.announce(tracker, alive)
         line = self._lines.get(self._keys.samples(tracker))
         if line is not None and not alive:
             line.waiting.append(Received(None, 0))
+
+    def _hear(self, tracker: str) -> None:
+        if is_name(tracker):
+            self._presence.hear(tracker)
+        else:
+            self._misnamed, self._misname = self._misnamed + 1, tracker
 
     # on the recorder's
 
@@ -89,6 +100,15 @@ class Intake:
         """Tell whether nothing of `tracker` waits."""
         line = self._lines.get(self._keys.samples(tracker))
         return line is None or not line.waiting
+
+    def misnamed(self) -> str:
+        """Say who came under a name that cannot be recorded, or nothing."""
+        if not self._misnamed:
+            return ""
+        return (
+            f"{self._misnamed} messages came from trackers whose names cannot be recorded, the last of them from "
+            f"{self._misname[:80]!r}: use letters, digits, '.', '_' or '-', at most 64"
+        )
 
     @property
     def backlog(self) -> int:

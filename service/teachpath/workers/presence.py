@@ -6,7 +6,7 @@ import threading
 from collections.abc import Callable
 from dataclasses import dataclass
 
-HEARD = 2.0  # [s] a tracker without a token is there for so long after a sample
+HEARD = 0.8  # [s] after a sample a tracker is silent, and one without a token has gone; a page shows it within 1 s
 MOST = 1000  # trackers that are remembered; a flood of names must not fill the memory
 
 
@@ -17,6 +17,11 @@ class Tracker:
     name: str
     announced: bool  # by a liveliness token; else it only sends
     silence: float  # [s] since its last sample; negative: it has sent none
+
+    @property
+    def is_silent(self) -> bool:
+        """Whether it has sent and does not any more: stopped, stuck, or its line is dead."""
+        return self.silence > HEARD
 
 
 class Presence:

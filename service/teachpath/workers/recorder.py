@@ -34,7 +34,8 @@ class Recorder:
         scene: gives the scene of a name; raises NotFound.
         calibration: gives the calibration of a name; raises NotFound.
         changed: called with each demonstration that an operator has discarded, restored, marked or trimmed.
-        recorded: called with each new demonstration, on the recorder's thread or that of the caller of `end`.
+        recorded: called with each new demonstration, on the recorder's thread or that of the caller of `end`, which
+            wait for it: it must not wait for anybody.
         clock: [s] monotonic.
     """
 
@@ -188,7 +189,7 @@ class Recorder:
 
     @property
     def backlog(self) -> int:
-        """How many samples have been received and not yet recorded."""
+        """How many samples have been received and not yet recorded; of each tracker at most `longest_backlog`."""
         return self._intake.backlog
 
     def faults(self) -> list[str]:
@@ -197,7 +198,9 @@ class Recorder:
             found = [
                 f"{session.tracker}: {session.fault}" for session in self._scribe.sessions.values() if session.fault
             ]
-        return found + ([f"Zenoh reports {self._missed} samples that never came"] if self._missed else [])
+        if self._missed:
+            found.append(f"Zenoh reports {self._missed} samples that never came")
+        return found + [said for said in [self._intake.misnamed()] if said]
 
     def calibration_of(self, tracker: str) -> Calibration | None:
         """Return the calibration under which `tracker` is being recorded, or None."""

@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 import synthetic
 
-from teachpath.learning.clustering import Grouping, cut_at, cut_by_silhouette, cut_into, tree_of
+from teachpath.learning.clustering import Grouping, cut_at, cut_by_silhouette, cut_into
 from teachpath.learning.describing import ambiguities
 from teachpath.learning.distances import distances
+from teachpath.learning.merging import average_linkage
 from teachpath.learning.resampling import at_equal_arc_length, smoothed
 from teachpath.records import Array, Trajectory
 
@@ -50,7 +51,7 @@ def test_close_ways_are_told_apart_though_others_are_far_away() -> None:
 def test_the_cut_reproduces_the_labels_at_its_threshold() -> None:
     distance = condensed(synthetic.experiment_1(4))
     grouping = cut_by_silhouette(distance, 12, guard=0.5, length=0.8)
-    again = cut_at(tree_of(distance, 12), grouping.threshold)
+    again = cut_at(average_linkage(distance, 12), grouping.threshold)
     np.testing.assert_array_equal(grouping.labels, again.labels)
     np.testing.assert_array_equal(grouping.linkage, again.linkage)
 
@@ -65,7 +66,7 @@ def test_the_order_of_demonstrations_changes_no_partition() -> None:
 
 
 def test_merges_grow_with_height_and_clusters_are_numbered_by_first_member() -> None:
-    grouping = cut_at(tree_of(condensed(synthetic.experiment_1(6)), 12), 0.08)
+    grouping = cut_at(average_linkage(condensed(synthetic.experiment_1(6)), 12), 0.08)
     assert np.all(np.diff(grouping.linkage[:, 2]) >= 0)
     first = [int(np.argmax(grouping.labels == k)) for k in range(1, grouping.labels.max() + 1)]
     assert first == sorted(first)
@@ -73,7 +74,7 @@ def test_merges_grow_with_height_and_clusters_are_numbered_by_first_member() -> 
 
 @pytest.mark.parametrize(("threshold", "count"), [(1e-9, 12), (10.0, 1)])
 def test_the_extremes_of_the_threshold_give_single_demonstrations_and_one_cluster(threshold: float, count: int) -> None:
-    assert cut_at(tree_of(condensed(synthetic.experiment_1(7)), 12), threshold).labels.max() == count
+    assert cut_at(average_linkage(condensed(synthetic.experiment_1(7)), 12), threshold).labels.max() == count
 
 
 @pytest.mark.parametrize(("apart", "ways"), [(0.02, 1), (0.3, 2)])
@@ -98,7 +99,7 @@ def test_one_demonstration_is_one_way() -> None:
 
 @pytest.mark.parametrize("count", [1, 2, 3, 7, 12])
 def test_a_known_number_of_ways_is_cut_into(count: int) -> None:
-    tree = tree_of(condensed(synthetic.experiment_1(8)), 12)
+    tree = average_linkage(condensed(synthetic.experiment_1(8)), 12)
     grouping = cut_into(tree, count)
     assert set(grouping.labels) == set(range(1, count + 1))
     again = cut_at(tree, grouping.threshold)
@@ -106,7 +107,7 @@ def test_a_known_number_of_ways_is_cut_into(count: int) -> None:
 
 
 def test_more_ways_than_demonstrations_are_said_to_be_impossible() -> None:
-    grouping = cut_into(tree_of(np.array([0.1, 0.2, 0.2]), 3), 5)
+    grouping = cut_into(average_linkage(np.array([0.1, 0.2, 0.2]), 3), 5)
     assert grouping.labels.tolist() == [1, 2, 3]
     assert "3 demonstrations cannot be 5 ways" in grouping.note
 
@@ -137,7 +138,7 @@ def test_a_clear_choice_is_not_called_ambiguous() -> None:
 
 def test_a_threshold_close_to_a_merge_is_called_ambiguous() -> None:
     apart = places(0, 0.2, spread=0.0)
-    tree, height = tree_of(apart, 2), float(apart[0])
+    tree, height = average_linkage(apart, 2), float(apart[0])
     near, far = cut_at(tree, height * 1.02), cut_at(tree, height * 2)
     assert near.rival == 2
     assert ambiguities(near) == ["ambiguous: could as well be 2 ways, of 1 and 1 demonstrations"]

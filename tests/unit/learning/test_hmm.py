@@ -6,8 +6,10 @@ from itertools import product
 
 import numpy as np
 import pytest
+from hmmlearn import _hmmc
 
-from teachpath.learning.hmm import LeftRightHmm, TiedGaussianHmm
+from teachpath.learning.gaussian import TiedGaussianHmm
+from teachpath.learning.hmm import LeftRightHmm
 from teachpath.learning.mixture import MixtureHmm
 from teachpath.records import Array
 
@@ -69,6 +71,23 @@ def test_the_likelihood_is_the_sum_over_all_ways_through_the_chain(make: type[Le
         total += p
     assert model.log_likelihood(observed) == pytest.approx(np.log(total), rel=1e-9)
     assert model.log_likelihoods(observed).sum() == pytest.approx(np.log(total), rel=1e-9)
+
+
+@pytest.mark.parametrize("make", [tied, mixture])
+@pytest.mark.parametrize("off", [0.0, 0.5, 5.0, 50.0, 1e4])
+def test_scaled_numbers_give_what_logarithms_do(make: type[LeftRightHmm], off: float) -> None:
+    model = make(states=6)
+    model.train(sequences())
+    for sequence in (sequences(3, count=1)[0] + off, sequences(3, count=1)[0][::-1] + off):
+        lattice = model._compute_log_likelihood(sequence)
+        total, forward = _hmmc.forward_log(model.startprob_, model.transmat_, lattice)
+        backward = _hmmc.backward_log(model.startprob_, model.transmat_, lattice)
+        often = np.exp(_hmmc.compute_log_xi_sum(forward, model.transmat_, backward, lattice))
+        stats, found = model._do_estep(sequence, [len(sequence)])
+        assert found == pytest.approx(total, rel=1e-10)
+        assert model.log_likelihood(sequence) == pytest.approx(total, rel=1e-10)
+        np.testing.assert_allclose(stats["posteriors"], np.exp(forward + backward - total), atol=1e-4)
+        np.testing.assert_allclose(stats["trans"], often, atol=1e-3)
 
 
 @pytest.mark.parametrize("make", [tied, mixture])

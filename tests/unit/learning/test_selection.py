@@ -10,7 +10,7 @@ import pytest
 import synthetic
 
 from teachpath.learning.paper import select_as_paper
-from teachpath.learning.selection import models_to_train, select
+from teachpath.learning.selection import pieces_of_work, select
 from teachpath.learning.settings import LearningSettings
 from teachpath.records import Array, Cluster, Trajectory
 
@@ -41,6 +41,14 @@ def test_the_wiggly_demonstration_is_rejected_at_any_place_in_the_list(marked: i
     assert str(marked) not in kept(cluster)
     assert "smoothness" in cluster.scores[-1].note
     assert len(kept(cluster)) >= 3
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_two_that_shake_do_not_excuse_each_other(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    shaking = rng.permutation(5)[:2]
+    five = {str(i): synthetic.demonstration(rng, wiggle=0.025 * (i in shaking)) for i in range(5)}
+    assert kept(selected(five)).isdisjoint(map(str, shaking))
 
 
 def paused(positions: Array, rng: np.random.Generator) -> Array:
@@ -209,7 +217,7 @@ def test_many_demonstrations_are_judged_in_folds() -> None:
     ticks: list[int] = []
     cluster = select(1, crowd, SETTINGS, tick=lambda: ticks.append(1))
     assert cluster.members[-1] == "17"
-    assert len(ticks) == models_to_train([33], 0) < 33
+    assert len(ticks) == pieces_of_work([33], 0) < pieces_of_work([30], 0)
 
 
 def test_mode_paper_keeps_exactly_the_n_best_by_likelihood() -> None:

@@ -7,14 +7,19 @@ import pytest
 import synthetic
 
 from teachpath.errors import LearningFailed
+from teachpath.learning import synthesis
 from teachpath.learning.distances import frechet
 from teachpath.learning.resampling import at_equal_arc_length
 from teachpath.learning.settings import LearningSettings
-from teachpath.learning.synthesis import noise_left, synthesise, synthesise_as_paper
-from teachpath.records import Array, LearnedPath
+from teachpath.learning.synthesis import noise_left
+from teachpath.records import Array, LearnedPath, Trajectory
 
 KINDS = {"loop": synthetic.curl(), "retreat": synthetic.retreat(), "closed": synthetic.closed()}
 PAPER = LearningSettings(mode="paper", threshold=0.1)
+
+
+def synthesise(trajectories: list[Trajectory], **settings: float) -> LearnedPath:
+    return synthesis.synthesise(1, trajectories, LearningSettings(**settings), tick=lambda: None)  # type: ignore[arg-type]
 
 
 def off(path: LearnedPath, clean: Array) -> float:
@@ -27,7 +32,7 @@ def off(path: LearnedPath, clean: Array) -> float:
 @pytest.mark.parametrize("seed", range(3))
 def test_the_path_is_within_a_centimetre_of_the_mean_clean_path(kind: str, count: int, seed: int) -> None:
     trajectories, clean = synthetic.shown(KINDS[kind], count, seed)
-    path = synthesise(1, trajectories, LearningSettings())
+    path = synthesise(trajectories)
     assert off(path, clean) <= 0.01
     assert path.fit.largest <= path.fit.bound
     assert path.fit.frechet is not None
@@ -38,7 +43,7 @@ def test_the_path_is_within_a_centimetre_of_the_mean_clean_path(kind: str, count
 @pytest.mark.parametrize("kind", KINDS)
 def test_mode_paper_scrambles_such_paths_and_says_so(kind: str) -> None:
     trajectories, clean = synthetic.shown(KINDS[kind], 2)
-    path = synthesise_as_paper(1, trajectories, PAPER)
+    path = synthesis.synthesise_as_paper(1, trajectories, PAPER, tick=lambda: None)
     assert "back towards the start" in path.note
     assert off(path, clean) > 0.02
     assert path.fit.frechet is not None
@@ -47,8 +52,23 @@ def test_mode_paper_scrambles_such_paths_and_says_so(kind: str) -> None:
 
 def test_a_bound_below_the_noise_names_the_noise() -> None:
     trajectories, _ = synthetic.shown(synthetic.loop(), 2)
-    with pytest.raises(LearningFailed, match=r"within 0\.02 mm .* noise leaves some 0\.\d+ mm"):
-        synthesise(1, trajectories, LearningSettings(error_bound=2e-5, most_control_points=40))
+    with pytest.raises(
+        LearningFailed, match=r"within 0\.02 mm: noise leaves some 0\.\d+ mm .* raise learning.error_bound to"
+    ):
+        synthesise(trajectories, error_bound=2e-5, most_control_points=40)
+
+
+def test_a_wiggly_mean_is_followed_as_closely_as_can_be_and_the_note_says_how() -> None:
+    rng = np.random.default_rng(2)
+    wiggly = [synthetic.demonstration(rng, duration=3.98, wiggle=0.06) for _ in range(2)]
+    path = synthesise(wiggly, most_control_points=12)
+    assert path.fit.largest > path.fit.bound
+    assert f"within {path.fit.largest * 1e3:.2g}" in path.note
+    assert "not 5 mm, by 12 control points" in path.note
+    assert len(path.curve.weights) == 12
+    closer = synthesise(wiggly, most_control_points=100)
+    assert closer.fit.largest <= closer.fit.bound
+    assert closer.note == ""
 
 
 def test_noise_left_falls_with_the_number_of_demonstrations() -> None:
@@ -59,4 +79,4 @@ def test_noise_left_falls_with_the_number_of_demonstrations() -> None:
 def test_thirteen_control_points_are_enough_for_half_a_centimetre() -> None:
     for kind in KINDS.values():
         trajectories, _ = synthetic.shown(kind, 3)
-        assert len(synthesise(1, trajectories, LearningSettings(error_bound=0.005)).curve.weights) <= 13
+        assert len(synthesise(trajectories, error_bound=0.005).curve.weights) <= 13

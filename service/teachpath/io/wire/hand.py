@@ -122,6 +122,7 @@ def encode_report(
         clock_uncertainty_ns=clock.uncertainty_ns,
         clock_rate=clock.rate,
         notes=account.notes,
+        missing=[tracker_pb2.Stretch(first=first, last=last) for first, last in account.missing],
         idle=idle,
         **state,
     )
@@ -159,4 +160,5 @@ def report_document(report: tracker_pb2.RecordingReport) -> dict[str, Any]:
     document = MessageToDict(report, preserving_proto_field_name=True, always_print_fields_with_no_presence=True)
     # protobuf's JSON writes 64-bit integers as text
     wide = {f.name for f in report.DESCRIPTOR.fields if f.cpp_type in (f.CPPTYPE_INT64, f.CPPTYPE_UINT64)}
-    return {key: int(value) if key in wide else value for key, value in document.items()}
+    numbers = {key: int(value) if key in wide else value for key, value in document.items()}
+    return numbers | {"missing": [[stretch.first, stretch.last] for stretch in report.missing]}

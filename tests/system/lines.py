@@ -1,0 +1,113 @@
+"""A recorder on a real Zenoh socket in this process, and clients that reach it over a line that can be made bad."""
+
+import json
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import zenoh
+
+from teachpath.io.bus import BusSettings, open_bus
+from teachpath.io.store import Store, StoreSettings
+from teachpath.io.wire import sample_message
+from teachpath.recording import RecordingSettings
+from teachpath.records import Calibration, Sample, Scene, Shape
+from teachpath.workers.recorder import Recorder
+from teachpath_client import Link
+from teachpath_proto import tracker_pb2
+from teachpath_proto.keys import Keys
+from tests.system.processes import free_ports, wait_until
+from tests.system.proxy import Proxy
+
+KEYS = Keys("line")
+SCENE = Scene("table", (), Shape("block", "box", (0.04, 0.04, 0.04), (0.5, 0.0, 0.5)))
+Report = tracker_pb2.RecordingReport
+
+
+class Desk:
+    """A recorder that listens."""
+
+    def __init__(self, folder: Path, settings: RecordingSettings) -> None:
+        (self.port,) = free_ports(1)
+        self.bus = open_bus(BusSettings(endpoint=f"tcp/127.0.0.1:{self.port}"), listen=True)
+        self.store = Store(StoreSettings(data_dir=str(folder)))
+        self.recorder = Recorder(self.bus, KEYS, self.store, settings, scene=lambda _: SCENE, calibration=Calibration)
+        self.recorder.start()
+
+    def begin(self, tracker: str, task: str) -> None:
+        self.recorder.begin(task, tracker, scene="table")
+
+    def report(self, tracker: str) -> Report:
+        (found,) = (r for r in self.recorder.reports() if r.tracker == tracker)
+        return found
+
+    def received(self, tracker: str, count: int, seconds: float = 20.0) -> None:
+        wait_until(
+            lambda: self.report(tracker).received >= count,
+            seconds=seconds,
+            what=f"{count} samples of {tracker} are recorded, {self.report(tracker).received} are",
+        )
+
+    def refused_or_received(self, tracker: str, count: int, seconds: float = 20.0) -> None:
+        wait_until(
+            lambda: self.report(tracker).received + self.report(tracker).refused >= count,
+            seconds=seconds,
+            what=f"{count} payloads of {tracker} are counted",
+        )
+
+    def close(self) -> None:
+        self.recorder.stop()
+        self.bus.close()
+        self.store.close()
+
+
+@contextmanager
+def desk(folder: Path, **settings: Any) -> Iterator[Desk]:
+    opened = Desk(folder, RecordingSettings(**settings))
+    try:
+        yield opened
+    finally:
+        opened.close()
+
+
+@contextmanager
+def bad_line(desk: Desk) -> Iterator[tuple[Proxy, Link]]:
+    """A client of ours behind a proxy."""
+    with Proxy(desk.port) as proxy, Link(f"tcp/127.0.0.1:{proxy.port}") as link:
+        try:
+            yield proxy, link
+        finally:
+            proxy.go_on()
+
+
+@contextmanager
+def plain_session(port: int) -> Iterator[Any]:
+    """A Zenoh client of somebody else's, without a cache."""
+    config = zenoh.Config()
+    for path, value in {
+        "mode": "client",
+        "connect/endpoints": [f"tcp/127.0.0.1:{port}"],
+        "scouting/multicast/enabled": False,
+    }.items():
+        config.insert_json5(path, json.dumps(value))
+    session = zenoh.open(config)
+    try:
+        yield session
+    finally:
+        session.close()  # type: ignore[no-untyped-call]
+
+
+def publish(publisher: Any, samples: list[Sample], *, rate: float = 0.0) -> None:
+    """Publish samples, at `rate` [Hz] or as fast as they go."""
+    due = time.monotonic()
+    for sample in samples:
+        publisher.put(sample_message(sample).SerializeToString())
+        if rate:
+            due += 1.0 / rate
+            time.sleep(max(0.0, due - time.monotonic()))
+
+
+def stretches(report: Report) -> list[tuple[int, int]]:
+    return [(m.first, m.last) for m in report.missing]

@@ -1,0 +1,81 @@
+"""A TCP line that can be made bad: everything between a client and a port passes through it."""
+
+import contextlib
+import socket
+import threading
+
+
+class Proxy:
+    """Forwards connections to `port`; use it as a context manager.
+
+    Attributes:
+        port: where clients connect.
+    """
+
+    def __init__(self, port: int) -> None:
+        self._to = port
+        self._server = socket.create_server(("127.0.0.1", 0))
+        self.port = int(self._server.getsockname()[1])
+        self._flows = threading.Event()
+        self._flows.set()
+        self._lock = threading.Lock()
+        self._sockets: list[socket.socket] = []
+        self._closed = False
+        self._cut = False
+        threading.Thread(target=self._accept, daemon=True).start()
+
+    def __enter__(self) -> "Proxy":
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._closed = True
+        self._server.close()
+        self.drop()
+        self.go_on()
+
+    def stall(self) -> None:
+        """Let nothing through, as a switch that hangs."""
+        self._flows.clear()
+
+    def drop(self, *, cut: bool = False) -> None:
+        """Break every connection, with all that is under way; with `cut` refuse new ones until `go_on`."""
+        self._cut = cut
+        with self._lock:
+            broken, self._sockets = self._sockets, []
+        for each in broken:
+            with contextlib.suppress(OSError):
+                each.shutdown(socket.SHUT_RDWR)
+            each.close()
+
+    def go_on(self) -> None:
+        """Let everything through again."""
+        self._cut = False
+        self._flows.set()
+
+    def _accept(self) -> None:
+        while not self._closed:
+            try:
+                client, _ = self._server.accept()
+            except OSError:
+                return
+            if self._cut:
+                client.close()
+                continue
+            try:
+                server = socket.create_connection(("127.0.0.1", self._to))
+            except OSError:
+                client.close()
+                continue
+            with self._lock:
+                self._sockets += [client, server]
+            for one, other in ((client, server), (server, client)):
+                threading.Thread(target=self._pump, args=(one, other), daemon=True).start()
+
+    def _pump(self, one: socket.socket, other: socket.socket) -> None:
+        with contextlib.suppress(OSError):
+            while content := one.recv(65536):
+                self._flows.wait()
+                other.sendall(content)
+        for each in (one, other):
+            with contextlib.suppress(OSError):
+                each.shutdown(socket.SHUT_RDWR)

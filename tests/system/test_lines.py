@@ -1,0 +1,93 @@
+"""Samples that are lost, doubled, late or cut off on a real line: the account says exactly which."""
+
+import random
+import threading
+import time
+from pathlib import Path
+
+import pytest
+
+from tests.system.lines import KEYS, bad_line, desk, plain_session, publish, stretches
+from tests.unit.recording.hands import demonstration
+
+pytestmark = pytest.mark.system
+
+SHOWN = 110
+
+
+def test_what_a_client_skips_doubles_and_sends_late_is_named_number_by_number(tmp_path: Path) -> None:
+    chance = random.Random(3)
+    stream = [s for i in range(4) for s in demonstration(1 + i * SHOWN)]
+    last = len(stream)
+    gone = sorted({n for start in chance.sample(range(20, last - 20), 8) for n in range(start, start + 2)})
+    left = [s for s in stream if s.sequence not in gone]
+    doubled = chance.sample([s.sequence for s in left], 7)
+    sent = [s for one in left for s in ([one, one] if one.sequence in doubled else [one])]
+    late = 0
+    for i in range(50, len(sent) - 50, 90):  # neighbours change places
+        if sent[i].sequence < sent[i + 1].sequence and sent[i].sequence not in doubled:
+            if sent[i + 1].sequence in doubled:
+                continue
+            sent[i], sent[i + 1] = sent[i + 1], sent[i]
+            late += 1
+    assert late
+    with desk(tmp_path) as here, bad_line(here) as (_, link):
+        here.begin("glove", "lift")
+        publish(link.publisher(KEYS.samples("glove")), sent)
+        report = here.recorder.end("glove", last_sequence=last)
+    runs = [[gone[0]]]
+    for number in gone[1:]:
+        runs[-1].append(number) if number == runs[-1][-1] + 1 else runs.append([number])
+    assert stretches(report) == [(run[0], run[-1]) for run in runs]
+    assert (report.lost, report.duplicated, report.reordered) == (len(gone), len(doubled), late)
+    assert report.received == len(sent)
+    assert report.gaps == len(runs)
+
+
+def test_a_line_that_stalls_loses_nothing(tmp_path: Path) -> None:
+    stream = [s for i in range(3) for s in demonstration(1 + i * SHOWN)]
+    with desk(tmp_path, longest_silence=10.0) as here, bad_line(here) as (proxy, link):
+        here.begin("glove", "lift")
+        publisher = link.publisher(KEYS.samples("glove"))
+        publish(publisher, stream[:150], rate=500.0)
+        here.received("glove", 150)
+        proxy.stall()
+        publish(publisher, stream[150:250], rate=500.0)
+        time.sleep(0.5)
+        assert here.report("glove").received == 150
+        proxy.go_on()
+        publish(publisher, stream[250:], rate=500.0)
+        report = here.recorder.end("glove", last_sequence=len(stream))
+        assert (report.received, report.lost, stretches(report)) == (len(stream), 0, [])
+        assert [d.account.lost for d in here.store.demonstrations("lift")] == [0, 0, 0]
+
+
+@pytest.mark.parametrize("ours", [True, False])
+def test_a_line_that_breaks_loses_what_was_under_way_and_our_client_sends_it_again(tmp_path: Path, ours: bool) -> None:
+    stream = [s for i in range(6) for s in demonstration(1 + i * SHOWN)]
+    other = [s for i in range(3) for s in demonstration(1 + i * SHOWN)]
+    with desk(tmp_path, longest_silence=20.0, handshake_timeout=5.0) as here, bad_line(here) as (proxy, link):
+        here.begin("glove", "lift")
+        here.begin("calm", "other")
+        with plain_session(proxy.port) as foreign, plain_session(here.port) as straight:
+            publisher = (link.publisher if ours else foreign.declare_publisher)(KEYS.samples("glove"))
+            calm = threading.Thread(target=publish, args=(straight.declare_publisher(KEYS.samples("calm")), other))
+            publish(publisher, stream[:200], rate=500.0)
+            here.received("glove", 200)
+            proxy.drop(cut=True)
+            calm.start()
+            publish(publisher, stream[200:300], rate=500.0)  # nobody hears these
+            proxy.go_on()
+            publish(publisher, stream[300:], rate=60.0)  # back in one or two seconds
+            calm.join()
+            report = here.recorder.end("glove", last_sequence=len(stream))
+            untouched = here.recorder.end("calm", last_sequence=len(other))
+        assert (untouched.received, untouched.lost) == (len(other), 0)
+        assert report.received + report.lost == len(stream)
+        if ours:
+            assert (report.lost, stretches(report)) == (0, [])
+            assert report.received == len(stream)
+        else:
+            assert stretches(report) == [(201, 200 + report.lost)]
+            assert report.lost >= 100
+            assert "reject" in [d.verdict for d in here.store.demonstrations("lift")]
