@@ -25,8 +25,7 @@ from teachpath.io.wire import report_document
 from teachpath.learning import LearningSettings
 from teachpath.motion import drawing
 from teachpath.offline.lock import StationLock
-from teachpath.recording import to_world
-from teachpath.records import Demonstration, Job, Learned, Plan, Trajectory, Vector
+from teachpath.records import Demonstration, Job, Learned, Plan, Trajectory
 from teachpath.workers import desk
 from teachpath.workers.assessor import Assessor
 from teachpath.workers.calibrations import Calibrations
@@ -96,7 +95,7 @@ class Station:
             drawing(),
             robot=settings.bus.robot,
             home=np.array(settings.motion.home),
-            to_world=self._to_world,
+            hands=self.recorder.hands,
         )
         ours = ("simulator", "executor") if settings.simulator.start else ("executor",)
         self.processes = [WorkerProcess(name, settings.model_dump_json()) for name in ours]
@@ -240,13 +239,6 @@ class Station:
         return self.store.finish_planning(job.id, plan)
 
     # what the view shows
-
-    def _to_world(self, tracker: str, position: Vector) -> Vector | None:
-        calibration = self.recorder.calibration_of(tracker)
-        if calibration is None:
-            return None
-        x, y, z = to_world(calibration, np.array(position))
-        return float(x), float(y), float(z)
 
     def _turn_to(self, task: str) -> None:
         """Let coach and preview turn to a task: its demonstrations have changed."""

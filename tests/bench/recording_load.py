@@ -22,30 +22,40 @@ from teachpath.motion.scenes import empty_scene
 from teachpath.recording import RecordingSettings
 from teachpath.records import Calibration
 from teachpath.workers.recorder import Recorder
+from teachpath_proto import tracker_pb2
 
 TRACKERS = 400
 PROCESSES = 4
 TASK = "load"
+BARE = "a bare Zenoh subscriber"
 
 
 def measure(*, seconds: float) -> list[Figure]:
     """Return the figures of `TRACKERS` trackers at 50 Hz that each show one demonstration of `seconds`."""
     with tempfile.TemporaryDirectory(prefix="teachpath-bench-") as folder:
         sent, lost, demonstrations, cpu, backlog, transits = _record(folder, seconds)
-    counted_cpu = _count(seconds)
+    counted_cpu, counted_transits = _count(seconds)
     what = f"{TRACKERS} trackers at {crowd.RATE:g} Hz for {seconds:g} s"
     p50, p99, worst = (1e3 * float(v) for v in np.percentile(transits, [50, 99, 100]))
+    bare50, bare99 = (1e3 * float(v) for v in np.percentile(counted_transits, [50, 99]))
     return [
         Figure(f"{what}: samples lost", (lost,), f"of {sent:,}"),
         Figure(f"{what}: demonstrations made", (demonstrations,), f"of {TRACKERS}"),
-        Figure("latency, sent to received, p50", (p50,), "ms"),
-        Figure("latency, sent to received, p99", (p99,), "ms", f"longest: {worst:.0f} ms"),
-        Figure("largest backlog behind the callback", (backlog,), "samples"),
+        Figure("latency, sent to received, p50", (p50,), "ms", f"{BARE}: {bare50:.2f} ms", p50 / bare50),
+        Figure("latency, sent to received, p99", (p99,), "ms", f"{BARE}: {bare99:.2f} ms", p99 / bare99),
+        Figure("latency, sent to received, longest", (worst,), "ms"),
+        Figure(
+            "largest backlog behind the callback",
+            (backlog,),
+            "samples",
+            f"a second brings {TRACKERS * crowd.RATE:,.0f}",
+            backlog / (TRACKERS * crowd.RATE),
+        ),
         Figure(
             "CPU of the recorder's process",
             (100.0 * cpu,),
             "% of a core",
-            f"a subscriber that only counts: {100.0 * counted_cpu:.0f} %",
+            f"{BARE}: {100.0 * counted_cpu:.0f} %",
             cpu / counted_cpu,
         ),
     ]
@@ -109,19 +119,23 @@ def _watched(recorder: Recorder) -> Iterator[list[int]]:
         thread.join()
 
 
-def _count(seconds: float) -> float:
-    """Return the CPU, in cores, of a process that only counts the same samples."""
+def _count(seconds: float) -> tuple[float, np.ndarray]:
+    """Return the CPU, in cores, of a process that only takes the same samples, and their latencies [s]."""
     endpoint = f"tcp/127.0.0.1:{free_port()}"
     config = zenoh.Config()
     for key, value in {"mode": "peer", "listen/endpoints": [endpoint], "scouting/multicast/enabled": False}.items():
         config.insert_json5(key, json.dumps(value))
-    counted: list[bytes] = []
+    taken: list[tuple[bytes, int]] = []
     session = zenoh.open(config)
     try:
-        session.declare_subscriber(crowd.KEYS.all_samples, lambda sample: counted.append(sample.payload.to_bytes()))
-        return _crowd(endpoint, seconds)[0]
+        session.declare_subscriber(
+            crowd.KEYS.all_samples, lambda sample: taken.append((sample.payload.to_bytes(), time.time_ns()))
+        )
+        cpu, _ = _crowd(endpoint, seconds)
     finally:
         session.close()  # type: ignore[no-untyped-call]
+    sent = [tracker_pb2.HandSample.FromString(payload).device_ns for payload, _ in taken]
+    return cpu, (np.array([at for _, at in taken]) - np.array(sent)) * 1e-9
 
 
 def _crowd(endpoint: str, seconds: float) -> tuple[float, int]:

@@ -51,9 +51,7 @@ class Server:
         self.bus = MemoryBus()
 
     def start(self, demonstrations: int) -> None:
-        self.preview = Preview(
-            self.bus, KEYS, drawing(), robot=ROBOT, home=HOME, to_world=lambda tracker, position: position
-        )
+        self.preview = Preview(self.bus, KEYS, drawing(), robot=ROBOT, home=HOME, hands=list)
         self.preview.show_object(paper_scene().carried)
         self.preview.start()
         app = FastAPI()

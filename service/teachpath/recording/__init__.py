@@ -3,7 +3,14 @@
 from teachpath.recording.account import StreamAccount
 from teachpath.recording.coach import Shown, advise
 from teachpath.recording.control import Control, Routine, State
-from teachpath.recording.demonstration import object_trajectory, point_to_world, to_world, usable
+from teachpath.recording.demonstration import (
+    Pose,
+    object_pose,
+    object_trajectory,
+    point_to_world,
+    to_world,
+    usable,
+)
 from teachpath.recording.frame import fit_frame
 from teachpath.recording.gesture import FistGesture, Sign
 from teachpath.recording.phases import GRASP_BUTTON, TOGGLE_BUTTON, Cut, Segmenter, closure_of
@@ -18,6 +25,7 @@ __all__ = [
     "Cut",
     "Faults",
     "FistGesture",
+    "Pose",
     "RecordingSettings",
     "Routine",
     "Segmenter",
@@ -32,6 +40,7 @@ __all__ = [
     "fit_frame",
     "judge",
     "judge_again",
+    "object_pose",
     "object_trajectory",
     "point_to_world",
     "to_world",

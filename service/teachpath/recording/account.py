@@ -79,6 +79,11 @@ class StreamAccount:
         return True
 
     @property
+    def received(self) -> int:
+        """How many samples came."""
+        return self._received
+
+    @property
     def restarted(self) -> bool:
         """Whether the device seems to count anew: only older numbers come, with newer times."""
         return self._late_in_a_row >= RESTARTED

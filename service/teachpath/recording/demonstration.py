@@ -9,7 +9,9 @@ from scipy.spatial.transform import Rotation
 
 from teachpath.errors import UnusableRecording
 from teachpath.recording.phases import Cut
-from teachpath.records import Array, Calibration, Sample, Trajectory, Vector
+from teachpath.records import Array, Calibration, Quaternion, Sample, Trajectory, Vector
+
+Pose = tuple[Vector, Quaternion]
 
 
 def to_world(calibration: Calibration, positions: Array) -> Array:
@@ -83,6 +85,22 @@ def object_trajectory(
     since_grasp = turned * turned[0].inv()
     positions = hand + since_grasp.apply(np.array(carried) - hand[0])
     return Trajectory(times, positions, _continuous(since_grasp.as_quat(scalar_first=True)))
+
+
+def object_pose(grasped: Sample, now: Sample, calibration: Calibration, carried: Vector) -> Pose | None:
+    """Return where the object is now, in the hand that took it at `grasped`; None while that is not known.
+
+    Args:
+        carried: start of the object's centre [m, world]; its start has no rotation.
+    """
+    if not (grasped.tracked and now.tracked):
+        return None
+    if now.device_ns <= grasped.device_ns:
+        return carried, (1.0, 0.0, 0.0, 0.0)
+    trajectory = object_trajectory((grasped, now), Cut(0, 2), calibration, carried)
+    x, y, z = trajectory.positions[-1].tolist()
+    w, i, j, k = (1.0, 0.0, 0.0, 0.0) if trajectory.orientations is None else trajectory.orientations[-1].tolist()
+    return (x, y, z), (w, i, j, k)
 
 
 def _forward_in_time(samples: list[Sample]) -> list[Sample]:

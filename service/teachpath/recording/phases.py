@@ -64,6 +64,11 @@ class Segmenter:
         self._place: Vector = (0.0, 0.0, 0.0)  # where the hand closed
         self._recent: deque[tuple[int, Vector]] = deque()
 
+    @property
+    def grasp(self) -> int:
+        """Where the hand took the object, as an index into the samples since the last cut; 0 while it reaches."""
+        return self._grasp
+
     def push(self, sample: Sample, position: Vector) -> Cut | None:
         """Take the next sample and its hand position [m, world]; return the cut that it completes.
 

@@ -13,6 +13,7 @@ from teachpath.recording import RecordingSettings, Routine, State
 from teachpath.records import Calibration, Demonstration, Scene, Trajectory
 from teachpath.workers.curation import Amendment, Curation
 from teachpath.workers.feedback import Feedback, Standing
+from teachpath.workers.hand import Hand
 from teachpath.workers.intake import Intake
 from teachpath.workers.open_take import Finished
 from teachpath.workers.presence import Presence, Tracker
@@ -21,6 +22,8 @@ from teachpath.workers.scribe import Scribe
 from teachpath.workers.session import RecordingSession
 from teachpath_proto import tracker_pb2
 from teachpath_proto.keys import Keys, is_name
+
+MOST_HANDS = 32  # that are shown; more would hide each other
 
 log = logging.getLogger("teachpath")
 Recorded = Callable[[Demonstration, Trajectory], None]
@@ -202,10 +205,11 @@ class Recorder:
             found.append(f"Zenoh reports {self._missed} samples that never came")
         return found + [said for said in [self._intake.misnamed()] if said]
 
-    def calibration_of(self, tracker: str) -> Calibration | None:
-        """Return the calibration under which `tracker` is being recorded, or None."""
-        session = self._scribe.sessions.get(tracker)
-        return session.calibration if session else None
+    def hands(self) -> list[Hand]:
+        """Return the hands that are recorded, as they are seen now; at most `MOST_HANDS`."""
+        with self._scribe.changed:
+            seen = [session.hand() for session in list(self._scribe.sessions.values())[:MOST_HANDS]]
+        return [hand for hand in seen if hand is not None]
 
     def task_of(self, tracker: str) -> str:
         """Return the task that `tracker` is recording; raises NotFound."""

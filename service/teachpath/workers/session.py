@@ -18,10 +18,13 @@ from teachpath.recording import (
     Sign,
     State,
     StreamAccount,
+    closure_of,
+    object_pose,
     point_to_world,
 )
 from teachpath.records import Calibration, Phase, Sample, Scene, Vector
 from teachpath.workers.feedback import Standing
+from teachpath.workers.hand import Hand
 from teachpath.workers.open_take import Finished, OpenTake
 from teachpath_proto import tracker_pb2
 
@@ -58,13 +61,15 @@ class RecordingSession:
         # of the whole recording; its open part is that of the open take
         self.account = StreamAccount(declared_rate=rate, largest_clock_step=settings.largest_clock_step)
         self._control = Control(routine or Routine(), clock(), countdown=settings.countdown)
+        self._thing = scene.carried
         self._carried = scene.carried.position if scene.carried else None
         self._to_world = point_to_world(calibration)
         self.demonstrations: list[str] = []
         self.flushed = clock()
         self._idle = 0
         self._torn = self._pedal_was_used = self._unwanted = False
-        self._buttons = 0
+        self._buttons = self._takes = 0
+        self._newest: Sample | None = None
         self._take = self._new_take()
         self._segmenter = Segmenter(settings, self._carried)
         self._gesture = FistGesture(settings, self._carried)
@@ -91,6 +96,8 @@ class RecordingSession:
             self._idle += 1
             return self.interrupt("the device began to count anew in mid-take")
         self._control.hear()
+        if fresh:
+            self._newest = sample
         position = self._to_world(sample.position)
         if fresh:
             self._follow_signs(sample, position)
@@ -178,6 +185,26 @@ class RecordingSession:
         asked, self._unwanted = self._unwanted, False
         return asked
 
+    def hand(self) -> Hand | None:
+        """Return how the hand is seen now; None before its first sample and while it is not tracked."""
+        newest, phase = self._newest, self._segmenter.phase
+        if newest is None or not newest.tracked:
+            return None
+        carried = None
+        if phase in (Phase.GRASP, Phase.TRANSPORT, Phase.RELEASE) and self._carried is not None:
+            grasped = self._take.samples[self._segmenter.grasp]
+            carried = object_pose(grasped, newest, self.calibration, self._carried)
+        return Hand(
+            tracker=self.tracker,
+            received=self.account.received,
+            take=self._takes,
+            phase=phase,
+            closed=closure_of(newest) > self._settings.close_at,
+            position=self._to_world(newest.position),
+            thing=self._thing,
+            carried=carried,
+        )
+
     def report(self, *, ended: bool = False) -> tracker_pb2.RecordingReport:
         """Return the account of this recording so far."""
         return encode_report(
@@ -262,5 +289,6 @@ class RecordingSession:
         self.account.begin_part()
 
     def _new_take(self) -> OpenTake:
+        self._takes += 1
         header = RecordingHeader(self.task, self.tracker, self.calibration)
         return OpenTake(self._store, self._settings, header, self.account.note)

@@ -1,51 +1,25 @@
 """The preview: what pages are told, and that a page that does not listen costs nothing."""
 
 import re
-import struct
 from pathlib import Path
-from typing import Any
 
 import numpy as np
-import pytest
-import umsgpack
 
-from teachpath.errors import UnusableInput
 from teachpath.io import wire
 from teachpath.io.bus import MemoryBus
 from teachpath.motion.drawing import drawing
 from teachpath.motion.kinematics import link_frames
 from teachpath.motion.scenes import empty_scene, paper_scene
 from teachpath.motion.settings import MotionSettings
-from teachpath.records import JointState, Sample
-from teachpath.workers.preview import WAYS, Page, Preview, PreviewSettings, commands
-from teachpath.workers.preview.tree import CREDIT, SceneTree
+from teachpath.recording import Pose
+from teachpath.records import JointState, Phase
+from teachpath.workers.hand import Hand
+from teachpath.workers.preview import WAYS, Page, Preview, PreviewSettings
 from teachpath_proto.keys import Keys
+from tests.unit.workers.pages import ignore, take
 
 KEYS = Keys()
 HOME = np.array(MotionSettings().home)
-
-
-def ignore() -> None:
-    """Wake nobody."""
-
-
-def split(batch: bytes | None) -> list[bytes]:
-    found, at = [], 0
-    while batch and at < len(batch):
-        (length,) = struct.unpack_from("<I", batch, at)
-        found.append(batch[at + 4 : at + 4 + length])
-        at += 4 + length
-    return found
-
-
-def decoded(batch: bytes | None) -> list[dict[str, Any]]:
-    return [umsgpack.unpackb(command) for command in split(batch)]
-
-
-def take(page: Page) -> list[dict[str, Any]]:
-    batch = page.take()
-    page.acknowledge()
-    return decoded(batch)
 
 
 class Station:
@@ -54,13 +28,14 @@ class Station:
     def __init__(self) -> None:
         self.bus = MemoryBus()
         self.now = 0.0
+        self.hands: list[Hand] = []
         self.preview = Preview(
             self.bus,
             KEYS,
             drawing(),
             robot="puma560",
             home=HOME,
-            to_world=lambda tracker, p: (p[0] + 1.0, p[1], p[2]) if tracker == "glove" else None,
+            hands=lambda: self.hands,
             settings=PreviewSettings(rate=0.01),  # its own thread stays out of the way
             clock=lambda: self.now,
         )
@@ -70,94 +45,13 @@ class Station:
         state = JointState(1, 1, q, zero, zero, 0.0, 0, False, closed, at, (1.0, 0.0, 0.0, 0.0))
         self.bus.publish(KEYS.state("puma560"), wire.encode_state(state))
 
-    def publish_sample(self, tracker: str, x: float, *, buttons: int = 0) -> None:
-        sample = Sample(tracker, 1, 1, 1, (x, 0.0, 0.6), None, (), True, buttons)
-        self.bus.publish(KEYS.samples(tracker), wire.sample_message(sample).SerializeToString())
-
-
-# the tree
-
-
-def test_replays_parents_first_and_one_value_a_property() -> None:
-    tree = SceneTree()
-    tree.put_object("/a/b", b"child")
-    tree.put_object("/a", b"parent")
-    for i in range(1000):
-        tree.put_property("/a", "visible", b"%d" % i)
-        tree.put_transform("/a/b", b"t%d" % i)
-    sent = split(tree.attach(ignore).take())
-    assert sent.index(b"parent") < sent.index(b"child")
-    assert sorted(sent) == sorted([b"parent", b"child", b"999", b"t999"])
-
-
-def test_a_page_that_does_not_acknowledge_gets_the_newest_later_and_nothing_grows() -> None:
-    tree = SceneTree()
-    stalled, lively = tree.attach(ignore), tree.attach(ignore)
-    told = 0
-    for i in range(5000):
-        tree.put_transform("/arm", b"t%d" % i)
-        tree.put_object("/trail", b"o%d" % i)
-        stalled.take()
-        told += len(split(lively.take()))
-        lively.acknowledge()
-    assert told == 10_000  # the stalled one disturbs nobody
-    assert stalled.pending == 2
-    stalled.acknowledge(CREDIT)
-    assert split(stalled.take()) == [b"o4999", b"t4999"]
-
-
-def test_credit_is_given_back_batch_by_batch() -> None:
-    tree = SceneTree()
-    page = tree.attach(ignore)
-    sent = 0
-    for i in range(10):
-        tree.put_transform("/arm", b"%d" % i)
-        sent += page.take() is not None
-    assert sent == CREDIT
-    page.acknowledge()
-    assert split(page.take()) == [b"9"]
-    assert page.take() is None
-
-
-def test_delete_takes_the_subtree_and_all_that_was_still_to_be_sent_about_it() -> None:
-    tree = SceneTree()
-    page = tree.attach(ignore)
-    tree.put_object("/paths/a", b"a")
-    tree.put_transform("/paths/a", b"ta")
-    tree.put_object("/pathsandmore", b"kept")
-    tree.delete("/paths", b"gone")
-    assert split(page.take()) == [b"kept", b"gone"]
-    assert tree.paths() == ["/pathsandmore"]
-    assert split(tree.attach(ignore).take()) == [b"kept"]
-
-
-def test_what_is_shown_after_a_delete_comes_after_it() -> None:
-    tree = SceneTree()
-    page = tree.attach(ignore)
-    tree.put_object("/paths/a", b"old")
-    tree.delete("/paths", b"gone")
-    tree.put_object("/paths/a", b"new")
-    assert split(page.take()) == [b"gone", b"new"]
-
-
-def test_a_detached_page_hears_no_more() -> None:
-    tree = SceneTree()
-    woken: list[int] = []
-    page = tree.attach(lambda: woken.append(1))
-    tree.put_object("/a", b"a")
-    tree.detach(page)
-    tree.put_object("/b", b"b")
-    assert len(woken) == 1
-    assert split(page.take()) == [b"a"]
-
-
-def test_the_same_transform_twice_is_sent_once() -> None:
-    tree = SceneTree()
-    page = tree.attach(ignore)
-    tree.put_transform("/arm", b"t")
-    page.take()
-    tree.put_transform("/arm", b"t")
-    assert page.take() is None
+    def see(self, x: float, phase: Phase = Phase.REACH, *, take: int = 1, carried: Pose | None = None) -> None:
+        """Let the hand be at `x` and draw it."""
+        self.now += 0.02
+        received = self.hands[0].received + 1 if self.hands else 1
+        held = phase is Phase.TRANSPORT
+        self.hands = [Hand("glove", received, take, phase, held, (x, 0.0, 0.6), paper_scene().carried, carried)]
+        self.preview.update()
 
 
 # what is drawn
@@ -226,31 +120,79 @@ def test_a_scene_without_an_object_shows_none() -> None:
         assert preview.paths("/object") == []
 
 
-def test_malformed_states_and_samples_are_left_out() -> None:
+def test_malformed_states_are_left_out() -> None:
     station = Station()
     with station.preview as preview:
+        page = preview.attach(ignore)
+        take(page)
         station.bus.publish(KEYS.state("puma560"), b"\xff\xff")
-        station.bus.publish(KEYS.samples("glove"), b"\xff\xff")
         preview.update()
-        assert preview.paths("/hand") == []
+        assert take(page) == []
 
 
-def test_a_hand_is_drawn_in_the_world_with_its_trail_until_it_falls_silent() -> None:
+def placed(page: Page, path: str) -> list[tuple[float, ...]]:
+    """Return where the page is told to put what is at `path`, in order."""
+    told = [c for c in take(page) if c["path"] == path and c["type"] == "set_transform"]
+    return [tuple(round(v, 4) for v in c["matrix"][12:15]) for c in told]
+
+
+def test_a_hand_is_drawn_with_its_trail_until_it_falls_silent() -> None:
     station = Station()
     with station.preview as preview:
         page = preview.attach(ignore)
         take(page)
         for i in range(10):
-            station.now += 0.02
-            station.publish_sample("glove", 0.01 * i, buttons=int(i > 5))
-            station.publish_sample("stranger", 0.0)
-            preview.update()
-        marker = [c for c in take(page) if c["path"] == "/hand/glove/marker" and c["type"] == "set_transform"]
-        assert marker[-1]["matrix"][12] == pytest.approx(1.09)  # tracker 0.09, calibration + 1
+            station.see(0.01 * i)
+        assert placed(page, "/hand/glove/marker")[-1] == (0.09, 0.0, 0.6)
         assert preview.paths("/hand") == ["/hand/glove/marker", "/hand/glove/trail"]
         station.now += PreviewSettings().hand_silence + 0.1
         preview.update()
         assert preview.paths("/hand") == []
+
+
+def test_the_trail_is_that_of_the_current_take() -> None:
+    station = Station()
+    with station.preview as preview:
+        for i in range(20):
+            station.see(0.01 * i)
+        station.see(0.5, take=2)
+        assert preview.paths("/hand") == ["/hand/glove/marker"]
+
+
+def test_the_object_goes_with_the_hand_lies_where_it_was_let_go_and_goes_back() -> None:
+    station, thing = Station(), paper_scene().carried
+    assert thing is not None
+    turned = (0.0, 1.0, 0.0, 0.0)
+    with station.preview as preview:
+        preview.show_object(thing)
+        page = preview.attach(ignore)
+        take(page)
+        station.see(0.1)
+        assert placed(page, "/object") == []
+        station.see(0.2, Phase.TRANSPORT, carried=((0.3, 0.1, 0.7), turned))
+        assert placed(page, "/object") == [(0.3, 0.1, 0.7)]
+        station.publish_state(HOME, at=(9.0, 9.0, 9.0))  # the arm does not take it out of the hand
+        station.see(0.2, Phase.TRANSPORT)  # not tracked for a moment
+        station.see(0.3, Phase.RETURN)
+        assert placed(page, "/object") == []
+        station.see(0.3, Phase.REACH, take=2)
+        assert placed(page, "/object") == [tuple(round(v, 4) for v in thing.position)]
+        station.publish_state(HOME, at=(0.4, 0.4, 0.4))
+        preview.update()
+        assert placed(page, "/object") == [(0.4, 0.4, 0.4)]
+
+
+def test_an_object_in_a_hand_that_vanishes_goes_back() -> None:
+    station, thing = Station(), paper_scene().carried
+    assert thing is not None
+    with station.preview as preview:
+        preview.show_object(thing)
+        page = preview.attach(ignore)
+        station.see(0.2, Phase.TRANSPORT, carried=((0.3, 0.1, 0.7), (1.0, 0.0, 0.0, 0.0)))
+        take(page)
+        station.now += PreviewSettings().hand_silence + 0.1
+        preview.update()
+        assert placed(page, "/object") == [tuple(round(v, 4) for v in thing.position)]
 
 
 def test_stops_listening_when_stopped() -> None:
@@ -269,47 +211,3 @@ def test_the_page_uses_the_same_colours_everywhere() -> None:
     (drawn,) = re.findall(r"WAYS = \[(.*?)\]", (web / "shapes.js").read_text())
     assert [int(style[str(i)], 16) for i in range(len(WAYS))] == list(WAYS)
     assert [int(colour, 16) for colour in drawn.split(",")] == list(WAYS)
-
-
-# the meshes
-
-
-def outward(vertices: np.ndarray, faces: np.ndarray) -> float:
-    """Signed volume of a mesh: positive when its faces look outwards."""
-    a, b, c = (vertices[faces[:, k]] for k in range(3))
-    return float(np.sum(a * np.cross(b, c))) / 6
-
-
-def test_a_prism_is_closed_and_looks_outwards() -> None:
-    square = [(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5)]
-    vertices, faces = commands.prism_mesh(square, 2.0)
-    assert outward(vertices, faces) == pytest.approx(2.0)
-
-
-def test_a_tube_keeps_its_distance_from_the_curve() -> None:
-    t = np.linspace(0, 4, 120)
-    spiral = np.column_stack([np.cos(t), np.sin(t), 0.2 * t])
-    vertices, faces = commands.tube_mesh(spiral, 0.05)
-    rings = vertices.reshape(len(spiral), -1, 3)
-    assert np.allclose(np.linalg.norm(rings - spiral[:, None], axis=2), 0.05)
-    length = np.sum(np.linalg.norm(np.diff(spiral, axis=0), axis=1))
-    assert outward(vertices, faces) == pytest.approx(np.pi * 0.05**2 * length, rel=0.1)
-    # neighbouring rings are not twisted against each other
-    assert np.max(np.linalg.norm(np.diff(rings, axis=0), axis=2)) < 0.06
-
-
-def test_a_straight_tube_needs_no_special_case() -> None:
-    line = np.linspace([0.0, 0, 0], [0, 0, 1.0], 5)
-    vertices, _ = commands.tube_mesh(line, 0.1)
-    assert np.all(np.isfinite(vertices))
-
-
-def test_a_cylinder_stands_upright() -> None:
-    sent = umsgpack.unpackb(commands.solid("/c", "cylinder", (0.1, 0.4), pose=commands.pose_of((1.0, 2.0, 3.0))))
-    matrix = np.reshape(sent["object"]["object"]["matrix"], (4, 4)).T
-    assert np.allclose(matrix @ [0, 0.2, 0, 1], [1, 2, 3.2, 1])  # three.js's y end is up
-
-
-def test_an_unknown_shape_is_refused_with_its_name() -> None:
-    with pytest.raises(UnusableInput, match="/x cannot be drawn: 'cone'"):
-        commands.solid("/x", "cone", (1.0,))

@@ -29,9 +29,7 @@ def record(bench: Bench) -> None:
 
 
 def test_a_page_that_takes_nothing_keeps_the_recorder_from_nothing(bench: Bench) -> None:
-    view = Preview(
-        bench.bus, KEYS, drawing(), robot="puma", home=np.zeros(6), to_world=lambda tracker, position: position
-    )
+    view = Preview(bench.bus, KEYS, drawing(), robot="puma", home=np.zeros(6), hands=bench.recorder.hands)
     with view:
         page = view.attach(lambda: None)
         assert page.take()  # the first batch, which it never acknowledges

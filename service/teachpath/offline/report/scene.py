@@ -27,7 +27,7 @@ def way_color(cluster: int) -> int:
 
 def scene_batch(review: Review, home: Array) -> bytes:
     """Return the commands that draw all that stands: arm, scene, demonstrations and paths."""
-    preview = Preview(MemoryBus(), Keys(), drawing(), robot="", home=home, to_world=lambda tracker, position: None)
+    preview = Preview(MemoryBus(), Keys(), drawing(), robot="", home=home, hands=list)
     preview.show_object(review.scene.carried)
     arm = preview.attach(lambda: None).take() or b""
     drawn = [

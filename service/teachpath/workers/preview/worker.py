@@ -5,7 +5,7 @@ from __future__ import annotations
 import threading
 import time
 from collections import deque
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 from types import TracebackType
 from typing import Annotated
@@ -15,17 +15,18 @@ from annotated_types import Ge, Gt, Le
 
 from teachpath.errors import UnusableInput
 from teachpath.io.bus import Bus, Handle
-from teachpath.io.wire import decode_sample, decode_state
+from teachpath.io.wire import decode_state
 from teachpath.motion.drawing import Part
 from teachpath.motion.kinematics import link_frames
-from teachpath.records import Array, Shape, Vector
+from teachpath.records import Array, Phase, Shape, Vector
+from teachpath.workers.hand import Hand
 from teachpath.workers.preview import commands
 from teachpath.workers.preview.tree import Page, SceneTree
 from teachpath_proto.keys import Keys
 
 HAND_OPEN, HAND_CLOSED = 0x3F7FBF, 0xE08A00
 
-ToWorld = Callable[[str, Vector], Vector | None]
+Hands = Callable[[], Iterable[Hand]]
 
 
 @dataclass(frozen=True)
@@ -43,12 +44,15 @@ class PreviewSettings:
 
 
 @dataclass
-class _Hand:
+class _Drawn:
     """A hand as drawn now."""
 
-    seen: float
     trail: deque[Vector]
+    seen: float
+    received: int = -1
+    take: int = 0
     closed: bool | None = None
+    holds: bool = False
     trail_drawn: float = field(default=-np.inf)
 
 
@@ -63,7 +67,7 @@ class Preview:
         *,
         robot: str,
         home: Array,
-        to_world: ToWorld,
+        hands: Hands,
         settings: PreviewSettings | None = None,
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
@@ -73,17 +77,16 @@ class Preview:
             drawing: the primitives of the arm, each in the frame of its link.
             robot: name of the arm whose joint states are followed.
             home: (6,) configuration shown until the first joint state comes [rad].
-            to_world: `to_world(tracker, position)` maps a tracker's position into the world [m], or returns None
-                while nothing is known about that tracker.
+            hands: gives the hands that are being recorded, as they are seen now.
             clock: seconds, monotonic.
         """
         self._bus, self._keys, self._robot = bus, keys, robot
-        self._to_world, self._clock = to_world, clock
+        self._look_at_hands, self._clock = hands, clock
         self._settings = settings or PreviewSettings()
         self._tree = SceneTree()
         self._state: bytes | None = None
-        self._samples: deque[tuple[str, bytes]] = deque(maxlen=512)
-        self._hands: dict[str, _Hand] = {}
+        self._hands: dict[str, _Drawn] = {}
+        self._thing: Shape | None = None
         self._handles: list[Handle] = []
         self._stopped = threading.Event()
         self._thread: threading.Thread | None = None
@@ -97,7 +100,6 @@ class Preview:
         self._stopped.clear()
         self._handles = [
             self._bus.subscribe(self._keys.state(self._robot), self._receive_state),
-            self._bus.subscribe(self._keys.all_samples, self._receive_sample),
         ]
         self._thread = threading.Thread(target=self._run, name="preview", daemon=True)
         self._thread.start()
@@ -136,6 +138,7 @@ class Preview:
     def show_object(self, carried: Shape | None) -> None:
         """Show this object at its start instead of the one shown before; None: there is none."""
         self.clear("/object")
+        self._thing = carried
         if carried is not None:
             body = commands.solid("/object", carried.kind, carried.size, color=carried.color, vertices=carried.vertices)
             self._tree.put_object("/object", body)
@@ -157,9 +160,6 @@ class Preview:
     def _receive_state(self, key: str, payload: bytes) -> None:
         self._state = payload
 
-    def _receive_sample(self, key: str, payload: bytes) -> None:
-        self._samples.append((self._keys.tracker_of(key), payload))
-
     def _run(self) -> None:
         while not self._stopped.wait(1.0 / self._settings.rate):
             self.update()
@@ -170,6 +170,8 @@ class Preview:
         except UnusableInput:
             return  # the next one comes in 10 ms; whoever commands the arm reports it
         self._pose_arm(state.position, gripper_closed=state.gripper_closed)
+        if any(drawn.holds for drawn in self._hands.values()):
+            return  # whoever shows the task has the object
         # an orientation of zeros says that the arm's scene has no object
         if any(state.object_orientation) and self._tree.paths("/object"):
             self._place("/object", commands.pose_of(state.object_position, state.object_orientation))
@@ -194,33 +196,46 @@ class Preview:
 
     def _follow_hands(self) -> None:
         now = self._clock()
-        newest: dict[str, bool] = {}
-        while self._samples:
-            tracker, payload = self._samples.popleft()
-            try:
-                sample = decode_sample(tracker, payload, 0)
-            except UnusableInput:
-                continue  # the recorder counts and reports it
-            position = self._to_world(tracker, sample.position) if sample.tracked else None
-            if position is not None:
-                hand = self._hands.setdefault(tracker, _Hand(now, deque(maxlen=self._settings.trail_points)))
-                hand.seen = now
-                hand.trail.append(position)
-                grasp = sample.buttons & 1 or (sample.flexions and float(np.mean(sample.flexions)) > 0.5)
-                newest[tracker] = bool(grasp)
-        for tracker, closed in newest.items():
-            self._draw_hand(tracker, self._hands[tracker], closed, now)
-        for tracker in [t for t, hand in self._hands.items() if now - hand.seen > self._settings.hand_silence]:
-            del self._hands[tracker]
+        for hand in self._look_at_hands():
+            drawn = self._hands.get(hand.tracker)
+            if drawn is None:
+                drawn = self._hands[hand.tracker] = _Drawn(deque(maxlen=self._settings.trail_points), now)
+            if hand.received != drawn.received:
+                drawn.seen, drawn.received = now, hand.received
+                self._draw_hand(hand, drawn, now)
+                self._draw_object(hand, drawn)
+        for tracker in [t for t, drawn in self._hands.items() if now - drawn.seen > self._settings.hand_silence]:
+            self._put_back(self._hands.pop(tracker))
             self.clear(f"/hand/{tracker}")
 
-    def _draw_hand(self, tracker: str, hand: _Hand, closed: bool, now: float) -> None:
-        marker, trail = f"/hand/{tracker}/marker", f"/hand/{tracker}/trail"
-        if hand.closed != closed:
-            hand.closed = closed
-            color = HAND_CLOSED if closed else HAND_OPEN
+    def _draw_hand(self, hand: Hand, drawn: _Drawn, now: float) -> None:
+        marker, trail = f"/hand/{hand.tracker}/marker", f"/hand/{hand.tracker}/trail"
+        if drawn.take != hand.take:
+            drawn.take = hand.take
+            drawn.trail.clear()
+            self.clear(trail)
+        drawn.trail.append(hand.position)
+        if drawn.closed != hand.closed:
+            drawn.closed = hand.closed
+            color = HAND_CLOSED if hand.closed else HAND_OPEN
             self._tree.put_object(marker, commands.solid(marker, "sphere", (0.016,), color=color))
-        self._place(marker, commands.pose_of(hand.trail[-1]))
-        if len(hand.trail) >= 2 and now - hand.trail_drawn >= 1.0 / self._settings.trail_rate:
-            hand.trail_drawn = now
-            self._tree.put_object(trail, commands.line(trail, np.array(hand.trail), color=HAND_OPEN))
+        self._place(marker, commands.pose_of(hand.position))
+        if len(drawn.trail) >= 2 and now - drawn.trail_drawn >= 1.0 / self._settings.trail_rate:
+            drawn.trail_drawn = now
+            self._tree.put_object(trail, commands.line(trail, np.array(drawn.trail), color=HAND_OPEN))
+
+    def _draw_object(self, hand: Hand, drawn: _Drawn) -> None:
+        """Let the object go with the hand that took it; it lies where it was let go until the next reach begins."""
+        if hand.thing is None or hand.thing != self._thing:
+            return
+        if hand.holds:
+            drawn.holds = True
+            if hand.carried is not None:
+                self._place("/object", commands.pose_of(*hand.carried))
+        elif hand.phase is Phase.REACH:
+            self._put_back(drawn)
+
+    def _put_back(self, drawn: _Drawn) -> None:
+        if drawn.holds and self._thing is not None:
+            self._place("/object", commands.pose_of(self._thing.position))
+        drawn.holds = False
