@@ -104,6 +104,7 @@ globalThis.teachpath = {
   place: (path) => view.place(path),
   project: (point) => view.easel.project(point),
   ghost: () => run.ghost(),
+  replayed: () => run.replayed(),
   headset: () => demonstrate.headset(),
   unproject: (x, y, plane) => view.easel.unproject(x, y, plane),
   get draws() {

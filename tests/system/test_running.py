@@ -122,6 +122,42 @@ def test_a_start_must_be_meant_and_the_space_bar_stops(visit: Visit, service: Se
     assert visit.said == []
 
 
+def test_a_past_execution_is_replayed_as_it_was(visit: Visit, service: Service) -> None:
+    last = newest(service)  # the one that was stopped
+    assert last["status"]["state"] in RESTING
+    before = visit.place("/robot/link6")
+    visit.page.locator("#replay li button").first.click()
+    slider = visit.page.get_by_label("Instant of the execution")
+    slider.wait_for()
+    series = service.call("GET", f"/executions/{last['id']}/series?points=1500")
+    times = np.array(series["times"]) - series["times"][0]
+    joints = np.array(series["positions"])
+    assert np.abs(joints[0] - joints[-1]).max() > 0.01
+    for share in (0.0, 0.5, 1.0):
+        slider.evaluate(f"s => {{ s.value = {share * times[-1]}; s.dispatchEvent(new Event('input')); }}")
+        shown = min(float(slider.input_value()), times[-1])
+        q = np.array([np.interp(shown, times, column) for column in joints.T])
+        drawn = np.array(visit.page.evaluate("teachpath.replayed()")).reshape(7, 4, 4).transpose(0, 2, 1)
+        np.testing.assert_allclose(drawn, link_frames(q), atol=1e-6)
+    assert visit.page.locator("#replay .u-over").count() == 4
+    np.testing.assert_allclose(visit.place("/robot/link6"), before, atol=1e-5)
+    assert newest(service)["id"] == last["id"]
+    visit.page.get_by_role("button", name="Close replay").click()
+    assert visit.page.evaluate("teachpath.replayed()") is None
+    assert visit.said == []
+
+
+def test_control_is_taken_and_given_back(visit: Visit, service: Service) -> None:
+    visit.page.get_by_label("Your name").fill("anna")
+    visit.page.get_by_role("button", name="Take control").click()
+    visit.page.wait_for_selector("#arm button[data-word=release]")
+    assert service.call("GET", "/lease")["holder"] == "anna"
+    visit.page.get_by_role("button", name="Give it back").click()
+    visit.page.wait_for_selector("#arm button[data-word=take]")
+    assert service.call("GET", "/lease")["holder"] == ""
+    assert visit.said == []
+
+
 def test_the_joints_are_plotted_as_they_move(visit: Visit) -> None:
     visit.page.wait_for_selector("#joints .values dd")
     assert visit.page.locator("#joints .u-over").count() == 4

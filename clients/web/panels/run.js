@@ -3,6 +3,7 @@ import { section } from "../elements.js";
 import { control } from "./control.js";
 import { live } from "./live.js";
 import { preview } from "./preview.js";
+import { replay } from "./replay.js";
 
 let parts = [];
 
@@ -15,6 +16,7 @@ export const panel = {
       preview(section(place, "preview", "Preview"), context),
       control(section(place, "arm", "Arm"), context),
       live(section(place, "joints", "Joints"), context),
+      replay(section(place, "replay", "Past executions"), context),
     ];
   },
 
@@ -30,6 +32,7 @@ export const panel = {
     for (const part of parts) part.hide?.();
   },
 
-  // Poses of the ghost's links as drawn, or null: for tests, and the curious.
+  // Poses of the links of the ghosts as drawn, of the preview and of the replay, or null: for tests, and the curious.
   ghost: () => parts[0].panel.ghost?.frames() ?? null,
+  replayed: () => parts[3].panel.ghost?.frames() ?? null,
 };
