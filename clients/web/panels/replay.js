@@ -50,7 +50,7 @@ class ReplayPanel {
   }
 
   async #open(execution) {
-    const [rows, arm] = await Promise.all([get(`${at("executions", execution, "series")}?points=${POINTS}`), get("robot")]);
+    const [rows, arm, plan] = await Promise.all([get(`${at("executions", execution, "series")}?points=${POINTS}`), get("robot"), this.#plan(execution)]);
     if (rows.times.length < 2) {
       this.context.messages.say("Nothing was recorded of this execution: the arm did not begin to move.", "error");
       return;
@@ -58,7 +58,6 @@ class ReplayPanel {
     this.close();
     const begin = rows.times[0];
     const times = rows.times.map((time) => time - begin);
-    const plan = await this.#plan(execution);
     this.motion = new Motion({ times, joints: rows.positions, gripper_closed: rows.gripper_closed, object_position: rows.object, object_orientation: rows.object.map(() => [1, 0, 0, 0]) });
     this.ghost = new Ghost(this.context.easel, this.context.view, arm, rows.object.length ? plan?.scene.carried : null);
     this.execution = execution;
