@@ -111,7 +111,7 @@ def test_a_start_must_be_meant_and_the_space_bar_stops(visit: Visit, service: Se
     assert newest(service)["status"]["override"] == pytest.approx(0.3)
     visit.page.get_by_role("button", name="Hold", exact=True).click()
     visit.page.wait_for_selector("#arm .dot.held", timeout=20_000)
-    assert "held by the operator" in visit.page.locator("#arm").inner_text()
+    assert "Held on the path: " in visit.page.locator("#arm .state").inner_text()  # and why
     visit.page.get_by_role("button", name="Resume").click()
     visit.page.wait_for_selector("#arm .dot.held", state="detached", timeout=20_000)
     visit.page.locator("#tab-ways").focus()  # wherever the focus is
