@@ -8,6 +8,7 @@ import learning
 import learning_peers
 import learning_scale
 import motion
+import plans
 import recording
 import recording_load
 import timing
@@ -36,6 +37,10 @@ def main() -> None:
     print_report(
         "Timing: how near to the limits, how soon it stops, what a cycle costs",
         timing.measure(repeats=1 if quick else 3),
+    )
+    print_report(
+        "Random paths, planned and judged by an independent checker",
+        plans.measure(count=10 if quick else 100),
     )
     print_report(
         "A served station: jobs in their process, executor and simulated arm in theirs",

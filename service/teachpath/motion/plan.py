@@ -83,6 +83,8 @@ def plan(path: LearnedPath, scene: Scene, settings: MotionSettings | None = None
         try:
             clearance = _path_clearance(job, candidate)
             free.append((cost(candidate, settings) - GAIN * min(clearance.value, ENOUGH), candidate))
+            if clearance.value >= ENOUGH:
+                break  # all that follow cost more
         except PathRefused as error:
             refused = refused or error
     for _, candidate in sorted(free, key=lambda trial: trial[0]):
@@ -208,7 +210,7 @@ def _path_clearance(job: _Job, candidate: Candidate, joints: JointPath | None = 
     proved = least(sweep, measure, job.settings.clearance_min)
     if proved.distance < job.settings.clearance_min:
         _too_near(job, candidate, job.settings.clearance_min, measure)
-    if load is not None:
+    if load is not None and joints is not None:
         deepest = least(sweep, lambda q: model.supports(q, load), -job.settings.contact_tolerance)
         if deepest.distance < -job.settings.contact_tolerance:
             _too_near(job, candidate, -job.settings.contact_tolerance, lambda q: model.supports(q, load))

@@ -157,8 +157,8 @@ class CollisionModel:
             mujoco.mju_mat2Quat(data.qpos[9:13], np.ascontiguousarray(pose[:3, :3]).ravel())
         mujoco.mj_kinematics(self._model, data)
 
-    def _distance(self, one: int, two: int, furthest: float) -> float:
-        return float(mujoco.mj_geomDistance(self._model, self._data, one, two, furthest, None))
+    def _distance(self, one: int | np.int64, two: int | np.int64, furthest: float) -> float:
+        return float(mujoco.mj_geomDistance(self._model, self._data, int(one), int(two), furthest, None))
 
     def _rows(
         self, q: Array, pairs: Iterable[tuple[int, int]], load: Load | None, gripper_open: bool
@@ -172,19 +172,22 @@ class CollisionModel:
         pair = np.array(list(pairs), dtype=np.int64).reshape(-1, 2)
         reach = self._model.geom_rbound[pair].sum(axis=1)  # (pairs,) of the two bounding spheres
         standing = self._standing(load)
-        rows = []
+        rows, nearest = [], 0
         for index, row in enumerate(q):
             self._place(row, standing if held is None else held[index])
-            centres = self._data.geom_xpos[pair]
-            gap = np.linalg.norm(centres[:, 0] - centres[:, 1], axis=1) - reach
-            best = Clearance(FAR, "", "")
-            for k in np.argsort(gap):
-                if gap[k] >= best.distance:
+            apart = self._data.geom_xpos[pair[:, 0]] - self._data.geom_xpos[pair[:, 1]]
+            gap = np.sqrt(np.einsum("ij,ij->i", apart, apart)) - reach
+            # Who was nearest in the row before is so again mostly, and then few others have to be measured.
+            best = self._distance(pair[nearest, 0], pair[nearest, 1], FAR) if len(pair) else FAR
+            close = np.flatnonzero(gap < best)
+            for k in close[np.argsort(gap[close])]:
+                if gap[k] >= best:
                     break
-                distance = self._distance(int(pair[k, 0]), int(pair[k, 1]), max(best.distance, 0.001))
-                if distance < best.distance:
-                    best = Clearance(distance, *(self._names[int(g)] for g in pair[k]))
-            rows.append(best)
+                distance = self._distance(pair[k, 0], pair[k, 1], max(best, 0.001))
+                if distance < best:
+                    best, nearest = distance, int(k)
+            one, other = (self._names[int(geom)] for geom in pair[nearest]) if best < FAR else ("", "")
+            rows.append(Clearance(best, one, other))
         return rows
 
 

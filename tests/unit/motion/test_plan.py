@@ -10,6 +10,7 @@ from teachpath.motion.certificate import digest, limit_uses, track
 from teachpath.motion.kinematics import tool_pose
 from teachpath.motion.puma560 import ACCELERATION, JERK, LOWER, SPEED, UPPER
 from teachpath.motion.route import ArcLength
+from teachpath.nurbs import Curve
 from teachpath.records import Plan, Shape
 from tests.unit.motion.ways import FAR, MIDDLE, NEAR, clamped, learned, way
 
@@ -123,3 +124,17 @@ def test_an_obstacle_above_the_start_keeps_the_gripper_from_coming_down() -> Non
     lid = Shape("lid", "box", (0.3, 0.3, 0.02), (x - 0.05, y - 0.2, 0.80))
     with pytest.raises(PathRefused, match="lid"):
         plan(way(MIDDLE), replace(scene, obstacles=(*scene.obstacles, lid)))
+
+
+def test_a_demonstrated_turn_is_followed_by_the_tool_when_it_is_asked_for() -> None:
+    curve = way(MIDDLE, degree=5).curve
+    angles = np.linspace(0.0, 0.3, len(curve.control_points))
+    turns = np.column_stack([np.cos(angles / 2), 0 * angles, np.sin(angles / 2), 0 * angles])
+    path = replace(learned(curve), orientation=Curve(curve.degree, curve.knots, turns, curve.weights))
+    made = plan(path, empty_scene(), MotionSettings(orientation="demonstrated"))
+    first, last = tool_pose(made.joints[[0, -1]])[:, :3, :3]
+    c, s = np.cos(0.3), np.sin(0.3)
+    np.testing.assert_allclose(last @ first.T, [[c, 0, s], [0, 1, 0], [-s, 0, c]], atol=1e-6)
+    np.testing.assert_allclose(first[:, 2], [0, 0, -1], atol=1e-9)
+    fixed = plan(path, empty_scene())
+    np.testing.assert_allclose(tool_pose(fixed.joints)[:, 2, 2], -1.0, atol=1e-9)

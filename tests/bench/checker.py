@@ -1,0 +1,176 @@
+"""An independent judge of plans: numbers typed anew, its own forward kinematics, geomdl's curve, brute-force sampling.
+
+Nothing here comes from the motion room but the setpoints that are judged and the list of the arm's solids.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from teachpath.exchange import to_geomdl
+from teachpath.motion import drawing
+from teachpath.nurbs import Curve
+from teachpath.records import Scene, Shape
+
+RATE = 250.0  # Hz
+# Puma 560: a, d [m] and alpha [deg] of joints 1 to 6 (Corke & Armstrong-Helouvry 1994), shoulder 26.45 in above the
+# floor, flange and gripper 56.25 + 130 mm before the wrist; limits [deg], [rad/s], [rad/s^2].
+A = (0.0, 0.4318, 0.0203, 0.0, 0.0, 0.0)
+D = (26.45 * 0.0254, 0.0, 0.15005, 0.4318, 0.0, 0.05625)
+TWIST = (90.0, 0.0, -90.0, 90.0, -90.0, 0.0)
+GRIP = 0.13
+LOW = np.radians([-160, -45, -225, -110, -100, -266])
+HIGH = np.radians([160, 225, 45, 170, 100, 266])
+SPEED = np.array([1.92, 1.51, 2.40, 5.34, 5.09, 5.74])
+ACCELERATION = np.array([10.0, 8.0, 16.0, 40.0, 40.0, 40.0])
+JERK = 10.0 * ACCELERATION
+SPACING = 0.012  # m, between points on a solid's surface
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """What was measured on the streamed setpoints of a plan; uses are shares of the limits."""
+
+    position: float
+    speed: float
+    acceleration: float
+    jerk: float
+    off_path: float  # m, of the grasp point from the curve
+    clearance: float  # m, of sampled points of arm and object from the obstacles
+
+
+def frames(q: np.ndarray) -> list[np.ndarray]:
+    """Return the frames (4, 4) of links 0 to 6 for one configuration, each as four elementary moves."""
+    found = [np.eye(4)]
+    for angle, a, d, twist in zip(q, A, D, np.radians(TWIST), strict=True):
+        found.append(found[-1] @ _turn(2, angle) @ _shift(0, 0, d) @ _shift(a, 0, 0) @ _turn(0, twist))
+    return found
+
+
+def judge(setpoints: np.ndarray, curve: Curve, scene: Scene, *, every: int = 12) -> Verdict:
+    """Judge the setpoints (n, 6) that follow a curve; clearance is sampled at every so many of them."""
+    use = [np.abs(np.diff(setpoints, k, axis=0)).max(axis=0) * RATE**k for k in (1, 2, 3)]
+    middle, half = (LOW + HIGH) / 2, (HIGH - LOW) / 2
+    tools = np.array([(frames(q)[6] @ _shift(0, 0, GRIP))[:3, 3] for q in setpoints])
+    solids = [(part.link, part, _surface(part.kind, part.size, part.outline)) for part in drawing() if part.link]
+    held = None
+    if scene.carried is not None:
+        start = frames(setpoints[0])[6]
+        held = (
+            np.linalg.inv(start) @ (_shift(*scene.carried.position)),
+            _surface(scene.carried.kind, scene.carried.size),
+        )
+    least = np.inf
+    for q in setpoints[::every]:
+        chain = frames(q)
+        for link, part, points in solids:
+            pose = chain[link] @ _shift(*part.position) @ _rotation(part.orientation)
+            least = min(least, *(_outside(shape, _moved(pose, points)) for shape in scene.obstacles))
+        if held is not None:
+            free = [shape for shape in scene.obstacles if shape.name != "table"]  # on which it stands at first
+            least = min(least, *(_outside(shape, _moved(chain[6] @ held[0], held[1])) for shape in free), np.inf)
+    return Verdict(
+        float((np.abs(setpoints - middle) / half).max()),
+        float((use[0] / SPEED).max()),
+        float((use[1] / ACCELERATION).max()),
+        float((use[2] / JERK).max()),
+        _off_path(tools, curve),
+        float(least),
+    )
+
+
+def reachable(point: Sequence[float]) -> bool:
+    """Tell whether the wrist reaches its place above a point that the tool points down on."""
+    x, y, z = point
+    ahead, up = np.hypot(x, y), z + GRIP + D[5] - D[0]
+    if ahead < D[2]:
+        return False
+    far, forearm = np.hypot(np.sqrt(ahead**2 - D[2] ** 2), up), np.hypot(A[2], D[3])
+    return bool(abs(A[1] - forearm) <= far <= A[1] + forearm)
+
+
+def _off_path(tools: np.ndarray, curve: Curve, count: int = 6000) -> float:
+    twin = to_geomdl(curve)
+    points = np.array(twin.evaluate_list(np.linspace(0.0, 1.0, count).tolist()))
+    start, ahead = points[:-1], np.diff(points, axis=0)
+    worst = 0.0
+    for tool in tools:
+        near = int(np.argmin(np.linalg.norm(points - tool, axis=1)))
+        pieces = [k for k in (near - 1, near) if 0 <= k < len(start)]
+        shares = [np.clip((tool - start[k]) @ ahead[k] / (ahead[k] @ ahead[k]), 0.0, 1.0) for k in pieces]
+        offs = (np.linalg.norm(start[k] + t * ahead[k] - tool) for k, t in zip(pieces, shares, strict=True))
+        worst = max(worst, min(offs))
+    return float(worst)
+
+
+def _surface(kind: str, size: Sequence[float], outline: Sequence[tuple[float, float]] = ()) -> np.ndarray:
+    """Return points (n, 3) all over the surface of a solid, in its frame."""
+    if kind == "sphere":
+        k = np.arange(80) + 0.5
+        polar, around = np.arccos(1 - 2 * k / 80), np.pi * (1 + np.sqrt(5)) * k
+        return size[0] * np.column_stack(
+            [np.cos(around) * np.sin(polar), np.sin(around) * np.sin(polar), np.cos(polar)]
+        )
+    if kind == "box":
+        x, y = size[0] / 2, size[1] / 2
+        outline, height = [(-x, -y), (x, -y), (x, y), (-x, y)], size[2]
+    elif kind == "prism":
+        height = size[0]
+    else:
+        angles = np.linspace(0.0, 2 * np.pi, 24, endpoint=False)
+        outline, height = [(size[0] * np.cos(a), size[0] * np.sin(a)) for a in angles], size[1]
+    corners = np.array([*outline, outline[0]])
+    rim = np.concatenate([_between(a, b) for a, b in pairwise(corners)])
+    centre = corners[:-1].mean(axis=0)
+    disc = np.concatenate([centre + share * (rim - centre) for share in np.linspace(0.0, 1.0, 6)])
+    levels = np.linspace(-height / 2, height / 2, 2 + int(height / SPACING))
+    wall = np.concatenate([np.column_stack([rim, np.full(len(rim), level)]) for level in levels])
+    caps = [np.column_stack([disc, np.full(len(disc), level)]) for level in levels[[0, -1]]]
+    return np.concatenate([wall, *caps])
+
+
+def _between(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    count = 1 + int(np.linalg.norm(b - a) / SPACING)
+    return a + np.linspace(0.0, 1.0, count, endpoint=False)[:, None] * (b - a)
+
+
+def _outside(shape: Shape, points: np.ndarray) -> float:
+    """Return the least distance [m] of points from an upright shape; negative inside."""
+    local = points - np.array(shape.position)
+    if shape.kind == "sphere":
+        return float(np.linalg.norm(local, axis=1).min() - shape.size[0])
+    if shape.kind == "box":
+        off = np.abs(local) - np.array(shape.size) / 2
+    else:
+        off = np.column_stack(
+            [np.hypot(local[:, 0], local[:, 1]) - shape.size[0], np.abs(local[:, 2]) - shape.size[1] / 2]
+        )
+    return float((np.linalg.norm(np.maximum(off, 0.0), axis=1) + np.minimum(off.max(axis=1), 0.0)).min())
+
+
+def _moved(pose: np.ndarray, points: np.ndarray) -> np.ndarray:
+    return points @ pose[:3, :3].T + pose[:3, 3]
+
+
+def _shift(x: float, y: float, z: float) -> np.ndarray:
+    pose = np.eye(4)
+    pose[:3, 3] = x, y, z
+    return pose
+
+
+def _turn(axis: int, angle: float) -> np.ndarray:
+    pose = np.eye(4)
+    i, j = (axis + 1) % 3, (axis + 2) % 3
+    pose[i, i] = pose[j, j] = np.cos(angle)
+    pose[j, i], pose[i, j] = np.sin(angle), -np.sin(angle)
+    return pose
+
+
+def _rotation(quaternion: Sequence[float]) -> np.ndarray:
+    w, *v = quaternion
+    cross = np.cross(np.eye(3), v)
+    pose = np.eye(4)
+    pose[:3, :3] += 2 * w * -cross + 2 * cross @ cross
+    return pose
