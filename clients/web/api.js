@@ -4,11 +4,12 @@ const SILENT = "The service does not answer. Is it running? This page connects a
 
 // What the service refused, or that it did not answer (status 0).
 export class Refusal extends Error {
-  constructor(sentence, { status = 0, kind = "", errors = [] } = {}) {
+  constructor(sentence, { status = 0, kind = "", errors = [], newer = null } = {}) {
     super(sentence);
     this.status = status;
     this.kind = kind; // the service's name of it, e.g. "Conflict"
     this.errors = errors; // [{place, fault}] of the fields that cannot be used
+    this.newer = newer; // the version that was saved meanwhile
   }
 }
 
@@ -36,5 +37,5 @@ async function call(method, path, body, further = {}) {
   const document = await answer.json().catch(() => null);
   if (answer.ok) return document;
   const sentence = document?.detail ?? `The service answered ${method} ${path} with status ${answer.status}; look into its log.`;
-  throw new Refusal(sentence, { status: answer.status, kind: document?.error, errors: document?.errors });
+  throw new Refusal(sentence, { status: answer.status, kind: document?.error, errors: document?.errors, newer: document?.newer });
 }

@@ -107,6 +107,9 @@ globalThis.teachpath = {
   replayed: () => run.replayed(),
   headset: () => demonstrate.headset(),
   unproject: (x, y, plane) => view.easel.unproject(x, y, plane),
+  get editor() {
+    return edit.editor;
+  },
   get draws() {
     return view.draws;
   },

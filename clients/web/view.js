@@ -20,6 +20,8 @@ export class View {
     this.picked = null;
     this.pause = SHORTEST;
     this.draws = 0;
+    this.rendering = 0; // [ms] that handing the newest draw to the graphics card took
+    this.faded = new Set(); // kinds that are drawn pale, so that what is edited stands out
     this.drawnAt = 0; // [ms]
     this.least = 0; // [ms] between two draws
     this.framed = ""; // what the camera was last set up for
@@ -86,6 +88,12 @@ export class View {
     this.refresh();
   }
 
+  // Draw a whole kind pale, whatever is picked, or not any more.
+  fade(kind, faded) {
+    this.faded[faded ? "add" : "delete"](kind);
+    this.refresh();
+  }
+
   // Let layers and paleness hold for what has just been drawn, and draw.
   refresh() {
     for (const layer of LAYERS) {
@@ -94,7 +102,7 @@ export class View {
     }
     for (const kind of ["demonstrations", "paths", "departures", "spread"]) {
       for (const [id, node] of Object.entries(this.viewer.scene_tree.children[kind]?.children ?? {})) {
-        this.#fade(node.children["<object>"]?.object.material, this.picked && !this.picked.has(`${kind}/${id}`));
+        this.#fade(node.children["<object>"]?.object.material, this.faded.has(kind) || (this.picked && !this.picked.has(`${kind}/${id}`)));
       }
     }
     this.viewer.set_dirty();
@@ -165,7 +173,9 @@ export class View {
         this.framed = here;
         this.stage.look();
       }
+      const began = performance.now();
       render();
+      this.rendering = performance.now() - began;
       this.draws += 1;
       if (here) this.ready();
     };

@@ -1,0 +1,47 @@
+// Knots: more of them for finer edits, fewer for a calmer curve, a higher degree; the shape stays.
+import { element, number } from "../elements.js";
+import { grevilleOf, innerKnots, middleOfSpan } from "./curve.js";
+
+export function knots(place, editor) {
+  const u = element("input", { type: "number", id: "edit-u", min: "0", max: "1", step: "any", "aria-label": "parameter u of the new knot, between 0 and 1" });
+  const insert = element("button", { type: "button", id: "edit-insert" }, "Insert knot");
+  const choice = element("select", { id: "edit-knot", "aria-label": "inner knot" });
+  const allowed = element("input", { type: "number", id: "edit-allowed", min: "0.001", max: "100", step: "any", value: "0.001", "aria-label": "millimetres by which the curve may move" });
+  const remove = element("button", { type: "button", id: "edit-remove" }, "Remove knot");
+  const elevate = element("button", { type: "button", id: "edit-elevate" }, "Raise degree");
+  const about = element("p", { class: "note", id: "edit-curve" });
+  place.append(
+    about,
+    element("div", { class: "row" }, element("label", {}, "u ", u), insert),
+    element("div", { class: "row" }, element("label", {}, "knot ", choice), element("label", {}, "may move (mm) ", allowed), remove),
+    element("div", { class: "row" }, elevate),
+  );
+  const operate = (operation, more, what) =>
+    editor.context.attempt(async () => {
+      const done = await editor.operate(operation, more, what);
+      if (done) editor.context.messages.say(`${what}: the curve moved by ${inWords(done.deviation)}.`);
+    });
+  insert.addEventListener("click", () => operate("insert-knot", { u: Number(u.value) }, `Knot inserted at u = ${Number(u.value)}`));
+  remove.addEventListener("click", () => operate("remove-knot", { u: Number(choice.value), tolerance: Number(allowed.value) / 1000 }, `Knot removed at u = ${Number(Number(choice.value).toPrecision(4))}`));
+  elevate.addEventListener("click", () => operate("elevate", {}, `Degree raised to ${editor.draft.curve.degree + 1}`));
+
+  return {
+    update({ draft }, what) {
+      if (!draft || what === "drag" || what === "verdict" || what === "versions") return;
+      const { curve } = draft;
+      const inner = innerKnots(curve);
+      about.textContent = `Degree ${curve.degree}, ${curve.control_points.length} control points, ${inner.length} inner ${inner.length === 1 ? "knot" : "knots"}.`;
+      const kept = choice.value;
+      choice.replaceChildren(...inner.map(({ u, times }) => element("option", { value: String(u) }, number(u, 4) + (times > 1 ? ` ×${times}` : ""))));
+      if ([...choice.options].some((option) => option.value === kept)) choice.value = kept;
+      remove.disabled = choice.disabled = !inner.length;
+      elevate.disabled = curve.degree >= 7;
+      const around = draft.chosen.length === 1 ? grevilleOf(curve, draft.chosen[0]) : 0.5;
+      if (document.activeElement !== u) u.value = String(Number(middleOfSpan(curve, around).toFixed(6)));
+    },
+  };
+}
+
+function inWords(metres) {
+  return metres < 1e-8 ? "less than 0.00001 mm" : `${Number((1000 * metres).toPrecision(2))} mm`;
+}

@@ -1,0 +1,87 @@
+// Saving the draft as a version. When somebody saved a newer one meanwhile, the operator chooses; no edit is lost.
+import { at, post } from "../api.js";
+import { element } from "../elements.js";
+import { title } from "./versions.js";
+
+const AUTHOR = "teachpath.author"; // who edits at this browser
+
+export function saving(place, editor) {
+  const text = (id, label, more = {}) => element("input", { type: "text", id: `edit-${id}`, maxlength: "80", autocomplete: "off", "aria-label": label, placeholder: label, ...more });
+  const fields = { name: text("name", "name of the version"), author: text("author", "who edits"), note: text("note", "note", { maxlength: "2000" }), branch: text("branch", "branch", { maxlength: "64" }) };
+  fields.author.value = localStorage.getItem(AUTHOR) ?? "";
+  const save = element("button", { type: "submit", id: "edit-save", class: "primary" }, "Save version");
+  const told = element("p", { class: "note", id: "edit-unsaved" });
+  const form = element("form", { class: "saving" }, Object.values(fields), save);
+  place.append(told, form);
+  const ask = conflict(editor);
+  form.addEventListener("submit", (event) => {
+    event.preventDefault();
+    localStorage.setItem(AUTHOR, fields.author.value);
+    editor.context.attempt(() => store(editor, fields, fields.branch.value, ask));
+  });
+
+  return {
+    update(editor, what) {
+      const { draft } = editor;
+      if (!draft || what === "drag" || what === "verdict") return;
+      if (what === "draft") fields.branch.value = draft.base.branch;
+      save.disabled = !draft.edited && fields.branch.value === draft.base.branch;
+      const newer = editor.versions.findLast((version) => version.branch === draft.base.branch);
+      const behind = newer && newer.number > draft.base.number ? ` Version ${title(newer)} was saved meanwhile${newer.author && ` by ${newer.author}`}.` : "";
+      told.textContent = (draft.edited ? `Edited since version ${title(draft.base)}; kept in this tab until it is saved.` : `This is version ${title(draft.base)}.`) + behind;
+    },
+  };
+}
+
+async function store(editor, fields, branch, ask) {
+  const { draft } = editor;
+  const { curve } = draft;
+  const words = Object.fromEntries(["name", "author", "note"].map((name) => [name, fields[name].value]));
+  let saved;
+  try {
+    saved = await post(at("paths", draft.path, "versions"), { base: draft.base.number, curve, branch, ...words });
+  } catch (error) {
+    if (error.kind !== "Outdated") throw error;
+    const choice = await ask(error, `${words.author || "edit"}-${draft.base.number}`);
+    if (choice.branch) await store(editor, fields, choice.branch, ask);
+    else if (choice.theirs) await editor.take(error.newer.number);
+    return editor.readVersions();
+  }
+  draft.saved(saved);
+  for (const name of ["name", "note"]) fields[name].value = "";
+  await editor.readVersions();
+  if (draft !== editor.draft) return;
+  editor.refresh();
+  editor.context.messages.say(`Saved as version ${title(saved)} on branch ${saved.branch}.`);
+}
+
+// The dialog for the second of two: `ask(refusal, branch)` resolves to {branch}, {theirs: true} or {}.
+function conflict(editor) {
+  const told = element("p", { id: "conflict-told" });
+  const name = element("input", { type: "text", id: "conflict-branch", maxlength: "64", "aria-label": "name of the branch" });
+  const button = (value, words, primary) => element("button", { type: "submit", value, class: primary && "primary" }, words);
+  const dialog = element(
+    "dialog",
+    { id: "conflict", "aria-labelledby": "conflict-title", "aria-describedby": "conflict-told" },
+    element(
+      "form",
+      { method: "dialog" },
+      element("h2", { id: "conflict-title" }, "Somebody saved a newer version"),
+      told,
+      element("label", { class: "row" }, "Keep both: save mine on branch ", name, button("mine", "Save on a branch", true)),
+      element("p", { class: "row" }, "Go on from theirs; undo brings my edit back. ", button("theirs", "Take theirs")),
+      element("p", { class: "row" }, button("", "Not now")),
+    ),
+  );
+  document.body.append(dialog);
+  return (refusal, branch) =>
+    new Promise((resolve) => {
+      const { newer } = refusal;
+      told.textContent = `${refusal.message[0].toUpperCase()}${refusal.message.slice(1)}.${newer.note ? ` Note: ${newer.note}` : ""}`;
+      name.value = branch;
+      dialog.returnValue = "";
+      dialog.addEventListener("close", () => resolve({ mine: { branch: name.value.trim() || branch }, theirs: { theirs: true } }[dialog.returnValue] ?? {}), { once: true });
+      dialog.showModal();
+      editor.readVersions();
+    });
+}

@@ -1,0 +1,69 @@
+// The versions of the path: which there are, which one is edited, and how two of them differ.
+import { at, get } from "../api.js";
+import { element, replace } from "../elements.js";
+
+export function versions(place, editor) {
+  const table = element("div", { class: "versions" });
+  const [first, second] = ["first", "second"].map((id) => element("select", { id: `edit-${id}`, "aria-label": `${id} version to compare` }));
+  const compare = element("button", { type: "button", id: "edit-compare" }, "Compare");
+  const told = element("p", { class: "note", id: "edit-difference", role: "status" });
+  place.append(table, element("div", { class: "row" }, first, " with ", second, compare), told);
+  table.addEventListener("click", (event) => {
+    const number = event.target.closest("button")?.dataset.version;
+    if (number) editor.context.attempt(() => editor.take(Number(number)));
+  });
+  compare.addEventListener("click", () => editor.context.attempt(() => show(editor, Number(first.value), Number(second.value), told)));
+
+  return {
+    update(editor, what) {
+      const { draft } = editor;
+      if (!draft || !["draft", "curve", "versions"].includes(what)) return;
+      if (what === "draft") {
+        editor.sketch.compare(null, null);
+        told.textContent = "";
+      }
+      replace(table, content(editor));
+      const numbers = editor.versions.map(({ number }) => String(number));
+      for (const [select, usual] of [[first, "1"], [second, numbers.at(-1)]]) {
+        const kept = numbers.includes(select.value) && select.options.length === numbers.length ? select.value : usual;
+        select.replaceChildren(...editor.versions.map((version) => element("option", { value: String(version.number) }, title(version))));
+        select.value = kept;
+      }
+      compare.disabled = numbers.length < 2;
+    },
+  };
+}
+
+export const title = ({ number, name }) => (name ? `${number} ${name}` : `${number}`);
+
+function content({ draft, versions }) {
+  const head = element("thead", {}, element("tr", {}, ["", "Version", "Branch", "Saved", ""].map((text) => element("th", { scope: "col" }, text))));
+  const rows = versions.toReversed().map((version) => {
+    const here = version.number === draft.base.number;
+    return element(
+      "tr",
+      { class: here ? "selected" : "", title: version.note || false },
+      element("td", {}, here && element("span", { class: "tick", role: "img", "aria-label": "edited now" }, "✎")),
+      element("td", {}, title(version), version.parent && element("small", {}, ` from ${version.parent}`)),
+      element("td", {}, version.branch),
+      element("td", {}, [version.author, when(version.created_ns)].filter(Boolean).join(", ")),
+      element("td", {}, element("button", { type: "button", "data-version": String(version.number), "data-key": `take-${version.number}`, "aria-label": `edit version ${version.number}` }, "Edit")),
+    );
+  });
+  return element("table", {}, head, element("tbody", {}, rows));
+}
+
+async function show(editor, a, b, told) {
+  const { path } = editor.draft;
+  const read = (number) => get(at("paths", path, "versions", number));
+  const [difference, one, other] = await Promise.all([get(at("paths", path, "versions", a, "difference", b)), read(a), read(b)]);
+  if (path !== editor.draft?.path) return;
+  editor.sketch.compare(one.path.curve, other.path.curve);
+  told.textContent = `Version ${a} (orange) and version ${b} (pink): ${difference.sentence}.`;
+}
+
+function when(ns) {
+  const date = new Date(ns / 1e6);
+  const today = date.toDateString() === new Date().toDateString();
+  return date.toLocaleString("en-GB", today ? { hour: "2-digit", minute: "2-digit" } : { day: "numeric", month: "short", hour: "2-digit", minute: "2-digit" });
+}

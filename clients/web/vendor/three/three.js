@@ -1,0 +1,22 @@
+// The names that TransformControls.js needs, from the three.js (r132) that meshcat's viewer brings along.
+export const {
+  BoxGeometry,
+  BufferGeometry,
+  CylinderGeometry,
+  DoubleSide,
+  Euler,
+  Float32BufferAttribute,
+  Line,
+  LineBasicMaterial,
+  Matrix4,
+  Mesh,
+  MeshBasicMaterial,
+  Object3D,
+  OctahedronGeometry,
+  PlaneGeometry,
+  Quaternion,
+  Raycaster,
+  SphereGeometry,
+  TorusGeometry,
+  Vector3,
+} = globalThis.MeshCat.THREE;
