@@ -19,7 +19,7 @@ export function certifying(place, editor) {
   );
   told.addEventListener("click", (event) => {
     if (!event.target.closest("button")) return;
-    context.store.set({ path: job.path, plan: job.plan.id });
+    context.store.set({ path: job.path }); // its newest plan is this one
     context.open("run");
   });
   context.store.subscribe((state, changed) => {

@@ -40,8 +40,8 @@ class PreviewPanel {
     const path = pathOf(state);
     const planned = (state.jobs ?? []).filter((job) => job.kind === "plan" && job.request?.path === path?.id);
     this.job = planned.at(-1) ?? null;
-    const key = path ? `${path.id} ${path.version} ${planned.filter((job) => job.state === "succeeded").length}` : "";
-    if (key !== this.key) {
+    const key = path ? `${path.id} ${planned.filter((job) => job.state === "succeeded").length}` : "";
+    if (key !== this.key || changed.has("runs")) {
       this.key = key;
       this.#fetch(path);
     }
@@ -55,13 +55,15 @@ class PreviewPanel {
     this.#paint();
   }
 
-  // The newest plan of the path's newest version.
+  // The newest plan of the path, of whatever version: only what is certified can be run.
   async #fetch(path) {
     const before = this.plan?.id;
     this.path = path;
-    const plans = path ? await get(at("paths", path.id, "plans")).catch(() => []) : [];
+    const read = (...pieces) => (path ? get(at("paths", path.id, ...pieces)).catch(() => null) : null);
+    const [plans, newest] = await Promise.all([read("plans"), read()]);
     if (path !== this.path) return; // another one was chosen meanwhile
-    this.plan = plans.find((plan) => plan.path_version === path?.version) ?? null;
+    this.plan = plans?.[0] ?? null;
+    this.newest = newest?.version;
     if (this.plan?.id !== before) this.close();
     this.context.store.set({ plan: this.plan });
     this.#paint();
@@ -109,18 +111,20 @@ class PreviewPanel {
   }
 
   #paint() {
-    const { plan, path, job } = this;
+    const { plan, path, job, newest } = this;
     const working = job?.state === "queued" || job?.state === "running";
-    replace(this.facts, content(path, plan, job, working));
-    this.make.hidden = !path || Boolean(plan) || working;
+    const newer = plan && newest > plan.path_version && newest;
+    replace(this.facts, content(path, plan, job, working, newer));
+    this.make.hidden = !path || (Boolean(plan) && !newer) || working;
+    this.make.textContent = newer ? `Plan version ${newer}` : "Plan the motion";
     this.open.hidden = !plan || Boolean(this.ghost);
     this.bench.hidden = !this.ghost;
   }
 }
 
-function content(path, plan, job, working) {
+function content(path, plan, job, working, newer) {
   if (!path) return [hint("Nothing to run yet. Show a task, learn its ways and choose one: its motion is planned and certified before the arm may move.")];
-  const who = element("p", {}, `Way ${path.cluster}, version ${path.version}.`);
+  const who = element("p", {}, `Way ${path.cluster}${plan ? `, version ${plan.path_version}` : ""}.`);
   if (working) return [who, element("p", { class: "hint" }, job.message || "Planning …"), bar(job.fraction, "planning")];
   if (!plan) {
     const why = job?.state === "failed" && element("p", { class: "failed" }, `It cannot be run: ${job.message}`);
@@ -131,6 +135,7 @@ function content(path, plan, job, working) {
   const most = uses.reduce((a, b) => (a.value >= b.value ? a : b));
   return [
     who,
+    newer && hint(`Version ${newer} is newer and not certified yet.`),
     facts([
       ["Along the path", number(plan.duration, 2, "s")],
       ["Least clearance", number(1000 * certificate.clearance.value, 0, "mm")],

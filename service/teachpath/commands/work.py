@@ -107,10 +107,14 @@ def recalibrate(
             print(f"{task} {d['number']}: {d['calibration']['name']}, {'; '.join([d['verdict'], *d['reasons']])}")
 
 
-def plan(path: Annotated[str, typer.Argument(help="Id of a learned path.")], url: Url = LOCAL) -> None:
+def plan(
+    path: Annotated[str, typer.Argument(help="Id of a learned path.")],
+    version: Annotated[int | None, typer.Option(help="Its version; the newest on its main branch.")] = None,
+    url: Url = LOCAL,
+) -> None:
     """Certify a learned path, or say why not."""
     with Api(url) as api, progress_bar("planning") as show:
-        job = api.follow_job(api.call("POST", f"/paths/{path}/plans"), show)
+        job = api.follow_job(api.call("POST", f"/paths/{path}/plans", {"version": version}), show)
         print(plan_lines(api.call("GET", f"/plans/{job['outcome']}")))
 
 
