@@ -1,24 +1,22 @@
 """The editor in the page on a real service: drag, undo, knots, numbers, conflict, save, certify; the arm follows."""
 
-import json
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-from websockets.sync.client import connect
+from geomdl import exchange as geomdl_exchange
+from typer.testing import CliRunner, Result
 
-from teachpath.motion.kinematics import tool_pose
-from teachpath.nurbs import Curve
-from tests.system.processes import Service, wait_until
+from teachpath.__main__ import app
+from tests.system.editors import SLOW, Desk, U, executed, same_shape
+from tests.system.processes import Service
 from tests.system.test_station import record
-from tests.system.test_view import Visit
 
 pytestmark = pytest.mark.system
 
 TASK = "edited"
-U = np.linspace(0, 1, 301)
-SLOW = 60_000  # [ms] a busy machine draws a frame in seconds
 
 
 @pytest.fixture(scope="module")
@@ -28,50 +26,6 @@ def paths(service: Service) -> list[str]:
     job = service.job(service.call("POST", f"/tasks/{TASK}/jobs", {"kind": "learn"})["id"], seconds=120)
     run = service.call("GET", f"/tasks/{TASK}/runs/{job['outcome']}")["learned"]
     return [path["id"] for path in run["paths"]]
-
-
-class Desk(Visit):
-    """A page on whose tab Edit one path is open."""
-
-    def __init__(self, browser: Any, service: Service, path: str) -> None:
-        super().__init__(browser, service.url)
-        self.page.set_viewport_size({"width": 1000, "height": 620})  # fewer pixels to draw without a graphics card
-        self.open(path)
-
-    def open(self, path: str) -> None:
-        self.page.click("#tab-edit")
-        self.page.wait_for_selector(f"[data-path='{path}']", state="attached", timeout=SLOW)
-        self.page.click(f"[data-path='{path}']")
-        self.until(f"editor.draft?.path === '{path}'")
-
-    def until(self, condition: str) -> None:
-        self.page.wait_for_function(
-            f"() => {{ const editor = teachpath.editor; return {condition}; }}", timeout=SLOW, polling=50
-        )
-
-    def ask(self, expression: str) -> Any:
-        return self.page.evaluate(f"() => {{ const editor = teachpath.editor; return {expression}; }}")
-
-    def curve(self) -> Curve:
-        c = self.ask("editor.draft.curve")
-        return Curve(c["degree"], c["knots"], c["control_points"], c["weights"])
-
-    def drag(self, index: int, dx: float, dy: float, *, steps: int = 6) -> None:
-        """Drag a control point over the picture by so many pixels."""
-        x, y = self.ask(f"teachpath.project(editor.draft.curve.control_points[{index}])")
-        mouse = self.page.mouse
-        mouse.move(x, y)
-        mouse.down()
-        mouse.move(x + dx, y + dy, steps=steps)
-        mouse.up()
-
-    def click(self, selector: str) -> None:
-        self.page.locator(selector).click(timeout=SLOW)
-
-    def save(self, **words: str) -> None:
-        for name, text in words.items():
-            self.page.fill(f"#edit-{name}", text)
-        self.click("#edit-save")
 
 
 @pytest.fixture
@@ -87,10 +41,6 @@ def desks(browser: Any, service: Service) -> Iterator[Any]:
         said = desk.said
         desk.page.close()
         assert [line for line in said if "409" not in line] == []  # a browser itself notes a refused request
-
-
-def same_shape(a: Curve, b: Curve, *, within: float = 1e-9) -> bool:
-    return float(np.abs(a(U) - b(U)).max()) <= within
 
 
 def test_the_page_evaluates_a_curve_as_the_service_does(desks: Any, service: Service, paths: list[str]) -> None:
@@ -286,23 +236,21 @@ def test_an_edited_path_is_saved_certified_and_the_arm_follows_it(
     assert from_learned.max() > 0.01
 
 
-def executed(service: Service, plan: str) -> np.ndarray:
-    """Run a plan and return where the tool was while it followed the path."""
-    places: list[np.ndarray] = []
-    with connect(service.url.replace("http", "ws") + "/api/v1/joints") as socket:
-        execution = service.call("POST", "/executions", {"plan": plan, "override": 0.3})["id"]
+def test_a_curve_goes_out_to_geomdl_and_comes_back_as_a_version(
+    service: Service, paths: list[str], tmp_path: Path
+) -> None:
+    def curve(*words: str) -> Result:
+        return CliRunner().invoke(app, ["curve", *words, "--url", service.url])
 
-        def ended() -> bool:
-            frame = json.loads(socket.recv(timeout=10))
-            status = frame["status"] or {}
-            if status.get("execution") != execution:
-                return False
-            assert status["state"] != "faulted", status["reason"]
-            if status["state"] == "held":  # on a starved machine
-                service.call("POST", f"/executions/{execution}/resume")
-            if status["state"] == "following" and 0.05 < status["progress"] < 0.9:
-                places.append(tool_pose(np.array(frame["position"])[None])[0, :3, 3])
-            return bool(status["state"] == "ended")
-
-        wait_until(ended, seconds=120, what="the execution ends")
-    return np.array(places)
+    path, file = paths[0], tmp_path / "curve.json"
+    assert curve("export", path, "--version", "1", "--out", str(file)).exit_code == 0
+    (theirs,) = geomdl_exchange.import_json(str(file))
+    theirs.ctrlpts = [[x, y, z + 0.01 * (i == 2)] for i, (x, y, z) in enumerate(theirs.ctrlpts)]
+    geomdl_exchange.export_json(theirs, str(file))
+    done = curve("import", path, str(file), "--base", "1", "--branch", "geomdl", "--name", "by hand")
+    assert "on branch geomdl" in done.output
+    number = service.call("GET", f"/paths/{path}/versions")[-1]["number"]
+    assert "changed: control point 3 of the second" in curve("compare", path, "1", str(number)).output
+    assert "by hand" in curve("versions", path).output
+    file.write_text("{}")
+    assert "no curve in geomdl's JSON format" in str(curve("import", path, str(file)).exception)
