@@ -1,30 +1,9 @@
-// A clamped NURBS, as the service evaluates it (service/teachpath/nurbs.py), and what is measured along its points.
-
-// The point at parameter u in [0, 1]: de Boor's algorithm on homogeneous control points (The NURBS Book, ch. 4).
-export function pointAt({ degree, knots, control_points: points, weights }, u) {
-  const last = points.length - 1;
-  let span = degree;
-  while (span < last && u >= knots[span + 1]) span += 1;
-  const rows = [];
-  for (let j = 0; j <= degree; j++) {
-    const i = span - degree + j;
-    rows.push([...points[i].map((value) => value * weights[i]), weights[i]]);
-  }
-  for (let level = 1; level <= degree; level++) {
-    for (let j = degree; j >= level; j--) {
-      const i = span - degree + j;
-      const share = (u - knots[i]) / (knots[i + degree - level + 1] - knots[i]);
-      rows[j] = rows[j].map((value, axis) => (1 - share) * rows[j - 1][axis] + share * value);
-    }
-  }
-  const top = rows[degree];
-  const weight = top.at(-1);
-  return top.slice(0, -1).map((value) => value / weight);
-}
+// What is measured along the points of a curve.
+import { evaluate, evenly } from "./basis.js";
 
 // `count` points at even parameters.
 export function sampled(curve, count = 161) {
-  return Array.from({ length: count }, (_, i) => pointAt(curve, i / (count - 1)));
+  return evaluate(curve, evenly(count));
 }
 
 export const distance = (a, b) => Math.hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);

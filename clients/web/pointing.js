@@ -42,7 +42,7 @@ export function point(view, store, gallery) {
   element.addEventListener("pointerleave", () => store.set({ focus: null }));
   let pressed = null;
   element.addEventListener("pointerdown", (event) => {
-    pressed = [event.clientX, event.clientY];
+    pressed = view.viewer.controls.enabled ? [event.clientX, event.clientY] : null; // else somebody has grabbed something
   });
   element.addEventListener("pointerup", (event) => {
     const still = pressed && away(pressed, event.clientX, event.clientY) < 4;

@@ -7,7 +7,7 @@ import { movedBy, sameCurve } from "./curve.js";
 import { Draft } from "./draft.js";
 import { Gizmo } from "./gizmo.js";
 import { grab } from "./grab.js";
-import { keys } from "./keys.js";
+import { HELP, keys } from "./keys.js";
 import { Sketch } from "./sketch.js";
 import { Stopwatch } from "./stopwatch.js";
 
@@ -53,6 +53,12 @@ export class Editor {
     this.sketch.show(this.active);
     if (this.active) this.#all();
     else this.gizmo.place(null);
+    const label = { tabindex: "0", role: "application", "aria-label": `3-D view, control points of the path. ${HELP}` };
+    for (const [name, value] of Object.entries(label)) {
+      if (this.active) this.easel.element.setAttribute(name, value);
+      else if (this.labelled) this.easel.element.removeAttribute(name);
+    }
+    this.labelled = this.active;
   }
 
   // Edit a path: the draft that this tab has begun, else the newest version on its main branch. `spread`: the radii

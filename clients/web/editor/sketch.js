@@ -1,6 +1,7 @@
 // What the editor draws in the 3-D view: the curve as a tube, its control polygon, its control points, and ghosts of
 // what it began from. Everything is rewritten in place, so that a drag costs a fraction of a frame.
-import { Basis, evaluate, evenly } from "./curve.js";
+import { Basis, evaluate, evenly } from "../basis.js";
+import { lengths } from "../curve.js";
 import { Tube } from "./tube.js";
 
 const SAMPLES = 201;
@@ -114,11 +115,6 @@ function dots(THREE, size, ring = false) {
 
 function themed(easel, variable) {
   return new easel.THREE.Color(getComputedStyle(document.documentElement).getPropertyValue(variable).trim());
-}
-
-function lengths(points) {
-  let sum = 0;
-  return points.map((p, i) => (sum += i ? Math.hypot(...p.map((value, k) => value - points[i - 1][k])) : 0));
 }
 
 function between(values, at) {

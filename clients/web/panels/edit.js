@@ -102,5 +102,4 @@ function update({ draft }, what) {
   steps.redo.disabled = !draft.redoable;
   steps.redo.title = draft.redoable ? `Redo ${draft.redoable}` : "";
   steps.revert.disabled = !draft.edited;
-  context.easel.element.tabIndex = 0;
 }
