@@ -219,8 +219,9 @@ export class Editor {
   async #assess(again = false) {
     const { path, curve, base } = this.draft;
     if (this.verdict?.curve === curve && !again) return;
-    const turn = (this.assessing = (this.assessing ?? 0) + 1);
     this.#judge({ curve, waiting: true });
+    if (this.asking) return; // one question at a time; the newest curve comes next
+    this.asking = true;
     const began = performance.now();
     let verdict;
     try {
@@ -229,10 +230,15 @@ export class Editor {
     } catch (error) {
       verdict = { curve, refusal: error.message, again: error.status === 409 || error.status === 0 };
     }
-    if (turn !== this.assessing || this.draft?.curve !== curve) return;
+    this.asking = false;
+    if (!this.draft) return;
+    if (this.draft.curve !== curve) {
+      this.#assess(true);
+      return;
+    }
     this.#judge(verdict);
     // Somebody else's curve of this path came first, or the service was away: ask again.
-    if (verdict.again) setTimeout(() => turn === this.assessing && this.draft && this.#assess(true), AGAIN);
+    if (verdict.again) setTimeout(() => this.draft?.curve === curve && this.#assess(true), AGAIN);
   }
 
   #judge(verdict) {

@@ -2,7 +2,8 @@
 const KEPT = 600;
 
 export class Stopwatch {
-  #frames = []; // [ms] of work a frame: curve, buffers, and handing the scene to the graphics card
+  #frames = []; // [ms] of work a frame: the curve and the buffers
+  #renderings = []; // [ms] that handing the scene to the graphics card takes; without one it is drawn meanwhile
   #intervals = []; // [ms] between two frames of one drag
   #answers = []; // [ms] from release to verdict
   #before = 0;
@@ -10,7 +11,8 @@ export class Stopwatch {
   time(work, view) {
     const began = performance.now();
     work();
-    add(this.#frames, performance.now() - began + view.rendering);
+    add(this.#frames, performance.now() - began);
+    add(this.#renderings, view.rendering);
     if (began - this.#before < 1000) add(this.#intervals, began - this.#before);
     this.#before = began;
   }
@@ -20,11 +22,11 @@ export class Stopwatch {
   }
 
   get figures() {
-    return { frames: this.#frames.length, work: shares(this.#frames), interval: shares(this.#intervals), answer: shares(this.#answers) };
+    return { frames: this.#frames.length, work: shares(this.#frames), rendering: shares(this.#renderings), interval: shares(this.#intervals), answer: shares(this.#answers) };
   }
 
   reset() {
-    for (const list of [this.#frames, this.#intervals, this.#answers]) list.length = 0;
+    for (const list of [this.#frames, this.#renderings, this.#intervals, this.#answers]) list.length = 0;
   }
 }
 
