@@ -1,4 +1,4 @@
-"""The editor in the page on a real service: drag, undo, knots, numbers, conflict, save, certify; the arm follows."""
+"""The editor in the page on a real service: what it evaluates, drags, undoes and takes in numbers."""
 
 from collections.abc import Iterator
 from typing import Any
