@@ -69,7 +69,7 @@ class RecordingSettings:
     # [m] how far it may move
     fist_motion: Positive = 0.05
     # samples of one tracker that may wait to be recorded; more are turned away, and said to be
-    longest_backlog: Annotated[int, Ge(100)] = 5000
+    longest_backlog: Annotated[int, Ge(100)] = 50_000
     # [s] how long the handshake at the end waits for samples that are still under way
     handshake_timeout: Positive = 2.0
 
