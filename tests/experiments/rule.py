@@ -11,13 +11,14 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import PercentFormatter
 
 from teachpath.learning import LearningSettings
-from tests.experiments.figures import INK, PALETTE, QUOTED, sheet
+from tests.experiments.figures import INK, QUOTED, sheet
 from tests.experiments.scenarios import SCENARIOS
 from tests.experiments.trials import Outcome
 
 LIMITS = tuple(float(limit) for limit in np.arange(-20, -1.5, 0.5))
 SHIPPED = LearningSettings().inconsistent
 KEPT = 2  # best two are kept at any limit
+COLOURS = [f"C{i}" for i in range(len(SCENARIOS))]  # matplotlib's own cycle: more than there are modes and ways
 LISTED = (-4.0, -6.0, SHIPPED, -12.0)
 
 
@@ -49,7 +50,7 @@ def draw(file: Path, rule: Mapping[str, Any]) -> None:
     """Draw both shares over the limit."""
     with sheet(file, 1, 2, (8.6, 3.2)) as (figure, ((spoilt, clean),)):
         handles = []
-        for colour, scenario in zip((*PALETTE, INK, QUOTED) * 2, SCENARIOS, strict=False):
+        for colour, scenario in zip(COLOURS, SCENARIOS, strict=True):
             control = scenario.key == "control"
             style = {"color": INK if control else colour, "lw": 1.8, "ls": (0, (2, 2)) if control else "-"}
             if not control:

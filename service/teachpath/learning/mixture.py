@@ -60,7 +60,8 @@ class MixtureHmm(LeftRightHmm):
 
     def _log_components(self, X: Array) -> Array:
         offsets = X[:, None, None, :] - self.means_  # (frames, Q, M, d)
-        whitened = np.linalg.solve(np.linalg.cholesky(self.covariances_), offsets[..., None])[..., 0]
+        whitening = np.linalg.inv(np.linalg.cholesky(self.covariances_))  # (Q, M, d, d), once for all frames
+        whitened = np.einsum("qmij,tqmj->tqmi", whitening, offsets)
         log_determinant = np.linalg.slogdet(self.covariances_)[1]
         quadratic = np.square(whitened).sum(axis=3)
         return np.asarray(np.log(self.weights_) - 0.5 * (quadratic + log_determinant + self.n_features * LOG_2PI))
