@@ -12,7 +12,8 @@ export class Ghost {
   constructor(easel, view, arm, carried) {
     const { THREE } = easel;
     Object.assign(this, { easel, arm });
-    this.material = new THREE.MeshLambertMaterial({ color: COLOR, transparent: true, opacity: 0.34, depthWrite: false });
+    const behind = { polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 4 }; // the arm, where both are in one place
+    this.material = new THREE.MeshLambertMaterial({ color: COLOR, transparent: true, opacity: 0.34, depthWrite: false, ...behind });
     this.group = new THREE.Group();
     const robot = view.viewer.scene_tree.children.robot?.children ?? {};
     for (let i = 0; i <= arm.links.length; i++) this.#links.push(this.#copy(robot[`link${i}`]));

@@ -10,8 +10,8 @@ const JOINTS = [1, 2, 3, 4, 5, 6].map((joint) => `joint ${joint}`);
 const PLOTS = [
   { name: "positions", title: "Joint positions [°]", series: JOINTS },
   { name: "speeds", title: "Joint speeds, share of the limit [%]", series: JOINTS, range: [-105, 105], limits: [-100, 100] },
-  { name: "error", title: "Tracking error, largest over the joints [mrad]", series: ["tracking error"], floor: 0 },
-  { name: "lateness", title: "Lateness of the setpoints [µs]", series: ["lateness"], floor: 0 },
+  { name: "error", title: "Tracking error, largest over the joints [mrad]", series: ["tracking error"], least: 1 },
+  { name: "lateness", title: "Lateness of the setpoints [µs]", series: ["lateness"], least: 100 },
 ];
 
 // One row of all plots; position [rad], speed [rad/s] with the limits of GET /robot, error [rad], lateness [s] or null.
@@ -78,7 +78,7 @@ export class Plots {
     const times = rows.map((one) => one.time);
     for (const { plot, chart } of this.#charts) {
       chart.setData([times, ...plot.series.map((_, i) => rows.map((one) => one[plot.name][i]))]);
-      if (this.window && times.length) chart.setScale("x", { min: times.at(-1) - this.window, max: times.at(-1) });
+      if (this.window && times.length) chart.setScale("x", { min: Math.max(times[0], times.at(-1) - this.window), max: Math.max(times.at(-1), times[0] + 1) });
     }
     const last = rows.at(-1);
     if (last) this.#values.replaceChildren(...this.#texts(last));
@@ -108,7 +108,7 @@ export class Plots {
     const style = getComputedStyle(document.documentElement);
     const color = (name) => style.getPropertyValue(name).trim();
     const axis = { stroke: color("--faint"), grid: { stroke: color("--line"), width: 1 }, ticks: { show: false }, font: "11px system-ui, sans-serif" };
-    const range = plot.range ?? ((_, low, high) => (plot.floor === 0 ? [0, Math.max(high * 1.1, 1e-3)] : pad(low, high)));
+    const range = plot.range ?? ((_, low, high) => (plot.least ? [0, Math.max(high * 1.1, plot.least)] : pad(low, high)));
     return new uPlot(
       {
         width: 300,

@@ -109,7 +109,7 @@ class ReplayPanel {
 }
 
 function line({ id, created_ns, status }, open) {
-  const when = new Date(created_ns / 1e6).toLocaleTimeString([], { hour: "2-digit", minute: "2-digit", second: "2-digit" });
+  const when = new Date(created_ns / 1e6).toLocaleTimeString([], { hour: "2-digit", minute: "2-digit", second: "2-digit", hour12: false });
   return element(
     "li",
     { class: open ? "open" : "" },
