@@ -166,7 +166,7 @@ class JournalEntry(_message.Message):
     def __init__(self, at_ns: _Optional[int] = ..., who: _Optional[str] = ..., verb: _Optional[str] = ..., execution: _Optional[str] = ..., answer: _Optional[str] = ...) -> None: ...
 
 class ExecutorStatus(_message.Message):
-    __slots__ = ("execution", "state", "reason", "progress", "override", "cycles", "late", "missed", "lateness_p50_us", "lateness_p99_us", "lateness_max_us", "limit_use", "tracking_error", "limit_place", "duration", "length", "stretch", "operator", "asking", "scheduling")
+    __slots__ = ("execution", "state", "reason", "progress", "override", "cycles", "late", "missed", "lateness_p50_us", "lateness_p99_us", "lateness_max_us", "limit_use", "tracking_error", "limit_place", "duration", "length", "stretch", "operator", "asking", "hand_latency_p50_us", "hand_latency_p99_us", "scheduling")
     EXECUTION_FIELD_NUMBER: _ClassVar[int]
     STATE_FIELD_NUMBER: _ClassVar[int]
     REASON_FIELD_NUMBER: _ClassVar[int]
@@ -186,6 +186,8 @@ class ExecutorStatus(_message.Message):
     STRETCH_FIELD_NUMBER: _ClassVar[int]
     OPERATOR_FIELD_NUMBER: _ClassVar[int]
     ASKING_FIELD_NUMBER: _ClassVar[int]
+    HAND_LATENCY_P50_US_FIELD_NUMBER: _ClassVar[int]
+    HAND_LATENCY_P99_US_FIELD_NUMBER: _ClassVar[int]
     SCHEDULING_FIELD_NUMBER: _ClassVar[int]
     execution: str
     state: str
@@ -206,5 +208,7 @@ class ExecutorStatus(_message.Message):
     stretch: str
     operator: str
     asking: str
+    hand_latency_p50_us: float
+    hand_latency_p99_us: float
     scheduling: str
-    def __init__(self, execution: _Optional[str] = ..., state: _Optional[str] = ..., reason: _Optional[str] = ..., progress: _Optional[float] = ..., override: _Optional[float] = ..., cycles: _Optional[int] = ..., late: _Optional[int] = ..., missed: _Optional[int] = ..., lateness_p50_us: _Optional[float] = ..., lateness_p99_us: _Optional[float] = ..., lateness_max_us: _Optional[float] = ..., limit_use: _Optional[float] = ..., tracking_error: _Optional[float] = ..., limit_place: _Optional[str] = ..., duration: _Optional[float] = ..., length: _Optional[float] = ..., stretch: _Optional[str] = ..., operator: _Optional[str] = ..., asking: _Optional[str] = ..., scheduling: _Optional[str] = ...) -> None: ...
+    def __init__(self, execution: _Optional[str] = ..., state: _Optional[str] = ..., reason: _Optional[str] = ..., progress: _Optional[float] = ..., override: _Optional[float] = ..., cycles: _Optional[int] = ..., late: _Optional[int] = ..., missed: _Optional[int] = ..., lateness_p50_us: _Optional[float] = ..., lateness_p99_us: _Optional[float] = ..., lateness_max_us: _Optional[float] = ..., limit_use: _Optional[float] = ..., tracking_error: _Optional[float] = ..., limit_place: _Optional[str] = ..., duration: _Optional[float] = ..., length: _Optional[float] = ..., stretch: _Optional[str] = ..., operator: _Optional[str] = ..., asking: _Optional[str] = ..., hand_latency_p50_us: _Optional[float] = ..., hand_latency_p99_us: _Optional[float] = ..., scheduling: _Optional[str] = ...) -> None: ...

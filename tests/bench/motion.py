@@ -6,9 +6,12 @@ import tempfile
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
+from functools import partial
 from statistics import median
 from typing import Any
 
+import teleoperation
+from busy import learner_and_page
 from report import Figure, against
 
 from teachpath.commands.rest import Api
@@ -32,7 +35,13 @@ def measure(*, repeats: int, seconds: float) -> list[Figure]:
             _show(endpoint)
             figures, plan = _jobs(api, repeats)
             _wait_for_executor(api)
-            for load_, crowd in (("idle", _nobody), ("one core busy", _busy)):
+            url = f"http://127.0.0.1:{settings.web.port}"
+            crowds = (
+                ("idle", _nobody),
+                ("one core busy", _busy),
+                ("learner and page busy", partial(learner_and_page, url)),
+            )
+            for load_, crowd in crowds:
                 with crowd():
                     runs = [_execute(api, plan, seconds) for _ in range(repeats)]
                 figures += _lateness(runs, load_, settings.executor.rate)
@@ -42,6 +51,8 @@ def measure(*, repeats: int, seconds: float) -> list[Figure]:
                 figures.append(against(what, error, "mrad", name="executor.largest_error", value=limit))
                 given_up = float(sum(run["state"] == "faulted" for run in runs))
                 figures.append(Figure(f"executions given up of {repeats}, {load_}", (given_up,), "executions"))
+            figures += teleoperation.measure(api, endpoint, seconds=min(seconds, 20.0))
+            print(f"the executor says: {api.call('GET', '/health')['executor']['scheduling']}\n", flush=True)
             return figures
 
 

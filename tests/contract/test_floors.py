@@ -36,7 +36,7 @@ DOORS = {
     "foxglove_schemas_protobuf": ["io/store"],
     "hmmlearn": ["learning/hmm.py"],
     "geomdl": ["exchange.py"],
-    "ruckig": ["motion/governor.py", "motion/moves.py"],
+    "ruckig": ["motion/governor.py", "motion/mirror.py", "motion/moves.py"],
     "numba": ["learning/kernels.py", "motion/kernels.py"],
     "mujoco": ["motion/scene.py", "motion/torque.py", "workers/simulator/arm.py"],
     "meshcat": ["workers/preview"],

@@ -12,7 +12,8 @@ from teachpath.api.parts import Parts
 from teachpath.errors import UnusableInput
 from teachpath.io.documents import to_document
 from teachpath.io.store import ExecutionRow
-from teachpath.records import Command, ExecutorStatus
+from teachpath.records import Command, ExecutorStatus, Mirroring
+from teachpath_proto.keys import NAME
 
 Token = Annotated[
     str,
@@ -29,6 +30,16 @@ class NewExecution(BaseModel):
 
     plan: str = Field(description="id of a plan; only a plan with a valid certificate moves the arm")
     override: float = Field(1.0, ge=0.0, le=1.0, description="share of the planned speed")
+
+
+class NewTeleoperation(BaseModel):
+    """A live hand for the arm to mirror."""
+
+    tracker: str = Field(pattern=NAME.pattern, max_length=64, description="name of the tracker")
+    calibration: str = Field("identity", description="to the world from the tracker's frame")
+    scene: str = Field("paper", description="what stands around the arm")
+    scale: float = Field(1.0, ge=0.05, le=5.0, description="of the tool's way over the hand's")
+    share: float = Field(0.5, ge=0.05, le=1.0, description="of the joints' speed, acceleration and jerk limits")
 
 
 class Speed(BaseModel):
@@ -58,6 +69,21 @@ def executions_router(parts: Parts) -> APIRouter:
     def begin_execution(new: NewExecution, response: Response, lease: Token = "", who: Who = "") -> ExecutionRow:
         """Move the arm: approach, grasp, follow the path, release, retreat."""
         row = executions.begin(new.plan, override=new.override, lease=lease, who=who)
+        response.headers["Location"] = f"/api/v1/executions/{row.id}"
+        return row
+
+    @router.post("/teleoperation", status_code=202)
+    def begin_teleoperation(
+        new: NewTeleoperation, response: Response, lease: Token = "", who: Who = ""
+    ) -> ExecutionRow:
+        """Let the arm mirror a live hand while its clutch (button bit 2) is pressed; steer and stop it as an execution.
+
+        The tool keeps its orientation and the gripper stays open. The arm keeps its limits, stays clear of the scene,
+        and rests when the clutch is let go or the hand is lost.
+        """
+        calibration = parts.calibrations.get(new.calibration)
+        order = Mirroring(new.tracker, calibration, parts.settings.scene(new.scene), new.scale, new.share)
+        row = executions.mirror(order, lease=lease, who=who)
         response.headers["Location"] = f"/api/v1/executions/{row.id}"
         return row
 

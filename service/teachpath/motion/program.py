@@ -89,9 +89,14 @@ class Program:
         self._advance()
 
     @property
-    def stretch(self) -> Stretch | None:
-        """The stretch now under way; None when all are done."""
-        return self._stretch
+    def before(self) -> bool:
+        """Whether what it does comes before the path is followed."""
+        return self._stretch is not None and self._stretch.before
+
+    @property
+    def over(self) -> bool:
+        """Whether all is done."""
+        return self._stretch is None
 
     @property
     def standing(self) -> bool:

@@ -7,7 +7,7 @@ Conventions (ARCHITECTURE.md): metres, radians, seconds inside; integer nanoseco
 from teachpath.records.arrays import Array, Quaternion, Vector
 from teachpath.records.assessments import Assessment, Failure, Remedy
 from teachpath.records.calibrations import Calibration, MeasuredCalibration, TaughtPoint
-from teachpath.records.control import Command, JournalEntry, Lease, LeaseRequest
+from teachpath.records.control import Command, JournalEntry, Lease, LeaseRequest, Mirroring
 from teachpath.records.demonstrations import Account, Clock, Demonstration, Phase, Sample, Task, Trajectory
 from teachpath.records.learned import Cluster, Departure, Fit, Learned, LearnedPath, Score
 from teachpath.records.motion import (
@@ -49,6 +49,7 @@ __all__ = [
     "Lease",
     "LeaseRequest",
     "MeasuredCalibration",
+    "Mirroring",
     "Moved",
     "Phase",
     "Plan",

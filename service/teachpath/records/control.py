@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from teachpath.records.calibrations import Calibration
+from teachpath.records.motion import Scene
+
 
 @dataclass(frozen=True, slots=True)
 class Command:
@@ -20,6 +23,25 @@ class Command:
     plan_id: str = ""
     reason: str = ""
     mirror: bytes = b""  # in JSON
+
+
+@dataclass(frozen=True, slots=True)
+class Mirroring:
+    """A live hand that the arm should mirror.
+
+    Attributes:
+        tracker: whose samples drive the arm while its clutch (button bit 2) is pressed.
+        calibration: to the world from its frame.
+        scene: that stands around the arm.
+        scale: of the tool's way over the hand's, 0.05 to 5.
+        share: of the joints' speed, acceleration and jerk limits, 0.05 to 1.
+    """
+
+    tracker: str
+    calibration: Calibration
+    scene: Scene
+    scale: float = 1.0
+    share: float = 0.5
 
 
 @dataclass(frozen=True, slots=True)

@@ -153,3 +153,5 @@ class ExecutorStatus:
     operator: str = ""
     asking: str = ""
     scheduling: str = ""
+    hand_latency_p50_us: float = 0.0
+    hand_latency_p99_us: float = 0.0

@@ -22,7 +22,16 @@ from teachpath.io.wire import (
     encode_lease_request,
 )
 from teachpath.motion.series import Series, series
-from teachpath.records import Command, ExecutorStatus, JournalEntry, Lease, LeaseRequest, Plan, Scene
+from teachpath.records import (
+    Command,
+    ExecutorStatus,
+    JournalEntry,
+    Lease,
+    LeaseRequest,
+    Mirroring,
+    Plan,
+    Scene,
+)
 from teachpath.workers.motion_recorder import MotionRecorder
 from teachpath_proto.keys import Keys
 
@@ -113,6 +122,19 @@ class Executions:
         with suppress(NotFound):  # a file without it is judged by its limits alone
             path = self._store.versions.get(stored.path, stored.path_version)[1]
         return self._begin(command, MotionHeader(key, self._robot, stored, path))
+
+    def mirror(self, order: Mirroring, *, lease: str = "", who: str = "") -> ExecutionRow:
+        """Let the robot mirror a live hand; steer and stop it as any execution.
+
+        Raises:
+            UnusableInput: a scale or share outside its limits.
+            Conflict: an execution is running, or somebody else is in control.
+            PathRefused: the arm stands where it can follow nothing.
+            Unreachable: the executor does not answer.
+        """
+        key = f"execution-{uuid.uuid4().hex[:12]}"
+        command = Command("mirror", key, mirror=encode(order), lease=lease, who=who)
+        return self._begin(command, MotionHeader(key, self._robot))
 
     def command(self, execution: str, command: Command) -> ExecutionRow:
         """Steer an execution: override (speed, 0 to 1), hold, resume, step, reverse or stop.

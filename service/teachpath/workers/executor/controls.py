@@ -18,8 +18,9 @@ from teachpath.io import documents, wire
 from teachpath.io.bus import Bus, Handle
 from teachpath.motion.program import Program
 from teachpath.motion.settings import MotionSettings
-from teachpath.records import Array, Command, ExecutorStatus, JournalEntry, Plan
+from teachpath.records import Array, Command, ExecutorStatus, JournalEntry, Mirroring, Plan, Scene
 from teachpath.workers.executor.execution import Execution
+from teachpath.workers.executor.hand import Hand
 from teachpath.workers.executor.hearing import Hearing
 from teachpath.workers.executor.lease import ControlLease
 from teachpath.workers.executor.settings import ExecutorSettings
@@ -113,7 +114,9 @@ class Controls:
 
     def _judge(self, command: Command, who: str) -> None:
         if command.verb == "start":
-            self._start(command)
+            self._start(command, self._program)
+        elif command.verb == "mirror":
+            self._start(command, self._hand)
         elif command.verb == "stop":
             self._end(command, who)
         elif command.verb == "revoke":
@@ -149,6 +152,8 @@ class Controls:
         if off > self._settings.regain:
             raise Conflict(f"the arm is {off:.3f} rad off the path; resume brings it back, then hold it and step")
         here = current.program.here
+        if isinstance(current.program, Hand):
+            raise Conflict("a live hand has no path to step on; stop it, and run a plan")
         aside = current.program.plan_step(length=command.length, nodes=command.nodes)
         self.orders.append(lambda execution: execution.take_aside(aside, here))
 
@@ -162,6 +167,8 @@ class Controls:
             return
         if not current.settled:
             raise Conflict(f"the arm is {off:.3f} rad off its setpoint and not at rest yet; hold it first")
+        if isinstance(current.program, Hand):
+            raise Conflict(f"the arm was pushed {off:.3f} rad away; stop, and begin again from where it is")
         here = self._resting_arm()
         aside = current.program.plan_return(here)
         self.orders.append(lambda execution: execution.take_aside(aside, here))
@@ -177,29 +184,39 @@ class Controls:
         if self.current is not None and self.current.plan == command.plan_id:
             self.orders.append(partial(Execution.revoke, reason=command.reason or "no reason was given"))
 
-    def _start(self, command: Command) -> None:
+    def _start(self, command: Command, make: Callable[[Command], tuple[Program | Hand, str, Scene]]) -> None:
         stops = self._stops
         with self._starting:
             if self.current is not None and not self.current.resting:
                 raise Conflict(f"execution {self.current.execution} is {self.current.state}; stop it first")
-            plan = documents.decode(Plan, command.plan)
-            settings = self._settings
-            program = Program(
-                plan,
-                self._resting_arm(),
-                self._motion,
-                override=command.override,
-                dwell=settings.dwell,
-                period=1.0 / settings.rate,
-            )
+            program, plan, scene = make(command)
             with suppress(Unreachable):  # only the simulated robot has a scene to put back
-                self._bus.ask(self._keys.reset(self._robot), documents.encode(plan.scene), timeout=RESET)
+                self._bus.ask(self._keys.reset(self._robot), documents.encode(scene), timeout=RESET)
             if self._stops != stops:
                 raise Conflict("it was stopped before it began")
+            if self.current is not None and isinstance(self.current.program, Hand):
+                self.current.program.close()
             self._begun()
             self.orders.clear()
             offset = self._wall() - self._clock()
-            self.current = Execution(command.execution, program, plan=plan.id, rate=settings.rate, offset=offset)
+            self.current = Execution(command.execution, program, plan=plan, rate=self._settings.rate, offset=offset)
+
+    def _program(self, command: Command) -> tuple[Program, str, Scene]:
+        plan = documents.decode(Plan, command.plan)
+        settings, period = self._settings, 1.0 / self._settings.rate
+        here, override = self._resting_arm(), command.override
+        program = Program(plan, here, self._motion, override=override, dwell=settings.dwell, period=period)
+        return program, plan.id, plan.scene
+
+    def _hand(self, command: Command) -> tuple[Hand, str, Scene]:
+        order = documents.decode(Mirroring, command.mirror)
+        if not (0.05 <= order.scale <= 5.0 and 0.05 <= order.share <= 1.0):
+            raise UnusableInput(
+                f"scale {order.scale:g} is outside 0.05 to 5, or share {order.share:g} outside 0.05 to 1"
+            )
+        period = 1.0 / self._settings.rate
+        here = self._resting_arm()
+        return Hand(self._bus, self._keys, order, here, self._motion, period=period, clock=self._clock), "", order.scene
 
     def _resting_arm(self) -> Array:
         """Return the arm's configuration (6,), at rest."""

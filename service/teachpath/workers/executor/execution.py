@@ -6,6 +6,7 @@ from typing import Final
 
 from teachpath.motion.program import Aside, Program
 from teachpath.records import Array, ExecutorStatus, Setpoint
+from teachpath.workers.executor.hand import Hand
 from teachpath.workers.executor.meter import LimitMeter
 from teachpath.workers.executor.pacing import Pacer
 
@@ -18,13 +19,13 @@ class Execution:
 
     Args:
         execution: its id.
-        program: what to run through.
-        plan: id of its plan.
+        program: what to run through, or a live hand.
+        plan: id of its plan; empty with a live hand.
         rate: setpoints a second [Hz].
         offset: added to the loop's clock to get nanoseconds since the Unix epoch.
     """
 
-    def __init__(self, execution: str, program: Program, *, plan: str, rate: float, offset: int) -> None:
+    def __init__(self, execution: str, program: Program | Hand, *, plan: str, rate: float, offset: int) -> None:
         self.execution = execution
         self.program = program
         self.plan = plan
@@ -86,13 +87,19 @@ class Execution:
         if self.displaced:
             self._meter = LimitMeter(self._rate, here, self._meter)
         self.displaced, self.reason = 0.0, ""
-        self.program.take_aside(aside)
+        if isinstance(self.program, Program):
+            self.program.take_aside(aside)
 
     def end(self, state: str, reason: str) -> None:
         """Come to rest on the path and end there as `ended` or `faulted`."""
         if not self._ending:
             self._ending, self.reason = state, reason
             self.program.hold()
+
+    def think(self) -> None:
+        """Do what is to be done behind a setpoint; only a live hand leaves something."""
+        if isinstance(self.program, Hand):
+            self.program.think()
 
     def wait(self) -> None:
         """Let a period pass in which nothing is sent: the arm was pushed away and stays where it is."""
@@ -135,6 +142,7 @@ class Execution:
     def status(self, pacer: Pacer) -> ExecutorStatus:
         """Tell where it stands, with the account of the loop that runs it."""
         late = pacer.lateness()
+        hand = self.program.latency if isinstance(self.program, Hand) else (0.0, 0.0)
         return ExecutorStatus(
             execution=self.execution,
             state=self.state,
@@ -153,6 +161,8 @@ class Execution:
             duration=self._sent / self._rate,
             length=self.program.length,
             stretch=self.program.doing,
+            hand_latency_p50_us=hand[0],
+            hand_latency_p99_us=hand[1],
         )
 
     def _why(self) -> str:
@@ -165,8 +175,8 @@ class Execution:
         program = self.program
         if self._ending:
             return self._ending if program.standing else "stopping"
-        if program.stretch is None:
+        if program.over:
             return "ended"
         if program.held:
             return "held" if program.standing else "stopping"
-        return "approaching" if program.stretch.before else "following"
+        return "approaching" if program.before else "following"

@@ -114,6 +114,7 @@ class Executor:
             else:
                 setpoint = current.step(due, self._wall())
                 self._bus.publish(self._keys.setpoint(self._robot), wire.encode_setpoint(setpoint))
+                current.think()
         self._tell(due)
 
     def _watch(self, current: Execution, due: int) -> None:

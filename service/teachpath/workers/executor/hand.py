@@ -1,0 +1,188 @@
+"""A live hand that drives the arm: the tool mirrors it while the clutch is pressed, and rests otherwise."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable
+from typing import Final
+
+import numpy as np
+
+from teachpath.errors import UnusableSample
+from teachpath.io.bus import Bus
+from teachpath.io.wire import decode_sample
+from teachpath.motion.mirror import Mirror
+from teachpath.motion.program import Moment
+from teachpath.motion.scene import CollisionModel, Load
+from teachpath.motion.settings import MotionSettings
+from teachpath.recording import to_world
+from teachpath.records import Array, Mirroring, Sample
+from teachpath_proto.keys import Keys
+
+CLUTCH: Final = 4  # button that is pressed while the arm mirrors the hand
+LOST: Final = 0.15  # s without a tracked sample, after which the hand is lost
+KEPT: Final = 5000  # latencies
+AGAIN: Final = "let the clutch go, and press it again to move the arm"
+WAITING: Final = "press the clutch (button bit 2) to move the arm"
+
+
+class Hand:
+    """Drives an execution by the samples of one tracker, as a program does; the gripper stays open.
+
+    Args:
+        order: tracker, calibration, scene and scale.
+        here: (6,) where the arm rests [rad].
+        period: between two setpoints [s].
+        clock: monotonic nanoseconds.
+
+    Raises:
+        PathRefused: the arm stands where it can follow nothing.
+    """
+
+    def __init__(
+        self,
+        bus: Bus,
+        keys: Keys,
+        order: Mirroring,
+        here: Array,
+        settings: MotionSettings,
+        *,
+        period: float,
+        clock: Callable[[], int],
+    ) -> None:
+        self._order, self._clock = order, clock
+        model = CollisionModel(order.scene)
+        self._mirror = Mirror(model, here, settings, scale=order.scale, share=order.share, period=period)
+        if order.scene.carried is not None:
+            self._mirror.load = Load(placed=order.scene.carried.position)
+        still = np.zeros(6)
+        self._moment = Moment(np.array(here), still, still, False)
+        self._came: deque[tuple[int, bytes]] = deque(maxlen=1)
+        self._seen = 0  # [ns of the clock] when the newest tracked sample came
+        self._stopped, self._pressed, self._fresh = False, False, False  # `fresh`: the clutch was open since
+        self._why = WAITING
+        self._latencies: deque[float] = deque(maxlen=KEPT)
+        self._answered = 0
+        self._handle = bus.subscribe(keys.samples(order.tracker), self._receive)
+
+    before = False
+    over = False
+    progress = 0.0
+    length = 0.0
+    override = 1.0
+
+    @property
+    def standing(self) -> bool:
+        """Whether the nominal motion is at rest."""
+        return self._mirror.standing
+
+    @property
+    def held(self) -> bool:
+        """Whether the clutch is open, or a hold was asked for."""
+        return not self._pressed
+
+    @property
+    def stopped(self) -> bool:
+        """Whether `hold` was asked for and not taken back."""
+        return self._stopped
+
+    @property
+    def why_held(self) -> str:
+        """Why the arm does not follow, in words."""
+        return self._why
+
+    @property
+    def here(self) -> Array:
+        """The newest setpoint's configuration (6,) [rad]."""
+        return self._moment.position
+
+    @property
+    def doing(self) -> str:
+        """What it does, and why the tool is not where the hand is."""
+        following = f"mirroring {self._order.tracker}"
+        return f"{following}: {self._mirror.reason}" if self._pressed and self._mirror.reason else following
+
+    @property
+    def place(self) -> str:
+        """Where it is, in words."""
+        return f"while mirroring {self._order.tracker}"
+
+    @property
+    def latency(self) -> tuple[float, float]:
+        """Median and 99th percentile of the time from a sample's coming to the setpoint that answers it [us]."""
+        if not self._latencies:
+            return 0.0, 0.0
+        p50, p99 = np.percentile(np.array(self._latencies), (50, 99))
+        return float(p50), float(p99)
+
+    def step(self) -> Moment:
+        """Advance by one control period; never raises."""
+        now = self._clock()
+        if self._came:
+            self._hear(*self._came.pop())
+        if self._pressed and now - self._seen > LOST * 1e9:
+            self._open("the hand was lost; let the clutch go and press it again")
+        position, velocity, acceleration = self._mirror.step()
+        if self._mirror.answered != self._answered:
+            self._answered = self._mirror.answered
+            self._latencies.append((now - self._answered) / 1e3)
+        self._moment = Moment(position, velocity, acceleration, False)
+        return self._moment
+
+    def think(self) -> None:
+        """Do one piece of the work that leads to the next motion."""
+        self._mirror.think()
+
+    def hold(self) -> None:
+        """Open the clutch until `resume`."""
+        self._stopped = True
+        self._open("held")
+
+    def resume(self) -> None:
+        """Let the clutch be pressed again."""
+        self._stopped = False
+        self._why = WAITING
+
+    def reverse(self) -> None:
+        """Hold: a hand's way is not kept."""
+        self.hold()
+
+    def set_override(self, share: float) -> None:
+        """Hold at zero; a hand has its own speed."""
+        if share <= 0.0:
+            self.hold()
+
+    def close(self) -> None:
+        """Stop listening to the tracker."""
+        self._handle.close()
+
+    def _receive(self, _: str, payload: bytes) -> None:
+        self._came.append((self._clock(), payload))
+
+    def _hear(self, when: int, payload: bytes) -> None:
+        try:
+            sample = decode_sample(self._order.tracker, payload, when)
+        except UnusableSample:
+            return
+        if not sample.tracked:
+            return
+        self._seen = when
+        if not sample.buttons & CLUTCH:
+            self._fresh = True
+            self._why = WAITING if self._why == AGAIN else self._why
+            if self._pressed:
+                self._open(WAITING)
+        elif self._pressed:
+            self._mirror.move(self._world(sample), when)
+        elif self._fresh and not self._stopped:
+            self._pressed, self._fresh, self._why = True, False, ""
+            self._mirror.press(self._world(sample))
+        elif not self._stopped:
+            self._why = AGAIN
+
+    def _open(self, why: str) -> None:
+        self._mirror.release()
+        self._pressed, self._fresh, self._why = False, False, why
+
+    def _world(self, sample: Sample) -> Array:
+        return to_world(self._order.calibration, np.array(sample.position))
