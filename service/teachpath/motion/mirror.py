@@ -89,7 +89,7 @@ class Mirror:
         self.gripper_open = True
         self.reason = ""  # why the tool is not where the hand is
         self.answered = 0  # stamp of the newest sample that the setpoints answer
-        if self._model.clearance(here[None]).distance < settings.clearance_min:
+        if self._model.clearances(here[None])[0].distance < settings.clearance_min:
             raise PathRefused("the arm stands too near to something; bring it nearer to its home first")
 
     @property
@@ -198,7 +198,8 @@ class Mirror:
     def _too_near(self, samples: Array) -> str:
         if np.any(samples < LOWER) or np.any(samples > UPPER):
             return "a joint would pass its limit; move the hand back"
-        least = self._model.clearance(samples, load=self.load, gripper_open=self.gripper_open)
+        rows = self._model.clearances(samples, load=self.load, gripper_open=self.gripper_open)
+        least = min(rows, key=lambda row: row.distance)
         if least.distance < self._settings.clearance_min + GUARD:
             return f"{least.part} would come within {1000 * least.distance:.0f} mm of {least.other}; move the hand back"
         return ""
