@@ -1,14 +1,11 @@
-"""The page's tab Edit as an operator uses it, and the arm that does what was edited."""
+"""The page's tab Edit as an operator uses it."""
 
-import json
 from typing import Any
 
 import numpy as np
-from websockets.sync.client import connect
 
-from teachpath.motion.kinematics import tool_pose
 from teachpath.nurbs import Curve
-from tests.system.processes import Service, wait_until
+from tests.system.processes import Service
 from tests.system.test_view import Visit
 
 U = np.linspace(0, 1, 301)
@@ -24,9 +21,8 @@ class Desk(Visit):
         self.open(path)
 
     def open(self, path: str) -> None:
-        self.page.click("#tab-edit")
-        self.page.wait_for_selector(f"[data-path='{path}']", state="attached", timeout=SLOW)
-        self.page.click(f"[data-path='{path}']")
+        self.click("#tab-edit")
+        self.click(f"#edit-path [data-path='{path}']")
         self.until(f"editor.draft?.path === '{path}'")
 
     def until(self, condition: str) -> None:
@@ -52,34 +48,3 @@ class Desk(Visit):
 
     def click(self, selector: str) -> None:
         self.page.locator(selector).click(timeout=SLOW)
-
-    def save(self, **words: str) -> None:
-        for name, text in words.items():
-            self.page.fill(f"#edit-{name}", text)
-        self.click("#edit-save")
-
-
-def same_shape(a: Curve, b: Curve, *, within: float = 1e-9) -> bool:
-    return float(np.abs(a(U) - b(U)).max()) <= within
-
-
-def executed(service: Service, plan: str) -> np.ndarray:
-    """Run a plan and return where the tool was while it followed the path."""
-    places: list[np.ndarray] = []
-    with connect(service.url.replace("http", "ws") + "/api/v1/joints") as socket:
-        execution = service.call("POST", "/executions", {"plan": plan, "override": 0.3})["id"]
-
-        def ended() -> bool:
-            frame = json.loads(socket.recv(timeout=10))
-            status = frame["status"] or {}
-            if status.get("execution") != execution:
-                return False
-            assert status["state"] != "faulted", status["reason"]
-            if status["state"] == "held":  # on a starved machine
-                service.call("POST", f"/executions/{execution}/resume")
-            if status["state"] == "following" and 0.05 < status["progress"] < 0.9:
-                places.append(tool_pose(np.array(frame["position"])[None])[0, :3, 3])
-            return bool(status["state"] == "ended")
-
-        wait_until(ended, seconds=120, what="the execution ends")
-    return np.array(places)
