@@ -77,7 +77,7 @@ def _judge(service: Service, execution: str, folder: Path) -> None:
     assert good.process.returncode == 0, good.out + good.err
     assert "run.mcap keeps every limit and the path" in good.out
     motion = read_motion(file)
-    rows = [[s.nominal_ns / 1e9, *s.position] for s in motion.setpoints]
+    rows = [[s.nominal_ns / 1e9, *s.position.tolist()] for s in motion.setpoints]
     rows[len(rows) // 2][1] += 0.001
     log = folder / "log.csv"
     log.write_text("t,q1,q2,q3,q4,q5,q6\n" + "\n".join(",".join(map(repr, row)) for row in rows))
