@@ -70,4 +70,4 @@ def _path_of(plan: str, url: str) -> Curve:
     with Api(url) as api:
         stored = api.call("GET", f"/plans/{plan}")
         document = api.call("GET", f"/paths/{stored['path']}/versions/{stored['path_version']}")
-    return from_document(LearnedPath, document).curve
+    return from_document(LearnedPath, document["path"]).curve
