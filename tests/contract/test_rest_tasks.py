@@ -49,7 +49,7 @@ SHORT = "t,x,y,z\n" + "".join(f"{i * 0.02},{i},0,0\n" for i in range(6))
         ("t,x,y,z\n" + "9" * 200_000, {}, "CSV"),
         (SHORT, {}, "under the least of 8"),
         (csv(), {"units": "parsec"}, "units 'parsec' are unknown; known: m, cm, mm, in"),
-        (csv(), {"format": "xls"}, "format 'xls' is unknown; known: csv, robottasks"),
+        (csv(), {"format": "xls"}, "format 'xls' is unknown; known: csv, npy, robottasks, mcap"),
         (csv(), {"rate": "nan"}, "rate of nan Hz"),
         (csv(), {"rate": "often"}, "query.rate: it should be a valid number"),
         (csv(), {"name": "x" * 201}, "query.name"),

@@ -30,3 +30,12 @@ def upgrade() -> None:
         sa.Column("execution", ID, nullable=False, index=True),
         sa.Column("answer", sa.Text, nullable=False),
     )
+
+
+def downgrade() -> None:
+    op.drop_table("journal")
+    op.drop_table("revocations")
+    # Executions without a plan, those that mirrored a hand, have no place in the former form.
+    op.execute("DELETE FROM executions WHERE plan IS NULL")
+    with op.batch_alter_table("executions") as executions:
+        executions.alter_column("plan", existing_type=ID, nullable=False)
