@@ -18,7 +18,7 @@ from teachpath_client.rest import Station
 
 FAMILY = "SYSTEM_TEST_FAMILY"  # in the environment of a command and of all that it starts
 READY = 90.0  # [s] for a service to answer, on a busy machine
-OUTLIVED = 5.0  # [s] for the processes of a killed service to leave: they load, find it gone, and have a grace of 1.5
+OUTLIVED = 10.0  # [s] for the processes of a killed service to leave: they load, find it gone, and have a grace of 1.5
 
 
 def free_ports(count: int) -> list[int]:

@@ -23,6 +23,7 @@ from teachpath.io import wire
 from teachpath.io.bus import MemoryBus
 from teachpath.io.documents import to_document
 from teachpath.learning import dendrogram
+from teachpath.motion.assessment import assess
 from teachpath.motion.drawing import drawing
 from teachpath.motion.kinematics import link_frames
 from teachpath.motion.scenes import paper_scene
@@ -39,6 +40,7 @@ pytestmark = pytest.mark.system
 KEYS = Keys()
 HOME = np.array(MotionSettings().home)
 ROBOT = "puma560"
+VERSION = {"number": 1, "branch": "main", "name": "learned", "author": "", "note": "", "parent": None, "created_ns": 1}
 
 
 class Server:
@@ -59,6 +61,7 @@ class Server:
         app.include_router(events_router(News()))
         for resource, document in documents(demonstrations).items():
             app.add_api_route(f"/api/v1/{resource}", lambda document=document: document)
+        app.add_api_route("/api/v1/paths/{path}/assessment", look, methods=["POST"])
         config = uvicorn.Config(app, host="127.0.0.1", port=self.port, log_level="warning", ws="websockets-sansio")
         self._server = uvicorn.Server(config)
         self._thread = threading.Thread(target=self._server.run, daemon=True)
@@ -99,12 +102,20 @@ def documents(count: int) -> dict[str, Any]:
         "scenes": [to_document(paper_scene())],
         "executions": [],
         **{f"paths/{path.id}": to_document(path) for path in found.paths},
+        **{f"paths/{path.id}/plans": [] for path in found.paths},
+        **{f"paths/{path.id}/versions": [VERSION] for path in found.paths},
+        **{f"paths/{path.id}/versions/1": {"version": VERSION, "path": to_document(path)} for path in found.paths},
         "tasks/t/jobs": [],
         "tasks/t/runs/run/dendrogram": to_document(dendrogram(found, 30)),
         "tasks/t/demonstrations": [to_document(d) for d in shown],
         "tasks/t/runs": [{"id": "run", "task": "t", "created_ns": 1, "learned": to_document(found)}],
         **{f"demonstrations/{key}/trajectory": to_document(course) for key, course in courses.items()},
     }
+
+
+def look(path: str) -> dict[str, Any]:
+    """What the service says of a way when the page asks for a quick look."""
+    return to_document(assess(way(int(path[1:])).curve, paper_scene()))
 
 
 def way(cluster: int) -> LearnedPath:
