@@ -20,7 +20,7 @@ from teachpath.commands.rest import Api
 from teachpath.commands.work import progress_bar
 from teachpath.errors import NotFound, UnusableRecording
 from teachpath.io.documents import from_document
-from teachpath.io.files import FORMATS, read_tracks
+from teachpath.io.files import read_tracks
 from teachpath.io.store import Store
 from teachpath.learning import compare, learn
 from teachpath.records import Cluster, Learned, Trajectory
@@ -93,14 +93,14 @@ def read_groups(folder: Path, format: str, *, units: str, rate: float) -> dict[s
     """
     if not folder.is_dir():
         raise UnusableRecording(f"{folder} is not a folder")
-    if format and format not in FORMATS:
-        raise UnusableRecording(f"format {format!r} is unknown; known: {', '.join(FORMATS)}")
+    if format and format not in ENDINGS:
+        raise UnusableRecording(f"format {format!r} is unknown; known: {', '.join(ENDINGS)}")
     files = {kind: sorted(folder.rglob(f"*{ending}")) for kind, ending in ENDINGS.items()}
-    kinds = [format] if format else [kind for kind in FORMATS if files[kind]]
+    kinds = [format] if format else [kind for kind in ENDINGS if files[kind]]
     if len(kinds) > 1:
         raise UnusableRecording(f"{folder} holds {' and '.join(kinds)} files; say which with --format")
     if not kinds or not files[kinds[0]]:
-        raise UnusableRecording(f"{folder} holds no {' or '.join(ENDINGS[kind] for kind in kinds or FORMATS)} files")
+        raise UnusableRecording(f"{folder} holds no {' or '.join(ENDINGS[kind] for kind in kinds or ENDINGS)} files")
     grouped: dict[str, list[Trajectory]] = {}
     for file in files[kinds[0]]:
         first = file.relative_to(folder).parts[0]

@@ -67,9 +67,10 @@ def synthesise(cluster: int, selected: Sequence[Trajectory], settings: LearningS
             )
         course = consensus(paths, FINE * CONSENSUS_POINTS)
         best = _best(course, settings)
-    if best.largest > bound:
+    # The fit measures at its own parameters, the nearest distances are what the operator gets.
+    if best.largest > bound and (nearest := float(distances_to(best.curve, course).max())) > bound:
         note = (
-            f"the demonstrations wiggle: their mean is followed within {best.largest * 1e3:.3g} mm only, not "
+            f"the demonstrations wiggle: their mean is followed within {nearest * 1e3:.3g} mm only, not "
             f"{bound * 1e3:.3g} mm, by {settings.most_control_points} control points; show it more smoothly, or raise "
             "learning.error_bound or learning.most_control_points"
         )
