@@ -30,7 +30,7 @@ def motion(middle: Plan) -> Rehearsal:
 def test_it_is_the_motion_of_the_execution(middle: Plan, motion: Rehearsal) -> None:
     program = Program(middle, np.array(SETTINGS.home), SETTINGS, dwell=DWELL)
     executed = []
-    while not program.finished:
+    while not program.over:
         executed.append(program.step().position)
     run = np.array(executed)
     assert len(run) * 0.004 == pytest.approx(motion.times[-1], abs=0.1)

@@ -62,7 +62,8 @@ def test_a_home_outside_the_joint_limits_is_refused() -> None:
 @pytest.mark.parametrize(
     "shape",
     [
-        Shape("ball", "sphere", (0.1,), (0.5, 0.0, 0.6)),
+        Shape("ball", "sphere", (0.1, 0.1), (0.5, 0.0, 0.6)),
+        Shape("cone", "cone", (0.1,), (0.5, 0.0, 0.6)),
         Shape("flat", "box", (0.1, 0.1, 0.0), (0.5, 0.0, 0.6)),
         Shape("cylinder", "box", (0.1, 0.1), (0.5, 0.0, 0.6)),
     ],
