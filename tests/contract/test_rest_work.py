@@ -120,33 +120,35 @@ def test_a_demonstration_shorter_than_the_window_is_learned_with_a_note(desk: De
 
 def test_the_cut_of_a_run_is_moved_by_a_job(desk: Desk) -> None:
     for number in range(4):
-        desk.import_("moved", csv(60, step=0.004, rise=0.0005 * number + 0.002 * (number > 1)))
-    run = desk.ended(desk.post("/tasks/moved/jobs", {"settings": {"clusters": 2}}))["outcome"]
-    drawn = desk.get(f"/tasks/moved/runs/{run}/dendrogram").json()
+        desk.import_("recut", csv(60, step=0.004, rise=0.0005 * number + 0.002 * (number > 1)))
+    first = desk.ended(desk.post("/tasks/recut/jobs", {"settings": {"clusters": 2}}))
+    assert first["state"] == "succeeded", first["message"]
+    run = first["outcome"]
+    drawn = desk.get(f"/tasks/recut/runs/{run}/dendrogram").json()
     assert [cut["clusters"] for cut in drawn["cuts"]] == [1, 2, 3, 4]
     assert [len(cut["ways"]) for cut in drawn["cuts"]] == [1, 2, 3, 4]
     assert drawn["cuts"][0]["highest"] is None
-    assert len(desk.get(f"/tasks/moved/runs/{run}/dendrogram?most=2").json()["cuts"]) == 2
-    numbers = {d["id"]: d["number"] for d in desk.get("/tasks/moved/demonstrations").json()}
+    assert len(desk.get(f"/tasks/recut/runs/{run}/dendrogram?most=2").json()["cuts"]) == 2
+    numbers = {d["id"]: d["number"] for d in desk.get("/tasks/recut/demonstrations").json()}
     halves = [[numbers[key] for key in drawn["leaves"][begin:end]] for begin, end in drawn["cuts"][1]["ways"]]
     assert halves == [[1, 2], [3, 4]]
 
     for cut, ways in (({"clusters": 3}, 3), ({"threshold": drawn["cuts"][0]["height"]}, 1)):
-        job = desk.ended(desk.post("/tasks/moved/jobs", {"kind": "recut", "run": run} | cut))
+        job = desk.ended(desk.post("/tasks/recut/jobs", {"kind": "recut", "run": run} | cut))
         assert job["state"] == "succeeded", job["message"]
-        learned = desk.get(f"/tasks/moved/runs/{job['outcome']}").json()["learned"]
+        learned = desk.get(f"/tasks/recut/runs/{job['outcome']}").json()["learned"]
         assert len(learned["clusters"]) == len(learned["paths"]) == ways
         assert {path["run"] for path in learned["paths"]} == {job["outcome"]}
-    assert len(desk.get("/tasks/moved/runs").json()) == 3
+    assert len(desk.get("/tasks/recut/runs").json()) == 3
 
     for wrong, sentence in (({}, "give one of the two"), ({"clusters": 5}, "give 1 to 4"), ({"threshold": 0}, "0 m")):
-        refused(desk.post("/tasks/moved/jobs", {"kind": "recut", "run": run} | wrong), 422, sentence)
-    refused(desk.post("/tasks/moved/jobs", {"kind": "recut", "run": "moon"}), 404, "no run 'moon'")
+        refused(desk.post("/tasks/recut/jobs", {"kind": "recut", "run": run} | wrong), 422, sentence)
+    refused(desk.post("/tasks/recut/jobs", {"kind": "recut", "run": "moon"}), 404, "no run 'moon'")
     desk.put("/tasks/other", {})
-    refused(desk.post("/tasks/other/jobs", {"kind": "recut", "run": run, "clusters": 1}), 404, "it is of task moved")
+    refused(desk.post("/tasks/other/jobs", {"kind": "recut", "run": run, "clusters": 1}), 404, "it is of task recut")
 
     desk.send("PATCH", f"{API}/demonstrations/{drawn['leaves'][0]}", json={"discarded": True})
-    job = desk.ended(desk.post("/tasks/moved/jobs", {"kind": "recut", "run": run, "clusters": 1}))
+    job = desk.ended(desk.post("/tasks/recut/jobs", {"kind": "recut", "run": run, "clusters": 1}))
     assert job["state"] == "failed"
     assert "is no longer learned from since that run" in job["message"]
 
