@@ -10,6 +10,7 @@ from functools import partial
 from statistics import median
 from typing import Any
 
+import idle
 import teleoperation
 from busy import learner_and_page
 from report import Figure, against
@@ -35,6 +36,7 @@ def measure(*, repeats: int, seconds: float) -> list[Figure]:
             _show(endpoint)
             figures, plan = _jobs(api, repeats)
             _wait_for_executor(api)
+            figures += idle.measure()
             url = f"http://127.0.0.1:{settings.web.port}"
             crowds = (
                 ("idle", _nobody),

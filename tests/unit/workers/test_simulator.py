@@ -2,6 +2,7 @@
 
 import threading
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -33,8 +34,15 @@ class Bench:
         self.now = START
         self.stop = threading.Event()
         self.simulator = Simulator(
-            self.bus, KEYS, scene or empty_scene(), SETTINGS, clock=lambda: self.now, sleep=self._sleep
+            self.bus,
+            KEYS,
+            scene or empty_scene(),
+            SETTINGS,
+            clock=lambda: self.now,
+            sleep=self._sleep,
+            doze=self._doze,
         )
+        self.steps = 0  # of 1 ms that were computed
         self.bus.subscribe(KEYS.state("puma560"), lambda _, p: self.states.append(wire.decode_state(p)))
         self.until = START
         self.each: Callable[[int], None] = lambda now: None
@@ -42,7 +50,16 @@ class Bench:
         self.wanted = HOME
 
     def _sleep(self, seconds: float) -> None:
-        self.now += round(seconds * 1e9)
+        self.steps += 1
+        self._pass(round(seconds * 1e9))
+
+    def _doze(self, woken: threading.Event, seconds: float) -> None:
+        end = self.now + round(seconds * 1e9)
+        while self.now < end and not woken.is_set() and not self.stop.is_set():
+            self._pass(1_000_000)
+
+    def _pass(self, duration: int) -> None:
+        self.now += duration
         self.each(self.now)
         if self.now >= self.until:
             self.stop.set()
@@ -91,10 +108,31 @@ def above(position: tuple[float, float, float]) -> np.ndarray:
 
 def test_stays_at_home_without_setpoints() -> None:
     states = Bench().run(0.5)
-    assert len(states) == 50  # 100 Hz
     assert np.allclose(states[-1].position, HOME, atol=1e-3)
     assert not states[-1].holding
     assert states[-1].missed == 0
+
+
+def test_an_arm_at_rest_dozes_speaks_as_often_as_the_contract_asks_and_wakes_at_once() -> None:
+    bench = Bench(paper_scene())
+    bench.run(0.5)  # the object settles on the table
+    bench.steps = 0
+    idle = bench.run(2.0)
+    assert bench.steps == 0
+    assert np.diff([state.stamp_ns for state in idle]).max() <= 50e6  # 20 Hz
+    states = bench.move(HOME + 0.5, 1.0)
+    assert np.diff([state.stamp_ns for state in states]).max() <= 10e6  # 100 Hz
+    assert max(state.tracking_error for state in states) < 0.003
+    assert not any(state.late or state.missed for state in states)
+    assert np.abs(bench.run(0.2)[-1].position - HOME - 0.5).max() < 2e-3
+
+
+def test_what_still_falls_does_not_doze() -> None:
+    scene = paper_scene()
+    assert scene.carried is not None
+    x, y, z = scene.carried.position
+    bench = Bench(replace(scene, carried=replace(scene.carried, position=(x, y, z + 0.3))))
+    assert bench.run(1.0)[-1].object_position[2] == pytest.approx(z, abs=2e-3)
 
 
 def test_follows_a_smooth_move_closely_and_within_its_torques() -> None:

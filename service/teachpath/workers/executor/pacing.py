@@ -48,9 +48,9 @@ class Pacer:
         self._largest = 0.0
         self._counts = np.zeros(LONGEST_COUNTED + 1, dtype=np.int64)  # one bin a microsecond
 
-    def wait(self, *, counted: bool = True) -> int:
-        """Sleep until the next deadline and return it [ns of the clock]; `counted` in the account or not."""
-        self._due += self._period
+    def wait(self, periods: int = 1, *, counted: bool = True) -> int:
+        """Sleep until the deadline so many periods ahead and return it [ns of the clock]; `counted` or not."""
+        self._due += periods * self._period
         ahead = self._due - self._clock()
         if ahead > 0:
             self._sleep(ahead / 1e9)

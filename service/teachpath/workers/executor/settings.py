@@ -14,7 +14,7 @@ class ExecutorSettings:
 
     # [Hz] setpoints a second
     rate: Annotated[float, Ge(125), Le(500)] = 250.0
-    # [Hz] statuses a second
+    # [Hz] statuses a second while something is under way; 4 at most while nothing is
     status_rate: Annotated[float, Gt(0), Le(50)] = 10.0
     # [s] that the gripper takes to close or open
     dwell: Annotated[float, Ge(0), Le(10)] = 0.5

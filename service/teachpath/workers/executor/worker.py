@@ -12,6 +12,7 @@ import threading
 import time
 from collections.abc import Callable
 from dataclasses import replace
+from typing import Final
 
 import numpy as np
 
@@ -28,6 +29,9 @@ from teachpath.workers.executor.settings import ExecutorSettings
 from teachpath_proto.keys import Keys
 
 log = logging.getLogger(__name__)
+
+IDLE_PERIODS: Final = 5  # control periods between two looks while nothing is under way
+IDLE_RATE: Final = 4.0  # [Hz] statuses then, at most; the service takes an executor for gone after a second
 
 
 class Executor:
@@ -94,7 +98,8 @@ class Executor:
             while not (stop.is_set() and controls.resting):
                 if stop.is_set() and controls.current is not None:
                     controls.current.end("ended", "the executor was told to stop")
-                self._cycle(self._pacer.wait(counted=not controls.resting))
+                resting = controls.resting
+                self._cycle(self._pacer.wait(IDLE_PERIODS if resting else 1, counted=not resting))
         finally:
             gc.enable()
             gc.unfreeze()
@@ -152,9 +157,13 @@ class Executor:
             )
 
     def _tell(self, due: int) -> None:
+        """Publish the status: at once when the state has changed, else now and then."""
         current = self._controls.current
         status = (current.execution, current.state) if current is not None else ("", "idle")
-        if status == self._told[:2] and due - self._told[2] < 1e9 / self._settings.status_rate:
+        rate = self._settings.status_rate
+        if self._controls.resting:
+            rate = min(rate, IDLE_RATE)
+        if status == self._told[:2] and due - self._told[2] < 1e9 / rate:
             return
         self._told = (*status, due)
         self._bus.publish(self._keys.executor_status, wire.encode_status(self._status()))

@@ -15,6 +15,7 @@ from teachpath.records import Array, Quaternion, Scene, Vector
 from teachpath.workers.simulator.settings import SimulatorSettings
 
 STEP_NS: Final = 1_000_000
+STILL: Final = 1e-3  # rad/s and m/s, below which a thing stands still
 
 
 class SimulatedArm:
@@ -49,6 +50,11 @@ class SimulatedArm:
     def velocity(self) -> Array:
         """Joint velocities (6,) [rad/s]."""
         return np.array(self.data.qvel[:6])
+
+    @property
+    def still(self) -> bool:
+        """Whether arm and object stand still."""
+        return bool(np.abs(self.data.qvel).max() < STILL)
 
     @property
     def torque(self) -> Array:

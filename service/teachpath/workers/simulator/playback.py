@@ -68,6 +68,11 @@ class Playback:
         return self._starved > self._silence
 
     @property
+    def resting(self) -> bool:
+        """Whether nothing waits to be played and the wanted motion stands still."""
+        return not (self._waiting or self.wanted.velocity.any() or self.wanted.acceleration.any())
+
+    @property
     def overdue(self) -> int:
         """How many setpoints should have come while it is holding."""
         return int(self._starved / self._period) if self.holding else 0

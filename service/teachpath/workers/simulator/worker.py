@@ -27,6 +27,8 @@ from teachpath_proto.keys import Keys
 log = logging.getLogger(__name__)
 
 STATE_STEPS: Final = 10  # steps between two joint states: 100 Hz
+CALM_STEPS: Final = 200  # steps of standstill after which the arm dozes
+DOZE: Final = 0.04  # [s] between two joint states of an arm that dozes: 25 Hz, the contract asks for 20
 # A starved process catches up, each setpoint played when it was due: on a busy machine the arm is late, not wrong.
 LAG_NS: Final = 1_000_000_000
 ENDED: Final = ("idle", "ended", "faulted")
@@ -46,6 +48,7 @@ class Simulator:
         home: Sequence[float] = MotionSettings().home,
         clock: Callable[[], int] = time.time_ns,
         sleep: Callable[[float], object] = time.sleep,
+        doze: Callable[[threading.Event, float], object] = threading.Event.wait,
     ) -> None:
         """Prepare the arm; nothing runs before `run`.
 
@@ -55,10 +58,12 @@ class Simulator:
             home: (6,) configuration in which the arm starts [rad].
             clock: nanoseconds since the Unix epoch, the clock of the setpoints.
             sleep: waits for so many seconds.
+            doze: waits for so many seconds, or until the event is set.
         """
         self._bus, self._keys, self._robot = bus, keys, robot
         self._settings = settings or SimulatorSettings()
-        self._clock, self._sleep = clock, sleep
+        self._clock, self._sleep, self._wait = clock, sleep, doze
+        self._woken = threading.Event()
         self._lock = threading.Lock()
         self._setpoints: deque[bytes] = deque(maxlen=1000)
         self._statuses: deque[bytes] = deque(maxlen=100)
@@ -68,7 +73,7 @@ class Simulator:
         """Live in real time until `stop` is set."""
         robot = self._robot
         handles = [
-            self._bus.subscribe(self._keys.setpoint(robot), lambda _, payload: self._setpoints.append(payload)),
+            self._bus.subscribe(self._keys.setpoint(robot), self._receive),
             self._bus.subscribe(self._keys.executor_status, lambda _, payload: self._statuses.append(payload)),
             self._bus.serve(self._keys.reset(robot), self.reset),
             self._bus.announce(self._keys.alive("robot", robot)),
@@ -76,6 +81,9 @@ class Simulator:
         try:
             due = self._clock()
             while not stop.is_set():
+                if self._dozing:
+                    due = self._doze(due)
+                    continue
                 self.step(due)
                 due += STEP_NS
                 wait = due - self._clock()
@@ -101,6 +109,7 @@ class Simulator:
         scene = documents.decode(Scene, payload) if payload else self._scene
         with self._lock:
             self._begin(scene, self._arm.position.tolist())
+            self._woken.set()
             return wire.encode_state(self._state(self._clock()))
 
     def step(self, now: int) -> None:
@@ -112,8 +121,38 @@ class Simulator:
             state = self._state(now) if self._steps % STATE_STEPS == 0 else None
             self._arm.step(wanted.position, wanted.velocity, wanted.acceleration)
             self._steps += 1
+            self._calm = self._calm + 1 if self._playback.resting and self._arm.still else 0
         if state is not None:
-            self._bus.publish(self._keys.state(self._robot), wire.encode_state(state))
+            self._tell(state)
+
+    @property
+    def _dozing(self) -> bool:
+        """Whether arm and object have stood still for a while and nothing is there to change that."""
+        return self._calm >= CALM_STEPS and not self._setpoints
+
+    def _doze(self, since: int) -> int:
+        """Let an arm at rest be until something comes, or its next joint state is due; returns when that was [ns].
+
+        Nothing is computed: what stands still under constant torques goes on standing still.
+        """
+        with self._lock:
+            state = self._state(since)
+        self._tell(state)
+        self._wait(self._woken, DOZE)
+        self._woken.clear()
+        now = self._clock()
+        with self._lock:
+            self._hear()
+            if now > since:  # the clock may be set back
+                self._playback.play((now - since) / 1e9)
+        return now
+
+    def _receive(self, _: str, payload: bytes) -> None:
+        self._setpoints.append(payload)
+        self._woken.set()
+
+    def _tell(self, state: JointState) -> None:
+        self._bus.publish(self._keys.state(self._robot), wire.encode_state(state))
 
     def _begin(self, scene: Scene, position: Sequence[float]) -> None:
         settings = self._settings
@@ -124,21 +163,28 @@ class Simulator:
         self._over = ""  # the execution that said that it has ended
         self._closed = False
         self._error = 0.0
-        self._steps = 0
+        self._steps = self._calm = 0  # steps in all, and newest ones in which everything stood still
 
     def _read(self, now: int) -> None:
         try:
             while self._setpoints:
                 self._playback.take(wire.decode_setpoint(self._setpoints.popleft()), now)
+        except UnusableInput as error:
+            log.warning("left out: %s", error)
+        self._hear()
+        reached = self._playback.play(STEP_NS / 1e9)
+        if reached is not None:
+            self._grip(reached.gripper_closed)
+
+    def _hear(self) -> None:
+        """Read what the executor says of itself."""
+        try:
             while self._statuses:
                 status = wire.decode_status(self._statuses.popleft())
                 if status.state in ENDED:
                     self._over = status.execution
         except UnusableInput as error:
             log.warning("left out: %s", error)
-        reached = self._playback.play(STEP_NS / 1e9)
-        if reached is not None:
-            self._grip(reached.gripper_closed)
 
     def _grip(self, closed: bool) -> None:
         if closed and not self._closed:
