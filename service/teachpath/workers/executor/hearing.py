@@ -28,16 +28,16 @@ class Hearing:
         self._heard: tuple[int, JointState] | None = None
 
     def receive(self, _: str, payload: bytes) -> None:
-        """Take a joint state from the bus; it is read by the loop."""
+        """Take a joint state from the bus; it is read by the loop, and by who asks where the arm is."""
         self._payloads.append((self._clock(), payload))
 
     def listen(self) -> None:
         """Read what came."""
-        if not self._payloads:
-            return
-        when, payload = self._payloads.pop()
         try:
+            when, payload = self._payloads.pop()
             self._heard = (when, wire.decode_state(payload))
+        except IndexError:
+            return
         except UnusableInput as error:
             log.warning("left out: %s", error)
 
@@ -47,6 +47,7 @@ class Hearing:
 
     def present(self) -> JointState:
         """Return how the arm stands now; raises Unreachable when it is silent."""
+        self.listen()
         heard = self.newest(self._clock())
         if heard is None or heard[0] > self._silence:
             raise Unreachable(f"no joint state from {self._robot}; is the simulator or the arm's driver running?")

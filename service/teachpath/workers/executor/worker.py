@@ -95,6 +95,7 @@ class Executor:
         gc.disable()
         controls = self._controls
         try:
+            self._cycle(self._pacer.wait(counted=False))  # says at once that it is there
             while not (stop.is_set() and controls.resting):
                 if stop.is_set() and controls.current is not None:
                     controls.current.end("ended", "the executor was told to stop")
