@@ -163,7 +163,8 @@ class Simulator:
         self._over = ""  # the execution that said that it has ended
         self._closed = False
         self._error = 0.0
-        self._steps = self._calm = 0  # steps in all, and newest ones in which everything stood still
+        self._steps: int = 0
+        self._calm: int = 0  # the newest steps in which everything stood still
 
     def _read(self, now: int) -> None:
         try:
