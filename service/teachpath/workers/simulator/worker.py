@@ -64,6 +64,7 @@ class Simulator:
         self._settings = settings or SimulatorSettings()
         self._clock, self._sleep, self._wait = clock, sleep, doze
         self._woken = threading.Event()
+        self._calm = 0  # newest steps in which everything stood still
         self._lock = threading.Lock()
         self._setpoints: deque[bytes] = deque(maxlen=1000)
         self._statuses: deque[bytes] = deque(maxlen=100)
@@ -163,8 +164,8 @@ class Simulator:
         self._over = ""  # the execution that said that it has ended
         self._closed = False
         self._error = 0.0
-        self._steps: int = 0
-        self._calm: int = 0  # the newest steps in which everything stood still
+        self._steps = 0
+        self._calm = 0
 
     def _read(self, now: int) -> None:
         try:
