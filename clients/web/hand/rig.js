@@ -1,16 +1,16 @@
 // Where the operator of a headset stands: at the free side of the table, facing the arm. Draws the view's own scene with
 // a renderer and a camera of its own, so that the view on the page stays as it is.
-const LATE = 40; // [ms] between two frames that no headset has by itself
-const HOLE = 120; // [ms] without a sample that is no good for a take
-const SELDOM = 10_000; // [ms] between two pictures where each tears such a hole
+import { Pictures } from "./pictures.js";
+
 const STAND = [1.25, 0, 0]; // [m] robot coordinates, on the floor
 
 export class Rig {
   constructor(viewer) {
     const { THREE } = globalThis.MeshCat;
     Object.assign(this, { viewer, THREE });
-    this.cost = this.drawnAt = 0; // [ms] what a picture seems to cost, and when one was drawn last
-    this.carrying = false;
+    this.pictures = new Pictures();
+    this.drawn = 0; // pictures
+    this.busy = false; // a take is under way, or may begin at any moment
     this.renderer = new THREE.WebGLRenderer({ antialias: true }); // without it three of this age fails on some headsets
     this.renderer.xr.enabled = true;
     this.camera = new THREE.PerspectiveCamera(70, 1, 0.02, 30);
@@ -37,23 +37,13 @@ export class Rig {
       if (!xr) return;
       if (!this.placed) this.#place(xr);
       frame(time, xr);
-      if (this.#affords(time)) this.renderer.render(this.viewer.scene, this.camera);
+      if (!this.pictures.affords(time, this.busy)) return;
+      this.drawn += 1;
+      this.renderer.render(this.viewer.scene, this.camera);
     });
     this.renderer.xr.setReferenceSpaceType("local-floor");
     await this.renderer.xr.setSession(session); // after the loop was set, else every frame would come twice
     this.space = this.renderer.xr.getReferenceSpace();
-  }
-
-  // Whether this frame is drawn: always, unless drawing makes the frames late. Samples come with the frames, so they come
-  // first: pictures get fewer, and where one would tear a hole into a take there are next to none.
-  #affords(time) {
-    const apart = time - (this.before ?? time);
-    this.before = time;
-    this.cost = apart > LATE ? Math.max(apart, this.cost) : 0.995 * this.cost;
-    const least = this.cost > HOLE ? SELDOM : this.cost > LATE ? 4 * this.cost : 0;
-    if (time - this.drawnAt < least || (this.carrying && this.cost > HOLE)) return false;
-    this.drawnAt = time;
-    return true;
   }
 
   // The head's first place becomes the stand at the table, wherever in the room the operator is.

@@ -1,4 +1,4 @@
-// Calls `take(seconds)` at an even rate whatever the view is drawing: a timer whose drift is corrected, never a frame.
+// Calls `take(seconds)` at an even rate whatever is drawn: a timer whose drift is corrected, never a frame.
 export const RATE = 60; // [Hz]
 
 export class Sampler {

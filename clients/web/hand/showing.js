@@ -4,7 +4,7 @@
 //        > "returning" (the object goes back) > "ready" ...; "lost" while the connection is away
 import { at, get, post } from "../api.js";
 import { Carry } from "./carry.js";
-import { HandLink, clock } from "./link.js";
+import { Courier } from "./courier.js";
 import { pointer } from "./pointer.js";
 import { Prop } from "./prop.js";
 import { Sampler } from "./sampler.js";
@@ -17,6 +17,7 @@ const SELDOM = 10_000; // [ms] at most
 const LITTLE = 20; // [ms] that need no sparing
 const FORGET = 0.999; // with every sample in time
 const REACH = 0.08; // [m] within which the recorder lets a hand grasp the object
+const NEAR = 0.3; // [m] of the waiting object, where a hand may grasp it at any moment
 const NOTHING = { kind: "sphere", size: [0.02], position: [0.58, -0.28, 0.6] }; // stands for the object of an empty scene
 
 // The name under which this page is a tracker.
@@ -39,7 +40,7 @@ export class Showing {
     const shown = { ...scene, carried: scene.carried ?? NOTHING };
     this.carry = new Carry(shown);
     this.prop = new Prop(easel, shown.carried);
-    this.link = new HandLink(name, { changed: (state, sentence) => this.#connection(state, sentence), refused: failed });
+    this.link = new Courier(name, { changed: (state, sentence) => this.#connection(state, sentence), refused: failed });
     this.sampler = new Sampler((seconds) => this.#tick(seconds), { late: (ms) => this.#spare(ms) });
   }
 
@@ -110,6 +111,12 @@ export class Showing {
     this.#live(hand.seconds);
   }
 
+  // Whether a hand's samples belong to a take, or may do so at any moment: the next one begins where the last one ends.
+  isTaking(hand) {
+    if (this.phase === "ready") return apart(hand.position, this.carry.home) < NEAR;
+    return ["carrying", "judging", "returning"].includes(this.phase);
+  }
+
   #live(seconds) {
     this.#since += seconds;
     if (this.phase === "judging" && this.#since - this.#asked > ASK) {
@@ -123,7 +130,7 @@ export class Showing {
     if (this.view.least) this.view.spare(this.view.least < LITTLE ? 0 : FORGET * this.view.least);
     this.steering.step(seconds);
     if (this.carry.step(seconds)) this.#draw();
-    this.link.send({ position: this.carry.position, orientation: null, tracked: true, grasp: this.carry.grasped, ms: clock() });
+    this.link.pose({ position: this.carry.position, orientation: null, tracked: true, grasp: this.carry.grasped });
     this.#live(seconds);
   }
 

@@ -102,7 +102,7 @@ class ShowPanel {
     const hand = new HeadsetHand(this.context.view.viewer, {
       hear: (sample) => {
         if (this.showing?.link.live) this.showing.follow(sample);
-        hand.rig.carrying = ["carrying", "judging"].includes(this.showing?.phase); // a take ends when the hand rests
+        hand.rig.busy = this.showing?.isTaking(sample) ?? false;
         hand.rig.say(this.#sentence());
       },
       ended: () => {
