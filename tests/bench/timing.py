@@ -11,7 +11,8 @@ from teachpath.motion.branches import Candidate, candidates, usable
 from teachpath.motion.governor import Governor, warm_up
 from teachpath.motion.joints import ARM, JointPath
 from teachpath.motion.route import Route, route
-from teachpath.motion.timing import lower_bound, timed, uses
+from teachpath.motion.shares import uses
+from teachpath.motion.timing import lower_bound, timed
 from teachpath.motion.track import Track, paced
 from teachpath.nurbs import Curve
 

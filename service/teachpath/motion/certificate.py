@@ -11,7 +11,7 @@ import numpy as np
 from teachpath.errors import PathRefused
 from teachpath.motion.joints import ARM, JointPath, Limits
 from teachpath.motion.puma560 import ACCELERATION, JERK, LOWER, SPEED, TORQUE, UPPER, Array
-from teachpath.motion.timing import uses
+from teachpath.motion.shares import uses
 from teachpath.motion.track import Track, paced
 from teachpath.records import Extreme, Plan, Scene
 

@@ -22,6 +22,7 @@ from teachpath.motion.track import Track
 SLOWEST: Final = 0.01  # an override below this holds
 TRIES: Final = 20  # ramps judged in one period at most
 AGREE: Final = 1e-6  # s, between the closed form of a ramp and Ruckig's
+BACKWARD: Final = 0.96  # rate of the way back at most: a plan has its reserve on the other side (see `shares`)
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,7 +98,7 @@ class Governor:
         self._held = self._back = False
 
     def reverse(self) -> None:
-        """Go back along the path to its beginning."""
+        """Go back along the path to its beginning, at 96 % of the full speed at most."""
         self._held, self._back = False, True
 
     def place(self, tau: float) -> None:
@@ -114,7 +115,7 @@ class Governor:
 
     def step(self) -> Progress:
         """Advance by one control period; never raises."""
-        wish = 0.0 if self.held else (-self._override if self._back else self._override)
+        wish = 0.0 if self.held else (-min(self._override, BACKWARD) if self._back else self._override)
         left = self._ramp[3] + self._ramp[4] + self._ramp[5] - self._elapsed
         if self._ramp[7] != wish or left > 0.0:
             self._turn_to(wish, left if self._ramp[7] == wish else np.inf)

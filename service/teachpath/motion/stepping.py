@@ -9,7 +9,7 @@ import numpy as np
 from teachpath.errors import Conflict
 from teachpath.motion.moves import rest_to_rest
 from teachpath.motion.puma560 import Array
-from teachpath.motion.timing import RESERVE, uses
+from teachpath.motion.shares import RESERVE, uses
 from teachpath.motion.track import STEP, Track, composed
 
 LEAST: Final = 1e-6  # s of plan time or m of path, a step shorter than this is none

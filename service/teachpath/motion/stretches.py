@@ -14,7 +14,7 @@ from teachpath.motion.moves import approach, left_behind, retreat, straight
 from teachpath.motion.puma560 import Array
 from teachpath.motion.scene import CollisionModel, Load, grasp_of
 from teachpath.motion.settings import MotionSettings
-from teachpath.motion.timing import RESERVE
+from teachpath.motion.shares import RESERVE
 from teachpath.motion.track import Track
 from teachpath.records import Plan
 

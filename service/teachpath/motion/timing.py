@@ -20,11 +20,10 @@ from teachpath.motion.pace import fastest_pace
 from teachpath.motion.profile import squared_rates, times
 from teachpath.motion.puma560 import Array
 from teachpath.motion.route import Route
+from teachpath.motion.shares import Reserve
 from teachpath.motion.track import Track, paced
+from teachpath.nurbs import Curve
 
-# Shares of the speed, acceleration and jerk limits that a plan uses: the rest is for changing its rate. Speed has the
-# least, because slowing down needs none of it.
-RESERVE: Final = (0.99, 0.93, 0.87)
 GUESSED: Final = (0.98, 0.90)  # shares of speed and acceleration limits that the guess uses
 PLACES: Final = 400  # of the curve in the guess, at least so many ...
 PER_SPAN: Final = 24  # ... and so many between two knots
@@ -33,8 +32,10 @@ MARGIN: Final = 0.1  # s, that the guess is too short for want of jerk limits
 WINDOW: Final = 0.05  # s, of the filter that takes the jumps of acceleration out of the guess
 KNOT: Final = 0.05  # s, between two knots of the smooth guess
 FEWEST: Final = 24  # intervals of the smooth guess, at least
-MOST: Final = 80  # and at most, because the linear programs grow with them
-FINER: Final = 4  # intervals of the pace for each interval of the guess
+MOST: Final = 80  # and at most
+FINER: Final = 8  # intervals of the pace for each interval of the guess
+FINEST: Final = 16  # the same where the curve has kinks of acceleration, which the pace must follow
+SMOOTH: Final = 3  # derivatives that a curve without such kinks has
 NODES: Final = 400  # of the joints' spline, at least
 PHASES: Final = (0.0, 0.25, 0.5, 0.75)  # of the first setpoint, in control periods
 OVERRIDES: Final = (0.1, 0.3, 0.5, 0.7, 0.9)
@@ -42,7 +43,9 @@ STRETCHES: Final = 4  # times that time is stretched at most
 EXACT: Final = 1e-3  # relative stretch that is not worth repeating
 
 
-def timed(way: Route, candidate: Candidate, limits: Limits, *, rate: float) -> tuple[JointPath, Array]:
+def timed(
+    way: Route, candidate: Candidate, limits: Limits, *, rate: float, reserve: Reserve | None = None
+) -> tuple[JointPath, Array]:
     """Find the fastest motion along a route on one branch of the arm.
 
     Args:
@@ -50,6 +53,7 @@ def timed(way: Route, candidate: Candidate, limits: Limits, *, rate: float) -> t
         candidate: the branch and the roll of the tool.
         limits: to keep, also while the rate is being changed.
         rate: setpoints a second on which they are measured [Hz].
+        reserve: shares of the limits that the motion uses; the default when None.
 
     Returns:
         The joints by a parameter from 0 to 1, and the coefficients of its pace (see `track.paced`).
@@ -57,14 +61,14 @@ def timed(way: Route, candidate: Candidate, limits: Limits, *, rate: float) -> t
     Raises:
         PathRefused: no motion was found that keeps the limits.
     """
-    warp = _guess(way, candidate, limits)
-    intervals = FINER * (len(warp.c) - warp.k)
+    warp, reserve = _guess(way, candidate, limits), reserve or Reserve()
+    intervals = (FINER if _smoothness(way.curve) >= SMOOTH else FINEST) * (len(warp.c) - warp.k)
     sigma = np.linspace(0.0, 1.0, max(NODES, intervals) + 1)
     u = np.asarray(warp(sigma), dtype=np.float64)
     path = JointPath(sigma, way.arc.lengths(u), configurations(way, candidate, u))
-    pace = fastest_pace(path, limits.scaled(*RESERVE), intervals)
+    pace = fastest_pace(path, limits, intervals, reserve)
     for _ in range(STRETCHES):
-        factor = _factor(paced(path, pace, limits), rate)
+        factor = _factor(paced(path, pace, limits), rate, reserve)
         pace = pace / factor**2
         if abs(factor - 1.0) < EXACT:
             break
@@ -86,13 +90,10 @@ def estimate(way: Route, candidate: Candidate, limits: Limits) -> float:
     return float(_profile(way, candidate, limits, FEWER)[1][-1] + MARGIN)
 
 
-def uses(setpoints: Array, limits: Limits, rate: float) -> tuple[Array, Array, Array]:
-    """Measure the use of speed (n - 1, 6), acceleration (n - 2, 6) and jerk limits (n - 3, 6) by differences."""
-    first, second, third = (
-        np.abs(np.diff(setpoints[:, :6], order, axis=0)) * rate**order / limit
-        for order, limit in ((1, limits.speed), (2, limits.acceleration), (3, limits.jerk))
-    )
-    return first, second, third
+def _smoothness(curve: Curve) -> int:
+    """Return how many derivatives of a curve are continuous."""
+    inner = curve.knots[curve.degree + 1 : -curve.degree - 1]
+    return curve.degree - int(np.unique(inner, return_counts=True)[1].max(initial=0))
 
 
 def _guess(way: Route, candidate: Candidate, limits: Limits) -> BSpline[np.float64]:
@@ -132,13 +133,10 @@ def _places(way: Route, least: int) -> Array:
     return np.unique(np.concatenate([np.linspace(a, b, count + 1) for a, b, count in spans]))
 
 
-def _factor(track: Track, rate: float) -> float:
+def _factor(track: Track, rate: float, reserve: Reserve) -> float:
     """Return by what time must be stretched so that setpoints keep the limits with the reserve."""
-    speed, acceleration, jerk = RESERVE
-    factor = 0.0
     runs = [(phase, 1.0) for phase in PHASES] + [(0.0, override) for override in OVERRIDES]
-    for phase, override in runs:
-        use = uses(track.setpoints(rate, phase=phase, override=override), track.limits, rate)
-        v, a, j = (float(share.max()) for share in use)
-        factor = max(factor, v / speed, np.sqrt(a / acceleration), np.cbrt(j / jerk))
-    return factor
+    return max(
+        reserve.stretch(track.setpoints(rate, phase=phase, override=override), track.limits, rate)
+        for phase, override in runs
+    )

@@ -8,7 +8,7 @@ from teachpath.motion.joints import ARM
 from teachpath.motion.kinematics import downward, inverse, tool_pose
 from teachpath.motion.moves import approach, left_behind, retreat, straight
 from teachpath.motion.scene import CollisionModel
-from teachpath.motion.timing import uses
+from teachpath.motion.shares import uses
 from teachpath.records import Scene, Shape
 
 SETTINGS = MotionSettings()
