@@ -20,10 +20,10 @@ from teachpath.api.view import view_router
 from teachpath.config import Settings
 from teachpath.errors import NotFound
 from teachpath.io.bus import Bus, open_bus
-from teachpath.io.store import Store
+from teachpath.io.store.store import Store
 from teachpath.io.wire import report_document
-from teachpath.learning import LearningSettings
-from teachpath.motion import drawing
+from teachpath.learning.settings import LearningSettings
+from teachpath.motion.drawing import drawing
 from teachpath.offline.lock import StationLock
 from teachpath.records import Demonstration, Job, Learned, Plan, Trajectory
 from teachpath.workers import desk

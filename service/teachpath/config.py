@@ -20,15 +20,15 @@ from pydantic import BaseModel, ConfigDict, ValidationError
 from teachpath.errors import NotFound, UnusableSettings
 from teachpath.io.bus import BusSettings
 from teachpath.io.meshes import read_hull
-from teachpath.io.store import StoreSettings
-from teachpath.learning import LearningSettings
-from teachpath.motion import MotionSettings, paper_scene
-from teachpath.motion.scenes import empty_scene
-from teachpath.recording import RecordingSettings
+from teachpath.io.store.settings import StoreSettings
+from teachpath.learning.settings import LearningSettings
+from teachpath.motion.scenes import empty_scene, paper_scene
+from teachpath.motion.settings import MotionSettings
+from teachpath.recording.settings import RecordingSettings
 from teachpath.records import Calibration, Scene, Shape
-from teachpath.workers.executor import ExecutorSettings
+from teachpath.workers.executor.settings import ExecutorSettings
 from teachpath.workers.jobs import JobSettings
-from teachpath.workers.simulator import SimulatorSettings
+from teachpath.workers.simulator.settings import SimulatorSettings
 from teachpath_proto.keys import is_name
 
 PREFIX = "TEACHPATH_"

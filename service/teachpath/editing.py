@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
-from scipy.interpolate import make_interp_spline
+import scipy
 
 from teachpath.errors import UnusableInput
 from teachpath.exchange import UNCHANGED, insert_knot, remove_knot
@@ -102,7 +102,9 @@ def elevate(curve: Curve) -> Operated:
     greville = np.array([knots[i + 1 : i + degree + 1].mean() for i in range(count)])
     greville[[0, -1]] = 0.0, 1.0
     points, weights = curve.derivatives(greville, 0)[0], _weight(curve, greville)
-    full = make_interp_spline(greville, np.column_stack([points * weights[:, None], weights]), k=degree, t=knots).c
+    full = scipy.interpolate.make_interp_spline(
+        greville, np.column_stack([points * weights[:, None], weights]), k=degree, t=knots
+    ).c
     raised = Curve(degree, knots, full[:, :-1] / full[:, -1:], full[:, -1])
     return _measured(curve, check_editable(raised), UNCHANGED)
 

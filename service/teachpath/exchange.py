@@ -9,8 +9,8 @@ import json
 from typing import Any
 
 import numpy as np
+import scipy
 from geomdl import NURBS, operations
-from scipy.interpolate import BSpline
 
 from teachpath.errors import UnusableInput
 from teachpath.nurbs import Array, Curve
@@ -84,7 +84,7 @@ def _without(curve: Curve, u: float) -> Curve:
     """
     knots = np.delete(curve.knots, int(np.argmax(curve.knots == u)))
     count = len(curve.weights) - 1
-    insertion = BSpline(knots, np.eye(count), curve.degree).insert_knot(u).c[: count + 1]
+    insertion = scipy.interpolate.BSpline(knots, np.eye(count), curve.degree).insert_knot(u).c[: count + 1]
     full = np.column_stack([curve.control_points * curve.weights[:, None], curve.weights])
     fewer = np.empty((count, full.shape[1]))
     fewer[[0, -1]] = full[[0, -1]]

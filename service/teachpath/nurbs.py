@@ -9,8 +9,8 @@ from dataclasses import dataclass
 from math import comb
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.interpolate import BSpline
 
 from teachpath.errors import UnusableInput
 
@@ -56,7 +56,7 @@ class Curve:
         """Evaluate the curve and its first `order` derivatives (The NURBS Book, eq. (4.8))."""
         at = np.clip(np.asarray(u, dtype=np.float64), 0.0, 1.0)
         homogeneous = np.column_stack([self.control_points * self.weights[:, None], self.weights])
-        spline = BSpline(self.knots, homogeneous, self.degree)
+        spline = scipy.interpolate.BSpline(self.knots, homogeneous, self.degree)
         raw = [np.asarray(spline(at, nu=k)) if k <= self.degree else np.zeros((*at.shape, homogeneous.shape[1]))
                for k in range(order + 1)]  # fmt: skip
         weight = [r[..., -1:] for r in raw]

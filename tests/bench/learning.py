@@ -6,8 +6,11 @@ import numpy as np
 from learning_peers import timed
 from report import Figure, against
 
-from teachpath.learning import LearningSettings, learn
-from teachpath.motion import MotionSettings, paper_scene, plan
+from teachpath.learning.learn import learn
+from teachpath.learning.settings import LearningSettings
+from teachpath.motion.plan import plan
+from teachpath.motion.scenes import paper_scene
+from teachpath.motion.settings import MotionSettings
 from teachpath.records import Learned, Trajectory
 
 

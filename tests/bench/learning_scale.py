@@ -11,11 +11,11 @@ import numba
 import numpy as np
 from report import Figure, against
 
-from teachpath.learning import LearningSettings
 from teachpath.learning.crowd import grouped
 from teachpath.learning.distances import distances
 from teachpath.learning.kernels import _mean_distance
 from teachpath.learning.selection import select
+from teachpath.learning.settings import LearningSettings
 from teachpath.records import Array, Trajectory
 
 POINTS = 150

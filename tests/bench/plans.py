@@ -10,7 +10,7 @@ from random_plans import random_case, streamed
 from report import Figure, against
 
 from teachpath.errors import PathRefused
-from teachpath.motion import plan
+from teachpath.motion.plan import plan
 from teachpath.records import Fit, LearnedPath
 
 DT = 0.004

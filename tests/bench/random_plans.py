@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from teachpath.motion import empty_scene
 from teachpath.motion.certificate import track
 from teachpath.motion.governor import Governor
+from teachpath.motion.scenes import empty_scene
 from teachpath.nurbs import Curve
 from teachpath.records import Plan, Scene, Shape
 

@@ -18,9 +18,10 @@ from report import Figure, against
 
 from teachpath.commands.serving import free_port
 from teachpath.io.bus import Bus, BusSettings, MemoryBus, open_bus
-from teachpath.io.store import Store, StoreSettings
-from teachpath.motion import paper_scene
-from teachpath.recording import RecordingSettings
+from teachpath.io.store.settings import StoreSettings
+from teachpath.io.store.store import Store
+from teachpath.motion.scenes import paper_scene
+from teachpath.recording.settings import RecordingSettings
 from teachpath.records import Calibration, Demonstration, Trajectory
 from teachpath.workers.recorder import Recorder
 from teachpath_client.synthetic import RATE

@@ -17,9 +17,10 @@ from report import Figure
 
 from teachpath.commands.serving import free_port
 from teachpath.io.bus import Bus, BusSettings, open_bus
-from teachpath.io.store import Store, StoreSettings
+from teachpath.io.store.settings import StoreSettings
+from teachpath.io.store.store import Store
 from teachpath.motion.scenes import empty_scene
-from teachpath.recording import RecordingSettings
+from teachpath.recording.settings import RecordingSettings
 from teachpath.records import Calibration
 from teachpath.workers.recorder import Recorder
 from teachpath_proto import tracker_pb2

@@ -6,11 +6,11 @@ import numpy as np
 from optimum import shortest_stop
 from report import Figure, against
 
-from teachpath.motion import MotionSettings
 from teachpath.motion.branches import Candidate, candidates, usable
 from teachpath.motion.governor import Governor, warm_up
 from teachpath.motion.joints import ARM, JointPath
 from teachpath.motion.route import Route, route
+from teachpath.motion.settings import MotionSettings
 from teachpath.motion.shares import uses
 from teachpath.motion.timing import lower_bound, timed
 from teachpath.motion.track import Track, paced

@@ -17,7 +17,8 @@ from hypothesis import strategies as st
 
 from teachpath.errors import Conflict, NotFound
 from teachpath.io.documents import encode
-from teachpath.io.store import Store, StoreSettings
+from teachpath.io.store.settings import StoreSettings
+from teachpath.io.store.store import Store
 from teachpath.io.store.tables import Base
 from teachpath.records import (
     Account,

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from teachpath.errors import Outdated
-from teachpath.io.store import Edit
+from teachpath.io.store.versions import Edit
 from teachpath.nurbs import Curve
 from tests.contract.desk import Desk, refused
 from tests.contract.rows import a_job, learned

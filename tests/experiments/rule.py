@@ -10,7 +10,7 @@ import numpy as np
 from matplotlib.lines import Line2D
 from matplotlib.ticker import PercentFormatter
 
-from teachpath.learning import LearningSettings
+from teachpath.learning.settings import LearningSettings
 from tests.experiments.figures import INK, QUOTED, sheet
 from tests.experiments.scenarios import SCENARIOS
 from tests.experiments.trials import Outcome

@@ -9,9 +9,10 @@ from math import sqrt
 import numpy as np
 
 from teachpath.errors import LearningFailed
-from teachpath.learning import LearningSettings, learn
 from teachpath.learning.distances import frechet
+from teachpath.learning.learn import learn
 from teachpath.learning.resampling import at_equal_arc_length
+from teachpath.learning.settings import LearningSettings
 from teachpath.records import Array, Cluster, Learned, Trajectory
 from tests.experiments.scenarios import GROUPINGS, SCENARIOS, along, drawn
 from tests.unit.learning import synthetic

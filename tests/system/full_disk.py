@@ -14,10 +14,11 @@ from pathlib import Path
 from typing import Any
 
 from teachpath.io.bus import MemoryBus
-from teachpath.io.store import Store, StoreSettings
+from teachpath.io.store.settings import StoreSettings
+from teachpath.io.store.store import Store
 from teachpath.io.wire import sample_message
-from teachpath.motion import paper_scene
-from teachpath.recording import RecordingSettings
+from teachpath.motion.scenes import paper_scene
+from teachpath.recording.settings import RecordingSettings
 from teachpath.records import Calibration, Sample
 from teachpath.workers.recorder import Recorder
 from teachpath_proto.keys import Keys

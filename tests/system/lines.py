@@ -10,9 +10,10 @@ from typing import Any
 import zenoh
 
 from teachpath.io.bus import BusSettings, open_bus
-from teachpath.io.store import Store, StoreSettings
+from teachpath.io.store.settings import StoreSettings
+from teachpath.io.store.store import Store
 from teachpath.io.wire import sample_message
-from teachpath.recording import RecordingSettings
+from teachpath.recording.settings import RecordingSettings
 from teachpath.records import Calibration, Sample, Scene, Shape
 from teachpath.workers.recorder import Recorder
 from teachpath_client import Link

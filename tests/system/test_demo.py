@@ -9,8 +9,8 @@ from pathlib import Path
 
 import pytest
 
-from teachpath.learning import LearningSettings
-from teachpath.workers.executor import ExecutorSettings
+from teachpath.learning.settings import LearningSettings
+from teachpath.workers.executor.settings import ExecutorSettings
 from teachpath_client import ClientError
 from teachpath_client.rest import Station
 from tests.system.processes import Command, free_ports, wait_until

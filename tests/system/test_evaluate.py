@@ -5,7 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from teachpath.learning import LearningSettings, learn
+from teachpath.learning.learn import learn
+from teachpath.learning.settings import LearningSettings
 from tests.system.processes import Service, run
 from tests.unit.commands.test_evaluate import stored
 from tests.unit.learning import synthetic

@@ -9,7 +9,7 @@ from pathlib import Path
 import httpx
 import pytest
 
-from teachpath.io.store import read_motion
+from teachpath.io.store.motions import read_motion
 from tests.system.processes import Service, run, wait_until
 
 pytestmark = pytest.mark.system

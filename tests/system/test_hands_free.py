@@ -8,9 +8,10 @@ from pathlib import Path
 import pytest
 
 from teachpath.io.bus import BusSettings, open_bus
-from teachpath.io.store import Store, StoreSettings
-from teachpath.motion import paper_scene
-from teachpath.recording import RecordingSettings
+from teachpath.io.store.settings import StoreSettings
+from teachpath.io.store.store import Store
+from teachpath.motion.scenes import paper_scene
+from teachpath.recording.settings import RecordingSettings
 from teachpath.records import Calibration
 from teachpath.workers.recorder import Recorder
 from teachpath_client.__main__ import main

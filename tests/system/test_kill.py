@@ -8,11 +8,12 @@ from typing import Any
 
 import pytest
 
-from teachpath.io.store import Store, StoreSettings
 from teachpath.io.store.recordings import salvage
-from teachpath.motion import paper_scene
+from teachpath.io.store.settings import StoreSettings
+from teachpath.io.store.store import Store
+from teachpath.motion.scenes import paper_scene
 from teachpath.offline.doctor import examine
-from teachpath.recording import RecordingSettings
+from teachpath.recording.settings import RecordingSettings
 
 pytestmark = pytest.mark.system
 

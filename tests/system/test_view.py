@@ -22,7 +22,7 @@ from teachpath.api.view import view_router
 from teachpath.io import wire
 from teachpath.io.bus import MemoryBus
 from teachpath.io.documents import to_document
-from teachpath.learning import dendrogram
+from teachpath.learning.cuts import dendrogram
 from teachpath.motion.assessment import assess
 from teachpath.motion.drawing import drawing
 from teachpath.motion.kinematics import link_frames

@@ -13,10 +13,11 @@ import time
 from pathlib import Path
 
 from teachpath.io.bus import MemoryBus
-from teachpath.io.store import Store, StoreSettings
+from teachpath.io.store.settings import StoreSettings
+from teachpath.io.store.store import Store
 from teachpath.io.wire import sample_message
-from teachpath.motion import paper_scene
-from teachpath.recording import RecordingSettings
+from teachpath.motion.scenes import paper_scene
+from teachpath.recording.settings import RecordingSettings
 from teachpath.records import Calibration
 from teachpath.workers.recorder import Recorder
 from teachpath_proto.keys import Keys

@@ -11,7 +11,7 @@ from pydantic import BaseModel, Field
 from teachpath.api.parts import Parts
 from teachpath.errors import UnusableInput
 from teachpath.io.documents import to_document
-from teachpath.io.store import ExecutionRow
+from teachpath.io.store.store import ExecutionRow
 from teachpath.records import Command, ExecutorStatus, Mirroring
 from teachpath_proto.keys import NAME
 

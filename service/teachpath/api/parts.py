@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from teachpath.config import Settings
-from teachpath.io.store import Store
+from teachpath.io.store.store import Store
 from teachpath.records import Demonstration, Trajectory
 from teachpath.workers.assessor import Assessor
 from teachpath.workers.calibrations import Calibrations

@@ -14,7 +14,6 @@ from teachpath.api.parts import Parts
 from teachpath.api.sockets import same_origin
 from teachpath.io.documents import to_document
 from teachpath.motion.puma560 import ACCELERATION, FINGER_TRAVEL, JERK, LINKS, LOWER, SPEED, TOOL_LENGTH, TORQUE, UPPER
-from teachpath.motion.rehearsal import rehearse
 from teachpath.records import ExecutorStatus
 from teachpath.workers.joints import JointFrame
 
@@ -49,6 +48,8 @@ def robot_router(parts: Parts) -> APIRouter:
 
         Times [s], joints [rad], pose of the carried object [m, world], and what the arm does when, in words.
         """
+        from teachpath.motion.rehearsal import rehearse  # with the libraries of planning, which nothing else here needs
+
         stored = parts.store.plan(plan)
         return to_document(rehearse(stored, parts.settings.motion, dwell=parts.settings.executor.dwell))
 

@@ -14,7 +14,7 @@ from teachpath.errors import UnusableInput
 from teachpath.io.documents import to_document
 from teachpath.io.wire import report_document
 from teachpath.offline.importing import Source, import_file
-from teachpath.recording import Routine
+from teachpath.recording.control import Routine
 from teachpath.records import Demonstration, Task
 from teachpath.workers.curation import Amendment
 from teachpath_proto.keys import is_name

@@ -11,7 +11,7 @@ from teachpath.api.curves import CurveBody
 from teachpath.api.parts import Parts
 from teachpath.editing import difference
 from teachpath.io.documents import to_document
-from teachpath.io.store import Edit
+from teachpath.io.store.versions import Edit
 from teachpath.records import Difference, Version
 
 TEXT = r"^[^\x00-\x1f\x7f]*$"  # one line

@@ -10,8 +10,8 @@ from pydantic import BaseModel, Field
 from teachpath.api.parts import Parts
 from teachpath.errors import NotFound
 from teachpath.io.documents import to_document
-from teachpath.io.store import Store
-from teachpath.learning import dendrogram, recut
+from teachpath.io.store.store import Store
+from teachpath.learning.cuts import dendrogram, recut
 from teachpath.records import Job, LearnedPath
 
 

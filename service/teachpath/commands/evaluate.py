@@ -19,10 +19,6 @@ from teachpath.commands.options import Config, Data, settings_of
 from teachpath.commands.rest import Api
 from teachpath.commands.work import progress_bar
 from teachpath.errors import NotFound, UnusableRecording
-from teachpath.io.documents import from_document
-from teachpath.io.files import read_tracks
-from teachpath.io.store import Store
-from teachpath.learning import compare, learn
 from teachpath.records import Cluster, Learned, Trajectory
 
 ENDINGS = {"csv": ".csv", "robottasks": ".npy"}
@@ -44,6 +40,8 @@ def evaluate(
     All groups are pooled and learned from as if they were one task; the clusters found are held against the groups.
     Neither a service nor a data folder is needed.
     """
+    from teachpath.learning.learn import learn
+
     changes: dict[str, Any] = {"mode": mode} if mode else {}
     settings = settings_of(config, None).learning_with(
         changes if threshold is None else {**changes, "threshold": threshold}
@@ -67,6 +65,9 @@ def diff(
     data: Data = None,
 ) -> None:
     """Say why the paths of two learning runs differ: inputs, settings, versions, clusters, selection, paths."""
+    from teachpath.io.store.store import Store
+    from teachpath.learning.compare import compare
+
     if url:
         with Api(url) as api:
             before, after = _fetched(api, one), _fetched(api, other)
@@ -91,6 +92,8 @@ def read_groups(folder: Path, format: str, *, units: str, rate: float) -> dict[s
     Raises:
         UnusableRecording: the folder holds no such files or files of both kinds, or a file is wrong.
     """
+    from teachpath.io.files import read_tracks
+
     if not folder.is_dir():
         raise UnusableRecording(f"{folder} is not a folder")
     if format and format not in ENDINGS:
@@ -195,6 +198,8 @@ def _millimetres(metres: float | None) -> str:
 
 
 def _fetched(api: Api, run: str) -> Learned:
+    from teachpath.io.documents import from_document
+
     for task in api.call("GET", "/tasks"):
         for row in api.call("GET", f"/tasks/{task['name']}/runs"):
             if row["id"] == run:

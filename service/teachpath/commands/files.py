@@ -6,19 +6,11 @@ import sys
 from pathlib import Path
 from typing import Annotated
 
-import numpy as np
 import typer
 
-from teachpath.app import trajectory_of
 from teachpath.commands.options import Config, Data, settings_of
 from teachpath.commands.work import progress_bar
 from teachpath.errors import UnusableRecording
-from teachpath.io.store import Store
-from teachpath.offline.doctor import examine
-from teachpath.offline.exporting import chosen, export_demonstrations
-from teachpath.offline.importing import Source, import_file
-from teachpath.offline.report import review_of, write
-from teachpath.workers.calibrations import Calibrations
 
 
 def import_(
@@ -39,6 +31,10 @@ def import_(
 
     Every motion in a file becomes one, with the same verdict as a live recording. The service need not run.
     """
+    from teachpath.io.store.store import Store
+    from teachpath.offline.importing import Source, import_file
+    from teachpath.workers.calibrations import Calibrations
+
     settings = settings_of(config, data)
     robottasks = format == "robottasks"
     store = Store(settings.store)
@@ -76,6 +72,10 @@ def export(
 
     csv and mcap can be imported again without a loss. Nothing is overwritten, and nothing half written stays.
     """
+    from teachpath.app import trajectory_of
+    from teachpath.io.store.store import Store
+    from teachpath.offline.exporting import chosen, export_demonstrations
+
     settings = settings_of(config, data)
     store = Store(settings.store)
     try:
@@ -103,6 +103,12 @@ def report(
 
     It holds the animated 3-D scene, tables and plots, opens in any browser without the service, and fetches nothing.
     """
+    import numpy as np
+
+    from teachpath.app import trajectory_of
+    from teachpath.io.store.store import Store
+    from teachpath.offline.report import review_of, write
+
     settings = settings_of(config, data)
     store = Store(settings.store)
     try:
@@ -126,6 +132,9 @@ def doctor(config: Config = None, data: Data = None) -> None:
 
     Says what each of them holds and makes demonstrations of it; the torn files are kept. Stop the service first.
     """
+    from teachpath.io.store.store import Store
+    from teachpath.offline.doctor import examine
+
     settings = settings_of(config, data)
     store = Store(settings.store)
     try:

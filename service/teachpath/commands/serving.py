@@ -7,12 +7,15 @@ import socket
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
+from typing import TYPE_CHECKING
 
 import uvicorn
 
-from teachpath.app import Station
 from teachpath.config import Settings
 from teachpath.errors import Unreachable
+
+if TYPE_CHECKING:
+    from teachpath.app import Station
 
 
 @contextmanager
@@ -23,6 +26,8 @@ def serving(settings: Settings) -> Iterator[Station]:
         Unreachable: the web port or the Zenoh endpoint is taken.
         Conflict: another service uses the data folder.
     """
+    from teachpath.app import Station
+
     web = settings.web
     listener = _listen(web.host, web.port)
     try:

@@ -17,9 +17,7 @@ from teachpath.commands.options import Config, Data, settings_of
 from teachpath.commands.serving import serving, until_signalled
 from teachpath.config import Settings, load
 from teachpath.io.bus import open_bus
-from teachpath.workers.executor import Executor
 from teachpath.workers.processes import GRACE
-from teachpath.workers.simulator import Simulator
 from teachpath_proto.keys import Keys
 
 Attached = Annotated[bool, typer.Option("--attached", hidden=True)]
@@ -48,6 +46,8 @@ def executor(config: Config = None, attached: Attached = False) -> None:
 
     It streams the setpoints of certified plans.
     """
+    from teachpath.workers.executor.worker import Executor
+
     settings = _settings(config, attached)
     with until_signalled() as stop:
         _leave_with_parent(stop, attached)
@@ -69,6 +69,8 @@ def simulator(config: Config = None, attached: Attached = False) -> None:
 
     It follows the setpoints and publishes its joint state, as the driver of a real arm would.
     """
+    from teachpath.workers.simulator.worker import Simulator
+
     settings = _settings(config, attached)
     with until_signalled() as stop:
         _leave_with_parent(stop, attached)

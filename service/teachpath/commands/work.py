@@ -13,7 +13,6 @@ import typer
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
-from teachpath.commands.checking import judge_file
 from teachpath.commands.options import LOCAL, Url
 from teachpath.commands.rest import Api
 from teachpath.commands.tables import clusters_table, cuts_table, paths_table, plan_lines, reasons
@@ -133,6 +132,8 @@ def run(
 
     Ctrl-C stops it on the path. This is not an emergency stop.
     """
+    from teachpath.commands.checking import judge_file
+
     if check is not None:
         judge_file(check, plan, url)
         return

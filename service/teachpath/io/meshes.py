@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import Final
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.spatial import ConvexHull, QhullError
 
 from teachpath.errors import UnusableInput
 
@@ -35,8 +35,8 @@ def read_hull(file: Path) -> tuple[tuple[float, float, float], ...]:
     if not np.all(np.isfinite(corners)):
         raise UnusableInput(f"mesh {file} has a corner that is not finite")
     try:
-        hull = ConvexHull(corners)
-    except QhullError:
+        hull = scipy.spatial.ConvexHull(corners)
+    except scipy.spatial.QhullError:
         raise UnusableInput(f"mesh {file} is flat; a body has three dimensions") from None
     triangles = corners[hull.simplices]
     normals = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])

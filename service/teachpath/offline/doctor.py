@@ -7,10 +7,10 @@ from pathlib import Path
 
 from teachpath.errors import TeachpathError
 from teachpath.io.documents import decode
-from teachpath.io.store import Store
 from teachpath.io.store.recordings import read_facts, salvage
+from teachpath.io.store.store import Store
 from teachpath.offline.lock import StationLock
-from teachpath.recording import RecordingSettings
+from teachpath.recording.settings import RecordingSettings
 from teachpath.records import Demonstration, Scene
 from teachpath.workers.session import RecordingSession
 

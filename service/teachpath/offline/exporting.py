@@ -13,7 +13,7 @@ import numpy as np
 
 from teachpath.errors import Conflict, NotFound, UnusableInput
 from teachpath.io.sample_files import write_samples
-from teachpath.io.store import Store
+from teachpath.io.store.store import Store
 from teachpath.records import Demonstration, Trajectory
 
 FORMATS = ("csv", "mcap", "lerobot", "trajectory")

@@ -10,9 +10,12 @@ from teachpath.errors import UnusableInput, UnusableRecording
 from teachpath.io.documents import decode
 from teachpath.io.files import Track, read_tracks
 from teachpath.io.sample_files import holds_samples, read_samples
-from teachpath.io.store import Store
 from teachpath.io.store.recordings import read_facts_stream, salvage_stream
-from teachpath.recording import GRASP_BUTTON, RecordingSettings, Segmenter, Verdict, judge_again, point_to_world
+from teachpath.io.store.store import Store
+from teachpath.recording.demonstration import point_to_world
+from teachpath.recording.phases import GRASP_BUTTON, Segmenter
+from teachpath.recording.settings import RecordingSettings
+from teachpath.recording.verdict import Verdict, judge_again
 from teachpath.records import Calibration, Demonstration, Sample, Scene, Trajectory
 from teachpath.workers.session import RecordingSession
 from teachpath_proto.keys import is_name

@@ -10,8 +10,9 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from teachpath.io.lerobot import Dataset, Feature, write_dataset
-from teachpath.io.store import Store
-from teachpath.recording import GRASP_BUTTON, to_world
+from teachpath.io.store.store import Store
+from teachpath.recording.demonstration import to_world
+from teachpath.recording.phases import GRASP_BUTTON
 from teachpath.records import Array, Demonstration, Sample
 
 RATE = 50  # [Hz] said of demonstrations whose own rate is not known

@@ -10,7 +10,7 @@ from multiprocessing import get_context
 from typing import Final
 
 from teachpath.errors import Conflict, Unreachable
-from teachpath.motion import MotionSettings, assess
+from teachpath.motion.settings import MotionSettings
 from teachpath.nurbs import Curve
 from teachpath.records import Assessment, LearnedPath, Scene
 from teachpath.workers import desk
@@ -70,4 +70,6 @@ def _sit_down() -> None:
 
 
 def _assess(curve: Curve, scene: Scene, settings: MotionSettings, turn: Curve | None) -> Assessment:
+    from teachpath.motion.assessment import assess  # loaded in the process that needs it, not in the service
+
     return assess(curve, scene, settings, turn=turn)

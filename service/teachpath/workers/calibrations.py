@@ -7,8 +7,11 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from teachpath.errors import Conflict, NotFound, UnusableInput
-from teachpath.io.store import Store
-from teachpath.recording import Cut, RecordingSettings, Verdict, fit_frame, judge_again
+from teachpath.io.store.store import Store
+from teachpath.recording.frame import fit_frame
+from teachpath.recording.phases import Cut
+from teachpath.recording.settings import RecordingSettings
+from teachpath.recording.verdict import Verdict, judge_again
 from teachpath.records import Calibration, Demonstration, MeasuredCalibration, Scene, TaughtPoint
 from teachpath.workers.closing import TakenSamples, with_positions
 from teachpath.workers.curation import Curation

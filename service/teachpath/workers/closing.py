@@ -10,17 +10,13 @@ import numpy as np
 
 from teachpath.errors import UnusableRecording
 from teachpath.io.documents import encode
-from teachpath.io.store import Store, Take
-from teachpath.recording import (
-    Cut,
-    RecordingSettings,
-    Verdict,
-    faults_of,
-    judge,
-    object_trajectory,
-    to_world,
-    usable,
-)
+from teachpath.io.store.recordings import Take
+from teachpath.io.store.store import Store
+from teachpath.recording.demonstration import object_trajectory, to_world, usable
+from teachpath.recording.phases import Cut
+from teachpath.recording.positions import faults_of
+from teachpath.recording.settings import RecordingSettings
+from teachpath.recording.verdict import Verdict, judge
 from teachpath.records import Account, Calibration, Demonstration, Sample, Trajectory, Vector
 
 

@@ -9,11 +9,11 @@ from collections.abc import Callable
 import numpy as np
 
 from teachpath.errors import TeachpathError
-from teachpath.learning import LearningSettings
 from teachpath.learning.clustering import group
 from teachpath.learning.distances import distances
 from teachpath.learning.resampling import arc_lengths, at_equal_arc_length, smoothed
-from teachpath.recording import Shown, advise
+from teachpath.learning.settings import LearningSettings
+from teachpath.recording.coach import Shown, advise
 from teachpath.records import Array, Demonstration, Trajectory
 
 MOST = 60  # newest demonstrations that are compared

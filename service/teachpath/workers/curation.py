@@ -8,8 +8,10 @@ from dataclasses import dataclass, field, replace
 from typing import Any, Final
 
 from teachpath.errors import NotFound, UnusableInput
-from teachpath.io.store import Store
-from teachpath.recording import Cut, RecordingSettings, object_trajectory
+from teachpath.io.store.store import Store
+from teachpath.recording.demonstration import object_trajectory
+from teachpath.recording.phases import Cut
+from teachpath.recording.settings import RecordingSettings
 from teachpath.records import Demonstration, Scene, Trajectory
 
 MARKS: Final = ("", "good", "bad")

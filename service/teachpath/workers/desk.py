@@ -1,4 +1,7 @@
-"""What runs in the process of the jobs: the work itself, with progress out and cancel in."""
+"""What runs in the process of the jobs: the work itself, with progress out and cancel in.
+
+The service only names these functions, so what they call is loaded where it runs: here, at the first job.
+"""
 
 from __future__ import annotations
 
@@ -11,8 +14,8 @@ from multiprocessing.synchronize import Event
 from typing import Any
 
 from teachpath.errors import Cancelled
-from teachpath.learning import LearningSettings, learn, relearn
-from teachpath.motion import MotionSettings, plan
+from teachpath.learning.settings import LearningSettings
+from teachpath.motion.settings import MotionSettings
 from teachpath.records import Learned, LearnedPath, Plan, Scene, Trajectory
 
 Progress = Callable[[float, str], None]
@@ -45,6 +48,10 @@ def _leave_with_parent() -> None:
 
 def warm_up() -> None:
     """Load what the first job needs."""
+    from teachpath.learning.relearn import relearn
+    from teachpath.motion.plan import plan
+
+    del relearn, plan
 
 
 def work(key: str, function: Callable[..., Any], inputs: tuple[Any, ...]) -> Any:
@@ -67,6 +74,8 @@ def work(key: str, function: Callable[..., Any], inputs: tuple[Any, ...]) -> Any
 
 def learn_paths(demonstrations: dict[str, Trajectory], settings: LearningSettings, *, progress: Progress) -> Learned:
     """Cluster, select and fit."""
+    from teachpath.learning.learn import learn
+
     return learn(demonstrations, settings, progress=progress)
 
 
@@ -79,10 +88,14 @@ def recut_run(
     progress: Progress,
 ) -> Learned:
     """Cut a run's dendrogram elsewhere, select and fit."""
+    from teachpath.learning.relearn import relearn
+
     return relearn(learned, demonstrations, threshold=threshold, clusters=clusters, progress=progress)
 
 
 def plan_path(path: LearnedPath, scene: Scene, settings: MotionSettings, *, progress: Progress) -> Plan:
     """Plan one path."""
+    from teachpath.motion.plan import plan
+
     progress(0.1, f"planning path {path.id}")
     return plan(path, scene, settings)

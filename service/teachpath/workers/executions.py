@@ -13,7 +13,8 @@ from pathlib import Path
 from teachpath.errors import Conflict, NotFound, PathRefused, TeachpathError, Unreachable, UnusableInput
 from teachpath.io.bus import Bus, Handle
 from teachpath.io.documents import encode
-from teachpath.io.store import ExecutionRow, MotionHeader, Store, read_motion
+from teachpath.io.store.motions import MotionHeader, read_motion
+from teachpath.io.store.store import ExecutionRow, Store
 from teachpath.io.wire import (
     decode_entry,
     decode_lease,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from teachpath.recording import Pose
+from teachpath.recording.demonstration import Pose
 from teachpath.records import Phase, Shape, Vector
 
 

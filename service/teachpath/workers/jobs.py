@@ -12,17 +12,19 @@ from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
 from multiprocessing import active_children, get_context
 from multiprocessing.synchronize import Event
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 from annotated_types import Ge, Le
 
 from teachpath.errors import Cancelled, Conflict, TeachpathError
-from teachpath.io.bus import Bus
-from teachpath.io.store import Store
 from teachpath.io.wire import encode_progress
 from teachpath.records import Job, JobState
 from teachpath.workers import desk
 from teachpath_proto.keys import Keys
+
+if TYPE_CHECKING:  # the settings of jobs are read in processes that have no store
+    from teachpath.io.bus import Bus
+    from teachpath.io.store.store import Store
 
 # What a kind of job does: `prepare` gathers its input from the store, `work` (a function of `desk`) runs in the other
 # process, `finish` stores the outcome and marks the job succeeded in one transaction.

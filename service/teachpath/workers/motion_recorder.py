@@ -12,7 +12,7 @@ from typing import Final
 
 from teachpath.errors import TeachpathError, UnusableInput
 from teachpath.io.bus import Bus, Handle
-from teachpath.io.store import MotionHeader, Motions, MotionTake
+from teachpath.io.store.motions import MotionHeader, Motions, MotionTake
 from teachpath.io.wire import decode_setpoint, decode_status
 from teachpath_proto.keys import Keys
 

@@ -6,8 +6,10 @@ import uuid
 from collections.abc import Callable
 
 from teachpath.errors import UnusableRecording
-from teachpath.io.store import RecordingHeader, Store, Take
-from teachpath.recording import Cut, RecordingSettings
+from teachpath.io.store.recordings import RecordingHeader, Take
+from teachpath.io.store.store import Store
+from teachpath.recording.phases import Cut
+from teachpath.recording.settings import RecordingSettings
 from teachpath.records import Account, Demonstration, Sample, Trajectory, Vector
 from teachpath.workers.closing import TakenSamples, close_take
 

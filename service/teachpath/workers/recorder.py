@@ -8,8 +8,9 @@ from collections.abc import Callable
 
 from teachpath.errors import Conflict, UnusableInput
 from teachpath.io.bus import Bus, Handle
-from teachpath.io.store import Store
-from teachpath.recording import RecordingSettings, Routine, State
+from teachpath.io.store.store import Store
+from teachpath.recording.control import Routine, State
+from teachpath.recording.settings import RecordingSettings
 from teachpath.records import Calibration, Demonstration, Scene, Trajectory
 from teachpath.workers.curation import Amendment, Curation
 from teachpath.workers.feedback import Feedback, Standing

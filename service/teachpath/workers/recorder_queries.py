@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from teachpath.errors import UnusableInput
 from teachpath.io.bus import Bus, Handle
 from teachpath.io.wire import encode_demonstration, parse
-from teachpath.recording import Routine
+from teachpath.recording.control import Routine
 from teachpath.workers.curation import Amendment
 from teachpath_proto import tracker_pb2
 from teachpath_proto.keys import Keys

@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 from teachpath.errors import NotFound, UnusableSample
 from teachpath.io.wire import decode_sample
-from teachpath.recording import RecordingSettings
+from teachpath.recording.settings import RecordingSettings
 from teachpath.workers.intake import Intake, Received
 from teachpath.workers.open_take import Finished
 from teachpath.workers.presence import Presence

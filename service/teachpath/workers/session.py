@@ -5,23 +5,15 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 
-from teachpath.io.store import RecordingHeader, Store
+from teachpath.io.store.recordings import RecordingHeader
+from teachpath.io.store.store import Store
 from teachpath.io.wire import encode_report
-from teachpath.recording import (
-    TOGGLE_BUTTON,
-    Control,
-    Cut,
-    FistGesture,
-    RecordingSettings,
-    Routine,
-    Segmenter,
-    Sign,
-    State,
-    StreamAccount,
-    closure_of,
-    object_pose,
-    point_to_world,
-)
+from teachpath.recording.account import StreamAccount
+from teachpath.recording.control import Control, Routine, State
+from teachpath.recording.demonstration import object_pose, point_to_world
+from teachpath.recording.gesture import FistGesture, Sign
+from teachpath.recording.phases import TOGGLE_BUTTON, Cut, Segmenter, closure_of
+from teachpath.recording.settings import RecordingSettings
 from teachpath.records import Calibration, Phase, Sample, Scene, Vector
 from teachpath.workers.feedback import Standing
 from teachpath.workers.hand import Hand

@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from teachpath.io.store import RecordingHeader, Recordings
+from teachpath.io.store.recordings import RecordingHeader, Recordings
 from teachpath.io.wire import decode_sample
 from teachpath.records import Calibration, Sample
 from teachpath_client.link import ClientError

@@ -13,8 +13,10 @@ from typer.testing import CliRunner
 from teachpath.__main__ import app
 from teachpath.commands.evaluate import adjusted_rand_index, evaluation, read_groups
 from teachpath.errors import NotFound, UnusableRecording, UnusableSettings
-from teachpath.io.store import Store, StoreSettings
-from teachpath.learning import LearningSettings, learn
+from teachpath.io.store.settings import StoreSettings
+from teachpath.io.store.store import Store
+from teachpath.learning.learn import learn
+from teachpath.learning.settings import LearningSettings
 from teachpath.records import Job, JobState, Learned, Trajectory
 from tests.unit.learning import synthetic
 

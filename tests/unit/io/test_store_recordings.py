@@ -14,10 +14,9 @@ from scipy.spatial.transform import Rotation
 
 from teachpath.errors import NotFound, UnusableRecording
 from teachpath.io.documents import encode
-from teachpath.io.store import RecordingHeader, Recordings, Take
-from teachpath.io.store.recordings import read_facts, salvage
+from teachpath.io.store.recordings import RecordingHeader, Recordings, Take, read_facts, salvage
 from teachpath.io.wire import sample_message
-from teachpath.recording import to_world
+from teachpath.recording.demonstration import to_world
 from teachpath.records import Calibration, Sample
 from teachpath_proto import tracker_pb2
 from tests.unit.recording.hands import demonstration

@@ -5,7 +5,8 @@ from __future__ import annotations
 import pytest
 import synthetic
 
-from teachpath.learning import LearningSettings, learn
+from teachpath.learning.learn import learn
+from teachpath.learning.settings import LearningSettings
 from teachpath.records import Learned, Trajectory
 
 

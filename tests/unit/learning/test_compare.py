@@ -6,7 +6,9 @@ from dataclasses import replace
 
 import pytest
 
-from teachpath.learning import LearningSettings, compare, learn
+from teachpath.learning.compare import compare
+from teachpath.learning.learn import learn
+from teachpath.learning.settings import LearningSettings
 from teachpath.records import Learned, Trajectory
 
 SETTINGS = LearningSettings(repeats=0)

@@ -12,8 +12,12 @@ from scipy.spatial.distance import pdist
 
 from teachpath.errors import LearningFailed, UnusableSettings
 from teachpath.io.documents import to_document
-from teachpath.learning import LearningSettings, compare, dendrogram, learn, recut, relearn
+from teachpath.learning.compare import compare
+from teachpath.learning.cuts import dendrogram, recut
 from teachpath.learning.dendrogram import height_between
+from teachpath.learning.learn import learn
+from teachpath.learning.relearn import relearn
+from teachpath.learning.settings import LearningSettings
 from teachpath.records import Array, Learned, Trajectory
 
 

@@ -9,7 +9,9 @@ import pytest
 import synthetic
 
 from teachpath.errors import Cancelled, LearningFailed
-from teachpath.learning import LearningSettings, learn, recut
+from teachpath.learning.cuts import recut
+from teachpath.learning.learn import learn
+from teachpath.learning.settings import LearningSettings
 from teachpath.nurbs import unit
 from teachpath.records import Learned, Trajectory
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from teachpath.errors import UnusableSettings
-from teachpath.learning import LearningSettings
+from teachpath.learning.settings import LearningSettings
 
 
 @pytest.mark.parametrize(

@@ -11,7 +11,8 @@ SCRIPT = """
 from hashlib import sha256
 import synthetic
 from teachpath.io.documents import encode
-from teachpath.learning import LearningSettings, learn
+from teachpath.learning.learn import learn
+from teachpath.learning.settings import LearningSettings
 from teachpath.learning.crowd import grouped
 import numpy as np
 

@@ -3,8 +3,9 @@
 import mujoco
 import numpy as np
 
-from teachpath.motion import empty_scene, mjcf
 from teachpath.motion.drawing import drawing
+from teachpath.motion.mjcf import mjcf
+from teachpath.motion.scenes import empty_scene
 
 RIM = np.linspace(0.0, 2 * np.pi, 12, endpoint=False)
 SIGNS = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], dtype=float)

@@ -4,11 +4,13 @@ import numpy as np
 import pytest
 
 from teachpath.errors import PathRefused
-from teachpath.motion import assess, empty_scene, paper_scene, plan
+from teachpath.motion.assessment import assess
 from teachpath.motion.branches import candidates, least_wrong
 from teachpath.motion.failure import first_stretch
+from teachpath.motion.plan import plan
 from teachpath.motion.remedy import influences
 from teachpath.motion.route import route
+from teachpath.motion.scenes import empty_scene, paper_scene
 from teachpath.motion.settings import MotionSettings
 from teachpath.nurbs import Curve
 from teachpath.records import Assessment, Scene

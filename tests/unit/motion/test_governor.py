@@ -7,13 +7,13 @@ import pytest
 import ruckig
 
 import teachpath.motion
-from teachpath.motion import MotionSettings
 from teachpath.motion.branches import candidates, usable
 from teachpath.motion.governor import BACKWARD, Governor
 from teachpath.motion.joints import ARM
 from teachpath.motion.kinematics import tool_pose
 from teachpath.motion.moves import straight
 from teachpath.motion.route import route
+from teachpath.motion.settings import MotionSettings
 from teachpath.motion.shares import RESERVE, uses
 from teachpath.motion.timing import timed
 from teachpath.motion.track import Track, paced

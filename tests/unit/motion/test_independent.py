@@ -2,7 +2,7 @@
 
 import pytest
 
-from teachpath.motion import plan
+from teachpath.motion.plan import plan
 from tests.bench.checker import judge
 from tests.bench.random_plans import random_case, streamed
 from tests.unit.motion.ways import learned

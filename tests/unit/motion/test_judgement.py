@@ -3,10 +3,12 @@ import pytest
 
 from teachpath.errors import UnusableRecording
 from teachpath.io.setpoints import read_setpoints
-from teachpath.motion import MotionSettings, paper_scene, plan
 from teachpath.motion.certificate import track
 from teachpath.motion.judgement import SetpointLog, judge
 from teachpath.motion.kinematics import tool_pose
+from teachpath.motion.plan import plan
+from teachpath.motion.scenes import paper_scene
+from teachpath.motion.settings import MotionSettings
 from teachpath.records import Plan
 from tests.unit.motion.ways import FAR, MIDDLE, way
 

@@ -2,7 +2,6 @@ import mujoco
 import numpy as np
 import pytest
 
-from teachpath.motion import paper_scene
 from teachpath.motion.kinematics import (
     A2,
     BRANCHES,
@@ -19,6 +18,7 @@ from teachpath.motion.kinematics import (
 )
 from teachpath.motion.mjcf import mjcf
 from teachpath.motion.puma560 import LINKS, LOWER, TOOL_LENGTH, UPPER
+from teachpath.motion.scenes import paper_scene
 
 
 @pytest.fixture(scope="module")

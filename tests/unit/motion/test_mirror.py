@@ -3,11 +3,12 @@
 import numpy as np
 import pytest
 
-from teachpath.motion import MotionSettings, empty_scene, paper_scene
 from teachpath.motion.kinematics import tool_pose
 from teachpath.motion.mirror import Mirror
 from teachpath.motion.puma560 import ACCELERATION, JERK, LOWER, SPEED, UPPER
 from teachpath.motion.scene import CollisionModel
+from teachpath.motion.scenes import empty_scene, paper_scene
+from teachpath.motion.settings import MotionSettings
 from teachpath.records import Scene
 
 SETTINGS = MotionSettings()

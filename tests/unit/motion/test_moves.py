@@ -2,12 +2,13 @@ import numpy as np
 import pytest
 
 from teachpath.errors import PathRefused
-from teachpath.motion import MotionSettings, paper_scene
 from teachpath.motion.branches import within_limits
 from teachpath.motion.joints import ARM
 from teachpath.motion.kinematics import downward, inverse, tool_pose
 from teachpath.motion.moves import approach, left_behind, retreat, straight
 from teachpath.motion.scene import CollisionModel
+from teachpath.motion.scenes import paper_scene
+from teachpath.motion.settings import MotionSettings
 from teachpath.motion.shares import uses
 from teachpath.records import Scene, Shape
 

@@ -5,11 +5,13 @@ import pytest
 
 from teachpath.errors import PathRefused
 from teachpath.io.documents import decode, encode
-from teachpath.motion import MotionSettings, empty_scene, paper_scene, plan, verify
-from teachpath.motion.certificate import digest, limit_uses, track
+from teachpath.motion.certificate import digest, limit_uses, track, verify
 from teachpath.motion.kinematics import tool_pose
+from teachpath.motion.plan import plan
 from teachpath.motion.puma560 import ACCELERATION, JERK, LOWER, SPEED, UPPER
 from teachpath.motion.route import ArcLength
+from teachpath.motion.scenes import empty_scene, paper_scene
+from teachpath.motion.settings import MotionSettings
 from teachpath.nurbs import Curve
 from teachpath.records import Plan, Shape
 from tests.unit.motion.ways import FAR, MIDDLE, NEAR, clamped, learned, way

@@ -3,11 +3,13 @@
 import numpy as np
 import pytest
 
-from teachpath.motion import MotionSettings, empty_scene, paper_scene, plan
 from teachpath.motion.joints import JointPath
+from teachpath.motion.plan import plan
 from teachpath.motion.proof import FINEST, Sweep, least
 from teachpath.motion.puma560 import Array
 from teachpath.motion.scene import Clearance, CollisionModel, grasp_of
+from teachpath.motion.scenes import empty_scene, paper_scene
+from teachpath.motion.settings import MotionSettings
 from teachpath.records import Scene, Shape
 from tests.unit.motion.solids import Surface
 from tests.unit.motion.ways import MIDDLE, learned, wandering, way

@@ -5,9 +5,10 @@ import mujoco
 import numpy as np
 import pytest
 
-from teachpath.motion import drawing, paper_scene, scenes
+from teachpath.motion.drawing import drawing
 from teachpath.motion.mjcf import mjcf, physical_inertia
 from teachpath.motion.puma560 import ACCELERATION, LINKS, LOWER, SOURCES, SPEED, TORQUE, UPPER, Link
+from teachpath.motion.scenes import paper_scene, scenes
 
 
 @pytest.fixture

@@ -4,12 +4,14 @@ import numpy as np
 import pytest
 
 from teachpath.errors import PathRefused
-from teachpath.motion import MotionSettings, empty_scene, paper_scene, plan
 from teachpath.motion.kinematics import tool_pose
+from teachpath.motion.plan import plan
 from teachpath.motion.program import Program
 from teachpath.motion.puma560 import SPEED
 from teachpath.motion.rehearsal import Rehearsal, rehearse
 from teachpath.motion.route import ArcLength
+from teachpath.motion.scenes import empty_scene, paper_scene
+from teachpath.motion.settings import MotionSettings
 from teachpath.records import Plan
 from tests.unit.motion.ways import MIDDLE, way
 

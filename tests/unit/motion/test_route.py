@@ -4,11 +4,13 @@ import numpy as np
 import pytest
 
 from teachpath.errors import UnusableInput, UnusableSettings
-from teachpath.motion import MotionSettings, paper_scene, plan
 from teachpath.motion.branches import candidates, within_limits
 from teachpath.motion.kinematics import tool_pose
+from teachpath.motion.plan import plan
 from teachpath.motion.puma560 import LOWER, UPPER
 from teachpath.motion.route import ArcLength, route
+from teachpath.motion.scenes import paper_scene
+from teachpath.motion.settings import MotionSettings
 from teachpath.records import Scene, Shape
 from tests.unit.motion.ways import MIDDLE, clamped, way
 

@@ -1,11 +1,12 @@
 import numpy as np
 import pytest
 
-from teachpath.motion import MotionSettings, paper_scene
 from teachpath.motion.kinematics import downward, inverse, tool_pose
 from teachpath.motion.moves import left_behind
 from teachpath.motion.puma560 import LOWER, UPPER
 from teachpath.motion.scene import FAR, CollisionModel, Load
+from teachpath.motion.scenes import paper_scene
+from teachpath.motion.settings import MotionSettings
 from teachpath.records import Scene, Shape
 from tests.unit.motion.solids import Surface
 

@@ -1,7 +1,6 @@
 import numpy as np
 import pytest
 
-from teachpath.motion import MotionSettings
 from teachpath.motion.branches import Candidate, candidates, usable
 from teachpath.motion.joints import ARM, JointPath, Limits
 from teachpath.motion.kinematics import tool_pose
@@ -9,6 +8,7 @@ from teachpath.motion.pace import fastest_pace
 from teachpath.motion.profile import squared_rates, times
 from teachpath.motion.puma560 import ACCELERATION, JERK, SPEED
 from teachpath.motion.route import Route, route
+from teachpath.motion.settings import MotionSettings
 from teachpath.motion.shares import NOTHING_LEFT, Reserve, uses
 from teachpath.motion.timing import lower_bound, timed
 from teachpath.motion.track import Track, paced

@@ -3,10 +3,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from teachpath.motion import paper_scene, plan
 from teachpath.motion.certificate import track
 from teachpath.motion.kinematics import tool_pose
+from teachpath.motion.plan import plan
 from teachpath.motion.puma560 import ACCELERATION, LOWER, SPEED, TORQUE, UPPER
+from teachpath.motion.scenes import paper_scene
 from teachpath.motion.torque import Dynamics
 from teachpath.records import Shape
 from tests.unit.motion.ways import MIDDLE, way

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from teachpath.motion import paper_scene
+from teachpath.motion.scenes import paper_scene
 from teachpath.nurbs import Curve
 from teachpath.records import Fit, LearnedPath
 

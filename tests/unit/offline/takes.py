@@ -5,8 +5,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from teachpath.io.store import Store
-from teachpath.recording import GRASP_BUTTON, RecordingSettings
+from teachpath.io.store.store import Store
+from teachpath.recording.phases import GRASP_BUTTON
+from teachpath.recording.settings import RecordingSettings
 from teachpath.records import Calibration, Demonstration, Sample, Scene, Trajectory
 from teachpath.workers.curation import Curation
 from teachpath.workers.session import RecordingSession

@@ -4,10 +4,12 @@ from pathlib import Path
 import pytest
 
 from teachpath.errors import Conflict
-from teachpath.io.store import RecordingHeader, Store, StoreSettings
+from teachpath.io.store.recordings import RecordingHeader
+from teachpath.io.store.settings import StoreSettings
+from teachpath.io.store.store import Store
 from teachpath.offline.doctor import examine
 from teachpath.offline.lock import StationLock
-from teachpath.recording import RecordingSettings
+from teachpath.recording.settings import RecordingSettings
 from teachpath.records import Calibration, Scene, Shape
 from tests.unit.recording.hands import demonstration
 

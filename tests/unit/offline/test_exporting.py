@@ -9,7 +9,8 @@ import pytest
 
 from teachpath.errors import Conflict, NotFound, TeachpathError, UnusableInput, UnusableRecording
 from teachpath.io.sample_files import read_samples, write_samples
-from teachpath.io.store import Store, StoreSettings
+from teachpath.io.store.settings import StoreSettings
+from teachpath.io.store.store import Store
 from teachpath.offline.exporting import chosen, export_demonstrations
 from teachpath.offline.importing import Source, import_file
 from teachpath.records import Calibration, Demonstration

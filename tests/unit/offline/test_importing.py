@@ -6,9 +6,11 @@ import numpy as np
 import pytest
 
 from teachpath.errors import UnusableInput, UnusableRecording
-from teachpath.io.store import RecordingHeader, Store, StoreSettings
+from teachpath.io.store.recordings import RecordingHeader
+from teachpath.io.store.settings import StoreSettings
+from teachpath.io.store.store import Store
 from teachpath.offline.importing import Source, import_file
-from teachpath.recording import RecordingSettings
+from teachpath.recording.settings import RecordingSettings
 from teachpath.records import Calibration, Demonstration, Sample, Scene, Shape, Trajectory
 from tests.unit.recording.hands import demonstration
 

@@ -10,9 +10,10 @@ import pyarrow.parquet as pq
 import pytest
 
 from teachpath.io import lerobot
-from teachpath.io.store import Store, StoreSettings
+from teachpath.io.store.settings import StoreSettings
+from teachpath.io.store.store import Store
 from teachpath.offline.exporting import export_demonstrations
-from teachpath.recording import to_world
+from teachpath.recording.demonstration import to_world
 from teachpath.records import Demonstration, Sample
 from tests.unit.offline.takes import LAB, TAKES, bare, lossy, record, trajectory, whole
 

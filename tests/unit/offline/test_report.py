@@ -8,9 +8,12 @@ import numpy as np
 import pytest
 
 from teachpath.errors import NotFound, UnusableInput
-from teachpath.io.store import Store, StoreSettings
-from teachpath.learning import LearningSettings, learn
-from teachpath.motion import MotionSettings, paper_scene
+from teachpath.io.store.settings import StoreSettings
+from teachpath.io.store.store import Store
+from teachpath.learning.learn import learn
+from teachpath.learning.settings import LearningSettings
+from teachpath.motion.scenes import paper_scene
+from teachpath.motion.settings import MotionSettings
 from teachpath.offline.report import Review, review_of, write
 from teachpath.records import Demonstration, Trajectory
 from tests.contract.rows import a_job, demonstration

@@ -2,7 +2,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from teachpath.recording import StreamAccount
+from teachpath.recording.account import StreamAccount
 from tests.unit.recording.hands import PERIOD_NS, START_NS, sample
 
 

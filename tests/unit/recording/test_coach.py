@@ -1,6 +1,6 @@
 import pytest
 
-from teachpath.recording import Shown, advise
+from teachpath.recording.coach import Shown, advise
 
 
 @pytest.mark.parametrize(

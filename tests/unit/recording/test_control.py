@@ -1,7 +1,7 @@
 import pytest
 
 from teachpath.errors import UnusableInput
-from teachpath.recording import Control, Routine, State
+from teachpath.recording.control import Control, Routine, State
 
 
 def test_records_at_once_or_waits_armed() -> None:

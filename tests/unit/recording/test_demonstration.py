@@ -5,7 +5,8 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from teachpath.errors import UnusableRecording
-from teachpath.recording import Cut, object_trajectory, point_to_world, to_world
+from teachpath.recording.demonstration import object_trajectory, point_to_world, to_world
+from teachpath.recording.phases import Cut
 from teachpath.records import Calibration
 from tests.unit.recording.hands import demonstration
 

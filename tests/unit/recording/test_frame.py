@@ -7,7 +7,8 @@ from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
 from teachpath.errors import UnusableInput
-from teachpath.recording import fit_frame, to_world
+from teachpath.recording.demonstration import to_world
+from teachpath.recording.frame import fit_frame
 from teachpath.records import Array, Calibration, TaughtPoint
 
 PLACES = np.array([[0.4, -0.3, 0.5], [0.7, -0.3, 0.5], [0.7, 0.3, 0.5], [0.4, 0.3, 0.5], [0.5, 0.0, 0.8]])

@@ -5,7 +5,8 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from teachpath.recording import FistGesture, RecordingSettings, Sign
+from teachpath.recording.gesture import FistGesture, Sign
+from teachpath.recording.settings import RecordingSettings
 from teachpath.records import Sample, Vector
 from tests.unit.recording.hands import demonstration, sample
 

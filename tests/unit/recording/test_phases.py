@@ -3,7 +3,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from teachpath.recording import GRASP_BUTTON, Cut, RecordingSettings, Segmenter
+from teachpath.recording.phases import GRASP_BUTTON, Cut, Segmenter
+from teachpath.recording.settings import RecordingSettings
 from teachpath.records import Phase, Sample
 from tests.unit.recording.hands import CLOSED, OPEN, demonstration, sample
 

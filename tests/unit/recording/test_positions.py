@@ -3,7 +3,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from teachpath.recording import RecordingSettings, faults_of
+from teachpath.recording.positions import faults_of
+from teachpath.recording.settings import RecordingSettings
 from teachpath.records import Array
 from tests.unit.recording.hands import PERIOD_NS, START_NS, sample
 

@@ -3,7 +3,8 @@ from dataclasses import replace
 import pytest
 
 from teachpath.errors import UnusableSettings
-from teachpath.recording import RecordingSettings, judge
+from teachpath.recording.settings import RecordingSettings
+from teachpath.recording.verdict import judge
 from teachpath.records import Account
 
 SETTINGS = RecordingSettings()

@@ -3,8 +3,10 @@ from pathlib import Path
 
 import pytest
 
-from teachpath.io.store import Store, StoreSettings
-from teachpath.motion import paper_scene, plan
+from teachpath.io.store.settings import StoreSettings
+from teachpath.io.store.store import Store
+from teachpath.motion.plan import plan
+from teachpath.motion.scenes import paper_scene
 from teachpath.records import Plan
 from tests.unit.motion.ways import MIDDLE, way
 from tests.unit.workers.recorders import Bench

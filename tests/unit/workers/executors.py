@@ -8,10 +8,11 @@ import numpy as np
 from teachpath.io import wire
 from teachpath.io.bus import MemoryBus
 from teachpath.io.documents import encode
-from teachpath.motion import MotionSettings
 from teachpath.motion.puma560 import ACCELERATION, JERK, SPEED
+from teachpath.motion.settings import MotionSettings
 from teachpath.records import Command, ExecutorStatus, JointState, JournalEntry, Lease, LeaseRequest, Plan, Setpoint
-from teachpath.workers.executor import Executor, ExecutorSettings
+from teachpath.workers.executor.settings import ExecutorSettings
+from teachpath.workers.executor.worker import Executor
 from teachpath_proto.keys import Keys
 
 KEYS = Keys()

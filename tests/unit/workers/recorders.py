@@ -5,9 +5,9 @@ from collections.abc import Callable
 from typing import Any
 
 from teachpath.io.bus import MemoryBus
-from teachpath.io.store import Store
+from teachpath.io.store.store import Store
 from teachpath.io.wire import sample_message
-from teachpath.recording import RecordingSettings
+from teachpath.recording.settings import RecordingSettings
 from teachpath.records import Calibration, Demonstration, Sample, Scene, Shape, Trajectory
 from teachpath.workers.recorder import Recorder
 from teachpath_proto import tracker_pb2

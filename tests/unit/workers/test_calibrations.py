@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 
 from teachpath.errors import Conflict, NotFound, UnusableInput
-from teachpath.io.store import Store, StoreSettings
-from teachpath.recording import RecordingSettings
+from teachpath.io.store.settings import StoreSettings
+from teachpath.io.store.store import Store
+from teachpath.recording.settings import RecordingSettings
 from teachpath.records import Calibration, Demonstration, Scene, TaughtPoint, Vector
 from teachpath.workers.calibrations import Calibrations
 from teachpath.workers.curation import Curation

@@ -4,7 +4,7 @@ from dataclasses import replace
 import numpy as np
 
 from teachpath.errors import UnusableRecording
-from teachpath.learning import LearningSettings
+from teachpath.learning.settings import LearningSettings
 from teachpath.records import Demonstration, Trajectory
 from teachpath.workers.coach import Coach
 from tests.contract.rows import demonstration

@@ -6,11 +6,11 @@ import pytest
 
 from teachpath.errors import Conflict, PathRefused, TeachpathError, Unreachable, UnusableInput
 from teachpath.io.documents import encode
-from teachpath.motion import empty_scene
 from teachpath.motion.kinematics import tool_pose
 from teachpath.motion.puma560 import ACCELERATION, JERK, SPEED
+from teachpath.motion.scenes import empty_scene
 from teachpath.records import Plan
-from teachpath.workers.executor import ExecutorSettings
+from teachpath.workers.executor.settings import ExecutorSettings
 from tests.unit.motion.ways import MIDDLE, way
 from tests.unit.workers.executors import HOME, PERIOD_NS, Bench, standing, within_limits
 

@@ -9,7 +9,7 @@ import pytest
 
 from teachpath.errors import Conflict, LearningFailed
 from teachpath.io.bus import MemoryBus
-from teachpath.io.store import Store
+from teachpath.io.store.store import Store
 from teachpath.records import Job, JobState
 from teachpath.workers.jobs import Jobs, JobSettings, Kind
 from teachpath_proto.keys import Keys

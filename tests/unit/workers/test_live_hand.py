@@ -6,8 +6,8 @@ import pytest
 from teachpath.errors import Conflict, UnusableInput
 from teachpath.io.documents import encode
 from teachpath.io.wire import sample_message
-from teachpath.motion import empty_scene
 from teachpath.motion.kinematics import tool_pose
+from teachpath.motion.scenes import empty_scene
 from teachpath.records import Calibration, Mirroring
 from tests.unit.recording.hands import sample
 from tests.unit.workers.executors import HOME, KEYS, PERIOD_NS, Bench, standing, within_limits

@@ -9,7 +9,7 @@ import pytest
 from teachpath.errors import NotFound
 from teachpath.io import wire
 from teachpath.io.bus import MemoryBus
-from teachpath.io.store import MotionHeader, Motions, read_motion
+from teachpath.io.store.motions import MotionHeader, Motions, read_motion
 from teachpath.motion.series import series
 from teachpath.records import ExecutorStatus, JournalEntry, Plan, Setpoint
 from teachpath.workers.motion_recorder import AFTER_NS, MotionRecorder

@@ -11,7 +11,7 @@ from teachpath.motion.drawing import drawing
 from teachpath.motion.kinematics import link_frames
 from teachpath.motion.scenes import empty_scene, paper_scene
 from teachpath.motion.settings import MotionSettings
-from teachpath.recording import Pose
+from teachpath.recording.demonstration import Pose
 from teachpath.records import JointState, Phase
 from teachpath.workers.hand import Hand
 from teachpath.workers.preview import WAYS, Page, Preview, PreviewSettings

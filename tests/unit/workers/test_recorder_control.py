@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 
 from teachpath.errors import Conflict, NotFound, UnusableInput
-from teachpath.recording import GRASP_BUTTON, TOGGLE_BUTTON
+from teachpath.recording.phases import GRASP_BUTTON, TOGGLE_BUTTON
 from teachpath.records import Sample
 from teachpath_proto import tracker_pb2
 from tests.unit.recording.hands import CLOSED, PERIOD_NS, START_NS, demonstration, sample

@@ -9,8 +9,9 @@ from typing import Any, BinaryIO
 
 import pytest
 
-from teachpath.io.store import Store, StoreSettings
 from teachpath.io.store.recordings import open_new, salvage
+from teachpath.io.store.settings import StoreSettings
+from teachpath.io.store.store import Store
 from tests.unit.recording.hands import demonstration
 from tests.unit.workers.recorders import Bench
 

@@ -15,7 +15,8 @@ from teachpath.motion.puma560 import LOWER, TORQUE, UPPER
 from teachpath.motion.scenes import empty_scene, paper_scene
 from teachpath.motion.settings import MotionSettings
 from teachpath.records import ExecutorStatus, JointState, Scene, Setpoint
-from teachpath.workers.simulator import Simulator, SimulatorSettings
+from teachpath.workers.simulator.settings import SimulatorSettings
+from teachpath.workers.simulator.worker import Simulator
 from teachpath_proto.keys import Keys
 
 KEYS = Keys()

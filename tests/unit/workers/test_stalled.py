@@ -6,8 +6,8 @@ import time
 import numpy as np
 
 from teachpath.errors import UnusableRecording
-from teachpath.learning import LearningSettings
-from teachpath.motion import drawing
+from teachpath.learning.settings import LearningSettings
+from teachpath.motion.drawing import drawing
 from teachpath.records import Demonstration, Trajectory
 from teachpath.workers.coach import Coach
 from teachpath.workers.preview import Preview

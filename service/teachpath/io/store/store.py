@@ -20,6 +20,7 @@ from teachpath.io.store.engine import open_engine
 from teachpath.io.store.journal import Journal
 from teachpath.io.store.motions import Motions
 from teachpath.io.store.recordings import Opener, Recordings, open_new
+from teachpath.io.store.settings import StoreSettings
 from teachpath.io.store.tables import (
     Base,
     DemonstrationRow,
@@ -33,16 +34,6 @@ from teachpath.io.store.versions import Versions, learned_row
 from teachpath.records import Demonstration, ExecutorStatus, Job, JobState, Learned, LearnedPath, Plan, Task
 
 Row = TypeVar("Row", bound=Base)
-
-
-@dataclass(frozen=True)
-class StoreSettings:
-    """Where lasting things are kept."""
-
-    # folder of the database and the recordings; made when missing
-    data_dir: str = "teachpath-data"
-    # SQLAlchemy URL; empty: SQLite in data_dir
-    database: str = ""
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,9 +6,9 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from teachpath.errors import NotFound, PathRefused
-from teachpath.io.store import RunRow, Store
-from teachpath.motion import MotionSettings
+from teachpath.io.store.store import RunRow, Store
 from teachpath.motion.rehearsal import Rehearsal, rehearse
+from teachpath.motion.settings import MotionSettings
 from teachpath.records import Demonstration, LearnedPath, Plan, Scene, Trajectory
 
 

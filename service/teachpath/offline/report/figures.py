@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from html import escape
 
-from teachpath.learning import dendrogram
-from teachpath.learning.cuts import Dendrogram
+from teachpath.learning.cuts import Dendrogram, dendrogram
 from teachpath.offline.report.content import Review
 from teachpath.offline.report.scene import way_color
 

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from teachpath.io.bus import MemoryBus
-from teachpath.motion import drawing
+from teachpath.motion.drawing import drawing
 from teachpath.motion.kinematics import link_frames
 from teachpath.motion.rehearsal import Rehearsal
 from teachpath.offline.report.content import Review

@@ -15,7 +15,7 @@ from teachpath.motion.mirror import Mirror
 from teachpath.motion.program import Moment
 from teachpath.motion.scene import CollisionModel, Load
 from teachpath.motion.settings import MotionSettings
-from teachpath.recording import to_world
+from teachpath.recording.demonstration import to_world
 from teachpath.records import Array, Mirroring, Sample
 from teachpath_proto.keys import Keys
 

@@ -1,0 +1,15 @@
+"""Where the store keeps what lasts."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class StoreSettings:
+    """Where lasting things are kept."""
+
+    # folder of the database and the recordings; made when missing
+    data_dir: str = "teachpath-data"
+    # SQLAlchemy URL; empty: SQLite in data_dir
+    database: str = ""
