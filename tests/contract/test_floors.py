@@ -1,6 +1,8 @@
 """The house: imports go down only, and one outside thing has one door (ARCHITECTURE.md, "Floors" and "Doors")."""
 
 import ast
+import subprocess
+import sys
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -113,3 +115,19 @@ def test_ruckigs_network_service_is_never_asked() -> None:
     for file in modules():
         names = {node.attr for node in ast.walk(ast.parse(file.read_text())) if isinstance(node, ast.Attribute)}
         assert "intermediate_positions" not in names, file
+
+
+@pytest.mark.parametrize(
+    ("module", "needless"),
+    [
+        ("teachpath.__main__", {"scipy.linalg", "numba", "hmmlearn", "sqlalchemy", "fastapi", "mujoco", "meshcat"}),
+        ("teachpath.workers.simulator.worker", {"scipy.linalg", "numba", "hmmlearn", "sqlalchemy", "fastapi"}),
+        ("teachpath.workers.executor.worker", {"hmmlearn", "sqlalchemy", "fastapi", "meshcat"}),
+        ("teachpath.app", {"numba", "hmmlearn", "mujoco"}),
+    ],
+)
+def test_a_process_loads_only_what_it_uses(module: str, needless: set[str]) -> None:
+    code = f"import sys, {module}; print(*sys.modules)"
+    loaded = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout.split()
+    assert module in loaded
+    assert not needless & set(loaded)
