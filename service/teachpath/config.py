@@ -22,6 +22,7 @@ from teachpath.io.bus import BusSettings
 from teachpath.io.meshes import read_hull
 from teachpath.io.store.settings import StoreSettings
 from teachpath.learning.settings import LearningSettings
+from teachpath.motion.arm import choose
 from teachpath.motion.scenes import empty_scene, paper_scene
 from teachpath.motion.settings import MotionSettings
 from teachpath.recording.settings import RecordingSettings
@@ -84,6 +85,8 @@ class Settings(BaseModel):
 def load(file: Path | None = None, *, document: dict[str, Any] | None = None) -> Settings:
     """Read the settings: `document` wins over TEACHPATH_* variables, those over the file, that over the defaults.
 
+    The arm that they name (`motion.variant`) is from then on the arm of this process.
+
     Args:
         file: TOML file; else TEACHPATH_CONFIG, else ./teachpath.toml when it exists.
         document: settings given on the command line.
@@ -100,6 +103,7 @@ def load(file: Path | None = None, *, document: dict[str, Any] | None = None) ->
     _check_names("robot", [settings.bus.robot])
     _check_calibrations(settings.calibrations)
     _check_scenes(settings.scenes)
+    choose(settings.motion.variant)
     return settings
 
 

@@ -4,6 +4,7 @@ import argparse
 import math
 import time
 
+import inverse
 import learning
 import learning_peers
 import learning_scale
@@ -34,6 +35,7 @@ def main() -> None:
     )
     print_report("Learning beside other libraries: the same data, the same bound", _peers(trajectories, quick=quick))
     print_report("Learning from thousands", learning_scale.measure(quick=quick))
+    print_report("Inverse kinematics beside another library", inverse.measure(repeats=3 if quick else 7))
     print_report(
         "Timing: how near to the limits, how soon it stops, what a cycle costs",
         timing.measure(repeats=1 if quick else 3),

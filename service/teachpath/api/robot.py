@@ -13,7 +13,8 @@ from fastapi import APIRouter, WebSocket, WebSocketDisconnect
 from teachpath.api.parts import Parts
 from teachpath.api.sockets import same_origin
 from teachpath.io.documents import to_document
-from teachpath.motion.puma560 import ACCELERATION, FINGER_TRAVEL, JERK, LINKS, LOWER, SPEED, TOOL_LENGTH, TORQUE, UPPER
+from teachpath.motion.arm import arm
+from teachpath.motion.puma560 import ACCELERATION, FINGER_TRAVEL, JERK, LOWER, SPEED, TOOL_LENGTH, TORQUE, UPPER
 from teachpath.records import ExecutorStatus
 from teachpath.workers.joints import JointFrame
 
@@ -30,7 +31,8 @@ def robot_router(parts: Parts) -> APIRouter:
         """Describe the arm: standard Denavit-Hartenberg links, joint limits, gripper, and where it waits."""
         return {
             "name": parts.settings.bus.robot,
-            "links": [{"a": link.a, "d": link.d, "alpha": link.alpha} for link in LINKS],
+            "variant": arm().name,
+            "links": [{"a": link.a, "d": link.d, "alpha": link.alpha} for link in arm().links],
             "lower": LOWER.tolist(),
             "upper": UPPER.tolist(),
             "speed": SPEED.tolist(),
@@ -55,6 +57,7 @@ def robot_router(parts: Parts) -> APIRouter:
 
     @router.websocket("/joints")
     async def joints(socket: WebSocket) -> None:
+        """Tell what the arm does, whenever something has changed; a page of another origin is refused."""
         if not same_origin(socket.headers):
             await socket.close()  # before it was accepted: the handshake is answered with 403
             return

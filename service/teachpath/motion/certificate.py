@@ -9,6 +9,7 @@ from dataclasses import asdict
 import numpy as np
 
 from teachpath.errors import PathRefused
+from teachpath.motion.arm import arm
 from teachpath.motion.joints import ARM, JointPath, Limits
 from teachpath.motion.puma560 import ACCELERATION, JERK, LOWER, SPEED, TORQUE, UPPER, Array
 from teachpath.motion.shares import uses
@@ -17,8 +18,9 @@ from teachpath.records import Extreme, Plan, Scene
 
 
 def digest(plan: Plan) -> str:
-    """Compute the SHA-256 (hex) over all that decides the motion: path, scene, configurations, limits and timing."""
+    """Compute the SHA-256 (hex) over all that decides the motion: arm, path, scene, configurations, limits, timing."""
     total = hashlib.sha256()
+    total.update(repr(arm().links).encode())
     total.update(f"{plan.path}|{plan.path_version}|".encode())
     total.update(_scene_text(plan.scene).encode())
     numbers = (plan.lengths, plan.joints, plan.pace, plan.limits, plan.above_start, plan.above_goal, plan.duration)
@@ -37,7 +39,7 @@ def verify(plan: Plan) -> None:
     """
     if digest(plan) != plan.certificate.digest:
         raise PathRefused(
-            f"plan {plan.id} has changed since it was certified (or the arm's limits have); plan the path again"
+            f"plan {plan.id} has changed since it was certified (or the arm has: motion.variant); plan the path again"
         )
 
 

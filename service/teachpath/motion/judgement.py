@@ -13,7 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from teachpath.motion.puma560 import ACCELERATION, JERK, LINKS, LOWER, SPEED, TOOL_LENGTH, UPPER, Array
+from teachpath.motion.arm import arm
+from teachpath.motion.puma560 import ACCELERATION, JERK, LOWER, SPEED, TOOL_LENGTH, UPPER, Array
 from teachpath.nurbs import Curve
 
 OFF: Final = 1e-4  # m, that the tool may be off the path
@@ -156,7 +157,7 @@ def _tool(q: Array) -> Array:
     """Return the grasp point (n, 3) [m] of configurations (n, 6), link by link from the tip to the base."""
     point = np.tile([0.0, 0.0, TOOL_LENGTH], (len(q), 1))
     for joint in reversed(range(6)):
-        link = LINKS[joint]
+        link = arm().links[joint]
         x, y, z = point.T
         ca, sa = np.cos(link.alpha), np.sin(link.alpha)
         x, y, z = x + link.a, ca * y - sa * z, sa * y + ca * z + link.d

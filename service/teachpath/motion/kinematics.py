@@ -3,24 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import cos, sin
+from math import atan2, cos, hypot, sin
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from teachpath.motion.puma560 import LINKS, TOOL_LENGTH
+from teachpath.motion.arm import arm
+from teachpath.motion.puma560 import TOOL_LENGTH, Variant
 
 Array = NDArray[np.float64]
 
-A2: Final = LINKS[1].a
-A3: Final = LINKS[2].a
-D1: Final = LINKS[0].d
-D3: Final = LINKS[2].d
-D4: Final = LINKS[3].d
-WRIST_TO_GRASP: Final = LINKS[5].d + TOOL_LENGTH
-FOREARM: Final = float(np.hypot(A3, D4))
-FOREARM_ANGLE: Final = float(np.arctan2(D4, A3))
 # Below this sine of joint 5 the axes of joints 4 and 6 coincide and only the sum of their angles is determined.
 WRIST_SINGULAR: Final = 1e-9
 
@@ -32,11 +25,31 @@ BRANCHES: Final = tuple(
 )
 
 
-def link_frames(q: Array) -> Array:
+@dataclass(frozen=True)
+class Lengths:
+    """What the inverse kinematics uses of an arm [m]; `bend` is the angle between forearm and link 3 [rad]."""
+
+    shoulder: float  # of joint 2 above the floor
+    upper_arm: float
+    offset: float  # of the arm beside the axis of joint 1
+    forearm: float  # from elbow to wrist
+    bend: float
+    hand: float  # from wrist to grasp point
+
+    @classmethod
+    def of(cls, variant: Variant) -> Lengths:
+        """Return the lengths of a variant."""
+        rows = variant.links
+        forearm, bend = hypot(rows[2].a, rows[3].d), atan2(rows[3].d, rows[2].a)
+        return cls(rows[0].d, rows[1].a, rows[2].d, forearm, bend, rows[5].d + TOOL_LENGTH)
+
+
+def link_frames(q: Array, variant: Variant | None = None) -> Array:
     """Compute the frames of all links (standard Denavit-Hartenberg; Paul, Robot Manipulators, MIT Press 1981, ch. 2).
 
     Args:
         q: (..., 6) configurations [rad].
+        variant: of the arm; that of this process when it is left out, as in all that follows.
 
     Returns:
         (..., 7, 4, 4) poses to world from link 0 (the world itself) to link 6 (the flange).
@@ -44,19 +57,19 @@ def link_frames(q: Array) -> Array:
     q = np.asarray(q, dtype=np.float64)
     frames = np.zeros((*q.shape[:-1], 7, 4, 4))
     frames[..., 0, :, :] = np.eye(4)
-    for i, link in enumerate(LINKS):
+    for i, link in enumerate((variant or arm()).links):
         frames[..., i + 1, :, :] = frames[..., i, :, :] @ _link_matrix(q[..., i], link.d, link.a, link.alpha)
     return frames
 
 
-def tool_pose(q: Array) -> Array:
+def tool_pose(q: Array, variant: Variant | None = None) -> Array:
     """Compute the pose (..., 4, 4) to world from the tool (origin: grasp point, z: out of the gripper)."""
-    pose = link_frames(q)[..., 6, :, :].copy()
+    pose = link_frames(q, variant)[..., 6, :, :].copy()
     pose[..., :3, 3] += TOOL_LENGTH * pose[..., :3, 2]
     return pose
 
 
-def jacobian(q: Array) -> Array:
+def jacobian(q: Array, variant: Variant | None = None) -> Array:
     """Compute the geometric Jacobian of the grasp point in world axes.
 
     Args:
@@ -65,7 +78,7 @@ def jacobian(q: Array) -> Array:
     Returns:
         (..., 6, 6): rows velocity x y z [m/rad], then angular velocity x y z [1].
     """
-    frames = link_frames(q)
+    frames = link_frames(q, variant)
     tool = frames[..., 6, :3, 3] + TOOL_LENGTH * frames[..., 6, :3, 2]
     axes = frames[..., :6, :3, 2]  # (..., 6 joints, 3)
     arms = tool[..., None, :] - frames[..., :6, :3, 3]
@@ -106,7 +119,7 @@ class Solutions:
     beyond: NDArray[np.bool_]
 
 
-def inverse(poses: Array, *, q4_before: float = 0.0) -> Solutions:
+def inverse(poses: Array, *, q4_before: float = 0.0, variant: Variant | None = None) -> Solutions:
     """Solve the inverse kinematics in closed form, all 8 branches (after Paul 1981, ch. 3, and Lee & Ziegler 1984).
 
     At a singular wrist (joint 5 zero) joint 4 keeps the value of the pose before it.
@@ -115,29 +128,17 @@ def inverse(poses: Array, *, q4_before: float = 0.0) -> Solutions:
         poses: (n, 4, 4) to world from the tool.
         q4_before: joint 4 before the first pose [rad], for a path that begins at a singular wrist.
     """
-    wrist = poses[:, :3, 3] - WRIST_TO_GRASP * poses[:, :3, 2]
+    of = variant or arm()
+    lengths = Lengths.of(of)
     joints = np.zeros((len(poses), 8, 6))
-    excess = np.zeros((len(poses), 8))
-    radius = np.hypot(wrist[:, 0], wrist[:, 1])
-    inner = D3 - radius
-    along = np.sqrt(np.maximum(radius**2 - D3**2, 0.0))
-    height = wrist[:, 2] - D1
-    reach = np.hypot(along, height)
-    outside = np.maximum(np.maximum(inner, reach - (A2 + FOREARM)), abs(A2 - FOREARM) - reach)
-    excess[:] = outside[:, None]
-    bend = np.clip((reach**2 - A2**2 - FOREARM**2) / (2 * A2 * FOREARM), -1.0, 1.0)
+    reach = _Reach.of(poses, lengths)
     for branch in range(8):
         side = 1.0 if branch < 4 else -1.0
-        # Seen along joint 2 the wrist lies ahead for righty, behind for lefty; z of frame 1 points to the arm's side.
-        q1 = np.arctan2(wrist[:, 1], wrist[:, 0]) + np.arctan2(D3, side * along)
-        knee = (-1.0 if (branch // 2) % 2 == 0 else 1.0) * side
-        inside = knee * np.arccos(bend)
-        q2 = np.arctan2(height, side * along) - np.arctan2(FOREARM * np.sin(inside), A2 + FOREARM * np.cos(inside))
-        q3 = inside - FOREARM_ANGLE
-        joints[:, branch, :3] = np.column_stack([q1, q2, q3])
-        joints[:, branch, 3:] = _wrist(joints[:, branch, :3], poses, flip=branch % 2 == 1, before=q4_before)
+        up = (branch // 2) % 2 == 0
+        joints[:, branch, :3] = reach.shoulder_and_elbow(side, (-1.0 if up else 1.0) * side)
+        joints[:, branch, 3:] = _wrist(joints[:, branch, :3], poses, of, flip=branch % 2 == 1, before=q4_before)
     joints = np.pi - np.mod(np.pi - joints, 2 * np.pi)
-    return Solutions(joints, excess, reach > A2 + FOREARM)
+    return Solutions(joints, np.repeat(reach.excess[:, None], 8, axis=1), reach.beyond)
 
 
 def least_singular_value(q: Array) -> Array:
@@ -162,10 +163,50 @@ def rotations(quaternions: Array) -> Array:
     return np.moveaxis(np.array(rows), 2, 0)
 
 
-def _wrist(arm: Array, poses: Array, *, flip: bool, before: float) -> Array:
-    frame = np.broadcast_to(np.eye(4), (len(arm), 4, 4))
-    for i in range(3):
-        frame = frame @ _link_matrix(arm[:, i], LINKS[i].d, LINKS[i].a, LINKS[i].alpha)
+@dataclass(frozen=True, eq=False)
+class _Reach:
+    """Where n wrist centres lie, seen from the shoulder [m]."""
+
+    lengths: Lengths
+    wrist: Array  # (n, 3)
+    along: Array  # (n,) level distance in the plane of the arm
+    height: Array
+    far: Array  # distance
+
+    @classmethod
+    def of(cls, poses: Array, lengths: Lengths) -> _Reach:
+        wrist = poses[:, :3, 3] - lengths.hand * poses[:, :3, 2]
+        along = np.sqrt(np.maximum(wrist[:, 0] ** 2 + wrist[:, 1] ** 2 - lengths.offset**2, 0.0))
+        height = wrist[:, 2] - lengths.shoulder
+        return cls(lengths, wrist, along, height, np.hypot(along, height))
+
+    @property
+    def beyond(self) -> NDArray[np.bool_]:
+        return np.asarray(self.far > self.lengths.upper_arm + self.lengths.forearm)
+
+    @property
+    def excess(self) -> Array:
+        """How far each lies outside the reach; at most 0 inside."""
+        long, short = self.lengths.upper_arm, self.lengths.forearm
+        inner = self.lengths.offset - np.hypot(self.wrist[:, 0], self.wrist[:, 1])
+        return np.maximum(np.maximum(inner, self.far - (long + short)), abs(long - short) - self.far)
+
+    def shoulder_and_elbow(self, side: float, knee: float) -> Array:
+        """Return joints 1 to 3 (n, 3) with the arm on one side (1: righty, -1: lefty) and the knee bent one way."""
+        of = self.lengths
+        bend = np.clip((self.far**2 - of.upper_arm**2 - of.forearm**2) / (2 * of.upper_arm * of.forearm), -1.0, 1.0)
+        # Seen along joint 2 the wrist lies ahead for righty, behind for lefty; z of frame 1 points to the arm's side.
+        q1 = np.arctan2(self.wrist[:, 1], self.wrist[:, 0]) + np.arctan2(of.offset, side * self.along)
+        inside = knee * np.arccos(bend)
+        across, onward = of.forearm * np.sin(inside), of.upper_arm + of.forearm * np.cos(inside)
+        q2 = np.arctan2(self.height, side * self.along) - np.arctan2(across, onward)
+        return np.column_stack([q1, q2, inside - of.bend])
+
+
+def _wrist(arm_joints: Array, poses: Array, variant: Variant, *, flip: bool, before: float) -> Array:
+    frame = np.broadcast_to(np.eye(4), (len(arm_joints), 4, 4))
+    for i, link in enumerate(variant.links[:3]):
+        frame = frame @ _link_matrix(arm_joints[:, i], link.d, link.a, link.alpha)
     turn = np.swapaxes(frame[:, :3, :3], 1, 2) @ poses[:, :3, :3]  # R of joints 4, 5, 6: Rz(q4) Ry(-q5) Rz(q6)
     sign = -1.0 if flip else 1.0
     sine = np.hypot(turn[:, 0, 2], turn[:, 1, 2])

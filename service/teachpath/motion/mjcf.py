@@ -8,9 +8,10 @@ from xml.sax.saxutils import quoteattr
 import numpy as np
 
 from teachpath.errors import UnusableInput
+from teachpath.motion.arm import arm
 from teachpath.motion.drawing import Part, drawing
 from teachpath.motion.kinematics import link_frames
-from teachpath.motion.puma560 import GRIPPER_COM, GRIPPER_INERTIA, GRIPPER_MASS, LINKS, TOOL_LENGTH, Array, Link
+from teachpath.motion.puma560 import GRIPPER_COM, GRIPPER_INERTIA, GRIPPER_MASS, TOOL_LENGTH, Array, Link, Variant
 from teachpath.records import Scene, Shape
 
 CARRIED: Final = "carried"  # body and geom of the carried object
@@ -24,7 +25,7 @@ _ARM: Final = 'contype="0" conaffinity="1"'
 _OBJECT: Final = 'contype="2" conaffinity="1"'
 
 
-def mjcf(scene: Scene, *, timestep: float = 0.001) -> str:
+def mjcf(scene: Scene, *, timestep: float = 0.001, variant: Variant | None = None) -> str:
     """Write the MJCF of arm and scene.
 
     Bodies `link1` to `link6` lie in the Denavit-Hartenberg frames, so that a body's pose is that of `link_frames`;
@@ -34,10 +35,12 @@ def mjcf(scene: Scene, *, timestep: float = 0.001) -> str:
     Args:
         scene: obstacles and carried object, in the world.
         timestep: of the simulation [s].
+        variant: of the arm; that of this process when it is left out.
 
     Raises:
         UnusableInput: a shape of the scene is neither box, cylinder, sphere nor mesh.
     """
+    of = variant or arm()
     return "\n".join(
         [
             '<mujoco model="puma560">',
@@ -50,12 +53,12 @@ def mjcf(scene: Scene, *, timestep: float = 0.001) -> str:
             "<worldbody>",
             *_parts_of(0),
             *[_obstacle(shape) for shape in scene.obstacles],
-            *_arm(),
+            *_arm(of),
             *([_carried(scene.carried)] if scene.carried else []),
             "</worldbody>",
             *([_grasp()] if scene.carried else []),
             "<actuator>",
-            *[_motor(i + 1, link) for i, link in enumerate(LINKS)],
+            *[_motor(i + 1, link) for i, link in enumerate(of.links)],
             "</actuator>",
             "</mujoco>",
         ]
@@ -76,10 +79,10 @@ def physical_inertia(link: Link) -> Array:
     return moments
 
 
-def _arm() -> list[str]:
-    zero = link_frames(np.zeros(6))
+def _arm(variant: Variant) -> list[str]:
+    zero = link_frames(np.zeros(6), variant)
     lines: list[str] = []
-    for i, link in enumerate(LINKS, start=1):
+    for i, link in enumerate(variant.links, start=1):
         relative = np.linalg.inv(zero[i - 1]) @ zero[i]
         anchor = -relative[:3, :3].T @ relative[:3, 3]  # origin and z of the frame before, seen from this one
         lines += [
@@ -98,7 +101,7 @@ def _arm() -> list[str]:
         f'<inertial pos="{_text(GRIPPER_COM)}" mass="{GRIPPER_MASS}" diaginertia="{_text(GRIPPER_INERTIA)}"/>',
         "</body>",
     ]
-    return lines + ["</body>"] * len(LINKS)
+    return lines + ["</body>"] * len(variant.links)
 
 
 def _parts_of(link: int) -> list[str]:

@@ -1,14 +1,27 @@
-"""The Puma 560 as published: one table of lengths, masses, friction and limits, from which everything else is made.
+"""The Puma 560 as published: tables of lengths, masses, friction and limits, from which everything else is made.
 
 Frames: frame 0 is `world`, on the floor under the pedestal; frame i (1 to 6) is the standard Denavit-Hartenberg frame
-behind joint i, fixed to link i. The tool's grasp point lies on z of frame 6. `SOURCES` names where each column is from.
+behind joint i, fixed to link i. The tool's grasp point lies on z of frame 6.
+
+The sources disagree, so there are variants: `VARIANTS` has them by name, each with the source of every column. What a
+source does not give is taken from the default and said to be. All have the frames and the zero position of Paul, in
+which the limits are stated; tables in the frames of Armstrong, Khatib and Burdick or of Lee, whose joints 2 and 3 are
+half a turn off, were converted. The variants differ by what matters to a tool (`d` of joint 3: 125.4 to 150.1 mm) and
+to a motor (its inertia at joint 2: 2.3 or 4.8 kg m^2), which is why a plan is of one variant and no other.
+
+The moments of inertia about the middle axis of link 3: 0.086 kg m^2 in the table of the toolbox that came with Corke
+and Armstrong-Helouvry, 0.066 in the same toolbox's table after Armstrong, Khatib and Burdick. With 0.066 and 0.0125
+about the other axes the first is 0.0075 more than any rigid body can have (no moment exceeds the sum of the other two;
+each was measured by itself, hung from wires); the second is possible. Of link 1 only the moment about its own axis is
+known. `mjcf.physical_inertia` has what the simulated arm does about both.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from math import pi, radians
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,7 +31,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True)
 class Link:
-    """One row of the table: joint i and the link behind it, in frame i; `SOURCES` has the reference of each column."""
+    """One row of a table: joint i and the link behind it, in frame i."""
 
     d: float  # m, offset along the joint's axis
     a: float  # m, length along x of the link's frame
@@ -51,7 +64,15 @@ WANG_CHEN: Final = (
     "manipulators, IEEE Trans. Robotics and Automation 7(4), 1991, pp. 489-499"
 )
 
-SOURCES: Final[dict[str, str]] = {
+FU_GONZALEZ_LEE: Final = (
+    "K. Fu, R. Gonzalez, C. Lee: Robotics: Control, Sensing, Vision, and Intelligence, McGraw-Hill 1987, fig. 2.11"
+)
+TOOLBOX_AKB: Final = (
+    f"{ARMSTRONG}; as in P. Corke's Robotics Toolbox for MATLAB, mdl_puma560akb, converted from its modified frames"
+)
+
+DEFAULT: Final = "corke-armstrong"
+_SOURCES: Final[dict[str, str]] = {
     "d": f"{CORKE_ARMSTRONG}; d of joint 1 (26.45 in, floor to shoulder) and of joint 6 (flange): {CORKE}, ch. 2",
     "a": CORKE_ARMSTRONG,
     "alpha": f"R. Paul's twists as in {CORKE_ARMSTRONG}: with all joints at zero the arm is right-handed",
@@ -69,7 +90,7 @@ SOURCES: Final[dict[str, str]] = {
     "acceleration": "derived here: inverse dynamics of this table stays within `torque` with all joints at full speed",
 }
 
-LINKS: Final = (
+_LINKS: Final = (
     Link(0.67183, 0.0, pi / 2, 0.0, (0.0, 0.0, 0.0), (0.0, 0.35, 0.0), 200e-6, -62.6111, 1.48e-3, (0.395, 0.435),
          radians(-160), radians(160), 97.6, 1.92, 10.0),
     Link(0.0, 0.4318, 0.0, 17.4, (-0.3638, 0.006, 0.2275), (0.13, 0.524, 0.539), 200e-6, 107.815, 0.817e-3,
@@ -85,12 +106,60 @@ LINKS: Final = (
 )  # fmt: skip
 
 
+@dataclass(frozen=True)
+class Variant:
+    """One published arm: its six rows, and for each column where it is from."""
+
+    name: str
+    links: tuple[Link, ...]
+    sources: Mapping[str, str]
+
+
+def _variant(name: str, columns: Mapping[str, tuple[str, tuple[Any, ...]]]) -> Variant:
+    """Return the variant with these columns, each a source and six values; the others are those of the default."""
+    links = tuple(replace(link, **{c: v[i] for c, (_, v) in columns.items()}) for i, link in enumerate(_LINKS))
+    borrowed = {column: f"not given there, so that of {DEFAULT}: {source}" for column, source in _SOURCES.items()}
+    return Variant(name, links, borrowed | {column: source for column, (source, _) in columns.items()})
+
+
+_RANGES = f"{FU_GONZALEZ_LEE}: the same ranges, with his zero half a turn off in joints 2 and 3"
+VARIANTS: Final[Mapping[str, Variant]] = {
+    variant.name: variant
+    for variant in (
+        Variant(DEFAULT, _LINKS, _SOURCES),
+        _variant("armstrong-khatib-burdick", {
+            "d": (TOOLBOX_AKB, (0.67183, 0.0, 0.2435 - 0.0934, 0.4331, 0.0, 0.05625)),
+            "a": (TOOLBOX_AKB, (0.0, 0.4318, 0.0203, 0.0, 0.0, 0.0)),
+            "mass": (TOOLBOX_AKB, (0.0, 17.4, 4.8, 0.82, 0.34, 0.09)),
+            "com": (TOOLBOX_AKB, ((0.0, 0.0, 0.0), (0.068 - 0.4318, 0.006, 0.2435 - 0.016), (-0.0203, -0.014, 0.070),
+                                  (0.0, 0.019, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.032 - 0.05625))),
+            "inertia": (TOOLBOX_AKB, ((0.0, 0.35, 0.0), (0.13, 0.524, 0.539), (0.066, 0.066, 0.0125),
+                                      (1.8e-3, 1.3e-3, 1.8e-3), (0.3e-3, 0.4e-3, 0.3e-3), (0.15e-3, 0.15e-3, 0.04e-3))),
+            "motor_inertia": (TOOLBOX_AKB, (291e-6, 409e-6, 299e-6, 35e-6, 35e-6, 35e-6)),
+            "viscous": ("not given there: none", (0.0,) * 6),
+            "coulomb": ("not given there: none", ((0.0, 0.0),) * 6),
+        }),
+        _variant("fu-gonzalez-lee", {
+            "d": (FU_GONZALEZ_LEE, (0.67183, 0.0, 0.14909, 0.43307, 0.0, 0.05625)),
+            "a": (FU_GONZALEZ_LEE, (0.0, 0.4318, 0.02032, 0.0, 0.0, 0.0)),
+            "lower": (_RANGES, tuple(link.lower for link in _LINKS)),
+            "upper": (_RANGES, tuple(link.upper for link in _LINKS)),
+        }),
+        _variant("corke-1996", {
+            "d": (f"{CORKE}, table 2.1", (0.67183, 0.0, 0.1254, 0.4318, 0.0, 0.05625)),
+            "a": (f"{CORKE}, table 2.1", (0.0, 0.4318, 0.0203, 0.0, 0.0, 0.0)),
+        }),
+    )
+}  # fmt: skip
+
+
 def _column(name: str) -> Array:
-    column = np.array([getattr(link, name) for link in LINKS], dtype=np.float64)
+    column = np.array([getattr(link, name) for link in _LINKS], dtype=np.float64)
     column.flags.writeable = False
     return column
 
 
+# What all variants have alike, in the zero position of Paul.
 LOWER: Final = _column("lower")  # (6,) rad
 UPPER: Final = _column("upper")
 SPEED: Final = _column("speed")  # (6,) rad/s

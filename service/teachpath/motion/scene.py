@@ -11,10 +11,11 @@ import mujoco
 import numpy as np
 
 from teachpath.errors import UnusableInput
+from teachpath.motion.arm import arm
 from teachpath.motion.drawing import Part, drawing
 from teachpath.motion.kinematics import link_frames, rotations, tool_pose
 from teachpath.motion.mjcf import CARRIED, mjcf
-from teachpath.motion.puma560 import LINKS, TOOL_LENGTH, Array
+from teachpath.motion.puma560 import TOOL_LENGTH, Array
 from teachpath.records import Scene, Shape, Vector
 
 FAR: Final = 0.3  # m, distances are not looked at beyond this
@@ -105,8 +106,9 @@ class CollisionModel:
         levers, far = np.zeros(6), 0.0  # far: from the frame behind a joint to any point that it moves
         for joint in range(5, -1, -1):
             far = max(far, radius[joint + 1])
-            levers[joint] = LINKS[joint].a + far
-            far += float(np.hypot(LINKS[joint].a, LINKS[joint].d))
+            link = arm().links[joint]
+            levers[joint] = link.a + far
+            far += float(np.hypot(link.a, link.d))
         return levers
 
     def _id(self, name: str) -> int:

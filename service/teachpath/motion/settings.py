@@ -12,6 +12,8 @@ from annotated_types import Ge, Gt, Le, Len
 class MotionSettings:
     """How paths are planned."""
 
+    # published table of the Puma 560; they differ in lengths (the arm's offset by 25 mm), inertia and friction
+    variant: Literal["corke-armstrong", "armstrong-khatib-burdick", "fu-gonzalez-lee", "corke-1996"] = "corke-armstrong"
     # [rad] joints 1 to 6 where the arm waits: elbow up, tool down, above the table
     home: Annotated[tuple[float, ...], Len(6, 6)] = (0.365, 1.663, -3.177, 0.0, -1.628, 0.365)
     # [m] that arm and carried object stay away from obstacles and the arm from itself

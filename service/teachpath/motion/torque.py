@@ -9,15 +9,13 @@ import mujoco
 import numpy as np
 from scipy.spatial import ConvexHull
 
+from teachpath.motion.arm import arm
 from teachpath.motion.kinematics import jacobian, tool_pose
 from teachpath.motion.mjcf import OBJECT_DENSITY, mjcf
-from teachpath.motion.puma560 import LINKS, TORQUE, Array
+from teachpath.motion.puma560 import TORQUE, Array
 from teachpath.records import Scene, Shape
 
 GRAVITY: Final = np.array([0.0, 0.0, -9.81])  # m/s^2
-# Coulomb friction at the joint, the mean of both directions, as the simulated arm has it.
-COULOMB: Final = np.array([abs(link.gear) * sum(link.coulomb) / 2 for link in LINKS])
-VISCOUS: Final = np.array([link.viscous * link.gear**2 for link in LINKS])
 SLOW: Final = 0.02  # rad/s, below which Coulomb friction fades out
 
 
@@ -27,6 +25,9 @@ class Dynamics:
     def __init__(self, carried: Shape | None = None) -> None:
         self._model = mujoco.MjModel.from_xml_string(mjcf(Scene("nothing")))
         self._data = mujoco.MjData(self._model)
+        # Coulomb friction at the joint is the mean of both directions, as the simulated arm has it.
+        self._coulomb = np.array([abs(link.gear) * sum(link.coulomb) / 2 for link in arm().links])
+        self._viscous = np.array([link.viscous * link.gear**2 for link in arm().links])
         self._mass = 0.0 if carried is None else OBJECT_DENSITY * _volume(carried)
 
     def torques(self, q: Array, velocity: Array, acceleration: Array) -> Array:
@@ -35,7 +36,7 @@ class Dynamics:
         Siciliano et al., Robotics, Springer 2009, eq. (7.42), with the motors' inertia, viscous and Coulomb friction.
         """
         inertia, gravity, coriolis = self._terms(q, velocity)
-        friction = VISCOUS * velocity + COULOMB * np.tanh(velocity / SLOW)
+        friction = self._viscous * velocity + self._coulomb * np.tanh(velocity / SLOW)
         return np.asarray(np.einsum("nij,nj->ni", inertia, acceleration) + gravity + coriolis + friction)
 
     def largest(self, q: Array, velocity: Array, acceleration: Array) -> Array:
@@ -49,7 +50,7 @@ class Dynamics:
         inertia, gravity, coriolis = self._terms(q, velocity)
         # Gravity does not depend on the rate, Coriolis and centrifugal torques grow with its square.
         steady = np.maximum(np.abs(gravity), np.abs(gravity + coriolis))
-        return np.asarray(np.abs(inertia) @ acceleration + steady + np.abs(VISCOUS * velocity) + COULOMB)
+        return np.asarray(np.abs(inertia) @ acceleration + steady + np.abs(self._viscous * velocity) + self._coulomb)
 
     def share_left(self, q: Array, velocity: Array, acceleration: Array) -> float:
         """Return the largest share of the acceleration limits (6,) with which `largest` keeps the motors' torques.

@@ -10,6 +10,7 @@ from multiprocessing import get_context
 from typing import Final
 
 from teachpath.errors import Conflict, Unreachable
+from teachpath.motion.arm import choose
 from teachpath.motion.settings import MotionSettings
 from teachpath.nurbs import Curve
 from teachpath.records import Assessment, LearnedPath, Scene
@@ -72,4 +73,5 @@ def _sit_down() -> None:
 def _assess(curve: Curve, scene: Scene, settings: MotionSettings, turn: Curve | None) -> Assessment:
     from teachpath.motion.assessment import assess  # loaded in the process that needs it, not in the service
 
+    choose(settings.variant)
     return assess(curve, scene, settings, turn=turn)

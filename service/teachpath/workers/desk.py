@@ -15,6 +15,7 @@ from typing import Any
 
 from teachpath.errors import Cancelled
 from teachpath.learning.settings import LearningSettings
+from teachpath.motion.arm import choose
 from teachpath.motion.settings import MotionSettings
 from teachpath.records import Learned, LearnedPath, Plan, Scene, Trajectory
 
@@ -97,5 +98,6 @@ def plan_path(path: LearnedPath, scene: Scene, settings: MotionSettings, *, prog
     """Plan one path."""
     from teachpath.motion.plan import plan
 
+    choose(settings.variant)
     progress(0.1, f"planning path {path.id}")
     return plan(path, scene, settings)

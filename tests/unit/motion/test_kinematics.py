@@ -3,11 +3,8 @@ import numpy as np
 import pytest
 
 from teachpath.motion.kinematics import (
-    A2,
     BRANCHES,
-    D1,
-    FOREARM,
-    WRIST_TO_GRASP,
+    Lengths,
     downward,
     explain_reach,
     inverse,
@@ -17,8 +14,10 @@ from teachpath.motion.kinematics import (
     tool_pose,
 )
 from teachpath.motion.mjcf import mjcf
-from teachpath.motion.puma560 import LINKS, LOWER, TOOL_LENGTH, UPPER
+from teachpath.motion.puma560 import DEFAULT, LOWER, TOOL_LENGTH, UPPER, VARIANTS
 from teachpath.motion.scenes import paper_scene
+
+LENGTHS = Lengths.of(VARIANTS[DEFAULT])
 
 
 @pytest.fixture(scope="module")
@@ -43,7 +42,7 @@ def product_of_screws(q: np.ndarray) -> np.ndarray:
         return m
 
     pose = np.eye(4)
-    for link, angle in zip(LINKS, q, strict=True):
+    for link, angle in zip(VARIANTS[DEFAULT].links, q, strict=True):
         pose = pose @ turn(2, angle) @ shift(2, link.d) @ shift(0, link.a) @ turn(0, link.alpha)
     return pose @ shift(2, TOOL_LENGTH)
 
@@ -109,8 +108,8 @@ def test_jacobian_is_the_derivative_of_the_tool_pose(configurations: np.ndarray)
 
 def test_a_pose_out_of_reach_says_by_how_much() -> None:
     too_far = 0.03
-    height = D1 - WRIST_TO_GRASP
-    at = np.hypot(A2 + FOREARM + too_far, LINKS[2].d)
+    height = LENGTHS.shoulder - LENGTHS.hand
+    at = np.hypot(LENGTHS.upper_arm + LENGTHS.forearm + too_far, LENGTHS.offset)
     solutions = inverse(downward(np.array([[at, 0.0, height]]), 0.0))
     np.testing.assert_allclose(solutions.excess, too_far, atol=1e-12)
     assert solutions.beyond[0]
@@ -119,7 +118,7 @@ def test_a_pose_out_of_reach_says_by_how_much() -> None:
 
 def test_a_pose_at_the_arms_own_axis_is_too_near() -> None:
     solutions = inverse(downward(np.array([[0.05, 0.0, 0.9]]), 0.0))
-    assert solutions.excess[0, 0] == pytest.approx(LINKS[2].d - 0.05)
+    assert solutions.excess[0, 0] == pytest.approx(LENGTHS.offset - 0.05)
     assert not solutions.beyond[0]
 
 

@@ -1,5 +1,8 @@
+import subprocess
+import sys
 from dataclasses import fields
 from itertools import pairwise
+from typing import get_args, get_type_hints
 
 import mujoco
 import numpy as np
@@ -7,54 +10,54 @@ import pytest
 
 from teachpath.motion.drawing import drawing
 from teachpath.motion.mjcf import mjcf, physical_inertia
-from teachpath.motion.puma560 import ACCELERATION, LINKS, LOWER, SOURCES, SPEED, TORQUE, UPPER, Link
+from teachpath.motion.puma560 import ACCELERATION, DEFAULT, LOWER, SPEED, TORQUE, UPPER, VARIANTS, Link, Variant
 from teachpath.motion.scenes import paper_scene, scenes
+from teachpath.motion.settings import MotionSettings
+
+every_variant = pytest.mark.parametrize("variant", VARIANTS.values(), ids=list(VARIANTS))
 
 
-@pytest.fixture
-def bare() -> tuple[mujoco.MjModel, mujoco.MjData]:
-    """The arm with exactly the published masses and without our gripper."""
-    model = mujoco.MjModel.from_xml_string(mjcf(paper_scene()))
-    model.body_mass[model.body("gripper").id] = 0.0
-    model.body_inertia[model.body("gripper").id] = 0.0
-    for number, link in enumerate(LINKS, start=1):
-        model.body_mass[model.body(f"link{number}").id] = link.mass
-        model.body_inertia[model.body(f"link{number}").id] = link.inertia
-    return model, mujoco.MjData(model)
+@every_variant
+def test_every_column_names_its_source(variant: Variant) -> None:
+    assert set(variant.sources) == {field.name for field in fields(Link)}
+    assert all(variant.sources.values())
 
 
-def test_every_column_names_its_source() -> None:
-    assert set(SOURCES) == {field.name for field in fields(Link)}
+def test_the_variants_are_those_of_the_setting_and_differ() -> None:
+    assert get_args(get_type_hints(MotionSettings)["variant"]) == tuple(VARIANTS)
+    assert len({variant.links for variant in VARIANTS.values()}) == len(VARIANTS)
 
 
-def test_gravity_load_is_the_published_one(bare: tuple[mujoco.MjModel, mujoco.MjData]) -> None:
-    # P. Corke, Robotics, Vision and Control, 2nd ed., Springer 2017, section 9.1: gravload at the nominal pose.
-    model, data = bare
-    data.qpos[:6] = [0, np.pi / 4, np.pi, 0, np.pi / 4, 0]
-    mujoco.mj_forward(model, data)
-    np.testing.assert_allclose(data.qfrc_bias[:6], [0, 31.6399, 6.0351, 0, 0.0283, 0], atol=5.1e-5)
+@every_variant
+def test_what_a_variant_does_not_name_is_the_defaults_and_limits_are_alike(variant: Variant) -> None:
+    for column, source in variant.sources.items():
+        of = [[getattr(link, column) for link in v.links] for v in (variant, VARIANTS[DEFAULT])]
+        alike = column in ("lower", "upper", "torque", "speed", "acceleration") or "not given there, so" in source
+        assert of[0] == of[1] or not alike
 
 
-def test_inertia_matrix_is_the_published_one(bare: tuple[mujoco.MjModel, mujoco.MjData]) -> None:
-    # The same book, section 9.2: the diagonal with motors and its largest off-diagonal elements, nominal pose.
-    model, data = bare
-    data.qpos[:6] = [0, np.pi / 4, np.pi, 0, np.pi / 4, 0]
-    mujoco.mj_forward(model, data)
-    columns = []
-    for joint in range(6):
-        unit, column = np.zeros(model.nv), np.zeros(model.nv)
-        unit[joint] = 1.0
-        mujoco.mj_mulM(model, data, column, unit)
-        columns.append(column[:6])
-    matrix = np.array(columns)
-    np.testing.assert_allclose(np.diag(matrix), [3.6594, 4.4137, 0.9378, 0.1925, 0.1713, 0.1941], atol=5.1e-5)
-    np.testing.assert_allclose(matrix[0, 1:3], [-0.4044, 0.1006], atol=5.1e-5)
-    np.testing.assert_allclose(matrix[1, 2], 0.3509, atol=5.1e-5)
-    np.testing.assert_allclose(matrix, matrix.T, atol=1e-12)
+def test_a_process_has_one_arm_and_never_another() -> None:
+    program = """
+from teachpath.errors import UnusableSettings
+from teachpath.motion.arm import arm, choose
+from teachpath.motion.kinematics import tool_pose
+choose("fu-gonzalez-lee"); choose("corke-1996")
+print(round(tool_pose([0.0] * 6)[1, 3], 5), arm().name)
+try: choose("corke-armstrong")
+except UnusableSettings as error: print(error)
+try: choose("stanford")
+except UnusableSettings as error: print(error)
+"""
+    done = subprocess.run([sys.executable, "-c", program], check=True, capture_output=True, text=True)
+    first, second, third = done.stdout.splitlines()
+    assert first == "-0.1254 corke-1996"
+    assert "corke-1996 already" in second
+    assert "known: corke-armstrong, " in third
 
 
-def test_the_simulated_inertia_differs_only_where_no_body_can_have_the_published_one() -> None:
-    for link in LINKS:
+@every_variant
+def test_the_simulated_inertia_differs_only_where_no_body_can_have_the_published_one(variant: Variant) -> None:
+    for link in variant.links:
         moments = physical_inertia(link)
         assert 2 * moments.max() <= moments.sum()
         published = np.array(link.inertia)
@@ -62,8 +65,9 @@ def test_the_simulated_inertia_differs_only_where_no_body_can_have_the_published
             np.testing.assert_array_equal(moments, published)
 
 
-def test_the_acceleration_box_keeps_every_torque_at_full_speed() -> None:
-    model = mujoco.MjModel.from_xml_string(mjcf(scenes()["empty"]))
+@every_variant
+def test_the_acceleration_box_keeps_every_torque_at_full_speed(variant: Variant) -> None:
+    model = mujoco.MjModel.from_xml_string(mjcf(scenes()["empty"], variant=variant))
     model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_CONSTRAINT  # neither contacts nor joint stops
     data = mujoco.MjData(model)
     rng = np.random.default_rng(3)
