@@ -10,7 +10,7 @@ from itertools import pairwise
 import numpy as np
 
 from teachpath.exchange import to_geomdl
-from teachpath.motion.drawing import drawing
+from teachpath.motion.drawing import solids
 from teachpath.nurbs import Curve
 from teachpath.records import Scene, Shape
 
@@ -54,7 +54,7 @@ def judge(setpoints: np.ndarray, curve: Curve, scene: Scene, *, every: int = 12)
     use = [np.abs(np.diff(setpoints, k, axis=0)).max(axis=0) * RATE**k for k in (1, 2, 3)]
     middle, half = (LOW + HIGH) / 2, (HIGH - LOW) / 2
     tools = np.array([(frames(q)[6] @ _shift(0, 0, GRIP))[:3, 3] for q in setpoints])
-    solids = [(part.link, part, _surface(part.kind, part.size, part.outline)) for part in drawing() if part.link]
+    bodies = [(part.link, part, _surface(part.kind, part.size, part.outline)) for part in solids() if part.link]
     held = None
     if scene.carried is not None:
         start = frames(setpoints[0])[6]
@@ -65,7 +65,7 @@ def judge(setpoints: np.ndarray, curve: Curve, scene: Scene, *, every: int = 12)
     least = np.inf
     for q in setpoints[::every]:
         chain = frames(q)
-        for link, part, points in solids:
+        for link, part, points in bodies:
             pose = chain[link] @ _shift(*part.position) @ _rotation(part.orientation)
             least = min(least, *(_outside(shape, _moved(pose, points)) for shape in scene.obstacles))
         if held is not None:

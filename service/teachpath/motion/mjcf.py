@@ -9,7 +9,7 @@ import numpy as np
 
 from teachpath.errors import UnusableInput
 from teachpath.motion.arm import arm
-from teachpath.motion.drawing import Part, drawing
+from teachpath.motion.drawing import Part, solids
 from teachpath.motion.kinematics import link_frames
 from teachpath.motion.puma560 import GRIPPER_COM, GRIPPER_INERTIA, GRIPPER_MASS, TOOL_LENGTH, Array, Link, Variant
 from teachpath.records import Scene, Shape
@@ -47,7 +47,7 @@ def mjcf(scene: Scene, *, timestep: float = 0.001, variant: Variant | None = Non
             '<compiler angle="radian" autolimits="true"/>',
             f'<option timestep="{timestep}" gravity="0 0 -9.81" integrator="implicitfast"/>',
             "<asset>",
-            *[_mesh(part) for part in drawing() if part.kind == "prism"],
+            *[_mesh(part) for part in solids() if part.kind == "prism"],
             *[_hull(shape, name) for name, shape in _bodies(scene) if shape.kind == "mesh"],
             "</asset>",
             "<worldbody>",
@@ -105,7 +105,7 @@ def _arm(variant: Variant) -> list[str]:
 
 
 def _parts_of(link: int) -> list[str]:
-    return [_part(part) for part in drawing() if part.link == link]
+    return [_part(part) for part in solids() if part.link == link]
 
 
 def _part(part: Part) -> str:

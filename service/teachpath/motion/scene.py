@@ -12,7 +12,7 @@ import numpy as np
 
 from teachpath.errors import UnusableInput
 from teachpath.motion.arm import arm
-from teachpath.motion.drawing import Part, drawing
+from teachpath.motion.drawing import Part, solids
 from teachpath.motion.kinematics import link_frames, rotations, tool_pose
 from teachpath.motion.mjcf import CARRIED, mjcf
 from teachpath.motion.puma560 import TOOL_LENGTH, Array
@@ -59,7 +59,7 @@ class CollisionModel:
         except ValueError as error:
             raise UnusableInput(f"scene {scene.name!r} cannot be built: {error}") from None
         self._data = mujoco.MjData(self._model)
-        self._parts = {self._id(part.name): part for part in drawing()}
+        self._parts = {self._id(part.name): part for part in solids()}
         self._names = {geom: part.name for geom, part in self._parts.items()}
         self._obstacles = []
         for shape in scene.obstacles:

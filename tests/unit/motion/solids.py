@@ -3,7 +3,7 @@
 import mujoco
 import numpy as np
 
-from teachpath.motion.drawing import drawing
+from teachpath.motion.drawing import solids
 from teachpath.motion.mjcf import mjcf
 from teachpath.motion.scenes import empty_scene
 
@@ -17,7 +17,7 @@ class Surface:
     def __init__(self) -> None:
         self._model = mujoco.MjModel.from_xml_string(mjcf(empty_scene()))
         self._data = mujoco.MjData(self._model)
-        self._geoms = [self._model.geom(part.name).id for part in drawing() if part.link >= 1]
+        self._geoms = [self._model.geom(part.name).id for part in solids() if part.link >= 1]
         self._local = [self._points(geom) for geom in self._geoms]
 
     def __call__(self, q: np.ndarray) -> np.ndarray:

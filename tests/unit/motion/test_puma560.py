@@ -8,11 +8,14 @@ import mujoco
 import numpy as np
 import pytest
 
-from teachpath.motion.drawing import drawing
+from teachpath.motion.drawing import drawing, solids
 from teachpath.motion.mjcf import mjcf, physical_inertia
 from teachpath.motion.puma560 import ACCELERATION, DEFAULT, LOWER, SPEED, TORQUE, UPPER, VARIANTS, Link, Variant
 from teachpath.motion.scenes import paper_scene, scenes
 from teachpath.motion.settings import MotionSettings
+
+PROBE = '<geom name="probe" type="sphere" size="0.0001" contype="0" conaffinity="0"/>'
+SQUARE = np.array([0.5**0.5, 0.5**0.5, 1.0])  # the corners of a square within a circle
 
 every_variant = pytest.mark.parametrize("variant", VARIANTS.values(), ids=list(VARIANTS))
 
@@ -86,9 +89,26 @@ def test_the_acceleration_box_keeps_every_torque_at_full_speed(variant: Variant)
 
 def test_every_part_is_a_geom_of_its_link() -> None:
     model = mujoco.MjModel.from_xml_string(mjcf(paper_scene()))
-    for part in drawing():
+    for part in solids():
         assert model.geom_bodyid[model.geom(part.name).id] == (model.body(f"link{part.link}").id if part.link else 0)
     assert len({part.name for part in drawing()}) == len(drawing())
+
+
+def test_what_is_drawn_alone_stands_out_by_millimetres() -> None:
+    """Every corner of a trim lies within 6 mm of a solid of the same link."""
+    model = mujoco.MjModel.from_xml_string(mjcf(scenes()["empty"]).replace("</worldbody>", PROBE + "</worldbody>"))
+    data = mujoco.MjData(model)
+    mujoco.mj_kinematics(model, data)
+    probe = model.geom("probe").id
+    for part in (part for part in drawing() if part.trim):
+        pose = data.body(f"link{part.link}") if part.link else data.body(0)
+        reach = part.size if part.kind == "box" else (2 * part.size[0], 2 * part.size[0], part.size[1])
+        for sign in np.ndindex(2, 2, 2):
+            corner = np.array(part.position) + (np.array(sign) - 0.5) * reach * (1.0 if part.kind == "box" else SQUARE)
+            data.geom_xpos[probe] = pose.xpos + pose.xmat.reshape(3, 3) @ corner
+            near = [s for s in solids() if s.link == part.link]
+            gaps = [mujoco.mj_geomDistance(model, data, probe, model.geom(s.name).id, 1.0, None) for s in near]
+            assert min(gaps) < 0.006, part.name
 
 
 def test_motors_are_limited_to_the_published_torques() -> None:

@@ -16,8 +16,10 @@ def outward(vertices: np.ndarray, faces: np.ndarray) -> float:
 
 def test_a_prism_is_closed_and_looks_outwards() -> None:
     square = [(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5)]
-    vertices, faces = commands.prism_mesh(square, 2.0)
-    assert outward(vertices, faces) == pytest.approx(2.0)
+    vertices, faces = commands.prism_mesh(square, 2.0, bevel=0.1)
+    # a bevelled end is a frustum of height 0.1 between squares of 1.0 and 0.8
+    assert outward(vertices, faces) == pytest.approx(1.8 + 2 * 0.1 / 3 * (1.0 + 0.64 + 0.8))
+    assert np.allclose([vertices.min(axis=0), vertices.max(axis=0)], [[-0.5, -0.5, -1.0], [0.5, 0.5, 1.0]])
 
 
 def test_a_tube_keeps_its_distance_from_the_curve() -> None:

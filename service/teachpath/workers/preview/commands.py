@@ -26,6 +26,8 @@ Outline = Sequence[tuple[float, float]]
 # One colour per cluster, the same as --way-0 ... in the page's style sheet (Okabe & Ito's palette for all eyes).
 WAYS = (0x0072B2, 0xD55E00, 0x009E73, 0xCC79A7, 0xE69F00, 0x56B4E9)
 
+BEVEL = 0.006  # m, of the edges of prisms as they are drawn
+
 # three.js lays a cylinder along y; ours stand along z.
 _UPRIGHT = np.array([[1.0, 0, 0, 0], [0, 0, -1, 0], [0, 1, 0, 0], [0, 0, 0, 1]])
 
@@ -112,20 +114,40 @@ def tube_mesh(points: Array, radius: float, sides: int = 10) -> tuple[Array, Arr
     return vertices, np.concatenate([first, second]).reshape(-1, 3)
 
 
-def prism_mesh(outline: Outline, thickness: float) -> tuple[Array, Array]:
-    """Return (4 n, 3) vertices and (m, 3) faces of a convex prism, centred in z.
+def prism_mesh(outline: Outline, thickness: float, bevel: float = BEVEL) -> tuple[Array, Array]:
+    """Return (8 n, 3) vertices and (m, 3) faces of a convex prism with broken edges, centred in z.
 
-    Caps and walls have vertices of their own, so that the viewer's normals are sharp between them and smooth around.
+    Walls, bevels and caps have vertices of their own, so that the viewer's normals are sharp between them and smooth
+    around.
+
+    Args:
+        outline: n corners in its xy plane, counter-clockwise [m].
+        thickness: along z [m].
+        bevel: width of the broken edges [m]; the outer measures stay as they are.
     """
     n, half = len(outline), thickness / 2
     ring = np.asarray(outline, dtype=np.float64)
-    low, high = (np.column_stack([ring, np.full(n, z)]) for z in (-half, half))
+    inner = _inset(ring, bevel)
+    low, high = -half + bevel, half - bevel
+    levels = [(ring, low), (ring, high), (ring, high), (inner, half), (inner, -half), (ring, low)]
+    levels += [(inner, -half), (inner, half)]
+    vertices = np.concatenate([np.column_stack([points, np.full(n, z)]) for points, z in levels])
     here = np.arange(n)
     beside = np.roll(here, -1)
-    walls = [np.stack([here, beside, here + n], axis=-1), np.stack([beside, beside + n, here + n], axis=-1)]
+    faces = []
+    for one in (0, 2, 4):  # wall, upper bevel, lower bevel: from one ring up to the next
+        a, b = here + one * n, beside + one * n
+        faces += [np.stack([a, b, a + n], axis=-1), np.stack([b, b + n, a + n], axis=-1)]
     fan = np.stack([np.zeros(n - 2, dtype=int), here[1:-1], here[2:]], axis=-1)
-    faces = np.concatenate([*walls, fan[:, ::-1] + 2 * n, fan + 3 * n])
-    return np.concatenate([low, high, low, high]), faces
+    return vertices, np.concatenate([*faces, fan[:, ::-1] + 6 * n, fan + 7 * n])
+
+
+def _inset(ring: Array, width: float) -> Array:
+    """Move every corner of a convex outline (n, 2) inwards, by `width` from both of its sides."""
+    ahead = np.roll(ring, -1, axis=0) - ring
+    normals = np.column_stack([-ahead[:, 1], ahead[:, 0]]) / np.linalg.norm(ahead, axis=1)[:, None]
+    middle = normals + np.roll(normals, 1, axis=0)
+    return np.asarray(ring + 2 * width * middle / np.sum(middle**2, axis=1)[:, None])
 
 
 def pose_of(position: Vector, orientation: Quaternion = (1.0, 0.0, 0.0, 0.0)) -> Array:
