@@ -82,7 +82,7 @@ _PARTS: Final = (
     Part("shoulder cover", 2, "cylinder", (0.08, 0.02), (-0.4318, 0.0, 0.285), color=DARK),
     Part("elbow cover", 2, "cylinder", (0.05, 0.02), (0.0, 0.0, 0.285), color=DARK),
     Part("name plate", 2, "box", (0.16, 0.022, 0.004), (-0.2, 0.0, 0.275), color=BLUE, trim=True),
-    Part("elbow ring", 2, "cylinder", (0.06, 0.012), (0.0, 0.0, 0.1875), color=DARK, trim=True),
+    Part("elbow ring", 2, "cylinder", (0.06, 0.008), (0.0, 0.0, 0.1885), color=DARK, trim=True),
     # The prism's x runs along z of frame 3 (the forearm), its z along -y, its y along -x.
     Part("forearm", 3, "prism", (0.07,), (0.0, 0.0, 0.0), (0.5, 0.5, -0.5, 0.5),
          outline=_tapered(-0.02, 0.08, 0.31, 0.05)),
