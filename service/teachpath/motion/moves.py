@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
+from typing import Final
 
 import numpy as np
 from ruckig import InputParameter, Ruckig, Trajectory
@@ -16,6 +18,8 @@ from teachpath.motion.scene import Clearance, CollisionModel, Load, standing
 from teachpath.motion.settings import MotionSettings
 from teachpath.motion.track import STEP, Track, composed
 from teachpath.records import Scene
+
+NEAR_FINGERS: Final = 0.001  # m, that open fingers stay away from the object between them
 
 
 def straight(start: Array, goal: Array, limits: Limits, *, reserve: tuple[float, float, float]) -> Track:
@@ -84,6 +88,8 @@ def check_free(
 ) -> float:
     """Return the clearance [m] that is proved for straight lines of the joints between configurations (n, 6).
 
+    Open fingers stay away from an object that stands in the scene, or keep it between them.
+
     Raises:
         PathRefused: something comes too near; `what` names the move.
     """
@@ -98,6 +104,10 @@ def check_free(
             f"{what}: {near.part} comes within {1000 * proved.distance:.1f} mm of {near.other}, "
             f"least allowed {1000 * settings.clearance_min:.1f} mm"
         )
+    if load is not None and load.placed is not None and gripper_open:
+        fingers = least(Sweep.through(stops, model.levers()), partial(model.straddles, load=load), NEAR_FINGERS)
+        if fingers.distance < NEAR_FINGERS:
+            raise PathRefused(f"{what}: the open fingers would hit the object; is the path centred on it?")
     return proved.distance
 
 
