@@ -119,13 +119,27 @@ def test_the_same_path_gives_the_same_motion(middle: Plan) -> None:
     assert again.certificate.digest == middle.certificate.digest
 
 
-def test_an_obstacle_above_the_start_keeps_the_gripper_from_coming_down() -> None:
+def test_where_above_is_not_free_the_arm_comes_and_goes_from_nearer_or_from_a_side() -> None:
     scene = paper_scene()
     assert scene.carried is not None
     x, y, _ = scene.carried.position
     lid = Shape("lid", "box", (0.3, 0.3, 0.02), (x - 0.05, y - 0.2, 0.80))
-    with pytest.raises(PathRefused, match="lid"):
-        plan(way(MIDDLE), replace(scene, obstacles=(*scene.obstacles, lid)))
+    settings = MotionSettings()
+    free, covered = (plan(way(MIDDLE), replace(scene, obstacles=(*scene.obstacles, *more))) for more in ((), (lid,)))
+    straight_up = tool_pose(free.above_start)[:3, 3] - tool_pose(free.joints[0])[:3, 3]
+    np.testing.assert_allclose(straight_up, [0.0, 0.0, settings.lift], atol=1e-9)
+    assert not np.allclose(covered.above_start, free.above_start)
+    verify(covered)
+
+
+def test_an_end_that_the_arm_cannot_come_to_is_refused() -> None:
+    in_the_way = Shape("crate", "box", (0.04, 0.04, 0.04), tuple(tool_pose(np.array(MotionSettings().home))[:3, 3]))
+    scene = empty_scene()
+    aside = np.linspace([0.45, -0.5, 0.65], [0.5, -0.35, 0.65], 6)
+    with pytest.raises(
+        PathRefused, match=r"comes within .* of crate.*none of \d+ ways to the start of the path is free"
+    ):
+        plan(learned(clamped(aside, degree=5)), replace(scene, obstacles=(*scene.obstacles, in_the_way)))
 
 
 def test_a_demonstrated_turn_is_followed_by_the_tool_when_it_is_asked_for() -> None:
