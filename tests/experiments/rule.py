@@ -82,6 +82,7 @@ def table(rule: Mapping[str, Any]) -> str:
     return (
         f"<table><caption><b>Table III.</b> Left out of the path by mode default at four limits of z; {SHIPPED:g} is "
         "shipped. A smooth detour stays the hardest: clean demonstrations of this generator differ by bows of some "
-        "centimetres themselves, and no limit tells a detour of 6 cm from them without leaving out clean ones."
+        "centimetres themselves. What pace and a slow drift cannot explain tells them apart, at the price of some "
+        "clean ones, most of them where nobody is spoilt: the usual scatter of four others is known only roughly."
         f"</caption><tr><th class=l>Spoilt by{head}{''.join(rows)}</table>"
     )

@@ -33,7 +33,7 @@ def departure(
     Args:
         trajectory: of the demonstration.
         others: of the other members of its cluster.
-        quality: in which it differs most: course, shape or smoothness.
+        quality: in which it differs most: course, shape, bends or smoothness.
         profile: (frames,) log-likelihoods of its frames in the features of that quality.
         times: (frames,) [s] of these frames, since the first sample.
         usual: log-likelihood of a frame of the others.
@@ -41,7 +41,7 @@ def departure(
     since = trajectory.times - trajectory.times[0]
     s = arc_lengths(smoothed(trajectory))
     away, within = _beside(trajectory, others)
-    if quality == "shape" and np.any(away > within):
+    if quality in ("shape", "bends") and np.any(away > within):
         # A bow taken off a path with a detour is spread along all of it; the distance says where the detour is.
         profile, usual = within - away, 0.0
         times = np.interp(np.linspace(0.0, s[-1], POINTS), s, since)

@@ -1,4 +1,4 @@
-"""What the consistency of demonstrations is judged by in mode default: their course, their shape, their smoothness."""
+"""What the consistency of demonstrations is judged by in mode default: course, shape, bends, smoothness."""
 
 from __future__ import annotations
 
@@ -9,6 +9,8 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 from scipy.signal.windows import hamming
 
+from teachpath.learning.bends import INSTANTS as BEND_INSTANTS
+from teachpath.learning.bends import courses
 from teachpath.learning.resampling import arc_lengths, at_equal_arc_length, at_equal_times, smoothed
 from teachpath.learning.settings import Tick
 from teachpath.records import Array, Trajectory
@@ -30,10 +32,10 @@ class Family:
     """One kind of feature of every member of a cluster.
 
     Attributes:
-        quality: what it tells: course, shape or smoothness.
+        quality: what it tells: course, shape, bends or smoothness.
         sequences: for each member (frames, features).
         times: for each member (frames,) [s], when the frames are, since the first sample.
-        states: of the models of it.
+        states: of the models of it; 0 where the demonstrations are compared with one another without a model.
         alike: whether the consistent members of a cluster hardly differ in it.
     """
 
@@ -62,6 +64,8 @@ def families(trajectories: Sequence[Trajectory], period: float, tick: Tick) -> l
         Family("course", positions_and_velocities(trajectories), equal, 10),
         Family("shape", shapes(paths), [_when(t, path) for t, path in zip(trajectories, paths, strict=True)], 10),
     ]
+    instants = [np.linspace(0.0, duration, BEND_INSTANTS) for duration in durations]
+    found.append(Family("bends", courses(trajectories, paths), instants, 0))
     energies = band_energies(trajectories, period, tick)
     if energies is not None:
         centres = [

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from teachpath.learning.bends import judge_bends
 from teachpath.learning.features import Family
 from teachpath.learning.gaussian import TiedGaussianHmm
 from teachpath.learning.settings import Tick
@@ -55,13 +56,20 @@ def judge(families: Sequence[Family], members: Sequence[int], folds: int, *, eff
         members: which of them take part.
         folds: parts of which each is scored by models of the other parts; as many as members = leave one out.
         effort: for each model.
-        tick: called once per model trained.
+        tick: called once per model trained, and once for the bends.
     """
-    profiles = []
+    profiles, rows = [], []
     for family in families:
         sequences = [family.sequences[i] for i in members]
-        profiles.append(_left_out(sequences, range(len(members)), family.states, folds, effort, tick))
-    z = np.stack([robust_z(_means(row)) for row in profiles])
+        if family.states == 0:
+            row, profile = judge_bends(np.stack(sequences))
+            profiles.append(list(profile))
+            tick()
+        else:
+            profiles.append(_left_out(sequences, range(len(members)), family.states, folds, effort, tick))
+            row = robust_z(_means(profiles[-1]))
+        rows.append(row)
+    z = np.stack(rows)
     if len(members) >= FEWEST_WITH_CORE:
         # Spoilt in the same way, two of five lend each other a model; those that agree best lend them none.
         core = np.sort(_order(z, profiles)[: len(members) // 2 + 1])

@@ -30,8 +30,9 @@ def select(index: int, members: Mapping[str, Trajectory], settings: LearningSett
 
     Every member is scored by models trained on the others: a model cannot be lenient to what it never saw; in their
     smoothness also by models of the better half, so that two that shake do not excuse each other. The
-    scores per frame of three kinds of features, course, shape and smoothness, become robust z values; their sum,
-    better than the median counting as the median, is the measure.
+    scores per frame of three kinds of features, course, shape and smoothness, become robust z values, and so does what
+    its bends have that those of the others have not; their sum, better than the median counting as the median, is the
+    measure.
 
     Args:
         index: number of the cluster.
@@ -46,8 +47,8 @@ def select(index: int, members: Mapping[str, Trajectory], settings: LearningSett
     trajectories = [members[name] for name in names]
     kinds = families(trajectories, settings.period, tick)
     notes = []
-    if len(kinds) < 3:
-        notes.append("a demonstration is shorter than the analysis window: judged by course and shape only")
+    if kinds[-1].quality != "smoothness":
+        notes.append("a demonstration is shorter than the analysis window: judged by course, shape and bends only")
     if len(names) < FEW:
         notes.append(f"{len(names)} demonstrations: too few for a reliable ranking")
     judgement = judge(kinds, range(len(names)), _folds(len(names)), effort=Effort(), tick=tick)
@@ -67,8 +68,8 @@ def pieces_of_work(sizes: Sequence[int], repeats: int) -> int:
     total = 0
     for size in sizes:
         if size > 1:
-            again = len(_drops(size, repeats, 0)) * (4 * min(size - 1, REPEATED_FOLDS) + 1)
-            total += 4 * _folds(size) + 1 + again + 1 + 3 * size
+            again = len(_drops(size, repeats, 0)) * (4 * min(size - 1, REPEATED_FOLDS) + 2)
+            total += 4 * _folds(size) + 2 + again + 1 + 3 * size
     return total
 
 

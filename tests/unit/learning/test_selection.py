@@ -90,7 +90,7 @@ def spoilt(seed: int, fault: Callable[[Array, np.random.Generator], Array]) -> d
         (frozen, "the tracker repeats one reading for 0.3 s", 4),
         (spiked, "jumps by", 4),
         (jittered, "times a second", 4),
-        (detoured, "beside the others", 0),
+        (detoured, "beside the others", 3),
     ],
 )
 def test_every_fault_is_outside_the_best_two_and_told_with_its_place(
@@ -159,7 +159,7 @@ def test_without_wiggle_the_marked_one_is_treated_like_the_others(without_wiggle
 
 def test_consistent_demonstrations_are_seldom_called_inconsistent(without_wiggle: list[Cluster]) -> None:
     flagged = np.mean([1 - len(kept(cluster)) / 5 for cluster in without_wiggle])
-    assert flagged <= 0.04
+    assert flagged <= 0.06  # one of twenty, the price of finding detours no larger than the hand's own scatter
 
 
 def test_in_clusters_of_three_false_alarms_are_rare_too() -> None:
