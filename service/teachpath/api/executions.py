@@ -78,8 +78,9 @@ def executions_router(parts: Parts) -> APIRouter:
     ) -> ExecutionRow:
         """Let the arm mirror a live hand while its clutch (button bit 2) is pressed; steer and stop it as an execution.
 
-        The tool keeps its orientation and the gripper stays open. The arm keeps its limits, stays clear of the scene,
-        and rests when the clutch is let go or the hand is lost.
+        The tool keeps its orientation; the gripper closes and opens with the hand, or with its grasp button (bit 0).
+        The arm keeps its limits, it and what it carries stay clear of the scene, and all rests when the clutch is let
+        go or the hand is lost.
         """
         calibration = parts.calibrations.get(new.calibration)
         order = Mirroring(new.tracker, calibration, parts.settings.scene(new.scene), new.scale, new.share)

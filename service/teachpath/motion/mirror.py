@@ -86,7 +86,6 @@ class Mirror:
         self._heard = 0
         self._share = 1.0  # of the way to there that is tried
         self.load: Load | None = None  # what is carried or stands in the way
-        self.gripper_open = True
         self.reason = ""  # why the tool is not where the hand is
         self.answered = 0  # stamp of the newest sample that the setpoints answer
         if self._model.clearances(here[None])[0].distance < settings.clearance_min:
@@ -198,10 +197,14 @@ class Mirror:
     def _too_near(self, samples: Array) -> str:
         if np.any(samples < LOWER) or np.any(samples > UPPER):
             return "a joint would pass its limit; move the hand back"
-        rows = self._model.clearances(samples, load=self.load, gripper_open=self.gripper_open)
+        rows = self._model.clearances(samples, load=self.load, gripper_open=True)  # the wider of both
         least = min(rows, key=lambda row: row.distance)
         if least.distance < self._settings.clearance_min + GUARD:
             return f"{least.part} would come within {1000 * least.distance:.0f} mm of {least.other}; move the hand back"
+        if self.load is not None and self.load.grasp is not None:
+            deep = min(row.distance for row in self._model.supports(samples, self.load))
+            if deep < -self._settings.contact_tolerance:
+                return f"the object would be pressed {-1000 * deep:.0f} mm into what it stood on; move the hand back"
         return ""
 
     def _motion(self, state: tuple[Array, Array, Array], goal: Array) -> Trajectory | None:

@@ -216,7 +216,10 @@ class Controls:
             )
         period = 1.0 / self._settings.rate
         here = self._resting_arm()
-        return Hand(self._bus, self._keys, order, here, self._motion, period=period, clock=self._clock), "", order.scene
+        hand = Hand(
+            self._bus, self._keys, order, here, self._motion, hearing=self._hearing, period=period, clock=self._clock
+        )
+        return hand, "", order.scene
 
     def _resting_arm(self) -> Array:
         """Return the arm's configuration (6,), at rest."""

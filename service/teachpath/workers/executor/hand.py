@@ -1,4 +1,4 @@
-"""A live hand that drives the arm: the tool mirrors it while the clutch is pressed, and rests otherwise."""
+"""A live hand that drives the arm: tool and gripper mirror it while the clutch is pressed, and rest otherwise."""
 
 from __future__ import annotations
 
@@ -17,6 +17,8 @@ from teachpath.motion.scene import CollisionModel, Load
 from teachpath.motion.settings import MotionSettings
 from teachpath.recording.demonstration import to_world
 from teachpath.records import Array, Mirroring, Sample
+from teachpath.workers.executor.grip import Grip, load_of
+from teachpath.workers.executor.hearing import Hearing
 from teachpath_proto.keys import Keys
 
 CLUTCH: Final = 4  # button that is pressed while the arm mirrors the hand
@@ -27,11 +29,12 @@ WAITING: Final = "press the clutch (button bit 2) to move the arm"
 
 
 class Hand:
-    """Drives an execution by the samples of one tracker, as a program does; the gripper stays open.
+    """Drives an execution by the samples of one tracker, as a program does.
 
     Args:
         order: tracker, calibration, scene and scale.
         here: (6,) where the arm rests [rad].
+        hearing: of the arm, which says what its gripper does and where the object is.
         period: between two setpoints [s].
         clock: monotonic nanoseconds.
 
@@ -47,16 +50,18 @@ class Hand:
         here: Array,
         settings: MotionSettings,
         *,
+        hearing: Hearing,
         period: float,
         clock: Callable[[], int],
     ) -> None:
-        self._order, self._clock = order, clock
+        self._order, self._clock, self._hearing = order, clock, hearing
+        self._grip = Grip(hearing.present().gripper_closed)
         model = CollisionModel(order.scene)
         self._mirror = Mirror(model, here, settings, scale=order.scale, share=order.share, period=period)
         if order.scene.carried is not None:
             self._mirror.load = Load(placed=order.scene.carried.position)
         still = np.zeros(6)
-        self._moment = Moment(np.array(here), still, still, False)
+        self._moment = Moment(np.array(here), still, still, self._grip.closed)
         self._came: deque[tuple[int, bytes]] = deque(maxlen=1)
         self._seen = 0  # [ns of the clock] when the newest tracked sample came
         self._stopped, self._pressed, self._fresh = False, False, False  # `fresh`: the clutch was open since
@@ -126,7 +131,7 @@ class Hand:
         if self._mirror.answered != self._answered:
             self._answered = self._mirror.answered
             self._latencies.append((now - self._answered) / 1e3)
-        self._moment = Moment(position, velocity, acceleration, False)
+        self._moment = Moment(position, velocity, acceleration, self._grip.closed)
         return self._moment
 
     def think(self) -> None:
@@ -167,15 +172,20 @@ class Hand:
         if not sample.tracked:
             return
         self._seen = when
+        arm = self._hearing.newest(when)
+        if arm is not None and self._order.scene.carried is not None:
+            self._mirror.load = load_of(arm[1], self._mirror.load)
         if not sample.buttons & CLUTCH:
             self._fresh = True
             self._why = WAITING if self._why == AGAIN else self._why
             if self._pressed:
                 self._open(WAITING)
         elif self._pressed:
+            self._grip.follow(sample)
             self._mirror.move(self._world(sample), when)
         elif self._fresh and not self._stopped:
             self._pressed, self._fresh, self._why = True, False, ""
+            self._grip.begin(sample)
             self._mirror.press(self._world(sample))
         elif not self._stopped:
             self._why = AGAIN
