@@ -1,12 +1,14 @@
 """The page's panel beside a running service: who is there, what is recorded, and what is thought of it."""
 
 import dataclasses
+import json
 import time
 from collections.abc import Iterator
 from typing import Any
 
 import pytest
 
+from teachpath.io.store.recordings import read_facts
 from teachpath_client import Link, Tracker
 from tests.system.processes import Service
 from tests.system.test_station import FAST, SHOWN, shown
@@ -62,6 +64,13 @@ def test_every_demonstration_has_its_verdict_and_what_is_wrong_with_it(visit: Vi
     assert "clean" in oldest
     assert "reject" in newest
     assert "samples are faulty, " in newest.replace("\n", " ")
+    for said, row in zip((oldest, newest), service.demonstrations("judged"), strict=True):
+        facts = read_facts(service.data / "recordings" / row["recording"])
+        assert facts["verdict"] == row["verdict"]
+        assert row["verdict"] in said
+        account = json.loads(facts["account"])
+        assert account == row["account"]
+        assert account["untracked"] == (39 if row["verdict"] == "reject" else 0)
     visit.page.get_by_role("button", name="Discard the last").click()
     within(visit, 5, "document.querySelectorAll('.takes li.discarded').length === 1")
     assert [bool(d["discarded_ns"]) for d in service.demonstrations("judged")] == [False, True]
