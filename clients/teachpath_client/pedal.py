@@ -15,6 +15,7 @@ import termios
 import threading
 import time
 import tty
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import replace
@@ -51,7 +52,7 @@ def open_pedal(where: str) -> TerminalPedal | EventPedal:
     return TerminalPedal(where)
 
 
-class _Pressed:
+class _Pressed(ABC):
     """Reads a file descriptor on a thread of its own while the context is open."""
 
     def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
@@ -76,8 +77,9 @@ class _Pressed:
                 return
             self._take(content)
 
+    @abstractmethod
     def _take(self, content: bytes) -> None:
-        raise NotImplementedError
+        """Take what the device has written; nothing when it was unplugged."""
 
     def _start(self) -> None:
         self._over.clear()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from types import TracebackType
@@ -42,7 +43,7 @@ class Polling:
         return max(0.0, self._due - self._clock())
 
 
-class LiveDevice(Generic[Record]):
+class LiveDevice(ABC, Generic[Record]):
     """A source on one connection; a driver says what a record means.
 
     Args:
@@ -84,6 +85,6 @@ class LiveDevice(Generic[Record]):
         reading = None if taken is None else self._reading(taken[1])
         return None if taken is None or reading is None else (taken[0], reading)
 
+    @abstractmethod
     def _reading(self, record: Record) -> HandReading | None:
         """Return what a record says of the hand; None when it says nothing of it."""
-        raise NotImplementedError
