@@ -13,6 +13,7 @@ from teachpath.errors import UnusableInput
 from teachpath.io.documents import to_document
 from teachpath.io.store.store import ExecutionRow
 from teachpath.records import Command, ExecutorStatus, Mirroring
+from teachpath.workers.executions import Executions
 from teachpath_proto.keys import NAME
 
 Token = Annotated[
@@ -58,12 +59,14 @@ class Step(BaseModel):
 def executions_router(parts: Parts) -> APIRouter:
     """Return the routes of executions."""
     router = APIRouter(tags=["executions"])
-    executions, store = parts.executions, parts.store
+    _add_beginnings(router, parts)
+    _add_looks(router, parts)
+    _add_steering(router, parts.executions)
+    return router
 
-    @router.get("/executions")
-    def list_executions() -> list[ExecutionRow]:
-        """List the newest executions, newest first."""
-        return [executions.get(row.id) for row in store.executions()]
+
+def _add_beginnings(router: APIRouter, parts: Parts) -> None:
+    executions = parts.executions
 
     @router.post("/executions", status_code=202)
     def begin_execution(new: NewExecution, response: Response, lease: Token = "", who: Who = "") -> ExecutionRow:
@@ -87,6 +90,15 @@ def executions_router(parts: Parts) -> APIRouter:
         row = executions.mirror(order, lease=lease, who=who)
         response.headers["Location"] = f"/api/v1/executions/{row.id}"
         return row
+
+
+def _add_looks(router: APIRouter, parts: Parts) -> None:
+    executions, store = parts.executions, parts.store
+
+    @router.get("/executions")
+    def list_executions() -> list[ExecutionRow]:
+        """List the newest executions, newest first."""
+        return [executions.get(row.id) for row in store.executions()]
 
     @router.get("/executions/{execution}")
     def get_execution(execution: str) -> ExecutionRow:
@@ -112,6 +124,8 @@ def executions_router(parts: Parts) -> APIRouter:
         """
         return to_document(executions.series(execution, points))
 
+
+def _add_steering(router: APIRouter, executions: Executions) -> None:
     @router.post("/executions/{execution}/override")
     def set_override(execution: str, speed: Speed, lease: Token = "", who: Who = "") -> ExecutionRow:
         """Change the speed while the arm moves; 0 is a hold on the path."""
@@ -142,5 +156,3 @@ def executions_router(parts: Parts) -> APIRouter:
     def stop_whatever_moves(lease: Token = "", who: Who = "") -> ExecutorStatus:
         """Stop whatever moves the arm, on its path; open to everybody. This is not an emergency stop."""
         return executions.halt(lease=lease, who=who)
-
-    return router

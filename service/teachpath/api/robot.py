@@ -55,6 +55,11 @@ def robot_router(parts: Parts) -> APIRouter:
         stored = parts.store.plan(plan)
         return to_document(rehearse(stored, parts.settings.motion, dwell=parts.settings.executor.dwell))
 
+    _add_joints(router, parts)
+    return router
+
+
+def _add_joints(router: APIRouter, parts: Parts) -> None:
     @router.websocket("/joints")
     async def joints(socket: WebSocket) -> None:
         """Tell what the arm does, whenever something has changed; a page of another origin is refused."""
@@ -67,8 +72,6 @@ def robot_router(parts: Parts) -> APIRouter:
         for task in (listening, sending):
             task.cancel()
         await asyncio.gather(listening, sending, return_exceptions=True)
-
-    return router
 
 
 async def _listen(socket: WebSocket) -> None:

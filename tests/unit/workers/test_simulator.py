@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from teachpath.errors import UnusableInput
+from teachpath.errors import Conflict, UnusableInput
 from teachpath.io import documents, wire
 from teachpath.io.bus import MemoryBus
 from teachpath.motion.kinematics import downward, inverse, link_frames, tool_pose
@@ -223,6 +223,7 @@ def test_carries_the_object_only_when_gripped_near_it() -> None:
 def test_reset_brings_the_object_back_leaves_the_arm_and_takes_a_new_scene() -> None:
     bench = Bench(paper_scene())
     bench.move(HOME + 0.3, 0.5)
+    bench.run(0.1)  # nothing comes any more
     state = wire.decode_state(bench.simulator.reset(b""))
     assert np.allclose(state.position, HOME + 0.3, atol=0.01)
     assert (state.missed, state.cycle, state.execution) == (0, 0, "")
@@ -231,6 +232,28 @@ def test_reset_brings_the_object_back_leaves_the_arm_and_takes_a_new_scene() -> 
     assert not any(state.object_orientation)  # no object there
     with pytest.raises(UnusableInput):
         bench.simulator.reset(b"no scene")
+
+
+def test_the_scene_is_not_changed_under_an_execution() -> None:
+    bench = Bench(paper_scene())
+    refused: list[str] = []
+
+    def change(now: int) -> None:
+        bench.send(HOME, np.zeros(6), np.zeros(6), execution="run-1")
+        if now < START + 50_000_000:
+            return
+        try:
+            bench.simulator.reset(documents.encode(empty_scene()))
+        except Conflict as error:
+            refused.append(str(error))
+
+    states = bench.run(0.2, change)
+    assert "run-1 is under way in scene paper" in refused[-1]
+    assert any(states[-1].object_orientation)  # the object is still there
+    status = ExecutorStatus(execution="run-1", state="ended")
+    bench.bus.publish(KEYS.executor_status, wire.encode_status(status))
+    bench.run(0.005)
+    assert not any(wire.decode_state(bench.simulator.reset(documents.encode(empty_scene()))).object_orientation)
 
 
 def test_answers_the_reset_query_and_shows_that_it_lives() -> None:

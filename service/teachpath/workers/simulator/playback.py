@@ -63,6 +63,12 @@ class Playback:
         return self._last
 
     @property
+    def execution(self) -> str:
+        """The execution that is played, or waits to be; empty when there was none."""
+        newest = self._waiting[-1] if self._waiting else self._last
+        return newest.execution if newest is not None else ""
+
+    @property
     def holding(self) -> bool:
         """Whether nothing has been left to play for a while: the arm comes to rest, or rests."""
         return self._starved > self._silence

@@ -14,7 +14,7 @@ from typing import Final
 
 import numpy as np
 
-from teachpath.errors import UnusableInput
+from teachpath.errors import Conflict, UnusableInput
 from teachpath.io import documents, wire
 from teachpath.io.bus import Bus
 from teachpath.motion.settings import MotionSettings
@@ -99,16 +99,21 @@ class Simulator:
     def reset(self, payload: bytes) -> bytes:
         """Answer the reset query: the object to its start, in the scene given as JSON or the one there is.
 
-        The arm stays where it is, at rest, with its gripper open: no arm ever jumps.
+        The arm stays where it is, at rest, with its gripper open: no arm ever jumps. While an execution is under way
+        nothing around the arm may change, because its certificate is of this scene.
 
         Returns:
             The joint state after it, as published.
 
         Raises:
             UnusableInput: the payload is no scene.
+            Conflict: an execution is under way.
         """
         scene = documents.decode(Scene, payload) if payload else self._scene
         with self._lock:
+            moving = self._playback.execution
+            if moving not in ("", self._over) and not self._playback.holding:
+                raise Conflict(f"execution {moving} is under way in scene {self._scene.name}; stop it first")
             self._begin(scene, self._arm.position.tolist())
             self._woken.set()
             return wire.encode_state(self._state(self._clock()))
