@@ -250,9 +250,8 @@ def test_the_scene_is_not_changed_under_an_execution() -> None:
     states = bench.run(0.2, change)
     assert "run-1 is under way in scene paper" in refused[-1]
     assert any(states[-1].object_orientation)  # the object is still there
-    status = ExecutorStatus(execution="run-1", state="ended")
-    bench.bus.publish(KEYS.executor_status, wire.encode_status(status))
-    bench.run(0.005)
+    ended = wire.encode_status(ExecutorStatus(execution="run-1", state="ended"))
+    bench.run(0.002, lambda now: bench.bus.publish(KEYS.executor_status, ended))
     assert not any(wire.decode_state(bench.simulator.reset(documents.encode(empty_scene()))).object_orientation)
 
 

@@ -111,6 +111,7 @@ class Simulator:
         """
         scene = documents.decode(Scene, payload) if payload else self._scene
         with self._lock:
+            self._hear()
             moving = self._playback.execution
             if moving not in ("", self._over) and not self._playback.holding:
                 raise Conflict(f"execution {moving} is under way in scene {self._scene.name}; stop it first")
