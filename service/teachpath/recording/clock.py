@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections import deque
-
 import numpy as np
 
 from teachpath.records import Clock, Sample
@@ -17,15 +15,20 @@ class DeviceClock:
     """Follows the clock of one device."""
 
     def __init__(self) -> None:
-        self._window: deque[tuple[int, int]] = deque(maxlen=WINDOW)
+        # a ring of arrays: hundreds of trackers are asked several times a second
+        self._device = np.zeros(WINDOW, dtype=np.int64)
+        self._receive = np.zeros(WINDOW, dtype=np.int64)
+        self._observed = 0
 
     def observe(self, sample: Sample) -> None:
         """Take the times of the next sample."""
-        self._window.append((sample.device_ns, sample.receive_ns))
+        place = self._observed % WINDOW
+        self._device[place], self._receive[place] = sample.device_ns, sample.receive_ns
+        self._observed += 1
 
     def restart(self) -> None:
         """Forget all before: the clock has jumped."""
-        self._window.clear()
+        self._observed = 0
 
     def estimate(self) -> Clock | None:
         """Return how the clock stands at the newest sample, or None after too few samples.
@@ -33,14 +36,15 @@ class DeviceClock:
         Receive times are device times divided by the rate, plus an offset, plus a transit that is never negative: the
         rate is that of the line of least squares, the offset that of the fastest sample.
         """
-        if len(self._window) < FEWEST:
+        if self._observed < FEWEST:
             return None
-        window = list(self._window)
-        first_device, first_receive = window[0]
-        device = np.array([d - first_device for d, _ in window]) * 1e-9
-        receive = np.array([r - first_receive for _, r in window]) * 1e-9
-        spread = float(np.var(device))
-        slope = float(np.mean((device - device.mean()) * (receive - receive.mean()))) / spread if spread else 1.0
+        filled, newest = min(self._observed, WINDOW), (self._observed - 1) % WINDOW
+        first_device, first_receive = int(self._device[0]), int(self._receive[0])
+        device = (self._device[:filled] - first_device) * 1e-9
+        receive = (self._receive[:filled] - first_receive) * 1e-9
+        away = device - device.mean()
+        spread = float(away @ away)
+        slope = float(away @ receive) / spread if spread else 1.0
         if slope <= 0.0:
             return None  # received all at once: nothing can be said
         rate = 1.0 / slope
@@ -48,5 +52,5 @@ class DeviceClock:
             slope = 1.0
         transit = receive - slope * device  # plus a constant
         least = float(transit.min())
-        newest = first_receive + round(1e9 * (slope * float(device[-1]) + least))
-        return Clock(newest - window[-1][0], round(1e9 * (float(np.median(transit)) - least)), rate)
+        due = first_receive + round(1e9 * (slope * float(device[newest]) + least))
+        return Clock(due - int(self._device[newest]), round(1e9 * (float(np.median(transit)) - least)), rate)
