@@ -213,3 +213,24 @@ def test_a_revoked_certificate_holds_for_good(bench: Bench, middle: Plan) -> Non
     assert "the table was moved" in held.reason
     assert said == [held.reason]
     assert within_limits(bench.setpoints)
+
+
+def test_an_arm_that_takes_up_no_setpoints_is_held_and_brought_back(bench: Bench, middle: Plan) -> None:
+    def go_deaf() -> None:
+        bench.deaf = bench.setpoints[-1]
+
+    def hear_again() -> None:
+        bench.deaf = None
+        bench.position = bench.setpoints[-1].position
+
+    bench.start(middle)
+    bench.when(lambda: bench.state == "following" and bench.statuses[-1].progress > 0.2, go_deaf)
+    bench.when(lambda: bench.state == "held", lambda: None)
+    bench.when(lambda: "was pushed" in bench.statuses[-1].reason, lambda: bench.command("resume"))
+    bench.when(lambda: bench.state == "approaching" or bench.state == "following", hear_again)
+    bench.when(lambda: bench.state == "ended", bench.stop.set)
+    bench.run()
+    reasons = [status.reason for status in bench.statuses if status.state in ("held", "stopping")]
+    assert any("taken up no setpoint for 0.5 s" in reason for reason in reasons)
+    assert ("the executor", "hold") in [(entry.who, entry.verb) for entry in bench.journal]
+    assert bench.statuses[-1].progress == pytest.approx(1.0)

@@ -1,4 +1,4 @@
-"""What the executor hears of the arm: its newest joint state, and for how long it has been silent."""
+"""What the executor hears of the arm: its newest joint state, how long it has been silent, whether it obeys."""
 
 from __future__ import annotations
 
@@ -52,3 +52,22 @@ class Hearing:
         if heard is None or heard[0] > self._silence:
             raise Unreachable(f"no joint state from {self._robot}; is the simulator or the arm's driver running?")
         return heard[1]
+
+
+class Uptake:
+    """Notices an arm that speaks, but takes up no setpoints any more."""
+
+    def __init__(self) -> None:
+        self._newest = ("", -1)
+        self._since = 0
+
+    def stalled(self, now: int, execution: str, arm: JointState) -> float:
+        """Return for how long the arm has taken up no further setpoint of an execution [s]."""
+        newest = (execution, arm.cycle if arm.execution == execution else -1)
+        if newest != self._newest:
+            self._newest, self._since = newest, now
+        return (now - self._since) / 1e9
+
+    def pause(self, now: int) -> None:
+        """Count from now on: the arm rests, or nothing is sent to it."""
+        self._since = now

@@ -23,7 +23,7 @@ from teachpath.motion.settings import MotionSettings
 from teachpath.records import ExecutorStatus
 from teachpath.workers.executor.controls import Controls
 from teachpath.workers.executor.execution import Execution
-from teachpath.workers.executor.hearing import Hearing
+from teachpath.workers.executor.hearing import Hearing, Uptake
 from teachpath.workers.executor.pacing import Pacer, ask_for_realtime
 from teachpath.workers.executor.settings import ExecutorSettings
 from teachpath_proto.keys import Keys
@@ -31,6 +31,7 @@ from teachpath_proto.keys import Keys
 log = logging.getLogger(__name__)
 
 IDLE_PERIODS: Final = 5  # control periods between two looks while nothing is under way
+DEAF: Final = 0.5  # [s] that an arm may take up no setpoint; a driver plays them up to 0.05 s late
 IDLE_RATE: Final = 4.0  # [Hz] statuses then, at most; the service takes an executor for gone after a second
 
 
@@ -63,6 +64,7 @@ class Executor:
         self._period = 1.0 / self._settings.rate
         self._pacer = Pacer(round(1e9 * self._period), clock=clock, sleep=sleep)
         self._hearing = Hearing(robot, self._settings.silence, clock)
+        self._uptake = Uptake()
         self._controls = Controls(
             bus,
             keys,
@@ -139,7 +141,14 @@ class Executor:
         if current.settled or current.displaced:
             off = float(np.abs(arm.position - current.program.here).max())
             current.displaced = off if off > self._settings.regain else 0.0
+            self._uptake.pause(due)
             return
+        stalled = self._uptake.stalled(due, current.execution, arm)
+        if stalled > DEAF:
+            why = (
+                f"the arm has taken up no setpoint for {stalled:.1f} s: does its driver hear them? resume when it does"
+            )
+            self._hold(current, why)
         if arm.execution == current.execution:
             self._judge_tracking(current, arm.tracking_error)
 
