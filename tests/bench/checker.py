@@ -54,41 +54,45 @@ def judge(setpoints: np.ndarray, curve: Curve, scene: Scene, *, every: int = 12)
     use = [np.abs(np.diff(setpoints, k, axis=0)).max(axis=0) * RATE**k for k in (1, 2, 3)]
     middle, half = (LOW + HIGH) / 2, (HIGH - LOW) / 2
     tools = np.array([(frames(q)[6] @ _shift(0, 0, GRIP))[:3, 3] for q in setpoints])
-    bodies = [(part.link, part, _surface(part.kind, part.size, part.outline)) for part in solids() if part.link]
-    held = None
-    if scene.carried is not None:
-        start = frames(setpoints[0])[6]
-        held = (
-            np.linalg.inv(start) @ (_shift(*scene.carried.position)),
-            _surface(scene.carried.kind, scene.carried.size),
-        )
-    least = np.inf
-    for q in setpoints[::every]:
-        chain = frames(q)
-        for link, part, points in bodies:
-            pose = chain[link] @ _shift(*part.position) @ _rotation(part.orientation)
-            least = min(least, *(_outside(shape, _moved(pose, points)) for shape in scene.obstacles))
-        if held is not None:
-            free = [shape for shape in scene.obstacles if shape.name != "table"]  # on which it stands at first
-            least = min(least, *(_outside(shape, _moved(chain[6] @ held[0], held[1])) for shape in free), np.inf)
+    bodies = Solids(scene, setpoints[0])
+    least = min(bodies.outside(q) for q in setpoints[::every])
     return Verdict(
         float((np.abs(setpoints - middle) / half).max()),
         float((use[0] / SPEED).max()),
         float((use[1] / ACCELERATION).max()),
         float((use[2] / JERK).max()),
         _off_path(tools, curve),
-        float(least),
+        least,
     )
 
 
-def reachable(point: Sequence[float]) -> bool:
-    """Tell whether the wrist reaches its place above a point that the tool points down on."""
-    x, y, z = point
-    ahead, up = np.hypot(x, y), z + GRIP + D[5] - D[0]
-    if ahead < D[2]:
-        return False
-    far, forearm = np.hypot(np.sqrt(ahead**2 - D[2] ** 2), up), np.hypot(A[2], D[3])
-    return bool(abs(A[1] - forearm) <= far <= A[1] + forearm)
+class Solids:
+    """The arm's solids as points all over their surfaces, the carried object as it is grasped at `start`, if it is."""
+
+    def __init__(self, scene: Scene, start: np.ndarray | None = None) -> None:
+        self._scene = scene
+        arm = [part for part in solids() if part.link]
+        self._links = np.array([part.link for part in arm])
+        self._poses = np.array([_shift(*part.position) @ _rotation(part.orientation) for part in arm])
+        self._points = [_surface(part.kind, part.size, part.outline) for part in arm]
+        self._radii = np.array([np.linalg.norm(points, axis=1).max() for points in self._points])
+        self._held: tuple[np.ndarray, np.ndarray] | None = None
+        if scene.carried is not None and start is not None:
+            grasp = np.linalg.inv(frames(start)[6]) @ _shift(*scene.carried.position)
+            self._held = grasp, _surface(scene.carried.kind, scene.carried.size)
+
+    def outside(self, q: np.ndarray, *, enough: float = np.inf) -> float:
+        """Return the least distance [m] of arm and object from the obstacles, up to `enough`; negative inside."""
+        chain, least = np.array(frames(q)), enough
+        poses = chain[self._links] @ self._poses
+        for shape in self._scene.obstacles:
+            for part in np.flatnonzero(_distances(shape, poses[:, :3, 3]) - self._radii < least):
+                least = min(least, _outside(shape, _moved(poses[part], self._points[part])))
+        if self._held is not None:
+            there = _moved(chain[6] @ self._held[0], self._held[1])
+            free = [shape for shape in self._scene.obstacles if shape.name != "table"]  # on which it stands at first
+            least = min(least, *(_outside(shape, there) for shape in free), np.inf)
+        return float(least)
 
 
 def _off_path(tools: np.ndarray, curve: Curve, count: int = 6000) -> float:
@@ -138,16 +142,20 @@ def _between(a: np.ndarray, b: np.ndarray) -> np.ndarray:
 
 def _outside(shape: Shape, points: np.ndarray) -> float:
     """Return the least distance [m] of points from an upright shape; negative inside."""
+    return float(_distances(shape, points).min())
+
+
+def _distances(shape: Shape, points: np.ndarray) -> np.ndarray:
     local = points - np.array(shape.position)
     if shape.kind == "sphere":
-        return float(np.linalg.norm(local, axis=1).min() - shape.size[0])
+        return np.linalg.norm(local, axis=1) - shape.size[0]
     if shape.kind == "box":
         off = np.abs(local) - np.array(shape.size) / 2
     else:
         off = np.column_stack(
             [np.hypot(local[:, 0], local[:, 1]) - shape.size[0], np.abs(local[:, 2]) - shape.size[1] / 2]
         )
-    return float((np.linalg.norm(np.maximum(off, 0.0), axis=1) + np.minimum(off.max(axis=1), 0.0)).min())
+    return np.linalg.norm(np.maximum(off, 0.0), axis=1) + np.minimum(off.max(axis=1), 0.0)
 
 
 def _moved(pose: np.ndarray, points: np.ndarray) -> np.ndarray:

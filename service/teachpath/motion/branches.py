@@ -10,6 +10,7 @@ from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.interpolate import BSpline
 
 from teachpath.motion.kinematics import BRANCHES, explain_reach, inverse, least_singular_value
 from teachpath.motion.puma560 import LOWER, SPEED, UPPER, Array
@@ -46,20 +47,42 @@ class Arm:
 
 
 @dataclass(frozen=True, eq=False)
+class Roll:
+    """How the tool is rolled about its own axis: by one angle, or from place to place.
+
+    Attributes:
+        angle: [rad] all the way, when there is no spline.
+        spline: angles by the curve's parameter.
+    """
+
+    angle: float = 0.0
+    spline: BSpline[np.float64] | None = None
+
+    def __call__(self, u: Array) -> Array:
+        """Return the angles (m,) [rad] at the curve's parameters (m,)."""
+        angles = np.full(len(u), self.angle) if self.spline is None else self.spline(u)
+        return np.asarray(angles, dtype=np.float64)
+
+    def __str__(self) -> str:
+        """Say it in words."""
+        return f"roll {degrees(self.angle):.0f} deg" if self.spline is None else "rolling"
+
+
+@dataclass(frozen=True, eq=False)
 class Candidate:
     """One way to hold the arm along a whole route.
 
     Attributes:
         branch: shoulder, elbow, wrist and tool roll in words.
         arm: what does not depend on the roll.
-        roll: of the tool about its own axis [rad].
+        roll: of the tool about its own axis.
         joints: (n, 6) continuous configurations [rad].
         over: (n, 6) by how much each joint is beyond its limit [rad]; negative within.
     """
 
     branch: str
     arm: Arm
-    roll: float
+    roll: Roll
     joints: Array
     over: Array
 
@@ -89,22 +112,24 @@ def candidates(way: Route, settings: MotionSettings) -> list[Candidate]:
         unrolled = np.unwrap(solutions.joints[:, index], axis=0)
         jumps = np.append(np.abs(np.diff(unrolled, axis=0)).max(axis=1) > LARGEST_STEP, False)
         arm = Arm(index, unrolled, outside, solutions.beyond, jumps)
-        for roll in settings.rolls:
-            joints = within_limits(rolled(unrolled, roll))
-            over = np.maximum(joints - UPPER, LOWER - joints)
-            name = f"{branch}, roll {degrees(roll):.0f} deg"
-            found.append(Candidate(name, arm, roll, joints, over))
+        found += [held(way, branch, arm, Roll(angle)) for angle in settings.rolls]
     return found
+
+
+def held(way: Route, branch: str, arm: Arm, roll: Roll) -> Candidate:
+    """Return what becomes of an arm's branch along a route when the tool is rolled."""
+    joints = within_limits(rolled(arm.unrolled, roll(way.parameters)))
+    return Candidate(f"{branch}, {roll}", arm, roll, joints, np.maximum(joints - UPPER, LOWER - joints))
 
 
 def configurations(way: Route, candidate: Candidate, u: Array) -> Array:
     """Return the configurations (m, 6) of a candidate at increasing parameters (m,) of its curve, from its start."""
     unrolled = np.unwrap(inverse(way.poses(u)).joints[:, candidate.arm.index], axis=0)
-    return near(rolled(unrolled, candidate.roll), candidate.joints[0])
+    return near(rolled(unrolled, candidate.roll(u)), candidate.joints[0])
 
 
-def rolled(joints: Array, roll: float) -> Array:
-    """Turn the tool about its own axis by `roll` [rad]: joint 6 alone, the other way round."""
+def rolled(joints: Array, roll: Array) -> Array:
+    """Turn the tool about its own axis by `roll` (...,) [rad]: joint 6 alone, the other way round."""
     turned = joints.copy()
     turned[..., 5] -= roll
     return turned

@@ -18,49 +18,56 @@ from teachpath.motion.settings import MotionSettings
 from teachpath.records import Extreme
 
 
+def rough_clearance(way: Route, candidate: Candidate, model: CollisionModel, settings: MotionSettings) -> Extreme:
+    """Find the clearance along straight lines between a candidate's nodes; when it is too small, not yet why."""
+    load = grasp_of(model.scene, candidate.joints[0])
+    sweep = Sweep.through(candidate.joints, model.levers(load))
+    proved = least(sweep, lambda q: model.clearances(q, load=load), settings.clearance_min)
+    share = (proved.place - sweep.places[0]) / (sweep.places[-1] - sweep.places[0])
+    return _extreme(proved, float(way.lengths[round(share * (len(way.lengths) - 1))]))
+
+
 def path_clearance(
-    way: Route, candidate: Candidate, model: CollisionModel, settings: MotionSettings, joints: JointPath | None = None
+    way: Route, candidate: Candidate, model: CollisionModel, settings: MotionSettings, joints: JointPath
 ) -> Extreme:
-    """Prove the least clearance along a path.
+    """Prove the least clearance along a path, and that a carried object stays above what it stands on.
 
     Args:
         way: the route.
         candidate: the arm's branch on it.
         model: of the scene.
         settings: what is asked for.
-        joints: what the arm will do; None to look at straight lines between the candidate's nodes instead.
+        joints: what the arm will do.
 
     Raises:
         PathRefused: something comes too near; says where and which control point to move.
     """
     load = grasp_of(model.scene, candidate.joints[0])
-    levers = model.levers(load)
-    sweep = Sweep.through(candidate.joints, levers) if joints is None else Sweep.along(joints, levers)
-
-    def measure(q: Array) -> list[Clearance]:
-        return model.clearances(q, load=load)
-
-    proved = least(sweep, measure, settings.clearance_min)
+    sweep = Sweep.along(joints, model.levers(load))
+    proved = least(sweep, lambda q: model.clearances(q, load=load), settings.clearance_min)
     if proved.distance < settings.clearance_min:
-        _too_near(way, candidate, settings.clearance_min, measure)
-    if load is not None and joints is not None:
+        raise too_near(way, candidate, model, settings)
+    if load is not None:
         lowest = -settings.contact_tolerance
         if least(sweep, lambda q: model.supports(q, load), lowest).distance < lowest:
-            _too_near(way, candidate, lowest, lambda q: model.supports(q, load))
-    return _extreme(proved, way, sweep, joints)
+            raise _explained(way, candidate, lowest, lambda q: model.supports(q, load))
+    return _extreme(proved, float(joints(proved.place)[6]))
 
 
-def _extreme(proved: Proved, way: Route, sweep: Sweep, joints: JointPath | None) -> Extreme:
-    if joints is None:
-        share = (proved.place - sweep.places[0]) / (sweep.places[-1] - sweep.places[0])
-        s = float(way.lengths[round(share * (len(way.lengths) - 1))])
-    else:
-        s = float(joints(proved.place)[6])
+def too_near(way: Route, candidate: Candidate, model: CollisionModel, settings: MotionSettings) -> PathRefused:
+    """Explain where something comes too near on a candidate, and which control point to move."""
+    load = grasp_of(model.scene, candidate.joints[0])
+    return _explained(way, candidate, settings.clearance_min, lambda q: model.clearances(q, load=load))
+
+
+def _extreme(proved: Proved, s: float) -> Extreme:
     near = proved.measured
     return Extreme(proved.distance, f"{near.part} to {near.other} at s = {s:.3f} m" if near.part else "far", s)
 
 
-def _too_near(way: Route, candidate: Candidate, asked: float, measure: Callable[[Array], list[Clearance]]) -> None:
+def _explained(
+    way: Route, candidate: Candidate, asked: float, measure: Callable[[Array], list[Clearance]]
+) -> PathRefused:
     rows = measure(candidate.joints)
     # What was proved may be less than what is measured at the nodes: then the least of them is the place to tell.
     asked = max(asked, min(row.distance for row in rows) + FINEST)
@@ -68,4 +75,4 @@ def _too_near(way: Route, candidate: Candidate, asked: float, measure: Callable[
         way, candidate, np.arange(len(rows)), rows, asked, lambda q: np.array([row.distance for row in measure(q)])
     )
     assert failure is not None
-    raise PathRefused(in_words(failure))
+    return PathRefused(in_words(failure))

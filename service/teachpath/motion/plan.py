@@ -11,12 +11,13 @@ import numpy as np
 from teachpath.errors import PathRefused, UnusableSettings
 from teachpath.motion.branches import Candidate, candidates, cost, least_wrong, usable
 from teachpath.motion.certificate import digest, limit_uses
-from teachpath.motion.clearance import path_clearance
+from teachpath.motion.clearance import path_clearance, rough_clearance, too_near
 from teachpath.motion.failure import in_words, kinematic_failure, start_failure
 from teachpath.motion.joints import JointPath
 from teachpath.motion.kinematics import tool_pose
 from teachpath.motion.puma560 import LOWER, UPPER
 from teachpath.motion.remedy import influences
+from teachpath.motion.rolling import rolling
 from teachpath.motion.route import Route, route
 from teachpath.motion.scene import CollisionModel
 from teachpath.motion.settings import MotionSettings
@@ -75,16 +76,10 @@ def plan(path: LearnedPath, scene: Scene, settings: MotionSettings | None = None
 
 def _first_certified(job: _Job, fit: list[Candidate]) -> Plan:
     """Certify the candidate that is best by its cost, given in increasing order, and by the clearance it keeps."""
+    free = _free(job, fit) or _free(job, rolling(job.way, fit, job.model, job.settings))
+    if not free:
+        raise too_near(job.way, fit[0], job.model, job.settings)
     refused: PathRefused | None = None
-    free: list[tuple[float, Candidate]] = []
-    for candidate in fit:
-        try:
-            clearance = path_clearance(job.way, candidate, job.model, job.settings)
-            free.append((cost(candidate, job.settings) - GAIN * min(clearance.value, ENOUGH), candidate))
-            if clearance.value >= ENOUGH:
-                break  # all that follow cost more
-        except PathRefused as error:
-            refused = refused or error
     for _, candidate in sorted(free, key=lambda trial: trial[0]):
         try:
             return _certified(job, candidate)
@@ -92,6 +87,18 @@ def _first_certified(job: _Job, fit: list[Candidate]) -> Plan:
             refused = refused or error
     assert refused is not None
     raise refused
+
+
+def _free(job: _Job, fit: list[Candidate]) -> list[tuple[float, Candidate]]:
+    """Return the candidates that keep clear of everything, with what they cost less what their clearance is worth."""
+    free: list[tuple[float, Candidate]] = []
+    for candidate in fit:
+        clearance = rough_clearance(job.way, candidate, job.model, job.settings).value
+        if clearance >= job.settings.clearance_min:
+            free.append((cost(candidate, job.settings) - GAIN * min(clearance, ENOUGH), candidate))
+        if clearance >= ENOUGH:
+            break  # all that follow cost more
+    return free
 
 
 def _home_within_limits(settings: MotionSettings) -> None:

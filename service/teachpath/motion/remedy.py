@@ -98,7 +98,8 @@ class _Nearby:
         poses[:, :3, 3] += moves
         here = self.candidate.joints[self.node]
         solutions = inverse(poses, q4_before=float(here[3]))
-        q = rolled(solutions.joints[:, self.candidate.arm.index], self.candidate.roll)
+        roll = self.candidate.roll(self.way.parameters[self.node : self.node + 1])
+        q = rolled(solutions.joints[:, self.candidate.arm.index], roll)
         return self.margin(q + 2 * np.pi * np.round((here - q) / (2 * np.pi)), solutions.excess[:, 0])
 
     def slope(self) -> Array:

@@ -9,6 +9,7 @@ from typing import Final
 
 import mujoco
 import numpy as np
+from numpy.typing import NDArray
 
 from teachpath.errors import UnusableInput
 from teachpath.motion.arm import arm
@@ -172,25 +173,42 @@ class CollisionModel:
         q = np.atleast_2d(q)
         held = tool_pose(q) @ load.grasp if load is not None and load.grasp is not None else None
         pair = np.array(list(pairs), dtype=np.int64).reshape(-1, 2)
-        reach = self._model.geom_rbound[pair].sum(axis=1)  # (pairs,) of the two bounding spheres
+        radii = self._model.geom_rbound[pair]  # (pairs, 2) of the two bounding spheres
+        boxes = np.flatnonzero(self._model.geom_type[pair[:, 1]] == mujoco.mjtGeom.mjGEOM_BOX)
         standing = self._standing(load)
         rows, nearest = [], 0
         for index, row in enumerate(q):
             self._place(row, standing if held is None else held[index])
-            apart = self._data.geom_xpos[pair[:, 0]] - self._data.geom_xpos[pair[:, 1]]
-            gap = np.sqrt(np.einsum("ij,ij->i", apart, apart)) - reach
+            gap = self._gaps(pair, radii, boxes)
             # Who was nearest in the row before is so again mostly, and then few others have to be measured.
             best = self._distance(pair[nearest, 0], pair[nearest, 1], FAR) if len(pair) else FAR
             close = np.flatnonzero(gap < best)
-            for k in close[np.argsort(gap[close])]:
+            for k in close[np.argsort(gap[close])].tolist():
                 if gap[k] >= best:
                     break
                 distance = self._distance(pair[k, 0], pair[k, 1], max(best, 0.001))
                 if distance < best:
-                    best, nearest = distance, int(k)
+                    best, nearest = distance, k
             one, other = (self._names[int(geom)] for geom in pair[nearest]) if best < FAR else ("", "")
             rows.append(Clearance(best, one, other))
         return rows
+
+    def _gaps(self, pair: NDArray[np.int64], radii: Array, boxes: NDArray[np.int64]) -> Array:
+        """Return distances (pairs,) that are quick and never too large: of bounding spheres, or of a sphere and a box.
+
+        Args:
+            pair: (pairs, 2) of geoms.
+            radii: (pairs, 2) of their bounding spheres.
+            boxes: pairs whose second is a box, which may be as large as a table.
+        """
+        first, second = pair[:, 0], pair[:, 1]
+        apart = self._data.geom_xpos[first] - self._data.geom_xpos[second]
+        gaps = np.sqrt(np.einsum("ij,ij->i", apart, apart)) - radii.sum(axis=1)
+        box = second[boxes]
+        inside = np.einsum("ij,ijk->ik", apart[boxes], self._data.geom_xmat[box].reshape(-1, 3, 3))
+        off = np.maximum(np.abs(inside) - self._model.geom_size[box], 0.0)
+        gaps[boxes] = np.maximum(gaps[boxes], np.sqrt(np.einsum("ij,ij->i", off, off)) - radii[boxes, 0])
+        return np.asarray(gaps, dtype=np.float64)
 
 
 def grasp_of(scene: Scene, start: Array) -> Load | None:

@@ -132,6 +132,35 @@ def test_where_above_is_not_free_the_arm_comes_and_goes_from_nearer_or_from_a_si
     verify(covered)
 
 
+def test_the_tool_rolls_along_the_path_where_no_one_roll_leads_through() -> None:
+    corner = [
+        [0.42, -0.2],
+        [0.5, -0.2],
+        [0.58, -0.2],
+        [0.64, -0.2],
+        [0.64, -0.14],
+        [0.64, -0.06],
+        [0.64, 0.02],
+        [0.64, 0.1],
+    ]
+    curve = clamped(np.column_stack([corner, np.full(8, 0.6)]), degree=5)
+    # Two gates, too narrow for the broad side of the gripper, one across x and one across y.
+    gates = [(0.5, -0.2 - 0.05), (0.5, -0.2 + 0.05), (0.64 - 0.05, 0.0), (0.64 + 0.05, 0.0)]
+    posts = tuple(Shape(f"post {k}", "cylinder", (0.01, 0.2), (x, y, 0.6)) for k, (x, y) in enumerate(gates))
+    scene = empty_scene()
+    one, other = (replace(scene, obstacles=(*scene.obstacles, *some)) for some in (posts[:2], posts[2:]))
+    both = replace(scene, obstacles=(*scene.obstacles, *posts))
+    assert {"rolling" in plan(learned(curve), single).certificate.branch for single in (one, other)} == {False}
+    made = plan(learned(curve), both)
+    assert "rolling" in made.certificate.branch
+    assert made.certificate.clearance.value >= MotionSettings().clearance_min
+    setpoints = track(made).setpoints(250.0)
+    poses = tool_pose(setpoints[:, :6])
+    wanted = curve(ArcLength(curve).parameters(setpoints[:, 6]))
+    assert np.linalg.norm(poses[:, :3, 3] - wanted, axis=1).max() < 1e-4
+    assert np.degrees(np.arccos(np.clip(poses[:, :3, 0] @ poses[0, :3, 0], -1, 1))).max() > 45.0
+
+
 def test_an_end_that_the_arm_cannot_come_to_is_refused() -> None:
     in_the_way = Shape("crate", "box", (0.04, 0.04, 0.04), tuple(tool_pose(np.array(MotionSettings().home))[:3, 3]))
     scene = empty_scene()
