@@ -34,6 +34,7 @@ class Bench:
         self.velocity = 0.0
         self.speaking = True
         self.deaf: Setpoint | None = None  # the setpoint after which it takes up no other
+        self.behind = 0  # setpoints that it is late with
         self.oversleep: dict[int, int] = {}  # setpoints sent -> ns too late
         self.setpoints: list[Setpoint] = []
         self.statuses: list[ExecutorStatus] = []
@@ -64,14 +65,18 @@ class Bench:
         self.now += round(duration * 1e9) + self.oversleep.pop(len(self.setpoints), 0)
         assert self.now < STUCK * 1e9, f"stuck before step {self.todo[:1]} in {self.statuses[-1]}"
         if self.setpoints:
-            self.position = (self.deaf or self.setpoints[-1]).position + self.pushed
+            self.position = self.taken().position + self.pushed
         if self.speaking:
             self.bus.publish(KEYS.state("puma560"), wire.encode_state(self.joint_state()))
         if self.todo and self.todo[0][0]():
             self.todo.pop(0)[1]()
 
+    def taken(self) -> Setpoint:
+        """The newest setpoint that the arm has taken up."""
+        return self.deaf or self.setpoints[-1 - min(self.behind, len(self.setpoints) - 1)]
+
     def joint_state(self) -> JointState:
-        newest = self.deaf or (self.setpoints[-1] if self.setpoints else None)
+        newest = self.taken() if self.setpoints else None
         return JointState(
             stamp_ns=EPOCH + self.now,
             cycle=newest.cycle if newest else 0,

@@ -234,3 +234,17 @@ def test_an_arm_that_takes_up_no_setpoints_is_held_and_brought_back(bench: Bench
     assert any("taken up no setpoint for 0.5 s" in reason for reason in reasons)
     assert ("the executor", "hold") in [(entry.who, entry.verb) for entry in bench.journal]
     assert bench.statuses[-1].progress == pytest.approx(1.0)
+
+
+def test_an_arm_that_is_far_behind_is_held_until_it_has_caught_up(bench: Bench, middle: Plan) -> None:
+    bench.start(middle, override=0.2)
+    bench.when(lambda: bench.state == "following" and len(bench.setpoints) > 400, lambda: setattr(bench, "behind", 300))
+    bench.when(lambda: bench.state == "held", lambda: setattr(bench, "behind", 0))
+    bench.when(lambda: True, lambda: bench.command("resume"))
+    bench.when(lambda: bench.state == "following", lambda: bench.command("override", override=1.0))
+    bench.when(lambda: bench.state == "ended", bench.stop.set)
+    bench.run()
+    held = next(status for status in bench.statuses if status.state == "held")
+    assert "1.2 s behind its setpoints" in held.reason
+    assert bench.statuses[-1].progress == pytest.approx(1.0)
+    assert within_limits(bench.setpoints)

@@ -47,6 +47,11 @@ class Execution:
         return self.state in RESTING
 
     @property
+    def sent(self) -> int:
+        """Setpoints that were sent."""
+        return self._sent
+
+    @property
     def settled(self) -> bool:
         """Whether it is held for so long that the arm itself rests."""
         return self.state == "held" and self._still > SETTLED * self._rate
