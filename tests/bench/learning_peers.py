@@ -124,7 +124,8 @@ def usual(trajectories: dict[str, Trajectory]) -> tuple[int, int]:
     for way in np.unique(labels):
         members = np.flatnonzero(labels == way)
         listed = list(trajectories.values())
-        for family in families([listed[i] for i in members], 0.02, lambda: None):
+        kinds = families([listed[i] for i in members], 0.02, lambda: None)
+        for family in (kind for kind in kinds if kind.states):
             for left in range(len(members)):
                 models += 1
                 rest = [sequence for i, sequence in enumerate(family.sequences) if i != left]

@@ -98,13 +98,15 @@ def _warped(paths: Array, kind: int, progress: Progress) -> Array:
 def _widest(apart: Array) -> Array:
     """Return the discrete Fréchet distances of pairs: the leash, along the diagonals of the table."""
     pairs, n, _ = apart.shape
+    flat, stride = apart.reshape(pairs, -1), max(n - 1, 1)  # from one to the next of a diagonal
     last, before = np.full((2, pairs, n + 1), np.inf)  # column i + 1 is row i of the table
     before[:, 0] = -np.inf
     for step in range(2 * n - 1):
-        rows = np.arange(max(0, step - n + 1), min(step, n - 1) + 1)
+        first, end = max(0, step - n + 1), min(step, n - 1) + 1
         reached = np.full((pairs, n + 1), np.inf)
-        shortest = np.minimum(np.minimum(last[:, rows], last[:, rows + 1]), before[:, rows])
-        reached[:, rows + 1] = np.maximum(apart[:, rows, step - rows], shortest)
+        shortest = np.minimum(np.minimum(last[:, first:end], last[:, first + 1 : end + 1]), before[:, first:end])
+        diagonal = flat[:, step + first * stride : step + (end - 1) * stride + 1 : stride]
+        np.maximum(diagonal, shortest, out=reached[:, first + 1 : end + 1])
         last, before = reached, last
     return np.asarray(last[:, -1])
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from teachpath.learning.hmm import LOG_2PI, LeftRightHmm
 from teachpath.records import Array
@@ -32,10 +33,9 @@ class TiedGaussianHmm(LeftRightHmm):
         """
         self.variance_ *= (sequences + 1) / (sequences - 1) if sequences > 1 else ONE_ONLY
 
-    def _begin(self, slices: list[Array], frames: Array) -> None:
-        self.means_ = np.stack([part.mean(axis=0) for part in slices])
-        squares = sum(np.square(part - mean).sum(axis=0) for part, mean in zip(slices, self.means_, strict=True))
-        self.variance_ = np.maximum(squares / len(frames), self.floor)
+    def _begin(self, owners: NDArray[np.int64], frames: Array) -> None:
+        self.means_ = np.zeros((self.n_components, self.n_features))
+        self._maximise(frames, np.eye(self.n_components)[owners])
 
     def _compute_log_likelihood(self, X: Array) -> Array:
         scaled = np.square(X[:, None, :] - self.means_) / self.variance_  # (frames, states, features)

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 from hmmlearn import _hmmc
 from hmmlearn.base import BaseHMM, ConvergenceMonitor
+from numpy.typing import NDArray
 from scipy.special import logsumexp
 
 from teachpath.records import Array
@@ -94,8 +95,8 @@ class LeftRightHmm(BaseHMM):  # type: ignore[misc]
         return np.diff(logsumexp(forward, axis=1), prepend=0.0)
 
     @abstractmethod
-    def _begin(self, slices: list[Array], frames: Array) -> None:
-        """Set the emissions from the frames of each state's time slice."""
+    def _begin(self, owners: NDArray[np.int64], frames: Array) -> None:
+        """Set the emissions from frames (n, features) that are in the time slice of a state: its number (n,)."""
 
     @abstractmethod
     def _maximise(self, frames: Array, posteriors: Array) -> None:
@@ -107,10 +108,8 @@ class LeftRightHmm(BaseHMM):  # type: ignore[misc]
         self.startprob_ = np.eye(states)[0]
         self.transmat_ = np.eye(states) + np.eye(states, k=1)
         self.transmat_ /= self.transmat_.sum(axis=1, keepdims=True)
-        bounds = np.concatenate([[0], np.cumsum(lengths)])
-        edges = np.linspace(bounds[:-1], bounds[1:], states + 1, axis=1).astype(int).tolist()
-        slices = [np.concatenate([X[edge[q] : edge[q + 1]] for edge in edges]) for q in range(states)]
-        self._begin(slices, X)
+        edges = (np.asarray(lengths)[:, None] * np.arange(states + 1)) // states
+        self._begin(np.repeat(np.tile(np.arange(states), len(lengths)), np.diff(edges, axis=1).ravel()), X)
 
     def _do_estep(self, X: Array, lengths: Sequence[int]) -> tuple[Statistics, float]:
         lattice = self._compute_log_likelihood(X)

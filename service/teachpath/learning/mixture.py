@@ -9,6 +9,7 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.special import logsumexp
 
 from teachpath.learning.hmm import LOG_2PI, LeftRightHmm
@@ -41,9 +42,10 @@ class MixtureHmm(LeftRightHmm):
         self.rng = rng
         self.in_time = in_time
 
-    def _begin(self, slices: list[Array], frames: Array) -> None:
+    def _begin(self, owners: NDArray[np.int64], frames: Array) -> None:
         shape = (self.n_components, self.mixtures)
         if self.in_time:
+            slices = [frames[owners == state] for state in range(self.n_components)]
             picks = [self.rng.choice(len(part), self.mixtures, replace=len(part) < self.mixtures) for part in slices]
             means = np.stack([part[pick] for part, pick in zip(slices, picks, strict=True)])  # (Q, M, d)
             if self.mixtures == 1:
