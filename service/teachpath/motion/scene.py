@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from itertools import combinations
 from typing import Final
@@ -176,10 +176,11 @@ class CollisionModel:
         radii = self._model.geom_rbound[pair]  # (pairs, 2) of the two bounding spheres
         boxes = np.flatnonzero(self._model.geom_type[pair[:, 1]] == mujoco.mjtGeom.mjGEOM_BOX)
         standing = self._standing(load)
+        objects = [standing if held is None else held[index] for index in range(len(q))]
+        places, turns = self._geoms(q, objects)
         rows, nearest = [], 0
-        for index, row in enumerate(q):
-            self._place(row, standing if held is None else held[index])
-            gap = self._gaps(pair, radii, boxes)
+        for gap, row, pose in zip(self._gaps(pair, radii, boxes, places, turns), q, objects, strict=True):
+            self._place(row, pose)
             # Who was nearest in the row before is so again mostly, and then few others have to be measured.
             best = self._distance(pair[nearest, 0], pair[nearest, 1], FAR) if len(pair) else FAR
             close = np.flatnonzero(gap < best)
@@ -193,21 +194,32 @@ class CollisionModel:
             rows.append(Clearance(best, one, other))
         return rows
 
-    def _gaps(self, pair: NDArray[np.int64], radii: Array, boxes: NDArray[np.int64]) -> Array:
-        """Return distances (pairs,) that are quick and never too large: of bounding spheres, or of a sphere and a box.
+    def _geoms(self, q: Array, objects: Sequence[Array | None]) -> tuple[Array, Array]:
+        """Return where all solids are (n, geoms, 3) and how they are turned (n, geoms, 3, 3)."""
+        places = np.empty((len(q), self._model.ngeom, 3))
+        turns = np.empty((len(q), self._model.ngeom, 9))
+        for index, (row, pose) in enumerate(zip(q, objects, strict=True)):
+            self._place(row, pose)
+            places[index], turns[index] = self._data.geom_xpos, self._data.geom_xmat
+        return places, turns.reshape(len(q), -1, 3, 3)
+
+    def _gaps(
+        self, pair: NDArray[np.int64], radii: Array, boxes: NDArray[np.int64], places: Array, turns: Array
+    ) -> Array:
+        """Return distances (n, pairs) that are quick and never too large: of bounding spheres, or of one and a box.
 
         Args:
             pair: (pairs, 2) of geoms.
             radii: (pairs, 2) of their bounding spheres.
             boxes: pairs whose second is a box, which may be as large as a table.
+            places: (n, geoms, 3) where the solids are; `turns` how they are turned.
         """
-        first, second = pair[:, 0], pair[:, 1]
-        apart = self._data.geom_xpos[first] - self._data.geom_xpos[second]
-        gaps = np.sqrt(np.einsum("ij,ij->i", apart, apart)) - radii.sum(axis=1)
-        box = second[boxes]
-        inside = np.einsum("ij,ijk->ik", apart[boxes], self._data.geom_xmat[box].reshape(-1, 3, 3))
+        apart = places[:, pair[:, 0]] - places[:, pair[:, 1]]
+        gaps = np.linalg.norm(apart, axis=2) - radii.sum(axis=1)
+        box = pair[boxes, 1]
+        inside = np.einsum("npj,npjk->npk", apart[:, boxes], turns[:, box])
         off = np.maximum(np.abs(inside) - self._model.geom_size[box], 0.0)
-        gaps[boxes] = np.maximum(gaps[boxes], np.sqrt(np.einsum("ij,ij->i", off, off)) - radii[boxes, 0])
+        gaps[:, boxes] = np.maximum(gaps[:, boxes], np.linalg.norm(off, axis=2) - radii[boxes, 0])
         return np.asarray(gaps, dtype=np.float64)
 
 
