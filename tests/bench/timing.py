@@ -1,8 +1,10 @@
 """Timing on eight paths: duration and a lower bound, time to plan, stops and the best possible, cost of a cycle."""
 
 import time
+from dataclasses import dataclass
 
 import numpy as np
+from global_optimum import best_duration
 from optimum import shortest_stop
 from report import Figure, against
 
@@ -11,7 +13,7 @@ from teachpath.motion.governor import Governor, warm_up
 from teachpath.motion.joints import ARM, JointPath
 from teachpath.motion.route import Route, route
 from teachpath.motion.settings import MotionSettings
-from teachpath.motion.shares import uses
+from teachpath.motion.shares import NOTHING_LEFT, uses
 from teachpath.motion.timing import lower_bound, timed
 from teachpath.motion.track import Track, paced
 from teachpath.nurbs import Curve
@@ -21,16 +23,30 @@ DT = 1.0 / RATE
 BUDGET = 150.0  # us, of a moving cycle
 LEAST = "no jerk limit, no reserve"
 LONGEST_STOP = 0.5  # s
-OPTIMA = 2  # stops per path and repetition that are held against the best possible
+OPTIMA = 4  # stops per path and repetition that are held against the best possible
 
 
 def measure(*, repeats: int) -> list[Figure]:
     """Return the figures; stops are from full speed, cycles and limits over random commands."""
     warm_up(DT)
     figures: list[Figure] = []
+    stops: list[float] = []
+    ratios: list[float] = []
     for name, curve in curves().items():
-        figures += _path(name, curve, repeats)
+        found = _path(name, curve, repeats)
+        figures += found.figures
+        stops += found.stops
+        ratios += found.ratios
+    figures.append(against("all paths: stops from full speed", stops, "s", name="median allowed", value=0.3))
+    figures.append(against("all paths: stop over the best possible", ratios, "", name="median allowed", value=1.2))
     return figures
+
+
+@dataclass(frozen=True)
+class _Found:
+    figures: list[Figure]
+    stops: list[float]
+    ratios: list[float]
 
 
 def curves() -> dict[str, Curve]:
@@ -61,7 +77,7 @@ def _clamped(points: np.ndarray, degree: int) -> Curve:
     return Curve(degree, np.r_[np.zeros(degree), inner, np.ones(degree)], points, np.ones(len(points)))
 
 
-def _path(name: str, curve: Curve, repeats: int) -> list[Figure]:
+def _path(name: str, curve: Curve, repeats: int) -> _Found:
     settings = MotionSettings()
     found = route(curve, settings)
     candidate = max((c for c in candidates(found, settings) if usable(c, settings)), key=lambda c: c.conditioned)
@@ -79,15 +95,30 @@ def _path(name: str, curve: Curve, repeats: int) -> list[Figure]:
     some = stopped[apart // 2 :: apart]
     ratios = [DT * len(rates) / shortest_stop(track, tau, rates, DT) for tau, rates in some]
     cycles, used = _random_commands(track, runs=4 * repeats)
-    return [
+    figures = [
         against(f"{label}: duration", [track.duration], "s", name=LEAST, value=bound),
-        against(f"{label}: duration, constant box", [_box(found, candidate)], "s", name=LEAST, value=bound),
+        *_bounds(label, found, candidate, bound),
         against(f"{label}: timing it", seconds, "s", name="asked", value=0.5),
         against(f"{label}: stops from full speed", stops, "s", name="worst allowed", value=LONGEST_STOP),
         Figure(f"{label}: stop over the best possible", tuple(ratios), ""),
         Figure(f"{label}: moving cycle p50", (float(np.median(cycles)),), "us"),
         against(f"{label}: moving cycle p99", [float(np.quantile(cycles, 0.99))], "us", name="budget", value=BUDGET),
         against(f"{label}: largest use of a limit", [used], "", name="limit", value=1.0),
+    ]
+    return _Found(figures, stops, ratios)
+
+
+def _bounds(label: str, found: Route, candidate: Candidate, bound: float) -> list[Figure]:
+    """Return what the jerk limit and the reserve cost, and what a scheme with one box of limits takes."""
+    path, pace = timed(found, candidate, ARM, rate=RATE, reserve=NOTHING_LEFT)
+    whole = paced(path, pace, ARM).duration
+    figures = (
+        ("without any reserve", whole),
+        ("without any reserve, best on a grid of everything", best_duration(path, ARM, whole)),
+        ("constant box", _box(found, candidate)),
+    )
+    return [
+        against(f"{label}: duration, {what}", [duration], "s", name=LEAST, value=bound) for what, duration in figures
     ]
 
 

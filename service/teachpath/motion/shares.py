@@ -34,7 +34,7 @@ class Reserve:
     speed: float = 0.99
     along: tuple[float, float] = (0.99, 0.99)
     against: tuple[float, float] = (0.97, 0.95)
-    fast: tuple[float, float] = (0.94, 0.88)
+    fast: tuple[float, float] = (0.93, 0.86)
 
     @property
     def falls(self) -> tuple[float, float]:
