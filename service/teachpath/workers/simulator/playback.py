@@ -52,6 +52,7 @@ class Playback:
         self.wanted = Wanted(np.array(position), still, still)
         self.missed = self.late = 0
         self._newest = -1
+        self._piece: _Piece | None = None  # between the two setpoints that are next to the played instant
         self._period = 0.004  # s, between two setpoints, as seen
         self._starved = 0.0  # s, for which nothing has been left to play
         self._slope = 0.0  # 1/s, of the playing rate
@@ -133,7 +134,7 @@ class Playback:
     def _pace(self, dt: float) -> None:
         """Let the playing rate follow the store: 1 with half a delay or more, 0 with nothing left."""
         newest = self._waiting[-1] if self._waiting else self._last
-        resting = newest is not None and not np.any(newest.velocity) and not np.any(newest.acceleration)
+        resting = newest is not None and not (newest.velocity.any() or newest.acceleration.any())
         rate = 1.0 if resting else min(max(self._ahead() / (LOW * self._delay), 0.0), 1.0)
         change = min(max(rate - self._rate, -BRAKE * dt), BRAKE * dt)
         self._rate += change
@@ -143,8 +144,9 @@ class Playback:
         assert self._last is not None
         before, rate, last = self.wanted, self._rate, self._last
         if self._waiting:
-            span = self._at(self._waiting[0]) - self._at(last)
-            p, v, a = _between(last, self._waiting[0], span, self._played - self._at(last))
+            if self._piece is None or self._piece.one is not last or self._piece.two is not self._waiting[0]:
+                self._piece = _Piece(last, self._waiting[0])
+            p, v, a = self._piece(self._played - self._at(last))
         else:
             p, v, a = last.position + (self._played - self._at(last)) * last.velocity, last.velocity, np.zeros(6)
         v, a = rate * v, rate**2 * a + self._slope * v
@@ -158,17 +160,28 @@ class Playback:
         self.wanted = Wanted(p, v, a)
 
 
-def _between(one: Setpoint, two: Setpoint, span: float, t: float) -> tuple[Array, Array, Array]:
-    """Evaluate the quintic Hermite polynomial between two setpoints `span` [s] apart, `t` behind the first."""
-    x = min(t / span, 1.0)
-    p0, v0, a0 = one.position, one.velocity * span, one.acceleration * span**2
-    p1, v1, a1 = two.position, two.velocity * span, two.acceleration * span**2
-    d, e, f = p1 - p0 - v0 - a0 / 2, v1 - v0 - a0, a1 - a0
-    c3, c4, c5 = 10 * d - 4 * e + f / 2, -15 * d + 7 * e - f, 6 * d - 3 * e + f / 2
-    p = p0 + x * (v0 + x * (a0 / 2 + x * (c3 + x * (c4 + x * c5))))
-    v = v0 + x * (a0 + x * (3 * c3 + x * (4 * c4 + x * 5 * c5)))
-    a = a0 + x * (6 * c3 + x * (12 * c4 + x * 20 * c5))
-    return p, v / span, a / span**2
+class _Piece:
+    """The quintic Hermite polynomial between two setpoints."""
+
+    def __init__(self, one: Setpoint, two: Setpoint) -> None:
+        self.one, self.two = one, two
+        self._span = span = (two.nominal_ns - one.nominal_ns) / 1e9
+        p0, v0, a0 = one.position, one.velocity * span, one.acceleration * span**2
+        p1, v1, a1 = two.position, two.velocity * span, two.acceleration * span**2
+        d, e, f = p1 - p0 - v0 - a0 / 2, v1 - v0 - a0, a1 - a0
+        rows = [p0, v0, a0 / 2, 10 * d - 4 * e + f / 2, -15 * d + 7 * e - f, 6 * d - 3 * e + f / 2]
+        self._powers = np.array(rows)  # (6, joints), of the share of the span
+
+    def __call__(self, t: float) -> tuple[Array, Array, Array]:
+        """Evaluate position, velocity and acceleration `t` [s] behind the first."""
+        x, h = min(t / self._span, 1.0), self._span
+        shares = (
+            (1.0, x, x**2, x**3, x**4, x**5),
+            (0.0, 1.0 / h, 2 * x / h, 3 * x**2 / h, 4 * x**3 / h, 5 * x**4 / h),
+            (0.0, 0.0, 2.0 / h**2, 6 * x / h**2, 12 * x**2 / h**2, 20 * x**3 / h**2),
+        )
+        p, v, a = np.array(shares) @ self._powers
+        return p, v, a
 
 
 def _handed(error: Array, drift: Array, since: float) -> tuple[Array, Array, Array]:
