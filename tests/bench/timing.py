@@ -32,6 +32,7 @@ def measure(*, repeats: int) -> list[Figure]:
     figures: list[Figure] = []
     stops: list[float] = []
     ratios: list[float] = []
+    timed(*_branch(curves()["bow"]), ARM, rate=RATE)  # loads what the first path would wait for
     for name, curve in curves().items():
         found = _path(name, curve, repeats)
         figures += found.figures
@@ -77,10 +78,14 @@ def _clamped(points: np.ndarray, degree: int) -> Curve:
     return Curve(degree, np.r_[np.zeros(degree), inner, np.ones(degree)], points, np.ones(len(points)))
 
 
-def _path(name: str, curve: Curve, repeats: int) -> _Found:
+def _branch(curve: Curve) -> tuple[Route, Candidate]:
     settings = MotionSettings()
     found = route(curve, settings)
-    candidate = max((c for c in candidates(found, settings) if usable(c, settings)), key=lambda c: c.conditioned)
+    return found, max((c for c in candidates(found, settings) if usable(c, settings)), key=lambda c: c.conditioned)
+
+
+def _path(name: str, curve: Curve, repeats: int) -> _Found:
+    found, candidate = _branch(curve)
     seconds = []
     for _ in range(repeats):
         began = time.perf_counter()
@@ -112,9 +117,12 @@ def _bounds(label: str, found: Route, candidate: Candidate, bound: float) -> lis
     """Return what the jerk limit and the reserve cost, and what a scheme with one box of limits takes."""
     path, pace = timed(found, candidate, ARM, rate=RATE, reserve=NOTHING_LEFT)
     whole = paced(path, pace, ARM).duration
+    free = ARM.scaled(1.0, 1.0, 20.0)
+    easy = paced(*timed(found, candidate, free, rate=RATE, reserve=NOTHING_LEFT), free)
     figures = (
         ("without any reserve", whole),
         ("without any reserve, best on a grid of everything", best_duration(path, ARM, whole)),
+        ("without any reserve, 20 times the jerk", easy.duration),
         ("constant box", _box(found, candidate)),
     )
     return [

@@ -16,7 +16,7 @@ from teachpath.motion.failure import in_words, kinematic_failure, start_failure
 from teachpath.motion.joints import JointPath
 from teachpath.motion.kinematics import tool_pose
 from teachpath.motion.puma560 import LOWER, UPPER
-from teachpath.motion.remedy import influences
+from teachpath.motion.remedy import nearest_point
 from teachpath.motion.rolling import rolling
 from teachpath.motion.route import Route, route
 from teachpath.motion.scene import CollisionModel
@@ -147,7 +147,7 @@ def _certificate(
     if worst.value > settings.path_share:
         raise PathRefused(
             f"a limit is used to {100 * worst.value:.1f} % by {worst.place}, at most "
-            f"{100 * settings.path_share:.1f} %; smooth the path there"
+            f"{100 * settings.path_share:.1f} %; smooth the path there: move {nearest_point(way, worst.s)}"
         )
     singular_s = float(way.lengths[int(np.argmin(candidate.singular))])
     return Certificate(
@@ -170,10 +170,10 @@ def _tool_on_path(way: Route, joints: JointPath, settings: MotionSettings) -> No
     off = np.linalg.norm(tool_pose(reached[:, :6])[:, :3, 3] - wanted, axis=1)
     worst = int(np.argmax(off))
     if off[worst] > settings.path_tolerance:
-        node = int(np.argmin(np.abs(way.lengths - reached[worst, 6])))
+        s = float(reached[worst, 6])
         raise PathRefused(
-            f"the path bends too sharply to be followed within its tolerance {way.place(node)}; "
-            f"move control point {int(np.argmax(influences(way.curve, float(way.parameters[node])))) + 1}"
+            f"the path bends too sharply to be followed within its tolerance "
+            f"{way.place(int(np.argmin(np.abs(way.lengths - s))))}; move {nearest_point(way, s)}"
         )
 
 

@@ -37,6 +37,12 @@ def influences(curve: Curve, u: float) -> Array:
     return np.asarray(row * curve.weights / (row @ curve.weights), dtype=np.float64)
 
 
+def nearest_point(way: Route, s: float) -> str:
+    """Name the control point that takes the path along most at arc length `s` [m]."""
+    shares = influences(way.curve, float(way.arc.parameters(np.array([s]))[0]))
+    return f"control point {int(np.argmax(shares)) + 1} of {len(shares)}"
+
+
 def margin_of(fault: str, candidate: Candidate, node: int) -> Margin:
     """Return what to raise so that a fault of a branch (see `branches.faults`) goes away."""
     if fault == "reach":

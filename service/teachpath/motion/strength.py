@@ -9,6 +9,7 @@ from teachpath.motion.branches import Candidate
 from teachpath.motion.certificate import largest_use
 from teachpath.motion.joints import ARM, JointPath, Limits
 from teachpath.motion.puma560 import TORQUE, Array
+from teachpath.motion.remedy import nearest_point
 from teachpath.motion.route import Route
 from teachpath.motion.settings import MotionSettings
 from teachpath.motion.timing import timed
@@ -47,5 +48,5 @@ def within_torques(
         limits = limits.scaled(1.0, LESS * left, 1.0)
     raise PathRefused(
         f"the motors would have to give {100 * worst.value:.0f} % of their torque at {worst.place}; carry less, or "
-        "bring the path nearer to the robot there"
+        f"bring the path nearer to the robot there, by {nearest_point(way, worst.s)}"
     )

@@ -3,11 +3,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from teachpath.errors import PathRefused
+from teachpath.motion.branches import candidates, usable
 from teachpath.motion.certificate import track
 from teachpath.motion.kinematics import tool_pose
 from teachpath.motion.plan import plan
 from teachpath.motion.puma560 import ACCELERATION, LOWER, SPEED, TORQUE, UPPER
+from teachpath.motion.route import route
 from teachpath.motion.scenes import paper_scene
+from teachpath.motion.settings import MotionSettings
+from teachpath.motion.strength import within_torques
 from teachpath.motion.torque import Dynamics
 from teachpath.records import Shape
 from tests.unit.motion.ways import MIDDLE, way
@@ -58,3 +63,12 @@ def test_the_certified_torques_bound_those_of_the_plan() -> None:
     rows = track(made).table[::10]
     needed = Dynamics(paper_scene().carried).torques(*(rows[:, k, :6] for k in range(3)))
     assert 0.3 < (np.abs(needed) / TORQUE).max() < made.certificate.torque_use.value < 1.0
+
+
+def test_what_is_too_heavy_is_refused_with_the_place_and_the_control_point() -> None:
+    settings = MotionSettings()
+    found = route(way(MIDDLE).curve, settings)
+    candidate = next(c for c in candidates(found, settings) if usable(c, settings))
+    block = Shape("block", "box", (0.5, 0.5, 0.5), (0.0, 0.0, 0.0))
+    with pytest.raises(PathRefused, match=r"torque at joint \d at s = .*carry less.*control point \d of 9"):
+        within_torques(found, candidate, Dynamics(block), settings)
