@@ -33,8 +33,8 @@ def assess(
     """Look at a curve as quickly as an editor needs it; only `plan` certifies.
 
     Kinematics are exact at every node of the plan's own route, distances are measured at the samples alone, the
-    duration is estimated from limits of speed and acceleration, and moves to the path and away from it are not
-    looked at.
+    duration is estimated from limits of speed and acceleration, and neither moves to the path and away from it are
+    looked at nor rolls of the tool that change along it.
 
     Args:
         curve: positions [m].

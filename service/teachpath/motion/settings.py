@@ -22,13 +22,13 @@ class MotionSettings:
     contact_tolerance: Annotated[float, Ge(0), Le(0.02)] = 0.003
     # [m] between the start of a path and where the scene's object stands
     grasp_tolerance: Annotated[float, Ge(0), Le(0.1)] = 0.03
-    # [m] above start and goal, from where the gripper comes down straight
+    # [m] above start and goal, from where the gripper comes down straight; else nearer or from a side
     lift: Annotated[float, Gt(0), Le(0.5)] = 0.08
     # share of the joints' speed, acceleration and jerk limits that following a path may use
     path_share: Annotated[float, Gt(0), Le(1)] = 1.0
     # the same for moves to the path and away from it
     move_share: Annotated[float, Gt(0), Le(1)] = 0.5
-    # [rad] turns of the gripper about the vertical to try; 0 closes the fingers along y
+    # [rad] turns of the gripper about the vertical to try before it turns on the way; 0 closes the fingers along y
     rolls: Annotated[tuple[float, ...], Len(1)] = (0.0, 1.5707963267948966, 3.141592653589793, -1.5707963267948966)
     # `fixed`: the gripper points down all the way; `demonstrated`: it turns as the carried object was turned
     orientation: Literal["fixed", "demonstrated"] = "fixed"
