@@ -27,18 +27,6 @@ export class Motion {
   }
 }
 
-// Plays from `begin` to `duration` [s] in real time; `show(seconds)` once a frame, `over()` at the end. Returns its stop.
-export function play(begin, duration, show, over) {
-  const started = performance.now() - 1000 * begin;
-  let frame = requestAnimationFrame(function next() {
-    const seconds = Math.min((performance.now() - started) / 1000, duration);
-    show(seconds);
-    if (seconds < duration) frame = requestAnimationFrame(next);
-    else over();
-  });
-  return () => cancelAnimationFrame(frame);
-}
-
 function between(times, time) {
   let [low, high] = [0, times.length - 1];
   while (high - low > 1) {

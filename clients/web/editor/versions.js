@@ -37,7 +37,7 @@ export function versions(place, editor) {
 export const title = ({ number, name }) => (name ? `${number} ${name}` : `${number}`);
 
 function content({ draft, versions }) {
-  const head = element("thead", {}, element("tr", {}, ["", "Version", "Branch", "Saved", ""].map((text) => element("th", { scope: "col" }, text))));
+  const head = element("thead", {}, element("tr", {}, ["", "Version", "Branch", "Saved", ""].map((text) => element(text ? "th" : "td", text && { scope: "col" }, text))));
   const rows = versions.toReversed().map((version) => {
     const here = version.number === draft.base.number;
     return element(

@@ -54,7 +54,7 @@ function content(state) {
   const run = runOf(state);
   const usable = (state.demonstrations ?? []).filter((d) => d.verdict !== "reject" && d.mark !== "bad" && !d.discarded_ns);
   const busy = (state.jobs ?? []).some((job) => ["running", "queued"].includes(job.state) && job.kind !== "plan");
-  const learn = (words) => element("p", {}, element("button", { type: "button", class: "main", "data-learn": "1", "data-key": "learn", disabled: busy && "" }, words));
+  const learn = (words) => element("p", {}, element("button", { type: "button", class: "primary", "data-learn": "1", "data-key": "learn", disabled: busy && "" }, words));
   if (!run?.learned.clusters.length) {
     if (state.runs === null && state.task) return hint("The runs cannot be read yet: the service does not answer.");
     return usable.length
@@ -92,7 +92,7 @@ function card(state, cluster) {
   return element(
     "article",
     { class: `card ${chosen ? "chosen" : ""}`, "data-focus": `paths ${path.id}` },
-    element("header", {}, head, element("button", { type: "button", class: "pick", "aria-pressed": String(chosen), "data-path": path.id, "data-key": `pick ${path.id}`, "aria-label": `Choose way ${cluster.index}` }, chosen ? "chosen" : "choose")),
+    element("header", {}, head, element("button", { type: "button", class: "pick", "aria-pressed": String(chosen), "data-path": path.id, "data-key": `pick ${path.id}`, "aria-label": `${chosen ? "chosen" : "choose"}: way ${cluster.index}` }, chosen ? "chosen" : "choose")),
     facts([
       ["Agree", `${kept} of ${cluster.members.length}${path.fit?.tube > 0 ? `, within ${number(path.fit.tube * 1000, 0, "mm")}` : ""}`],
       ["Spread", spread.length > 0 && `${number(median(spread) * 1000, 0, "mm")}, at most ${number(Math.max(...spread) * 1000, 0, "mm")}`],

@@ -168,7 +168,7 @@ function holder(there, lease) {
 }
 
 function parts() {
-  const order = (verb, text, label) => element("button", { type: "button", "data-verb": verb, ...(label && { "aria-label": label }) }, text);
+  const order = (verb, text, title) => element("button", { type: "button", "data-verb": verb, title }, text);
   const state = element("div", { role: "status" });
   const start = element("button", { type: "button", class: "primary hold", disabled: "" }, "Hold to start the arm");
   const buttons = element(

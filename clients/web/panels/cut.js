@@ -27,7 +27,7 @@ export function cut(place, { store, attempt }) {
     const same = count === shown.dendrogram.clusters;
     replace(
       orders,
-      !same && chosen && element("button", { type: "button", class: "main", "data-cut": "1", "data-key": "cut" }, `Make ${count} ${plural(count, "way")}`),
+      !same && chosen && element("button", { type: "button", class: "primary", "data-cut": "1", "data-key": "cut" }, `Make ${count} ${plural(count, "way")}`),
       !same && element("button", { type: "button", "data-back": "1", "data-key": "back" }, "Put it back"),
     );
   };

@@ -1,13 +1,14 @@
 // Preview: the plan of the chosen path as a ghost in the view, before anything moves.
 import { at, get, post } from "../api.js";
 import { Ghost } from "../arm/ghost.js";
-import { Motion, play } from "../arm/motion.js";
+import { Motion } from "../arm/motion.js";
+import { Player } from "../arm/player.js";
 import { bar, element, facts, hint, number, percent, replace } from "../elements.js";
 import { pathOf } from "../store.js";
 
 export function preview(place, context) {
   const panel = new PreviewPanel(place, context);
-  return { update: (state, changed) => panel.update(state, changed), hide: () => panel.close(), panel };
+  return { update: (state, changed) => panel.update(state, changed), hide: () => panel.player.close(), player: panel.player };
 }
 
 class PreviewPanel {
@@ -16,22 +17,12 @@ class PreviewPanel {
   constructor(place, context) {
     Object.assign(this, { place, context });
     this.facts = element("div", {});
-    this.scrub = element("input", { type: "range", min: "0", max: "1", step: "0.01", value: "0", "aria-label": "Instant of the motion" });
-    this.words = element("output", { class: "words" });
-    this.play = element("button", { type: "button" }, "Play");
-    this.shut = element("button", { type: "button" }, "Close preview");
     this.open = element("button", { type: "button", class: "primary" }, "Preview");
     this.make = element("button", { type: "button", class: "primary" }, "Plan the motion");
-    this.bench = element("div", { class: "scrub", hidden: "" }, this.scrub, this.words, element("p", { class: "orders" }, this.play, this.shut));
-    place.append(this.facts, element("p", { class: "orders" }, this.make, this.open), this.bench);
+    this.player = new Player({ instant: "Instant of the motion", shut: "Close preview", shown: (_, here) => here.words, closed: () => this.#paint() });
+    place.append(this.facts, element("p", { class: "orders" }, this.make, this.open), this.player.element);
     this.make.addEventListener("click", () => this.#plan());
     this.open.addEventListener("click", () => context.attempt(() => this.#open()));
-    this.shut.addEventListener("click", () => this.close());
-    this.play.addEventListener("click", () => (this.stop ? this.#pause() : this.#start()));
-    this.scrub.addEventListener("input", () => {
-      this.#pause();
-      this.#show(Number(this.scrub.value));
-    });
     this.#paint();
   }
 
@@ -48,13 +39,6 @@ class PreviewPanel {
     this.#paint();
   }
 
-  close() {
-    this.#pause();
-    this.ghost?.remove();
-    this.ghost = this.motion = null;
-    this.#paint();
-  }
-
   // The newest plan of the path, of whatever version: only what is certified can be run.
   async #fetch(path) {
     const before = this.plan?.id;
@@ -64,7 +48,7 @@ class PreviewPanel {
     if (path !== this.path) return; // another one was chosen meanwhile
     this.plan = plans?.[0] ?? null;
     this.newest = newest?.version;
-    if (this.plan?.id !== before) this.close();
+    if (this.plan?.id !== before) this.player.close();
     this.context.store.set({ plan: this.plan });
     this.#paint();
   }
@@ -80,34 +64,10 @@ class PreviewPanel {
   async #open() {
     const { plan, context } = this;
     const [rows, arm] = await Promise.all([get(at("plans", plan.id, "motion")), get("robot")]);
-    if (plan !== this.plan || this.ghost) return;
-    this.motion = new Motion(rows);
-    this.ghost = new Ghost(context.easel, context.view, arm, plan.scene.carried);
-    this.scrub.max = String(this.motion.duration);
+    if (plan !== this.plan || this.player.motion) return;
+    this.player.open(new Motion(rows), new Ghost(context.easel, context.view, arm, plan.scene.carried));
     this.#paint();
-    this.#start();
-  }
-
-  #start() {
-    const { duration } = this.motion;
-    const from = Number(this.scrub.value) >= duration - 0.01 ? 0 : Number(this.scrub.value);
-    this.stop = play(from, duration, (seconds) => this.#show(seconds), () => this.#pause());
-    this.play.textContent = "Pause";
-  }
-
-  #pause() {
-    this.stop?.();
-    this.stop = null;
-    this.play.textContent = "Play";
-  }
-
-  #show(seconds) {
-    const here = this.motion.at(seconds);
-    this.ghost.place(here.q, here);
-    this.scrub.value = String(seconds);
-    const words = `${number(seconds, 1, "s")} of ${number(this.motion.duration, 1, "s")}: ${here.words}`;
-    this.scrub.setAttribute("aria-valuetext", words);
-    this.words.textContent = words;
+    this.player.start();
   }
 
   #paint() {
@@ -117,8 +77,7 @@ class PreviewPanel {
     replace(this.facts, content(path, plan, job, working, newer));
     this.make.hidden = !path || (Boolean(plan) && !newer) || working;
     this.make.textContent = newer ? `Plan version ${newer}` : "Plan the motion";
-    this.open.hidden = !plan || Boolean(this.ghost);
-    this.bench.hidden = !this.ghost;
+    this.open.hidden = !plan || Boolean(this.player.motion);
   }
 }
 

@@ -219,7 +219,8 @@ function parts() {
     {},
     hint("No glove? Carry the box in the view yourself; the recorder takes it like any tracker."),
     named,
-    element("p", { class: "orders" }, start, headset, element("label", { for: "countdown" }, " Countdown "), seconds),
+    element("p", { class: "orders" }, start, headset),
+    element("p", { class: "field" }, element("label", { for: "countdown" }, "Countdown"), seconds),
     why,
   );
   const says = element("p", { class: "says", role: "status" });
