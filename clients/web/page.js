@@ -103,6 +103,7 @@ globalThis.teachpath = {
   paths: () => view.paths(),
   place: (path) => view.place(path),
   project: (point) => view.easel.project(point),
+  opacity: (path) => view.opacity(path),
   ghost: () => run.ghost(),
   replayed: () => run.replayed(),
   headset: () => demonstrate.headset(),

@@ -127,13 +127,23 @@ export class View {
     return found.filter((path) => !this.own.has(path.split("/")[1])).sort();
   }
 
+  // How much a line or tube covers what is behind it; null when there is none.
+  opacity(path) {
+    return this.#node(path)?.children["<object>"]?.object.material.opacity ?? null;
+  }
+
   // World matrix of a path, column by column, three's y-up frame; null when there is none.
   place(path) {
-    let node = this.viewer.scene_tree;
-    for (const name of path.split("/").filter(Boolean)) node = node?.children[name];
+    const node = this.#node(path);
     if (!node) return null;
     node.object.updateWorldMatrix(true, false);
     return node.object.matrixWorld.toArray();
+  }
+
+  #node(path) {
+    let node = this.viewer.scene_tree;
+    for (const name of path.split("/").filter(Boolean)) node = node?.children[name];
+    return node;
   }
 
   #apply(data) {

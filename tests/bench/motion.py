@@ -33,7 +33,7 @@ def measure(*, repeats: int, seconds: float) -> list[Figure]:
         places = {"web": {"port": free_port()}, "bus": {"endpoint": endpoint}, "store": {"data_dir": folder}}
         settings = load(document=places)
         with serving(settings), Api(f"http://127.0.0.1:{settings.web.port}") as api:
-            _show(endpoint)
+            show(endpoint)
             figures, plan = _jobs(api, repeats)
             _wait_for_executor(api)
             figures += idle.measure()
@@ -58,7 +58,8 @@ def measure(*, repeats: int, seconds: float) -> list[Figure]:
             return figures
 
 
-def _show(endpoint: str) -> None:
+def show(endpoint: str) -> None:
+    """Let the synthetic hand show the paper's first experiment as the task demo, at once."""
     command = [sys.executable, "-m", "teachpath_client", "synthetic", "--scene", "paper", "--speed", "100"]
     subprocess.run([*command, "--endpoint", endpoint], check=True, stdout=subprocess.DEVNULL)
 

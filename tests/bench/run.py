@@ -9,6 +9,7 @@ import learning
 import learning_peers
 import learning_scale
 import motion
+import page
 import plans
 import recording
 import recording_load
@@ -48,6 +49,7 @@ def main() -> None:
         "A served station: jobs in their process, executor and simulated arm in theirs",
         motion.measure(repeats=1 if quick else 3, seconds=2.0 if quick else math.inf),
     )
+    print_report("The editor in the page", page.measure(drags=5 if quick else 20))
     print(f"took {time.monotonic() - began:.0f} s")
 
 

@@ -46,5 +46,8 @@ class Desk(Visit):
         mouse.move(x + dx, y + dy, steps=steps)
         mouse.up()
 
+    def save(self) -> None:
+        self.click("#edit-save")
+
     def click(self, selector: str) -> None:
         self.page.locator(selector).click(timeout=SLOW)

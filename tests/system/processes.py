@@ -125,12 +125,13 @@ class Service(Command):
 
     Args:
         data: its data folder.
+        ports: of web and bus, to stand where another one stood; None: free ones.
         settings: further TEACHPATH_* variables.
     """
 
-    def __init__(self, data: Path, **settings: str) -> None:
+    def __init__(self, data: Path, *, ports: tuple[int, int] | None = None, **settings: str) -> None:
         self.data = data
-        web, bus = free_ports(2)
+        web, bus = self.ports = ports or free_ports(2)
         self.url, self.endpoint = f"http://127.0.0.1:{web}", f"tcp/127.0.0.1:{bus}"
         environment = {"TEACHPATH_BUS__ENDPOINT": self.endpoint, **settings}
         super().__init__("serve", "--data", str(data), "--port", str(web), folder=data.parent, environment=environment)

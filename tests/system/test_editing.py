@@ -6,8 +6,9 @@ from typing import Any
 import numpy as np
 import pytest
 
+from teachpath.nurbs import Curve
 from tests.system.editors import SLOW, Desk, U
-from tests.system.processes import Service
+from tests.system.processes import Service, wait_until
 from tests.system.test_station import record
 
 pytestmark = pytest.mark.system
@@ -117,3 +118,81 @@ def test_every_edit_can_be_made_by_keyboard_and_in_numbers(desks: Any, paths: li
         if desk.ask("!editor.draft.edited"):
             break
     assert desk.curve().control_points.tobytes() == before.tobytes()
+
+
+def same(one: Curve, other: Curve) -> bool:
+    return one.control_points.tobytes() == other.control_points.tobytes()
+
+
+def stored(service: Service, path: str) -> list[tuple[str, str, Curve]]:
+    """Branch, author and curve of every version of a path."""
+    versions = service.call("GET", f"/paths/{path}/versions")
+    curves = [service.call("GET", f"/paths/{path}/versions/{v['number']}")["path"]["curve"] for v in versions]
+    names = ("degree", "knots", "control_points", "weights")
+    return [
+        (v["branch"], v["author"], Curve(*(c[name] for name in names))) for v, c in zip(versions, curves, strict=True)
+    ]
+
+
+def test_the_second_of_two_editors_chooses_and_no_edit_is_lost(desks: Any, service: Service, paths: list[str]) -> None:
+    anna, ben = desks(paths[1]), desks(paths[1])
+    for desk, name in ((anna, "anna"), (ben, "ben")):
+        desk.page.fill("#edit-author", name)
+    anna.drag(2, 30, -20)
+    anna.save()
+    anna.until("editor.draft.base.number === 2")
+    ben.drag(3, -30, -20)
+    mine = ben.curve()
+    ben.save()
+    ben.page.wait_for_selector("#conflict[open]", timeout=SLOW)
+    assert "anna" in ben.page.inner_text("#conflict-told")
+    ben.click("#conflict button[value=theirs]")
+    ben.until("editor.draft.base.number === 2")
+    assert same(ben.curve(), anna.curve())
+    ben.click("#edit-undo")
+    assert same(ben.curve(), mine)
+
+    anna.drag(2, 10, 10)
+    anna.save()
+    anna.until("editor.draft.base.number === 3")
+    ben.save()
+    ben.page.wait_for_selector("#conflict[open]", timeout=SLOW)
+    ben.page.fill("#conflict-branch", "bens")
+    ben.click("#conflict button[value=mine]")
+    ben.until("editor.draft.base.number === 4")
+    versions = stored(service, paths[1])
+    assert [version[:2] for version in versions] == [("main", ""), ("main", "anna"), ("main", "anna"), ("bens", "ben")]
+    assert same(versions[2][2], anna.curve())
+    assert same(versions[3][2], mine)
+
+
+def test_an_edited_path_is_looked_at_saved_certified_and_executed(
+    desks: Any, service: Service, paths: list[str]
+) -> None:
+    desk = desks(paths[2])
+    desk.drag(3, 6, -6)
+    desk.until("editor.verdict.assessment && editor.verdict.curve === editor.draft.curve")
+    assert desk.page.inner_text("#edit-verdict") != ""
+    desk.save()
+    desk.until("editor.draft.base.number === 2")
+    desk.click("#edit-certify")
+    desk.page.wait_for_selector("#edit-run", timeout=SLOW)
+    assert "is certified" in desk.page.inner_text("#edit-certified")
+    desk.click("#edit-run")
+    desk.page.wait_for_selector("button.hold:not([disabled])", timeout=SLOW)
+    start = desk.page.get_by_role("button", name="Hold to start the arm")
+    start.focus()
+    desk.page.keyboard.down("Enter")
+    desk.page.wait_for_timeout(1200)
+    desk.page.keyboard.up("Enter")
+    wait_until(lambda: bool(service.call("GET", "/executions")), seconds=20, what="it begins")
+    newest: dict[str, Any] = {}
+
+    def ended() -> bool:
+        newest.update(service.call("GET", "/executions")[0])
+        return newest["status"]["state"] in ("ended", "faulted")
+
+    wait_until(ended, seconds=60, what="the arm has carried the box")
+    assert (newest["status"]["state"], newest["status"]["progress"]) == ("ended", 1.0), newest["status"]["reason"]
+    plan = service.call("GET", f"/plans/{newest['plan']}")
+    assert (plan["path"], plan["path_version"]) == (paths[2], 2)

@@ -8,16 +8,28 @@ from typing import Any
 import numpy as np
 import pytest
 
+from tests.system.carriers import (
+    GOAL,
+    HEADSET,
+    HEAR,
+    START,
+    begin,
+    carry,
+    carry_worn,
+    finish,
+    gaps_of,
+    has_no_gaps,
+    is_judged_by_its_frames,
+    move_controller,
+    move_hand,
+    phase,
+)
 from tests.system.processes import Service
 from tests.system.test_view import Visit
 
 ASSETS = Path(__file__).parent / "assets"
 
 pytestmark = pytest.mark.system
-
-START, GOAL = (0.58, -0.28, 0.52), (0.58, 0.28, 0.52)  # of the box in the paper's scene
-OVER = 0.62  # [m] height at which it is carried between the obstacles
-
 
 # A gamepad that the tests hold: standard mapping, plugged in when `pad.connected` is set.
 GAMEPAD = """
@@ -35,65 +47,6 @@ def visit(browser: Any, service: Service) -> Iterator[Visit]:
     visit.page.wait_for_timeout(300)
     yield visit
     visit.page.close()
-
-
-def phase(visit: Visit, name: str, seconds: float = 15.0) -> None:
-    visit.page.wait_for_selector(f"html[data-showing={name}]", state="attached", timeout=1000 * seconds)
-
-
-def begin(visit: Visit, service: Service, task: str, button: str = "Show it here") -> None:
-    """Choose a new task of the paper's scene and begin to show it, without countdown."""
-    service.call("PUT", f"/tasks/{task}", {"scene": "paper"})
-    visit.page.wait_for_selector(f"#task option[value={task}]", state="attached")
-    visit.page.select_option("#task", task)
-    visit.page.locator("#tab-demonstrate").click()
-    visit.page.get_by_label("Countdown").select_option("0")
-    visit.page.get_by_role("button", name=button).click()
-    phase(visit, "ready")
-
-
-def carry(visit: Visit, *, way: float = 0.0) -> None:
-    """Press on the box, lift it with the wheel, carry it between the obstacles, lower it and let go."""
-    mouse = visit.page.mouse
-    at = tuple(visit.page.evaluate(f"teachpath.project({list(START)})"))
-    mouse.move(*at)
-    mouse.down()
-    phase(visit, "carrying")
-    mouse.wheel(0, -250)
-    visit.page.wait_for_timeout(200)
-    off = offset(visit, at)
-    for k in range(1, 7):
-        y = START[1] + (GOAL[1] - START[1]) * k / 6
-        mouse.move(*seen(visit, (START[0] + way * math.sin(math.pi * k / 6), y, OVER), off))
-        visit.page.wait_for_timeout(120)
-    mouse.wheel(0, 250)
-    visit.page.wait_for_timeout(400)
-    mouse.up()
-
-
-def offset(visit: Visit, at: tuple[float, ...]) -> list[float]:
-    """How far the box is from what is under the pointer, at the height where it is carried."""
-    plane = f"{{through: [0, 0, {OVER}], normal: [0, 0, 1]}}"
-    hit = visit.page.evaluate(f"teachpath.unproject({at[0]}, {at[1]}, {plane})")
-    return [START[0] - hit[0], START[1] - hit[1], 0.0]
-
-
-def seen(visit: Visit, point: tuple[float, float, float], off: list[float]) -> tuple[float, ...]:
-    under = [p - o for p, o in zip(point, off, strict=True)]
-    return tuple(visit.page.evaluate(f"teachpath.project({under})"))
-
-
-def finish(visit: Visit) -> str:
-    """End the sitting; return what the page says of it."""
-    visit.page.get_by_role("button", name="Finish").click()
-    visit.page.wait_for_selector("html[data-showing='']", state="attached")
-    visit.page.wait_for_selector("#message p")
-    said: str = visit.page.locator("#message").inner_text()
-    return said
-
-
-def has_no_gaps(take: dict[str, Any]) -> bool:
-    return take["account"]["lost"] == take["account"]["gaps"] == take["account"]["refused"] == 0
 
 
 def test_takes_by_mouse_are_judged_at_once_discarded_and_brought_back(visit: Visit, service: Service) -> None:
@@ -199,17 +152,6 @@ def test_a_hidden_page_stops_and_throws_away_what_was_carried(visit: Visit, serv
     visit.page.evaluate("delete document.hidden")
 
 
-# a headset, emulated
-
-HEADSET = """
-const device = globalThis.headset = new IWER.XRDevice(IWER.metaQuest3);
-device.installRuntime({forceInstall: true});
-device.primaryInputMode = 'hand';
-"""
-# The emulated head stands in the middle of its room and looks along -z: the page puts it to the table, facing the arm.
-STAND = 1.25  # [m] of the page's stand before the arm
-
-
 @pytest.fixture
 def worn(browser: Any, service: Service) -> Iterator[Visit]:
     script = (ASSETS / "iwer" / "iwer.min.js").read_text() + HEADSET
@@ -217,72 +159,6 @@ def worn(browser: Any, service: Service) -> Iterator[Visit]:
     visit.page.set_viewport_size({"width": 900, "height": 240})  # the frames of a headset are drawn in software here
     yield visit
     visit.page.close()
-
-
-def in_room(point: tuple[float, float, float]) -> dict[str, float]:
-    """Where in the headset's room a place in the robot's world is."""
-    x, y, z = point
-    return {"x": y, "y": z, "z": x - STAND}
-
-
-def move_hand(visit: Visit, point: tuple[float, float, float], pinch: float) -> None:
-    room = in_room(point)
-    place = f"{room['x']}, {room['y']}, {room['z']}"
-    visit.page.evaluate(f"headset.hands.right.position.set({place}); headset.hands.right.updatePinchValue({pinch}); 0")
-
-
-def move_controller(visit: Visit, point: tuple[float, float, float], trigger: float) -> None:
-    room = in_room(point)
-    place = f"{room['x']}, {room['y']}, {room['z']}"
-    right = "headset.controllers.right"
-    visit.page.evaluate(f"{right}.position.set({place}); {right}.updateButtonValue('trigger', {trigger}); 0")
-
-
-def carry_worn(visit: Visit, move: Any) -> None:
-    """Close the hand at the box, carry it over the obstacles, open it and rest."""
-    move(visit, START, 0)
-    visit.page.wait_for_timeout(400)
-    move(visit, START, 1)
-    phase(visit, "carrying")
-    over = [
-        (START[0], START[1] + (GOAL[1] - START[1]) * k / 20, START[2] + 0.24 * math.sin(math.pi * k / 20))
-        for k in range(21)
-    ]
-    for point in over:
-        move(visit, point, 1)
-        visit.page.wait_for_timeout(60)
-    move(visit, GOAL, 0)
-
-
-# Keeps of every sample: its time, whether a take is under way, and how many pictures were drawn before.
-HEAR = """
-(() => {
-  const hand = teachpath.headset();
-  const { hear } = hand;
-  globalThis.heard = [];
-  hand.hear = (sample) => {
-    heard.push([sample.ms, document.documentElement.dataset.showing === "carrying", hand.rig.drawn]);
-    hear(sample);
-  };
-})()
-"""
-LIMIT = 0.25  # [s] longest gap of a take, by the service's settings
-
-
-def gaps_of(heard: np.ndarray) -> np.ndarray:
-    """Seconds from each sample to the next; no picture of the page's own may have torn one in a take."""
-    gaps = np.diff(heard[:, 0]) / 1000
-    torn = (gaps > LIMIT) & (heard[:-1, 1] > 0) & (np.diff(heard[:, 2]) > 0)
-    assert not torn.any(), gaps[torn]
-    return gaps
-
-
-def is_judged_by_its_frames(take: dict[str, Any], gaps: np.ndarray) -> None:
-    """A machine without a graphics card may give no frames for a while: the verdict says that, and nothing else."""
-    gap = take["account"]["longest_gap_ns"] / 1e9
-    assert np.abs(gaps - gap).min() < 1e-5  # as the page stamped it
-    assert (take["verdict"] == "reject") == (gap > LIMIT), take["reasons"]
-    assert len(take["reasons"]) == (gap > LIMIT), take["reasons"]
 
 
 PICTURES = """async ([cost, frames]) => {

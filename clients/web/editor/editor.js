@@ -193,9 +193,9 @@ export class Editor {
       const { curve, indices, by } = this.#gesture;
       this.draft.preview(movedBy(curve, indices, by));
       this.sketch.redraw(this.draft);
+      this.#placeGizmo();
+      this.tell("drag");
     }, this.context.view);
-    this.#placeGizmo();
-    this.tell("drag");
   }
 
   #all() {

@@ -2,7 +2,7 @@
 const KEPT = 600;
 
 export class Stopwatch {
-  #frames = []; // [ms] of work a frame: the curve and the buffers
+  #frames = []; // [ms] of work a frame: the curve, the buffers, the numbers beside the view
   #renderings = []; // [ms] that handing the scene to the graphics card takes; without one it is drawn meanwhile
   #intervals = []; // [ms] between two frames of one drag
   #answers = []; // [ms] from release to verdict

@@ -26,7 +26,7 @@ export function cards(place, { store, attempt, open }) {
     update(state, changed) {
       if (seen() && ["runs", "run", "newest", "jobs"].some((name) => changed.has(name))) prospects.look(state);
       if (["runs", "run", "newest", "path", "jobs", "task", "demonstrations", "prospects"].some((name) => changed.has(name))) replace(place, content(state));
-      if (changed.has("focus")) markFocus(place, state.focus);
+      markFocus(place, state.focus); // also on what has just been drawn anew
     },
   };
 }

@@ -48,7 +48,7 @@ export function cut(place, { store, attempt }) {
   };
   return {
     async update(state, changed) {
-      if (changed.has("focus")) markFocus(place, state.focus);
+      markFocus(place, state.focus); // also on what has just been drawn anew
       const run = runOf(state);
       place.parentElement.hidden = !(run?.learned.demonstrations.length > 1);
       if (place.parentElement.hidden || run.id === shown?.run || asked.has(run.id) || !state.demonstrations) return;

@@ -4,7 +4,7 @@ import { Ghost } from "../arm/ghost.js";
 import { Motion } from "../arm/motion.js";
 import { Player } from "../arm/player.js";
 import { Plots, row } from "../arm/plots.js";
-import { element, hint, number, replace, sentence } from "../elements.js";
+import { element, number, replace, sentence } from "../elements.js";
 
 const POINTS = 1500; // at most, of the curves
 const LISTED = 20;
@@ -66,7 +66,7 @@ class ReplayPanel {
 
   #paint(executions) {
     if (!executions?.length) {
-      replace(this.list, hint("Nothing has been executed yet. What the arm does is kept and can be looked at here."));
+      replace(this.list, element("li", { class: "hint" }, "Nothing has been executed yet. What the arm does is kept and can be looked at here."));
       return;
     }
     replace(this.list, executions.slice(0, LISTED).map((one) => line(one, one.id === this.execution)));

@@ -15,7 +15,7 @@ export function selection(place, { store }) {
         const numbers = new Map((state.demonstrations ?? []).map((d) => [d.id, d.number]));
         if (run?.clusters.length) replace(place, table(run, numbers));
       }
-      if (changed.has("focus") || changed.has("runs")) markFocus(place, state.focus);
+      markFocus(place, state.focus); // also on what has just been drawn anew
     },
   };
 }

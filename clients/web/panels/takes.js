@@ -22,7 +22,7 @@ export function takes(place, { store, gallery, attempt }) {
         replace(place, content(state, gallery));
         place.querySelector(".takes")?.scrollTo(0, scrolled);
       }
-      if (changed.has("focus")) markFocus(place, state.focus);
+      markFocus(place, state.focus); // also on what has just been drawn anew
     },
   };
 }

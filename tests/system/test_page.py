@@ -1,0 +1,160 @@
+"""The page on a real service: readable for everybody, nothing from elsewhere, ways chosen, back after a restart."""
+
+import re
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from websockets.exceptions import InvalidStatus
+from websockets.sync.client import connect
+
+from teachpath.nurbs import Curve
+from tests.system.processes import Service
+from tests.system.test_station import record
+from tests.system.test_view import Visit
+
+pytestmark = pytest.mark.system
+
+TASK = "seen"
+TABS = ("demonstrate", "ways", "edit", "run")
+AXE = (Path(__file__).parent / "assets" / "axe" / "axe.min.js").read_text()
+SOCKETS = ("view", "events", "joints", "trackers/page-x/samples")
+
+
+@pytest.fixture(scope="module")
+def learned(service: Service) -> dict[str, Any]:
+    record(service, TASK, 12, speed=8.0)
+    job = service.job(service.call("POST", f"/tasks/{TASK}/jobs", {"kind": "learn"})["id"], seconds=120)
+    run: dict[str, Any] = service.call("GET", f"/tasks/{TASK}/runs/{job['outcome']}")
+    return run["learned"] | {"id": run["id"]}
+
+
+@pytest.fixture(scope="module")
+def visit(browser: Any, service: Service, learned: dict[str, Any]) -> Iterator[Visit]:
+    visit = Visit(browser, service.url)
+    visit.page.set_viewport_size({"width": 1000, "height": 600})
+    yield visit
+    visit.page.close()
+
+
+def tab(visit: Visit, name: str) -> None:
+    visit.page.locator(f"#tab-{name}").click()
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_nothing_serious_keeps_anybody_from_the_page(visit: Visit, scheme: Any) -> None:
+    visit.page.emulate_media(color_scheme=scheme)
+    found = []
+    for name in TABS:
+        tab(visit, name)
+        visit.page.wait_for_timeout(300)
+        visit.page.evaluate(f"{AXE};0")
+        result = visit.page.evaluate("axe.run(document, {resultTypes: ['violations']})")
+        assert len(result["passes"]) > 20  # it has looked
+        grave = [v for v in result["violations"] if v["impact"] in ("serious", "critical")]
+        found += [(name, v["id"], v["nodes"][0]["html"]) for v in grave]
+    visit.page.emulate_media(color_scheme="light")
+    assert found == []
+
+
+def test_no_request_leaves_the_machine(visit: Visit, service: Service) -> None:
+    asked: list[str] = []
+    visit.page.on("request", lambda request: asked.append(request.url))
+    visit.page.on("websocket", lambda socket: asked.append(socket.url))
+    visit.page.reload()
+    visit.page.wait_for_selector("html[data-scene=ready]", state="attached", timeout=30_000)
+    for name in TABS:
+        tab(visit, name)
+        visit.page.wait_for_timeout(200)
+    assert visit.said == []
+    assert len(asked) > 60
+    host = service.url.partition("//")[2]
+    places = {url.partition("//")[2].partition("/")[0] for url in asked if not url.startswith(("data:", "blob:"))}
+    assert places == {host}
+    # and where a script would ask, the policy does not let it
+    blocked = "fetch('http://127.0.0.2:9/').then(() => 'sent', (error) => error.message)"
+    assert visit.page.evaluate(blocked) == "Failed to fetch"
+    assert "violates" in " ".join(visit.said)
+    inline = (
+        "const s = document.createElement('script'); s.textContent = 'globalThis.ran = true'; document.head.append(s);"
+    )
+    visit.page.evaluate(f"(() => {{ {inline} }})()")
+    assert visit.page.evaluate("globalThis.ran === undefined")
+    visit.said.clear()
+
+
+@pytest.mark.parametrize("resource", SOCKETS)
+def test_a_page_from_elsewhere_gets_no_socket(service: Service, resource: str) -> None:
+    address = f"{service.url.replace('http', 'ws')}/api/v1/{resource}"
+    for origin in ("http://elsewhere.example", "null"):
+        with pytest.raises(InvalidStatus) as refused:
+            connect(address, origin=origin)  # type: ignore[arg-type]
+        assert refused.value.response.status_code == 403
+    with connect(address, origin=service.url):  # type: ignore[arg-type]
+        pass
+
+
+def test_what_is_pointed_at_in_a_table_stands_out_in_the_view_and_back(visit: Visit, learned: dict[str, Any]) -> None:
+    tab(visit, "ways")
+    one, other = learned["clusters"][0]["members"][0], learned["clusters"][1]["members"][0]
+    row = visit.page.locator(f"#selection tr[data-focus='demonstrations {one}']").first
+    row.hover()
+    opacity = "teachpath.opacity('/demonstrations/{}')"
+    visit.wait(lambda: visit.page.evaluate(f"{opacity.format(one)} > {opacity.format(other)}"))
+    path = learned["paths"][2]
+    curve = Curve(*(path["curve"][name] for name in ("degree", "knots", "control_points", "weights")))
+    seen = visit.page.evaluate(f"teachpath.project({curve([0.6])[0].tolist()})")
+    visit.page.locator("#tab-ways").hover()  # nothing is pointed at
+    visit.wait(lambda: visit.page.evaluate(f"{opacity.format(one)} === {opacity.format(other)}"))
+    visit.page.mouse.move(*seen)
+    card = f"#learned article[data-focus='paths {path['id']}'].here"
+    visit.page.wait_for_selector(card)
+    assert visit.page.locator(".card.here").count() == 1
+    visit.page.mouse.click(*seen)
+    visit.page.wait_for_selector(f"{card}.chosen")
+
+
+def test_the_cut_is_dragged_to_make_fewer_ways(visit: Visit, service: Service, learned: dict[str, Any]) -> None:
+    tab(visit, "ways")
+    said = visit.page.locator("#cut output")
+    assert said.inner_text().startswith("3 ways")
+    handle = visit.page.locator("#cut .cut-handle")
+    handle.scroll_into_view_if_needed()
+    tree, box = visit.page.locator("#cut .tree svg").bounding_box(), handle.bounding_box()
+    assert tree is not None
+    assert box is not None
+    mouse, y = visit.page.mouse, box["y"] + box["height"] / 2
+    mouse.move(box["x"] + box["width"] / 2, y)
+    mouse.down()
+    for x in range(round(box["x"]), round(tree["x"] + tree["width"]), 6):
+        mouse.move(x, y)
+        if said.inner_text().startswith("2 ways"):
+            break
+    mouse.up()
+    classes = " ".join(
+        visit.page.evaluate("[...document.querySelectorAll('#cut .link')].map((link) => link.getAttribute('class'))")
+    )
+    assert set(re.findall(r"way-\d", classes)) == {"way-0", "way-1"}
+    visit.page.get_by_role("button", name="Make 2 ways").click()
+    visit.wait(lambda: visit.page.locator("#learned article.card").count() == 2)
+    newest = service.call("GET", f"/tasks/{TASK}/runs")[0]["learned"]
+    assert sorted(len(cluster["members"]) for cluster in newest["clusters"])[-1] > max(
+        len(cluster["members"]) for cluster in learned["clusters"]
+    )
+    assert visit.said == []
+
+
+def test_after_a_restart_of_the_service_the_page_shows_the_truth_again(visit: Visit, service: Service) -> None:
+    service.process.terminate()
+    assert service.wait(10) == 0
+    visit.page.wait_for_selector("html[data-connection=lost][data-events=lost]", state="attached")
+    assert "No connection to the service" in visit.page.locator("#connection").inner_text()
+    tab(visit, "run")
+    assert "the arm holds" in visit.page.locator("#arm .state").inner_text()
+    with Service(service.data, ports=service.ports) as again:
+        again.call("PUT", "/tasks/made-meanwhile", {"scene": "paper"})
+        visit.page.wait_for_selector("html[data-connection=live][data-events=live]", state="attached", timeout=30_000)
+        visit.page.wait_for_selector("#task option[value=made-meanwhile]", state="attached")
+        assert visit.page.locator("#connection").inner_text() == "Connected"
+        assert "At rest" in visit.page.locator("#arm .state").inner_text()
