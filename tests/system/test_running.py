@@ -1,6 +1,6 @@
 """Run: a take shown by mouse, learned, planned, previewed as a ghost, executed and stopped from the page."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -96,28 +96,6 @@ def newest(service: Service) -> dict[str, Any]:
     return found
 
 
-def steps_and_reverses(visit: Visit, service: Service) -> None:
-    """From following: hold, a centimetre ahead, the same back, then backwards along the path."""
-
-    def progress() -> float:
-        return float(newest(service)["status"]["progress"])
-
-    def rests(true: Callable[[], bool]) -> float:
-        wait_until(lambda: newest(service)["status"]["state"] == "held" and true(), seconds=15, what="it rests there")
-        return progress()
-
-    wait_until(lambda: progress() > 0.1, seconds=15, what="it is under way")
-    visit.page.get_by_role("button", name="Hold", exact=True).click()
-    here = rests(lambda: True)
-    visit.page.get_by_role("button", name="+ 1 cm").click()
-    ahead = rests(lambda: progress() > here)
-    assert 0 < ahead - here < 0.1
-    visit.page.get_by_role("button", name="− 1 cm").click()
-    assert rests(lambda: progress() < ahead) == pytest.approx(here, abs=1e-3)
-    visit.page.get_by_role("button", name="Reverse").click()
-    wait_until(lambda: progress() < here - 0.02, seconds=15, what="it goes back")
-
-
 def test_a_start_must_be_meant_and_the_space_bar_stops(visit: Visit, service: Service) -> None:
     count = len(service.call("GET", "/executions"))
     visit.page.wait_for_selector("button.hold:not([disabled])")
@@ -133,8 +111,7 @@ def test_a_start_must_be_meant_and_the_space_bar_stops(visit: Visit, service: Se
     visit.page.wait_for_selector("#arm .dot.held", timeout=20_000)
     assert "Held on the path: " in visit.page.locator("#arm .state").inner_text()  # and why
     visit.page.get_by_role("button", name="Resume").click()
-    visit.page.wait_for_selector("#arm .dot.following", timeout=20_000)
-    steps_and_reverses(visit, service)
+    visit.page.wait_for_selector("#arm .dot.held", state="detached", timeout=20_000)
     visit.page.locator("#tab-ways").focus()  # wherever the focus is
     visit.page.keyboard.press("Space")
     wait_until(lambda: newest(service)["status"]["state"] in RESTING, seconds=15, what="it stops")
