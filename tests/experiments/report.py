@@ -9,7 +9,7 @@ from typing import Any
 
 from scipy.stats import binom
 
-from tests.experiments import quoted, rule, scale
+from tests.experiments import degrees, quoted, rule, scale
 from tests.experiments.markup import STYLE, figure, listed, short
 from tests.experiments.results import Found, by_place, outranked, revived, right, uneven
 from tests.experiments.scenarios import GROUPINGS, SCENARIOS
@@ -35,6 +35,7 @@ def page(found: Found, folder: Path) -> str:
             *_control(found, folder),
             *_grouping(found, folder),
             *_shapes(found, folder),
+            *_degrees(found),
             *_verdicts(found),
             *_method(found),
             "</html>\n",
@@ -248,6 +249,16 @@ def _shapes(found: Found, folder: Path) -> list[str]:
         "<table><caption><b>Table V.</b> Fréchet distance of the learned path from the mean of the demonstrations "
         f"without tremor and noise: median and largest of {found['sizes']['shape']} seeds.</caption><tr><th "
         f"class=l>Shape{''.join(f'<th>mode {mode}' for mode in MODES)}{''.join(rows)}</table>",
+    ]
+
+
+def _degrees(found: Found) -> list[str]:
+    return [
+        "<h2>Which degree?</h2>",
+        "<p>Curves of higher degree are smoother where spans meet, so that joints need less jerk there, and take more "
+        "control points. Mode default takes degree 5 where it costs at most two control points more than degree 3: "
+        "where the motion turns back it bends least and the arm is fastest; elsewhere all are about as fast.</p>",
+        degrees.table(found["degrees"]),
     ]
 
 

@@ -12,7 +12,7 @@ import numpy as np
 from scipy.stats import chi2_contingency
 
 from teachpath.records import Learned
-from tests.experiments import rule, scale
+from tests.experiments import degrees, rule, scale
 from tests.experiments.scenarios import GROUPINGS, SCENARIOS, SHAPES
 from tests.experiments.trials import MODES, Outcome, Rate, rate, settled
 
@@ -25,13 +25,14 @@ def summary(
     shapes: list[Any],
     repeated: list[Any],
     scales: list[Any],
+    fits: list[Any],
     *,
     sizes: Any,
 ) -> Found:
     """Return every repeated figure, ready for JSON.
 
     Args:
-        selections, groupings, shapes, repeated, scales: pairs of arguments and outcome, see `trials`.
+        selections, groupings, shapes, repeated, scales, fits: pairs of arguments and outcome, see `trials`.
         sizes: how often each was run.
     """
     outcomes = [outcome for _, several in selections for outcome in several]
@@ -51,6 +52,7 @@ def summary(
         },
         "rule": rule.summary(outcomes),
         "scale": scale.summary([found for _, found in scales]),
+        "degrees": degrees.summary([(kind, found) for (kind, _), found in fits]),
         "repetitions": {"rates": {mode: [found[mode] for _, found in repeated] for mode in ("paper", "repaired")}},
     }
 

@@ -19,7 +19,7 @@ from typing import Any
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
-from tests.experiments import figures, report, results, rule, scale, targets, trials
+from tests.experiments import degrees, figures, report, results, rule, scale, targets, trials
 from tests.experiments.scenarios import GROUPINGS, HEADLINES, SCENARIOS, SHAPES
 
 REPORTS = Path(__file__).parents[2] / "reports"
@@ -37,11 +37,12 @@ class Sizes:
     fault: int = 200
     grouping: int = 100
     shape: int = 20
+    degree: int = 12
     datasets: int = 30
     repetitions: int = 40
 
 
-QUICK = Sizes(headline=12, fault=4, grouping=4, shape=1, datasets=3, repetitions=8)
+QUICK = Sizes(headline=12, fault=4, grouping=4, shape=1, degree=1, datasets=3, repetitions=8)
 
 
 def main() -> None:
@@ -79,7 +80,7 @@ def main() -> None:
 
 
 def _repeated(sizes: Sizes) -> tuple[list[Any], ...]:
-    """Run all that is repeated in processes: selections, groupings, shapes, repetitions on one data set, scales."""
+    """Run all that is repeated, in processes: selections, groupings, shapes, repetitions, scales, degrees."""
     work: list[tuple[int, Callable[..., Any], tuple[Any, ...]]] = []
     for scenario in SCENARIOS:
         count = sizes.headline if scenario.key in HEADLINES else sizes.fault
@@ -88,6 +89,7 @@ def _repeated(sizes: Sizes) -> tuple[list[Any], ...]:
     work += [(2, trials.fit_once, (shape, seed)) for shape in SHAPES for seed in range(sizes.shape)]
     work += [(3, trials.repeat_once, (dataset, sizes.repetitions)) for dataset in range(sizes.datasets)]
     work += [(4, scale.scale_once, (dataset,)) for dataset in range(sizes.datasets)]
+    work += [(5, degrees.degrees_once, (kind, seed)) for kind in degrees.KINDS for seed in range(sizes.degree)]
     chunks = [work[at : at + CHUNK] for at in range(0, len(work), CHUNK)]
     gathered: dict[Future[list[Any]], int] = {}
     context = multiprocessing.get_context("spawn")
@@ -97,7 +99,7 @@ def _repeated(sizes: Sizes) -> tuple[list[Any], ...]:
             gathered[pool.submit(_chunk, chunk)] = number
         for done in as_completed(gathered):
             bar.advance(row, len(done.result()))
-    found: tuple[list[Any], ...] = ([], [], [], [], [])
+    found: tuple[list[Any], ...] = ([], [], [], [], [], [])
     for done, number in gathered.items():
         for (kind, _, arguments), outcome in zip(chunks[number], done.result(), strict=True):
             found[kind].append((arguments, outcome))

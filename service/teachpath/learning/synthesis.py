@@ -56,7 +56,7 @@ def synthesise(cluster: int, selected: Sequence[Trajectory], settings: LearningS
             "they lead in opposite directions; lower learning.threshold"
         )
     bound, note = settings.error_bound, ""
-    best = _best(course, settings)
+    best = best_fit(course, settings)
     if best.largest > bound:
         noise = noise_left(selected)
         if bound < NOISES * noise:
@@ -66,7 +66,7 @@ def synthesise(cluster: int, selected: Sequence[Trajectory], settings: LearningS
                 f"raise learning.error_bound to {NOISES * noise * 1e3:.2g} mm, or show it more often"
             )
         course = consensus(paths, FINE * CONSENSUS_POINTS)
-        best = _best(course, settings)
+        best = best_fit(course, settings)
     # The fit measures at its own parameters, the nearest distances are what the operator gets.
     if best.largest > bound and (nearest := float(distances_to(best.curve, course).max())) > bound:
         note = (
@@ -121,8 +121,12 @@ def _length(path: Array) -> float:
     return float(arc_lengths(path)[-1])
 
 
-def _best(course: Array, settings: LearningSettings) -> Approximation:
-    """Return the fit that keeps the bound at the least cost, or that comes nearest to it."""
+def best_fit(course: Array, settings: LearningSettings) -> Approximation:
+    """Return the fit of a mean path (n, 3) [m] that keeps the bound at the least cost, or comes nearest to it.
+
+    Degree 5 is taken where it costs at most two control points more than degree 3: it bends less sharply, and where a
+    path turns back the arm is faster along it (`make experiments`).
+    """
     degrees = (3, 5) if settings.degree is None else (settings.degree,)
     bound, most = settings.error_bound, settings.most_control_points
     fits = [approximate(course, bound, degree=degree, most=most) for degree in degrees]
