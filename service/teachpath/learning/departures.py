@@ -97,6 +97,8 @@ def _told(
         return f"{word} by {shake * 100:.1f} cm about {rate:.0f} times a second"
     if away > 1.5 * usual:
         return f"runs up to {away * 100:.1f} cm beside the others, who stay within {usual * 100:.1f} cm"
+    if quality == "bends":
+        return "bends as none of the others does, though not far beside them"
     return "is in another place than the others at that time: quicker, slower or beside them"
 
 
