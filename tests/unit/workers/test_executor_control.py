@@ -236,15 +236,25 @@ def test_an_arm_that_takes_up_no_setpoints_is_held_and_brought_back(bench: Bench
     assert bench.statuses[-1].progress == pytest.approx(1.0)
 
 
-def test_an_arm_that_is_far_behind_is_held_until_it_has_caught_up(bench: Bench, middle: Plan) -> None:
-    bench.start(middle, override=0.2)
-    bench.when(lambda: bench.state == "following" and len(bench.setpoints) > 400, lambda: setattr(bench, "behind", 300))
-    bench.when(lambda: bench.state == "held", lambda: setattr(bench, "behind", 0))
+def test_an_arm_that_is_late_is_not_taken_for_one_that_was_pushed_away(bench: Bench, middle: Plan) -> None:
+    seen: list[str] = []
+
+    def resume_too_early() -> None:
+        with pytest.raises(Conflict, match="not at rest yet"):
+            bench.command("resume")
+        seen.append(bench.statuses[-1].reason)
+        bench.behind = 0
+
+    bench.behind = 110  # 0.44 s
+    bench.start(middle)
+    bench.when(lambda: bench.state == "following" and bench.statuses[-1].progress > 0.3, lambda: bench.command("hold"))
+    bench.when(lambda: bench.state == "held", lambda: None)
+    bench.when(lambda: bench.executor._controls.current.settled, resume_too_early)
+    bench.when(lambda: True, lambda: None)
     bench.when(lambda: True, lambda: bench.command("resume"))
-    bench.when(lambda: bench.state == "following", lambda: bench.command("override", override=1.0))
     bench.when(lambda: bench.state == "ended", bench.stop.set)
     bench.run()
-    held = next(status for status in bench.statuses if status.state == "held")
-    assert "1.2 s behind its setpoints" in held.reason
+    assert seen == ["held by the operator"]
+    assert not any("pushed" in status.reason for status in bench.statuses)
     assert bench.statuses[-1].progress == pytest.approx(1.0)
     assert within_limits(bench.setpoints)

@@ -165,8 +165,8 @@ class Controls:
         off = self._off(current)
         if off <= self._settings.regain:
             return
-        if not current.settled:
-            raise Conflict(f"the arm is {off:.3f} rad off its setpoint and not at rest yet; hold it first")
+        if not current.settled or not (current.displaced or current.rests_with(self._hearing.present())):
+            raise Conflict(f"the arm is {off:.3f} rad off its setpoint and not at rest yet; hold it first, and wait")
         if isinstance(current.program, Hand):
             raise Conflict(f"the arm was pushed {off:.3f} rad away; stop, and begin again from where it is")
         here = self._resting_arm()

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Final
 
 from teachpath.motion.program import Aside, Program
-from teachpath.records import Array, ExecutorStatus, Setpoint
+from teachpath.records import Array, ExecutorStatus, JointState, Setpoint
 from teachpath.workers.executor.hand import Hand
 from teachpath.workers.executor.meter import LimitMeter
 from teachpath.workers.executor.pacing import Pacer
@@ -47,14 +47,13 @@ class Execution:
         return self.state in RESTING
 
     @property
-    def sent(self) -> int:
-        """Setpoints that were sent."""
-        return self._sent
-
-    @property
     def settled(self) -> bool:
         """Whether it is held for so long that the arm itself rests."""
         return self.state == "held" and self._still > SETTLED * self._rate
+
+    def rests_with(self, arm: JointState) -> bool:
+        """Tell whether the arm has taken up a setpoint of the standstill that it is held at."""
+        return arm.execution == self.execution and arm.cycle >= self._sent - self._still
 
     def override(self, share: float) -> None:
         """Go at `share` of the full speed."""

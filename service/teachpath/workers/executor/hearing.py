@@ -55,22 +55,19 @@ class Hearing:
 
 
 class Uptake:
-    """Notices an arm that speaks, but takes up no setpoints any more, or is far behind with them."""
+    """Notices an arm that speaks, but takes up no setpoints any more."""
 
     def __init__(self) -> None:
         self._newest = ("", -1)
         self._since = 0
-        self.behind = 0  # setpoints between the newest that was sent and the one that was taken up last, when it was
 
-    def stalled(self, now: int, execution: str, sent: int, arm: JointState) -> float:
-        """Return for how long the arm has taken up no further one of `sent` setpoints of an execution [s]."""
-        here = arm.execution == execution
-        newest = (execution, arm.cycle if here else -1)
+    def stalled(self, now: int, execution: str, arm: JointState) -> float:
+        """Return for how long the arm has taken up no further setpoint of an execution [s]."""
+        newest = (execution, arm.cycle if arm.execution == execution else -1)
         if newest != self._newest:
             self._newest, self._since = newest, now
-            self.behind = sent - arm.cycle if here else 0
         return (now - self._since) / 1e9
 
     def pause(self, now: int) -> None:
-        """Count from now on: the arm rests, or nothing is sent to it."""
-        self._since, self.behind = now, 0
+        """Count from now on: nothing is sent to the arm."""
+        self._since = now

@@ -20,7 +20,7 @@ from teachpath.io import wire
 from teachpath.io.bus import Bus
 from teachpath.motion.governor import warm_up
 from teachpath.motion.settings import MotionSettings
-from teachpath.records import ExecutorStatus, JointState
+from teachpath.records import ExecutorStatus
 from teachpath.workers.executor.controls import Controls
 from teachpath.workers.executor.execution import Execution
 from teachpath.workers.executor.hearing import Hearing, Uptake
@@ -32,7 +32,6 @@ log = logging.getLogger(__name__)
 
 IDLE_PERIODS: Final = 5  # control periods between two looks while nothing is under way
 DEAF: Final = 0.5  # [s] that an arm may take up no setpoint; a driver plays them up to 0.05 s late
-BEHIND: Final = 1.0  # [s] that it may be behind with them
 IDLE_RATE: Final = 4.0  # [Hz] statuses then, at most; the service takes an executor for gone after a second
 
 
@@ -139,24 +138,19 @@ class Executor:
                 current, f"no joint state for {silent:.2f} s: is the arm's driver running? resume when it is back"
             )
             return
+        stalled = self._uptake.stalled(due, current.execution, arm)
         if current.settled or current.displaced:
-            off = float(np.abs(arm.position - current.program.here).max())
-            current.displaced = off if off > self._settings.regain else 0.0
-            self._uptake.pause(due)
+            if current.rests_with(arm) or stalled > DEAF:  # else it is late, and still on its way there
+                off = float(np.abs(arm.position - current.program.here).max())
+                current.displaced = off if off > self._settings.regain else 0.0
+            if current.displaced:
+                self._uptake.pause(due)
             return
-        self._judge_uptake(current, arm, due)
-        if arm.execution == current.execution:
-            self._judge_tracking(current, arm.tracking_error)
-
-    def _judge_uptake(self, current: Execution, arm: JointState, due: int) -> None:
-        stalled = self._uptake.stalled(due, current.execution, current.sent, arm)
-        behind = self._uptake.behind * self._period
         if stalled > DEAF:
             why = f"the arm has taken up no setpoint for {stalled:.1f} s"
             self._hold(current, f"{why}: does its driver hear them? resume when it does")
-        elif behind > BEHIND:
-            why = f"the arm is {behind:.1f} s behind its setpoints, and would stop as late"
-            self._hold(current, f"{why}: is its driver's machine too busy? resume when it has caught up")
+        if arm.execution == current.execution:
+            self._judge_tracking(current, arm.tracking_error)
 
     def _hold(self, current: Execution, reason: str) -> None:
         if not current.program.stopped:
