@@ -281,8 +281,8 @@ def _method(found: Found) -> list[str]:
         "<h2>Method</h2>",
         "<p class=small>Demonstrations pass two via points at minimum-jerk speed (Flash &amp; Hogan 1985), the via "
         "points drawn anew for each with 1.5 cm, start and goal with 0.4 cm of spread an axis. Each run is one call "
-        f"of the whole of learning, with the number of the run as seed; {sizes['headline']} runs for wiggles and "
-        f"control, {sizes['fault']} for each other fault, {sizes['grouping']} for each grouping, {sizes['shape']} for "
-        f"each shape. {escape(made['machine'])}; {escape(versions)}; {made['processes']} processes, {made['seconds']} "
+        f"of the whole of learning, with the number of the run as seed; {sizes['selection']} runs for wiggles, "
+        f"control and each other fault, {sizes['grouping']} for each grouping, {sizes['shape']} for each shape. "
+        f"{escape(made['machine'])}; {escape(versions)}; {made['processes']} processes, {made['seconds']} "
         "s. All figures are in <code>experiments.json</code>.</p>",
     ]

@@ -20,7 +20,7 @@ from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
 from tests.experiments import degrees, figures, report, results, rule, scale, targets, trials
-from tests.experiments.scenarios import GROUPINGS, HEADLINES, SCENARIOS, SHAPES
+from tests.experiments.scenarios import GROUPINGS, SCENARIOS, SHAPES
 
 REPORTS = Path(__file__).parents[2] / "reports"
 PROCESSES = 2
@@ -33,8 +33,7 @@ THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "NUMBA_NUM_THREADS")
 class Sizes:
     """How often each experiment is run."""
 
-    headline: int = 1000
-    fault: int = 200
+    selection: int = 1000
     grouping: int = 100
     shape: int = 20
     degree: int = 12
@@ -42,7 +41,7 @@ class Sizes:
     repetitions: int = 40
 
 
-QUICK = Sizes(headline=12, fault=4, grouping=4, shape=1, degree=1, datasets=3, repetitions=8)
+QUICK = Sizes(selection=8, grouping=4, shape=1, degree=1, datasets=3, repetitions=8)
 
 
 def main() -> None:
@@ -82,9 +81,7 @@ def main() -> None:
 def _repeated(sizes: Sizes) -> tuple[list[Any], ...]:
     """Run all that is repeated, in processes: selections, groupings, shapes, repetitions, scales, degrees."""
     work: list[tuple[int, Callable[..., Any], tuple[Any, ...]]] = []
-    for scenario in SCENARIOS:
-        count = sizes.headline if scenario.key in HEADLINES else sizes.fault
-        work += [(0, trials.select_once, (scenario.key, run)) for run in range(count)]
+    work += [(0, trials.select_once, (scenario.key, run)) for scenario in SCENARIOS for run in range(sizes.selection)]
     work += [(1, trials.group_once, (ways.key, seed)) for ways in GROUPINGS for seed in range(sizes.grouping)]
     work += [(2, trials.fit_once, (shape, seed)) for shape in SHAPES for seed in range(sizes.shape)]
     work += [(3, trials.repeat_once, (dataset, sizes.repetitions)) for dataset in range(sizes.datasets)]

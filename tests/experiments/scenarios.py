@@ -100,7 +100,6 @@ SCENARIOS = (
     Scenario("detour", "a smooth detour of 6 cm", partial(spoilt, detour)),
     Scenario("jitter", "jitter of 4 mm an axis", partial(spoilt, jitter)),
 )
-HEADLINES = ("wiggle", "wiggle_fifth", "control", "two_wiggly")
 
 
 @dataclass(frozen=True)
