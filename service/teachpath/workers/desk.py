@@ -8,6 +8,7 @@ from __future__ import annotations
 import os
 import signal
 import threading
+import time
 from collections.abc import Callable
 from multiprocessing import Queue, parent_process
 from multiprocessing.synchronize import Event
@@ -21,7 +22,7 @@ from teachpath.records import Learned, LearnedPath, Plan, Scene, Trajectory
 
 Progress = Callable[[float, str], None]
 
-STEP = 0.005  # of progress, that is worth telling
+INTERVAL = 0.05  # s between two tellings of one sentence: each is a row in the store and a message to every page
 
 _news: Queue[tuple[str, float, str]] | None = None
 _cancel: Event | None = None
@@ -58,17 +59,18 @@ def warm_up() -> None:
 def work(key: str, function: Callable[..., Any], inputs: tuple[Any, ...]) -> Any:
     """Call `function(*inputs, progress=...)` for job `key`.
 
-    The work may tell its progress as often as it likes, and is cancelled there; only steps that are seen are passed on.
+    The work may tell its progress as often as it likes, and is cancelled there; what could be seen is passed on.
     """
-    told = (-1.0, "")
+    told, due = "", 0.0
 
     def progress(fraction: float, sentence: str) -> None:
-        nonlocal told
+        nonlocal told, due
         if _cancel is not None and _cancel.is_set():
             raise Cancelled("cancelled by the operator")
-        if _news is not None and (sentence != told[1] or fraction >= told[0] + STEP or fraction >= 1.0):
+        now = time.monotonic()
+        if _news is not None and (sentence != told or now >= due or fraction >= 1.0):
             _news.put((key, fraction, sentence))
-            told = (fraction, sentence)
+            told, due = sentence, now + INTERVAL
 
     return function(*inputs, progress=progress)
 
