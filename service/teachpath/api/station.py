@@ -12,13 +12,15 @@ from teachpath.api.assessments import assessments_router
 from teachpath.api.calibrations import calibrations_router
 from teachpath.api.control import control_router
 from teachpath.api.curves import curves_router
+from teachpath.api.demonstrations import demonstrations_router
 from teachpath.api.executions import executions_router
 from teachpath.api.exports import exports_router
 from teachpath.api.faults import REFUSALS, answer_errors
 from teachpath.api.guard import Guard
 from teachpath.api.parts import Parts
+from teachpath.api.recording import recording_router
 from teachpath.api.robot import robot_router
-from teachpath.api.tasks import recording_router, tasks_router
+from teachpath.api.tasks import tasks_router
 from teachpath.api.trackers import trackers_router
 from teachpath.api.versions import versions_router
 from teachpath.api.work import jobs_router, results_router
@@ -39,6 +41,7 @@ def build_api(parts: Parts, *pages: APIRouter) -> FastAPI:
     answer_errors(app)
     routers = (
         tasks_router,
+        demonstrations_router,
         recording_router,
         exports_router,
         calibrations_router,

@@ -1,0 +1,58 @@
+"""Demonstrations: read them, say what one thinks of them, take their trajectory or their recording."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal
+
+from fastapi import APIRouter, Query
+from fastapi.responses import FileResponse
+from pydantic import BaseModel, Field
+
+from teachpath.api.parts import Parts
+from teachpath.io.documents import to_document
+from teachpath.records import Demonstration
+from teachpath.workers.curation import Amendment
+
+
+class Amended(BaseModel):
+    """What an operator says of a demonstration; what is left out stays as it is."""
+
+    mark: Literal["", "good", "bad"] | None = Field(None, description="good, bad, or empty for none")
+    discarded: bool | None = Field(None, description="discarded ones are kept, but not learned from")
+    trim: tuple[int, int] | None = Field(
+        None, description="transport phase, samples[begin:end]; [0, 0] brings back the recorder's own cut"
+    )
+
+
+def demonstrations_router(parts: Parts) -> APIRouter:
+    """Return the routes of single demonstrations."""
+    router = APIRouter(tags=["tasks"])
+    store = parts.store
+
+    @router.get("/demonstrations/{demonstration}")
+    def get_demonstration(demonstration: str) -> Demonstration:
+        """Return one demonstration."""
+        return store.demonstration(demonstration)
+
+    @router.patch("/demonstrations/{demonstration}")
+    def amend_demonstration(demonstration: str, amended: Amended) -> Demonstration:
+        """Mark, discard, restore or trim a demonstration; its recording and the recorder's own cut stay."""
+        return parts.recorder.curation.amend(
+            demonstration, Amendment(mark=amended.mark, discarded=amended.discarded, trim=amended.trim)
+        )
+
+    @router.get("/demonstrations/{demonstration}/trajectory")
+    def get_trajectory(
+        demonstration: str,
+        most: Annotated[int, Query(ge=2, le=100_000, description="points; further ones are left out evenly")] = 100_000,
+    ) -> dict[str, Any]:
+        """Return the object's trajectory in its transport phase: times [s], positions [m], orientations, world."""
+        return to_document(parts.trajectory(store.demonstration(demonstration)).thinned(most))
+
+    @router.get("/demonstrations/{demonstration}/recording", response_class=FileResponse)
+    def get_recording(demonstration: str) -> FileResponse:
+        """Return the MCAP file with every sample."""
+        file = store.recordings.path(store.demonstration(demonstration).recording)
+        return FileResponse(file, media_type="application/octet-stream", filename=file.name)
+
+    return router

@@ -1,0 +1,92 @@
+"""Recording: start, pause, stop, and take back the newest demonstration."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from fastapi import APIRouter
+from pydantic import BaseModel, Field
+
+from teachpath.api.parts import Parts
+from teachpath.errors import UnusableInput
+from teachpath.io.wire import report_document
+from teachpath.recording.control import Routine
+from teachpath.records import Demonstration
+
+
+class Recording(BaseModel):
+    """A recording to start or stop."""
+
+    tracker: str = Field(description="name of the tracker that shows the task")
+    calibration: str = Field("", description="start: instead of the task's own")
+    rate: float = Field(0.0, ge=0.0, le=10_000.0, description="start: samples a second that it sends; 0 = not said")
+    armed: bool = Field(False, description="start: paused, until pedal, fist or `resume` begins the first take")
+    countdown: float | None = Field(None, ge=0.0, le=60.0, description="start: [s] before each take; else the setting")
+    takes: int = Field(0, ge=0, le=10_000, description="start: pause by itself after so many demonstrations; 0 = never")
+    one_by_one: bool = Field(False, description="start: pause after each demonstration")
+    discard: bool = Field(False, description="stop: throw away the demonstration that is still open")
+
+
+class Named(BaseModel):
+    """A tracker whose recording is meant."""
+
+    tracker: str = Field(description="name of the tracker that is recording the task")
+
+
+def recording_router(parts: Parts) -> APIRouter:
+    """Return the routes that start and stop recording; tracker clients do the same over Zenoh."""
+    router = APIRouter(tags=["recording"])
+    recorder = parts.recorder
+
+    @router.get("/tasks/{task}/recording")
+    def get_recording_state(task: str) -> list[dict[str, Any]]:
+        """Return the accounts of the task's running recordings."""
+        name = parts.store.task(task).name
+        return [report_document(report) for report in recorder.reports() if report.task == name]
+
+    @router.post("/tasks/{task}/recording", status_code=201)
+    def start_recording(task: str, recording: Recording) -> dict[str, Any]:
+        """Start recording from a tracker; demonstrations are cut by themselves as the hand grasps and releases."""
+        return report_document(
+            recorder.begin(
+                task,
+                recording.tracker,
+                calibration=recording.calibration,
+                rate=recording.rate,
+                routine=Routine(recording.armed, recording.countdown, recording.takes, recording.one_by_one),
+            )
+        )
+
+    @router.post("/tasks/{task}/recording/stop")
+    def stop_recording(task: str, recording: Recording) -> dict[str, Any]:
+        """Stop recording and return the account of every sample."""
+        return report_document(recorder.end(of_task(task, recording.tracker), discard=recording.discard))
+
+    @router.post("/tasks/{task}/recording/pause")
+    def pause_recording(task: str, named: Named) -> dict[str, Any]:
+        """Record nothing until `resume`; what is carried now is recorded to its end first."""
+        return report_document(recorder.pause(of_task(task, named.tracker)))
+
+    @router.post("/tasks/{task}/recording/resume")
+    def resume_recording(task: str, named: Named) -> dict[str, Any]:
+        """Record again."""
+        return report_document(recorder.resume(of_task(task, named.tracker)))
+
+    @router.post("/tasks/{task}/recording/discard")
+    def discard_last(task: str) -> Demonstration:
+        """Discard the newest demonstration that is kept; it is marked, not deleted."""
+        return recorder.curation.discard_last(task)
+
+    @router.post("/tasks/{task}/recording/restore")
+    def restore_last(task: str) -> Demonstration:
+        """Bring back the demonstration that was discarded last."""
+        return recorder.curation.restore_last(task)
+
+    def of_task(task: str, tracker: str) -> str:
+        name = parts.store.task(task).name
+        running = {report.tracker for report in recorder.reports() if report.task == name}
+        if tracker not in running:
+            raise UnusableInput(f"{tracker!r} is not recording {task}; running: {sorted(running) or 'none'}")
+        return tracker
+
+    return router
