@@ -224,7 +224,10 @@ class Station:
     def _prepare_recut(self, job: Job) -> tuple[Any, ...]:
         learned = self.store.run(str(job.request["run"])).learned
         usable = {d.id: d for d in self.store.demonstrations(job.task) if d.is_usable}
-        kept = {key: self.trajectory(usable[key]) for key in learned.demonstrations if key in usable}
+        chosen = {key: usable[key] for key in learned.demonstrations if key in usable}
+        if job.request.get("calibrations") != "recorded":
+            self.calibrations.check(list(chosen.values()), command="recut")
+        kept = {key: self.trajectory(d) for key, d in chosen.items()}
         return learned, kept, job.request["threshold"], job.request["clusters"]
 
     def _finish_learning(self, job: Job, learned: Learned) -> str:

@@ -58,6 +58,13 @@ def test_learning_refuses_a_former_version_until_it_is_converted_or_wanted(desk:
     learned = desk.ended(desk.post("/tasks/moved/jobs", {"kind": "learn", "calibrations": "recorded"}))
     assert learned["state"] == "succeeded", learned["message"]
 
+    cut = {"kind": "recut", "run": learned["outcome"], "clusters": 1}
+    again = desk.ended(desk.post("/tasks/moved/jobs", cut))
+    assert again["state"] == "failed"
+    assert "take them as they were recorded: teachpath recut --as-recorded moved" in again["message"]
+    again = desk.ended(desk.post("/tasks/moved/jobs", cut | {"calibrations": "recorded"}))
+    assert again["state"] == "succeeded", again["message"]
+
     changed = desk.post("/tasks/moved/calibration", {}).json()
     assert [c["calibration"]["offset"][0] for c in changed] == pytest.approx([0.2] * 3)
     assert desk.ended(desk.post("/tasks/moved/jobs", {"kind": "learn"}))["state"] == "succeeded"

@@ -28,7 +28,8 @@ class NewJob(BaseModel):
     threshold: float | None = Field(None, description="recut: height of the cut [m]")
     clusters: int | None = Field(None, description="recut: or the number of clusters")
     calibrations: Literal["present", "recorded"] = Field(
-        "present", description="learn: present refuses demonstrations under a former version of their calibration"
+        "present",
+        description="learn, recut: present refuses demonstrations under a former version of their calibration",
     )
     path: str = Field("", description="plan: id of the learned path")
     version: int | None = Field(
@@ -64,7 +65,7 @@ def jobs_router(parts: Parts) -> APIRouter:
             _of_task(stored.name, run.task, f"run {run.id!r}")
             recut(run.learned, threshold=new.threshold, clusters=new.clusters)
             request = {"run": run.id, "threshold": new.threshold, "clusters": new.clusters}
-            job = jobs.submit(stored.name, "recut", request)
+            job = jobs.submit(stored.name, "recut", request | {"calibrations": new.calibrations})
         else:
             path = _versioned(store, new.path, new.version)
             _of_task(stored.name, store.run(path.run).task, f"path {path.id!r}")

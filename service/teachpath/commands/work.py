@@ -7,7 +7,7 @@ import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 from rich.console import Console
@@ -19,6 +19,8 @@ from teachpath.commands.tables import clusters_table, cuts_table, paths_table, p
 from teachpath.errors import UnusableInput
 
 Task = Annotated[str, typer.Argument(help="The task.")]
+AsRecorded = Annotated[bool, typer.Option(help="Also those under a former version of their calibration.")]
+CALIBRATIONS = {False: "present", True: "recorded"}  # by --as-recorded
 console = Console(stderr=True)
 
 
@@ -41,17 +43,16 @@ def learn(
     url: Url = LOCAL,
     mode: Annotated[str, typer.Option(help="default: to be trusted; paper: Aleotti & Caselli 2005.")] = "default",
     threshold: Annotated[float | None, typer.Option(help="Height of the cut [m]; mode paper needs it.")] = None,
-    as_recorded: Annotated[bool, typer.Option(help="Also those under a former version of their calibration.")] = False,
+    as_recorded: AsRecorded = False,
 ) -> None:
     """Find the ways and learn a path for each.
 
     Clusters the task's demonstrations, selects the consistent ones in each cluster, and fits a NURBS to them.
     """
     settings: dict[str, object] = {"mode": mode} | ({} if threshold is None else {"threshold": threshold})
-    wanted: dict[str, object] = {"kind": "learn", "settings": settings}
-    wanted["calibrations"] = "recorded" if as_recorded else "present"
+    calibrations = CALIBRATIONS[as_recorded]
     with Api(url) as api:
-        _learned(api, task, "learning", wanted)
+        _learned(api, task, "learning", {"kind": "learn", "settings": settings, "calibrations": calibrations})
 
 
 def recut(
@@ -59,6 +60,7 @@ def recut(
     clusters: Annotated[int | None, typer.Option(min=1, help="Number of ways to cut into.")] = None,
     threshold: Annotated[float | None, typer.Option(help="Or the height of the cut [m].")] = None,
     run: Annotated[str, typer.Option(help="Id of the run; empty: the task's newest.")] = "",
+    as_recorded: AsRecorded = False,
     url: Url = LOCAL,
 ) -> None:
     """Move the cut between the ways, and learn their paths anew.
@@ -74,11 +76,11 @@ def recut(
         if clusters is None and threshold is None:
             Console().print(cuts_table(api.call("GET", f"/tasks/{task}/runs/{chosen}/dendrogram")))
         else:
-            request = {"kind": "recut", "run": chosen, "clusters": clusters, "threshold": threshold}
-            _learned(api, task, "cutting", request)
+            wanted = {"kind": "recut", "run": chosen, "clusters": clusters, "threshold": threshold}
+            _learned(api, task, "cutting", wanted | {"calibrations": CALIBRATIONS[as_recorded]})
 
 
-def _learned(api: Api, task: str, title: str, request: dict[str, object]) -> None:
+def _learned(api: Api, task: str, title: str, request: dict[str, Any]) -> None:
     """Follow a job that learns to its end, and print what it learned."""
     with progress_bar(title) as show:
         job = api.follow_job(api.call("POST", f"/tasks/{task}/jobs", request), show)

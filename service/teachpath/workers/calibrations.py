@@ -90,12 +90,16 @@ class Calibrations:
         measured = replace(fitted, source=source)
         return self.store.calibrations.add(measured) if keep else measured
 
-    def check(self, demonstrations: Sequence[Demonstration]) -> None:
+    def check(self, demonstrations: Sequence[Demonstration], *, command: str = "learn") -> None:
         """Refuse demonstrations whose calibration has been measured or set anew since they were recorded.
 
         Each is in the world by its own calibration, so those of different names agree. Whether an older mapping of
         one name is still true of an old demonstration (the tracker was moved since) or never was (the new one
         corrects it), only the operator knows.
+
+        Args:
+            demonstrations: of one task.
+            command: that they are refused to.
 
         Raises:
             Conflict: names them and both ways out.
@@ -105,9 +109,9 @@ class Calibrations:
             numbers, first = ", ".join(str(d.number) for d in outdated), outdated[0]
             raise Conflict(
                 f"demonstrations {numbers} were recorded under another version of the calibration "
-                f"{first.calibration.name}; if it was wrong then, convert them: teachpath recalibrate {first.task}; if "
-                "the tracker was moved since, learn them as they were recorded: teachpath learn --as-recorded "
-                f"{first.task}"
+                f"{first.calibration.name}; if it was wrong then, convert them and learn anew: teachpath recalibrate "
+                f"{first.task}; if the tracker was moved since, take them as they were recorded: teachpath {command} "
+                f"--as-recorded {first.task}"
             )
 
     def convert(self, demonstrations: Sequence[Demonstration], name: str = "") -> list[Demonstration]:

@@ -96,7 +96,9 @@ def test_demonstrations_under_a_former_version_are_refused_until_they_are_conver
     known.check([before])
     now = known.measure("lab", shifted((0.3, 0.0, 0.0))).calibration
     after = recorded(store, now)
-    with pytest.raises(Conflict, match=r"demonstrations 1 were .* teachpath recalibrate lift; .* --as-recorded lift"):
+    with pytest.raises(
+        Conflict, match=r"demonstrations 1 were .* teachpath recalibrate lift; .* learn --as-recorded lift"
+    ):
         known.check([before, after])
 
     (changed, same) = known.convert([before, after])
