@@ -14,7 +14,7 @@ from teachpath.workers.presence import Presence
 from teachpath.workers.session import RecordingSession
 
 FLUSH_EVERY = 0.75  # [s] under a second, with a margin for a busy machine
-ROUND = 0.02  # [s] between two looks at what has come, while little waits
+ROUND = 0.02  # [s] between two looks at what has come; no pause while more waits than one round takes
 BATCH = 200  # samples of one tracker that are recorded before the next one's turn
 
 
@@ -80,24 +80,32 @@ class Scribe:
             finished += self._record(session, batch)
         return finished
 
-    def _run(self) -> None:
-        while not self._stopped.wait(ROUND):
-            self._go_round()
+    def go_round(self) -> bool:
+        """Record a batch of each tracker in turn, so that none keeps the others waiting.
 
-    def _go_round(self) -> None:
-        """Record a batch of each tracker in turn, so that none keeps the others waiting."""
+        Returns:
+            Whether a batch was full: more waits, and the next round should begin at once. What trickles in meanwhile
+            does not count, or rounds of hundreds of trackers would follow each other for a sample each.
+        """
         with self.changed:
             sessions = list(self.sessions.values())
-        now = self._clock()
+        now, more = self._clock(), False
         for session in sessions:
             if not self._intake.is_empty(session.tracker) or now - session.flushed >= FLUSH_EVERY:
-                self._visit(session, now)
+                more |= self._visit(session, now) == BATCH
             elif session.is_carrying:
                 self._look_for_silence(session)
+        return more
 
-    def _visit(self, session: RecordingSession, now: float) -> None:
+    def _run(self) -> None:
+        more = False
+        while not self._stopped.wait(0.0 if more else ROUND):
+            more = self.go_round()
+
+    def _visit(self, session: RecordingSession, now: float) -> int:
         with self.changed:
-            finished = self._record(session, self._intake.take(session.tracker, BATCH))
+            batch = self._intake.take(session.tracker, BATCH)
+            finished = self._record(session, batch)
             if now - session.flushed >= FLUSH_EVERY:
                 session.flush(now)
             unwanted = session.asks_to_discard()
@@ -105,6 +113,7 @@ class Scribe:
         self._made(finished)
         if unwanted:
             self._unwanted(session)
+        return len(batch)
 
     def _record(self, session: RecordingSession, batch: list[Received]) -> list[Finished]:
         if batch and batch[-1].payload is not None:
