@@ -45,7 +45,7 @@ def come(port: int, name: str, **options: Any) -> ClientConnection:
 
 def ask(socket: ClientConnection, order: Any) -> dict[str, Any]:
     socket.send(order if isinstance(order, str) else json.dumps(order))
-    answer: dict[str, Any] = json.loads(socket.recv(timeout=5))
+    answer: dict[str, Any] = json.loads(socket.recv(timeout=60))
     return answer
 
 
@@ -53,7 +53,7 @@ def closed(socket: ClientConnection) -> str:
     """Read until the service closes; return its reason."""
     with suppress(ConnectionClosed):
         while True:
-            socket.recv(timeout=30)
+            socket.recv(timeout=60)
     assert socket.close_reason is not None
     return socket.close_reason
 
@@ -68,9 +68,9 @@ def recorded(station: Station, name: str, count: int) -> None:
 
 
 def wait(true: Any) -> None:
-    deadline = time.monotonic() + 5
+    deadline = time.monotonic() + 60
     while not true():
-        assert time.monotonic() < deadline
+        assert time.monotonic() < deadline, "it does not come true"
         time.sleep(0.005)
 
 
@@ -139,7 +139,7 @@ def test_a_flood_keeps_nobody_from_being_answered(port: int) -> None:
         # A machine that takes in over 1000 a second closes it; on a slower one the flood itself is slowed down.
         flood.send('{"ping": 1}')
         with suppress(ConnectionClosed):
-            assert json.loads(flood.recv(timeout=30))["samples"]["passed"] == 2500
+            assert json.loads(flood.recv(timeout=60))["samples"]["passed"] == 2500
         assert flood.close_reason is None or "faster than 1000 a second" in flood.close_reason
 
 
@@ -201,9 +201,9 @@ def test_joint_states_come_decimated_and_the_newest_wins(desk: Desk, port: int) 
         for k in range(200):
             publish(desk.station, k, k / 1000)
             time.sleep(0.0025)
-        frames = [json.loads(socket.recv(timeout=5))]
+        frames = [json.loads(socket.recv(timeout=60))]
         while frames[-1]["stamp_ns"] < 199:
-            frames.append(json.loads(socket.recv(timeout=5)))
+            frames.append(json.loads(socket.recv(timeout=60)))
         seconds = time.monotonic() - began
         assert len(frames) <= 25 * seconds + 2
         stamps = [frame["stamp_ns"] for frame in frames]
