@@ -21,6 +21,7 @@ from teachpath.motion.track import Track
 
 SLOWEST: Final = 0.01  # an override below this holds
 TRIES: Final = 20  # ramps judged in one period at most
+ROOM: Final = 1 + 1e-12
 AGREE: Final = 1e-6  # s, between the closed form of a ramp and Ruckig's
 BACKWARD: Final = 0.96  # rate of the way back at most: a plan has its reserve on the other side (see `shares`)
 
@@ -113,9 +114,24 @@ class Governor:
         """The present plan time [s]."""
         return float(self._state[0])
 
+    @property
+    def state(self) -> Array:
+        """The present plan time [s], its rate and the rate's derivative [1/s] (3,)."""
+        return self._state.copy()
+
+    @property
+    def wish(self) -> float:
+        """The rate now asked for, negative on the way back."""
+        return 0.0 if self.held else (-min(self._override, BACKWARD) if self._back else self._override)
+
+    @property
+    def bound_for(self) -> float:
+        """The rate in which the ramp now followed ends; it is `wish` as soon as that could be answered."""
+        return float(self._ramp[7])
+
     def step(self) -> Progress:
         """Advance by one control period; never raises."""
-        wish = 0.0 if self.held else (-min(self._override, BACKWARD) if self._back else self._override)
+        wish = self.wish
         left = self._ramp[3] + self._ramp[4] + self._ramp[5] - self._elapsed
         if self._ramp[7] != wish or left > 0.0:
             self._turn_to(wish, left if self._ramp[7] == wish else np.inf)
@@ -159,9 +175,12 @@ class Governor:
         trial, inputs = self._trial, self._inputs
         inputs.current_position, inputs.current_velocity = [float(trial[0])], [float(trial[1])]
         inputs.current_acceleration, inputs.target_velocity = [float(trial[2])], [float(trial[7])]
-        # Room for the present acceleration: without it Ruckig would brake first.
-        most = max(peak, abs(float(trial[2])))
-        inputs.max_acceleration, inputs.max_jerk = [most * (1 + 1e-12)], [abs(float(trial[6]))]
+        # Room for the present acceleration, on its side alone: without it Ruckig would brake first, and with as much
+        # on the other side it would go beyond the peak.
+        along, against = peak * ROOM, max(peak, abs(float(trial[2]))) * ROOM
+        upward, downward = (along, against) if trial[6] > 0.0 else (against, along)
+        inputs.max_acceleration, inputs.min_acceleration = [upward], [-downward]
+        inputs.max_jerk = [abs(float(trial[6]))]
         try:
             result = self._ruckig.calculate(inputs, self._answer)
         except RuckigError:

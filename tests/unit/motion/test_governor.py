@@ -179,6 +179,31 @@ def test_an_override_sets_the_rate(tracks: dict[str, Track]) -> None:
     log.until(lambda: log.governor.progress.rate == 0.6, within=100)
 
 
+def longest_wait(track: Track, rng: np.random.Generator, *, steady: bool) -> int:
+    """Change the override every 40 to 640 ms on the way; when `steady`, only once the rate is constant."""
+    governor = Governor(track, DT, override=rng.uniform(0.05, 1.0))
+    pause, waited, longest = 0, 0, 0
+    while not governor.progress.finished:
+        if pause <= 0 and not (steady and governor.state[2]):
+            governor.set_override(rng.uniform(0.05, 1.0))
+            pause = rng.integers(10, 160)
+        pause -= 1
+        governor.step()
+        waited = 0 if governor.bound_for == governor.wish or governor.progress.finished else waited + 1
+        longest = max(longest, waited)
+    return longest
+
+
+@pytest.mark.parametrize("name", ["line", *CURVES])
+def test_at_a_constant_rate_any_override_is_answered_in_the_same_period(tracks: dict[str, Track], name: str) -> None:
+    assert all(longest_wait(tracks[name], np.random.default_rng(seed), steady=True) == 0 for seed in range(20))
+
+
+@pytest.mark.parametrize("name", ["line", *CURVES])
+def test_amid_a_turn_any_override_is_answered_within_a_tenth_of_a_second(tracks: dict[str, Track], name: str) -> None:
+    assert all(longest_wait(tracks[name], np.random.default_rng(seed), steady=False) * DT < 0.1 for seed in range(20))
+
+
 @pytest.mark.parametrize("share", [0.0, float("nan"), -1.0])
 def test_an_override_of_zero_or_nan_holds(tracks: dict[str, Track], share: float) -> None:
     log = Log(Governor(tracks["far"], DT))
