@@ -3,7 +3,9 @@
 import time
 from dataclasses import dataclass
 
+import answers
 import numpy as np
+import peer_bound
 from global_optimum import best_duration
 from optimum import shortest_stop
 from report import Figure, against
@@ -27,25 +29,28 @@ OPTIMA = 4  # stops per path and repetition that are held against the best possi
 
 
 def measure(*, repeats: int) -> list[Figure]:
-    """Return the figures; stops are from full speed, cycles and limits over random commands."""
+    """Return the figures; stops are from full speed; cycles, limits and answers over random commands."""
     warm_up(DT)
     figures: list[Figure] = []
     stops: list[float] = []
     ratios: list[float] = []
+    tracks: list[Track] = []
     timed(*_branch(curves()["bow"]), ARM, rate=RATE)  # loads what the first path would wait for
     for name, curve in curves().items():
         found = _path(name, curve, repeats)
         figures += found.figures
         stops += found.stops
         ratios += found.ratios
+        tracks.append(found.track)
     figures.append(against("all paths: stops from full speed", stops, "s", name="median allowed", value=0.3))
     figures.append(against("all paths: stop over the best possible", ratios, "", name="median allowed", value=1.2))
-    return figures
+    return figures + answers.measure(tracks, DT, runs=20 * repeats)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class _Found:
     figures: list[Figure]
+    track: Track
     stops: list[float]
     ratios: list[float]
 
@@ -102,6 +107,7 @@ def _path(name: str, curve: Curve, repeats: int) -> _Found:
     cycles, used = _random_commands(track, runs=4 * repeats)
     figures = [
         against(f"{label}: duration", [track.duration], "s", name=LEAST, value=bound),
+        *peer_bound.measure(label, found, candidate, ARM, bound),
         *_bounds(label, found, candidate, bound),
         against(f"{label}: timing it", seconds, "s", name="asked", value=0.5),
         against(f"{label}: stops from full speed", stops, "s", name="worst allowed", value=LONGEST_STOP),
@@ -110,7 +116,7 @@ def _path(name: str, curve: Curve, repeats: int) -> _Found:
         against(f"{label}: moving cycle p99", [float(np.quantile(cycles, 0.99))], "us", name="budget", value=BUDGET),
         against(f"{label}: largest use of a limit", [used], "", name="limit", value=1.0),
     ]
-    return _Found(figures, stops, ratios)
+    return _Found(figures, track, stops, ratios)
 
 
 def _bounds(label: str, found: Route, candidate: Candidate, bound: float) -> list[Figure]:
