@@ -2,8 +2,12 @@
 
 Layout after the reader and writer of LeRobot (`lerobot.datasets`, codebase version v3.0): frames in `data/`, and in
 `meta/` info.json, stats.json, tasks.parquet and `episodes/`, the parquet files as chunk-000/file-000 with one row group
-an episode. LeRobot counts time in frames: its `timestamp` is frame_index / fps. Nothing is resampled for it; when a
-sample was taken and received is in `device_ns` and `receive_ns`, and what is missing shows in `sequence`.
+an episode. LeRobot's reader goes from frame to frame by index and `fps`; `timestamp` is when a sample was taken, not,
+as LeRobot's own writer puts it, frame_index / fps: nothing is stamped anew, and a loss shows in it and in `sequence`.
+
+Read by lerobot 0.4.4: frame by frame, in windows (`delta_timestamps`), single episodes; merged with another, split, and
+with episodes taken out. Its own writer gives the same frames the same columns, types and statistics, but for quantiles
+and small deviations, which it estimates in single precision.
 """
 
 from __future__ import annotations
@@ -45,16 +49,21 @@ class Dataset:
     Attributes:
         task: in words.
         fps: frames a second, as LeRobot counts them.
-        lengths: frames of each episode.
+        times: of each episode's frames [s], from its first one.
         features: columns beside those that LeRobot itself needs.
         episodes: what is said of each episode, beside what LeRobot needs.
     """
 
     task: str
     fps: int
-    lengths: Sequence[int]
+    times: Sequence[Array]
     features: dict[str, Feature]
     episodes: dict[str, list[str]]
+
+    @property
+    def lengths(self) -> list[int]:
+        """Return the number of frames of each episode."""
+        return [len(times) for times in self.times]
 
 
 def write_dataset(
@@ -84,7 +93,7 @@ def _counters(dataset: Dataset) -> dict[str, Feature]:
         "index": [f + start for f, start in zip(frames, starts, strict=False)],
         "task_index": [np.zeros((n, 1), dtype=np.int64) for n in lengths],
     }
-    times = Feature("float32", (), [f / dataset.fps for f in frames])
+    times = Feature("float32", (), [times[:, None] for times in dataset.times])
     return {"timestamp": times} | {name: Feature("int64", (), values) for name, values in columns.items()}
 
 
@@ -125,7 +134,7 @@ def _write_episodes(root: Path, dataset: Dataset, files: list[int], stats: list[
     columns: dict[str, Any] = {
         "episode_index": list(range(count)),
         "tasks": [[dataset.task]] * count,
-        "length": list(dataset.lengths),
+        "length": dataset.lengths,
         "dataset_from_index": (ends - np.array(dataset.lengths)).tolist(),
         "dataset_to_index": ends.tolist(),
         "data/chunk_index": [number // CHUNK for number in files],
@@ -178,12 +187,12 @@ def _info(dataset: Dataset, features: dict[str, Feature]) -> dict[str, Any]:
     }
 
 
-def _stats(values: Array) -> dict[str, list[float]]:
-    """Return what LeRobot normalises by; (n, d) values give lists of d numbers."""
+def _stats(values: NDArray[Any]) -> dict[str, list[float]]:
+    """Return what LeRobot normalises by, lists of d numbers of (n, d) values; least and greatest are of their type."""
     numbers = values.astype(np.float64)
     found = {
-        "min": numbers.min(axis=0).tolist(),
-        "max": numbers.max(axis=0).tolist(),
+        "min": values.min(axis=0).tolist(),
+        "max": values.max(axis=0).tolist(),
         "mean": numbers.mean(axis=0).tolist(),
         "std": numbers.std(axis=0).tolist(),
         "count": [len(numbers)],

@@ -62,9 +62,11 @@ def dataset_of(demonstrations: Sequence[Demonstration], received: Sequence[Seque
         "calibration": [d.calibration.name for d in demonstrations],
         "verdict": [d.verdict for d in demonstrations],
         "reasons": ["; ".join(d.reasons) for d in demonstrations],
+        "mark": [d.mark for d in demonstrations],
     }
     fps = max(round(float(np.median(rates))), 1) if rates else RATE
-    return Dataset(demonstrations[0].task, fps, [len(take) for take in takes], features, said)
+    times = [np.array([s.device_ns - take[0].device_ns for s in take]) * 1e-9 for take in takes]
+    return Dataset(demonstrations[0].task, fps, times, features, said)
 
 
 def _as_measured(takes: list[list[Sample]], *, turned: bool) -> dict[str, Feature]:

@@ -88,7 +88,10 @@ def test_the_layout_is_that_of_version_3(store: Store, tmp_path: Path) -> None:
     assert read["index"] == list(range(sum(lengths)))
     assert read["episode_index"] == [0] * lengths[0] + [1] * lengths[1]
     assert read["frame_index"] == [*range(lengths[0]), *range(lengths[1])]
-    assert read["timestamp"] == pytest.approx([frame / 50 for frame in read["frame_index"]])
+    true = [[s.device_ns for s in once(store.recordings.samples(row.recording))] for row in rows]
+    since = [(ns - stamps[0]) * 1e-9 for stamps in true for ns in stamps]
+    assert read["timestamp"] == pytest.approx(since, abs=1e-6)
+    assert max(np.diff(since)) == pytest.approx(0.04)  # where a sample is lost
 
     (episodes,) = (root / "meta" / "episodes").glob("chunk-000/file-000.parquet")
     said = pq.read_table(episodes).to_pydict()
@@ -111,13 +114,16 @@ def test_the_statistics_are_those_of_the_frames(store: Store, tmp_path: Path) ->
         assert stats[name]["mean"] == pytest.approx(values.mean(axis=0).tolist(), abs=1e-6)
         assert stats[name]["std"] == pytest.approx(values.std(axis=0).tolist(), abs=1e-6)
         assert stats[name]["max"] == pytest.approx(values.max(axis=0).tolist(), abs=1e-6)
+    for name in ("device_ns", "sequence", "tracked"):  # nanoseconds since 1970 do not fit a float
+        assert (stats[name]["min"], stats[name]["max"]) == ([min(read[name])], [max(read[name])])
         assert stats[name]["count"] == [len(values)]
 
 
 def test_a_large_dataset_goes_on_in_another_file(tmp_path: Path) -> None:
     lengths = [5, 7, 3]
     values = lerobot.Feature("float32", ("x", "y"), [np.full((n, 2), float(n)) for n in lengths])
-    dataset = lerobot.Dataset("lift", 50, lengths, {"observation.state": values}, {})
+    times = [np.arange(n) / 50 for n in lengths]
+    dataset = lerobot.Dataset("lift", 50, times, {"observation.state": values}, {})
     lerobot.write_dataset(tmp_path, dataset, largest_file=1)
     assert len(list((tmp_path / "data").glob("chunk-000/file-*.parquet"))) == 3
     said = pq.read_table(tmp_path / "meta" / "episodes" / "chunk-000" / "file-000.parquet").to_pydict()
