@@ -114,7 +114,15 @@ def carry_worn(visit: Visit, move: Any) -> None:
     for point in over:
         move(visit, point, 1)
         visit.page.wait_for_timeout(60)
+        visit.page.evaluate(NEXT)
     move(visit, GOAL, 0)
+
+
+# Resolves when the headset's hand has been sampled again: where drawing is slow the carrying is slow, and no leap.
+NEXT = """async () => {
+  const hand = teachpath.headset();
+  for (const before = hand.samples; hand.samples === before; ) await new Promise((done) => setTimeout(done, 5));
+}"""
 
 
 # Keeps of every sample: its time, whether a take is under way, and how many pictures were drawn before.

@@ -1,11 +1,13 @@
 import os
 import shutil
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 import pytest
 
-from tests.system.processes import Service
+from tests.system.demos import Start
+from tests.system.processes import Command, Service, free_ports
 
 
 @pytest.fixture(scope="module")
@@ -32,3 +34,19 @@ def browser() -> Iterator[Any]:
         browser = playwright.chromium.launch(executable_path=found, headless=True, args=flags)
         yield browser
         browser.close()
+
+
+@pytest.fixture
+def start(tmp_path: Path) -> Iterator[Start]:
+    started: list[Command] = []
+
+    def demo(*arguments: str, port: int | None = None) -> Command:
+        web, bus = free_ports(2)
+        environment = {"TEACHPATH_BUS__ENDPOINT": f"tcp/127.0.0.1:{bus}"}
+        words = ("demo", "--port", str(port or web), *arguments)
+        started.append(Command(*words, folder=tmp_path, environment=environment))
+        return started[-1]
+
+    yield demo
+    for command in started:
+        command.clean_up()

@@ -5,7 +5,6 @@ from typing import Any
 import numpy as np
 
 from teachpath.nurbs import Curve
-from tests.system.processes import Service
 from tests.system.test_view import Visit
 
 U = np.linspace(0, 1, 301)
@@ -13,12 +12,17 @@ SLOW = 60_000  # [ms] a busy machine draws a frame in seconds
 
 
 class Desk(Visit):
-    """A page on whose tab Edit one path is open."""
+    """A page for the tab Edit; what its console said is judged when it closes."""
 
-    def __init__(self, browser: Any, service: Service, path: str) -> None:
-        super().__init__(browser, service.url)
+    def __init__(self, browser: Any, url: str, path: str = "") -> None:
+        super().__init__(browser, url)
         self.page.set_viewport_size({"width": 1000, "height": 620})  # fewer pixels to draw without a graphics card
-        self.open(path)
+        if path:
+            self.open(path)
+
+    def close(self) -> None:
+        self.page.close()
+        assert [line for line in self.said if "409" not in line] == []  # a browser itself notes a refused request
 
     def open(self, path: str) -> None:
         self.click("#tab-edit")

@@ -1,78 +1,24 @@
 """The demo as a user runs it: the whole story, Ctrl-C at any moment, and refusals in one sentence."""
 
-import json
 import signal
 import socket
 import time
-from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
 
-from teachpath.learning.settings import LearningSettings
-from teachpath.workers.executor.settings import ExecutorSettings
 from teachpath_client import ClientError
 from teachpath_client.rest import Station
+from tests.system.demos import LEAVE, STORY, Start, assert_nothing_left, assert_story
 from tests.system.processes import Command, free_ports, wait_until
 
 pytestmark = pytest.mark.system
-
-Start = Callable[..., Command]
-
-STORY = 90.0  # [s] for the whole story on a busy machine
-LEAVE = 3.0  # [s] after Ctrl-C
-
-
-@pytest.fixture
-def start(tmp_path: Path) -> Iterator[Start]:
-    started: list[Command] = []
-
-    def demo(*arguments: str, port: int | None = None) -> Command:
-        web, bus = free_ports(2)
-        environment = {"TEACHPATH_BUS__ENDPOINT": f"tcp/127.0.0.1:{bus}"}
-        words = ("demo", "--port", str(port or web), *arguments)
-        started.append(Command(*words, folder=tmp_path, environment=environment))
-        return started[-1]
-
-    yield demo
-    for command in started:
-        command.clean_up()
-
-
-def assert_nothing_left(command: Command, *, seconds: float) -> None:
-    command.wait_gone(seconds)
-    assert list(command.temporary.iterdir()) == []
-
-
-def assert_story(out: str) -> None:
-    summary = json.loads(out)
-    assert (summary["demonstrations"], summary["lost_samples"]) == (12, 0)
-    assert sorted(summary["clusters"]) == [3, 4, 5]
-    assert len(summary["selected"]) == len(summary["paths"]) == 3
-    assert min(summary["selected"]) >= 2
-    assert max(path["largest_error_m"] for path in summary["paths"]) <= LearningSettings().error_bound
-    assert summary["planned_path"] in [path["id"] for path in summary["paths"]]
-    assert summary["execution"] == "ended"
-    assert 0 < summary["largest_limit_use"] <= 1.0
-    assert 0 < summary["largest_tracking_error_rad"] < ExecutorSettings().largest_error
-    assert summary["setpoints"] / ExecutorSettings().rate > summary["plan_duration_s"]
 
 
 def test_tells_the_whole_story_once_and_leaves_nothing(start: Start) -> None:
     demo = start("--once", "--speed", "10")
     assert demo.wait(STORY) == 0, demo.err
     assert_story(demo.out)
-    assert "Traceback" not in demo.err
-    assert_nothing_left(demo, seconds=1.0)
-
-
-def test_ctrl_c_while_it_stays_up_ends_everything(start: Start) -> None:
-    demo = start("--json", "--speed", "20")
-    wait_until(lambda: "stays up" in demo.err or demo.process.poll(), seconds=STORY, what="the story ends")
-    assert_story(demo.out)
-    assert any("executor" in line for line in demo.relatives())
-    demo.interrupt()
-    assert demo.wait(LEAVE) == 0
     assert "Traceback" not in demo.err
     assert_nothing_left(demo, seconds=1.0)
 

@@ -215,10 +215,13 @@ export class Editor {
     this.gizmo.place(this.active && this.draft.movable.length ? this.middle : null);
   }
 
-  // Ask the service what the arm thinks of the curve; only the answer to the newest question counts.
+  // Ask the service what the arm thinks of the curve while somebody looks at it; only the answer to the newest question
+  // counts. It looks at one curve of a path at a time, and another tab may be asking about this one.
   async #assess(again = false) {
+    if (!this.active) return;
     const { path, curve, base } = this.draft;
-    if (this.verdict?.curve === curve && !again) return;
+    const { verdict: known } = this;
+    if (known?.curve === curve && !known.waiting && !known.again && !again) return;
     this.#judge({ curve, waiting: true });
     if (this.asking) return; // one question at a time; the newest curve comes next
     this.asking = true;

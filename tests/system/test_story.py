@@ -1,0 +1,71 @@
+"""The whole story in the page, on what the demo leaves: choose a way, edit it, certify it, run it, look at it again."""
+
+import re
+from typing import Any
+
+import numpy as np
+import pytest
+
+from teachpath_client.rest import Station
+from tests.system.demos import LEAVE, STORY, Start, assert_nothing_left, assert_story
+from tests.system.editors import SLOW, Desk, U
+from tests.system.operators import RESTING, Operator
+from tests.system.processes import wait_until
+
+pytestmark = pytest.mark.system
+
+NEAR = 0.002  # [m] between a place of the path and where the box was carried
+
+
+def test_what_the_demo_has_learned_is_edited_certified_run_and_replayed(browser: Any, start: Start) -> None:
+    demo = start("--json", "--speed", "20")
+    wait_until(lambda: "stays up" in demo.err or demo.process.poll(), seconds=STORY, what="the story ends")
+    assert_story(demo.out)
+    found = re.search(r"serves (http://[0-9.]+:[0-9]+)", demo.err)
+    assert found is not None, demo.err
+    with Station(found[1]) as station:
+        tell(browser, found[1], station)
+    assert any("executor" in line for line in demo.relatives())
+    demo.interrupt()
+    assert demo.wait(LEAVE) == 0
+    assert "Traceback" not in demo.err
+    assert_nothing_left(demo, seconds=1.0)
+
+
+def tell(browser: Any, url: str, station: Station) -> None:
+    """Go through the page as its user does."""
+    desk = Desk(browser, url)
+    desk.click("#tab-ways")
+    desk.page.wait_for_selector("#learned article.card >> nth=2", timeout=SLOW)
+    assert desk.page.locator("#learned article.card").count() == 3
+    desk.page.get_by_role("button", name="Edit way 2").click(timeout=SLOW)
+    desk.until("editor.draft && teachpath.state().path === editor.draft.path")
+    path = desk.ask("editor.draft.path")
+    desk.drag(3, 6, -6)
+    desk.until("editor.verdict.assessment && editor.verdict.curve === editor.draft.curve")
+    assert desk.page.locator("#edit-verdict .good").count() == 1
+    desk.save()
+    desk.until("editor.draft.base.number === 2")
+    edited = desk.curve()
+    desk.click("#edit-certify")
+    desk.page.wait_for_selector("#edit-run", timeout=SLOW)
+    assert "Version 2 is certified" in desk.page.inner_text("#edit-certified")
+    desk.click("#edit-run")
+    desk.page.wait_for_selector("#preview:has-text('Way 2, version 2')", timeout=SLOW)
+    operator = Operator(desk, station)
+    operator.start()
+    status = operator.until(lambda status: status["state"] in RESTING)
+    assert (status["state"], status["progress"]) == ("ended", pytest.approx(1.0)), status["reason"]
+    done = operator.executions()[0]
+    plan = station.call("GET", f"/plans/{done['plan']}")
+    assert (plan["path"], plan["path_version"]) == (path, 2)
+    carried = np.array(station.call("GET", f"/executions/{done['id']}/series?points=1500")["object"])
+    fine = np.array([np.interp(np.linspace(0, len(carried), 6000), range(len(carried)), axis) for axis in carried.T]).T
+    apart = np.linalg.norm(edited(U)[:, None] - fine[None], axis=2).min(axis=1)
+    assert apart.max() < NEAR
+    desk.page.locator(f"#replay button[data-execution='{done['id']}']").click(timeout=SLOW)
+    slider = desk.page.get_by_label("Instant of the execution")
+    slider.wait_for()
+    desk.until("teachpath.replayed() !== null")
+    assert float(slider.get_attribute("max") or 0) == pytest.approx(status["duration"], rel=0.1)
+    desk.close()
