@@ -152,5 +152,6 @@ def is_judged_by_its_frames(take: dict[str, Any], gaps: np.ndarray) -> None:
     """A machine without a graphics card may give no frames for a while: the verdict says that, and nothing else."""
     gap = take["account"]["longest_gap_ns"] / 1e9
     assert np.abs(gaps - gap).min() < 1e-5  # as the page stamped it
-    assert (take["verdict"] == "reject") == (gap > LIMIT), take["reasons"]
-    assert len(take["reasons"]) == (gap > LIMIT), take["reasons"]
+    outside = ["outside what is learned" in reason for reason in take["reasons"]]
+    assert bool(outside) == (gap > LIMIT), take["reasons"]
+    assert take["verdict"] == ("clean" if not outside else "repaired" if all(outside) else "reject"), take["reasons"]

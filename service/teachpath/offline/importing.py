@@ -13,7 +13,8 @@ from teachpath.io.sample_files import holds_samples, read_samples
 from teachpath.io.store.recordings import read_facts_stream, salvage_stream
 from teachpath.io.store.store import Store
 from teachpath.recording.demonstration import point_to_world
-from teachpath.recording.phases import GRASP_BUTTON, Segmenter
+from teachpath.recording.parts import Parts, parts_of
+from teachpath.recording.phases import GRASP_BUTTON, Cut, Segmenter
 from teachpath.recording.settings import RecordingSettings
 from teachpath.recording.verdict import Verdict, judge_again
 from teachpath.records import Calibration, Demonstration, Sample, Scene, Trajectory
@@ -78,7 +79,7 @@ def import_file(
             session.refuse("some samples were refused when it was recorded")
         finished = [session.add(sample) for sample in samples]
         made += [f for f in finished if f is not None] + session.finish()
-    return [_judged(store, settings, each, read.stated) for each in made]
+    return [_judged(store, settings, each, read) for each in made]
 
 
 def _read(source: Source, calibration: Calibration) -> _Read:
@@ -105,16 +106,23 @@ def _read_recording(source: Source) -> _Read:
 
 
 def _judged(
-    store: Store, settings: RecordingSettings, made: tuple[Demonstration, Trajectory], stated: Demonstration | None
+    store: Store, settings: RecordingSettings, made: tuple[Demonstration, Trajectory], read: _Read
 ) -> tuple[Demonstration, Trajectory]:
     """Keep what only the recorder could see, e.g. that the tracker went away in mid-take."""
+    stated = read.stated
     if stated is None:
         return made
     row, trajectory = made
-    verdict = judge_again(Verdict(stated.verdict, stated.reasons), stated.account, row.account, settings)
+    before = _parts(stated, read.motions[0], settings)
+    now = _parts(row, store.recordings.samples(row.recording), settings)
+    verdict = judge_again(Verdict(stated.verdict, stated.reasons), before, now, settings)
     if verdict == Verdict(row.verdict, row.reasons):
         return made
     return store.change_demonstration(row.id, verdict=verdict.word, reasons=verdict.reasons), trajectory
+
+
+def _parts(row: Demonstration, samples: list[Sample], settings: RecordingSettings) -> Parts:
+    return parts_of(samples, Cut(row.grasp, row.release), row.account, settings)
 
 
 def _check(

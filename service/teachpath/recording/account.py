@@ -98,9 +98,10 @@ class StreamAccount:
         self._refusals.add(reason)
         self._refusals_of_part.add(reason)
 
-    def begin_part(self) -> None:
-        """Begin another part: what was lost before its first sample is not lost of it."""
-        self._part_is_empty = True
+    def begin_part(self, *, joined: bool = False) -> None:
+        """Begin another part; what was lost before its first sample is lost of it only when the parts are joined."""
+        self._part_is_empty = not joined
+        self._first_of_part = self.highest + 1
         self._before_part = self._counts()
         self._longest_gap_of_part_ns = 0
         self._notes_of_part.clear()
@@ -129,6 +130,8 @@ class StreamAccount:
     def part(self) -> Account:
         """Return the counts of the part that is open."""
         counts = {name: max(count - self._before_part[name], 0) for name, count in self._counts().items()}
+        # A late sample of a former part fills a gap there and none here.
+        counts |= self._missing_since(self._first_of_part)
         notes = [*self._refusals_of_part.sentences(), *self._notes_of_part]
         return self._stated(counts, self._longest_gap_of_part_ns, notes, first=self._first_of_part)
 
@@ -146,6 +149,11 @@ class StreamAccount:
             "steps": self._steps,
             "device_ns": self._device_ns,
         }
+
+    def _missing_since(self, first: int) -> dict[str, int]:
+        gaps = [(max(a, first), b) for a, b in self._missing[max(bisect_right(self._missing, (first,)) - 1, 0) :]]
+        lost = [b - a + 1 for a, b in gaps if b >= a]
+        return {"gaps": len(lost), "lost": sum(lost)}
 
     def _stated(self, counts: dict[str, int], longest_gap_ns: int, kept: Iterable[str], *, first: int) -> Account:
         clock, notes = self._clock.estimate(), tuple(kept)
@@ -167,7 +175,7 @@ class StreamAccount:
         self._part_is_empty = False
         self._first_of_part = sequence
         now = self._counts()
-        self._before_part |= {name: now[name] for name in ("lost", "gaps", "clock_jumps", "steps", "device_ns")}
+        self._before_part |= {name: now[name] for name in ("clock_jumps", "steps", "device_ns")}
         self._longest_gap_of_part_ns = 0
 
     def _count_anew(self, sequence: int) -> None:

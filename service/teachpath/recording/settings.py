@@ -38,10 +38,10 @@ class RecordingSettings:
     longest_reach: Positive = 60.0
     # samples: a shorter transport phase is no demonstration
     shortest_transport: Annotated[int, Ge(5)] = 20
-    # share of a demonstration's samples that may be lost, refused, untracked, jumping or out of the workspace before
-    # it is rejected
+    # share of the samples from grasp to release that may be lost, untracked, in conflict, jumping or out of the
+    # workspace before a demonstration is rejected; of what was refused, the share of all that came
     largest_loss: Share = 0.05
-    # [s] longest gap in the device's clock before it is rejected
+    # [s] longest gap in the device's clock from grasp to release before it is rejected
     longest_gap: Positive = 0.25
     # [m] lowest corner of the workspace, world; a hand that transports outside it is counted as a fault
     workspace_low: Corner = (-1.5, -1.5, -0.5)

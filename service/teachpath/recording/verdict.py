@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
+from teachpath.recording.parts import Parts
 from teachpath.recording.settings import RecordingSettings
 from teachpath.records import Account
 
@@ -16,6 +17,8 @@ FAULTS = {
     "conflicts": "in conflict",
 }
 REPAIRS = {"duplicated": "came twice", "reordered": "came late"}
+# What has a place within a take; refused payloads have none, and the positions are judged of what is learned alone.
+PLACED = ("lost", "untracked", "conflicts", "duplicated", "reordered", "longest_gap_ns", "clock_jumps")
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,27 +29,29 @@ class Verdict:
     reasons: tuple[str, ...] = ()
 
 
-def judge(account: Account, settings: RecordingSettings) -> Verdict:
-    """Return the verdict on a demonstration, its gravest reasons first."""
-    rejections = [*_too_many(account, settings), *_unusable(account, settings)]
-    repairs = [
-        f"{_samples(getattr(account, name))} {words}"
-        for name, words in (FAULTS | REPAIRS).items()
-        if getattr(account, name)
-    ]
-    if account.declared_rate and abs(account.seen_rate / account.declared_rate - 1.0) > settings.rate_tolerance:
-        repairs.append(f"the rate is {account.seen_rate:.3g} Hz, declared {account.declared_rate:.3g} Hz")
+def judge(parts: Parts, settings: RecordingSettings) -> Verdict:
+    """Return the verdict on a demonstration, its gravest reasons first.
+
+    What is learned decides whether it is rejected: the samples from grasp to release. What happened while the hand
+    reached or returned is counted and said, and leaves it no better than repaired.
+    """
+    learned = _learned(parts)
+    rejections = [*_too_many(parts, learned, settings), *_unusable(learned, settings)]
+    repairs = [*_repairs(learned), *_elsewhere(parts, settings)]
+    whole = parts.whole
+    if whole.declared_rate and abs(whole.seen_rate / whole.declared_rate - 1.0) > settings.rate_tolerance:
+        repairs.append(f"the rate is {whole.seen_rate:.3g} Hz, declared {whole.declared_rate:.3g} Hz")
     word = "reject" if rejections else "repaired" if repairs else "clean"
     return Verdict(word, (*rejections, *repairs))
 
 
-def judge_again(former: Verdict, before: Account, now: Account, settings: RecordingSettings) -> Verdict:
-    """Return the verdict on a changed account; what was said for other reasons (a torn end) is said again.
+def judge_again(former: Verdict, before: Parts, now: Parts, settings: RecordingSettings) -> Verdict:
+    """Return the verdict on a changed take; what was said for other reasons (a torn end) is said again.
 
     Args:
         former: the verdict so far.
-        before: the account that it was on.
-        now: the account as it is.
+        before: the accounts that it was on.
+        now: the accounts as they are.
         settings: limits of the recording.
     """
     judged, fresh = judge(before, settings), judge(now, settings)
@@ -57,25 +62,54 @@ def judge_again(former: Verdict, before: Account, now: Account, settings: Record
     return Verdict("reject" if rejected else "repaired", (*kept, *fresh.reasons))
 
 
-def _too_many(account: Account, settings: RecordingSettings) -> list[str]:
-    total = account.received + account.lost
-    faults = sum(getattr(account, name) for name in FAULTS)
-    if faults <= settings.largest_loss * total:
-        return []
-    return [f"{faults} of {_samples(total)} are faulty, {faults / total:.1%}, limit {settings.largest_loss:.1%}"]
+def _learned(parts: Parts) -> Account:
+    """Return the account of what is learned, with all that has no place within the take."""
+    return replace(parts.whole, **{name: getattr(parts.carried, name) for name in PLACED})
+
+
+def _too_many(parts: Parts, learned: Account, settings: RecordingSettings) -> list[str]:
+    limit, found = settings.largest_loss, []
+    total = parts.carried.received + parts.carried.lost
+    faults = sum(getattr(learned, name) for name in FAULTS if name != "refused")
+    if faults > limit * total:
+        found.append(f"{faults} of {_samples(total)} are faulty, {faults / total:.1%}, limit {limit:.1%}")
+    refused, came = parts.whole.refused, parts.whole.received + parts.whole.refused
+    if refused > limit * came:
+        found.append(f"{refused} of {_samples(came)} were refused, {refused / came:.1%}, limit {limit:.1%}")
+    return found
 
 
 def _unusable(account: Account, settings: RecordingSettings) -> list[str]:
-    found = []
-    if account.longest_gap_ns > settings.longest_gap * 1e9:
-        found.append(f"a gap of {account.longest_gap_ns * 1e-9:.2f} s, limit {settings.longest_gap:.2f} s")
-    if account.clock_jumps:
-        found.append(f"the device's clock jumps {_times(account.clock_jumps)}")
+    found = _breaks(account, settings)
     if account.leaps:
         found.append(
             f"the position leaps {_times(account.leaps)} by over {100 * settings.largest_jump:.3g} cm and stays"
         )
     return found
+
+
+def _breaks(account: Account, settings: RecordingSettings) -> list[str]:
+    found = []
+    if account.longest_gap_ns > settings.longest_gap * 1e9:
+        found.append(f"a gap of {account.longest_gap_ns * 1e-9:.2f} s, limit {settings.longest_gap:.2f} s")
+    if account.clock_jumps:
+        found.append(f"the device's clock jumps {_times(account.clock_jumps)}")
+    return found
+
+
+def _repairs(account: Account) -> list[str]:
+    return [
+        f"{_samples(getattr(account, name))} {words}"
+        for name, words in (FAULTS | REPAIRS).items()
+        if getattr(account, name)
+    ]
+
+
+def _elsewhere(parts: Parts, settings: RecordingSettings) -> list[str]:
+    """Say what happened where nothing is learned."""
+    ways = {"reaching": parts.reach, "returning": parts.back}
+    said = {way: [*_breaks(account, settings), *_repairs(account)] for way, account in ways.items()}
+    return [f"while {way}, outside what is learned: {', '.join(faults)}" for way, faults in said.items() if faults]
 
 
 def _samples(count: int) -> str:

@@ -9,6 +9,7 @@ from typing import Any
 from teachpath.errors import Conflict, NotFound, UnusableInput
 from teachpath.io.store.store import Store
 from teachpath.recording.frame import fit_frame
+from teachpath.recording.parts import parts_of
 from teachpath.recording.phases import Cut
 from teachpath.recording.settings import RecordingSettings
 from teachpath.recording.verdict import Verdict, judge_again
@@ -134,7 +135,8 @@ class Calibrations:
         taken = TakenSamples(samples, cut, demonstration.account, calibration, None)
         account, left_out = with_positions(taken, self.settings)
         former = Verdict(demonstration.verdict, demonstration.reasons)
-        verdict = judge_again(former, demonstration.account, account, self.settings)
+        before = parts_of(samples, cut, demonstration.account, self.settings)
+        verdict = judge_again(former, before, replace(before, whole=account), self.settings)
         changed = replace(demonstration, calibration=calibration, left_out=left_out)
         times = Curation(self.store, self.settings, self.scene).trajectory(changed).times
         return {

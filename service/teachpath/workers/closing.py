@@ -13,6 +13,7 @@ from teachpath.io.documents import encode
 from teachpath.io.store.recordings import Take
 from teachpath.io.store.store import Store
 from teachpath.recording.demonstration import object_trajectory, to_world, usable
+from teachpath.recording.parts import Parts, parts_of
 from teachpath.recording.phases import Cut
 from teachpath.recording.positions import faults_of
 from teachpath.recording.settings import RecordingSettings
@@ -55,7 +56,7 @@ def close_take(
         )
     account, left_out = with_positions(taken, settings)
     trajectory = object_trajectory(taken.samples, cut, taken.calibration, taken.carried, left_out=left_out)
-    verdict = _judge(account, taken, settings)
+    verdict = _judge(parts_of(taken.samples, cut, account, settings), taken, settings)
     demonstration = Demonstration(
         id=facts["id"],
         task=facts["task"],
@@ -91,8 +92,8 @@ def with_positions(taken: TakenSamples, settings: RecordingSettings) -> tuple[Ac
     return account, faults.jumped
 
 
-def _judge(account: Account, taken: TakenSamples, settings: RecordingSettings) -> Verdict:
-    verdict = judge(account, settings)
+def _judge(parts: Parts, taken: TakenSamples, settings: RecordingSettings) -> Verdict:
+    verdict = judge(parts, settings)
     if not taken.fault:
         return verdict
     reasons = (taken.fault, *verdict.reasons)

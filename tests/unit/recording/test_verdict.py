@@ -3,12 +3,18 @@ from dataclasses import replace
 import pytest
 
 from teachpath.errors import UnusableSettings
+from teachpath.recording.parts import Parts
 from teachpath.recording.settings import RecordingSettings
 from teachpath.recording.verdict import judge
 from teachpath.records import Account
 
 SETTINGS = RecordingSettings()
 CLEAN = Account(received=100, declared_rate=50.0, seen_rate=50.0)
+
+
+def carried(account: Account) -> Parts:
+    """Return a take of which everything is learned."""
+    return Parts(account, Account(), account, Account())
 
 
 @pytest.mark.parametrize(
@@ -19,6 +25,8 @@ CLEAN = Account(received=100, declared_rate=50.0, seen_rate=50.0)
         ({"reordered": 3}, "repaired", "3 samples came late"),
         ({"received": 98, "lost": 2}, "repaired", "2 samples lost"),
         ({"received": 90, "lost": 10}, "reject", "10 of 100 samples are faulty, 10.0%, limit 5.0%"),
+        ({"refused": 5}, "repaired", "5 samples refused"),
+        ({"refused": 6}, "reject", "6 of 106 samples were refused, 5.7%, limit 5.0%"),
         ({"untracked": 4}, "repaired", "4 samples untracked"),
         ({"jumps": 2}, "repaired", "2 samples jumping"),
         ({"jumps": 3, "untracked": 3}, "reject", "6 of 100 samples"),
@@ -33,7 +41,7 @@ CLEAN = Account(received=100, declared_rate=50.0, seen_rate=50.0)
     ],
 )
 def test_the_verdict_follows_the_numbers_and_says_them(changes: dict[str, int], word: str, reason: str) -> None:
-    verdict = judge(replace(CLEAN, **changes), SETTINGS)  # type: ignore[arg-type]
+    verdict = judge(carried(replace(CLEAN, **changes)), SETTINGS)  # type: ignore[arg-type]
     assert verdict.word == word
     assert reason in (verdict.reasons[0] if verdict.reasons else "")
     assert bool(verdict.reasons) == (word != "clean")
@@ -41,8 +49,9 @@ def test_the_verdict_follows_the_numbers_and_says_them(changes: dict[str, int], 
 
 def test_the_limits_are_those_of_the_settings() -> None:
     lost = Account(received=90, lost=10)
-    assert judge(lost, replace(SETTINGS, largest_loss=0.1)).word == "repaired"
-    assert judge(replace(CLEAN, longest_gap_ns=300_000_000), replace(SETTINGS, longest_gap=0.3)).word == "clean"
+    assert judge(carried(lost), replace(SETTINGS, largest_loss=0.1)).word == "repaired"
+    gap = carried(replace(CLEAN, longest_gap_ns=300_000_000))
+    assert judge(gap, replace(SETTINGS, longest_gap=0.3)).word == "clean"
 
 
 def test_a_workspace_without_room_is_refused() -> None:

@@ -32,6 +32,22 @@ def test_the_handshake_counts_what_never_came(bench: Bench) -> None:
     assert bench.store.demonstrations("lift")[0].verdict == "repaired"
 
 
+@pytest.mark.parametrize(("hole", "way"), [(range(2, 18), "reaching"), (range(73, 90), "returning")])
+def test_a_hole_on_the_way_is_said_and_the_take_and_the_next_one_are_learned_from(
+    bench: Bench, hole: range, way: str
+) -> None:
+    bench.begin()
+    stream = [s for i in range(2) for s in demonstration(1 + 110 * i)]
+    bench.send([s for i, s in enumerate(stream) if i not in hole])
+    assert bench.end(220).lost == len(hole)
+    holed, whole = bench.store.demonstrations("lift")
+    assert (holed.verdict, holed.account.lost, whole.verdict) == ("repaired", len(hole), "clean")
+    seconds = (len(hole) + 1) * PERIOD_NS * 1e-9
+    said = f"a gap of {seconds:.2f} s, limit 0.25 s, {len(hole)} samples lost"
+    assert holed.reasons == (f"while {way}, outside what is learned: {said}",)
+    assert holed.is_usable
+
+
 def test_rubbish_is_counted_and_harms_nothing(bench: Bench) -> None:
     bench.begin()
     stream = demonstration()
