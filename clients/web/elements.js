@@ -21,19 +21,38 @@ function fill(made, attributes, children) {
   made.append(...children.flat(3).filter((child) => child || child === 0));
 }
 
-// Replace what is in `parent`, but only when it looks different: selections and scroll positions survive, and so does
-// the focus, on the element with the same data-key.
+// Make what is in `parent` look like `children`, and change only what differs: selections, scroll positions and the
+// focus survive, and a button that is pressed while the figures beside it change is still the one that is let go.
+// What has another tag or data-key is another thing.
 export function replace(parent, ...children) {
   const fresh = document.createElement("div");
   fresh.append(...children.flat(3).filter(Boolean));
-  if (parent.innerHTML === fresh.innerHTML) return;
   const key = parent.contains(document.activeElement) && document.activeElement.dataset.key;
-  parent.replaceChildren(...fresh.childNodes);
-  if (key) parent.querySelector(`[data-key="${CSS.escape(key)}"]`)?.focus();
+  settle(parent, fresh);
+  if (key && document.activeElement?.dataset.key !== key) parent.querySelector(`[data-key="${CSS.escape(key)}"]`)?.focus();
+}
+
+function settle(parent, fresh) {
+  const wanted = [...fresh.childNodes];
+  wanted.forEach((want, i) => {
+    const here = parent.childNodes[i];
+    if (!here) parent.append(want);
+    else if (!here.isEqualNode(want)) adapt(here, want);
+  });
+  while (parent.childNodes.length > wanted.length) parent.lastChild.remove();
+}
+
+function adapt(here, want) {
+  const same = here.nodeName === want.nodeName && here.dataset?.key === want.dataset?.key;
+  if (!same || here.nodeName === "SELECT") return here.replaceWith(want); // what a list has chosen is no attribute
+  if (here.nodeType === Node.TEXT_NODE) return (here.data = want.data);
+  for (const { name } of [...here.attributes]) if (!want.hasAttribute(name)) here.removeAttribute(name);
+  for (const { name, value } of want.attributes) if (here.getAttribute(name) !== value) here.setAttribute(name, value);
+  return settle(here, want);
 }
 
 export function number(value, digits, unit = "") {
-  return `${value.toLocaleString("en", { minimumFractionDigits: digits, maximumFractionDigits: digits })}${unit && "\u202f" + unit}`;
+  return `${value.toLocaleString("en", { minimumFractionDigits: digits, maximumFractionDigits: digits, signDisplay: "negative" })}${unit && "\u202f" + unit}`;
 }
 
 export function percent(share) {
@@ -60,6 +79,11 @@ export function bar(share, label) {
 
 export function hint(text) {
   return element("p", { class: "hint" }, text);
+}
+
+// A button that opens another tab: the next step of who is in the wrong one.
+export function next(tab, text) {
+  return element("p", { class: "orders" }, element("button", { type: "button", class: "primary", "data-open": tab, "data-key": `open ${tab}` }, text));
 }
 
 export function command(text) {

@@ -13,6 +13,7 @@ import { at, post } from "./api.js";
 import { Feed } from "./feed.js";
 import { Gallery } from "./gallery.js";
 import { header } from "./header.js";
+import { journal } from "./journal.js";
 import { Messages } from "./messages.js";
 import { panel as demonstrate } from "./panels/demonstrate.js";
 import { panel as edit } from "./panels/edit.js";
@@ -65,6 +66,7 @@ const context = {
 };
 const panels = [demonstrate, ways, edit, run];
 for (const panel of panels) panel.mount(tabs.add(panel.id, panel.title), context);
+journal(byId("events"), byId("events-button"), store);
 header(context, { task: byId("task"), stop: byId("stop"), control: byId("control") });
 store.subscribe((state, changed) => {
   for (const panel of panels) panel.update(state, changed);
@@ -72,6 +74,10 @@ store.subscribe((state, changed) => {
 });
 for (const panel of panels) panel.update(store.state, new Set(Object.keys(store.state)));
 
+byId("panels").addEventListener("click", (event) => {
+  const { open } = event.target.closest("[data-open]")?.dataset ?? {};
+  if (open) tabs.choose(open);
+});
 for (const box of document.querySelectorAll("[data-layer]")) {
   box.addEventListener("change", () => view.show(box.dataset.layer, box.checked));
 }

@@ -26,8 +26,10 @@ export class Tabs {
 
   choose(id) {
     if (id === this.current || !this.#tabs.has(id)) return;
+    if (this.current) this.#tabs.get(this.current).scrolled = this.panels.scrollTop; // every tab stays where it was left
     this.current = id;
     this.#paint();
+    this.panels.scrollTop = this.#tabs.get(id).scrolled ?? 0;
     this.chosen(id);
   }
 

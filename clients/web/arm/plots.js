@@ -1,5 +1,5 @@
 // Plots of the joints against time: positions, velocities against their limits, tracking error and lateness.
-import { element } from "../elements.js";
+import { element, replace } from "../elements.js";
 import uPlot from "../vendor/uplot/uPlot.esm.js";
 
 const HEIGHT = 132; // [px] of one plot
@@ -29,15 +29,16 @@ export class Plots {
   #charts = [];
   #rows = [];
   #values;
+  marked = null; // [s]
 
   // `window` [s] of the newest rows is shown; 0: all of them.
   constructor(place, { window = 0 } = {}) {
     this.window = window;
     this.place = element("div", { class: "plots" });
     place.append(this.place);
-    this.#charts = PLOTS.map((plot) => this.#chart(plot));
     this.#values = element("dl", { class: "values" });
-    this.place.append(this.#legend(), this.#values);
+    this.#charts = PLOTS.map((plot) => this.#chart(plot));
+    this.place.append(this.#values);
     new ResizeObserver(() => this.#fit()).observe(this.place);
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.#rebuild());
   }
@@ -57,8 +58,10 @@ export class Plots {
     this.#later();
   }
 
-  // Mark an instant [s]; null: none.
+  // Mark an instant [s] and tell its values; null: none, and those of the newest row.
   mark(time) {
+    this.marked = time;
+    this.#tell();
     for (const { chart } of this.#charts) {
       const left = time === null ? -10 : chart.valToPos(time, "x");
       chart.setCursor({ left, top: 0 }, false);
@@ -80,22 +83,22 @@ export class Plots {
       chart.setData([times, ...plot.series.map((_, i) => rows.map((one) => one[plot.name][i]))]);
       if (this.window && times.length) chart.setScale("x", { min: Math.max(times[0], times.at(-1) - this.window), max: Math.max(times.at(-1), times[0] + 1) });
     }
-    const last = rows.at(-1);
-    if (last) this.#values.replaceChildren(...this.#texts(last));
+    this.#tell();
   }
 
-  // What a canvas does not tell a screen reader.
-  #texts(last) {
-    const [error, late] = [last.error[0], last.lateness[0]];
-    return [
-      ...JOINTS.map((name, i) => [name, `${last.positions[i].toFixed(1)}°, ${last.speeds[i].toFixed(0)} %`]),
-      ["tracking error", error === null ? "–" : `${error.toFixed(2)} mrad`],
-      ["lateness", late === null ? "–" : `${late.toFixed(0)} µs`],
-    ].flatMap(([name, value]) => [element("dt", {}, name), element("dd", {}, value)]);
-  }
-
-  #legend() {
-    return element("p", { class: "legend", "aria-hidden": "true" }, JOINTS.map((name, i) => element("span", { class: `joint-${i}` }, name)));
+  // The legend, with the figures that a canvas does not tell a screen reader.
+  #tell() {
+    const rows = this.#rows;
+    const here = this.marked === null ? rows.at(-1) : (rows.findLast((one) => one.time <= this.marked) ?? rows[0]);
+    if (!here) return;
+    const [error, late] = [here.error[0], here.lateness[0]];
+    const values = [
+      ...JOINTS.map((name, i) => [name, `${plain(here.positions[i], 1)}°`, `${plain(here.speeds[i], 0)}\u202f%`, `joint-${i}`]),
+      ["tracking error", error === null ? "–" : `${plain(error, 2)}\u202fmrad`, "", ""],
+      ["lateness", late === null ? "–" : `${plain(late, 0)}\u202fµs`, "", ""],
+    ];
+    const line = ([name, value, speed, looks]) => [element("dt", { class: looks }, looks && element("span", { class: "swatch" }), name), element("dd", {}, value, speed && element("span", {}, speed))];
+    replace(this.#values, values.map(line));
   }
 
   #chart(plot) {
@@ -139,6 +142,9 @@ export class Plots {
     this.#fit();
   }
 }
+
+// Without the sign of a zero.
+const plain = (value, digits) => value.toFixed(digits).replace(/^-(0\.?0*)$/, "$1");
 
 function pad(low, high) {
   if (low === null) return [-1, 1];

@@ -6,7 +6,8 @@ import { title } from "./versions.js";
 export function certifying(place, editor) {
   const certify = element("button", { type: "button", id: "edit-certify", class: "primary" });
   const told = element("div", { id: "edit-certified", role: "status" });
-  place.append(element("div", { class: "row" }, certify), told);
+  const why = element("p", { class: "note" }, "Save the version first; only what is saved is certified.");
+  place.append(element("div", { class: "row" }, certify), why, told);
   let job = null; // the planning that this panel has begun: {id, path, version, plan}
   const { context } = editor;
 
@@ -42,7 +43,7 @@ export function certifying(place, editor) {
       if (!draft || what === "drag" || what === "verdict") return;
       certify.textContent = `Certify version ${title(draft.base)}`;
       certify.disabled = draft.edited;
-      certify.title = draft.edited ? "Save the version first; only what is saved is certified." : "";
+      why.hidden = !draft.edited;
       tell();
     },
   };

@@ -3,18 +3,18 @@ import { element, number } from "../elements.js";
 import { grevilleOf, innerKnots, middleOfSpan } from "./curve.js";
 
 export function knots(place, editor) {
-  const u = element("input", { type: "number", id: "edit-u", min: "0", max: "1", step: "any", "aria-label": "parameter u of the new knot, between 0 and 1" });
+  const u = element("input", { type: "number", id: "edit-u", min: "0", max: "1", step: "any", title: "place of the new knot, from 0 at the start to 1 at the goal" });
   const insert = element("button", { type: "button", id: "edit-insert" }, "Insert knot");
-  const choice = element("select", { id: "edit-knot", "aria-label": "inner knot" });
-  const allowed = element("input", { type: "number", id: "edit-allowed", min: "0.001", max: "100", step: "any", value: "0.001", "aria-label": "millimetres by which the curve may move" });
+  const choice = element("select", { id: "edit-knot", title: "knots inside the curve" });
+  const allowed = element("input", { type: "number", id: "edit-allowed", min: "0.001", max: "100", step: "any", value: "0.001", title: "how far the curve may move" });
   const remove = element("button", { type: "button", id: "edit-remove" }, "Remove knot");
   const elevate = element("button", { type: "button", id: "edit-elevate" }, "Raise degree");
   const about = element("p", { class: "note", id: "edit-curve" });
   place.append(
     about,
-    element("div", { class: "row" }, element("label", {}, "u ", u), insert),
-    element("div", { class: "row" }, element("label", {}, "knot ", choice), element("label", {}, "may move (mm) ", allowed), remove),
-    element("div", { class: "row" }, elevate),
+    element("p", { class: "note" }, "More knots make room for finer edits, fewer make a calmer curve. Inserting and raising the degree never change the shape."),
+    element("div", { class: "row" }, element("label", {}, "At u ", u), insert, elevate),
+    element("div", { class: "row" }, element("label", {}, "Knot ", choice), element("label", {}, "off by (mm) ", allowed), remove),
   );
   const operate = (operation, more, what) =>
     editor.context.attempt(async () => {

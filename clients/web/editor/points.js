@@ -4,6 +4,7 @@ import { movedBy, withPoint, withWeights } from "./curve.js";
 
 const AXES = ["x", "y", "z"];
 const LIMIT = 10_000; // [mm] the service accepts no more
+const SPACE = "\u00a0"; // an option runs plain ones together
 const WEIGHTS = { min: "0.001", max: "1000" };
 
 export function points(place, editor) {
@@ -16,7 +17,7 @@ export function points(place, editor) {
     list,
     told,
     element("div", { class: "fields" }, [...fields, weight].map(({ label }) => label)),
-    element("label", { class: "check" }, pins, "unlock start and goal"),
+    element("label", { class: "check" }, pins, "Unlock start and goal"),
   );
   const inputs = [...fields, weight].map(({ input }) => input);
   list.addEventListener("change", () => editor.choose([...list.selectedOptions].map((option) => Number(option.value))));
@@ -66,8 +67,9 @@ function write(list, draft) {
   const lines = draft.curve.control_points.map((point, i) => {
     const role = i === 0 ? "start" : i === draft.last ? "goal" : "";
     const pin = draft.isPinned(i) ? " (pinned)" : "";
-    const weight = draft.curve.weights[i] === 1 ? "" : `  w ${Number(draft.curve.weights[i].toPrecision(4))}`;
-    return `${String(i + 1).padStart(2, "\u2007")}   ${point.map((value) => (1000 * value).toFixed(1)).join("  ")}${weight}  ${role}${pin}`;
+    const weight = draft.curve.weights[i] === 1 ? "" : ` weight ${Number(draft.curve.weights[i].toPrecision(4))}`;
+    const places = point.map((value) => (1000 * value).toFixed(1).padStart(8, SPACE)).join("");
+    return `${String(i + 1).padStart(2, SPACE)}${places}${SPACE}${SPACE}${role}${pin}${weight}`;
   });
   while (list.options.length > lines.length) list.lastChild.remove();
   lines.forEach((line, i) => {

@@ -3,15 +3,17 @@ import { at, post } from "../api.js";
 import { element } from "../elements.js";
 import { title } from "./versions.js";
 
-const AUTHOR = "teachpath.author"; // who edits at this browser
+const AUTHOR = "operator"; // who works at this browser, also for control of the arm
+const LABELS = { name: "Name of the version", author: "Author", note: "Note", branch: "Branch" };
 
 export function saving(place, editor) {
-  const text = (id, label, more = {}) => element("input", { type: "text", id: `edit-${id}`, maxlength: "80", autocomplete: "off", "aria-label": label, placeholder: label, ...more });
-  const fields = { name: text("name", "name of the version"), author: text("author", "who edits"), note: text("note", "note", { maxlength: "2000" }), branch: text("branch", "branch", { maxlength: "64" }) };
+  const text = (id, length) => element("input", { type: "text", id: `edit-${id}`, maxlength: length, autocomplete: "off" });
+  const fields = { name: text("name", "80"), author: text("author", "80"), note: text("note", "2000"), branch: text("branch", "64") };
+  const labels = Object.entries(LABELS).map(([name, label]) => element("label", {}, label, fields[name]));
   fields.author.value = localStorage.getItem(AUTHOR) ?? "";
   const save = element("button", { type: "submit", id: "edit-save", class: "primary" }, "Save version");
   const told = element("p", { class: "note", id: "edit-unsaved" });
-  const form = element("form", { class: "saving" }, Object.values(fields), save);
+  const form = element("form", { class: "saving" }, labels, save);
   place.append(told, form);
   const ask = conflict(editor);
   form.addEventListener("submit", (event) => {
@@ -58,7 +60,7 @@ async function store(editor, fields, branch, ask) {
 // The dialog for the second of two: `ask(refusal, branch)` resolves to {branch}, {theirs: true} or {}.
 function conflict(editor) {
   const told = element("p", { id: "conflict-told" });
-  const name = element("input", { type: "text", id: "conflict-branch", maxlength: "64", "aria-label": "name of the branch" });
+  const name = element("input", { type: "text", id: "conflict-branch", maxlength: "64", autocomplete: "off" });
   const button = (value, words, primary) => element("button", { type: "submit", value, class: primary && "primary" }, words);
   const dialog = element(
     "dialog",
@@ -68,9 +70,9 @@ function conflict(editor) {
       { method: "dialog" },
       element("h2", { id: "conflict-title" }, "Somebody saved a newer version"),
       told,
-      element("label", { class: "row" }, "Keep both: save mine on branch ", name, button("mine", "Save on a branch", true)),
-      element("p", { class: "row" }, "Go on from theirs; undo brings my edit back. ", button("theirs", "Take theirs")),
-      element("p", { class: "row" }, button("", "Not now")),
+      element("div", { class: "choice" }, element("label", {}, "Keep both: save mine on the branch", name), button("mine", "Save on a branch", true)),
+      element("div", { class: "choice" }, element("p", {}, "Go on from theirs; undo brings my edit back."), button("theirs", "Take theirs")),
+      element("div", { class: "choice" }, element("p", {}, "Save nothing yet; my edit stays in this tab."), button("", "Not now")),
     ),
   );
   document.body.append(dialog);

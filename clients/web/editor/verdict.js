@@ -8,7 +8,7 @@ export function verdict(place, editor) {
   const measure = element("select", { id: "edit-measure", "aria-label": "what the colours show" });
   measure.append(...Object.entries(MEASURES).map(([name, { title }]) => element("option", { value: name }, title)));
   const scale = element("div", { class: "scale" });
-  place.append(told, element("div", { class: "row" }, element("label", {}, "colours ", measure)), scale);
+  place.append(told, element("div", { class: "row" }, element("label", {}, "Colours of the curve ", measure)), scale);
   const paint = () => {
     const { assessment } = editor.verdict ?? {};
     editor.sketch.paint(assessment && colouring(assessment, MEASURES[measure.value]), assessment?.failure?.position);

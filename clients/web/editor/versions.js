@@ -7,7 +7,7 @@ export function versions(place, editor) {
   const [first, second] = ["first", "second"].map((id) => element("select", { id: `edit-${id}`, "aria-label": `${id} version to compare` }));
   const compare = element("button", { type: "button", id: "edit-compare" }, "Compare");
   const told = element("p", { class: "note", id: "edit-difference", role: "status" });
-  place.append(table, element("div", { class: "row" }, first, " with ", second, compare), told);
+  place.append(table, element("div", { class: "row compare" }, first, " with ", second, compare), told);
   table.addEventListener("click", (event) => {
     const number = event.target.closest("button")?.dataset.version;
     if (number) editor.context.attempt(() => editor.take(Number(number)));
@@ -37,7 +37,7 @@ export function versions(place, editor) {
 export const title = ({ number, name }) => (name ? `${number} ${name}` : `${number}`);
 
 function content({ draft, versions }) {
-  const head = element("thead", {}, element("tr", {}, ["", "Version", "Branch", "Saved", ""].map((text) => element(text ? "th" : "td", text && { scope: "col" }, text))));
+  const head = element("thead", {}, element("tr", {}, ["", "Version", "Branch", "Saved", ""].map((text) => element(text ? "th" : "td", text ? { scope: "col" } : {}, text))));
   const rows = versions.toReversed().map((version) => {
     const here = version.number === draft.base.number;
     return element(
@@ -60,6 +60,7 @@ async function show(editor, a, b, told) {
   if (path !== editor.draft?.path) return;
   editor.sketch.compare(one.path.curve, other.path.curve);
   told.textContent = `Version ${a} (orange) and version ${b} (pink): ${difference.sentence}.`;
+  told.scrollIntoView({ block: "nearest" });
 }
 
 function when(ns) {

@@ -1,6 +1,6 @@
 // The choice: one card a way, with what speaks for it and against it; and which run is looked at.
 import { at, post } from "../api.js";
-import { command, element, facts, hint, number, plural, replace, sentence } from "../elements.js";
+import { command, element, facts, hint, next, number, plural, replace, sentence } from "../elements.js";
 import { pathOf, pathsOf, runOf } from "../store.js";
 import { Prospects } from "./prospects.js";
 
@@ -59,11 +59,12 @@ function content(state) {
     if (state.runs === null && state.task) return hint("The runs cannot be read yet: the service does not answer.");
     return usable.length
       ? [hint(`${usable.length} ${plural(usable.length, "demonstration")} can be learned from. Learning finds the different ways, keeps the demonstrations that agree, and fits a smooth path to each way.`), learn("Learn the ways")]
-      : [hint("Nothing to learn from yet. Show the task a few times first, each way at least three times; then learn here, or with:"), command(`teachpath learn ${state.task || "TASK"}`)];
+      : [hint("Nothing to learn from yet. Show the task a few times first, each way at least three times; then learn it here, or with:"), command(`teachpath learn ${state.task || "TASK"}`), next("demonstrate", "Show the task")];
   }
   const fresh = usable.filter((d) => !run.learned.demonstrations.includes(d.id)).length;
   return [
     state.runs.length > 1 && chooser(state.runs, run),
+    hint("One card for each way that was shown. Choose one and certify it: that proves that the arm can follow, and lets you run it."),
     ...run.learned.notes.map((note) => element("p", { class: "note" }, sentence(note))),
     run.learned.clusters.map((cluster) => card(state, cluster)),
     run === state.runs[0] && fresh > 0 && hint(`${fresh} ${plural(fresh, "demonstration")} came after this run.`),
@@ -97,7 +98,7 @@ function card(state, cluster) {
       ["Agree", `${kept} of ${cluster.members.length}${path.fit?.tube > 0 ? `, within ${number(path.fit.tube * 1000, 0, "mm")}` : ""}`],
       ["Spread", spread.length > 0 && `${number(median(spread) * 1000, 0, "mm")}, at most ${number(Math.max(...spread) * 1000, 0, "mm")}`],
       path.version > 1 && ["Edited", `version ${path.version}`],
-      ["Fit", `${path.curve.control_points.length} points${path.fit ? `, error ${number(path.fit.largest * 1000, 1, "mm")}` : ""}`],
+      ["Path", `${path.curve.control_points.length} points${path.fit ? `, at most ${number(path.fit.largest * 1000, 1, "mm")} off` : ""}`],
       ...outlook.facts ?? [],
     ]),
     outlook.fault && element("p", { class: "failed" }, sentence(outlook.fault)),

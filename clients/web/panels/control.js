@@ -7,7 +7,7 @@ import { moving } from "../store.js";
 const HOLD = 800; // [ms] that the start must be held
 const LOOK = 2000; // [ms]
 const STEP = 0.01; // [m]
-const WORDS = {
+export const WORDS = {
   idle: "At rest",
   starting: "Starting",
   approaching: "On the way to the path",
@@ -127,23 +127,30 @@ class ControlPanel {
     const busy = moving(state);
     const status = busy ?? (state.executor?.execution ? state.executor : state.executions?.[0]?.status);
     const away = state.connection === "lost";
-    replace(parts.state, content(status, away));
+    replace(parts.state, content(status, busy, away));
     parts.start.disabled = Boolean(busy) || !state.plan || away || (state.lease?.holder && !lease.held);
-    parts.start.title = state.plan ? "" : "Plan the motion first.";
+    parts.why.textContent = hindrance(state, busy, lease);
+    parts.why.hidden = parts.why.textContent === "";
     for (const button of parts.buttons.children) button.disabled = !busy || !possible(button.dataset.verb, busy.state);
-    replace(parts.who, holder(state.lease, lease));
+    replace(parts.who, away ? "Who holds control is not known." : holder(state.lease, lease));
     parts.name.parentElement.hidden = lease.token !== "";
   }
 }
 
-// What makes sense now: the arm is held before it steps, and runs before it is held.
-function possible(verb, state) {
-  if (verb === "resume") return state === "held";
-  if (verb === "step" || verb === "back") return state === "held";
-  return verb === "reverse" || state !== "held";
+// Why the arm cannot be started now, and what to do.
+function hindrance(state, busy, lease) {
+  if (state.connection === "lost" || busy) return ""; // said above
+  if (!state.plan) return "It starts with a certified motion only: plan one above.";
+  return state.lease?.holder && !lease.held ? `${state.lease.holder} holds control: ask for it below.` : "Keep the button pressed until the bar is full.";
 }
 
-function content(status, away) {
+// What makes sense now: the arm is held before it steps, and runs before it is held. Stop and reverse always do.
+function possible(verb, state) {
+  if (verb === "hold") return state !== "held";
+  return !["resume", "step", "back"].includes(verb) || state === "held";
+}
+
+function content(status, busy, away) {
   if (away) return [element("p", { class: "state" }, "Not known: the service does not answer. On a lost link the arm holds.")];
   if (!status) return [element("p", { class: "state" }, element("span", { class: "dot idle" }), "At rest. Nothing has been executed yet.")];
   return [
@@ -151,10 +158,10 @@ function content(status, away) {
     bar(status.progress, "progress along the path"),
     facts([
       ["Speed", percent(status.override)],
-      ["Duration", status.duration > 0 && number(status.duration, 1, "s")],
+      [busy ? "Time so far" : "Time taken", status.duration > 0 && number(status.duration, 1, "s")],
       ["Largest tracking error", status.tracking_error > 0 && number(status.tracking_error * 1000, 2, "mrad")],
       ["Largest limit use", status.limit_use > 0 && percent(status.limit_use)],
-      ["Setpoints late, missed", status.cycles > 0 && `${status.late}, ${status.missed} of ${number(status.cycles, 0)}`],
+      ["Setpoints late, missed", status.cycles > 0 && `${number(status.late, 0)}, ${number(status.missed, 0)} of ${number(status.cycles, 0)}`],
     ]),
   ];
 }
@@ -171,6 +178,7 @@ function parts() {
   const order = (verb, text, title) => element("button", { type: "button", "data-verb": verb, title }, text);
   const state = element("div", { role: "status" });
   const start = element("button", { type: "button", class: "primary hold", disabled: "" }, "Hold to start the arm");
+  const why = element("p", { class: "note" });
   const buttons = element(
     "p",
     { class: "orders steer" },
@@ -189,6 +197,7 @@ function parts() {
     all: [
       state,
       element("p", { class: "orders" }, start),
+      why,
       buttons,
       element("p", { class: "field" }, element("label", { for: "speed" }, "Speed"), speed, share),
       who,
@@ -196,6 +205,7 @@ function parts() {
     ],
     state,
     start,
+    why,
     buttons,
     speed,
     share,

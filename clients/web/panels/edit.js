@@ -7,7 +7,7 @@ import { points } from "../editor/points.js";
 import { saving } from "../editor/saving.js";
 import { verdict } from "../editor/verdict.js";
 import { versions } from "../editor/versions.js";
-import { element, hint, replace, section } from "../elements.js";
+import { element, hint, next, replace, section } from "../elements.js";
 import { pathOf, runOf } from "../store.js";
 
 const WAYS = 6; // colours --way-0 to --way-5
@@ -28,7 +28,7 @@ export const panel = {
     path.append(choice, undoing());
     editor.add(
       { update: update },
-      verdict(section(parts, "edit-arm", "What the arm thinks"), editor),
+      verdict(section(parts, "edit-arm", "Can the arm follow?"), editor),
       points(section(parts, "edit-place", "Control points"), editor),
       knots(section(parts, "edit-knots", "Knots"), editor),
       saving(section(parts, "edit-saving", "Save"), editor),
@@ -65,7 +65,7 @@ function open(state) {
   empty.parentElement.hidden = Boolean(path);
   parts.hidden = !path;
   if (!path) {
-    replace(empty, hint("Nothing to edit yet. Learn the ways of a task first; each has a path."));
+    replace(empty, hint("Nothing to edit yet. Learn the ways of a task first; each has a path, whose control points can be dragged here."), next("ways", "Go to the ways"));
     if (editor.draft) editor.close();
     return;
   }

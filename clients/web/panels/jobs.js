@@ -2,7 +2,7 @@
 import { at, post } from "../api.js";
 import { bar, element, replace, sentence } from "../elements.js";
 
-const DOING = { learn: "Learning", recut: "Cutting anew", plan: "Planning" };
+export const DOING = { learn: "Learning", recut: "Cutting anew", plan: "Planning" };
 
 export function jobs(place, { attempt }) {
   place.addEventListener("click", (event) => {
@@ -23,6 +23,6 @@ export function jobs(place, { attempt }) {
 
 function line(job) {
   const name = DOING[job.kind] ?? sentence(job.kind);
-  const order = { type: "button", "data-cancel": job.id, "data-key": job.id };
-  return element("div", { class: "job" }, element("p", {}, `${name}: ${job.message || job.state} `, element("button", order, "Cancel")), bar(job.fraction, name));
+  const order = { type: "button", "data-cancel": job.id, "data-key": `cancel ${job.id}` };
+  return element("div", { class: "job", "data-key": job.id }, element("p", {}, `${name}: ${job.message || job.state}`), element("button", order, "Cancel"), bar(job.fraction, name));
 }

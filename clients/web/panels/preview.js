@@ -3,7 +3,7 @@ import { at, get, post } from "../api.js";
 import { Ghost } from "../arm/ghost.js";
 import { Motion } from "../arm/motion.js";
 import { Player } from "../arm/player.js";
-import { bar, element, facts, hint, number, percent, replace } from "../elements.js";
+import { bar, element, facts, hint, next, number, percent, replace } from "../elements.js";
 import { pathOf } from "../store.js";
 
 export function preview(place, context) {
@@ -82,7 +82,7 @@ class PreviewPanel {
 }
 
 function content(path, plan, job, working, newer) {
-  if (!path) return [hint("Nothing to run yet. Show a task, learn its ways and choose one: its motion is planned and certified before the arm may move.")];
+  if (!path) return [hint("Nothing to run yet. Show a task, learn its ways and choose one: its motion is planned and certified before the arm may move."), next("ways", "Go to the ways")];
   const who = element("p", {}, `Way ${path.cluster}${plan ? `, version ${plan.path_version}` : ""}.`);
   if (working) return [who, element("p", { class: "hint" }, job.message || "Planning …"), bar(job.fraction, "planning")];
   if (!plan) {
@@ -96,10 +96,10 @@ function content(path, plan, job, working, newer) {
     who,
     newer && hint(`Version ${newer} is newer and not certified yet.`),
     facts([
-      ["Along the path", number(plan.duration, 2, "s")],
+      ["Time on the path", number(plan.duration, 2, "s")],
       ["Least clearance", number(1000 * certificate.clearance.value, 0, "mm")],
-      ["Most of a limit", `${percent(most.value)}, ${most.place}`],
-      ["Way of the arm", certificate.branch],
+      ["Nearest to a limit", `${percent(most.value)}, ${most.place}`],
+      ["Posture of the arm", certificate.branch],
     ]),
   ];
 }

@@ -46,7 +46,7 @@ function ofPlan({ duration, certificate }) {
     facts: [
       ["Duration", number(duration, 2, "s")],
       ["Clearance", number(certificate.clearance.value * 1000, 0, "mm")],
-      ["Reach", `${percent(certificate.position_use.value)} of the joints' range`],
+      ["Reach", `the whole way, ${percent(certificate.position_use.value)} of joint range`],
     ],
   };
 }

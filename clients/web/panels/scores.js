@@ -30,21 +30,23 @@ function convergence(place, clusters) {
   const ends = trained.map((c) => `way ${c.index}: ${number(c.convergence[0], 0)} to ${number(c.convergence.at(-1), 0)} in ${c.convergence.length} iterations`);
   return plot(place, {
     label: `Log-likelihood while training. ${ends.join("; ")}`,
-    title: "Log-likelihood by training iteration",
+    title: "Log-likelihood by training iteration, in the colours of the ways: level at the end means learned",
     data,
     series: trained.map((c) => ({ label: `way ${c.index}`, color: wayColor(c.index) })),
   });
 }
 
 function likelihoods(place, clusters, numbers) {
-  const all = clusters.flatMap((cluster) => cluster.scores.map((score) => ({ ...score, way: cluster.index, number: numbers.get(score.demonstration) ?? 0 })));
+  const trained = clusters.filter((cluster) => cluster.convergence.length > 0);
+  if (!trained.length) return replace(place);
+  const all = trained.flatMap((cluster) => cluster.scores.map((score) => ({ ...score, way: cluster.index, number: numbers.get(score.demonstration) ?? 0 })));
   all.sort((a, b) => a.number - b.number);
-  const data = [all.map((score) => score.number), ...clusters.map((c) => all.map((score) => (score.way === c.index ? score.log_likelihood : null)))];
+  const data = [all.map((score) => score.number), ...trained.map((c) => all.map((score) => (score.way === c.index ? score.log_likelihood : null)))];
   const least = all.reduce((a, b) => (b.log_likelihood < a.log_likelihood ? b : a));
   return plot(place, {
     label: `Log-likelihood of every demonstration; the least is ${number(least.log_likelihood, 0)}, of demonstration ${least.number}`,
-    title: "Log-likelihood by demonstration",
+    title: "Log-likelihood by demonstration: one far below its way's others departs from them",
     data,
-    series: clusters.map((c) => ({ label: `way ${c.index}`, color: wayColor(c.index), points: true })),
+    series: trained.map((c) => ({ label: `way ${c.index}`, color: wayColor(c.index), points: true })),
   });
 }

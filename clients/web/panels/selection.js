@@ -3,7 +3,20 @@ import { element, number, replace, sentence } from "../elements.js";
 import { runOf } from "../store.js";
 import { markFocus, pointAt, wayClass } from "./cards.js";
 
-const HEADS = [["Way", ""], ["Shown", "demonstration"], ["Rank", "1 is the most consistent"], ["Log-lik.", "log-likelihood under the model that judges it"], ["Margin", "by how much it is better than the next in rank"], ["Kept", "the path of its way is fitted to it"]];
+// The columns between a demonstration and whether it is kept: [name, what it says, of a score]; what is not known is left empty.
+const COLUMNS = {
+  rank: ["Rank", "1 is the most consistent", (score) => String(score.rank)],
+  z: ["z", "how far it is from the others of its way: 0 is like them or better", (score) => figure(score.z, 1)],
+  margin: ["Margin", "by how much it is better than the next in rank", (score) => figure(score.margin, 1)],
+  likelihood: ["Log-lik.", "log-likelihood under the model that judges it", (score) => (score.z === null ? "" : figure(score.log_likelihood, 0))],
+};
+// In the mode of the paper ranks go by the log-likelihood, else by z.
+const SHOWN = { default: ["rank", "z", "margin", "likelihood"], other: ["rank", "likelihood", "margin"] };
+const NOTES = {
+  default: "Ranked by z: how far one is from the others of its way in course, shape, smoothness and bends, in robust standard deviations; 0 is like them or better.",
+  other: "Ranked by the log-likelihood under the model of the way.",
+};
+const figure = (value, digits) => (value === null ? "" : number(value, digits));
 
 export function selection(place, { store }) {
   pointAt(place, store);
@@ -21,31 +34,33 @@ export function selection(place, { store }) {
 }
 
 function table(run, numbers) {
-  const head = element("thead", {}, element("tr", {}, HEADS.map(([name, title]) => element("th", { scope: "col", title }, name))));
-  const margins = run.mode === "default" ? "Margins are in robust standard deviations." : "Margins are differences of log-likelihood.";
-  return [element("table", { class: "selection" }, head, run.clusters.map((cluster) => rows(cluster, numbers))), element("p", { class: "note" }, margins)];
+  const mode = run.mode === "default" ? "default" : "other";
+  const columns = SHOWN[mode].map((name) => COLUMNS[name]);
+  const heads = [["Way", ""], ["Shown", "number of the demonstration"], ...columns, ["Kept", "the path of its way is fitted to it"]];
+  const head = element("thead", {}, element("tr", {}, heads.map(([name, title]) => element("th", { scope: "col", title }, name))));
+  return [
+    element("table", { class: "selection" }, head, run.clusters.map((cluster) => rows(cluster, numbers, columns))),
+    element("p", { class: "note" }, `${NOTES[mode]} The margin is the lead over the next in rank. A way's path is fitted to what is kept (✓).`),
+  ];
 }
 
-function rows(cluster, numbers) {
+function rows(cluster, numbers, columns) {
   const why = (score) => score.note || score.departure?.sentence;
   const height = cluster.scores.length + cluster.scores.filter(why).length;
   const way = element("th", { scope: "rowgroup", rowspan: String(height) }, element("span", { class: `swatch ${wayClass(cluster.index)}` }), String(cluster.index));
-  return element("tbody", {}, cluster.scores.map((score, i) => [row(score, numbers, i === 0 && way), why(score) && reason(score, why(score))]));
+  const reason = (score) => element("tr", { class: "why", "data-focus": `demonstrations ${score.demonstration}` }, element("td", { colspan: String(columns.length + 2) }, sentence(why(score))));
+  return element("tbody", {}, cluster.scores.map((score, i) => [row(score, numbers, i === 0 && way, columns), why(score) && reason(score)]));
 }
 
-function row(score, numbers, way) {
+function row(score, numbers, way, columns) {
   const tick = element("span", { class: "tick", role: "img", "aria-label": "kept" }, "✓");
   const left = element("span", { class: "cross", role: "img", "aria-label": "left out" }, "–");
+  const figures = [String(numbers.get(score.demonstration) ?? score.demonstration), ...columns.map(([, , of]) => of(score))];
   return element(
     "tr",
     { class: score.selected ? "selected" : "", "data-focus": `demonstrations ${score.demonstration}` },
     way,
-    element("td", { class: "figure" }, String(numbers.get(score.demonstration) ?? score.demonstration)),
-    element("td", { class: "figure" }, String(score.rank)),
-    element("td", { class: "figure" }, number(score.log_likelihood, 0)),
-    element("td", { class: "figure" }, score.margin === null ? "" : number(score.margin, 1)),
+    figures.map((text) => element("td", { class: "figure" }, text)),
     element("td", {}, score.selected ? tick : left),
   );
 }
-
-const reason = (score, why) => element("tr", { class: "why", "data-focus": `demonstrations ${score.demonstration}` }, element("td", { colspan: "5" }, sentence(why)));

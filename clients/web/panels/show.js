@@ -124,7 +124,8 @@ class ShowPanel {
     if (!report) return;
     const { received, lost, refused, demonstrations } = report;
     const shown = demonstrations.length;
-    this.context.messages.say(`Recorded ${shown} ${plural(shown, "demonstration")} from ${number(received, 0)} samples: ${lost} lost, ${refused} refused.`);
+    const further = shown ? "" : " Grasp the box, carry it to its goal and let go; each time makes one demonstration.";
+    this.context.messages.say(`Recorded ${shown} ${plural(shown, "demonstration")} from ${number(received, 0)} samples: ${lost} lost, ${refused} refused.${further}`);
   }
 
   async #stop(why, { discard = false } = {}) {
@@ -208,7 +209,7 @@ function parts() {
   const button = (text, attributes = {}) => element("button", { type: "button", ...attributes }, text);
   const start = button("Show it here", { class: "primary" });
   const headset = button("In a headset", { disabled: true });
-  const why = element("p", { class: "hint" });
+  const why = element("p", { class: "note" });
   const name = element("input", { type: "text", id: "task-name", value: "first-task", maxlength: "64", autocomplete: "off" });
   const named = element("p", { class: "field" }, element("label", { for: "task-name" }, "Name of the task"), name);
   const options = [0, 3, 5].map((value) => element("option", { value: String(value), selected: value === 3 ? "" : false }, value ? `${value} s` : "none"));
@@ -219,8 +220,8 @@ function parts() {
     {},
     hint("No glove? Carry the box in the view yourself; the recorder takes it like any tracker."),
     named,
-    element("p", { class: "orders" }, start, headset),
     element("p", { class: "field" }, element("label", { for: "countdown" }, "Countdown"), seconds),
+    element("p", { class: "orders" }, start, headset),
     why,
   );
   const says = element("p", { class: "says", role: "status" });

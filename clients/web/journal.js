@@ -1,0 +1,96 @@
+// The events: what has happened since the page was opened, newest first, whoever did it.
+import { element, hint, plural, replace, sentence } from "./elements.js";
+import { DOING } from "./panels/jobs.js";
+import { WORDS } from "./panels/control.js";
+
+const KEPT = 100;
+const ENDS = { succeeded: "succeeded", failed: "failed", cancelled: "was cancelled" };
+
+// `place` is a popover that `button` opens.
+export function journal(place, button, store) {
+  const list = element("ol", { class: "events", "aria-label": "events, newest first" });
+  place.append(element("h2", {}, "What has happened"), list);
+  let before = store.state;
+  let unseen = 0;
+  let entries = [];
+  const paint = () => {
+    const nothing = element("li", {}, hint("Nothing since this page was opened. Recordings, learning, plans and what the arm does are noted here."));
+    replace(list, entries.length ? entries.map(line) : nothing);
+    replace(button, unseen ? `Events (${unseen})` : "Events");
+  };
+  store.subscribe((state) => {
+    const texts = happened(before, state);
+    before = state;
+    if (!texts.length) return;
+    const at = new Date().toLocaleTimeString("en-GB");
+    entries = [...texts.reverse().map((text) => ({ at, text })), ...entries].slice(0, KEPT);
+    unseen = place.matches(":popover-open") ? 0 : Math.min(KEPT, unseen + texts.length);
+    paint();
+  });
+  place.addEventListener("toggle", () => {
+    unseen = 0;
+    paint();
+  });
+  paint();
+}
+
+const line = ({ at, text }) => element("li", {}, element("time", {}, at), element("span", {}, text));
+
+// Sentences about how two states differ, in the order of the work.
+function happened(before, now) {
+  const same = before.task === now.task;
+  return [
+    before.connection === "live" && now.connection === "lost" && "The connection to the service broke off",
+    before.connection === "lost" && now.connection === "live" && "Connected to the service again",
+    ...pairs(before, now, "tasks", "name").map(([old, task]) => !old && `Task ${task.name} was made`),
+    ...moves(before.trackers, now.trackers, "name").map(([name, here]) => `Tracker ${name} ${here ? "is here" : "has left"}`),
+    ...moves(before.recordings, now.recordings, "tracker").map(([name, here]) => `Recording from ${name} ${here ? "began" : "ended"}`),
+    ...(same ? ofTask(before, now) : []),
+    ...arm(before.executor ?? {}, now.executor ?? {}),
+    ...(now.station?.notes ?? []).map((note) => !before.station?.notes.includes(note) && sentence(note)),
+  ].filter(Boolean);
+}
+
+function ofTask(before, now) {
+  const ways = ({ learned: { clusters, demonstrations } }) => `${clusters.length} ${plural(clusters.length, "way")} from ${demonstrations.length} ${plural(demonstrations.length, "demonstration")}`;
+  return [
+    ...pairs(before, now, "demonstrations").map(([old, one]) => demonstration(old, one)),
+    ...pairs(before, now, "runs").map(([old, run]) => !old && `Learned: ${ways(run)}`),
+    ...pairs(before, now, "jobs").map(([old, job]) => old?.state !== job.state && work(job)),
+  ];
+}
+
+function demonstration(old, one) {
+  const why = one.reasons?.length ? `, ${one.reasons.join("; ")}` : "";
+  if (!old || old.verdict !== one.verdict) return `Demonstration ${one.number} ${old ? "was judged again" : "was recorded"}: ${one.verdict}${why}`;
+  if (Boolean(old.discarded_ns) === Boolean(one.discarded_ns)) return "";
+  return `Demonstration ${one.number} was ${one.discarded_ns ? "discarded" : "restored"}`;
+}
+
+function work({ kind, state, message }) {
+  const name = DOING[kind] ?? sentence(kind);
+  return `${name} ${ENDS[state] ?? "began"}${state === "failed" ? `: ${message}` : ""}`;
+}
+
+function arm(old, status) {
+  const { operator, asking, state, reason } = status;
+  return [
+    operator !== old.operator && (operator ? `${operator} has control of the arm` : old.operator && `${old.operator} gave control back`),
+    asking && asking !== old.asking && `${asking} asks for control of the arm`,
+    old.state && state && state !== old.state && `Arm: ${(WORDS[state] ?? state).toLowerCase()}${reason ? `, ${reason}` : ""}`,
+  ];
+}
+
+// [[former, present]] of a list that had been read before, so that a first reading is no news.
+function pairs(before, now, name, key = "id") {
+  if (before[name] === now[name] || !before[name] || !now[name]) return [];
+  const former = new Map(before[name].map((one) => [one[key], one]));
+  return now[name].map((one) => [former.get(one[key]), one]);
+}
+
+// [[name, whether it is here]] of what has come and gone.
+function moves(before, now, key) {
+  if (before === now) return [];
+  const [old, fresh] = [before, now].map((list) => list.map((one) => one[key]));
+  return [...fresh.filter((name) => !old.includes(name)).map((name) => [name, true]), ...old.filter((name) => !fresh.includes(name)).map((name) => [name, false])];
+}
