@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated
 
@@ -10,7 +11,8 @@ import typer
 
 from teachpath.commands.options import Config, Data, settings_of
 from teachpath.commands.work import progress_bar
-from teachpath.errors import UnusableRecording
+from teachpath.config import Settings
+from teachpath.errors import UnusableInput, UnusableRecording
 
 
 def import_(
@@ -58,33 +60,54 @@ def import_(
 
 
 def export(
-    what: Annotated[str, typer.Argument(help="A task, or the id of one demonstration.")],
+    what: Annotated[str, typer.Argument(help="A task, or the id of one demonstration; with --report, of a run.")],
     format: Annotated[
-        str, typer.Option(help="csv or mcap (every sample), lerobot (a dataset), trajectory (of the object, as csv).")
-    ] = "mcap",
+        str,
+        typer.Option(
+            help="csv or mcap (every sample; mcap unless given), lerobot (a dataset), trajectory (the object's, csv)."
+        ),
+    ] = "",
     into: Annotated[Path, typer.Option(help="Folder to write into; made when missing.")] = Path(),
     number: Annotated[list[int] | None, typer.Option(help="Only these demonstrations; may be repeated.")] = None,
     all_: Annotated[bool, typer.Option("--all", help="Also rejected, discarded and bad ones.")] = False,
+    report: Annotated[
+        bool, typer.Option("--report", help="Instead the review package of a run, as one HTML file.")
+    ] = False,
     config: Config = None,
     data: Data = None,
 ) -> None:
-    """Write demonstrations to files.
+    """Write demonstrations to files, or the review package of a learning run.
 
     csv and mcap can be imported again without a loss. Nothing is overwritten, and nothing half written stays.
     """
+    settings = settings_of(config, data)
+    if report:
+        if format or number or all_:
+            raise UnusableInput("--report writes a whole run into one file; leave out --format, --number and --all")
+        try:
+            into.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            raise UnusableInput(f"cannot make {into}: {error.strerror}; give another folder with --into") from None
+        _review(what, into / f"{what}.html", settings)
+    else:
+        _demonstrations(what, format or "mcap", into, numbers=number or (), all_=all_, settings=settings)
+
+
+def _demonstrations(
+    what: str, kind: str, into: Path, *, numbers: Sequence[int], all_: bool, settings: Settings
+) -> None:
     from teachpath.app import trajectory_of
     from teachpath.io.store.store import Store
     from teachpath.offline.exporting import chosen, export_demonstrations
 
-    settings = settings_of(config, data)
     store = Store(settings.store)
     try:
         known = what in {task.name for task in store.tasks()}
-        rows = chosen(store, what, numbers=number or (), all_=all_) if known else [store.demonstration(what)]
+        rows = chosen(store, what, numbers=numbers, all_=all_) if known else [store.demonstration(what)]
         with progress_bar("exporting") as show:
             trajectory = lambda row: trajectory_of(store, settings, row)  # noqa: E731
-            written = export_demonstrations(store, rows, format, into, trajectory=trajectory, progress=show)
-        left_out = len(store.demonstrations(what)) - len(rows) if known and not number else 0
+            written = export_demonstrations(store, rows, kind, into, trajectory=trajectory, progress=show)
+        left_out = len(store.demonstrations(what)) - len(rows) if known and not numbers else 0
     finally:
         store.close()
     for file in written:
@@ -99,17 +122,20 @@ def report(
     config: Config = None,
     data: Data = None,
 ) -> None:
-    """Write a review package: one HTML file about a learning run.
+    """Write a review package: one HTML file about a learning run, as `export --report` does.
 
     It holds the animated 3-D scene, tables and plots, opens in any browser without the service, and fetches nothing.
     """
+    _review(run, into or Path(f"{run}.html"), settings_of(config, data))
+
+
+def _review(run: str, file: Path, settings: Settings) -> None:
     import numpy as np
 
     from teachpath.app import trajectory_of
     from teachpath.io.store.store import Store
     from teachpath.offline.report import review_of, write
 
-    settings = settings_of(config, data)
     store = Store(settings.store)
     try:
         review = review_of(
@@ -122,7 +148,6 @@ def report(
         )
     finally:
         store.close()
-    file = into or Path(f"{run}.html")
     size = write(review, file, home=np.array(settings.motion.home))
     print(f"{file}: {size / 1e6:.1f} MB, {len(review.paths)} paths, {len(review.motions)} of them move")
 

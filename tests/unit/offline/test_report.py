@@ -6,7 +6,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from typer.testing import CliRunner
 
+from teachpath.__main__ import app
 from teachpath.errors import NotFound, UnusableInput
 from teachpath.io.store.settings import StoreSettings
 from teachpath.io.store.store import Store
@@ -30,7 +32,10 @@ def trajectory(shown: Demonstration) -> Trajectory:
 
 @pytest.fixture(scope="module")
 def store(tmp_path_factory: pytest.TempPathFactory) -> Store:
-    store = Store(StoreSettings(str(tmp_path_factory.mktemp("report"))))
+    return learned(Store(StoreSettings(str(tmp_path_factory.mktemp("report")))))
+
+
+def learned(store: Store) -> Store:
     for name in ("t", "unlearned"):
         store.ensure_task(name, scene="paper", calibration="identity")
     shown = [store.add_demonstration(demonstration(f"d{i}", source=NASTY)) for i in range(8)]
@@ -87,3 +92,22 @@ def test_a_demonstration_that_is_gone_is_shown_as_such(store: Store) -> None:
     found = review(store)
     without = replace(found, demonstrations=found.demonstrations[1:])
     assert without.number(found.demonstrations[0].id) == 0
+
+
+def test_export_writes_a_package_of_a_whole_run_only(tmp_path: Path) -> None:
+    learned(Store(StoreSettings(str(tmp_path / "data")))).close()
+    (tmp_path / "file").write_text("mine")
+    refusals = [
+        (["unlearned"], NotFound, "nothing was learned of task unlearned yet"),
+        (["t", "--all"], UnusableInput, "a whole run"),
+        (["t", "--number", "1"], UnusableInput, "a whole run"),
+        (["t", "--format", "csv"], UnusableInput, "a whole run"),
+        (["t", "--into", str(tmp_path / "file")], UnusableInput, "cannot make"),
+    ]
+    for words, kind, sentence in refusals:
+        into = [] if "--into" in words else ["--into", str(tmp_path / "out")]
+        data = str(tmp_path / "data")
+        refused = CliRunner().invoke(app, ["export", "--report", *words, *into, "--data", data]).exception
+        assert isinstance(refused, kind)
+        assert sentence in str(refused)
+    assert not list((tmp_path / "out").iterdir())

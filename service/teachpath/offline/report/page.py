@@ -34,7 +34,7 @@ def write(review: Review, file: Path, *, home: Array) -> int:
         part.write_bytes(content)
         os.link(part, file)  # fails when it is there already, unlike a rename
     except FileExistsError:
-        raise UnusableInput(f"{file} is there already; give another name with --into, or move it away") from None
+        raise UnusableInput(f"{file} is there already; give another place with --into, or move it away") from None
     except OSError as error:
         raise UnusableInput(f"cannot write {file}: {error.strerror}; give another place with --into") from None
     finally:
