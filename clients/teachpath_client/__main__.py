@@ -26,6 +26,20 @@ from teachpath_client.tracker_calibration import COLUMNS, calibrate_tracker, lin
 from teachpath_proto import tracker_pb2
 
 Passed = Callable[[Iterator[HandReading]], Iterator[HandReading]]
+ABOUT = {
+    "tracker": "Publish from a device until Ctrl-C; the station cuts what comes into demonstrations. For example: "
+    "teachpath-client tracker --source hand --option fastrak.port=/dev/ttyUSB0 --option glove.port=/dev/ttyUSB1 "
+    "--option glove.calibration=glove.toml --task stack --scene paper",
+    "sources": "List the sources that `tracker --source` knows, with their options.",
+    "glove-calibrate": "Measure an open hand and a fist with a CyberGlove, and write them into a file for "
+    "`tracker --option calibration=FILE`.",
+    "tracker-calibrate": "Measure where the tracker's frame lies in the robot's world: hold the tracker still at three "
+    "or more known points that do not lie on one line, e.g. corners of the table, four or more to see which one is "
+    "wrong. The station keeps every version; demonstrations remember the one that they were recorded under.",
+    "synthetic": "Show the paper's experiments with a synthetic hand, so that all can be tried without a device. For "
+    "example: teachpath-client synthetic --task demo --scene paper --speed 4",
+    "replay": "Play stored demonstrations as if they were live: every sample again at its pace, recorded anew.",
+}
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
@@ -44,18 +58,11 @@ def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="teachpath-client",
         description="Send demonstrations to a teachpath station, as a tracker does: over Zenoh, with sequence numbers, "
-        "a device clock, and a handshake at the end that says what arrived.",
+        "a device clock, and a handshake at the end that says what arrived. Start with: teachpath-client synthetic "
+        "--task demo --scene paper, while `teachpath serve` runs.",
     )
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
-    tracker = commands.add_parser("tracker", help="publish from a device until Ctrl-C")
-    tracker.add_argument("--source", required=True, help="one of those that `teachpath-client sources` lists")
-    tracker.add_argument("--pedal", default="", metavar="KEY", help="space, enter, a letter, or /dev/input/eventN")
-    tracker.add_argument("--rate", type=float, default=0.0, metavar="HZ", help="of the device: takes are judged by it")
-    tracker.add_argument("--armed", action="store_true", help="begin paused: pedal, fist or page begins the first take")
-    tracker.add_argument("--countdown", type=float, metavar="S", help="[s] before each take; else as the station says")
-    tracker.add_argument("--takes", type=_count, default=0, metavar="N", help="pause by itself after so many takes")
-    tracker.add_argument("--one-by-one", action="store_true", help="pause after each take")
-    tracker.set_defaults(run=_tracker)
+    _add_tracker(tracker := commands.add_parser("tracker", help="publish from a device until Ctrl-C"))
     sources = commands.add_parser("sources", help="list the sources that there are")
     sources.set_defaults(run=_sources)
     calibrate = commands.add_parser("glove-calibrate", help="measure an open hand and a fist with a CyberGlove")
@@ -67,7 +74,8 @@ def _parser() -> argparse.ArgumentParser:
             "--option", type=_option, action="append", default=[], metavar="KEY=VALUE", help="of the device; repeatable"
         )
     synthetic = commands.add_parser("synthetic", help="show the paper's experiments with a synthetic hand")
-    synthetic.add_argument("--experiment", type=int, choices=(1, 2), default=1)
+    experiments = "1: twelve demonstrations of three ways (default); 2: five of one way, the last one shaky"
+    synthetic.add_argument("--experiment", type=int, choices=(1, 2), default=1, help=experiments)
     synthetic.add_argument("--seed", type=int, default=1, help="same seed, same hand (default 1)")
     synthetic.set_defaults(run=_synthetic)
     replay = commands.add_parser("replay", help="play stored demonstrations as if they were live")
@@ -82,15 +90,23 @@ def _parser() -> argparse.ArgumentParser:
         command.add_argument("--endpoint", default="tcp/127.0.0.1:7447", help="the station's (%(default)s)")
         command.add_argument("--prefix", default="teachpath/station", help="of the station's keys (%(default)s)")
         command.add_argument("--speed", type=_speed, default=1.0, help="1 = real time (default)")
+    for name, command in commands.choices.items():
+        command.description = ABOUT[name]
     return parser
 
 
+def _add_tracker(tracker: argparse.ArgumentParser) -> None:
+    tracker.add_argument("--source", required=True, help="one of those that `teachpath-client sources` lists")
+    tracker.add_argument("--pedal", default="", metavar="KEY", help="space, enter, a letter, or /dev/input/eventN")
+    tracker.add_argument("--rate", type=float, default=0.0, metavar="HZ", help="of the device: takes are judged by it")
+    tracker.add_argument("--armed", action="store_true", help="begin paused: pedal, fist or page begins the first take")
+    tracker.add_argument("--countdown", type=float, metavar="S", help="[s] before each take; else as the station says")
+    tracker.add_argument("--takes", type=_count, default=0, metavar="N", help="pause by itself after so many takes")
+    tracker.add_argument("--one-by-one", action="store_true", help="pause after each take")
+    tracker.set_defaults(run=_tracker)
+
+
 def _add_tracker_calibrate(frame: argparse.ArgumentParser) -> None:
-    frame.description = (
-        "Measure where the tracker's frame lies in the robot's world: hold the tracker still at three or more known "
-        "points that do not lie on one line, e.g. corners of the table, four or more to see which one is wrong. The "
-        "station keeps every version; demonstrations remember the one that they were recorded under."
-    )
     frame.add_argument("name", metavar="NAME", help="of the calibration, e.g. lab; then: tracker --calibration lab")
     frame.add_argument("--source", default="", help="one of those that `teachpath-client sources` lists")
     frame.add_argument("--point", type=_place, action="append", default=[], metavar="X,Y,Z", help="[m, world]; repeat")

@@ -17,7 +17,8 @@ except ModuleNotFoundError as missing:
 from teachpath.errors import TeachpathError
 
 app = typer.Typer(
-    help="Teach a robot a path by showing it. Start with: teachpath demo",
+    help="Teach a robot a path by showing it. Start with: teachpath demo. At work: serve; then, on its page or from "
+    "other terminals, show the task (teachpath-client), learn, plan and run.",
     no_args_is_help=True,
     add_completion=False,
     pretty_exceptions_enable=False,
