@@ -13,6 +13,7 @@ import numpy as np
 
 from teachpath.errors import Conflict, NotFound, UnusableInput
 from teachpath.io.sample_files import write_samples
+from teachpath.io.store.recordings import amended
 from teachpath.io.store.store import Store
 from teachpath.records import Demonstration, Trajectory
 
@@ -81,9 +82,12 @@ def export_demonstrations(
 def content_of(
     store: Store, demonstration: Demonstration, kind: str, trajectory: Callable[[Demonstration], Trajectory]
 ) -> bytes:
-    """Return the content of a demonstration's file in the format csv, mcap or trajectory."""
+    """Return the content of a demonstration's file in the format csv, mcap or trajectory.
+
+    csv and mcap say what is thought of the demonstration now: verdict, mark, trim, discarded.
+    """
     if kind == "mcap":
-        return store.recordings.path(demonstration.recording).read_bytes()
+        return amended(store.recordings.path(demonstration.recording).read_bytes(), demonstration)
     if kind == "trajectory":
         return _trajectory_csv(trajectory(demonstration))
     return write_samples(demonstration, store.recordings.samples(demonstration.recording))

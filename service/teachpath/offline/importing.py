@@ -18,6 +18,7 @@ from teachpath.recording.phases import GRASP_BUTTON, Cut, Segmenter
 from teachpath.recording.settings import RecordingSettings
 from teachpath.recording.verdict import Verdict, judge_again
 from teachpath.records import Calibration, Demonstration, Sample, Scene, Trajectory
+from teachpath.workers.curation import MARKS, Amendment, Curation
 from teachpath.workers.session import RecordingSession
 from teachpath_proto.keys import is_name
 
@@ -51,8 +52,8 @@ def import_file(
     """Make a demonstration of each motion in a file; the whole motion counts as grasped.
 
     A recording of ours (mcap, or a CSV file of samples) brings its own samples, tracker and calibration, is cut as it
-    was live, and is judged no better than it was. The task is made when it does not exist. The file is read and
-    checked whole before the first one is stored.
+    was live, is judged no better than it was, and keeps what an operator said of it: mark, trim, discarded. The task is
+    made when it does not exist. The file is read and checked whole before the first one is stored.
 
     Raises:
         UnusableInput: a bad task name, or a file that cannot be used (with its row and column).
@@ -60,10 +61,23 @@ def import_file(
     if not is_name(task):
         raise UnusableInput(f"{task!r} cannot name a task: use letters, digits, '.', '_' or '-', at most 64")
     read = _read(source, calibration)
+    if read.stated is not None and read.stated.mark not in MARKS:
+        raise UnusableRecording(f"{source.name}: its mark {read.stated.mark!r} is none of good, bad and nothing")
     for number, samples in enumerate(read.motions, 1):
         where = source.name if len(read.motions) == 1 else f"{source.name}, motion {number} of {len(read.motions)}"
         _check(samples, settings, scene, read.calibration, where)
     store.ensure_task(task, scene=scene.name, calibration=read.calibration.name)
+    judged = [_judged(store, settings, each, read) for each in _recorded(store, settings, task, scene, read)]
+    if read.stated is None:
+        return judged
+    curation = Curation(store, settings, lambda _: scene)
+    return [_curated(curation, settings, each, read.stated) for each in judged]
+
+
+def _recorded(
+    store: Store, settings: RecordingSettings, task: str, scene: Scene, read: _Read
+) -> list[tuple[Demonstration, Trajectory]]:
+    """Record each motion as if live."""
     made: list[tuple[Demonstration, Trajectory]] = []
     for samples in read.motions:
         session = RecordingSession(
@@ -79,7 +93,7 @@ def import_file(
             session.refuse("some samples were refused when it was recorded")
         finished = [session.add(sample) for sample in samples]
         made += [f for f in finished if f is not None] + session.finish()
-    return [_judged(store, settings, each, read) for each in made]
+    return made
 
 
 def _read(source: Source, calibration: Calibration) -> _Read:
@@ -99,10 +113,9 @@ def _read_recording(source: Source) -> _Read:
             f"{source.name}: no whole recording of hand samples ({fault or 'there are none in it'}); a torn one that "
             "is still in its data folder can be repaired with: teachpath doctor"
         )
-    stated = read_facts_stream(io.BytesIO(source.content)).get("demonstration")
-    return _Read(
-        header.tracker, header.calibration, [samples], decode(Demonstration, stated.encode()) if stated else None
-    )
+    facts = read_facts_stream(io.BytesIO(source.content)).get("demonstration")
+    stated = decode(Demonstration, facts.encode()) if facts else None
+    return _Read(header.tracker, stated.calibration if stated else header.calibration, [samples], stated)
 
 
 def _judged(
@@ -119,6 +132,21 @@ def _judged(
     if verdict == Verdict(row.verdict, row.reasons):
         return made
     return store.change_demonstration(row.id, verdict=verdict.word, reasons=verdict.reasons), trajectory
+
+
+def _curated(
+    curation: Curation, settings: RecordingSettings, made: tuple[Demonstration, Trajectory], stated: Demonstration
+) -> tuple[Demonstration, Trajectory]:
+    """Say again what the operator said where the demonstration was shown; a trim only of the same take."""
+    row, trajectory = made
+    begin, end = stated.trim or (0, 0)
+    same = stated.samples == row.samples and begin >= 0 and end <= row.samples
+    trim = (begin, end) if same and end - begin >= settings.shortest_transport else None
+    if not (stated.mark or trim or stated.discarded_ns):
+        return made
+    amendment = Amendment(mark=stated.mark, discarded=True if stated.discarded_ns else None, trim=trim)
+    said = curation.amend(row.id, amendment)
+    return said, curation.trajectory(said) if trim else trajectory
 
 
 def _parts(row: Demonstration, samples: list[Sample], settings: RecordingSettings) -> Parts:

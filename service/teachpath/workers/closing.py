@@ -9,8 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from teachpath.errors import UnusableRecording
-from teachpath.io.documents import encode
-from teachpath.io.store.recordings import Take
+from teachpath.io.store.recordings import Take, facts_of
 from teachpath.io.store.store import Store
 from teachpath.recording.demonstration import object_trajectory, to_world, usable
 from teachpath.recording.parts import Parts, parts_of
@@ -74,9 +73,7 @@ def close_take(
         reasons=verdict.reasons,
         left_out=left_out,
     )
-    file = take.finish(
-        {"verdict": verdict.word, "account": encode(account).decode(), "demonstration": encode(demonstration).decode()}
-    )
+    file = take.finish(facts_of(demonstration))
     stored = store.add_demonstration(replace(demonstration, recording=store.recordings.place(file)))
     return stored, trajectory
 

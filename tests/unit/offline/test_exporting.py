@@ -1,11 +1,14 @@
 """Exports: what is imported again is the same, and what fails leaves nothing."""
 
+import io
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from mcap.reader import make_reader
 
 from teachpath.errors import Conflict, NotFound, TeachpathError, UnusableInput, UnusableRecording
 from teachpath.io.sample_files import read_samples, write_samples
@@ -14,6 +17,7 @@ from teachpath.io.store.store import Store
 from teachpath.offline.exporting import chosen, export_demonstrations
 from teachpath.offline.importing import Source, import_file
 from teachpath.records import Calibration, Demonstration
+from teachpath.workers.curation import Amendment, Curation
 from tests.unit.offline.takes import EMPTY, SETTINGS, TAKES, record, said, trajectory, whole
 
 
@@ -49,6 +53,66 @@ def test_what_is_imported_again_has_the_same_samples_and_the_same_verdict(
     first, second = (trajectory(store)(d) for d in (row, again))
     assert np.array_equal(first.positions, second.positions)
     assert np.array_equal(first.times, second.times)
+
+
+@pytest.mark.parametrize("kind", ["csv", "mcap"])
+@pytest.mark.parametrize("discarded", [False, True])
+@pytest.mark.parametrize(("mark", "trim"), [("good", (25, 60)), ("bad", (0, 0)), ("", (40, 70))])
+def test_what_an_operator_said_is_said_again(
+    store: Store, tmp_path: Path, mark: str, trim: tuple[int, int], discarded: bool, kind: str
+) -> None:
+    curation = Curation(store, SETTINGS, lambda _: EMPTY)
+    row = curation.amend(record(store, whole()).id, Amendment(mark=mark, trim=trim, discarded=discarded))
+    (file,) = exported(store, [row], kind, tmp_path / "out")
+    again = imported(store, file, kind)
+    assert list(said(again)) == list(said(row))
+    assert (again.mark, again.trim, bool(again.discarded_ns)) == (row.mark, row.trim, discarded)
+    assert np.array_equal(curation.trajectory(again).positions, curation.trajectory(row).positions)
+    (twice,) = exported(store, [again], kind, tmp_path / "twice")
+    assert list(said(imported(store, twice, kind))) == list(said(row))
+
+
+@pytest.mark.parametrize("kind", ["csv", "mcap"])
+def test_a_conversion_is_exported_too(store: Store, tmp_path: Path, kind: str) -> None:
+    row = record(store, whole())
+    moved = store.change_demonstration(row.id, calibration=replace(row.calibration, offset=(0.0, 0.5, 0.0)))
+    (file,) = exported(store, [moved], kind, tmp_path / "out")
+    assert imported(store, file, kind).calibration == moved.calibration
+
+
+@pytest.mark.parametrize("trim", [(-5, 40), (30, 10**6), (40, 20), (50, 52)])
+def test_a_trim_that_cannot_be_is_left_out_and_an_unknown_mark_refused(
+    store: Store, tmp_path: Path, trim: tuple[int, int]
+) -> None:
+    row = replace(record(store, whole()), trim=trim)
+    content = write_samples(row, store.recordings.samples(row.recording))
+    (tmp_path / "trimmed.csv").write_bytes(content)
+    assert imported(store, tmp_path / "trimmed.csv", "csv").trim is None
+    (tmp_path / "marked.csv").write_bytes(content.replace(b'"mark":""', b'"mark":"evil"', 1))
+    with pytest.raises(UnusableRecording, match=r"marked\.csv: its mark 'evil' is none of good, bad"):
+        imported(store, tmp_path / "marked.csv", "csv")
+    assert len(store.demonstrations("again")) == 1
+
+
+def test_a_recording_is_exported_as_it_is_until_something_is_said_of_it(store: Store, tmp_path: Path) -> None:
+    row = record(store, whole())
+    recording = store.recordings.path(row.recording).read_bytes()
+    (file,) = exported(store, [row], "mcap", tmp_path / "first")
+    assert file.read_bytes() == recording
+    (file,) = exported(store, [store.change_demonstration(row.id, mark="good")], "mcap", tmp_path / "second")
+    assert store.recordings.path(row.recording).read_bytes() == recording
+    before, after = (make_reader(io.BytesIO(each), validate_crcs=True) for each in (recording, file.read_bytes()))
+    assert [m for _, _, m in after.iter_messages()] == [m for _, _, m in before.iter_messages()]
+    first, second = before.get_summary(), after.get_summary()
+    assert (first, second) != (None, None)
+    assert (second.statistics.message_count, second.chunk_indexes, second.channels) == (
+        first.statistics.message_count,
+        first.chunk_indexes,
+        first.channels,
+    )
+    facts = [m.metadata for m in after.iter_metadata() if m.name == "facts"]
+    assert facts[0] == next(m.metadata for m in before.iter_metadata() if m.name == "facts")
+    assert ['"mark":"good"' in each["demonstration"] for each in facts] == [False, True]
 
 
 def test_the_objects_trajectory_is_exported_and_imported(store: Store, tmp_path: Path) -> None:

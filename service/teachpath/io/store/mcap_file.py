@@ -6,20 +6,21 @@ the disk. Here its records are laid out by the batch (https://mcap.dev/spec); ev
 
 from __future__ import annotations
 
+import io
 import struct
 import zlib
 from collections import Counter
 from collections.abc import Sequence
-from typing import Any, BinaryIO, NamedTuple
+from typing import Any, BinaryIO, NamedTuple, Self
 
 import zstandard
 from mcap.data_stream import RecordBuilder
 from mcap.opcode import Opcode
+from mcap.reader import SeekingReader
 from mcap.records import (
     Channel,
     Chunk,
     ChunkIndex,
-    DataEnd,
     Footer,
     Header,
     McapRecord,
@@ -31,7 +32,11 @@ from mcap.records import (
 )
 from mcap_protobuf.schema import build_file_descriptor_set
 
+from teachpath.errors import UnusableRecording
+
 MAGIC = b"\x89MCAP0\r\n"
+DATA_END = struct.pack("<BQI", Opcode.DATA_END, 4, 0)
+FOOTER = struct.Struct("<BQQQI")  # opcode, length, start of the summary and of its offsets, check sum
 COMPRESSION, LEVEL = "zstd", 1
 _MESSAGE = struct.Struct("<BQHIQQ")  # opcode, length, channel, sequence, log time, publish time; then the data
 _HEAD = _MESSAGE.size - 9  # bytes of it that its length counts
@@ -59,6 +64,26 @@ class McapFile:
         self._metadata: list[MetadataIndex] = []
         self._counts: Counter[int] = Counter()
         self._put(MAGIC + _laid_out(Header(profile="", library="teachpath")))
+
+    @classmethod
+    def continued(cls, stream: BinaryIO, content: bytes) -> Self:
+        """Copy a finished file of ours to `stream`, to write on where its records ended.
+
+        Raises:
+            UnusableRecording: `content` is no such file.
+        """
+        summary = SeekingReader(io.BytesIO(content)).get_summary() if content.endswith(MAGIC) else None
+        _, _, start, _, _ = FOOTER.unpack_from(content, len(content) - FOOTER.size - len(MAGIC))
+        end = start - len(DATA_END)
+        if summary is None or summary.statistics is None or content[end:start] != DATA_END:
+            raise UnusableRecording("it is no MCAP file that was finished here")
+        file = cls(io.BytesIO())
+        file._stream, file._at = stream, 0
+        file._put(content[:end])
+        file._schemas, file._channels = list(summary.schemas.values()), list(summary.channels.values())
+        file._chunks, file._metadata = summary.chunk_indexes, summary.metadata_indexes
+        file._counts = Counter(summary.statistics.channel_message_counts)
+        return file
 
     def add_channel(self, topic: str, kind: type[Any]) -> int:
         """Declare a topic of protobuf messages and return its channel."""
@@ -95,7 +120,7 @@ class McapFile:
 
     def finish(self) -> None:
         """Write what lets a reader find everything without reading the whole."""
-        self._put(_laid_out(DataEnd(data_section_crc=0)))
+        self._put(DATA_END)
         start = self._at
         groups: list[tuple[Opcode, Sequence[McapRecord]]] = [
             (Opcode.SCHEMA, self._schemas),

@@ -7,10 +7,11 @@ is there.
 
 from __future__ import annotations
 
+import io
 import os
 from collections.abc import Callable, Iterator
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import BinaryIO
 
@@ -22,7 +23,7 @@ from teachpath.io import documents
 from teachpath.io.store.drawing import Drawing
 from teachpath.io.store.mcap_file import McapFile, Stamped
 from teachpath.io.wire import parse, sample_from, sample_message
-from teachpath.records import Calibration, Sample
+from teachpath.records import Calibration, Demonstration, Sample
 from teachpath_proto import tracker_pb2
 
 TOPIC = "samples"
@@ -180,6 +181,31 @@ def salvage_stream(stream: BinaryIO) -> tuple[RecordingHeader | None, list[Sampl
     return header, samples, fault
 
 
+def facts_of(demonstration: Demonstration) -> dict[str, str]:
+    """Return what the recording of a demonstration says of itself."""
+    stated = replace(demonstration, number=0, recording="")  # they follow from where it is stored
+    account = documents.encode(stated.account).decode()
+    return {"verdict": stated.verdict, "account": account, "demonstration": documents.encode(stated).decode()}
+
+
+def amended(content: bytes, demonstration: Demonstration) -> bytes:
+    """Return a finished recording that says what has become of its demonstration since: marks, trim, verdict.
+
+    Nothing that is in it is changed; what it says of itself last counts.
+
+    Raises:
+        UnusableRecording: the recording is damaged.
+    """
+    facts = facts_of(demonstration)
+    if read_facts_stream(io.BytesIO(content)) == facts:
+        return content
+    stream = io.BytesIO()
+    file = McapFile.continued(stream, content)
+    file.add_metadata(FACTS, facts)
+    file.finish()
+    return stream.getvalue()
+
+
 def read_facts(file: Path) -> dict[str, str]:
     """Return what a recording said of itself when it was finished; nothing when it is torn before that."""
     with suppress(OSError), file.open("rb") as stream:
@@ -188,12 +214,13 @@ def read_facts(file: Path) -> dict[str, str]:
 
 
 def read_facts_stream(stream: BinaryIO) -> dict[str, str]:
-    """Return what a recording says of itself, from an open file; as `read_facts`."""
+    """Return what a recording says of itself, last of all, from an open file; as `read_facts`."""
+    facts: dict[str, str] = {}
     with suppress(Exception):  # damage shows as whatever the reader raises
         for record in _records(stream):
             if isinstance(record, Metadata) and record.name == FACTS:
-                return dict(record.metadata)
-    return {}
+                facts = dict(record.metadata)
+    return facts
 
 
 def _records(stream: BinaryIO) -> Iterator[object]:
