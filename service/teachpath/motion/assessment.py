@@ -2,25 +2,38 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from teachpath.motion.branches import Candidate, candidates, cost, faults, least_wrong, usable
-from teachpath.motion.failure import collision_failure, in_words, kinematic_failure, start_failure
+from teachpath.motion.branches import Candidate, candidates, faults, least_wrong
+from teachpath.motion.choice import clear, fitting
+from teachpath.motion.clearance import dipping, nearing
+from teachpath.motion.failure import in_words, kinematic_failure, start_failure
 from teachpath.motion.joints import ARM
-from teachpath.motion.puma560 import LOWER, UPPER, Array
+from teachpath.motion.puma560 import LOWER, UPPER
 from teachpath.motion.route import Route, route
-from teachpath.motion.scene import Clearance, CollisionModel, Load, grasp_of
+from teachpath.motion.scene import Clearance, CollisionModel, grasp_of
 from teachpath.motion.settings import MotionSettings
 from teachpath.motion.timing import estimate
 from teachpath.nurbs import Curve
 from teachpath.records import Assessment, Failure, Scene
 
 SAMPLES: Final = 100  # of the answer
-TRIED: Final = 3  # branches and rolls whose clearance is measured at most
-SPACIOUS: Final = 0.01  # m of clearance with which no other branch is looked for
+
+
+@dataclass(frozen=True, eq=False)
+class _Look:
+    """What is looked at, and the candidate that a plan would take, with its clearance at every sample."""
+
+    way: Route
+    settings: MotionSettings
+    nodes: NDArray[np.int64]
+    candidate: Candidate
+    rows: list[Clearance]
+    failure: Failure | None
 
 
 def assess(
@@ -32,9 +45,8 @@ def assess(
 ) -> Assessment:
     """Look at a curve as quickly as an editor needs it; only `plan` certifies.
 
-    Kinematics are exact at every node of the plan's own route, distances are measured at the samples alone, the
-    duration is estimated from limits of speed and acceleration, and neither moves to the path and away from it are
-    looked at nor rolls of the tool that change along it.
+    Branch and roll of the tool are chosen as a plan does it, so what fails here fails there. The duration is estimated
+    from limits of speed and acceleration; torques, and moves to the path and away from it, are not looked at.
 
     Args:
         curve: positions [m].
@@ -47,80 +59,55 @@ def assess(
     """
     settings = settings or MotionSettings()
     way = route(curve, settings, turn=turn if settings.orientation == "demonstrated" else None)
-    model = CollisionModel(scene)
-    nodes = np.unique(np.linspace(0, len(way.lengths) - 1, SAMPLES + 1).round().astype(np.int64))
-    candidate, rows = _best(way, model, nodes, settings)
-    failure = (
-        start_failure(way, scene, settings)
-        or kinematic_failure(way, candidate, settings)
-        or _collision(way, model, candidate, nodes, rows, settings)
-    )
-    named = faults(candidate, settings)
-    near = np.array([row.distance for row in rows]) < settings.clearance_min
+    look = _look(way, scene, settings)
+    nodes, candidate, failure = look.nodes, look.candidate, look.failure
     duration = None if failure else estimate(way, candidate, ARM.scaled(*[settings.path_share] * 3))
     return Assessment(
         lengths=way.lengths[nodes],
         parameters=way.parameters[nodes],
         positions=way.positions[nodes],
-        faults=_at_samples(named, nodes, near, failure),
+        faults=_faults(look),
         reach=-candidate.arm.outside[nodes],
         limits=np.minimum(UPPER - candidate.joints, candidate.joints - LOWER).min(axis=1)[nodes],
         singular=candidate.singular[nodes],
-        clearance=np.array([row.distance for row in rows]),
-        nearest=tuple(f"{row.part} to {row.other}" if row.part else "" for row in rows),
+        clearance=np.array([row.distance for row in look.rows]),
+        nearest=tuple(f"{row.part} to {row.other}" if row.part else "" for row in look.rows),
         branch=candidate.branch,
         duration=duration,
         failure=failure,
-        sentence=in_words(failure) if failure else _verdict(candidate, rows, duration),
+        sentence=in_words(failure) if failure else _verdict(candidate, look.rows, duration),
     )
 
 
-def _best(
-    way: Route, model: CollisionModel, nodes: NDArray[np.int64], settings: MotionSettings
-) -> tuple[Candidate, list[Clearance]]:
-    """Choose the branch and roll that a plan would most likely take, with its clearance at every sample."""
+def _look(way: Route, scene: Scene, settings: MotionSettings) -> _Look:
+    """Choose a candidate as `plan` does, and find what fails first."""
+    model = CollisionModel(scene)
+    nodes = np.unique(np.linspace(0, len(way.lengths) - 1, SAMPLES + 1).round().astype(np.int64))
     every = candidates(way, settings)
-    fit = sorted((c for c in every if usable(c, settings)), key=lambda c: cost(c, settings))
-    if not fit:
-        fit = [least_wrong(every)]
-    best: tuple[float, Candidate, list[Clearance]] | None = None
-    for candidate in fit[:TRIED]:
-        rows = model.clearances(candidate.joints[nodes], load=_load(model, candidate))
-        least = min(row.distance for row in rows)
-        if best is None or least > best[0]:
-            best = least, candidate, rows
-        if least > SPACIOUS:
-            break
-    assert best is not None
-    return best[1], best[2]
+    fit = fitting(every, settings)
+    free = clear(way, fit, model, settings)
+    candidate = (free or fit or [least_wrong(every)])[0]
+    load = grasp_of(scene, candidate.joints[0])
+    rows = model.clearances(candidate.joints[nodes], load=load)
+    failure = start_failure(way, scene, settings) or kinematic_failure(way, candidate, settings)
+    if failure is None and not free:
+        failure = nearing(way, candidate, model, settings)
+    if failure is None and load is not None:
+        lowest = min(row.distance for row in model.supports(candidate.joints[nodes], load))
+        if lowest < -settings.contact_tolerance:
+            failure = dipping(way, candidate, model, load, settings)
+    return _Look(way, settings, nodes, candidate, rows, failure)
 
 
-def _load(model: CollisionModel, candidate: Candidate) -> Load | None:
-    return grasp_of(model.scene, candidate.joints[0])
-
-
-def _collision(
-    way: Route,
-    model: CollisionModel,
-    candidate: Candidate,
-    nodes: NDArray[np.int64],
-    rows: list[Clearance],
-    settings: MotionSettings,
-) -> Failure | None:
-    load = _load(model, candidate)
-
-    def distances(q: Array) -> Array:
-        return np.array([row.distance for row in model.clearances(q, load=load)])
-
-    return collision_failure(way, candidate, nodes, rows, settings.clearance_min, distances)
-
-
-def _at_samples(
-    named: NDArray[np.str_], nodes: NDArray[np.int64], near: NDArray[np.bool_], failure: Failure | None
-) -> tuple[str, ...]:
+def _faults(look: _Look) -> tuple[str, ...]:
     """Give every sample the first fault between it and the next one."""
-    pieces = np.split(named, nodes[1:])
+    named, failure = faults(look.candidate, look.settings), look.failure
+    if failure is not None and failure.fault == "collision":
+        begin, end = failure.stretch
+        named[(look.way.lengths >= begin) & (look.way.lengths <= end)] = "collision"
+    pieces = np.split(named, look.nodes[1:])
     words = [next((str(word) for word in piece if word), "") for piece in pieces]
+    near = [row.distance < look.settings.clearance_min for row in look.rows]
     words = [word or ("collision" if close else "") for word, close in zip(words, near, strict=True)]
     if failure is not None and failure.fault == "start":
         words[0] = "start"

@@ -13,9 +13,9 @@ from teachpath.motion.joints import JointPath
 from teachpath.motion.proof import FINEST, Proved, Sweep, least
 from teachpath.motion.puma560 import Array
 from teachpath.motion.route import Route
-from teachpath.motion.scene import Clearance, CollisionModel, grasp_of
+from teachpath.motion.scene import Clearance, CollisionModel, Load, grasp_of
 from teachpath.motion.settings import MotionSettings
-from teachpath.records import Extreme
+from teachpath.records import Extreme, Failure
 
 
 def rough_clearance(way: Route, candidate: Candidate, model: CollisionModel, settings: MotionSettings) -> Extreme:
@@ -50,14 +50,24 @@ def path_clearance(
     if load is not None:
         lowest = -settings.contact_tolerance
         if least(sweep, lambda q: model.supports(q, load), lowest).distance < lowest:
-            raise _explained(way, candidate, lowest, lambda q: model.supports(q, load))
+            raise PathRefused(in_words(dipping(way, candidate, model, load, settings)))
     return _extreme(proved, float(joints(proved.place)[6]))
 
 
 def too_near(way: Route, candidate: Candidate, model: CollisionModel, settings: MotionSettings) -> PathRefused:
     """Explain where something comes too near on a candidate, and which control point to move."""
+    return PathRefused(in_words(nearing(way, candidate, model, settings)))
+
+
+def nearing(way: Route, candidate: Candidate, model: CollisionModel, settings: MotionSettings) -> Failure:
+    """Find where something comes too near first, on a candidate that does not keep clear."""
     load = grasp_of(model.scene, candidate.joints[0])
-    return _explained(way, candidate, settings.clearance_min, lambda q: model.clearances(q, load=load))
+    return _found(way, candidate, settings.clearance_min, lambda q: model.clearances(q, load=load))
+
+
+def dipping(way: Route, candidate: Candidate, model: CollisionModel, load: Load, settings: MotionSettings) -> Failure:
+    """Find where a carried object dips into what it stands on at its start, on a candidate on which it does."""
+    return _found(way, candidate, -settings.contact_tolerance, lambda q: model.supports(q, load))
 
 
 def _extreme(proved: Proved, s: float) -> Extreme:
@@ -65,9 +75,7 @@ def _extreme(proved: Proved, s: float) -> Extreme:
     return Extreme(proved.distance, f"{near.part} to {near.other} at s = {s:.3f} m" if near.part else "far", s)
 
 
-def _explained(
-    way: Route, candidate: Candidate, asked: float, measure: Callable[[Array], list[Clearance]]
-) -> PathRefused:
+def _found(way: Route, candidate: Candidate, asked: float, measure: Callable[[Array], list[Clearance]]) -> Failure:
     rows = measure(candidate.joints)
     # What was proved may be less than what is measured at the nodes: then the least of them is the place to tell.
     asked = max(asked, min(row.distance for row in rows) + FINEST)
@@ -75,4 +83,4 @@ def _explained(
         way, candidate, np.arange(len(rows)), rows, asked, lambda q: np.array([row.distance for row in measure(q)])
     )
     assert failure is not None
-    return PathRefused(in_words(failure))
+    return failure

@@ -4,20 +4,19 @@ from __future__ import annotations
 
 import uuid
 from dataclasses import dataclass, replace
-from typing import Final
 
 import numpy as np
 
 from teachpath.errors import PathRefused, UnusableSettings
-from teachpath.motion.branches import Candidate, candidates, cost, least_wrong, usable
+from teachpath.motion.branches import Candidate, candidates, least_wrong
 from teachpath.motion.certificate import digest, limit_uses
-from teachpath.motion.clearance import path_clearance, rough_clearance, too_near
+from teachpath.motion.choice import clear, fitting
+from teachpath.motion.clearance import path_clearance, too_near
 from teachpath.motion.failure import in_words, kinematic_failure, start_failure
 from teachpath.motion.joints import JointPath
 from teachpath.motion.kinematics import tool_pose
 from teachpath.motion.puma560 import LOWER, UPPER
 from teachpath.motion.remedy import nearest_point
-from teachpath.motion.rolling import rolling
 from teachpath.motion.route import Route, route
 from teachpath.motion.scene import CollisionModel
 from teachpath.motion.settings import MotionSettings
@@ -27,10 +26,6 @@ from teachpath.motion.torque import Dynamics
 from teachpath.motion.track import Track, paced
 from teachpath.nurbs import Curve
 from teachpath.records import Certificate, Extreme, Failure, LearnedPath, Plan, Scene
-
-# A branch and roll that keeps more clearance is worth so much per metre, up to what is enough.
-GAIN: Final = 20.0
-ENOUGH: Final = 0.02  # m
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,38 +62,26 @@ def plan(path: LearnedPath, scene: Scene, settings: MotionSettings | None = None
     way = route(path.curve, settings, turn=_turn(path, settings))
     _refuse(start_failure(way, scene, settings))
     every = candidates(way, settings)
-    fit = [candidate for candidate in every if usable(candidate, settings)]
+    fit = fitting(every, settings)
     if not fit:
         _refuse(kinematic_failure(way, least_wrong(every), settings))
     job = _Job(path, scene, settings, way, CollisionModel(scene))
-    return _first_certified(job, sorted(fit, key=lambda candidate: cost(candidate, settings)))
+    return _first_certified(job, fit)
 
 
 def _first_certified(job: _Job, fit: list[Candidate]) -> Plan:
-    """Certify the candidate that is best by its cost, given in increasing order, and by the clearance it keeps."""
-    free = _free(job, fit) or _free(job, rolling(job.way, fit, job.model, job.settings))
+    """Certify the first of the candidates that keep clear with which everything else can be done too."""
+    free = clear(job.way, fit, job.model, job.settings)
     if not free:
         raise too_near(job.way, fit[0], job.model, job.settings)
     refused: PathRefused | None = None
-    for _, candidate in sorted(free, key=lambda trial: trial[0]):
+    for candidate in free:
         try:
             return _certified(job, candidate)
         except PathRefused as error:
             refused = refused or error
     assert refused is not None
     raise refused
-
-
-def _free(job: _Job, fit: list[Candidate]) -> list[tuple[float, Candidate]]:
-    """Return the candidates that keep clear of everything, with what they cost less what their clearance is worth."""
-    free: list[tuple[float, Candidate]] = []
-    for candidate in fit:
-        clearance = rough_clearance(job.way, candidate, job.model, job.settings).value
-        if clearance >= job.settings.clearance_min:
-            free.append((cost(candidate, job.settings) - GAIN * min(clearance, ENOUGH), candidate))
-        if clearance >= ENOUGH:
-            break  # all that follow cost more
-    return free
 
 
 def _home_within_limits(settings: MotionSettings) -> None:

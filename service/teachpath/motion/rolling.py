@@ -20,9 +20,10 @@ from teachpath.motion.route import Route
 from teachpath.motion.scene import CollisionModel, grasp_of
 from teachpath.motion.settings import MotionSettings
 
-FULL: Final = 2 * np.pi
 ANGLES: Final = 24  # of a full turn
+TURN: Final = 2 * np.pi / ANGLES  # rad, from one to the next
 PLACES: Final = 60  # along the path, about
+COARSE: Final = 3  # every such place is looked at before the others
 STEPS: Final = 2  # of an angle that the tool may turn from a place to the next
 ROOM: Final = 0.001  # m of clearance above what is asked, for what the smoothing takes
 ENOUGH: Final = 0.02  # m of clearance beyond which more is not sought
@@ -57,40 +58,60 @@ def _angles(
     What is carried is held as the candidate's own roll takes it at the start.
     """
     nodes = np.unique(np.linspace(0, len(way.lengths) - 1, PLACES).round().astype(np.int64))
-    turn = FULL / ANGLES
-    joints = candidate.joints[nodes]
-    first = int(np.floor((joints[:, 5].min() - UPPER[5]) / turn))
-    last = int(np.ceil((joints[:, 5].max() - LOWER[5]) / turn))
-    more = np.arange(first, last + 1)  # angles in addition to the candidate's
-    clear = _clearances(model, candidate, joints, turn)[:, more % ANGLES]
-    within = (joints[:, 5, None] - turn * more >= LOWER[5]) & (joints[:, 5, None] - turn * more <= UPPER[5])
-    costs = np.where(within & (clear >= settings.clearance_min + ROOM), WORTH * np.maximum(ENOUGH - clear, 0.0), np.inf)
-    if model.scene.carried is not None:
-        costs[0, more != 0] = np.inf
-    way_through = _least_turned(costs)
+    more = _turns(candidate.joints[nodes])
+    few = _costs(model, candidate, nodes[::COARSE], more, settings)
+    # What leads through leads through some of the places too: mostly that is enough to see that nothing does.
+    if _least_turned(few, COARSE * STEPS) is None:
+        return None
+    costs = np.empty((len(nodes), len(more)))
+    rest = np.arange(len(nodes)) % COARSE != 0
+    costs[~rest], costs[rest] = few, _costs(model, candidate, nodes[rest], more, settings)
+    way_through = _least_turned(costs, STEPS)
     if way_through is None:
         return None
     u = way.parameters[nodes]
-    return u, candidate.roll(u) + turn * more[way_through]
+    return u, candidate.roll(u) + TURN * more[way_through]
 
 
-def _clearances(model: CollisionModel, candidate: Candidate, joints: Array, turn: float) -> Array:
+def _turns(joints: Array) -> NDArray[np.int64]:
+    """Return by how many turns (m,) the tool could be rolled further at some of the configurations (k, 6)."""
+    first = int(np.floor((joints[:, 5].min() - UPPER[5]) / TURN))
+    last = int(np.ceil((joints[:, 5].max() - LOWER[5]) / TURN))
+    return np.arange(first, last + 1)
+
+
+def _costs(
+    model: CollisionModel, candidate: Candidate, nodes: NDArray[np.int64], more: NDArray[np.int64],
+    settings: MotionSettings,
+) -> Array:  # fmt: skip
+    """Return what each of `more` turns (m,) costs at nodes (k,) of the route: (k, m), infinite where it cannot be."""
+    joints = candidate.joints[nodes]
+    clear = _clearances(model, candidate, joints)[:, more % ANGLES]
+    rolled = joints[:, 5, None] - TURN * more
+    free = (rolled >= LOWER[5]) & (rolled <= UPPER[5]) & (clear >= settings.clearance_min + ROOM)
+    costs = np.where(free, WORTH * np.maximum(ENOUGH - clear, 0.0), np.inf)
+    if model.scene.carried is not None:
+        costs[np.ix_(nodes == 0, more != 0)] = np.inf  # it is held as the candidate's own roll takes it
+    return costs
+
+
+def _clearances(model: CollisionModel, candidate: Candidate, joints: Array) -> Array:
     """Measure the clearance (k, ANGLES) [m] at configurations (k, 6) with the tool rolled further."""
     load = grasp_of(model.scene, candidate.joints[0])
     every = np.repeat(joints[:, None], ANGLES, axis=1)
-    every[:, :, 5] -= turn * np.arange(ANGLES)
+    every[:, :, 5] -= TURN * np.arange(ANGLES)
     rows = model.clearances(every.reshape(-1, 6), load=load)
     return np.array([row.distance for row in rows]).reshape(len(joints), ANGLES)
 
 
-def _least_turned(costs: Array) -> NDArray[np.int64] | None:
+def _least_turned(costs: Array, steps: int) -> NDArray[np.int64] | None:
     """Return the column at each row (k,) of the cheapest way through a grid of costs (k, m), or None without one."""
     count = costs.shape[1]
     total, came = costs[0], []
     for row in costs[1:]:
-        padded = np.pad(total, STEPS, constant_values=np.inf)
-        trials = np.stack([padded[k : k + count] + (k - STEPS) ** 2 for k in range(2 * STEPS + 1)])
-        came.append(np.arange(count) + trials.argmin(axis=0) - STEPS)
+        padded = np.pad(total, steps, constant_values=np.inf)
+        trials = np.stack([padded[k : k + count] + (k - steps) ** 2 for k in range(2 * steps + 1)])
+        came.append(np.arange(count) + trials.argmin(axis=0) - steps)
         total = trials.min(axis=0) + row
     if not np.isfinite(total.min()):
         return None

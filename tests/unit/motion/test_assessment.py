@@ -14,7 +14,7 @@ from teachpath.motion.scenes import empty_scene, paper_scene
 from teachpath.motion.settings import MotionSettings
 from teachpath.nurbs import Curve
 from teachpath.records import Assessment, Scene
-from tests.unit.motion.ways import MIDDLE, clamped, learned, wandering, way
+from tests.unit.motion.ways import MIDDLE, clamped, gated, learned, wandering, way
 
 
 @pytest.mark.parametrize("curve", [way(MIDDLE, degree=5).curve, wandering(3)])
@@ -52,6 +52,26 @@ def test_a_path_that_is_refused_is_found_wrong_where_the_plan_says(curve: Curve,
     with pytest.raises(PathRefused) as refused:
         plan(learned(curve), paper_scene())
     assert failure.remedy.sentence.split(" by ")[0] in str(refused.value)
+
+
+def test_what_fails_at_a_look_is_refused_and_what_passes_is_planned_but_for_the_moves_there_and_away() -> None:
+    found = []
+    for seed in range(12):
+        curve, scene = gated(seed)
+        looked = assess(curve, scene)
+        try:
+            refused = ""
+            assert plan(learned(curve), scene).certificate.branch == looked.branch
+        except PathRefused as error:
+            refused = str(error)
+        if looked.failure is None:
+            assert not refused or "ways to the" in refused
+            assert set(looked.faults) == {""}
+        else:
+            assert refused == looked.sentence
+            assert "collision" in looked.faults
+        found.append(("rolling" in looked.branch, bool(looked.failure)))
+    assert {(False, False), (True, False), (False, True)} <= set(found)
 
 
 def improved(curve: Curve, looked: Assessment) -> Curve:

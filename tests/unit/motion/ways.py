@@ -1,10 +1,12 @@
 """Learned paths through the paper's scene, for the tests."""
 
+from dataclasses import replace
+
 import numpy as np
 
-from teachpath.motion.scenes import paper_scene
+from teachpath.motion.scenes import empty_scene, paper_scene
 from teachpath.nurbs import Curve
-from teachpath.records import Fit, LearnedPath
+from teachpath.records import Fit, LearnedPath, Scene, Shape
 
 NEAR, MIDDLE, FAR = 0.38, 0.58, 0.78
 HEIGHT = 0.60
@@ -52,3 +54,20 @@ def hooked() -> Curve:
     curve = np.concatenate([hook, points[1:]])
     inner = np.concatenate([[0.0, 0.012, 0.03], np.linspace(0.06, 1.0, len(curve) - 7)])
     return Curve(5, np.r_[np.zeros(5), inner, np.ones(5)], curve, np.ones(len(curve)))
+
+
+def gated(seed: int) -> tuple[Curve, Scene]:
+    """A random way over the table through two gates, about as narrow as the gripper is; every third carries a block."""
+    rng = np.random.default_rng(seed)
+    curve = wandering(seed)
+    posts = []
+    for u in rng.uniform(0.15, 0.85, 2):
+        angle, half = rng.uniform(0.0, np.pi), rng.uniform(0.045, 0.08)
+        for side in (half, -half):
+            x, y = curve(u)[:2] + side * np.array([np.cos(angle), np.sin(angle)])
+            posts.append(Shape(f"post {len(posts)}", "cylinder", (0.01, 0.2), (float(x), float(y), 0.6)))
+    scene = empty_scene()
+    block = Shape("block", "box", (0.03, 0.05, 0.08), tuple(curve(0.0)))
+    return curve, replace(
+        scene, obstacles=(*scene.obstacles, *posts), carried=block if seed % 3 == 0 else scene.carried
+    )
