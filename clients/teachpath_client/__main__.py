@@ -6,6 +6,7 @@ import argparse
 import logging
 import sys
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from functools import partial
 from pathlib import Path
 from typing import cast
 
@@ -198,8 +199,8 @@ def _calibrate_tracker(options: argparse.Namespace) -> None:
     if options.points:
         pairs = read_points(options.points)
     else:
-        source = open_source(options.source, dict(options.option))
-        pairs = measure_points(source, options.point, lambda sentence: input(f"{sentence}, then press Enter: "))
+        make = partial(open_source, options.source, dict(options.option))
+        pairs = measure_points(make, options.point, lambda sentence: input(f"{sentence}, then press Enter: "))
     with Station(options.url) as station:
         measured = calibrate_tracker(
             station,

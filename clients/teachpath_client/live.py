@@ -96,18 +96,19 @@ class Feeling:
 def calibrate_glove(settings: GloveSettings, tell: Callable[[str], object]) -> GloveCalibration:
     """Measure the open hand and the fist with a glove; `tell` shows a sentence and returns when it was done.
 
+    The glove is connected anew for each, so that no sample of before is taken for one of now.
+
     Raises:
         ClientError: the glove does not answer, falls silent, or cannot tell the two hands apart.
     """
     measured = []
-    dialogue = GloveDialogue(settings, 0)
-    with connect(settings, dialogue) as connection:
-        for sentence in ("Open the hand, fingers straight", "Make a fist"):
-            tell(sentence)
-            while connection.take(0.0):
-                pass
+    with connect(settings, GloveDialogue(settings, 0)):
+        pass  # a glove that does not answer is said before anything is asked for
+    for sentence in ("Open the hand, fingers straight", "Make a fist"):
+        tell(sentence)
+        with connect(settings, GloveDialogue(settings, 0)) as connection:
             taken = [connection.take(PATIENCE) for _ in range(MEASURED)]
-            measured.append([sample for sample in map(_raw, taken) if sample is not None])
+        measured.append([sample for sample in map(_raw, taken) if sample is not None])
     return GloveCalibration.between(*measured)
 
 

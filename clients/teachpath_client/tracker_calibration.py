@@ -6,7 +6,6 @@ import csv
 import math
 import threading
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from statistics import fmean
@@ -33,28 +32,33 @@ class Pair:
 
 
 def measure_points(
-    source: Source, places: Sequence[Vector], tell: Callable[[str], object], *, held: float = HELD
+    make: Callable[[], Source], places: Sequence[Vector], tell: Callable[[str], object], *, held: float = HELD
 ) -> list[Pair]:
     """Measure where the tracker sees each place; `tell` shows a sentence and returns when the tracker is held there.
 
-    It must be held for `held` [s] each; a point at which it moved, or was not tracked, is asked for again.
+    It must be held for `held` [s] of its own time each; a point at which it moved, was not tracked or did not answer is
+    asked for again. The source is connected anew for each point: however slow this computer is, no reading that waited
+    somewhere on the way can be taken for one of now.
+
+    Args:
+        make: returns the source, not yet connected.
 
     Raises:
-        ClientError: no reading comes.
+        ClientError: nothing answers at first, or no reading comes.
     """
+    with make():
+        pass  # whoever has to walk to a point should know before
     pairs = []
-    with source, _listening(source) as ear:
-        for number, place in enumerate(places, 1):
-            x, y, z = place
-            where = f"point {number} of {len(places)}: hold the tracker still at {x:g}, {y:g}, {z:g} m"
-            fault = ""
-            while True:
-                tell(f"{fault}{where}")
-                readings = ear.hold(held)
-                fault = _fault(readings)
-                if not fault:
-                    break
-            pairs.append(Pair(_mean(readings), place))
+    for number, place in enumerate(places, 1):
+        x, y, z = place
+        where = f"point {number} of {len(places)}: hold the tracker still at {x:g}, {y:g}, {z:g} m"
+        fault = ""
+        while True:
+            tell(f"{fault}{where}")
+            readings, fault = _hold(make(), held)
+            if not fault:
+                break
+        pairs.append(Pair(_mean(readings), place))
     return pairs
 
 
@@ -111,55 +115,22 @@ def lines(measured: dict[str, Any]) -> Iterator[str]:
         yield f"{key} = {calibration[key]}"
 
 
-class _Ear:
-    """Hears a source all the time, so that no reading of before is taken for one of now."""
-
-    def __init__(self) -> None:
-        self._news = threading.Condition()
-        self._held: list[HandReading] | None = None
-        self.ended = False
-
-    def hear(self, reading: HandReading) -> None:
-        with self._news:
-            if self._held is not None:
-                self._held.append(reading)
-                self._news.notify()
-
-    def end(self) -> None:
-        with self._news:
-            self.ended = True
-            self._news.notify()
-
-    def hold(self, seconds: float) -> list[HandReading]:
-        """Return the readings of the device's next `seconds`."""
-        with self._news:
-            held = self._held = []
-            enough = lambda: self.ended or (len(held) >= FEWEST and held[-1].time - held[0].time >= seconds)  # noqa: E731
-            came = self._news.wait_for(enough, timeout=PATIENCE)
-            self._held = None
-        if not came or len(held) < FEWEST:
-            raise ClientError(f"only {len(held)} readings came in {PATIENCE:g} s; is the device on, and in view?")
-        return held
-
-
-@contextmanager
-def _listening(source: Source) -> Iterator[_Ear]:
-    ear = _Ear()
-
-    def listen() -> None:
-        try:
-            for reading in source:
-                ear.hear(reading)
-        finally:
-            ear.end()
-
-    thread = threading.Thread(target=listen, name="listen", daemon=True)
-    thread.start()
+def _hold(source: Source, seconds: float) -> tuple[list[HandReading], str]:
+    """Return the readings of the device's next `seconds`, and what is wrong with them."""
+    held: list[HandReading] = []
+    over = threading.Timer(PATIENCE, source.close)
     try:
-        yield ear
+        with source:
+            over.start()
+            for reading in source:
+                held.append(reading)
+                if len(held) >= FEWEST and reading.time - held[0].time >= seconds:
+                    return held, _fault(held)
+    except ClientError as error:
+        return held, f"{error}; again, "
     finally:
-        source.close()
-        thread.join(PATIENCE)
+        over.cancel()
+    raise ClientError(f"only {len(held)} readings came; is the device on, and in view?")
 
 
 def _mean(held: Sequence[HandReading]) -> Vector:

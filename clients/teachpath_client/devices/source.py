@@ -43,8 +43,9 @@ class Capabilities:
 class Source(Protocol):
     """Readings of one hand, in the order of their time.
 
-    Entering the context connects and raises ClientError when nothing answers; leaving it lets go of the device. The
-    time of the first reading is 0 and never runs back; what was not measured is missing, never repeated.
+    Entering the context connects and raises ClientError when nothing answers; leaving it lets go of the device. No
+    reading was measured before that; the time of the first is 0 and never runs back; what was not measured is missing,
+    never repeated.
     """
 
     @property

@@ -18,7 +18,7 @@ from teachpath_client.live import Feeling, calibrate_glove, ended_by_signals, re
 from teachpath_client.reading import HandReading
 from teachpath_client.tracker import Tracker
 from teachpath_proto import tracker_pb2
-from tests.unit.clients.devices.hands import calibration, readings, until
+from tests.unit.clients.devices.hands import calibration, readings
 from tests.unit.clients.test_tracker import MemoryLink
 
 OPENED = HandReading(0.0, (0.0, 0.0, 0.0), None, (0.0,) * 22)
@@ -115,8 +115,6 @@ def test_a_glove_is_calibrated_by_an_open_hand_and_a_fist(tmp_path: Path) -> Non
 
         def tell(_sentence: str) -> None:
             emulator.show(next(hands))
-            shown = len(emulator.whole)
-            until(lambda: len(emulator.whole) > shown + 5, "the glove shows it")
 
         made = calibrate_glove(GloveSettings(str(tmp_path / "glove")), tell)
     true = calibration()

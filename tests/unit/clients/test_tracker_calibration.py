@@ -1,9 +1,9 @@
 """Measuring a tracker's frame: what is held still counts, what moved is asked for again."""
 
 import re
-import time
+from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import Any, Self
 
 import pytest
 
@@ -36,8 +36,8 @@ def test_each_point_is_where_the_tracker_was_held_still_after_it_was_told(tmp_pa
                 return
             device.show(at(next(held), tracked="point 2" not in sentence))
 
-        source = FastrakSource(FastrakSettings(str(tmp_path / "port"), pause=0.0))
-        pairs = measure_points(source, PLACES, tell, held=0.1)
+        settings = FastrakSettings(str(tmp_path / "port"), pause=0.0)
+        pairs = measure_points(lambda: FastrakSource(settings), PLACES, tell, held=0.1)
     assert [pair.world for pair in pairs] == PLACES
     for pair, true in zip(pairs, [(0.1, 0.0, 0.0), (0.2, 0.1, 0.0), (0.3, 0.0, 0.2)], strict=True):
         assert pair.tracker == pytest.approx(true, abs=1e-3)
@@ -49,35 +49,57 @@ def test_each_point_is_where_the_tracker_was_held_still_after_it_was_told(tmp_pa
     ]
 
 
-class Moving(PlaybackSource):
-    """Moves by 2 cm each second, until it is told that it moved."""
-
-    still = False
-
-    def __iter__(self) -> Any:
-        i = 0
-        while not self._over:
-            i += 1
-            time.sleep(0.0005)
-            yield HandReading(0.02 * i, (0.0 if self.still else 0.0004 * i, 0.0, 0.0))
+def still(place: Vector, count: int = 60) -> list[HandReading]:
+    return [replace(at(place), time=0.02 * i) for i in range(count)]
 
 
-def test_a_tracker_that_moves_is_asked_for_again() -> None:
-    source = Moving([], rate=50.0, sensors=0)
+class Shown:
+    """Gives, each time it is connected, the readings that come next."""
+
+    def __init__(self, *shown: list[HandReading] | ClientError) -> None:
+        self._shown = iter([[], *shown])  # the first time it is only asked whether it is there
+
+    def __call__(self) -> PlaybackSource:
+        return Sometimes(next(self._shown))
+
+
+class Sometimes(PlaybackSource):
+    def __init__(self, shown: list[HandReading] | ClientError) -> None:
+        self._gone = shown if isinstance(shown, ClientError) else None
+        super().__init__([] if isinstance(shown, ClientError) else shown, rate=50.0, sensors=0)
+
+    def __enter__(self) -> Self:
+        if self._gone is not None:
+            raise self._gone
+        return self
+
+
+def test_a_tracker_that_moves_or_is_unplugged_is_asked_for_again() -> None:
+    moving = [replace(at((0.0004 * i, 0.0, 0.0)), time=0.02 * i) for i in range(60)]
+    make = Shown(moving, ClientError("it is gone"), still((0.1, 0.0, 0.0)))
     told: list[str] = []
+    (pair,) = measure_points(make, PLACES[:1], told.append)
+    assert re.match(r"it moved by 1\d mm, 5 mm are allowed; again, point 1 of 1", told[1])
+    assert told[2].startswith("it is gone; again, point 1 of 1")
+    assert pair.tracker == pytest.approx((0.1, 0.0, 0.0))
 
-    def tell(sentence: str) -> None:
-        told.append(sentence)
-        source.still = len(told) > 1
 
-    (pair,) = measure_points(source, PLACES[:1], tell)
-    assert re.match(r"it moved by \d+ mm, 5 mm are allowed; again, point 1 of 1", told[1])
-    assert pair.tracker == (0.0, 0.0, 0.0)
+def test_how_long_it_is_held_is_told_by_its_own_clock() -> None:
+    readings = still((0.1, 0.0, 0.0)) + still((9.0, 0.0, 0.0))
+    (pair,) = measure_points(Shown(readings), PLACES[:1], lambda _: None)
+    assert pair.tracker == pytest.approx((0.1, 0.0, 0.0))
+
+
+def test_a_device_that_does_not_answer_is_said_before_anybody_walks() -> None:
+    told: list[str] = []
+    with pytest.raises(ClientError, match="nothing there"):
+        measure_points(lambda: Sometimes(ClientError("nothing there")), PLACES, told.append)
+    assert told == []
 
 
 def test_a_source_that_ends_is_said() -> None:
-    with pytest.raises(ClientError, match="readings came"):
-        measure_points(PlaybackSource([at((0.0, 0.0, 0.0))], rate=50.0, sensors=0), PLACES, lambda _: None)
+    with pytest.raises(ClientError, match="only 1 readings came"):
+        measure_points(Shown([at((0.0, 0.0, 0.0))]), PLACES, lambda _: None)
 
 
 def test_points_come_from_a_file(tmp_path: Path) -> None:
