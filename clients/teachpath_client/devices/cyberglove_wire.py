@@ -18,16 +18,23 @@ A sample without status and time stamp, of n = 18 or 22 sensors:
     sensors    1-n    1 to 255 each         1-   n times a blank and a number
     end        n + 1  0                          carriage return, line feed, 0
 
-A byte that was changed on the way cannot be told from a reading: the protocol has no check sum.
+A sample that could not be measured ends with an error before the zero: "eg" or "es". A byte that was changed on the way
+cannot be told from a reading: the protocol has no check sum.
 
-Sources: the drivers of Shadow Robot (`sr_teleop_devices/cyberglove`: S, the stream's form, `t` with four examples of
-rates, `u`), of the KIT (`asr_cyberglove_lib`: every command above with its answer, `A` 255), of UCF (VESS,
-`vsCyberGloveBox`: G, N, ?G = 3, ?S, the flag of the CyberTouch, `A` and its six places), FreeVR (`vr_input.cyberglove`:
-ASCII forms, the zero at the end, errors) and intellsensing (`cyberglove`: 20 and 24 bytes of a sample), all of which
-follow the *CyberGlove User's Manual* and *Reference Manual* of Virtual Technologies. *Assumed*: that 03 hex ends the
-stream (the drivers write "^c" and doubt it), that a streaming glove takes no other command (so says libglove; therefore
-a glove that vibrates is asked for each sample), and the carriage return and line feed of an ASCII sample (only the line
-feed was seen, in a transcript).
+Sources, all of them drivers that follow the *CyberGlove User's Manual* and *Reference Manual* of Virtual
+Technologies: ViSTA of RWTH Aachen (`VistaCyberGloveDriver`, which cites the manual by page: G, S, 03 hex, N, U, D,
+?G, ?S, errors in a sample, the period as w counted v times), toon (`cyberglove`: `t 1152 1` is 100 Hz, `u`, 03 hex),
+puppet (`CyberGlove`, with the manual's list of commands: 03 hex, errors, w = 115200 / rate), Shadow Robot
+(`sr_teleop_devices/cyberglove`: S, the stream's form, `t` with four examples of rates, `u`), the KIT
+(`asr_cyberglove_lib`: every command above with its answer, `A` 255), UCF (VESS, `vsCyberGloveBox`: G, N, ?G = 3, ?S,
+the flag of the CyberTouch, `A` and its six places), FreeVR (`vr_input.cyberglove`: ASCII forms, the zero at the end,
+errors), intellsensing (`cyberglove`: 20 and 24 bytes of a sample).
+
+*Unconfirmed*, and read so that it does not matter: carriage return and line feed of an ASCII sample (only the line
+feed was seen, in a transcript; both may be missing), and whether a streaming glove takes another command (libglove
+says no, ViSTA sends none because the answers would be mixed up; so a glove that vibrates is asked for each sample).
+The places of `A` and the flag of the CyberTouch rest on one driver. No glove was at hand: all was tested against the
+twin in `twins.py`.
 """
 
 from __future__ import annotations
@@ -42,7 +49,7 @@ TICKS = 115200  # a second, of the stream's period
 READY = 3  # answer to ?G of a glove that is plugged in and initialised
 CYBERTOUCH = 0x02  # in the third byte of the answer to ?P
 STOP = b"\x03"
-LETTERS = b"SGsg"
+ERRORS = (b"eg", b"es")  # at the end of a sample that was not measured: not plugged in, too fast
 
 
 class GloveParser:
@@ -66,6 +73,8 @@ class GloveParser:
         return found
 
     def _read(self, answer: bytes) -> tuple[int, ...] | None:
+        if answer.endswith(ERRORS) and answer[-(self._sensors + 3) :][:1] in (b"S", b"G"):
+            return None
         binary = answer[-(self._sensors + 1) :]
         if len(binary) == self._sensors + 1 and binary[:1] in (b"S", b"G"):
             return tuple(binary[1:])

@@ -67,3 +67,12 @@ def test_answers_between_samples_are_no_samples() -> None:
     raw = tuple(range(1, 19))
     wire = b"A\0" + write_sample(b"G", raw) + b"?G\x03\0e?\0" + write_sample(b"G", raw)
     assert found(wire, 18) == [raw, raw]
+
+
+@pytest.mark.parametrize("letter", [b"S", b"G"])
+@pytest.mark.parametrize("error", [b"eg", b"es"])
+@pytest.mark.parametrize("second", [1, ord("S"), ord("G")])  # what a sample begins with may stand within one
+def test_a_sample_that_was_not_measured_is_none(letter: bytes, error: bytes, second: int) -> None:
+    raw = (7, second, *range(3, 19))
+    failed = letter + bytes(raw) + error + b"\0"
+    assert found(write_sample(letter, raw) + failed + write_sample(letter, raw), 18) == [raw, raw]
