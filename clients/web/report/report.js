@@ -9,7 +9,13 @@
   const resize = Object.getPrototypeOf(viewer).set_3d_pane_size.bind(viewer);
   viewer.set_3d_pane_size = () => resize(view.clientWidth, view.clientHeight);
   for (const name of ["Axes", "Grid"]) viewer.set_property([name], "visible", false);
-  viewer.scene.background = new THREE.Color(0xe9edf1);
+  const dark = matchMedia("(prefers-color-scheme: dark)");
+  const backdrop = () => {
+    viewer.scene.background = new THREE.Color(dark.matches ? 0x171b20 : 0xe9edf1);
+    viewer.set_dirty();
+  };
+  dark.addEventListener("change", backdrop);
+  backdrop();
 
   const bytes = Uint8Array.from(atob(scene), (letter) => letter.charCodeAt(0));
   const lengths = new DataView(bytes.buffer);
@@ -18,6 +24,12 @@
     viewer.handle_command_bytearray(bytes.slice(at + 4, at + 4 + length));
     at += 4 + length;
   }
+  // Seen through what stands before them: departures lie among the paths that they depart from.
+  viewer.scene_tree.find(["departures"]).object.traverse((node) => {
+    if (!node.material) return;
+    Object.assign(node.material, { depthTest: false, transparent: true });
+    node.renderOrder = 2;
+  });
   viewer.set_3d_pane_size();
   viewer.camera.fov = 30;
   viewer.camera.position.set(1.95, 1.55, 1.8); // three's frame: y up

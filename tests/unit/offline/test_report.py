@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import umsgpack
 from typer.testing import CliRunner
 
 from teachpath.__main__ import app
@@ -17,7 +18,9 @@ from teachpath.learning.settings import LearningSettings
 from teachpath.motion.scenes import paper_scene
 from teachpath.motion.settings import MotionSettings
 from teachpath.offline.report import Review, review_of, write
-from teachpath.records import Demonstration, Trajectory
+from teachpath.offline.report.scene import scene_batch
+from teachpath.records import Demonstration, Departure, Scene, Shape, Trajectory
+from teachpath.workers.preview.commands import pose_of
 from tests.contract.rows import a_job, demonstration
 
 HOME = np.array(MotionSettings().home)
@@ -60,6 +63,28 @@ def test_it_holds_every_way_demonstration_and_reason_and_fetches_nothing(store: 
     assert "Content-Security-Policy" in text
     outside = re.sub(r"<script.*?</script>", "", text, flags=re.S)
     assert not re.findall(r"""(?:src|href)\s*=|url\(|@import""", outside)
+
+
+def test_the_scene_is_drawn_as_it_stands_and_departures_where_they_are(store: Store) -> None:
+    found = review(store)
+    corners = ((0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0))
+    wedge = Shape("wedge", "mesh", (0.1,), (0.3, 0.2, 0.4), orientation=(0.6, 0.0, 0.8, 0.0), vertices=corners)
+    cluster = found.run.learned.clusters[0]
+    departed = replace(cluster.scores[0], departure=Departure((0.25, 0.5), (0.0, 1.0), ""))
+    clusters = (replace(cluster, scores=(departed,)),)
+    run = replace(found.run, learned=replace(found.run.learned, clusters=clusters))
+    found = replace(found, scene=Scene("turned", (wedge,)), run=run)
+    drawn = {}
+    batch = scene_batch(found, HOME)
+    while batch:
+        length = int.from_bytes(batch[:4], "little")
+        command = umsgpack.unpackb(batch[4 : 4 + length])
+        drawn[command["path"]] = command
+        batch = batch[4 + length :]
+    pose = np.reshape(drawn["/scene/wedge"]["object"]["object"]["matrix"], (4, 4)).T
+    np.testing.assert_allclose(pose, pose_of(wedge.position, wedge.orientation), atol=1e-12)
+    assert f"/departures/{departed.demonstration}" in drawn
+    assert sum(path.startswith("/departures") for path in drawn) == 1
 
 
 def test_a_name_that_is_a_script_stays_a_name(store: Store, tmp_path: Path) -> None:

@@ -17,6 +17,7 @@ from teachpath.workers.preview.tree import pack
 from teachpath_proto.keys import Keys
 
 POINTS = 160  # of a path and of a demonstration as drawn
+RED = 0xD62718  # of departures
 FRAMES = 240  # of a motion; the viewer goes evenly from one to the next
 
 
@@ -31,7 +32,14 @@ def scene_batch(review: Review, home: Array) -> bytes:
     preview.show_object(review.scene.carried)
     arm = preview.attach(lambda: None).take() or b""
     drawn = [
-        commands.solid(f"/scene/{s.name}", s.kind, s.size, pose=commands.pose_of(s.position), color=s.color)
+        commands.solid(
+            f"/scene/{s.name}",
+            s.kind,
+            s.size,
+            pose=commands.pose_of(s.position, s.orientation),
+            color=s.color,
+            vertices=s.vertices,
+        )
         for s in review.scene.obstacles
     ]
     ways = {member: cluster.index for cluster in review.run.learned.clusters for member in cluster.members}
@@ -44,7 +52,23 @@ def scene_batch(review: Review, home: Array) -> bytes:
     for path in review.paths:
         color = way_color(path.cluster)
         drawn.append(commands.tube(f"/paths/{path.id}", path.curve(u), radius=0.005, color=color))
-    return arm + pack(drawn)
+    return arm + pack(drawn + _departures(review))
+
+
+def _departures(review: Review) -> list[bytes]:
+    """Draw where demonstrations depart from the others of their way."""
+    drawn = []
+    for score in (score for cluster in review.run.learned.clusters for score in cluster.scores):
+        shown = review.trajectories.get(score.demonstration)
+        if score.departure is None or shown is None:
+            continue
+        along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(shown.positions, axis=0), axis=1))])
+        begin, end = along[-1] * np.array(score.departure.share)
+        if end > begin:
+            at = np.linspace(begin, end, POINTS // 2)
+            points = np.column_stack([np.interp(at, along, column) for column in shown.positions.T])
+            drawn.append(commands.tube(f"/departures/{score.demonstration}", points, radius=0.0032, color=RED))
+    return drawn
 
 
 def frames(motion: Rehearsal) -> dict[str, Any]:

@@ -23,8 +23,13 @@ def ways(review: Review) -> str:
         fitted = _fit(path) if path else ["", "", ""]
         members = ", ".join(str(review.number(member)) for member in cluster.members)
         rows.append([_way(cluster.index), members, f"{kept} of {len(cluster.members)}", *fitted, *planned])
-    heads = ["Way", "Demonstrations", "Agree", "Control points", "Error", "Tube", "Duration", "Clearance"]
-    return table(heads, rows) + "".join(_note(text) for text in _notes(review))
+    heads = ["Way", "Demonstrations", "Agree", "Control points", "Largest error", "Within", "Duration", "Clearance"]
+    bare = [str(path.cluster) for path in review.paths if path.id not in review.plans]
+    notes = [
+        *_notes(review),
+        *([f"Not certified in this version, and so without a motion: way {', '.join(bare)}."] if bare else []),
+    ]
+    return table(heads, rows) + "".join(_note(text) for text in notes)
 
 
 def selection(review: Review) -> str:
@@ -34,20 +39,29 @@ def selection(review: Review) -> str:
         for score in cluster.scores:
             why = score.note or (score.departure.sentence if score.departure else "")
             margin = "" if score.margin is None else f"{score.margin:.1f}"
-            likely = f"{score.log_likelihood:,.1f}"
+            z = "" if score.z is None else f"{score.z:z.1f}"
+            likely = "" if score.z is None else f"{score.log_likelihood:,.1f}"
             number = str(review.number(score.demonstration))
             rows.append(
                 [
                     _way(cluster.index),
                     number,
                     str(score.rank),
-                    likely,
+                    z,
                     margin,
+                    likely,
                     "✓" if score.selected else "–",
                     escape(why),
                 ]
             )
-    return table(["Way", "Shown", "Rank", "Log-likelihood", "Margin", "Kept", "Why"], rows)
+    ranked = (
+        "Ranked by z: how far one is from the others of its way in course, shape, smoothness and bends, in robust "
+        "standard deviations; 0 is like them or better."
+        if review.run.learned.mode == "default"
+        else "Ranked by the log-likelihood under the model of the way."
+    )
+    note = f"{ranked} The margin is the lead over the next in rank. A way's path is fitted to what is kept (✓)."
+    return table(["Way", "Shown", "Rank", "z", "Margin", "Log-likelihood", "Kept", "Why"], rows) + _note(note)
 
 
 def demonstrations(review: Review) -> str:
