@@ -27,7 +27,7 @@ th { border-bottom: 1px solid #222; font-weight: 600; vertical-align: bottom; }
 th:first-child, td:first-child, .l { text-align: left; }
 small { color: #888; font-size: 11.5px; }
 tr.last td { border-bottom: 1px solid #ccc; }
-.yes { font-weight: 700; } .no { color: #999; }
+.yes { font-weight: 700; } .no { color: #6b6b6b; }
 .short { color: #b34700; font-weight: 600; } .kept { color: #00734f; }
 """
 

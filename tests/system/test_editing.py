@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from teachpath.nurbs import Curve
+from tests.system.access import grave
 from tests.system.editors import SLOW, Desk, U
 from tests.system.processes import Service
 from tests.system.test_station import record
@@ -144,6 +145,7 @@ def test_the_second_of_two_editors_chooses_and_no_edit_is_lost(desks: Any, servi
     ben.save()
     ben.page.wait_for_selector("#conflict[open]", timeout=SLOW)
     assert "anna" in ben.page.inner_text("#conflict-told")
+    assert grave(ben.page, "conflict") == []
     ben.click("#conflict button[value=theirs]")
     ben.until("editor.draft.base.number === 2")
     assert same(ben.curve(), anna.curve())

@@ -10,7 +10,8 @@ from websockets.exceptions import InvalidStatus
 from websockets.sync.client import connect
 
 from teachpath.nurbs import Curve
-from tests.system.processes import Service
+from tests.system.access import grave
+from tests.system.processes import Service, run
 from tests.system.test_station import record
 from tests.system.test_view import Visit
 
@@ -18,12 +19,12 @@ pytestmark = pytest.mark.system
 
 TASK = "seen"
 TABS = ("demonstrate", "ways", "edit", "run")
-AXE = (Path(__file__).parent / "assets" / "axe" / "axe.min.js").read_text()
 SOCKETS = ("view", "events", "joints", "trackers/page-x/samples")
 
 
 @pytest.fixture(scope="module")
 def learned(service: Service) -> dict[str, Any]:
+    service.call("PUT", "/tasks/bare", {"scene": "paper"})  # with nothing in it; the page chooses the newest one
     record(service, TASK, 12, speed=8.0)
     job = service.job(service.call("POST", f"/tasks/{TASK}/jobs", {"kind": "learn"})["id"], seconds=120)
     run: dict[str, Any] = service.call("GET", f"/tasks/{TASK}/runs/{job['outcome']}")
@@ -44,17 +45,20 @@ def tab(visit: Visit, name: str) -> None:
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 def test_nothing_serious_keeps_anybody_from_the_page(visit: Visit, scheme: Any) -> None:
-    visit.page.emulate_media(color_scheme=scheme)
+    page = visit.page
+    page.emulate_media(color_scheme=scheme)
     found = []
-    for name in TABS:
-        tab(visit, name)
-        visit.page.wait_for_timeout(300)
-        visit.page.evaluate(f"{AXE};0")
-        result = visit.page.evaluate("axe.run(document, {resultTypes: ['violations']})")
-        assert len(result["passes"]) > 20  # it has looked
-        grave = [v for v in result["violations"] if v["impact"] in ("serious", "critical")]
-        found += [(name, v["id"], v["nodes"][0]["html"]) for v in grave]
-    visit.page.emulate_media(color_scheme="light")
+    for task in (TASK, "bare"):
+        page.wait_for_selector(f"#task option[value={task}]", state="attached")
+        page.select_option("#task", task)
+        for name in TABS:
+            tab(visit, name)
+            found += grave(page, f"{task}, {name}")
+    page.locator("#events-button").click()
+    found += grave(page, "events")
+    page.keyboard.press("Escape")
+    page.select_option("#task", TASK)
+    page.emulate_media(color_scheme="light")
     assert found == []
 
 
@@ -150,11 +154,39 @@ def test_after_a_restart_of_the_service_the_page_shows_the_truth_again(visit: Vi
     assert service.wait(10) == 0
     visit.page.wait_for_selector("html[data-connection=lost][data-events=lost]", state="attached")
     assert "No connection to the service" in visit.page.locator("#connection").inner_text()
-    tab(visit, "run")
+    for name in TABS:
+        tab(visit, name)
+        assert grave(visit.page, f"without the service, {name}") == []
     assert "the arm holds" in visit.page.locator("#arm .state").inner_text()
+    tab(visit, "demonstrate")
+    assert "Not known" in visit.page.locator("#recordings").inner_text()
+    tab(visit, "ways")
+    visit.page.get_by_role("button", name="Learn anew").click()
+    assert "Is it running?" in visit.page.locator("#message .error").inner_text()
+    assert grave(visit.page, "an error is told") == []
+    tab(visit, "run")
     with Service(service.data, ports=service.ports) as again:
         again.call("PUT", "/tasks/made-meanwhile", {"scene": "paper"})
         visit.page.wait_for_selector("html[data-connection=live][data-events=live]", state="attached", timeout=30_000)
         visit.page.wait_for_selector("#task option[value=made-meanwhile]", state="attached")
         assert visit.page.locator("#connection").inner_text() == "Connected"
         assert "At rest" in visit.page.locator("#arm .state").inner_text()
+        visit.page.locator("#events-button").click()
+        said = visit.page.locator("#events").inner_text()
+        assert said.index("Connected to the service again") < said.index("The connection to the service broke off")
+
+
+def test_the_review_package_opens_without_the_service(browser: Any, service: Service, tmp_path: Path) -> None:
+    data = ("--data", str(service.data))
+    out = run("export", "--report", TASK, "--into", str(tmp_path), *data, folder=tmp_path, seconds=90)
+    assert out.process.returncode == 0, out.err
+    assert str(tmp_path / f"{TASK}.html") in out.out
+    page, asked, said = browser.new_page(), [], []
+    page.on("request", lambda request: asked.append(request.url))
+    page.on("console", lambda message: said.append(message.text))
+    page.goto(f"file://{tmp_path / TASK}.html")
+    page.wait_for_selector("html[data-report=ready]", state="attached", timeout=60_000)
+    found = grave(page, "review package")
+    page.close()
+    assert [url for url in asked if not url.startswith(("file:", "data:", "blob:"))] == []
+    assert (found, said) == ([], [])

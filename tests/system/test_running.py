@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from teachpath.motion.kinematics import link_frames
+from tests.system.access import grave
 from tests.system.carriers import HEADSET, begin, carry, carry_worn, move_hand, phase
 from tests.system.operators import RESTING, Operator, Status
 from tests.system.processes import Service
@@ -130,6 +131,7 @@ def test_a_start_must_be_meant_and_the_path_is_gone_step_by_step_and_back(visit:
     assert operator.status()["override"] == pytest.approx(0.3)
     held = hold(operator)
     assert visit.page.locator("#arm .state").inner_text().startswith("Held on the path: held by")  # and why
+    assert grave(visit.page, "held") == []
     for name, way in (("+ 1 cm", 0.01), ("− 1 cm", -0.01), ("− 1 cm", -0.01)):
         operator.press(name)
         held = operator.until(partial(is_held, held["length"] + way))

@@ -150,11 +150,17 @@ function possible(verb, state) {
   return !["resume", "step", "back"].includes(verb) || state === "held";
 }
 
+// How the execution stands; what is held need not be on the path yet.
+function worded({ state, stretch }) {
+  if (state === "held" && stretch) return stretch.startsWith("on ") ? `Held ${stretch}` : `Held while ${stretch}`;
+  return WORDS[state] ?? sentence(state);
+}
+
 function content(status, busy, away) {
   if (away) return [element("p", { class: "state" }, "Not known: the service does not answer. On a lost link the arm holds.")];
   if (!status) return [element("p", { class: "state" }, element("span", { class: "dot idle" }), "At rest. Nothing has been executed yet.")];
   return [
-    element("p", { class: "state" }, element("span", { class: `dot ${status.state}` }), WORDS[status.state] ?? sentence(status.state), status.reason && `: ${status.reason}`),
+    element("p", { class: "state" }, element("span", { class: `dot ${status.state}` }), worded(status), status.reason && element("span", { class: "reason" }, `: ${status.reason}`)),
     bar(status.progress, "progress along the path"),
     facts([
       ["Speed", percent(status.override)],
