@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 from bisect import bisect_right
-from collections import deque
 from collections.abc import Iterable
 
 from teachpath.recording.clock import REAL_TIME, DeviceClock
-from teachpath.recording.refusals import Refusals
+from teachpath.recording.tally import Tally
 from teachpath.records import Account, Sample
 
 LARGEST_JUMP = 100_000  # sequence numbers; a larger gap is a restarted device, not loss
-REMEMBERED_NOTES = 20
 NAMED_GAPS = 20
 REMEMBERED_SAMPLES = 512
 FASTEST = 100.0  # device seconds in one of ours; beyond it the receive times come from a burst
@@ -45,9 +43,8 @@ class StreamAccount:
         self._longest_gap_ns = self._longest_gap_of_part_ns = 0
         self._clock = DeviceClock()
         self._interrupted = False
-        self._notes: deque[str] = deque(maxlen=REMEMBERED_NOTES)
-        self._notes_of_part: deque[str] = deque(maxlen=REMEMBERED_NOTES)
-        self._refusals, self._refusals_of_part = Refusals(), Refusals()
+        self._notes, self._notes_of_part = _notes(), _notes()
+        self._refusals, self._refusals_of_part = _refusals(), _refusals()
         self._part_is_empty = True
         self._first_of_part = 0
         self._before_part = self._counts()
@@ -104,8 +101,7 @@ class StreamAccount:
         self._first_of_part = self.highest + 1
         self._before_part = self._counts()
         self._longest_gap_of_part_ns = 0
-        self._notes_of_part.clear()
-        self._refusals_of_part = Refusals()
+        self._notes_of_part, self._refusals_of_part = _notes(), _refusals()
 
     def expect(self, last_sequence: int) -> None:
         """Count as lost what the client says it sent after the highest number seen."""
@@ -117,14 +113,13 @@ class StreamAccount:
             self.highest = last_sequence
 
     def note(self, sentence: str) -> None:
-        """Keep a sentence for the operator; the newest few are kept."""
-        for notes in (self._notes, self._notes_of_part):
-            if sentence not in notes:
-                notes.append(sentence)
+        """Keep a sentence for the operator."""
+        self._notes.add(sentence)
+        self._notes_of_part.add(sentence)
 
     def account(self) -> Account:
         """Return the counts so far."""
-        notes = [*self._refusals.sentences(), *self._notes]
+        notes = self._refusals.sentences() + self._notes.sentences()
         return self._stated(self._counts(), self._longest_gap_ns, notes, first=0)
 
     def part(self) -> Account:
@@ -132,7 +127,7 @@ class StreamAccount:
         counts = {name: max(count - self._before_part[name], 0) for name, count in self._counts().items()}
         # A late sample of a former part fills a gap there and none here.
         counts |= self._missing_since(self._first_of_part)
-        notes = [*self._refusals_of_part.sentences(), *self._notes_of_part]
+        notes = self._refusals_of_part.sentences() + self._notes_of_part.sentences()
         return self._stated(counts, self._longest_gap_of_part_ns, notes, first=self._first_of_part)
 
     def _counts(self) -> dict[str, int]:
@@ -199,7 +194,7 @@ class StreamAccount:
         number, device_ns = self._recent[sample.sequence % REMEMBERED_SAMPLES]
         if number == sample.sequence and device_ns != sample.device_ns:
             self._conflicts += 1
-            self.note(f"two different samples have one number, the first {number}: do two trackers share this name?")
+            self.note(f"two different samples have the number {number}: do two trackers share this name?")
         elif sample.sequence < (self.first or 0):
             self.note(f"sequence {sample.sequence} is below the first one, {self.first}")
 
@@ -237,3 +232,11 @@ class StreamAccount:
         self._missing[i : i + 1] = [(a, b) for a, b in rest if a <= b]
         self._lost -= 1
         return True
+
+
+def _notes() -> Tally:
+    return Tally("more happened than can be listed")
+
+
+def _refusals() -> Tally:
+    return Tally("samples were refused for other reasons")

@@ -80,7 +80,7 @@ def _too_many(parts: Parts, learned: Account, settings: RecordingSettings) -> li
 
 
 def _unusable(account: Account, settings: RecordingSettings) -> list[str]:
-    found = _breaks(account, settings)
+    found = _breaks(account, settings, f", limit {settings.longest_gap:.2f} s")
     if account.leaps:
         found.append(
             f"the position leaps {_times(account.leaps)} by over {100 * settings.largest_jump:.3g} cm and stays"
@@ -88,10 +88,10 @@ def _unusable(account: Account, settings: RecordingSettings) -> list[str]:
     return found
 
 
-def _breaks(account: Account, settings: RecordingSettings) -> list[str]:
+def _breaks(account: Account, settings: RecordingSettings, limit: str = "") -> list[str]:
     found = []
     if account.longest_gap_ns > settings.longest_gap * 1e9:
-        found.append(f"a gap of {account.longest_gap_ns * 1e-9:.2f} s, limit {settings.longest_gap:.2f} s")
+        found.append(f"a gap of {account.longest_gap_ns * 1e-9:.2f} s{limit}")
     if account.clock_jumps:
         found.append(f"the device's clock jumps {_times(account.clock_jumps)}")
     return found

@@ -118,6 +118,17 @@ def test_one_number_with_two_times_is_a_conflict() -> None:
     assert any("two trackers" in note for note in account.account().notes)
 
 
+def test_a_thousand_conflicts_are_one_sentence_and_hide_no_other() -> None:
+    account = account_of(list(range(1, 200)))
+    account.note("the lamp is green")
+    for n in range(1, 200):
+        account.observe(sample(n, (0.1, 0.0, 0.0), device_ns=START_NS + n * PERIOD_NS + 7))
+    assert account.account().conflicts == 199
+    first, second = account.account().notes[:2]
+    assert first == "the lamp is green"
+    assert second.endswith("the number 1: do two trackers share this name? (and 198 more like it)")
+
+
 def test_a_device_that_counts_anew_is_told_from_late_samples() -> None:
     account = account_of(list(range(1, 40)))
     for n in range(1, 11):
@@ -139,7 +150,7 @@ def test_the_parts_of_a_stream_add_up_but_for_what_was_lost_between_them() -> No
         whole.begin_part()
         for n in numbers:
             whole.observe(sample(n, (0.0, 0.0, 0.0), tracked=n != 10))
-        whole.note(f"up to {numbers[-1]}")
+        whole.note(f"up to {'abc'[len(parts)]}")
         parts.append(whole.part())
     total = whole.account()
     for name in ("received", "duplicated", "reordered", "untracked"):
@@ -147,6 +158,6 @@ def test_the_parts_of_a_stream_add_up_but_for_what_was_lost_between_them() -> No
     assert [part.lost for part in parts] == [0, 1, 6]
     assert total.lost == 7 + 3
     assert [part.longest_gap_ns // PERIOD_NS for part in parts] == [2, 2, 7]
-    assert [part.notes for part in parts] == [("up to 5",), ("up to 12",), ("up to 20",)]
-    assert total.notes == ("up to 5", "up to 12", "up to 20")
+    assert [part.notes for part in parts] == [("up to a",), ("up to b",), ("up to c",)]
+    assert total.notes == ("up to a", "up to b", "up to c")
     assert all(part.seen_rate == pytest.approx(50.0) for part in parts)

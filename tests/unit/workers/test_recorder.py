@@ -43,7 +43,7 @@ def test_a_hole_on_the_way_is_said_and_the_take_and_the_next_one_are_learned_fro
     holed, whole = bench.store.demonstrations("lift")
     assert (holed.verdict, holed.account.lost, whole.verdict) == ("repaired", len(hole), "clean")
     seconds = (len(hole) + 1) * PERIOD_NS * 1e-9
-    said = f"a gap of {seconds:.2f} s, limit 0.25 s, {len(hole)} samples lost"
+    said = f"a gap of {seconds:.2f} s, {len(hole)} samples lost"
     assert holed.reasons == (f"while {way}, outside what is learned: {said}",)
     assert holed.is_usable
 
