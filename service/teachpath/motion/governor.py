@@ -49,7 +49,7 @@ class Governor:
         self._table, self._step, self._end, self._dt = track.table, track.step, track.duration, dt
         limits = track.limits
         self._limits = np.stack([limits.speed * dt, limits.acceleration * dt**2, limits.jerk * dt**3])
-        self._override, self._held, self._back = _share(override), False, False
+        self._override, self._held, self._back, self._waits = _share(override), False, False, False
         self._state = np.zeros(3)  # tau, its rate, the rate's derivative
         self._ramp = np.zeros(8)
         self._trial = np.zeros(8)
@@ -94,6 +94,10 @@ class Governor:
         """Come to rest as soon as the limits allow."""
         self._held = True
 
+    def wait(self, waits: bool) -> None:
+        """Come to rest as for `hold`, or go on as is asked for; `held` does not tell of it."""
+        self._waits = waits
+
     def resume(self) -> None:
         """Go on to the end."""
         self._held = self._back = False
@@ -122,7 +126,7 @@ class Governor:
     @property
     def wish(self) -> float:
         """The rate now asked for, negative on the way back."""
-        return 0.0 if self.held else (-min(self._override, BACKWARD) if self._back else self._override)
+        return 0.0 if self.held or self._waits else (-min(self._override, BACKWARD) if self._back else self._override)
 
     @property
     def bound_for(self) -> float:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -15,37 +14,11 @@ from teachpath.motion.governor import SLOWEST, Governor
 from teachpath.motion.puma560 import Array
 from teachpath.motion.settings import MotionSettings
 from teachpath.motion.stepping import place_of, stepped
-from teachpath.motion.stretches import Stretch, stretches, way_back
+from teachpath.motion.stretches import Aside, Moment, Stretch, stretches, way_back
 from teachpath.motion.track import Track
 from teachpath.records import Plan
 
 REACHED: Final = 1e-5  # m, a node as near as this is where the arm is
-
-
-@dataclass(frozen=True, eq=False)
-class Moment:
-    """The arm's nominal motion at one instant: (6,) in rad, rad/s, rad/s^2."""
-
-    position: Array
-    velocity: Array
-    acceleration: Array
-    gripper_closed: bool
-    on_path: bool = False
-
-
-@dataclass(frozen=True, eq=False)
-class Aside:
-    """Motion that is not the next stretch: a step on the path, or the way back to it.
-
-    Attributes:
-        name: in words, for the operator; empty on the path.
-        tracks: one behind the other.
-        landing: plan time [s] at which a step ends; None for a way back, behind which the program goes on.
-    """
-
-    name: str
-    tracks: tuple[Track, ...]
-    landing: float | None = None
 
 
 class Program:
@@ -77,7 +50,7 @@ class Program:
         self._plan, self._settings = plan, settings
         self._rest_of: Iterator[Stretch] = iter(stretches(plan, here, settings, dwell))
         self._length = float(plan.lengths[-1])
-        self._override, self._held, self._period = override, False, period
+        self._override, self._held, self._waits, self._period = override, False, False, period
         self._elapsed = 0.0
         self._done = 0.0
         still = np.zeros(6)
@@ -108,7 +81,7 @@ class Program:
     def held(self) -> bool:
         """Whether rest was asked for, by `hold` or an override of zero, or nothing is left of the way back."""
         governor = self._driver
-        returned = governor is not None and governor.backward and governor.progress.standing
+        returned = governor is not None and governor.backward and governor.progress.standing and not self._waits
         return self._held or self._override < SLOWEST or returned
 
     @property
@@ -122,6 +95,11 @@ class Program:
     def stopped(self) -> bool:
         """Whether `hold` was asked for and not taken back."""
         return self._held
+
+    @property
+    def waits(self) -> bool:
+        """Whether it waits for an arm that is late."""
+        return self._waits
 
     @property
     def here(self) -> Array:
@@ -162,6 +140,12 @@ class Program:
         self._held = True
         for governor in self._governors():
             governor.hold()
+
+    def wait(self, waits: bool) -> None:
+        """Come to rest on the path until the arm has caught up, or go on as was asked for."""
+        self._waits = waits
+        for governor in self._governors():
+            governor.wait(waits)
 
     def resume(self) -> None:
         """Go on."""
@@ -234,7 +218,7 @@ class Program:
     def take_aside(self, aside: Aside) -> None:
         """Begin a step or a way back; the arm rests at its beginning."""
         self._aside = aside if aside.tracks else None
-        self._aside_governors = deque(Governor(t, self._period, override=self._override) for t in aside.tracks)
+        self._aside_governors = deque(self._governor_of(track) for track in aside.tracks)
         self._held = False
 
     def step(self) -> Moment:
@@ -243,7 +227,7 @@ class Program:
         if stretch is None:
             return self._moment
         if governor is None:
-            self._elapsed += 0.0 if self.held else self._period
+            self._elapsed += 0.0 if self.held or self._waits else self._period
             if self._elapsed >= stretch.rest:
                 self._advance()
             return self._moment
@@ -263,6 +247,11 @@ class Program:
 
     def _governors(self) -> list[Governor]:
         return [*self._aside_governors, *([self._governor] if self._governor is not None else [])]
+
+    def _governor_of(self, track: Track) -> Governor:
+        governor = Governor(track, self._period, override=self._override)
+        governor.wait(self._waits)
+        return governor
 
     def _finish(self) -> None:
         aside = self._aside
@@ -285,6 +274,6 @@ class Program:
         closed = self._stretch.gripper_closed
         self._moment = Moment(self._moment.position, np.zeros(6), np.zeros(6), closed)
         if self._stretch.track is not None:
-            self._governor = Governor(self._stretch.track, self._period, override=self._override)
+            self._governor = self._governor_of(self._stretch.track)
             if self._held:
                 self._governor.hold()

@@ -22,6 +22,32 @@ NOWHERE: Final = 1e-9  # rad, a move shorter than this is none
 
 
 @dataclass(frozen=True, eq=False)
+class Moment:
+    """The arm's nominal motion at one instant: (6,) in rad, rad/s, rad/s^2."""
+
+    position: Array
+    velocity: Array
+    acceleration: Array
+    gripper_closed: bool
+    on_path: bool = False
+
+
+@dataclass(frozen=True, eq=False)
+class Aside:
+    """Motion that is not the next stretch: a step on the path, or the way back to it.
+
+    Attributes:
+        name: in words, for the operator; empty on the path.
+        tracks: one behind the other.
+        landing: plan time [s] at which a step ends; None for a way back, behind which the program goes on.
+    """
+
+    name: str
+    tracks: tuple[Track, ...]
+    landing: float | None = None
+
+
+@dataclass(frozen=True, eq=False)
 class Stretch:
     """A piece of an execution: motion along a track, or a rest when `track` is None.
 

@@ -35,6 +35,8 @@ class Bench:
         self.speaking = True
         self.deaf: Setpoint | None = None  # the setpoint after which it takes up no other
         self.behind = 0  # setpoints that it is late with
+        self.pace = 1.0  # setpoints that it takes up in a period, but for those of a standstill: they take no time
+        self._played = 0.0
         self.oversleep: dict[int, int] = {}  # setpoints sent -> ns too late
         self.setpoints: list[Setpoint] = []
         self.statuses: list[ExecutorStatus] = []
@@ -65,6 +67,7 @@ class Bench:
         self.now += round(duration * 1e9) + self.oversleep.pop(len(self.setpoints), 0)
         assert self.now < STUCK * 1e9, f"stuck before step {self.todo[:1]} in {self.statuses[-1]}"
         if self.setpoints:
+            self._play()
             self.position = self.taken().position + self.pushed
         if self.speaking:
             self.bus.publish(KEYS.state("puma560"), wire.encode_state(self.joint_state()))
@@ -73,7 +76,21 @@ class Bench:
 
     def taken(self) -> Setpoint:
         """The newest setpoint that the arm has taken up."""
+        if self.pace < 1.0:
+            return self.setpoints[int(self._played)]
         return self.deaf or self.setpoints[-1 - min(self.behind, len(self.setpoints) - 1)]
+
+    @property
+    def late(self) -> int:
+        """How many setpoints of a motion the arm has not taken up yet."""
+        waiting = self.setpoints[self.taken().cycle + 1 :] if self.setpoints else []
+        return sum(not standing([each]) for each in waiting)
+
+    def _play(self) -> None:
+        newest = len(self.setpoints) - 1
+        self._played = min(self._played + self.pace, newest)
+        while (here := int(self._played)) < newest and all(standing([s]) for s in self.setpoints[here : here + 2]):
+            self._played += 1
 
     def joint_state(self) -> JointState:
         newest = self.taken() if self.setpoints else None

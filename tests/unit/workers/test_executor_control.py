@@ -9,7 +9,7 @@ from teachpath.io.documents import encode
 from teachpath.motion.kinematics import tool_pose
 from teachpath.records import Command, Plan
 from tests.unit.motion.ways import MIDDLE, way
-from tests.unit.workers.executors import KEYS, Bench, standing, within_limits
+from tests.unit.workers.executors import KEYS, PERIOD_NS, Bench, standing, within_limits
 
 
 @pytest.fixture
@@ -234,6 +234,28 @@ def test_an_arm_that_takes_up_no_setpoints_is_held_and_brought_back(bench: Bench
     assert any("taken up no setpoint for 0.5 s" in reason for reason in reasons)
     assert ("the executor", "hold") in [(entry.who, entry.verb) for entry in bench.journal]
     assert bench.statuses[-1].progress == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize("pace", [0.9, 0.5, 0.2])
+def test_an_arm_that_cannot_keep_up_is_waited_for_so_that_a_stop_does_not_wait(
+    bench: Bench, middle: Plan, pace: float
+) -> None:
+    late: list[int] = []
+
+    def ended() -> bool:
+        if len(bench.setpoints) % 25 == 0:
+            late.append(bench.late)
+        return bench.state == "ended"
+
+    bench.pace = pace
+    bench.start(middle)
+    bench.when(ended, bench.stop.set)
+    bench.run()
+    assert max(late) * PERIOD_NS < 0.9e9  # 0.3 s and what it takes to come to rest
+    assert any("waiting for the arm" in status.stretch for status in bench.statuses) == (pace < 0.9)
+    assert not any(status.state in ("held", "faulted") for status in bench.statuses)
+    assert bench.statuses[-1].progress == pytest.approx(1.0)
+    assert within_limits(bench.setpoints)
 
 
 def test_an_arm_that_is_late_is_not_taken_for_one_that_was_pushed_away(bench: Bench, middle: Plan) -> None:

@@ -86,6 +86,31 @@ def test_a_sender_that_is_gone_leaves_an_arm_that_brakes_and_says_that_it_holds(
     assert np.all(np.abs(end - begin) <= SPEED * 0.12)  # as far as braking takes
 
 
+def test_who_is_behind_catches_up_at_a_standstill_without_a_jump() -> None:
+    player = Playback(START, delay=DELAY, silence=SILENCE)
+    log, reached = [], 0
+    for ms in range(4000):
+        if ms % 4 == 0:
+            k = ms // 4
+            p, v, a = wanted_at(k * PERIOD)
+            player.take(Setpoint(k, round(1e9 * k * PERIOD), 0, p, v, a, k * PERIOD > 2.9, "e"), round(1e6 * ms))
+        if ms % 2:  # its machine has time for half of what is to be done
+            continue
+        player.play(0.001)
+        wanted = player.wanted
+        log.append(np.stack([wanted.position, wanted.velocity, wanted.acceleration]))
+        if player.reached is not None and ms == 2000:
+            reached = ms // 4 - player.reached.cycle
+    played = np.array(log)
+    assert reached * PERIOD > 0.5  # amid the motion
+    assert player.reached is not None
+    assert (999 - player.reached.cycle) * PERIOD < DELAY + 3 * PERIOD
+    assert player.reached.gripper_closed
+    np.testing.assert_array_equal(played[-1, 0], GOAL)
+    assert np.all(np.abs(np.diff(played[:, 0], axis=0)) <= 0.001 * SPEED)
+    assert np.all(np.abs(played[:, 2]) <= ACCELERATION)
+
+
 def test_another_execution_begins_from_where_the_arm_is() -> None:
     player, log = played(in_time)
     now = round(1e9 * 1010)

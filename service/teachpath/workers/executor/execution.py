@@ -4,13 +4,17 @@ from __future__ import annotations
 
 from typing import Final
 
-from teachpath.motion.program import Aside, Program
+from teachpath.motion.program import Program
+from teachpath.motion.stretches import Aside
 from teachpath.records import Array, ExecutorStatus, JointState, Setpoint
 from teachpath.workers.executor.hand import Hand
 from teachpath.workers.executor.meter import LimitMeter
 from teachpath.workers.executor.pacing import Pacer
 
 RESTING: Final = ("idle", "ended", "faulted")
+WAITING: Final = ", waiting for the arm, which is late"
+LATE: Final = 0.3  # s, by which an arm may play its setpoints late; a driver's delay and the way there are less
+CAUGHT_UP: Final = 0.25  # s, below which an arm that was late has caught up
 SETTLED: Final = 0.3  # s after which an arm that is held has come to rest
 
 
@@ -37,6 +41,7 @@ class Execution:
         self._rate, self._offset = rate, offset
         self._nominal = 0  # [ns since the Unix epoch] of the newest setpoint
         self._still = 0  # setpoints since the arm's nominal motion came to rest
+        self._moving = 0  # setpoints since it began to move
         self._ending = ""  # the state to end in as soon as the arm stands
         self._sent = 0
         self._meter = LimitMeter(rate, program.here)
@@ -54,6 +59,15 @@ class Execution:
     def rests_with(self, arm: JointState) -> bool:
         """Tell whether the arm has taken up a setpoint of the standstill that it is held at."""
         return arm.execution == self.execution and arm.cycle >= self._sent - self._still
+
+    def wait_for(self, arm: JointState) -> None:
+        """Come to rest while the arm is late: behind the motion that waits to be played, a stop would wait too."""
+        taken = arm.cycle if arm.execution == self.execution else -1
+        waiting = self._sent - 1 - taken
+        if not self.program.waits:
+            self.program.wait(min(waiting, self._moving) > LATE * self._rate)
+        elif waiting < CAUGHT_UP * self._rate or self.rests_with(arm):
+            self.program.wait(False)
 
     def override(self, share: float) -> None:
         """Go at `share` of the full speed."""
@@ -120,7 +134,7 @@ class Execution:
         moment = self.program.step()
         self._meter.add(moment.position, self.program)
         self._nominal = self._due(due + self._offset, rested and self.program.standing)
-        self._still = self._still + 1 if self.program.standing else 0
+        self._still, self._moving = (self._still + 1, 0) if self.program.standing else (0, self._moving + 1)
         setpoint = Setpoint(
             cycle=self._sent,
             nominal_ns=self._nominal,
@@ -164,7 +178,7 @@ class Execution:
             tracking_error=self.tracking_error,
             duration=self._sent / self._rate,
             length=self.program.length,
-            stretch=self.program.doing,
+            stretch=self.program.doing + (WAITING if self.program.waits else ""),
             hand_latency_p50_us=hand[0],
             hand_latency_p99_us=hand[1],
         )

@@ -12,9 +12,9 @@ from teachpath.errors import UnusableSample
 from teachpath.io.bus import Bus
 from teachpath.io.wire import decode_sample
 from teachpath.motion.mirror import Mirror
-from teachpath.motion.program import Moment
 from teachpath.motion.scene import CollisionModel, Load
 from teachpath.motion.settings import MotionSettings
+from teachpath.motion.stretches import Moment
 from teachpath.recording.demonstration import to_world
 from teachpath.records import Array, Mirroring, Sample
 from teachpath.workers.executor.grip import Grip, load_of
@@ -25,6 +25,7 @@ CLUTCH: Final = 4  # button that is pressed while the arm mirrors the hand
 LOST: Final = 0.15  # s without a tracked sample, after which the hand is lost
 KEPT: Final = 5000  # latencies
 AGAIN: Final = "let the clutch go, and press it again to move the arm"
+LATE: Final = "the arm is late; let the clutch go and press it again"
 WAITING: Final = "press the clutch (button bit 2) to move the arm"
 
 
@@ -70,7 +71,7 @@ class Hand:
         self._answered = 0
         self._handle = bus.subscribe(keys.samples(order.tracker), self._receive)
 
-    before = False
+    before = waits = False
     over = False
     progress = 0.0
     length = 0.0
@@ -142,6 +143,11 @@ class Hand:
         """Open the clutch until `resume`."""
         self._stopped = True
         self._open("held")
+
+    def wait(self, waits: bool) -> None:
+        """Open the clutch: the arm is late, and would be where the hand no longer is."""
+        if waits and self._pressed:
+            self._open(LATE)
 
     def resume(self) -> None:
         """Let the clutch be pressed again."""

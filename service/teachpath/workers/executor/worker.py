@@ -149,6 +149,7 @@ class Executor:
         if stalled > DEAF:
             why = f"the arm has taken up no setpoint for {stalled:.1f} s"
             self._hold(current, f"{why}: does its driver hear them? resume when it does")
+        current.wait_for(arm)
         if arm.execution == current.execution:
             self._judge_tracking(current, arm.tracking_error)
 

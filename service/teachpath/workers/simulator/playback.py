@@ -4,7 +4,7 @@ Setpoints carry position, velocity and acceleration at even times of the motion'
 next to the played instant runs the polynomial of fifth degree that meets all three at both, however many are missing
 in between. The played instant runs with real time; when the store of setpoints gets low it runs slower, smoothly, and
 with nothing left it comes to rest, going on in the direction it had. So a late setpoint slows the arm down on its path
-instead of throwing it about.
+instead of throwing it about. A player that is behind, because its machine is busy, catches up at the next standstill.
 """
 
 from __future__ import annotations
@@ -110,6 +110,7 @@ class Playback:
         reached = None
         while self._waiting and self._at(self._waiting[0]) <= self._played:
             self._last = reached = self._waiting.popleft()
+        reached = self._let_go() or reached
         self._starved = self._starved + dt if self._ahead() < 0.0 else 0.0
         if self._last is not None:
             self._want(dt, handing=self._alone and (reached is not None or bool(self._waiting)))
@@ -131,10 +132,18 @@ class Playback:
         newest = self._waiting[-1] if self._waiting else self._last
         return self._at(newest) - self._played if newest is not None else 0.0
 
+    def _let_go(self) -> Setpoint | None:
+        """Skip what waits of a standstill, but for the delay: who is late there has lost nothing but time."""
+        reached = None
+        while len(self._waiting) > 1 and self._ahead() > self._delay and _same_rest(self._last, self._waiting):
+            self._last = reached = self._waiting.popleft()
+            self._played = max(self._played, self._at(reached))
+        return reached
+
     def _pace(self, dt: float) -> None:
         """Let the playing rate follow the store: 1 with half a delay or more, 0 with nothing left."""
         newest = self._waiting[-1] if self._waiting else self._last
-        resting = newest is not None and not (newest.velocity.any() or newest.acceleration.any())
+        resting = newest is not None and _still(newest)
         rate = 1.0 if resting else min(max(self._ahead() / (LOW * self._delay), 0.0), 1.0)
         change = min(max(rate - self._rate, -BRAKE * dt), BRAKE * dt)
         self._rate += change
@@ -182,6 +191,18 @@ class _Piece:
         )
         p, v, a = np.array(shares) @ self._powers
         return p, v, a
+
+
+def _still(setpoint: Setpoint) -> bool:
+    return not (setpoint.velocity.any() or setpoint.acceleration.any())
+
+
+def _same_rest(last: Setpoint | None, waiting: deque[Setpoint]) -> bool:
+    """Tell whether the two that come next belong to the standstill that was reached."""
+    return last is not None and all(
+        _still(each) and np.array_equal(each.position, last.position) and each.gripper_closed == last.gripper_closed
+        for each in (last, waiting[0], waiting[1])
+    )
 
 
 def _handed(error: Array, drift: Array, since: float) -> tuple[Array, Array, Array]:
