@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import argparse
+import json
 import logging
 import sys
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import partial
 from pathlib import Path
 from typing import cast
-
-from google.protobuf.json_format import MessageToJson
 
 from teachpath_client.devices import TouchSource, configure, describe_sources, open_source
 from teachpath_client.devices.cyberglove import GloveSettings
@@ -25,6 +24,7 @@ from teachpath_client.synthetic import experiment_1, experiment_2
 from teachpath_client.tracker import Routine, Tracker
 from teachpath_client.tracker_calibration import COLUMNS, calibrate_tracker, lines, measure_points, read_points
 from teachpath_proto import tracker_pb2
+from teachpath_proto.reports import report_document
 
 Passed = Callable[[Iterator[HandReading]], Iterator[HandReading]]
 ABOUT = {
@@ -250,9 +250,7 @@ def _record(tracker: Tracker, options: argparse.Namespace, readings: Iterable[Ha
 
 
 def _print(report: tracker_pb2.RecordingReport) -> None:
-    print(
-        MessageToJson(report, preserving_proto_field_name=True, indent=None, always_print_fields_with_no_presence=True)
-    )
+    print(json.dumps(report_document(report)))
 
 
 if __name__ == "__main__":

@@ -234,8 +234,8 @@ def _summary(
     learned, status, certificate = run["learned"], execution["status"], plan["certificate"]
     return {
         "demonstrations": sum(len(r["demonstrations"]) for r in reports),
-        "samples": sum(int(r["received"]) for r in reports),
-        "lost_samples": sum(int(r["lost"]) for r in reports),
+        "samples": sum(r["received"] for r in reports),
+        "lost_samples": sum(r["lost"] for r in reports),
         "clusters": [len(c["members"]) for c in learned["clusters"]],
         "selected": [sum(s["selected"] for s in c["scores"]) for c in learned["clusters"]],
         "paths": [

@@ -19,7 +19,6 @@ from teachpath.io.wire.hand import (
     encode_demonstration,
     encode_feedback,
     encode_report,
-    report_document,
     sample_from,
     sample_message,
 )
@@ -33,6 +32,7 @@ from teachpath.io.wire.motion import (
     encode_status,
 )
 from teachpath.io.wire.parsing import parse
+from teachpath_proto.reports import report_document
 
 __all__ = [
     "ACTIONS",

@@ -5,8 +5,6 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from google.protobuf.json_format import MessageToDict
-
 from teachpath.errors import UnusableInput, UnusableSample
 from teachpath.io.wire.parsing import parse
 from teachpath.records import Account, Clock, Demonstration, Quaternion, Sample, Vector
@@ -153,12 +151,3 @@ def _reported(demonstration: Demonstration) -> tracker_pb2.DemonstrationReport:
         discarded=bool(demonstration.discarded_ns),
         transport=tracker_pb2.Span(begin=begin, end=end),
     )
-
-
-def report_document(report: tracker_pb2.RecordingReport) -> dict[str, Any]:
-    """Return a recording's report as a JSON object; counts are numbers."""
-    document = MessageToDict(report, preserving_proto_field_name=True, always_print_fields_with_no_presence=True)
-    # protobuf's JSON writes 64-bit integers as text
-    wide = {f.name for f in report.DESCRIPTOR.fields if f.cpp_type in (f.CPPTYPE_INT64, f.CPPTYPE_UINT64)}
-    numbers = {key: int(value) if key in wide else value for key, value in document.items()}
-    return numbers | {"missing": [[stretch.first, stretch.last] for stretch in report.missing]}
