@@ -15,6 +15,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import BinaryIO
 
+from mcap.exceptions import EndOfFile
 from mcap.records import Channel, Header, Message, Metadata, Statistics
 from mcap.stream_reader import StreamReader
 
@@ -176,6 +177,8 @@ def salvage_stream(stream: BinaryIO) -> tuple[RecordingHeader | None, list[Sampl
                     fault = f"{len(samples)} of its {written} samples can be read"
     except OSError:
         raise
+    except EndOfFile:
+        fault = "it is cut off"
     except Exception as error:  # damage shows as whatever the reader, its decompressor or the unpacking raises
         fault = str(error) or type(error).__name__
     return header, samples, fault
