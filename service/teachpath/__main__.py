@@ -10,7 +10,7 @@ from typing import NoReturn
 try:
     import typer
 
-    from teachpath.commands import curves, demo, evaluate, files, station, work
+    from teachpath.commands import curves, demo, demonstrations, evaluate, files, station, work
 except ModuleNotFoundError as missing:
     sys.exit(f"teachpath: {missing.name} is not installed; the service needs: pip install 'teachpath[service]'")
 
@@ -29,6 +29,8 @@ for command in (
     station.serve,
     files.import_,
     work.replay,
+    demonstrations.demonstrations,
+    demonstrations.amend,
     work.recalibrate,
     work.learn,
     work.recut,

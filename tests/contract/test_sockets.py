@@ -3,19 +3,16 @@
 import json
 import threading
 import time
-from collections.abc import Iterator
 from contextlib import suppress
 from socket import SHUT_RDWR
 from typing import Any
 
 import numpy as np
 import pytest
-import uvicorn
 from websockets.exceptions import ConnectionClosed, InvalidStatus
 from websockets.sync.client import ClientConnection, connect
 
 from teachpath.app import Station
-from teachpath.commands.serving import free_port
 from teachpath.io.wire import encode_state, sample_message
 from teachpath.records import JointState
 from tests.contract.desk import Desk, refused
@@ -23,20 +20,6 @@ from tests.contract.test_rest_work import planned
 from tests.unit.recording.hands import demonstration, sample
 
 START = (0.58, -0.28, 0.52)  # of the object in the paper's scene
-
-
-@pytest.fixture(scope="module")
-def port(desk: Desk) -> Iterator[int]:
-    port = free_port()
-    config = uvicorn.Config(desk.station.web, host="127.0.0.1", port=port, log_level="warning", ws="websockets-sansio")
-    server = uvicorn.Server(config)
-    thread = threading.Thread(target=server.run, daemon=True)
-    thread.start()
-    while not server.started:
-        time.sleep(0.01)
-    yield port
-    server.should_exit = True
-    thread.join(10)
 
 
 def come(port: int, name: str, **options: Any) -> ClientConnection:
