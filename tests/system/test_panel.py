@@ -71,6 +71,10 @@ def test_every_demonstration_has_its_verdict_and_what_is_wrong_with_it(visit: Vi
         account = json.loads(facts["account"])
         assert account == row["account"]
         assert account["untracked"] == (39 if row["verdict"] == "reject" else 0)
+    for mark in ("good", "bad", ""):
+        visit.page.get_by_role("button", name=f"Mark demonstration 1 {mark or 'neither good nor bad'}").click()
+        within(visit, 5, f"{text('demonstrations')}.includes('Marked {mark}') === {str(bool(mark)).lower()}")
+        assert [d["mark"] for d in service.demonstrations("judged")] == [mark, ""]
     visit.page.get_by_role("button", name="Discard the last").click()
     within(visit, 5, "document.querySelectorAll('.takes li.discarded').length === 1")
     assert [bool(d["discarded_ns"]) for d in service.demonstrations("judged")] == [False, True]

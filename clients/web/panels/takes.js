@@ -6,11 +6,14 @@ import { flattening, thumbnail } from "../thumbnails.js";
 import { markFocus, pointAt, wayClass } from "./cards.js";
 
 const LISTED = 60; // newest demonstrations
+const SIGNS = { "": "☆", good: "★", bad: "⚑" };
+const NEXT = { "": "good", good: "bad", bad: "" }; // mark that a press gives
 
 export function takes(place, { store, gallery, attempt }) {
   pointAt(place, store);
   place.addEventListener("click", (event) => {
-    const { verb, discard, restore } = event.target.closest("button")?.dataset ?? {};
+    const { verb, discard, restore, marked, mark } = event.target.closest("button")?.dataset ?? {};
+    if (marked) attempt(() => patch(at("demonstrations", marked), { mark }));
     if (discard || restore) attempt(() => patch(at("demonstrations", discard ?? restore), { discarded: Boolean(discard) }));
     if (verb) attempt(() => post(at("tasks", store.state.task, "recording", verb)));
   });
@@ -61,10 +64,12 @@ function content(state, gallery) {
 }
 
 function take(d, small) {
-  const why = [d.mark && `marked ${d.mark}`, ...(d.reasons ?? [])].filter(Boolean).join("; ");
+  const why = [d.mark && `marked ${d.mark}`, d.trim && "trimmed", ...(d.reasons ?? [])].filter(Boolean).join("; ");
   const word = d.discarded_ns ? "discarded" : d.verdict;
   const [verb, sign, name] = d.discarded_ns ? ["restore", "↶", "Restore"] : ["discard", "×", "Discard"];
   const lost = d.account?.lost ?? 0;
+  const next = NEXT[d.mark] ?? "";
+  const marking = `Mark demonstration ${d.number} ${next || "neither good nor bad"}`;
   return element(
     "li",
     { class: word, value: String(d.number), "data-focus": `demonstrations ${d.id}` },
@@ -73,6 +78,7 @@ function take(d, small) {
     element("span", { class: "verdict" }, word),
     element("span", { class: "figure" }, lost > 0 && `${lost} lost`),
     element("span", { class: "figure" }, number(d.duration, 1, "s")),
+    element("button", { type: "button", class: "close", "data-marked": d.id, "data-mark": next, "data-key": `mark ${d.id}`, "aria-label": marking, title: marking }, SIGNS[d.mark] ?? SIGNS[""]),
     element("button", { type: "button", class: "close", [`data-${verb}`]: d.id, "data-key": `take ${d.id}`, "aria-label": `${name} demonstration ${d.number}`, title: name }, sign),
     why && element("span", { class: "why" }, sentence(why)),
   );
