@@ -150,7 +150,7 @@ def _curated(
 
 
 def _parts(row: Demonstration, samples: list[Sample], settings: RecordingSettings) -> Parts:
-    return parts_of(samples, Cut(row.grasp, row.release), row.account, settings)
+    return parts_of(samples, Cut(*row.transport), row.account, settings)
 
 
 def _check(

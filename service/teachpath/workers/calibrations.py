@@ -9,12 +9,9 @@ from typing import Any
 from teachpath.errors import Conflict, NotFound, UnusableInput
 from teachpath.io.store.store import Store
 from teachpath.recording.frame import fit_frame
-from teachpath.recording.parts import parts_of
-from teachpath.recording.phases import Cut
 from teachpath.recording.settings import RecordingSettings
-from teachpath.recording.verdict import Verdict, judge_again
 from teachpath.records import Calibration, Demonstration, MeasuredCalibration, Scene, TaughtPoint
-from teachpath.workers.closing import TakenSamples, with_positions
+from teachpath.workers.closing import judged_again
 from teachpath.workers.curation import Curation
 from teachpath_proto.keys import is_name
 
@@ -131,22 +128,11 @@ class Calibrations:
         if calibration == demonstration.calibration:
             return {}
         samples = self.store.recordings.samples(demonstration.recording)
-        cut = Cut(demonstration.grasp, demonstration.release)
-        taken = TakenSamples(samples, cut, demonstration.account, calibration, None)
-        account, left_out = with_positions(taken, self.settings)
-        former = Verdict(demonstration.verdict, demonstration.reasons)
-        before = parts_of(samples, cut, demonstration.account, self.settings)
-        verdict = judge_again(former, before, replace(before, whole=account), self.settings)
-        changed = replace(demonstration, calibration=calibration, left_out=left_out)
-        times = Curation(self.store, self.settings, self.scene).trajectory(changed).times
-        return {
-            "calibration": calibration,
-            "account": account,
-            "left_out": left_out,
-            "verdict": verdict.word,
-            "reasons": verdict.reasons,
-            "duration": float(times[-1]),
-        }
+        changed = replace(demonstration, calibration=calibration)
+        changes = judged_again(demonstration, changed, samples, self.settings)
+        moved = replace(changed, **changes)
+        times = Curation(self.store, self.settings, self.scene).trajectory(moved).times
+        return {"calibration": calibration, **changes, "duration": float(times[-1])}
 
     def _present(self, calibration: Calibration) -> Calibration:
         try:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -16,7 +17,7 @@ from teachpath.recording.parts import Parts, parts_of
 from teachpath.recording.phases import Cut
 from teachpath.recording.positions import faults_of
 from teachpath.recording.settings import RecordingSettings
-from teachpath.recording.verdict import Verdict, judge
+from teachpath.recording.verdict import Verdict, judge, judge_again
 from teachpath.records import Account, Calibration, Demonstration, Sample, Trajectory, Vector
 
 
@@ -87,6 +88,27 @@ def with_positions(taken: TakenSamples, settings: RecordingSettings) -> tuple[Ac
     faults = faults_of(ordered, positions, settings)
     account = replace(taken.account, jumps=len(faults.jumped), leaps=faults.leaps, out_of_workspace=faults.outside)
     return account, faults.jumped
+
+
+def judged_again(
+    before: Demonstration, after: Demonstration, samples: Sequence[Sample], settings: RecordingSettings
+) -> dict[str, Any]:
+    """Return what is thought of a demonstration whose calibration or trim has changed, as changes of its row.
+
+    Args:
+        before: as it is stored.
+        after: as it will be.
+        samples: of its recording.
+    """
+    cut = Cut(*after.transport)
+    account, left_out = with_positions(TakenSamples(samples, cut, before.account, after.calibration, None), settings)
+    verdict = judge_again(
+        Verdict(before.verdict, before.reasons),
+        parts_of(samples, Cut(*before.transport), before.account, settings),
+        parts_of(samples, cut, account, settings),
+        settings,
+    )
+    return {"account": account, "left_out": left_out, "verdict": verdict.word, "reasons": verdict.reasons}
 
 
 def _judge(parts: Parts, taken: TakenSamples, settings: RecordingSettings) -> Verdict:

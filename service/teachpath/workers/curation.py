@@ -13,6 +13,7 @@ from teachpath.recording.demonstration import object_trajectory
 from teachpath.recording.phases import Cut
 from teachpath.recording.settings import RecordingSettings
 from teachpath.records import Demonstration, Scene, Trajectory
+from teachpath.workers.closing import judged_again
 
 MARKS: Final = ("", "good", "bad")
 
@@ -66,7 +67,7 @@ class Curation:
         return self.amend(max(discarded, key=lambda d: d.discarded_ns).id, Amendment(discarded=False))
 
     def amend(self, key: str, amendment: Amendment) -> Demonstration:
-        """Change what is said of a demonstration and return it.
+        """Change what is said of a demonstration and return it; one that is trimmed is judged by what is left of it.
 
         Raises:
             NotFound: no such demonstration.
@@ -95,6 +96,8 @@ class Curation:
                 f"{begin} to {end} is no transport phase of a recording with {stored.samples} samples: it needs at "
                 f"least {least} of them"
             )
-        cut = chosen or (stored.grasp, stored.release)
-        times = self.trajectory(replace(stored, trim=cut)).times
-        return {"trim": chosen, "duration": float(times[-1])}
+        samples = self.store.recordings.samples(stored.recording)
+        changed = replace(stored, trim=chosen)
+        changes = judged_again(stored, changed, samples, self.settings)
+        times = self.trajectory(replace(changed, **changes)).times
+        return {"trim": chosen, **changes, "duration": float(times[-1])}

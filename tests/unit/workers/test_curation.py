@@ -85,3 +85,26 @@ def test_a_trim_that_is_no_transport_phase_is_refused(shown: Bench, trim: tuple[
     with pytest.raises(UnusableInput, match="no transport phase of a recording with"):
         shown.recorder.curation.amend(row.id, Amendment(trim=trim))
     assert shown.store.demonstration(row.id) == row
+
+
+def test_what_is_left_of_a_trimmed_demonstration_is_judged(bench: Bench) -> None:
+    bench.begin()
+    holed = [s for i, s in enumerate(demonstration(transport=60)) if not 60 <= i < 75]
+    bench.send(holed)
+    bench.end(120)
+    (row,) = bench.store.demonstrations("lift")
+    assert (row.verdict, row.reasons[-1]) == ("reject", "15 samples lost")
+    trimmed = bench.recorder.curation.amend(row.id, Amendment(trim=(row.grasp, row.grasp + 35)))
+    assert trimmed.reasons == ("while returning, outside what is learned: a gap of 0.32 s, 15 samples lost",)
+    assert trimmed.is_usable
+    assert bench.recorder.curation.amend(row.id, Amendment(trim=(row.grasp + 5, row.release))).verdict == "reject"
+    assert bench.recorder.curation.amend(row.id, Amendment(trim=(0, 0))) == row
+
+
+def test_no_trim_forgives_a_tracker_that_went_away(bench: Bench) -> None:
+    bench.begin()
+    bench.send(demonstration()[:60])
+    bench.end(60)
+    (row,) = bench.store.demonstrations("lift")
+    trimmed = bench.recorder.curation.amend(row.id, Amendment(trim=(row.grasp, row.grasp + 30)))
+    assert (trimmed.verdict, trimmed.reasons) == ("reject", ("the recording ended before the hand let go",))
