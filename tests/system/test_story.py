@@ -14,7 +14,7 @@ from tests.system.processes import wait_until
 
 pytestmark = pytest.mark.system
 
-NEAR = 0.002  # [m] between a place of the path and where the box was carried
+NEAR = 0.003  # [m] from where the box was carried to the edited path
 
 
 def test_what_the_demo_has_learned_is_edited_certified_run_and_replayed(browser: Any, start: Start) -> None:
@@ -59,13 +59,14 @@ def tell(browser: Any, url: str, station: Station) -> None:
     done = operator.executions()[0]
     plan = station.call("GET", f"/plans/{done['plan']}")
     assert (plan["path"], plan["path_version"]) == (path, 2)
-    carried = np.array(station.call("GET", f"/executions/{done['id']}/series?points=1500")["object"])
-    fine = np.array([np.interp(np.linspace(0, len(carried), 6000), range(len(carried)), axis) for axis in carried.T]).T
-    apart = np.linalg.norm(edited(U)[:, None] - fine[None], axis=2).min(axis=1)
-    assert apart.max() < NEAR
     desk.page.locator(f"#replay button[data-execution='{done['id']}']").click(timeout=SLOW)
     slider = desk.page.get_by_label("Instant of the execution")
     slider.wait_for()
     desk.until("teachpath.replayed() !== null")
-    assert float(slider.get_attribute("max") or 0) == pytest.approx(status["duration"], rel=0.1)
+    series = station.call("GET", f"/executions/{done['id']}/series?points=1500")
+    carried = np.array(series["object"])
+    apart = np.linalg.norm(edited(U)[:, None] - carried[None], axis=2).min(axis=0)
+    assert apart.max() < NEAR, apart.max()
+    shown = float(slider.get_attribute("max") or 0)  # what was written when it was opened
+    assert plan["duration"] < shown <= series["times"][-1] - series["times"][0] + 1e-6
     desk.close()
