@@ -11,6 +11,7 @@
 // capture(hand)    hand = {down(event), move(event), up(event)}: while down() has returned true the camera stays;
 //                  up(null) when the gesture was broken off. Further fingers are asked for in down() too and each
 //                  has its up(). Returns what ends it.
+// keys(words)      make the view a place whose keys do what the words say; "" takes it back
 // hold(value)      keep the camera still (true) while e.g. TransformControls drags, or let it go (false)
 
 export class Easel {
@@ -90,6 +91,14 @@ export class Easel {
     return () => {
       this.#hands = this.#hands.filter((other) => other !== hand);
     };
+  }
+
+  keys(words) {
+    const said = { tabindex: "0", role: "application", "aria-label": words };
+    for (const [name, value] of Object.entries(said)) {
+      if (words) this.element.setAttribute(name, value);
+      else this.element.removeAttribute(name);
+    }
   }
 
   hold(value) {

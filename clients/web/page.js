@@ -112,6 +112,7 @@ globalThis.teachpath = {
   opacity: (path) => view.opacity(path),
   ghost: () => run.ghost(),
   replayed: () => run.replayed(),
+  leading: () => run.leading(),
   headset: () => demonstrate.headset(),
   unproject: (x, y, plane) => view.easel.unproject(x, y, plane),
   get editor() {

@@ -1,15 +1,30 @@
 """The page's tab Run as an operator uses it, on a machine that may be too busy for the arm."""
 
+import threading
+import time
 from collections.abc import Callable
 from typing import Any
 
+import numpy as np
+
+from teachpath.motion.puma560 import TOOL_LENGTH
+from teachpath_client import HandReading, Link, Tracker
+from teachpath_proto.keys import Keys
 from tests.system.test_view import Visit, wait_until
 
 RESTING = ("idle", "ended", "faulted")
 # Why the executor holds the arm by itself when the arm's own process gets no turn: an operator then says it again.
 STARVED = ("no joint state", "the arm has taken up no setpoint")
+AGAIN = "let the clutch go"  # what the executor asks for when the clutch is held though the arm does not follow
+# Settings of a station for a machine that is too busy for its arm, and has no graphics card.
+PATIENT = {
+    "TEACHPATH_RECORDING__LONGEST_GAP": "2",
+    "TEACHPATH_EXECUTOR__SILENCE": "5",
+    "TEACHPATH_EXECUTOR__HAND_SILENCE": "5",
+}
 
 Status = dict[str, Any]
+Done = Callable[[], bool]
 
 
 class Operator:
@@ -82,3 +97,66 @@ class Operator:
         except AssertionError:
             raise AssertionError(f"not within {seconds:g} s; {seen[-1]}") from None
         return seen[-1]
+
+
+class Leader(Operator):
+    """Somebody who leads the arm by a live hand; where a busy machine makes it lose the hand, it is led again."""
+
+    def begin(self, hand: str = "this page") -> None:
+        """Let the arm follow a hand, once its clutch is held."""
+        self.page.locator(f"#lead-hand option[value='{hand}']").wait_for(state="attached")
+        self.page.select_option("#lead-hand", hand)
+        self.page.get_by_role("button", name="Lead the arm").click()
+        self.wait_ready()
+
+    def wait_ready(self) -> None:
+        """Wait until the arm waits for the clutch alone; why it was let go is still said then."""
+        self.until(lambda status: status["state"] == "held" and not status["reason"].startswith((*STARVED, AGAIN)))
+
+    def tool(self) -> np.ndarray:
+        """Where the grasp point is drawn [m]."""
+        pose = self._visit.place("/robot/link6")
+        tool: np.ndarray = pose[:3, 3] + TOOL_LENGTH * pose[:3, 2]
+        return tool
+
+    def lead(self, press: Callable[[], None], move: Callable[[], None], let_go: Callable[[], None], done: Done) -> None:
+        """Hold the clutch, move, and wait for what is expected; then let go, and wait until the arm is held."""
+
+        def led() -> bool:
+            self.wait_ready()
+            press()
+            self._visit.wait(lambda: self.status()["state"] == "following" or self.status()["reason"].startswith(AGAIN))
+            move()
+            self._visit.wait(lambda: done() or self.status()["state"] != "following")
+            reached = done()
+            let_go()
+            return reached
+
+        wait_until(led, 90.0)
+        self.wait_ready()
+
+
+class Shown:
+    """A tracker's hand that is where it was put, 50 times a second, on a thread of its own; it has no button."""
+
+    def __init__(self, link: Link, name: str) -> None:
+        self.place = (0.0, 0.0, 0.0)  # [m]
+        self._tracker = Tracker(link, name)
+        self._publisher = link.publisher(Keys().samples(name))
+        self._over = threading.Event()
+        self._thread = threading.Thread(target=self._show, daemon=True)
+
+    def __enter__(self) -> "Shown":
+        self._thread.start()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._over.set()
+        self._thread.join()
+
+    def _show(self) -> None:
+        number = 0
+        while not self._over.wait(0.02):
+            number += 1
+            reading = HandReading(number * 0.02, self.place)
+            self._publisher.put(reading.message(number, time.time_ns()).SerializeToString())

@@ -1,4 +1,4 @@
-"""The page's panel beside a running service: who is there, what is recorded, and what is thought of it."""
+"""The page beside live hands: who is there, what is recorded of them and thought of it, and the arm that they lead."""
 
 import dataclasses
 import json
@@ -6,10 +6,12 @@ import time
 from collections.abc import Iterator
 from typing import Any
 
+import numpy as np
 import pytest
 
 from teachpath.io.store.recordings import read_facts
 from teachpath_client import Link, Tracker
+from tests.system.operators import PATIENT, Leader, Shown
 from tests.system.processes import Service
 from tests.system.test_station import FAST, SHOWN, shown
 from tests.system.test_view import Visit
@@ -17,6 +19,13 @@ from tests.system.test_view import Visit
 pytestmark = pytest.mark.system
 
 SOON = 1.0  # [s] for the page to show that a tracker came or went
+
+
+@pytest.fixture(scope="module")
+def service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Service]:
+    """A station that has patience with hands and arm: when it has none is judged elsewhere."""
+    with Service(tmp_path_factory.mktemp("station") / "data", **PATIENT) as service:
+        yield service
 
 
 @pytest.fixture
@@ -98,3 +107,82 @@ def test_a_recording_is_paused_and_resumed_from_the_page(visit: Visit, service: 
         report = tracker.stop()
     assert (report.received, report.idle, len(report.demonstrations)) == (SHOWN, SHOWN, 0)
     assert visit.said == []
+
+
+# a live hand
+
+
+@pytest.fixture
+def leader(visit: Visit, service: Service) -> Iterator[Leader]:
+    """Somebody at the tab Run who leads the arm, and lets it go in the end."""
+    visit.page.set_viewport_size({"width": 900, "height": 420})  # less to draw
+    visit.page.locator("#tab-run").click()
+    leader = Leader(visit, service)
+    visit.page.locator("#leading").scroll_into_view_if_needed()
+    yield leader
+    visit.page.locator("#leading").get_by_role("button", name="Finish").click()
+    leader.until(lambda status: status["state"] == "ended")
+    assert leader.said == []
+
+
+def test_the_arm_follows_the_page_s_hand_while_the_clutch_is_held_and_says_what_stops_it(
+    visit: Visit, leader: Leader
+) -> None:
+    leader.begin()
+    mouse, keys = visit.page.mouse, visit.page.keyboard
+    begin = leader.tool()
+
+    def ball() -> np.ndarray:
+        return np.array(visit.page.evaluate("teachpath.leading().carry.position"))
+
+    def press() -> None:
+        mouse.move(*visit.page.evaluate("teachpath.project(teachpath.leading().carry.position)"))
+        mouse.down()
+
+    def drag() -> None:
+        x, y = visit.page.evaluate("teachpath.project(teachpath.leading().carry.position)")
+        mouse.move(x - 9, y + 6, steps=3)
+
+    def there() -> bool:
+        return np.linalg.norm(ball() - begin) > 0.03 and np.linalg.norm(leader.tool() - ball()) < 0.002
+
+    visit.wait(lambda: visit.page.evaluate("teachpath.leading().placed"))
+    leader.lead(press, drag, mouse.up, there)
+    after = leader.tool()
+    mouse.move(500, 300, steps=3)  # nobody holds the clutch
+    visit.page.wait_for_timeout(300)
+    np.testing.assert_allclose(leader.tool(), after, atol=1e-4)
+
+    def hold() -> None:
+        visit.page.locator("#view").focus()
+        keys.down("Enter")
+
+    def let_go() -> None:
+        keys.up("PageDown")
+        keys.up("Enter")
+
+    says = visit.page.locator("#leading .says")
+    leader.lead(hold, lambda: keys.down("PageDown"), let_go, lambda: "move the hand back" in says.inner_text())
+    assert leader.tool()[2] < after[2] - 0.1
+
+
+def test_the_page_holds_the_clutch_for_a_tracker_that_has_none(visit: Visit, service: Service, leader: Leader) -> None:
+    button = visit.page.locator("#leading").get_by_role("button", name="Clutch")
+    with Link(service.endpoint) as link, Shown(link, "glove-led") as hand:
+        leader.begin("glove-led")
+        begin = np.zeros(3)
+
+        def press() -> None:
+            hand.place = (0.0, 0.0, 0.0)
+            begin[:] = leader.tool()
+            button.hover()
+            visit.page.mouse.down()
+
+        def move() -> None:
+            hand.place = (0.0, 0.0, 0.05)
+
+        leader.lead(press, move, visit.page.mouse.up, lambda: abs(leader.tool()[2] - begin[2] - 0.05) < 0.002)
+        after = leader.tool()
+        hand.place = (0.0, 0.0, 0.0)
+        visit.page.wait_for_timeout(300)
+        np.testing.assert_allclose(leader.tool(), after, atol=1e-4)

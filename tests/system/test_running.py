@@ -11,7 +11,7 @@ import pytest
 from teachpath.motion.kinematics import link_frames
 from tests.system.access import grave
 from tests.system.carriers import HEADSET, begin, carry, carry_worn, move_hand, phase
-from tests.system.operators import RESTING, Operator, Status
+from tests.system.operators import PATIENT, RESTING, Operator, Status
 from tests.system.processes import Service
 from tests.system.test_view import Visit
 
@@ -23,8 +23,8 @@ ASSETS = Path(__file__).parent / "assets"
 
 @pytest.fixture(scope="module")
 def service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Service]:
-    """A station that takes a headset's hand though its frames are drawn in software: gaps are judged elsewhere."""
-    with Service(tmp_path_factory.mktemp("station") / "data", TEACHPATH_RECORDING__LONGEST_GAP="2") as service:
+    """A station for a busy machine without a graphics card: its patience is judged elsewhere."""
+    with Service(tmp_path_factory.mktemp("station") / "data", **PATIENT) as service:
         yield service
 
 

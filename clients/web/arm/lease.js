@@ -5,14 +5,11 @@ const SECONDS = 6; // [s] that the service waits for a beat
 const BEAT = 2000; // [ms]
 const HEADER = "Teachpath-Lease";
 
-export class ControlLease {
+class ControlLease {
   token = "";
   waiting = false; // asked for, and not yet given
 
-  // `changed()` is called when control was gained, lost or asked for.
-  constructor(changed) {
-    this.changed = changed;
-  }
+  changed() {} // called when control was gained, lost or asked for
 
   get held() {
     return this.token !== "" && !this.waiting;
@@ -70,3 +67,6 @@ export class ControlLease {
     this.changed();
   }
 }
+
+// This page's: whatever it orders the arm goes by it.
+export const lease = new ControlLease();

@@ -53,11 +53,7 @@ export class Editor {
     this.sketch.show(this.active);
     if (this.active) this.#all();
     else this.gizmo.place(null);
-    const label = { tabindex: "0", role: "application", "aria-label": `3-D view, control points of the path. ${HELP}` };
-    for (const [name, value] of Object.entries(label)) {
-      if (this.active) this.easel.element.setAttribute(name, value);
-      else if (this.labelled) this.easel.element.removeAttribute(name);
-    }
+    if (this.active || this.labelled) this.easel.keys(this.active ? `3-D view, control points of the path. ${HELP}` : "");
     this.labelled = this.active;
   }
 

@@ -8,7 +8,7 @@ const STRIDE = 0.036; // [m] between two samples: more would be taken for a jump
 const TELL = 15; // samples between two accounts to the page
 
 let link = null;
-let hand = null; // {position, orientation, tracked, grasp} as the page last said it
+let hand = null; // {position, orientation, tracked, grasp, clutch} as the page last said it
 let heard = 0; // [ms] when it said so
 let newest = null; // of which the last sample was
 
@@ -17,12 +17,12 @@ const sampler = new Sampler(() => {
   send({ ...newest, tracked: hand.tracked && performance.now() - heard < STALE, ms: clock() });
 });
 
-// One stride of the hand after where the page is with it; what it holds, it holds until it is there.
+// One stride of the hand after where the page is with it; what it holds, it holds until it is there, but for the clutch.
 function follow(from, to) {
   const way = to.position.map((value, i) => value - from.position[i]);
   const far = Math.hypot(...way);
   if (far <= STRIDE) return to;
-  return { ...from, position: from.position.map((value, i) => value + (way[i] * STRIDE) / far) };
+  return { ...from, clutch: from.clutch && to.clutch, position: from.position.map((value, i) => value + (way[i] * STRIDE) / far) };
 }
 
 onmessage = async ({ data }) => {

@@ -5,6 +5,7 @@
 import { at, get, post } from "../api.js";
 import { Carry } from "./carry.js";
 import { Courier } from "./courier.js";
+import { name } from "./name.js";
 import { pointer } from "./pointer.js";
 import { Prop } from "./prop.js";
 import { Sampler } from "./sampler.js";
@@ -19,9 +20,6 @@ const FORGET = 0.999; // with every sample in time
 const REACH = 0.08; // [m] within which the recorder lets a hand grasp the object
 const NEAR = 0.3; // [m] of the waiting object, where a hand may grasp it at any moment
 const NOTHING = { kind: "sphere", size: [0.02], position: [0.58, -0.28, 0.6] }; // stands for the object of an empty scene
-
-// The name under which this page is a tracker.
-const name = `page-${Math.random().toString(36).slice(2, 8)}`;
 
 export class Showing {
   phase = "countdown";

@@ -1,6 +1,6 @@
 // The arm: its state in words, a start that has to be meant, hold, resume, step, reverse, the speed; who holds control.
 import { at, get, post } from "../api.js";
-import { ControlLease } from "../arm/lease.js";
+import { lease } from "../arm/lease.js";
 import { bar, element, facts, number, percent, replace, sentence } from "../elements.js";
 import { moving } from "../store.js";
 
@@ -26,7 +26,8 @@ export function control(place, context) {
 class ControlPanel {
   constructor(place, context) {
     Object.assign(this, { place, context });
-    this.lease = new ControlLease(() => this.#look());
+    this.lease = lease;
+    lease.changed = () => this.#look();
     this.parts = parts();
     place.append(...this.parts.all);
     this.parts.buttons.addEventListener("click", (event) => {
@@ -131,7 +132,7 @@ class ControlPanel {
     parts.start.disabled = Boolean(busy) || !state.plan || away || (state.lease?.holder && !lease.held);
     parts.why.textContent = hindrance(state, busy, lease);
     parts.why.hidden = parts.why.textContent === "";
-    for (const button of parts.buttons.children) button.disabled = !busy || !possible(button.dataset.verb, busy.state);
+    for (const button of parts.buttons.children) button.disabled = !busy || !possible(button.dataset.verb, busy);
     replace(parts.who, away ? "Who holds control is not known." : holder(state.lease, lease));
     parts.name.parentElement.hidden = lease.token !== "";
   }
@@ -144,17 +145,21 @@ function hindrance(state, busy, lease) {
   return state.lease?.holder && !lease.held ? `${state.lease.holder} holds control: ask for it below.` : "Keep the button pressed until the bar is full.";
 }
 
-// What makes sense now: the arm is held before it steps, and runs before it is held. Stop and reverse always do.
-function possible(verb, state) {
+// What makes sense now: the arm is held before it steps, and runs before it is held. Stop does always, and
+// reverse where there is a path: not with a live hand.
+function possible(verb, { state, stretch }) {
   if (verb === "hold") return state !== "held";
+  if (isLed(stretch) && ["step", "back", "reverse"].includes(verb)) return false;
   return !["resume", "step", "back"].includes(verb) || state === "held";
 }
 
 // How the execution stands; what is held need not be on the path yet.
 function worded({ state, stretch }) {
   if (state === "held" && stretch) return stretch.startsWith("on ") ? `Held ${stretch}` : `Held while ${stretch}`;
-  return WORDS[state] ?? sentence(state);
+  return state === "following" && isLed(stretch) ? "Following a live hand" : (WORDS[state] ?? sentence(state));
 }
+
+const isLed = (stretch) => stretch.startsWith("mirroring");
 
 function content(status, busy, away) {
   if (away) return [element("p", { class: "state" }, "Not known: the service does not answer. On a lost link the arm holds.")];

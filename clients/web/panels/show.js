@@ -158,12 +158,7 @@ class ShowPanel {
     const { viewer } = this.context.view;
     const node = viewer.scene_tree.children.object;
     if (node) node.object.visible = !hidden;
-    const element = this.context.easel.element;
-    if (hidden) {
-      element.tabIndex = 0;
-      element.setAttribute("role", "application");
-      element.setAttribute("aria-label", "Carry the box: Enter grasps and lets go, arrows move, Page Up and Page Down change the height");
-    } else for (const name of ["tabindex", "role", "aria-label"]) element.removeAttribute(name);
+    this.context.easel.keys(hidden ? "Carry the box: Enter grasps and lets go, arrows move, Page Up and Page Down change the height" : "");
     viewer.set_dirty();
   }
 

@@ -41,6 +41,12 @@ class NewTeleoperation(BaseModel):
     scene: str = Field("paper", description="what stands around the arm")
     scale: float = Field(1.0, ge=0.05, le=5.0, description="of the tool's way over the hand's")
     share: float = Field(0.5, ge=0.05, le=1.0, description="of the joints' speed, acceleration and jerk limits")
+    clutch: str = Field(
+        "",
+        pattern=f"^$|{NAME.pattern}",
+        max_length=64,
+        description="tracker whose button bit 2 is the clutch, e.g. that of a page; empty: the hand's own",
+    )
 
 
 class Speed(BaseModel):
@@ -81,12 +87,15 @@ def _add_beginnings(router: APIRouter, parts: Parts) -> None:
     ) -> ExecutionRow:
         """Let the arm mirror a live hand while its clutch (button bit 2) is pressed; steer and stop it as an execution.
 
+        The clutch may be another tracker's: whoever looks on presses it then, and lets go to hold the arm.
+
         The tool keeps its orientation; the gripper closes and opens with the hand, or with its grasp button (bit 0).
         The arm keeps its limits, it and what it carries stay clear of the scene, and all rests when the clutch is let
         go or the hand is lost.
         """
         calibration = parts.calibrations.get(new.calibration)
-        order = Mirroring(new.tracker, calibration, parts.settings.scene(new.scene), new.scale, new.share)
+        scene = parts.settings.scene(new.scene)
+        order = Mirroring(new.tracker, calibration, scene, new.scale, new.share, new.clutch)
         row = executions.mirror(order, lease=lease, who=who)
         response.headers["Location"] = f"/api/v1/executions/{row.id}"
         return row

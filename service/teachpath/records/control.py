@@ -30,11 +30,12 @@ class Mirroring:
     """A live hand that the arm should mirror.
 
     Attributes:
-        tracker: whose samples drive the arm while its clutch (button bit 2) is pressed.
+        tracker: whose samples drive the arm while its clutch is pressed.
         calibration: to the world from its frame.
         scene: that stands around the arm.
         scale: of the tool's way over the hand's, 0.05 to 5.
         share: of the joints' speed, acceleration and jerk limits, 0.05 to 1.
+        clutch: tracker whose button bit 2 is the clutch; empty: the hand's own.
     """
 
     tracker: str
@@ -42,6 +43,7 @@ class Mirroring:
     scene: Scene
     scale: float = 1.0
     share: float = 0.5
+    clutch: str = ""
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,5 +1,7 @@
 """The arm mirrors a live hand: the clutch, a lost hand, and who may."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -22,13 +24,20 @@ class Held(Bench):
     def __init__(self) -> None:
         super().__init__()
         self.hand, self.buttons, self.shown, self.number = np.zeros(3), 0, True, 0
+        self.page: int | None = None  # buttons of a page that looks on; None: there is none
 
     def sleep(self, duration: float) -> None:
-        if self.shown and self.now // PERIOD_NS % 5 == 0:
+        if self.now // PERIOD_NS % 5 == 0:
             self.number += 1
-            shown = sample(self.number, tuple(self.hand), buttons=self.buttons)
-            self.bus.publish(KEYS.samples("glove"), sample_message(shown).SerializeToString())
+            if self.shown:
+                self.show("glove", self.hand, self.buttons)
+            if self.page is not None:
+                self.show("page", np.ones(3), self.page)
         super().sleep(duration)
+
+    def show(self, tracker: str, hand: np.ndarray, buttons: int) -> None:
+        shown = sample(self.number, tuple(hand), buttons=buttons)
+        self.bus.publish(KEYS.samples(tracker), sample_message(shown).SerializeToString())
 
     def press(self) -> None:
         self.buttons = CLUTCH
@@ -96,3 +105,27 @@ def test_what_does_not_fit_a_live_hand_is_refused() -> None:
     bench.when(lambda: bench.state == "ended", bench.stop.set)
     bench.run()
     assert seen == ["refused"]
+
+
+@pytest.mark.parametrize(("left", "why"), [(0, "press the clutch"), (None, "nothing was heard of page")])
+def test_a_page_that_looks_on_presses_the_clutch_and_letting_go_or_leaving_holds_the_arm(
+    left: int | None, why: str
+) -> None:
+    bench, seen = Held(), []
+    bench.page = 0
+    bench.mirror(replace(ORDER, clutch="page"))
+    bench.after(0.3)
+    bench.when(lambda: True, lambda: seen.append(moved(bench)))  # the hand's own button is no clutch now
+    bench.when(lambda: bench.state == "held", lambda: setattr(bench, "page", CLUTCH))
+    bench.when(lambda: bench.state == "following", lambda: setattr(bench, "hand", np.array([0.0, 0.05, 0.03])))
+    bench.after(2.0)
+    bench.when(lambda: True, lambda: setattr(bench, "page", left))
+    bench.when(lambda: why in bench.statuses[-1].reason, lambda: setattr(bench, "hand", np.ones(3)))
+    bench.after(0.5)
+    bench.when(lambda: True, lambda: seen.append(moved(bench)))
+    bench.when(lambda: True, lambda: bench.command("stop"))
+    bench.when(lambda: bench.state == "ended", bench.stop.set)
+    bench.run()
+    np.testing.assert_allclose(seen, [np.zeros(3), [0.0, 0.05, 0.03]], atol=1e-5)
+    assert standing(bench.setpoints)
+    assert within_limits(bench.setpoints)

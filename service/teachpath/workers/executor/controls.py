@@ -217,7 +217,15 @@ class Controls:
         period = 1.0 / self._settings.rate
         here = self._resting_arm()
         hand = Hand(
-            self._bus, self._keys, order, here, self._motion, hearing=self._hearing, period=period, clock=self._clock
+            self._bus,
+            self._keys,
+            order,
+            here,
+            self._motion,
+            hearing=self._hearing,
+            period=period,
+            silence=self._settings.hand_silence,
+            clock=self._clock,
         )
         return hand, "", order.scene
 

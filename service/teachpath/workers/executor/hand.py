@@ -8,35 +8,31 @@ from typing import Final
 
 import numpy as np
 
-from teachpath.errors import UnusableSample
 from teachpath.io.bus import Bus
-from teachpath.io.wire import decode_sample
 from teachpath.motion.mirror import Mirror
 from teachpath.motion.scene import CollisionModel, Load
 from teachpath.motion.settings import MotionSettings
 from teachpath.motion.stretches import Moment
 from teachpath.recording.demonstration import to_world
 from teachpath.records import Array, Mirroring, Sample
+from teachpath.workers.executor.clutch import CLUTCH, Clutch, Presser, tracked
 from teachpath.workers.executor.grip import Grip, load_of
 from teachpath.workers.executor.hearing import Hearing
 from teachpath_proto.keys import Keys
 
-CLUTCH: Final = 4  # button that is pressed while the arm mirrors the hand
-LOST: Final = 0.15  # s without a tracked sample, after which the hand is lost
 KEPT: Final = 5000  # latencies
-AGAIN: Final = "let the clutch go, and press it again to move the arm"
 LATE: Final = "the arm is late; let the clutch go and press it again"
-WAITING: Final = "press the clutch (button bit 2) to move the arm"
 
 
 class Hand:
     """Drives an execution by the samples of one tracker, as a program does.
 
     Args:
-        order: tracker, calibration, scene and scale.
+        order: tracker, who presses its clutch, calibration, scene and scale.
         here: (6,) where the arm rests [rad].
         hearing: of the arm, which says what its gripper does and where the object is.
         period: between two setpoints [s].
+        silence: after which the hand is lost, or who presses its clutch [s].
         clock: monotonic nanoseconds.
 
     Raises:
@@ -53,9 +49,11 @@ class Hand:
         *,
         hearing: Hearing,
         period: float,
+        silence: float,
         clock: Callable[[], int],
     ) -> None:
         self._order, self._clock, self._hearing = order, clock, hearing
+        self._patience = silence * 1e9  # [ns]
         self._grip = Grip(hearing.present().gripper_closed)
         model = CollisionModel(order.scene)
         self._mirror = Mirror(model, here, settings, scale=order.scale, share=order.share, period=period)
@@ -65,8 +63,8 @@ class Hand:
         self._moment = Moment(np.array(here), still, still, self._grip.closed)
         self._came: deque[tuple[int, bytes]] = deque(maxlen=1)
         self._seen = 0  # [ns of the clock] when the newest tracked sample came
-        self._stopped, self._pressed, self._fresh = False, False, False  # `fresh`: the clutch was open since
-        self._why = WAITING
+        self._clutch = Clutch()
+        self._presser = Presser(bus, keys, order.clutch, clock) if order.clutch else None
         self._latencies: deque[float] = deque(maxlen=KEPT)
         self._answered = 0
         self._handle = bus.subscribe(keys.samples(order.tracker), self._receive)
@@ -85,17 +83,17 @@ class Hand:
     @property
     def held(self) -> bool:
         """Whether the clutch is open, or a hold was asked for."""
-        return not self._pressed
+        return not self._clutch.pressed
 
     @property
     def stopped(self) -> bool:
         """Whether `hold` was asked for and not taken back."""
-        return self._stopped
+        return self._clutch.stopped
 
     @property
     def why_held(self) -> str:
         """Why the arm does not follow, in words."""
-        return self._why
+        return self._clutch.why
 
     @property
     def here(self) -> Array:
@@ -106,7 +104,7 @@ class Hand:
     def doing(self) -> str:
         """What it does, and why the tool is not where the hand is."""
         following = f"mirroring {self._order.tracker}"
-        return f"{following}: {self._mirror.reason}" if self._pressed and self._mirror.reason else following
+        return f"{following}: {self._mirror.reason}" if self._clutch.pressed and self._mirror.reason else following
 
     @property
     def place(self) -> str:
@@ -124,10 +122,12 @@ class Hand:
     def step(self) -> Moment:
         """Advance by one control period; never raises."""
         now = self._clock()
+        if self._presser is not None:
+            self._presser.listen()
         if self._came:
             self._hear(*self._came.pop())
-        if self._pressed and now - self._seen > LOST * 1e9:
-            self._open("the hand was lost; let the clutch go and press it again")
+        if self._clutch.pressed:
+            self._watch(now)
         position, velocity, acceleration = self._mirror.step()
         if self._mirror.answered != self._answered:
             self._answered = self._mirror.answered
@@ -141,18 +141,18 @@ class Hand:
 
     def hold(self) -> None:
         """Open the clutch until `resume`."""
-        self._stopped = True
-        self._open("held")
+        self._clutch.hold()
+        self._mirror.release()
 
     def wait(self, waits: bool) -> None:
         """Open the clutch: the arm is late, and would be where the hand no longer is."""
-        if waits and self._pressed:
-            self._open(LATE)
+        if waits and self._clutch.pressed:
+            self._clutch.open(LATE)
+            self._mirror.release()
 
     def resume(self) -> None:
         """Let the clutch be pressed again."""
-        self._stopped = False
-        self._why = WAITING
+        self._clutch.resume()
 
     def reverse(self) -> None:
         """Hold: a hand's way is not kept."""
@@ -164,41 +164,46 @@ class Hand:
             self.hold()
 
     def close(self) -> None:
-        """Stop listening to the tracker."""
+        """Stop listening to the tracker, and to who presses its clutch."""
         self._handle.close()
+        if self._presser is not None:
+            self._presser.close()
 
     def _receive(self, _: str, payload: bytes) -> None:
         self._came.append((self._clock(), payload))
 
+    def _watch(self, now: int) -> None:
+        """Open the clutch when nobody presses it any more, or nothing is heard of those whom the arm follows."""
+        presser, why = self._presser, ""
+        if now - self._seen > self._patience:
+            why = "the hand was lost; let the clutch go and press it again"
+        elif presser is not None and now - presser.seen > self._patience:
+            why = f"nothing was heard of {self._order.clutch}, who presses the clutch; press it again"
+        if why:
+            self._clutch.open(why)
+        elif presser is not None and not presser.down:
+            self._clutch.hear(False)
+        if not self._clutch.pressed:
+            self._mirror.release()
+
     def _hear(self, when: int, payload: bytes) -> None:
-        try:
-            sample = decode_sample(self._order.tracker, payload, when)
-        except UnusableSample:
-            return
-        if not sample.tracked:
+        sample = tracked(self._order.tracker, payload, when)
+        if sample is None:
             return
         self._seen = when
         arm = self._hearing.newest(when)
         if arm is not None and self._order.scene.carried is not None:
             self._mirror.load = load_of(arm[1], self._mirror.load)
-        if not sample.buttons & CLUTCH:
-            self._fresh = True
-            self._why = WAITING if self._why == AGAIN else self._why
-            if self._pressed:
-                self._open(WAITING)
-        elif self._pressed:
-            self._grip.follow(sample)
-            self._mirror.move(self._world(sample), when)
-        elif self._fresh and not self._stopped:
-            self._pressed, self._fresh, self._why = True, False, ""
+        followed = self._clutch.pressed
+        down = self._presser.down if self._presser is not None else bool(sample.buttons & CLUTCH)
+        if self._clutch.hear(down):
             self._grip.begin(sample)
             self._mirror.press(self._world(sample))
-        elif not self._stopped:
-            self._why = AGAIN
-
-    def _open(self, why: str) -> None:
-        self._mirror.release()
-        self._pressed, self._fresh, self._why = False, False, why
+        elif self._clutch.pressed:
+            self._grip.follow(sample)
+            self._mirror.move(self._world(sample), when)
+        elif followed:
+            self._mirror.release()
 
     def _world(self, sample: Sample) -> Array:
         return to_world(self._order.calibration, np.array(sample.position))

@@ -1,0 +1,106 @@
+// Leading the arm: while the clutch is held, the arm follows this page's hand, or that of a tracker; letting go holds it.
+//
+// The page is a tracker all the while, and its samples say whether the clutch is held: a page that breaks off, is hidden
+// or stands still lets go by itself.
+import { linkFrames } from "../arm/kinematics.js";
+import { Carry } from "./carry.js";
+import { Courier } from "./courier.js";
+import { name } from "./name.js";
+import { pointer } from "./pointer.js";
+import { Prop } from "./prop.js";
+import { Sampler } from "./sampler.js";
+import { steering } from "./steering.js";
+
+const BALL = { kind: "sphere", size: [0.028] }; // [m] what is dragged; it waits at the gripper
+
+export class Leading {
+  pressed = false; // the clutch
+  placed = false; // it is known where the gripper is
+  closed = false; // the gripper
+  #ends = [];
+
+  // `arm` as GET /robot gives it; `scene` around it. `own`: the page's hand leads, else a tracker's does. `button` is the
+  // clutch. `changed()` is called when the clutch or the connection changes, `failed(sentence)` ends the sitting.
+  constructor(easel, scene, arm, { own, button, changed, failed }) {
+    Object.assign(this, { easel, arm, own, button, changed, failed, name: `${name}-lead` });
+    this.carry = new Carry({ ...scene, carried: { ...BALL, position: [0, 0, 0] } });
+    this.link = new Courier(this.name, { changed: (state, sentence) => this.#connection(state, sentence), refused: () => {} });
+    this.sampler = new Sampler((seconds) => this.#tick(seconds));
+  }
+
+  // Connect, and wait for the clutch.
+  async begin() {
+    await this.link.connect();
+    const deeds = { may: () => this.placed && this.link.live, grasp: () => this.#press(true), release: () => this.#press(false) };
+    this.steering = steering(this.easel, this.carry, deeds, { held: true, places: [this.button] });
+    this.#ends.push(() => this.steering.end(), this.#held(deeds));
+    if (this.own) this.#ends.push(pointer(this.easel, this.carry, deeds), () => this.prop?.remove());
+    const hidden = () => document.hidden && this.#press(false);
+    document.addEventListener("visibilitychange", hidden);
+    this.#ends.push(() => document.removeEventListener("visibilitychange", hidden));
+    this.sampler.start();
+  }
+
+  // Where the arm is now, at configuration `q` [rad]: the hand waits at its gripper.
+  follow(q) {
+    if (this.pressed) return;
+    const tool = linkFrames(this.arm.links, q).at(-1);
+    this.carry.position = [12, 13, 14].map((i) => tool[i] + this.arm.tool_length * tool[i - 4]);
+    this.carry.target = [...this.carry.position];
+    this.placed = true;
+    if (this.own) this.prop ??= new Prop(this.easel, BALL);
+    this.#draw();
+  }
+
+  grip(closed) {
+    this.closed = closed;
+    this.changed();
+  }
+
+  end() {
+    this.#press(false);
+    this.sampler.stop();
+    for (const end of this.#ends.splice(0)) end();
+    this.link.close();
+  }
+
+  #held({ grasp, release }) {
+    const down = (event) => {
+      this.button.setPointerCapture(event.pointerId);
+      grasp();
+    };
+    const heard = [["pointerdown", down], ["pointerup", release], ["pointercancel", release], ["lostpointercapture", release]];
+    for (const [name, hear] of heard) this.button.addEventListener(name, hear);
+    return () => heard.forEach(([name, hear]) => this.button.removeEventListener(name, hear));
+  }
+
+  #press(pressed) {
+    if (pressed === this.pressed || (pressed && !(this.placed && this.link.live))) return;
+    this.pressed = this.carry.grasped = pressed;
+    this.carry.target = [...this.carry.position];
+    this.#send();
+    this.#draw();
+    this.changed();
+  }
+
+  #tick(seconds) {
+    this.steering.step(seconds);
+    if (this.pressed && this.carry.step(seconds)) this.#draw();
+    this.#send();
+  }
+
+  #send() {
+    const { carry, closed, pressed } = this;
+    this.link.pose({ position: carry.position, orientation: null, tracked: true, grasp: closed, clutch: pressed });
+  }
+
+  #connection(state, sentence) {
+    if (state === "refused") this.failed(sentence);
+    if (state === "lost") this.#press(false);
+    this.changed();
+  }
+
+  #draw() {
+    this.prop?.place(this.carry.position, this.carry.below(this.carry.position), { grasped: this.pressed, wrong: false });
+  }
+}

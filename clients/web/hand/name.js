@@ -1,0 +1,2 @@
+// The name under which this page is a tracker.
+export const name = `page-${Math.random().toString(36).slice(2, 8)}`;

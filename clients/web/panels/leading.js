@@ -1,0 +1,160 @@
+// Live hand: the arm follows a hand for as long as its clutch is held. What it says of limits and of what is near is told.
+import { at, get, post } from "../api.js";
+import { JointStream } from "../arm/joints.js";
+import { lease } from "../arm/lease.js";
+import { element, facts, hint, replace, sentence } from "../elements.js";
+import { Leading } from "../hand/leading.js";
+
+const HERE = "this page";
+const HOW = [
+  ["Mouse, touch", "press on the ball at the gripper and drag; shift, the wheel or a second finger change the height"],
+  ["Keyboard", "hold Enter; arrows, Page Up and Page Down move"],
+  ["Gamepad", "hold A; left stick moves, right stick changes the height"],
+];
+const WAITING = "press the clutch"; // how the executor begins to say that it does
+
+export function leading(place, context) {
+  const panel = new LeadingPanel(place, context);
+  return { update: (state, changed) => panel.update(state, changed), hide: () => panel.end(), sitting: () => panel.sitting };
+}
+
+class LeadingPanel {
+  constructor(place, context) {
+    Object.assign(this, { context, parts: parts() });
+    const { all, begin, grip, finish, hand } = this.parts;
+    place.append(...all);
+    begin.addEventListener("click", () => this.#begin());
+    grip.addEventListener("click", () => this.sitting?.grip(!this.sitting.closed));
+    finish.addEventListener("click", () => this.end());
+    hand.addEventListener("change", () => this.#paint());
+    addEventListener("pagehide", () => this.sitting?.link.close());
+    this.stream = new JointStream((frame) => this.#hear(frame));
+    this.#paint();
+  }
+
+  update(state, changed) {
+    if (changed.has("trackers")) this.#offer(state.trackers);
+    if (["executor", "connection", "lease"].some((name) => changed.has(name))) this.#paint();
+  }
+
+  // Stop the arm where it is, and let the hand go.
+  async end() {
+    const { sitting, execution } = this;
+    if (!sitting) return;
+    this.#close();
+    if (execution) await this.context.attempt(() => post(at("executions", execution, "stop"), {}, lease.headers));
+  }
+
+  async #begin() {
+    const { hand, clutch, calibration } = this.parts;
+    const { context } = this;
+    const own = hand.value === HERE;
+    const begun = await context.attempt(async () => {
+      const [arm, scenes, scene] = await Promise.all([get("robot"), get("scenes"), this.#scene()]);
+      const deeds = { own, button: clutch, changed: () => this.#paint(), failed: (why) => this.#fail(why) };
+      this.sitting = new Leading(context.easel, scenes.find(({ name }) => name === scene), arm, deeds);
+      await this.sitting.begin();
+      const { name } = this.sitting;
+      const order = own ? { tracker: name } : { tracker: hand.value, calibration: calibration.value, clutch: name };
+      const { id } = await post("teleoperation", { ...order, scene }, lease.headers);
+      this.execution = id;
+      return true;
+    });
+    if (!begun) {
+      this.#close();
+      return;
+    }
+    this.stream.start();
+    if (own) context.easel.keys("Lead the arm: hold Enter, arrows move, Page Up and Page Down change the height");
+    this.#paint();
+    clutch.focus();
+  }
+
+  // What stands around the arm: the chosen task's scene.
+  async #scene() {
+    const { task } = this.context.store.state;
+    return task ? (await get(at("tasks", task))).scene : "paper";
+  }
+
+  #fail(why) {
+    this.end();
+    this.context.messages.say(why, "error");
+  }
+
+  #close() {
+    this.stream.stop();
+    this.sitting?.end();
+    if (this.execution && this.sitting?.own) this.context.easel.keys("");
+    this.sitting = this.execution = null;
+    this.#paint();
+  }
+
+  #hear({ position, status }) {
+    if (!this.sitting) return;
+    this.sitting.follow(position);
+    if (status?.execution === this.execution) this.#tell(status);
+  }
+
+  // Whoever stops the arm ends the sitting too.
+  #tell(status) {
+    if (["ended", "faulted"].includes(status.state)) {
+      this.#close();
+      this.context.messages.say(`The arm follows no hand any more: ${status.reason || "it was stopped"}.`, status.state === "faulted" ? "error" : "note");
+    } else this.#say(inWords(status, this.sitting));
+  }
+
+  #say(words) {
+    if (this.parts.says.textContent !== words) this.parts.says.textContent = words;
+  }
+
+  // Trackers that could lead: not the pages.
+  async #offer(trackers) {
+    const names = [HERE, ...trackers.map(({ name }) => name).filter((name) => !name.startsWith("page-"))];
+    replace(this.parts.hand, names.map((name) => element("option", { value: name }, name)));
+    if (names.length > 1) {
+      const measured = await get("calibrations").catch(() => []);
+      const known = ["identity", ...new Set(measured.map(({ calibration }) => calibration.name))];
+      replace(this.parts.calibration, known.map((name) => element("option", { value: name }, name)));
+    }
+    this.#paint();
+  }
+
+  #paint() {
+    const { parts, sitting, context } = this;
+    const { executor, connection, lease: there } = context.store.state;
+    const busy = executor && !["idle", "ended", "faulted"].includes(executor.state);
+    parts.idle.hidden = Boolean(sitting);
+    parts.active.hidden = !sitting;
+    parts.begin.disabled = Boolean(busy) || connection !== "live" || Boolean(there?.holder && !lease.held);
+    parts.from.hidden = parts.hand.value === HERE || !parts.hand.value;
+    if (!sitting) return;
+    parts.grip.hidden = !sitting.own;
+    parts.grip.textContent = sitting.closed ? "Open the gripper" : "Close the gripper";
+    parts.clutch.classList.toggle("pressed", sitting.pressed);
+    parts.clutch.setAttribute("aria-pressed", String(sitting.pressed));
+    if (executor?.execution === this.execution && executor) this.#tell(executor);
+  }
+}
+
+function inWords({ state, reason, stretch }, { own }) {
+  if (state === "following") return `The arm follows. ${sentence(stretch.split(": ").slice(1).join(": "))}`.trim();
+  if (state === "stopping") return "Let go: the arm comes to rest.";
+  if (!reason.startsWith(WAITING)) return `The arm is held: ${reason}.`;
+  return own ? "The arm is held. Press on the ball at the gripper and drag it, or hold the clutch." : "The arm is held. Hold the clutch, and it follows the hand.";
+}
+
+function parts() {
+  const button = (text, attributes = {}) => element("button", { type: "button", ...attributes }, text);
+  const select = (id, ...options) => element("select", { id }, options.map((name) => element("option", { value: name }, name)));
+  const field = (input, words) => element("p", { class: "field" }, element("label", { for: input.id }, words), input);
+  const [hand, calibration] = [select("lead-hand", HERE), select("lead-calibration", "identity")];
+  const from = field(calibration, "Calibration");
+  const begin = button("Lead the arm", { class: "primary" });
+  const idle = element("div", {}, hint("Move the arm by hand, without a path: it follows while the clutch is held, and rests when it is let go."), field(hand, "Hand"), from, element("p", { class: "orders" }, begin));
+  const says = element("p", { class: "says", role: "status" });
+  const clutch = button("Clutch: hold to move the arm", { class: "primary hold", "aria-pressed": "false", title: "Or hold Enter" });
+  const [grip, finish] = [button("Close the gripper"), button("Finish")];
+  const how = element("details", {}, element("summary", {}, "How to lead the arm"), facts(HOW));
+  const active = element("div", { hidden: "" }, says, element("p", { class: "orders" }, clutch), element("p", { class: "orders" }, grip, finish), how);
+  return { all: [idle, active], idle, active, hand, calibration, from, begin, says, clutch, grip, finish };
+}
