@@ -4,6 +4,7 @@ import { runOf } from "./store.js";
 
 const SHORTEST = 250; // [ms] first pause before connecting again
 const LONGEST = 5000;
+const CHOSEN = "task"; // the key that keeps the choice while the page is reloaded
 const ASK = 3000; // [ms] how often to ask while there is no WebSocket
 
 // What is read anew when a resource of a topic has changed.
@@ -31,6 +32,7 @@ export class Feed {
     this.store.subscribe((state, changed) => {
       if (changed.has("runs") || changed.has("run")) this.#readNewest(state);
       if (!changed.has("task")) return;
+      sessionStorage.setItem(CHOSEN, state.task);
       this.store.set({ demonstrations: null, runs: null, jobs: null, newest: {}, run: "", path: "", focus: null });
       this.read(...OF_TASK);
     });
@@ -77,10 +79,12 @@ export class Feed {
     this.store.set({ newest: { ...this.store.state.newest, ...Object.fromEntries(read.map((path) => [path.id, path])) } });
   }
 
-  // A task that is gone, or none, gives way to the newest.
+  // A task that is gone, or none, gives way to the one that was chosen in this browser tab, else to the newest.
   #choose(tasks) {
     const names = tasks.map((task) => task.name);
-    if (!names.includes(this.store.state.task)) this.store.set({ task: names.at(-1) ?? "" });
+    if (names.includes(this.store.state.task)) return;
+    const kept = sessionStorage.getItem(CHOSEN);
+    this.store.set({ task: names.includes(kept) ? kept : (names.at(-1) ?? "") });
   }
 
   #connect(connected) {

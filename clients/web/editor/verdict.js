@@ -1,5 +1,5 @@
 // What the arm thinks of the draft: a sentence, the stretch that fails, what to move, and the colours along the curve.
-import { drawing, element, number, replace } from "../elements.js";
+import { drawing, element, number, replace, sentence } from "../elements.js";
 import { movedBy } from "./curve.js";
 import { MEASURES, colouring, ends } from "./scale.js";
 
@@ -34,19 +34,19 @@ export function verdict(place, editor) {
 function content({ draft, verdict }) {
   if (!verdict || verdict.waiting) return [element("p", { class: "note" }, "The service is looking at the curve …")];
   if (verdict.refusal) return [element("p", { class: "failed" }, verdict.refusal)];
-  const { failure, duration, sentence, lengths, clearance } = verdict.assessment;
+  const { failure, duration, sentence: outlook, lengths, clearance } = verdict.assessment;
   if (!failure) {
     const facts = `${number(lengths.at(-1), 3, "m")}, about ${number(duration, 2, "s")}, least clearance ${number(1000 * Math.min(...clearance), 0, "mm")}`;
-    return [element("p", { class: "good" }, `${sentence[0].toUpperCase()}${sentence.slice(1)}.`), element("p", { class: "note" }, facts)];
+    return [element("p", { class: "good" }, `${sentence(outlook)}.`), element("p", { class: "note" }, facts)];
   }
   const { stretch, reason, remedy } = failure;
   const pinned = draft.isPinned(remedy.control_point);
   const size = Math.hypot(...remedy.move);
   return [
     element("p", { class: "failed" }, `From ${number(stretch[0], 3)} to ${number(stretch[1], 3, "m")} the arm cannot follow: ${reason}.`),
-    element("p", {}, remedy.sentence),
+    element("p", {}, `${sentence(remedy.sentence)}.`),
     size > 0 &&
-      element("button", { type: "button", id: "edit-remedy", "data-key": "remedy", ...(pinned && { disabled: "" }) }, `Move control point ${remedy.control_point + 1} by ${number(1000 * size, 0, "mm")}`),
+      element("p", { class: "orders" }, element("button", { type: "button", id: "edit-remedy", "data-key": "remedy", ...(pinned && { disabled: "" }) }, `Move control point ${remedy.control_point + 1} by ${number(1000 * size, 0, "mm")}`)),
     size > 0 && pinned && element("p", { class: "note" }, "It is pinned; unlock start and goal first."),
   ];
 }

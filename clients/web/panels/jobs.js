@@ -14,7 +14,7 @@ export function jobs(place, { attempt }) {
       if (!changed.has("jobs")) return;
       const all = state.jobs ?? [];
       const running = all.filter((job) => job.state === "running" || job.state === "queued");
-      const failed = all.at(-1)?.state === "failed" ? [all.at(-1)] : [];
+      const failed = all.at(-1)?.state === "failed" && all.at(-1).kind !== "plan" ? [all.at(-1)] : []; // a path's card says why it has no plan
       place.parentElement.hidden = !running.length && !failed.length;
       replace(place, running.map(line), failed.map((job) => element("p", { class: "job failed" }, `${DOING[job.kind] ?? sentence(job.kind)} failed: ${job.message}`)));
     },

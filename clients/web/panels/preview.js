@@ -87,7 +87,7 @@ function content(path, plan, job, working, newer) {
   if (working) return [who, element("p", { class: "hint" }, job.message || "Planning …"), bar(job.fraction, "planning")];
   if (!plan) {
     const why = job?.state === "failed" && element("p", { class: "failed" }, `It cannot be run: ${job.message}`);
-    return [who, why || hint("This path has no certified motion yet.")];
+    return why ? [who, why, next("edit", "Edit the path")] : [who, hint("This path has no certified motion yet.")];
   }
   const { certificate } = plan;
   const uses = ["position_use", "velocity_use", "acceleration_use", "jerk_use", "torque_use"].map((name) => certificate[name]);
