@@ -13,13 +13,20 @@ export function journal(place, button, store) {
   let before = store.state;
   let unseen = 0;
   let entries = [];
+  let away = false;
+  // Between lost and live it connects, perhaps several times.
+  const link = ({ connection }) => {
+    if (connection !== (away ? "live" : "lost")) return [];
+    away = !away;
+    return [away ? "The service does not answer any more" : "The service answers again"];
+  };
   const paint = () => {
     const nothing = element("li", {}, hint("Nothing since this page was opened. Recordings, learning, plans and what the arm does are noted here."));
     replace(list, entries.length ? entries.map(line) : nothing);
     replace(button, unseen ? `Events (${unseen})` : "Events");
   };
   store.subscribe((state) => {
-    const texts = happened(before, state);
+    const texts = [...link(state), ...happened(before, state)];
     before = state;
     if (!texts.length) return;
     const at = new Date().toLocaleTimeString("en-GB");
@@ -40,8 +47,6 @@ const line = ({ at, text }) => element("li", {}, element("time", {}, at), elemen
 function happened(before, now) {
   const same = before.task === now.task;
   return [
-    before.connection === "live" && now.connection === "lost" && "The connection to the service broke off",
-    before.connection === "lost" && now.connection === "live" && "Connected to the service again",
     ...pairs(before, now, "tasks", "name").map(([old, task]) => !old && `Task ${task.name} was made`),
     ...moves(before.trackers, now.trackers, "name").map(([name, here]) => `Tracker ${name} ${here ? "is here" : "has left"}`),
     ...moves(before.recordings, now.recordings, "tracker").map(([name, here]) => `Recording from ${name} ${here ? "began" : "ended"}`),

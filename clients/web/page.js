@@ -15,6 +15,7 @@ import { Gallery } from "./gallery.js";
 import { header } from "./header.js";
 import { journal } from "./journal.js";
 import { Messages } from "./messages.js";
+import { newTask } from "./newtask.js";
 import { panel as demonstrate } from "./panels/demonstrate.js";
 import { panel as edit } from "./panels/edit.js";
 import { panel as run } from "./panels/run.js";
@@ -66,6 +67,7 @@ const context = {
 };
 const panels = [demonstrate, ways, edit, run];
 for (const panel of panels) panel.mount(tabs.add(panel.id, panel.title), context);
+newTask(byId("new-task"), context);
 journal(byId("events"), byId("events-button"), store);
 header(context, { task: byId("task"), stop: byId("stop"), control: byId("control") });
 store.subscribe((state, changed) => {

@@ -54,12 +54,31 @@ def test_nothing_serious_keeps_anybody_from_the_page(visit: Visit, scheme: Any) 
         for name in TABS:
             tab(visit, name)
             found += grave(page, f"{task}, {name}")
-    page.locator("#events-button").click()
-    found += grave(page, "events")
-    page.keyboard.press("Escape")
+    for name in ("events", "new-task"):
+        page.locator(f"#{name}-button").click()
+        found += grave(page, name)
+        page.keyboard.press("Escape")
     page.select_option("#task", TASK)
     page.emulate_media(color_scheme="light")
     assert found == []
+
+
+def test_a_task_is_made_in_the_page_and_kept_through_a_reload(visit: Visit, service: Service) -> None:
+    page = visit.page
+    for name in (TASK, "another"):
+        page.locator("#new-task-button").click()
+        page.get_by_label("Name", exact=True).fill(name)
+        page.get_by_label("Scene", exact=True).select_option("empty")
+        page.get_by_role("button", name="Make the task").click()
+        if name == TASK:
+            assert "already" in page.locator("#message .error").inner_text()
+            page.keyboard.press("Escape")
+    visit.wait(lambda: page.locator("#task").input_value() == "another")
+    assert service.call("GET", "/tasks/another")["scene"] == "empty"
+    page.select_option("#task", TASK)
+    page.reload()
+    page.wait_for_selector("html[data-scene=ready]", state="attached", timeout=30_000)
+    assert page.locator("#task").input_value() == TASK
 
 
 def test_no_request_leaves_the_machine(visit: Visit, service: Service) -> None:
@@ -173,7 +192,7 @@ def test_after_a_restart_of_the_service_the_page_shows_the_truth_again(visit: Vi
         assert "At rest" in visit.page.locator("#arm .state").inner_text()
         visit.page.locator("#events-button").click()
         said = visit.page.locator("#events").inner_text()
-        assert said.index("Connected to the service again") < said.index("The connection to the service broke off")
+        assert said.index("The service answers again") < said.index("The service does not answer any more")
 
 
 def test_the_review_package_opens_without_the_service(browser: Any, service: Service, tmp_path: Path) -> None:

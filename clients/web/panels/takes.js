@@ -60,7 +60,14 @@ function content(state, gallery) {
       kept.length > 0 && element("button", { type: "button", "data-verb": "discard", "data-key": "discard" }, "Discard the last"),
       kept.length < demonstrations.length && element("button", { type: "button", "data-verb": "restore", "data-key": "restore" }, "Undo discard"),
     ),
+    count("reject") < kept.length && saved(task),
   ];
+}
+
+// Files of all that is usable: for other programs, or to be imported again.
+function saved(task) {
+  const link = (format, name) => element("a", { href: `/api/v1/${at("tasks", task, "export")}?format=${format}`, download: "" }, name);
+  return element("p", { class: "note saved" }, "Save them to files: ", link("mcap", "MCAP"), ", ", link("csv", "CSV"), " or ", link("lerobot", "LeRobot"), ".");
 }
 
 function take(d, small) {

@@ -1,0 +1,38 @@
+// A new task: its name and the scene that it is done in, in a popover of the header.
+import { at, get, put } from "./api.js";
+import { element, hint } from "./elements.js";
+
+export function newTask(place, { store, feed, attempt, open }) {
+  const name = element("input", { type: "text", id: "new-name", required: "", maxlength: "64", pattern: "[A-Za-z0-9._\\-]+", title: "letters, digits, '.', '_' or '-'", autocomplete: "off" });
+  const scene = element("select", { id: "new-scene" });
+  const form = element(
+    "form",
+    {},
+    element("h2", {}, "New task"),
+    hint("What is shown from now on for another purpose is learned on its own. The scene says what stands around the arm."),
+    element("p", { class: "field" }, element("label", { for: "new-name" }, "Name"), name),
+    element("p", { class: "field" }, element("label", { for: "new-scene" }, "Scene"), scene),
+    element("p", { class: "orders" }, element("button", { type: "submit", class: "primary" }, "Make the task")),
+  );
+  place.append(form);
+  place.addEventListener("toggle", async (event) => {
+    if (event.newState !== "open") return;
+    const scenes = (await attempt(() => get("scenes"))) ?? [];
+    const used = store.state.tasks?.find((task) => task.name === store.state.task)?.scene;
+    scene.replaceChildren(...scenes.map((one) => element("option", { value: one.name, selected: one.name === used && "" }, one.name)));
+    name.focus();
+  });
+  form.addEventListener("submit", (event) => {
+    event.preventDefault();
+    attempt(async () => {
+      const wanted = name.value.trim();
+      if (store.state.tasks?.some((task) => task.name === wanted)) throw new Error(`There is a task ${wanted} already: choose it above, or give another name.`);
+      await put(at("tasks", wanted), { scene: scene.value });
+      await feed.read("tasks");
+      store.set({ task: wanted });
+      place.hidePopover();
+      name.value = "";
+      open("demonstrate");
+    });
+  });
+}
