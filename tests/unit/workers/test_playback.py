@@ -37,7 +37,7 @@ def played(arrives: Arrival, left_out: Iterable[int] = (), seconds: float = 2.0)
             nominal = round(1e9 * (1000 + k * PERIOD))
             p, v, a = wanted_at(k * PERIOD)
             player.take(Setpoint(k, nominal, nominal, p, v, a, False, "e"), round(1e9 * (1000 + ms / 1e3)))
-        player.play(0.001)
+        player.play(0.001, round(1e9 * (1000 + ms / 1e3)))
         log.append(np.stack([player.wanted.position, player.wanted.velocity, player.wanted.acceleration]))
     return player, np.array(log)
 
@@ -96,7 +96,7 @@ def test_who_is_behind_catches_up_at_a_standstill_without_a_jump() -> None:
             player.take(Setpoint(k, round(1e9 * k * PERIOD), 0, p, v, a, k * PERIOD > 2.9, "e"), round(1e6 * ms))
         if ms % 2:  # its machine has time for half of what is to be done
             continue
-        player.play(0.001)
+        player.play(0.001, round(1e6 * ms))
         wanted = player.wanted
         log.append(np.stack([wanted.position, wanted.velocity, wanted.acceleration]))
         if player.reached is not None and ms == 2000:
@@ -111,13 +111,25 @@ def test_who_is_behind_catches_up_at_a_standstill_without_a_jump() -> None:
     assert np.all(np.abs(played[:, 2]) <= ACCELERATION)
 
 
+def test_a_player_that_computes_in_bursts_is_never_ahead_of_its_setpoints() -> None:
+    player = Playback(START, delay=DELAY, silence=SILENCE)
+    for burst in range(40):  # a rest of a second, the move, a rest: each 0.1 s of it heard, then played
+        for k in range(25 * burst, 25 * burst + 25):
+            p, v, a = wanted_at(k * PERIOD - 1.0)
+            player.take(Setpoint(k, round(1e9 * k * PERIOD), 0, p, v, a, False, "e"), round(1e8 * burst))
+        for ms in range(100 * burst, 100 * burst + 100):
+            player.play(0.001, round(1e6 * ms))
+            np.testing.assert_allclose(player.wanted.position, wanted_at(ms / 1e3 + 0.001 - DELAY - 1.0)[0], atol=1e-6)
+    assert player.late == 0
+
+
 def test_another_execution_begins_from_where_the_arm_is() -> None:
     player, log = played(in_time)
     now = round(1e9 * 1010)
     player.take(Setpoint(0, now, now, GOAL + 0.004, START, START, False, "next"), now)
     steps = []
-    for _ in range(200):
-        player.play(0.001)
+    for ms in range(200):
+        player.play(0.001, now + round(1e6 * ms))
         steps.append(player.wanted.position)
     assert np.abs(np.diff([log[-1, 0], *steps], axis=0)).max() < 1e-4
     np.testing.assert_allclose(steps[-1], GOAL + 0.004, atol=1e-9)

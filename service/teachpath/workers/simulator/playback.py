@@ -48,6 +48,7 @@ class Playback:
         self._waiting: deque[Setpoint] = deque()
         self._last: Setpoint | None = None  # the newest that was reached
         self._begin, self._played, self._rate = 0, 0.0, 1.0  # first nominal time [ns], instant behind it [s]
+        self._zero = 0  # [ns] of real time, from when on the player would have played if it never was late
         self._offset: tuple[Array, Array, float] = (still, still, HANDED)  # what is handed back, and for how long
         self.wanted = Wanted(np.array(position), still, still)
         self.missed = self.late = 0
@@ -101,8 +102,8 @@ class Playback:
         if len(self._waiting) < KEPT:
             self._waiting.append(setpoint)
 
-    def play(self, dt: float) -> Setpoint | None:
-        """Go on by `dt` [s] of real time; returns the newest setpoint that was reached by that, if any."""
+    def play(self, dt: float, now: int) -> Setpoint | None:
+        """Go on by `dt` [s] of real time to `now` [ns]; returns the newest setpoint that was reached, if any."""
         if self._last is None and not self._waiting:
             return None
         self._pace(dt)
@@ -110,7 +111,7 @@ class Playback:
         reached = None
         while self._waiting and self._at(self._waiting[0]) <= self._played:
             self._last = reached = self._waiting.popleft()
-        reached = self._let_go() or reached
+        reached = self._let_go(now) or reached
         self._starved = self._starved + dt if self._ahead() < 0.0 else 0.0
         if self._last is not None:
             self._want(dt, handing=self._alone and (reached is not None or bool(self._waiting)))
@@ -122,6 +123,7 @@ class Playback:
         self._last, self._begin = None, setpoint.nominal_ns
         waited = (now - setpoint.nominal_ns) / 1e9
         self._played = (waited if 0.0 <= waited <= WRONG else 0.0) - self._delay
+        self._zero = now - round((self._played + self._delay) * 1e9)
         self._rate, self.missed, self.late = 1.0, 0, 0
         self._alone = True
 
@@ -132,12 +134,12 @@ class Playback:
         newest = self._waiting[-1] if self._waiting else self._last
         return self._at(newest) - self._played if newest is not None else 0.0
 
-    def _let_go(self) -> Setpoint | None:
-        """Skip what waits of a standstill, but for the delay: who is late there has lost nothing but time."""
-        reached = None
-        while len(self._waiting) > 1 and self._ahead() > self._delay and _same_rest(self._last, self._waiting):
+    def _let_go(self, now: int) -> Setpoint | None:
+        """Skip what waits of a standstill and was due: who is late there has lost nothing but time."""
+        reached, due = None, (now - self._zero) / 1e9 - self._delay
+        while len(self._waiting) > 1 and self._at(self._waiting[0]) <= due and _same_rest(self._last, self._waiting):
             self._last = reached = self._waiting.popleft()
-            self._played = max(self._played, self._at(reached))
+            self._played = self._at(reached)
         return reached
 
     def _pace(self, dt: float) -> None:

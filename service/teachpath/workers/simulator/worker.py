@@ -151,7 +151,7 @@ class Simulator:
         with self._lock:
             self._hear()
             if now > since:  # the clock may be set back
-                self._playback.play((now - since) / 1e9)
+                self._playback.play((now - since) / 1e9, now)
         return now
 
     def _receive(self, _: str, payload: bytes) -> None:
@@ -180,7 +180,7 @@ class Simulator:
         except UnusableInput as error:
             log.warning("left out: %s", error)
         self._hear()
-        reached = self._playback.play(STEP_NS / 1e9)
+        reached = self._playback.play(STEP_NS / 1e9, now)
         if reached is not None:
             self._grip(reached.gripper_closed)
 
