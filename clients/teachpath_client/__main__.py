@@ -157,6 +157,7 @@ def _tracker(options: argparse.Namespace) -> None:
         tracker = Tracker(link, options.tracker, prefix=options.prefix)
         print(f"recording {options.task} from {options.source}; Ctrl-C ends it", file=sys.stderr)
         tracker.hear(status.take)
+        pedalled = _one_after_the_other(status.readings, pedalled)
         if source.capabilities.touch:
             feeling = Feeling(cast("TouchSource", source))
             tracker.hear(feeling.take)

@@ -6,13 +6,18 @@ Where the output is no terminal, each change is a line of its own. A press of th
 from __future__ import annotations
 
 import threading
+import time
+from collections.abc import Callable, Iterator
 from typing import TextIO
 
+from teachpath_client.reading import HandReading
 from teachpath_proto import tracker_pb2
 
 BELL = "\a"
 CLEARED = "\r\x1b[K"
 MARKS = {"clean": "+", "repaired": "~", "reject": "x"}
+SILENT = 3.0  # [s] after which a station that says nothing records nothing; it speaks each second
+GONE = f"the station has said nothing for {SILENT:g} s; what is shown now may not be recorded: is it still recording?"
 WORDS = {
     "recording": "recording",
     "pausing": "pauses after this take",
@@ -28,32 +33,36 @@ class Status:
     Args:
         out: where it is shown.
         live: whether the line may be written over; default: when `out` is a terminal.
+        clock: [s] that never runs back.
     """
 
-    def __init__(self, out: TextIO, *, live: bool | None = None) -> None:
+    def __init__(self, out: TextIO, *, live: bool | None = None, clock: Callable[[], float] = time.monotonic) -> None:
         self._out = out
         self._live = out.isatty() if live is None else live
         self._lock = threading.Lock()
+        self._clock, self._heard = clock, clock()
         self._shown = self._newest = ""
 
     def take(self, payload: bytes) -> None:
         """Show a `HandFeedback` as it came."""
         feedback = tracker_pb2.HandFeedback.FromString(payload)
         with self._lock:
+            self._heard = self._clock()
             newest = feedback.newest
             if newest.demonstration != self._newest:
                 self._newest = newest.demonstration
                 self._line(verdict_line(newest))
-            shown = standing_line(feedback)
-            if shown == self._shown:
-                return
-            self._shown = shown
-            if self._live:
-                bell = BELL if feedback.state == "countdown" else ""
-                self._out.write(f"{CLEARED}{shown}{bell}")
-            else:
-                self._out.write(f"{shown}\n")
-            self._out.flush()
+            self._show(standing_line(feedback), bell=feedback.state == "countdown")
+
+    def readings(self, readings: Iterator[HandReading]) -> Iterator[HandReading]:
+        """Pass readings on, and say so when the station no longer speaks of them."""
+        with self._lock:
+            self._heard = self._clock()
+        for reading in readings:
+            with self._lock:
+                if self._clock() - self._heard > SILENT:
+                    self._show(GONE, bell=True)
+            yield reading
 
     def end(self) -> None:
         """Leave the line."""
@@ -61,6 +70,13 @@ class Status:
             if self._live and self._shown:
                 self._out.write("\n")
                 self._out.flush()
+
+    def _show(self, shown: str, *, bell: bool) -> None:
+        if shown == self._shown:
+            return
+        self._shown = shown
+        self._out.write(f"{CLEARED}{shown}{BELL * bell}" if self._live else f"{shown}\n")
+        self._out.flush()
 
     def _line(self, text: str) -> None:
         self._out.write(f"{CLEARED if self._live else ''}{text}\n")

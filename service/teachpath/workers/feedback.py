@@ -18,7 +18,7 @@ from teachpath.records import Demonstration, Phase
 from teachpath_proto.keys import Keys
 
 LOOK = 0.03  # [s] between looks: what a hand feels it should feel at once
-AGAIN = 1.0  # [s] after which a hand that holds something is told so again
+AGAIN = 1.0  # [s] after which the same is said again: a hand that hears nothing knows that nobody records it
 HOLDING = (Phase.GRASP, Phase.TRANSPORT)
 
 
@@ -43,7 +43,7 @@ class Standing:
 
 
 class Feedback:
-    """Publishes how each recording stands, whenever that changes.
+    """Publishes how each recording stands, whenever that changes and once a second.
 
     Args:
         standings: gives how the running recordings stand.
@@ -62,7 +62,7 @@ class Feedback:
     ) -> None:
         self._bus, self._keys, self._clock = bus, keys, clock
         self._standings, self._demonstration = standings, demonstration
-        self._told: dict[str, tuple[Standing, float]] = {}
+        self._told: dict[str, tuple[Standing, float, bytes]] = {}  # by tracker, what was said when
         self._stopped = threading.Event()
         self._thread: threading.Thread | None = None
 
@@ -81,25 +81,30 @@ class Feedback:
             self.look()
 
     def look(self) -> None:
-        """Publish what has changed since the last look."""
+        """Publish what has changed since the last look, and what was not said for a second."""
         now, standings = self._clock(), {standing.tracker: standing for standing in self._standings()}
-        for tracker, (before, _) in list(self._told.items()):
+        for tracker, (before, _, _) in list(self._told.items()):
             if tracker not in standings:
                 del self._told[tracker]
-                self._tell(Standing(tracker, before.task, "", "", takes=before.takes, newest=before.newest))
+                ended = Standing(tracker, before.task, "", "", takes=before.takes, newest=before.newest)
+                self._tell(tracker, self._said(ended))
         for tracker, standing in standings.items():
-            last = self._told.get(tracker)
-            again = last is not None and standing.phase in HOLDING and now - last[1] >= AGAIN
-            if last is None or last[0].told_as != standing.told_as or again:
-                self._told[tracker] = (standing, now)
-                self._tell(standing)
+            last, at, said = self._told.get(tracker, (None, now, b""))
+            changed = last is None or last.told_as != standing.told_as
+            if changed or now - at >= AGAIN:
+                said = self._said(standing) if changed else said
+                self._told[tracker] = (standing, now, said)
+                self._tell(tracker, said)
 
     def _run(self) -> None:
         while not self._stopped.wait(LOOK):
             self.look()
 
-    def _tell(self, standing: Standing) -> None:
-        payload = encode_feedback(
+    def _tell(self, tracker: str, said: bytes) -> None:
+        self._bus.publish(self._keys.feedback(tracker), said)
+
+    def _said(self, standing: Standing) -> bytes:
+        return encode_feedback(
             self._newest(standing.newest),
             task=standing.task,
             phase=standing.phase,
@@ -110,7 +115,6 @@ class Feedback:
             takes=standing.takes,
             sign=standing.sign,
         )
-        self._bus.publish(self._keys.feedback(standing.tracker), payload)
 
     def _newest(self, key: str) -> Demonstration | None:
         try:

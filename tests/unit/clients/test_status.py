@@ -4,7 +4,8 @@ import io
 
 import pytest
 
-from teachpath_client.status import CLEARED, Status
+from teachpath_client.reading import HandReading
+from teachpath_client.status import CLEARED, GONE, Status
 from teachpath_proto import tracker_pb2
 
 
@@ -71,3 +72,27 @@ def test_on_a_terminal_the_line_is_written_over_and_a_countdown_sounds() -> None
 @pytest.mark.parametrize("sign", ["toggle", "discard"])
 def test_what_a_fist_offers_is_shown(sign: str) -> None:
     assert f"open the fist now to {sign}" in shown([feedback("recording", sign=sign)], live=False)
+
+
+def test_a_station_that_says_nothing_is_said_once_until_it_speaks_again() -> None:
+    out, now = io.StringIO(), [0.0]
+    status = Status(out, live=False, clock=lambda: now[0])
+    stream = status.readings(iter([HandReading(i * 0.5, (0.0, 0.0, 0.0)) for i in range(30)]))
+    for _ in range(12):
+        now[0] += 0.5
+        if now[0] <= 2.0:
+            status.take(feedback("recording"))
+        next(stream)
+    assert out.getvalue().splitlines() == ["lift: recording; 0 takes", GONE]
+    status.take(feedback("recording"))
+    next(stream)
+    assert out.getvalue().splitlines()[2:] == ["lift: recording; 0 takes"]
+
+
+def test_a_station_that_speaks_each_second_is_not_missed() -> None:
+    out, now = io.StringIO(), [100.0]
+    status = Status(out, live=True, clock=lambda: now[0])
+    for _ in status.readings(iter([HandReading(0.0, (0.0, 0.0, 0.0))] * 60)):
+        now[0] += 1.0
+        status.take(feedback("recording"))
+    assert GONE not in out.getvalue()

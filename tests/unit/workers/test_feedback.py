@@ -31,7 +31,7 @@ def standing(phase: str = "reach", state: str = "recording", **more: object) -> 
     return Standing("glove", "lift", phase, state, **more)  # type: ignore[arg-type]
 
 
-def test_a_change_is_told_once_and_holding_again_each_second() -> None:
+def test_a_change_is_told_once_and_all_again_each_second() -> None:
     told = Told()
     assert [f.holding for f in told.look(standing())] == [False]
     assert told.look(standing()) == []
@@ -43,6 +43,9 @@ def test_a_change_is_told_once_and_holding_again_each_second() -> None:
     told.now += 0.5 * AGAIN
     assert [f.holding for f in told.look(standing("transport"))] == [True]
     assert [f.holding for f in told.look(standing("release"))] == [False]
+    for _ in range(3):
+        told.now += AGAIN
+        assert [(f.holding, f.phase) for f in told.look(standing("release"))] == [(False, "release")]
 
 
 def test_an_end_in_mid_take_lets_go() -> None:
