@@ -1,5 +1,7 @@
 """The page's tab Edit as an operator uses it."""
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import Any
 
 import numpy as np
@@ -49,6 +51,35 @@ class Desk(Visit):
         mouse.down()
         mouse.move(x + dx, y + dy, steps=steps)
         mouse.up()
+
+    def pull(self, handle: str, along: tuple[float, float, float]) -> None:
+        """Drag a handle of the gizmo, X to Z or two of them for a plane, which lies that way from its middle."""
+        x, y = self.ask("teachpath.project(editor.middle)")
+        ahead = self.ask(f"teachpath.project(editor.middle.map((value, i) => value + {list(along)}[i]))")
+        way = np.subtract(ahead, (x, y))
+        way /= np.linalg.norm(way)
+        mouse = self.page.mouse
+        for far in range(4, 90, 2):  # [px]
+            mouse.move(*(np.array([x, y]) + far * way))
+            if self.ask("editor.gizmo.controls.axis") == handle:
+                break
+        else:
+            raise AssertionError(f"no handle {handle} that way")
+        mouse.down()
+        mouse.move(*(np.array([x, y]) + (far + 30) * way), steps=4)
+        mouse.up()
+
+    def toggle(self, index: int) -> None:
+        """Click a control point with Shift."""
+        with self.shift():
+            self.page.mouse.click(*self.ask(f"teachpath.project(editor.draft.curve.control_points[{index}])"))
+
+    @contextmanager
+    def shift(self) -> Iterator[None]:
+        """Hold Shift."""
+        self.page.keyboard.down("Shift")
+        yield
+        self.page.keyboard.up("Shift")
 
     def save(self) -> None:
         self.click("#edit-save")

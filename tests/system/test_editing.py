@@ -1,5 +1,6 @@
 """The editor in the page on a real service: what it evaluates, drags, undoes and takes in numbers."""
 
+import re
 from collections.abc import Iterator
 from typing import Any
 
@@ -164,3 +165,83 @@ def test_the_second_of_two_editors_chooses_and_no_edit_is_lost(desks: Any, servi
     assert [version[:2] for version in versions] == [("main", ""), ("main", "anna"), ("main", "anna"), ("bens", "ben")]
     assert same(versions[2][2], anna.curve())
     assert same(versions[3][2], mine)
+
+
+def moves(desk: Desk, before: Curve) -> np.ndarray:
+    """How far each control point has been moved [m]."""
+    return desk.curve().control_points - before.control_points
+
+
+def test_several_points_are_chosen_and_pulled_along_an_axis_and_in_a_plane(desks: Any, paths: list[str]) -> None:
+    desk = desks(paths[2])
+    begin = desk.curve()
+    last = len(begin.control_points) - 1
+    desk.page.select_option("#edit-points", "2")
+    desk.toggle(3)
+    assert desk.ask("editor.draft.chosen") == [2, 3]
+    desk.pull("Z", (0, 0, 0.05))
+    moved = moves(desk, begin)
+    np.testing.assert_allclose(moved[[2, 3]], np.tile([0, 0, moved[2, 2]], (2, 1)), atol=1e-9)
+    assert moved[2, 2] > 0.005
+    assert not np.delete(moved, (2, 3), axis=0).any()
+    desk.click("#edit-undo")  # one step
+    assert same(desk.curve(), begin)
+    desk.page.select_option("#edit-points", "2")
+    desk.pull("XY", (0.05, 0.05, 0))
+    moved = moves(desk, begin)
+    assert np.abs(moved[2, :2]).max() > 0.005
+    assert not np.delete(moved, 2, axis=0).any()
+    assert moved[2, 2] == pytest.approx(0, abs=1e-9)
+    desk.click("#edit-revert")
+    assert same(desk.curve(), begin)
+
+    with desk.shift():  # a box around everything
+        box = desk.page.locator("#view").bounding_box()
+        desk.page.mouse.move(box["x"] + 2, box["y"] + 2)
+        desk.page.mouse.down()
+        desk.page.mouse.move(box["x"] + box["width"] - 2, box["y"] + box["height"] - 2, steps=3)
+        desk.page.mouse.up()
+    assert desk.ask("editor.draft.chosen") == list(range(last + 1))
+    desk.page.locator("#view").focus()
+    desk.page.keyboard.press("PageUp")
+    assert moves(desk, begin)[:, 2] == pytest.approx([0, *[0.001] * (last - 1), 0])  # start and goal are pinned
+    desk.click("#edit-undo")
+    desk.page.get_by_label("unlock start and goal").check()
+    desk.drag(0, 20, -10)
+    moved = moves(desk, begin)
+    assert np.abs(moved[0]).max() > 0.005  # with all that is chosen
+    np.testing.assert_allclose(moved, np.tile(moved[0], (last + 1, 1)), atol=1e-9)
+    desk.click("#edit-revert")
+
+
+def test_knots_come_and_go_without_a_change_of_the_shape_and_versions_branch(desks: Any, paths: list[str]) -> None:
+    desk = desks(paths[2])
+    begin, count = desk.curve(), len(desk.curve().control_points)
+    desk.page.fill("#edit-u", "0.37")
+    desk.click("#edit-insert")
+    desk.until(f"editor.draft.curve.control_points.length === {count + 1}")
+    np.testing.assert_allclose(desk.curve()(U), begin(U), atol=1e-12)
+    assert 0.37 in desk.curve().knots
+    desk.page.select_option("#edit-knot", "0.37")
+    desk.click("#edit-remove")
+    desk.until(f"editor.draft.curve.control_points.length === {count}")
+    np.testing.assert_allclose(desk.curve()(U), begin(U), atol=1e-6)  # what the page allows by itself
+    desk.click("#edit-revert")
+
+    desk.drag(2, 25, -15)
+    mine = desk.curve()
+    desk.page.fill("#edit-branch", "higher")
+    desk.save()
+    desk.until("editor.draft.base.number === 2 && editor.versions.length === 2")
+    desk.page.get_by_role("button", name="edit version 1").click()
+    desk.until("editor.draft.base.number === 1")
+    assert same(desk.curve(), begin)
+    desk.page.select_option("#edit-first", "1")
+    desk.page.select_option("#edit-second", "2")
+    desk.click("#edit-compare")
+    desk.until("document.getElementById('edit-difference').textContent !== ''")
+    said = desk.page.inner_text("#edit-difference")
+    apart = np.linalg.norm(mine(U)[:, None] - begin(U)[None], axis=2).min(axis=1).max()
+    found = re.match(r"Version 1 \(orange\) and version 2 \(pink\): they lie up to ([\d.]+) mm apart", said)
+    assert found, said
+    assert float(found[1]) == pytest.approx(1000 * apart, abs=0.2)  # of 301 places
