@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import io
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from teachpath.errors import UnusableInput, UnusableRecording
 from teachpath.io.documents import decode
@@ -61,8 +61,6 @@ def import_file(
     if not is_name(task):
         raise UnusableInput(f"{task!r} cannot name a task: use letters, digits, '.', '_' or '-', at most 64")
     read = _read(source, calibration)
-    if read.stated is not None and read.stated.mark not in MARKS:
-        raise UnusableRecording(f"{source.name}: its mark {read.stated.mark!r} is none of good, bad and nothing")
     for number, samples in enumerate(read.motions, 1):
         where = source.name if len(read.motions) == 1 else f"{source.name}, motion {number} of {len(read.motions)}"
         _check(samples, settings, scene, read.calibration, where)
@@ -101,7 +99,7 @@ def _read(source: Source, calibration: Calibration) -> _Read:
         return _read_recording(source)
     if source.kind == "csv" and holds_samples(source.content):
         stated, samples = read_samples(source.content, source.name)
-        return _Read(stated.source, stated.calibration, [samples], stated)
+        return _Read(stated.source, stated.calibration, [samples], _believed(stated, samples, source.name))
     tracks = read_tracks(source.content, source.name, kind=source.kind, units=source.units, rate=source.rate)
     return _Read(source.name, calibration, [_samples(track, source.name) for track in tracks])
 
@@ -114,8 +112,21 @@ def _read_recording(source: Source) -> _Read:
             "is still in its data folder can be repaired with: teachpath doctor"
         )
     facts = read_facts_stream(io.BytesIO(source.content)).get("demonstration")
-    stated = decode(Demonstration, facts.encode()) if facts else None
+    stated = _believed(decode(Demonstration, facts.encode()), samples, source.name) if facts else None
     return _Read(header.tracker, stated.calibration if stated else header.calibration, [samples], stated)
+
+
+def _believed(stated: Demonstration, samples: list[Sample], name: str) -> Demonstration:
+    """Return what a file says of its demonstration, as far as it can be true of its samples."""
+    count = len(samples)
+    if stated.mark not in MARKS:
+        raise UnusableRecording(f"{name}: its mark {stated.mark!r} is none of good, bad and nothing")
+    if not 0 <= stated.grasp < stated.release <= count:
+        raise UnusableRecording(
+            f"{name}: it says that the object was carried from sample {stated.grasp} to {stated.release}, of {count}"
+        )
+    begin, end = stated.trim or (stated.grasp, stated.release)
+    return stated if 0 <= begin < end <= count else replace(stated, trim=None)
 
 
 def _judged(
@@ -140,8 +151,8 @@ def _curated(
     """Say again what the operator said where the demonstration was shown; a trim only of the same take."""
     row, trajectory = made
     begin, end = stated.trim or (0, 0)
-    same = stated.samples == row.samples and begin >= 0 and end <= row.samples
-    trim = (begin, end) if same and end - begin >= settings.shortest_transport else None
+    same = stated.samples == row.samples and end - begin >= settings.shortest_transport
+    trim = stated.trim if same else None
     if not (stated.mark or trim or stated.discarded_ns):
         return made
     amendment = Amendment(mark=stated.mark, discarded=True if stated.discarded_ns else None, trim=trim)

@@ -88,6 +88,9 @@ def test_a_trim_that_cannot_be_is_left_out_and_an_unknown_mark_refused(
     content = write_samples(row, store.recordings.samples(row.recording))
     (tmp_path / "trimmed.csv").write_bytes(content)
     assert imported(store, tmp_path / "trimmed.csv", "csv").trim is None
+    (tmp_path / "cut.csv").write_bytes(content.replace(b'"release":', b'"release":1', 1))
+    with pytest.raises(UnusableRecording, match=r"cut\.csv: it says that the object was carried from sample \d+ to 1"):
+        imported(store, tmp_path / "cut.csv", "csv")
     (tmp_path / "marked.csv").write_bytes(content.replace(b'"mark":""', b'"mark":"evil"', 1))
     with pytest.raises(UnusableRecording, match=r"marked\.csv: its mark 'evil' is none of good, bad"):
         imported(store, tmp_path / "marked.csv", "csv")
