@@ -6,13 +6,14 @@ import pytest
 
 from teachpath.errors import Conflict, PathRefused, TeachpathError, Unreachable, UnusableInput
 from teachpath.io.documents import encode
+from teachpath.motion.judgement import SetpointLog, judge
 from teachpath.motion.kinematics import tool_pose
 from teachpath.motion.puma560 import ACCELERATION, JERK, SPEED
 from teachpath.motion.scenes import empty_scene
 from teachpath.records import Plan
 from teachpath.workers.executor.settings import ExecutorSettings
 from tests.unit.motion.ways import MIDDLE, way
-from tests.unit.workers.executors import HOME, PERIOD_NS, Bench, standing, within_limits
+from tests.unit.workers.executors import EPOCH, HOME, PERIOD_NS, Bench, standing, within_limits
 
 
 @pytest.fixture
@@ -172,6 +173,20 @@ def test_late_cycles_are_counted_and_left_out_ones_never_made_up_for(bench: Benc
     moving = [b.nominal_ns - a.nominal_ns for a, b in pairwise(bench.setpoints) if np.any(b.velocity)]
     assert set(moving) == {PERIOD_NS}
     assert within_limits(bench.setpoints)
+
+
+def test_whenever_the_loop_oversleeps_what_was_sent_can_be_judged(bench: Bench, middle: Plan) -> None:
+    bench.oversleep = dict.fromkeys(range(50, 3000, 7), 5_000_000)
+    bench.start(middle)
+    bench.when(lambda: bench.statuses[-1].progress > 0.3, lambda: bench.command("hold"))
+    bench.when(lambda: bench.state == "held" and bench.executor._controls.current.settled, lambda: None)  # type: ignore[union-attr]
+    bench.when(lambda: True, lambda: bench.command("resume"))
+    bench.when(lambda: bench.state == "ended", bench.stop.set)
+    bench.run()
+    times = np.array([s.nominal_ns - EPOCH for s in bench.setpoints]) / 1e9
+    on_path = np.array([s.on_path for s in bench.setpoints])
+    log = SetpointLog(times, np.array([s.position for s in bench.setpoints]), on_path)
+    assert judge(log, way(MIDDLE).curve).faults == ()
 
 
 def refusal(bench: Bench, kind: type[TeachpathError], **given: object) -> str:

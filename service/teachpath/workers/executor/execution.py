@@ -130,10 +130,9 @@ class Execution:
             due: when the period began [ns of the loop's clock].
             sent_ns: now [ns since the Unix epoch].
         """
-        rested = self.program.standing
         moment = self.program.step()
         self._meter.add(moment.position, self.program)
-        self._nominal = self._due(due + self._offset, rested and self.program.standing)
+        self._nominal = self._due(due + self._offset, self._still > 1 and self.program.standing)
         self._still, self._moving = (self._still + 1, 0) if self.program.standing else (0, self._moving + 1)
         setpoint = Setpoint(
             cycle=self._sent,
@@ -153,7 +152,8 @@ class Execution:
     def _due(self, now: int, at_rest: bool) -> int:
         """Return when this setpoint is due on the clock of the motion, which loses what the loop oversleeps.
 
-        So position, velocity and acceleration belong to their times whatever happens; at rest the lost time is let go.
+        So position, velocity and acceleration belong to their times whatever happens. At rest, once two setpoints have
+        told of it, the lost time is let go.
         """
         return now if at_rest or not self._sent else self._nominal + round(1e9 / self._rate)
 
