@@ -10,8 +10,8 @@ import pytest
 
 from teachpath.motion.kinematics import link_frames
 from tests.system.access import grave
-from tests.system.carriers import HEADSET, begin, carry, carry_worn, move_hand, phase
-from tests.system.operators import PATIENT, RESTING, Operator, Status
+from tests.system.carriers import HEADSET, START, begin, carry, carry_worn, move_hand, phase
+from tests.system.operators import PATIENT, RESTING, Leader, Operator, Status
 from tests.system.processes import Service
 from tests.system.test_view import Visit
 
@@ -224,4 +224,31 @@ def test_the_joints_are_plotted_as_they_move(visit: Visit, operator: Operator) -
     assert visit.page.locator("#joints .u-over").count() == 4
     names = visit.page.locator("#joints .values dt").all_inner_texts()
     assert names[:2] == ["joint 1", "joint 2"]
+    assert operator.said == []
+
+
+def test_a_headset_s_right_hand_leads_the_arm_while_the_left_one_is_closed(
+    visit: Visit, service: Service, operator: Operator
+) -> None:
+    leader, above = Leader(visit, service), (START[0], START[1], START[2] + 0.05)
+    visit.page.evaluate("headset.primaryInputMode = 'hand'; 0")
+    leader.begin("a headset")
+    visit.wait(lambda: visit.page.evaluate("teachpath.leading().placed"))
+    begin = np.zeros(3)
+
+    def clutch(closed: int) -> None:
+        visit.page.evaluate(f"headset.hands.left.updatePinchValue({closed}); 0")
+
+    def press() -> None:
+        move_hand(visit, START, 0)
+        visit.page.wait_for_timeout(300)
+        begin[:] = leader.tool()
+        clutch(1)
+
+    def led() -> bool:
+        return bool(np.linalg.norm(leader.tool() - begin - [0, 0, 0.05]) < 0.002)
+
+    leader.lead(press, lambda: move_hand(visit, above, 0), lambda: clutch(0), led)
+    visit.page.locator("#leading").get_by_role("button", name="Finish").evaluate("button => button.click()")
+    leader.until(lambda status: status["state"] == "ended")
     assert operator.said == []

@@ -19,10 +19,10 @@ export class Leading {
   closed = false; // the gripper
   #ends = [];
 
-  // `arm` as GET /robot gives it; `scene` around it. `own`: the page's hand leads, else a tracker's does. `button` is the
-  // clutch. `changed()` is called when the clutch or the connection changes, `failed(sentence)` ends the sitting.
-  constructor(easel, scene, arm, { own, button, changed, failed }) {
-    Object.assign(this, { easel, arm, own, button, changed, failed, name: `${name}-lead` });
+  // `arm` as GET /robot gives it; `scene` around it. `own`: the page's hand leads, else a tracker's does; `worn`: it is that
+  // of a headset, and hear() is told its frames. `button` is the clutch. `changed()` is called when the clutch or the connection changes, `failed(sentence)` ends the sitting.
+  constructor(easel, scene, arm, { own, worn, button, changed, failed }) {
+    Object.assign(this, { easel, arm, own, worn, button, changed, failed, name: `${name}-lead` });
     this.carry = new Carry({ ...scene, carried: { ...BALL, position: [0, 0, 0] } });
     this.link = new Courier(this.name, { changed: (state, sentence) => this.#connection(state, sentence), refused: () => {} });
     this.sampler = new Sampler((seconds) => this.#tick(seconds));
@@ -31,6 +31,7 @@ export class Leading {
   // Connect, and wait for the clutch.
   async begin() {
     await this.link.connect();
+    if (this.worn) return;
     const deeds = { may: () => this.placed && this.link.live, grasp: () => this.#press(true), release: () => this.#press(false) };
     this.steering = steering(this.easel, this.carry, deeds, { held: true, places: [this.button] });
     this.#ends.push(() => this.steering.end(), this.#held(deeds));
@@ -48,8 +49,15 @@ export class Leading {
     this.carry.position = [12, 13, 14].map((i) => tool[i] + this.arm.tool_length * tool[i - 4]);
     this.carry.target = [...this.carry.position];
     this.placed = true;
-    if (this.own) this.prop ??= new Prop(this.easel, BALL);
+    if (this.own && !this.worn) this.prop ??= new Prop(this.easel, BALL);
     this.#draw();
+  }
+
+  // A headset's frame: one hand leads, the other one's pinch or trigger is the clutch.
+  hear(sample) {
+    this.#press(sample.clutch);
+    this.closed = sample.grasp;
+    this.link.send({ ...sample, clutch: this.pressed });
   }
 
   grip(closed) {
@@ -78,7 +86,7 @@ export class Leading {
     if (pressed === this.pressed || (pressed && !(this.placed && this.link.live))) return;
     this.pressed = this.carry.grasped = pressed;
     this.carry.target = [...this.carry.position];
-    this.#send();
+    if (!this.worn) this.#send();
     this.#draw();
     this.changed();
   }

@@ -20,10 +20,11 @@ export class HeadsetHand {
   frames = 0;
   samples = 0;
 
-  // `hear({position, orientation, tracked, grasp, ms, seconds})` is called once a frame with the hand in robot coordinates;
-  // `ended()` when the session is over, whoever ended it.
-  constructor(viewer, { hear, ended, failed }) {
-    Object.assign(this, { viewer, hear, ended, failed });
+  // `hear({position, orientation, tracked, grasp, clutch, ms, seconds})` is called once a frame with the hand in robot
+  // coordinates; `clutch`: the other hand is closed. `ended()` when the session is over, whoever ended it. `only`: the side
+  // of the hand that counts; "": whichever closes.
+  constructor(viewer, { hear, ended, failed, only = "" }) {
+    Object.assign(this, { viewer, hear, ended, failed, only });
   }
 
   // Must be called from a click.
@@ -63,13 +64,17 @@ export class HeadsetHand {
   #read(frame) {
     const space = this.rig.space;
     const hands = [...this.session.inputSources].map((source) => this.#pose(frame, source, space)).filter(Boolean);
-    const chosen = hands.find((hand) => hand.side === this.side) ?? hands.find((hand) => hand.grasp) ?? hands.find((hand) => hand.side === "right") ?? hands[0];
-    if (!chosen) return { ...(this.last ?? { position: [0, 0, 1], orientation: null }), tracked: false, grasp: this.closed };
+    const chosen = this.only ? hands.find((hand) => hand.side === this.only) : this.#choose(hands);
+    if (!chosen) return { ...(this.last ?? { position: [0, 0, 1], orientation: null }), tracked: false, grasp: this.closed, clutch: false };
     this.closed = chosen.grasp;
     this.side = this.closed ? chosen.side : "";
     const placed = this.rig.toRobot(chosen.position, chosen.orientation);
     this.last = placed;
-    return { ...placed, tracked: chosen.tracked, grasp: this.closed };
+    return { ...placed, tracked: chosen.tracked, grasp: this.closed, clutch: hands.some((hand) => hand !== chosen && hand.grasp) };
+  }
+
+  #choose(hands) {
+    return hands.find((hand) => hand.side === this.side) ?? hands.find((hand) => hand.grasp) ?? hands.find((hand) => hand.side === "right") ?? hands[0];
   }
 
   #pose(frame, source, space) {

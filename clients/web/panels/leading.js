@@ -4,12 +4,15 @@ import { JointStream } from "../arm/joints.js";
 import { lease } from "../arm/lease.js";
 import { element, facts, hint, replace, sentence } from "../elements.js";
 import { Leading } from "../hand/leading.js";
+import { HeadsetHand, unavailable } from "../hand/xr.js";
 
 const HERE = "this page";
+const WORN = "a headset";
 const HOW = [
   ["Mouse, touch", "press on the ball at the gripper and drag; shift, the wheel or a second finger change the height"],
   ["Keyboard", "hold Enter; arrows, Page Up and Page Down move"],
   ["Gamepad", "hold A; left stick moves, right stick changes the height"],
+  ["Headset", "the right hand leads, its pinch or trigger closes the gripper; the left one's is the clutch"],
 ];
 const WAITING = "press the clutch"; // how the executor begins to say that it does
 
@@ -27,6 +30,8 @@ class LeadingPanel {
     grip.addEventListener("click", () => this.sitting?.grip(!this.sitting.closed));
     finish.addEventListener("click", () => this.end());
     hand.addEventListener("change", () => this.#paint());
+    navigator.xr?.addEventListener?.("devicechange", () => this.#offer(context.store.state.trackers));
+    this.#offer([]);
     addEventListener("pagehide", () => this.sitting?.link.close());
     this.stream = new JointStream((frame) => this.#hear(frame));
     this.#paint();
@@ -48,10 +53,13 @@ class LeadingPanel {
   async #begin() {
     const { hand, clutch, calibration } = this.parts;
     const { context } = this;
-    const own = hand.value === HERE;
+    const worn = hand.value === WORN;
+    const own = worn || hand.value === HERE;
+    // The headset's session first: it must come from the click itself.
+    if (worn && !(await context.attempt(() => this.#wear()))) return;
     const begun = await context.attempt(async () => {
       const [arm, scenes, scene] = await Promise.all([get("robot"), get("scenes"), this.#scene()]);
-      const deeds = { own, button: clutch, changed: () => this.#paint(), failed: (why) => this.#fail(why) };
+      const deeds = { own, worn, button: clutch, changed: () => this.#paint(), failed: (why) => this.#fail(why) };
       this.sitting = new Leading(context.easel, scenes.find(({ name }) => name === scene), arm, deeds);
       await this.sitting.begin();
       const { name } = this.sitting;
@@ -65,9 +73,25 @@ class LeadingPanel {
       return;
     }
     this.stream.start();
-    if (own) context.easel.keys("Lead the arm: hold Enter, arrows move, Page Up and Page Down change the height");
+    if (own && !worn) context.easel.keys("Lead the arm: hold Enter, arrows move, Page Up and Page Down change the height");
     this.#paint();
     clutch.focus();
+  }
+
+  async #wear() {
+    const hand = new HeadsetHand(this.context.view.viewer, {
+      only: "right",
+      hear: (sample) => this.sitting?.link.live && this.sitting.hear(sample),
+      ended: () => {
+        this.context.view.spare(0);
+        this.end();
+      },
+      failed: (why) => this.#fail(why),
+    });
+    await hand.start();
+    this.context.view.spare(Infinity); // nobody looks at the page meanwhile
+    this.worn = hand;
+    return true;
   }
 
   // What stands around the arm: the chosen task's scene.
@@ -83,9 +107,10 @@ class LeadingPanel {
 
   #close() {
     this.stream.stop();
+    this.worn?.end();
     this.sitting?.end();
     if (this.execution && this.sitting?.own) this.context.easel.keys("");
-    this.sitting = this.execution = null;
+    this.sitting = this.execution = this.worn = null;
     this.#paint();
   }
 
@@ -105,13 +130,18 @@ class LeadingPanel {
 
   #say(words) {
     if (this.parts.says.textContent !== words) this.parts.says.textContent = words;
+    this.worn?.rig.say(words);
   }
 
   // Trackers that could lead: not the pages.
   async #offer(trackers) {
-    const names = [HERE, ...trackers.map(({ name }) => name).filter((name) => !name.startsWith("page-"))];
-    replace(this.parts.hand, names.map((name) => element("option", { value: name }, name)));
-    if (names.length > 1) {
+    const worn = (await unavailable()) === "" && WORN;
+    const names = [HERE, worn, ...trackers.map(({ name }) => name).filter((name) => !name.startsWith("page-"))].filter(Boolean);
+    const { hand } = this.parts;
+    const chosen = hand.value;
+    replace(hand, names.map((name) => element("option", { value: name }, name)));
+    if (names.includes(chosen)) hand.value = chosen;
+    if (trackers.length) {
       const measured = await get("calibrations").catch(() => []);
       const known = ["identity", ...new Set(measured.map(({ calibration }) => calibration.name))];
       replace(this.parts.calibration, known.map((name) => element("option", { value: name }, name)));
@@ -126,9 +156,10 @@ class LeadingPanel {
     parts.idle.hidden = Boolean(sitting);
     parts.active.hidden = !sitting;
     parts.begin.disabled = Boolean(busy) || connection !== "live" || Boolean(there?.holder && !lease.held);
-    parts.from.hidden = parts.hand.value === HERE || !parts.hand.value;
+    parts.from.hidden = [HERE, WORN, ""].includes(parts.hand.value);
     if (!sitting) return;
-    parts.grip.hidden = !sitting.own;
+    parts.grip.hidden = !sitting.own || sitting.worn;
+    parts.clutch.hidden = sitting.worn;
     parts.grip.textContent = sitting.closed ? "Open the gripper" : "Close the gripper";
     parts.clutch.classList.toggle("pressed", sitting.pressed);
     parts.clutch.setAttribute("aria-pressed", String(sitting.pressed));
@@ -136,10 +167,11 @@ class LeadingPanel {
   }
 }
 
-function inWords({ state, reason, stretch }, { own }) {
+function inWords({ state, reason, stretch }, { own, worn }) {
   if (state === "following") return `The arm follows. ${sentence(stretch.split(": ").slice(1).join(": "))}`.trim();
   if (state === "stopping") return "Let go: the arm comes to rest.";
   if (!reason.startsWith(WAITING)) return `The arm is held: ${reason}.`;
+  if (worn) return "The arm is held. Close the left hand, and it follows the right one.";
   return own ? "The arm is held. Press on the ball at the gripper and drag it, or hold the clutch." : "The arm is held. Hold the clutch, and it follows the hand.";
 }
 
