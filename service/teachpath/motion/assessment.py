@@ -37,11 +37,7 @@ class _Look:
 
 
 def assess(
-    curve: Curve,
-    scene: Scene,
-    settings: MotionSettings | None = None,
-    *,
-    turn: Curve | None = None,
+    curve: Curve, scene: Scene, settings: MotionSettings | None = None, *, turn: Curve | None = None
 ) -> Assessment:
     """Look at a curve as quickly as an editor needs it; only `plan` certifies.
 

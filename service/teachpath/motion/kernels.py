@@ -126,7 +126,7 @@ def seek(
     table: Array, step: float, state: Array, target: float, sent: Array, limits: Array, dt: float, within: float,
     tries: int, ramp: Array,
 ) -> float:  # fmt: skip
-    """Look for a ramp to the constant rate `target` that keeps all limits, as short as can be found.
+    """Look for the shortest ramp to the constant rate `target` within all limits; return its peak |r'|, or -1.
 
     A try that breaks a limit says where, and so what to lower: the jerk when the jerk breaks in the first or last
     phase, else the acceleration. Once a ramp was found, the rest of the tries go half way to what was broken before.
@@ -135,9 +135,6 @@ def seek(
         within: duration that it must stay below by `SOONER` [s].
         tries: ramps that are judged at most.
         ramp: (8,) where it is written.
-
-    Returns:
-        Its peak |r'|, or -1 when none was found.
     """
     steepest, hardest = _most(table, step, state, limits, dt)
     failed_a, failed_j, kept_a, kept_j, best = 0.0, 0.0, 0.0, 0.0, -1.0
@@ -156,14 +153,11 @@ def seek(
             if failed_a == 0.0 and failed_j == 0.0:
                 return best
             failed_a, failed_j = max(failed_a, kept_a), max(failed_j, kept_j)
+        elif broken == JERK_BROKEN and not trial[3] <= when - 1.5 * dt <= trial[3] + trial[4]:
+            failed_j, hardest = hardest, SOFTER * hardest
         else:
-            middle = when - 1.5 * dt
-            if broken == JERK_BROKEN and (middle < trial[3] or middle > trial[3] + trial[4]):
-                failed_j = hardest
-                hardest *= SOFTER
-            else:
-                failed_a = min(steepest, peak)
-                steepest = SLOWER * failed_a
+            failed_a = min(steepest, peak)
+            steepest = SLOWER * failed_a
         if best >= 0.0:
             steepest, hardest = sqrt(kept_a * failed_a), sqrt(kept_j * failed_j)
     return best

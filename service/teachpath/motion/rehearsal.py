@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final
 
@@ -69,15 +70,7 @@ def rehearse(plan: Plan, settings: MotionSettings, *, dwell: float, rate: float 
     begins = np.concatenate([[0.0], np.cumsum([_lasting(part) for part in parts])])
     times = np.linspace(0.0, begins[-1], min(int(np.ceil(begins[-1] * rate)) + 1, MOST))
     which = np.clip(np.searchsorted(begins, times, side="right") - 1, 0, len(parts) - 1)
-    rows = np.zeros((len(times), 7))
-    here = np.append(settings.home, 0.0)
-    for index, (part, begin) in enumerate(zip(parts, begins[:-1], strict=True)):
-        mine = which == index
-        if part.track is None:
-            rows[mine] = here
-        else:
-            rows[mine] = part.track(times[mine] - begin)
-            here = part.track(np.array([part.track.duration]))[0]
+    rows = _rows(parts, begins, times, which, np.array(settings.home))
     taught = next(index for index, part in enumerate(parts) if part.taught)
     share = rows[:, 6] / plan.lengths[-1]
     positions, orientations = _object(plan, rows[:, :6], which - taught)
@@ -93,6 +86,20 @@ def rehearse(plan: Plan, settings: MotionSettings, *, dwell: float, rate: float 
             Scope(part.name, float(a), float(b)) for part, a, b in zip(parts, begins[:-1], begins[1:], strict=True)
         ),
     )
+
+
+def _rows(parts: Sequence[Stretch], begins: Array, times: Array, which: NDArray[np.intp], home: Array) -> Array:
+    """Return joints and length (n, 7) at times, each in the stretch `which` says (n,)."""
+    rows = np.zeros((len(times), 7))
+    here = np.append(home, 0.0)
+    for index, (part, begin) in enumerate(zip(parts, begins[:-1], strict=True)):
+        mine = which == index
+        if part.track is None:
+            rows[mine] = here
+        else:
+            rows[mine] = part.track(times[mine] - begin)
+            here = part.track(np.array([part.track.duration]))[0]
+    return rows
 
 
 def _lasting(part: Stretch) -> float:
