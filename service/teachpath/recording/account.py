@@ -95,11 +95,19 @@ class StreamAccount:
         self._refusals.add(reason)
         self._refusals_of_part.add(reason)
 
-    def begin_part(self, *, joined: bool = False) -> None:
-        """Begin another part; what was lost before its first sample is lost of it only when the parts are joined."""
-        self._part_is_empty = not joined
-        self._first_of_part = self.highest + 1
+    def begin_part(self, *, joined: bool = False, newest: Sample | None = None) -> None:
+        """Begin another part.
+
+        Args:
+            joined: what was lost before its first sample is lost of it; else it is lost of no part.
+            newest: the sample that was observed last, when it is the first of this part.
+        """
+        self._part_is_empty = not joined and newest is None
+        self._first_of_part = self.highest + (newest is None)
         self._before_part = self._counts()
+        if newest is not None:
+            self._before_part["received"] -= 1
+            self._before_part["untracked"] -= not newest.tracked
         self._longest_gap_of_part_ns = 0
         self._notes_of_part, self._refusals_of_part = _notes(), _refusals()
 
@@ -122,9 +130,12 @@ class StreamAccount:
         notes = self._refusals.sentences() + self._notes.sentences()
         return self._stated(self._counts(), self._longest_gap_ns, notes, first=0)
 
-    def part(self) -> Account:
-        """Return the counts of the part that is open."""
+    def part(self, *, but: Sample | None = None) -> Account:
+        """Return the counts of the part that is open, but for one sample: the newest, when it is of the next part."""
         counts = {name: max(count - self._before_part[name], 0) for name, count in self._counts().items()}
+        if but is not None:
+            counts["received"] -= 1
+            counts["untracked"] -= not but.tracked
         # A late sample of a former part fills a gap there and none here.
         counts |= self._missing_since(self._first_of_part)
         notes = self._refusals_of_part.sentences() + self._notes_of_part.sentences()

@@ -244,7 +244,7 @@ class RecordingSession:
         cut = self._segmenter.push(sample, position)
         phase = self._segmenter.phase
         if cut is not None and phase is Phase.GRASP:  # the first sample of the next take
-            finished = self._close(cut)
+            finished = self._close(cut, following=sample)
             self._take.write(sample, payload)
             return finished
         self._take.write(sample, payload)
@@ -257,17 +257,17 @@ class RecordingSession:
                 self._drop()
         return None
 
-    def _close(self, cut: Cut, *, fault: str = "") -> Finished | None:
+    def _close(self, cut: Cut, *, fault: str = "", following: Sample | None = None) -> Finished | None:
         # A device without a glove lets go by ending its recording; a glove would have shown the release.
         if cut.open_ended and not fault and (self._torn or self._take.samples[-1].flexions):
             fault = "the recording ended before the hand let go"
-        finished = self._take.close(cut, self.account.part(), self._carried, fault)
+        finished = self._take.close(cut, self.account.part(but=following), self._carried, fault)
         if finished is None:
             self._idle += len(self._take.samples)
         else:
             self.demonstrations.append(finished[0].id)
         self._control.end_one(self._clock(), made=finished is not None)
-        self._open_next()
+        self._open_next(following)
         return finished
 
     def _drop(self) -> None:
@@ -276,9 +276,9 @@ class RecordingSession:
         self._open_next()
         self._segmenter = Segmenter(self._settings, self._carried)
 
-    def _open_next(self) -> None:
+    def _open_next(self, first: Sample | None = None) -> None:
         self._take = self._new_take()
-        self.account.begin_part()
+        self.account.begin_part(newest=first)
 
     def _new_take(self) -> OpenTake:
         self._takes += 1

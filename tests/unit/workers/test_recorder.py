@@ -1,9 +1,10 @@
 import threading
+from dataclasses import replace
 
 import pytest
 
 from teachpath.errors import Conflict, NotFound, UnusableInput
-from tests.unit.recording.hands import PERIOD_NS, demonstration, sample
+from tests.unit.recording.hands import PERIOD_NS, START_NS, demonstration, sample
 from tests.unit.workers.recorders import KEYS, Bench
 
 
@@ -168,3 +169,18 @@ def test_an_endless_reach_does_not_fill_the_disk(bench: Bench) -> None:
     assert len(report.demonstrations) == 1
     assert bench.store.demonstrations("lift")[0].samples < 200
     assert report.received == len(resting) + 110
+
+
+def test_a_grasp_that_ends_a_take_is_the_first_sample_of_the_next_in_every_account(bench: Bench) -> None:
+    bench.begin()
+    carry = demonstration(transport=40)[20:75]  # no rest: the hand comes back and takes the object again
+    stream = [
+        replace(s, sequence=n, device_ns=START_NS + n * PERIOD_NS, receive_ns=START_NS + n * PERIOD_NS)
+        for n, s in enumerate([*demonstration()[:20], *carry, *carry, *demonstration(transport=40)[20:]], 1)
+    ]
+    bench.send(stream)
+    bench.end(len(stream))
+    rows = bench.store.demonstrations("lift")
+    assert [row.account.received for row in rows] == [row.samples for row in rows]
+    assert [row.verdict for row in rows] == ["clean"] * 3
+    assert [row.grasp for row in rows] == [20, 0, 0]
