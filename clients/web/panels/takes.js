@@ -54,6 +54,7 @@ function content(state, gallery) {
       ["Samples lost", String(kept.reduce((sum, d) => sum + (d.account?.lost ?? 0), 0))],
     ]),
     element("ol", { class: "takes", "aria-label": "demonstrations, newest first" }, demonstrations.slice(-LISTED).reverse().map((d) => take(d, small(d)))),
+    element("p", { class: "note" }, `${SIGNS[""]} marks one good, then bad: the bad ones are not learned from. × discards one; it can be brought back.`),
     element(
       "p",
       { class: "orders" },
