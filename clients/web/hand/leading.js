@@ -16,7 +16,8 @@ const BALL = { kind: "sphere", size: [0.028] }; // [m] what is dragged; it waits
 export class Leading {
   pressed = false; // the clutch
   placed = false; // it is known where the gripper is
-  closed = false; // the gripper
+  closed = false; // the hand; the gripper closes and opens with it while the clutch is held
+  gripped = false; // the gripper, as the arm says
   #ends = [];
 
   // `arm` as GET /robot gives it; `scene` around it. `own`: the page's hand leads, else a tracker's does; `worn`: it is that
@@ -42,9 +43,13 @@ export class Leading {
     this.sampler.start();
   }
 
-  // Where the arm is now, at configuration `q` [rad]: the hand waits at its gripper.
-  follow(q) {
+  // Where the arm is now, at configuration `q` [rad], and its gripper: the hand waits there, and is as that is.
+  follow(q, gripped) {
+    const same = gripped === this.gripped;
+    this.gripped = gripped;
     if (this.pressed) return;
+    this.closed = gripped;
+    if (!same) this.changed();
     const tool = linkFrames(this.arm.links, q).at(-1);
     this.carry.position = [12, 13, 14].map((i) => tool[i] + this.arm.tool_length * tool[i - 4]);
     this.carry.target = [...this.carry.position];
@@ -60,8 +65,10 @@ export class Leading {
     this.link.send({ ...sample, clutch: this.pressed });
   }
 
-  grip(closed) {
-    this.closed = closed;
+  // Close the gripper, or open it; the arm takes it from a hand that it follows.
+  grip() {
+    if (!this.pressed) return;
+    this.closed = !this.closed;
     this.changed();
   }
 
@@ -77,9 +84,14 @@ export class Leading {
       this.button.setPointerCapture(event.pointerId);
       grasp();
     };
-    const heard = [["pointerdown", down], ["pointerup", release], ["pointercancel", release], ["lostpointercapture", release]];
+    const key = (event) => event.key.toLowerCase() === "g" && !event.repeat && this.grip();
+    const heard = [["pointerdown", down], ["pointerup", release], ["pointercancel", release], ["lostpointercapture", release], ["keydown", key]];
     for (const [name, hear] of heard) this.button.addEventListener(name, hear);
-    return () => heard.forEach(([name, hear]) => this.button.removeEventListener(name, hear));
+    this.easel.element.addEventListener("keydown", key);
+    return () => {
+      for (const [name, hear] of heard) this.button.removeEventListener(name, hear);
+      this.easel.element.removeEventListener("keydown", key);
+    };
   }
 
   #press(pressed) {

@@ -12,6 +12,7 @@ const HOW = [
   ["Mouse, touch", "press on the ball at the gripper and drag; shift, the wheel or a second finger change the height"],
   ["Keyboard", "hold Enter; arrows, Page Up and Page Down move"],
   ["Gamepad", "hold A; left stick moves, right stick changes the height"],
+  ["Gripper", "G, or the button, while the clutch is held"],
   ["Headset", "the right hand leads, its pinch or trigger closes the gripper; the left one's is the clutch"],
 ];
 const WAITING = "press the clutch"; // how the executor begins to say that it does
@@ -27,7 +28,7 @@ class LeadingPanel {
     const { all, begin, grip, finish, hand } = this.parts;
     place.append(...all);
     begin.addEventListener("click", () => this.#begin());
-    grip.addEventListener("click", () => this.sitting?.grip(!this.sitting.closed));
+    grip.addEventListener("click", () => this.sitting?.grip());
     finish.addEventListener("click", () => this.end());
     hand.addEventListener("change", () => this.#paint());
     navigator.xr?.addEventListener?.("devicechange", () => this.#offer(context.store.state.trackers));
@@ -73,7 +74,7 @@ class LeadingPanel {
       return;
     }
     this.stream.start();
-    if (own && !worn) context.easel.keys("Lead the arm: hold Enter, arrows move, Page Up and Page Down change the height");
+    if (own && !worn) context.easel.keys("Lead the arm: hold Enter, arrows move, Page Up and Page Down change the height, G closes and opens the gripper");
     this.#paint();
     clutch.focus();
   }
@@ -114,9 +115,9 @@ class LeadingPanel {
     this.#paint();
   }
 
-  #hear({ position, status }) {
+  #hear({ position, gripper_closed: gripped, status }) {
     if (!this.sitting) return;
-    this.sitting.follow(position);
+    this.sitting.follow(position, gripped);
     if (status?.execution === this.execution) this.#tell(status);
   }
 
@@ -160,6 +161,7 @@ class LeadingPanel {
     if (!sitting) return;
     parts.grip.hidden = !sitting.own || sitting.worn;
     parts.clutch.hidden = sitting.worn;
+    parts.grip.disabled = !sitting.pressed;
     parts.grip.textContent = sitting.closed ? "Open the gripper" : "Close the gripper";
     parts.clutch.classList.toggle("pressed", sitting.pressed);
     parts.clutch.setAttribute("aria-pressed", String(sitting.pressed));
@@ -168,7 +170,8 @@ class LeadingPanel {
 }
 
 function inWords({ state, reason, stretch }, { own, worn }) {
-  if (state === "following") return `The arm follows. ${sentence(stretch.split(": ").slice(1).join(": "))}`.trim();
+  const hindered = stretch.split(": ").slice(1).join(": ");
+  if (state === "following") return hindered ? `The arm follows. ${sentence(hindered)}.` : "The arm follows.";
   if (state === "stopping") return "Let go: the arm comes to rest.";
   if (!reason.startsWith(WAITING)) return `The arm is held: ${reason}.`;
   if (worn) return "The arm is held. Close the left hand, and it follows the right one.";
