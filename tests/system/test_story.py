@@ -1,30 +1,36 @@
 """The whole story in the page, on what the demo leaves: choose a way, edit it, certify it, run it, look at it again."""
 
 import re
+from pathlib import Path
 from typing import Any
 
+import httpx
 import numpy as np
 import pytest
 
+from teachpath.io.store.motions import read_motion
+from teachpath.motion.kinematics import tool_pose
 from teachpath_client.rest import Station
 from tests.system.demos import LEAVE, STORY, Start, assert_nothing_left, assert_story
-from tests.system.editors import SLOW, Desk, U
+from tests.system.editors import SLOW, Desk
 from tests.system.operators import RESTING, Operator
 from tests.system.processes import wait_until
 
 pytestmark = pytest.mark.system
 
-NEAR = 0.003  # [m] from where the box was carried to the edited path
+NEAR = 0.001  # [m] from the setpoints on the path to the nearest of the places of it that are compared
 
 
-def test_what_the_demo_has_learned_is_edited_certified_run_and_replayed(browser: Any, start: Start) -> None:
+def test_what_the_demo_has_learned_is_edited_certified_run_and_replayed(
+    browser: Any, start: Start, tmp_path: Path
+) -> None:
     demo = start("--json", "--speed", "20")
     wait_until(lambda: "stays up" in demo.err or demo.process.poll(), seconds=STORY, what="the story ends")
     assert_story(demo.out)
     found = re.search(r"serves (http://[0-9.]+:[0-9]+)", demo.err)
     assert found is not None, demo.err
     with Station(found[1]) as station:
-        tell(browser, found[1], station)
+        tell(browser, found[1], station, tmp_path)
     assert any("executor" in line for line in demo.relatives())
     demo.interrupt()
     assert demo.wait(LEAVE) == 0
@@ -32,7 +38,7 @@ def test_what_the_demo_has_learned_is_edited_certified_run_and_replayed(browser:
     assert_nothing_left(demo, seconds=1.0)
 
 
-def tell(browser: Any, url: str, station: Station) -> None:
+def tell(browser: Any, url: str, station: Station, tmp_path: Path) -> None:
     """Go through the page as its user does."""
     desk = Desk(browser, url)
     desk.click("#tab-ways")
@@ -64,9 +70,13 @@ def tell(browser: Any, url: str, station: Station) -> None:
     slider.wait_for()
     desk.until("teachpath.replayed() !== null")
     series = station.call("GET", f"/executions/{done['id']}/series?points=1500")
-    carried = np.array(series["object"])
-    apart = np.linalg.norm(edited(U)[:, None] - carried[None], axis=2).min(axis=0)
+    file = tmp_path / "execution.mcap"
+    file.write_bytes(httpx.get(f"{url}/api/v1/executions/{done['id']}/recording", trust_env=False).content)
+    followed = np.array([setpoint.position for setpoint in read_motion(file).setpoints if setpoint.on_path])
+    places, fine = tool_pose(followed)[:, :3, 3], edited(np.linspace(0, 1, 1001))
+    apart = np.array([np.linalg.norm(fine - place, axis=1).min() for place in places])
     assert apart.max() < NEAR, apart.max()
+    assert np.linalg.norm(places[[0, -1]] - fine[[0, -1]], axis=1).max() < NEAR
     shown = float(slider.get_attribute("max") or 0)  # what was written when it was opened
     assert plan["duration"] < shown <= series["times"][-1] - series["times"][0] + 1e-6
     desk.close()
