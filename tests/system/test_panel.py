@@ -11,6 +11,7 @@ import pytest
 
 from teachpath.io.store.recordings import read_facts
 from teachpath_client import Link, Tracker
+from tests.system.access import grave
 from tests.system.operators import PATIENT, Leader, Shown
 from tests.system.processes import Service
 from tests.system.test_station import FAST, SHOWN, shown
@@ -147,6 +148,7 @@ def test_the_arm_follows_the_page_s_hand_while_the_clutch_is_held_and_says_what_
         return np.linalg.norm(ball() - begin) > 0.03 and np.linalg.norm(leader.tool() - ball()) < 0.002
 
     visit.wait(lambda: visit.page.evaluate("teachpath.leading().placed"))
+    assert grave(visit.page, "leading the arm") == []
     leader.lead(press, drag, mouse.up, there)
     after = leader.tool()
     mouse.move(500, 300, steps=3)  # nobody holds the clutch
