@@ -29,7 +29,7 @@ LONG = 0.5  # m, of a path whose planning is also told by the metre
 KINDS = {
     "reach": "wrist centre",
     "a move to or from the path": "on the way|above the",
-    "collision": "comes within",
+    "collision": "comes within|goes .* mm into",
     "joint limit": "joint . needs",
     "wrist": "turn over",
     "singular": "singular",

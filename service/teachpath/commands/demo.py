@@ -25,7 +25,7 @@ from teachpath.commands.work import progress_bar, replay_command
 from teachpath.config import Settings
 from teachpath.errors import PathRefused, TeachpathError, Unreachable, UnusableRecording
 
-READY = 20.0  # [s] for executor and simulated arm to appear
+READY = 60.0  # [s] for executor and simulated arm to appear
 HOLDS = 20  # tries to go on after the arm was held
 console = Console(stderr=True)
 

@@ -71,9 +71,7 @@ def collision_failure(
     worst = min(range(first, last + 1), key=lambda k: rows[k].distance)
     row, node = rows[worst], int(nodes[worst])
     change = remedy(way, candidate, node, lambda q, outside: distances(q), least - row.distance)
-    words = f"comes within {max(1000 * row.distance, 0.0):.1f} mm of {row.other}"
-    deep = f" and goes {-1000 * row.distance:.1f} mm into it" if row.distance < 0.0 else ""
-    reason = f"{row.part} {words}{deep}, least allowed {1000 * least:.1f} mm, {way.place(node)}"
+    reason = f"{row.too_near(row.distance, least)}, {way.place(node)}"
     return _failure(way, "collision", (int(nodes[first]), int(nodes[last])), reason, change)
 
 

@@ -100,10 +100,7 @@ def check_free(
     proved = least(Sweep.through(stops, model.levers(load)), measure, settings.clearance_min)
     if proved.distance < settings.clearance_min:
         near = proved.measured
-        raise PathRefused(
-            f"{what}: {near.part} comes within {1000 * proved.distance:.1f} mm of {near.other}, "
-            f"least allowed {1000 * settings.clearance_min:.1f} mm"
-        )
+        raise PathRefused(f"{what}: {near.too_near(proved.distance, settings.clearance_min)}")
     if load is not None and load.placed is not None and gripper_open:
         fingers = least(Sweep.through(stops, model.levers()), partial(model.straddles, load=load), NEAR_FINGERS)
         if fingers.distance < NEAR_FINGERS:

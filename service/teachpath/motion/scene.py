@@ -33,6 +33,14 @@ class Clearance:
     part: str
     other: str
 
+    def too_near(self, distance: float, least: float) -> str:
+        """Return the words for less than the least distance [m], where at this distance [m] they are, or deeper."""
+        if distance < 0.0:
+            return (
+                f"{self.part} goes {-1000 * distance:.1f} mm into {self.other}, has to stay {1000 * least:.1f} mm away"
+            )
+        return f"{self.part} comes within {1000 * distance:.1f} mm of {self.other}, least allowed {1000 * least:.1f} mm"
+
 
 @dataclass(frozen=True, eq=False)
 class Load:

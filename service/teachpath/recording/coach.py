@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 ENOUGH = 3  # demonstrations of a way
+APART = 0.08  # m, farther from each other than two demonstrations of one way are in the paper (Table I: its cut)
 COUNTS = ("no", "one", "two")
 PLACES = ("first", "second", "third", "fourth", "fifth", "sixth", "seventh", "eighth", "ninth", "tenth")
 
@@ -25,12 +26,7 @@ def advise(ways: Sequence[Shown]) -> str:
         return ""
     if total == 1:
         return "one demonstration so far; show it again"
-    spread = max(way.spread for way in ways)
-    agree = f"{total} demonstrations agree within {100 * spread:.1f} cm"
-    if len(ways) > 1:
-        agree = f"{total} demonstrations show {len(ways)} ways"
-        if spread > 0.0:
-            agree += f" and agree within {100 * spread:.1f} cm"
+    agree = _agreement(total, len(ways), max(way.spread for way in ways))
     thin = [(index, way) for index, way in enumerate(ways) if way.count < ENOUGH]
     if not thin:
         return agree
@@ -38,3 +34,15 @@ def advise(ways: Sequence[Shown]) -> str:
     which = f"the {PLACES[index]} way has" if index < len(PLACES) else f"way {index + 1} has"
     who = which if len(ways) > 1 else "there are"
     return f"{agree}; {who} only {COUNTS[least.count]}, show it again"
+
+
+def _agreement(total: int, ways: int, spread: float) -> str:
+    shown = f"{total} demonstrations"
+    if ways > 1:
+        shown += f" show {ways} ways"
+        if spread == 0.0:
+            return shown
+    if spread <= APART:
+        return f"{shown} {'and ' if ways > 1 else ''}agree within {100 * spread:.1f} cm"
+    some = "; some of one way" if ways > 1 else ""
+    return f"{shown}{some} are up to {100 * spread:.1f} cm apart, discard what you did not mean"

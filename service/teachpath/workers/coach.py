@@ -18,6 +18,7 @@ from teachpath.records import Array, Demonstration, Trajectory
 
 MOST = 60  # newest demonstrations that are compared
 POINTS = 50  # of each, at equal arc length
+STOP = ""  # asked for at the end; no task has this name
 
 
 class Coach:
@@ -36,7 +37,7 @@ class Coach:
         settings: LearningSettings,
     ) -> None:
         self._demonstrations, self._trajectory, self._settings = demonstrations, trajectory, settings
-        self._asked: queue.SimpleQueue[str | None] = queue.SimpleQueue()
+        self._asked: queue.SimpleQueue[str] = queue.SimpleQueue()
         self._courses: dict[tuple[str, tuple[int, int]], Array] = {}
         self._sentences: dict[str, str] = {}
         self._thread: threading.Thread | None = None
@@ -49,7 +50,7 @@ class Coach:
     def stop(self) -> None:
         """Compare no more; a second call does nothing."""
         if self._thread is not None:
-            self._asked.put(None)
+            self._asked.put(STOP)
             self._thread.join()
             self._thread = None
 
@@ -73,16 +74,18 @@ class Coach:
         return advise(_ways(np.array(courses), self._settings))
 
     def _run(self) -> None:
-        while (task := self._newest()) is not None:
-            try:
-                self._sentences[task] = self.look_at(task)
-            except TeachpathError as error:
-                self._sentences[task] = f"the demonstrations cannot be compared: {error}"
+        while STOP not in (burst := self._burst()):
+            for task in burst:
+                try:
+                    self._sentences[task] = self.look_at(task)
+                except TeachpathError as error:
+                    self._sentences[task] = f"the demonstrations cannot be compared: {error}"
 
-    def _newest(self) -> str | None:
-        asked = self._asked.get()
-        while not self._asked.empty():  # a burst of demonstrations is compared once
-            asked = self._asked.get()
+    def _burst(self) -> dict[str, None]:
+        """Return what was asked for meanwhile, each once."""
+        asked = {self._asked.get(): None}
+        while not self._asked.empty():
+            asked[self._asked.get()] = None
         return asked
 
     def _course(self, demonstration: Demonstration) -> Array:

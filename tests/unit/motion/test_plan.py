@@ -68,9 +68,9 @@ def test_a_plan_survives_json_and_any_change_of_it_is_noticed(middle: Plan) -> N
 
 
 def test_a_path_through_an_obstacle_is_refused_by_name_and_place() -> None:
-    with pytest.raises(PathRefused, match=r"of box, least allowed .* at s = 0\.\d+ m .*control point \d of 9"):
+    with pytest.raises(PathRefused, match=r"into box, has to stay .* mm away, at s = 0\.\d+ m .*control point \d of 9"):
         plan(way(0.48), paper_scene())
-    with pytest.raises(PathRefused, match="of cylinder, least allowed"):
+    with pytest.raises(PathRefused, match="into cylinder, has to stay"):
         plan(way(0.67), paper_scene())
 
 

@@ -21,6 +21,11 @@ from teachpath.recording.coach import Shown, advise
         ),
         ([Shown(1, 0.0), Shown(1, 0.0)], "2 demonstrations show 2 ways; the first way has only one, show it again"),
         ([Shown(3, 0.01)] * 3, "9 demonstrations show 3 ways and agree within 1.0 cm"),
+        ([Shown(3, 0.241)], "3 demonstrations are up to 24.1 cm apart, discard what you did not mean"),
+        (
+            [Shown(3, 0.01), Shown(3, 0.2)],
+            "6 demonstrations show 2 ways; some of one way are up to 20.0 cm apart, discard what you did not mean",
+        ),
     ],
 )
 def test_the_coach_says_what_agrees_and_what_to_show_again(ways: list[Shown], sentence: str) -> None:

@@ -74,3 +74,22 @@ def test_it_answers_from_its_own_thread_and_outlives_what_cannot_be_read() -> No
     assert coach.sentence("t") == "one demonstration so far; show it again"
     assert "damaged" in coach.sentence("broken")
     coach.stop()
+
+
+def test_of_a_burst_every_task_is_compared() -> None:
+    done, asked = threading.Event(), []
+
+    def rows(task: str) -> list[Demonstration]:
+        asked.append(task)
+        if len(asked) == 2:
+            done.set()
+        return stored(1)
+
+    coach = Coach(rows, trajectory, LearningSettings())
+    for task in ("a", "b", "a"):
+        coach.consider(task)
+    coach.start()
+    assert done.wait(timeout=30)
+    coach.stop()
+    assert asked == ["a", "b"]
+    assert set(coach.sentences()) == {"a", "b"}
