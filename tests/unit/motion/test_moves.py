@@ -54,7 +54,7 @@ def test_a_blocked_way_goes_over_the_home() -> None:
 
 
 def test_without_any_free_way_it_is_refused_by_name() -> None:
-    with pytest.raises(PathRefused, match=r"on the way to the path's start: .* of post"):
+    with pytest.raises(PathRefused, match=r"on the way to the path's start: .* into post"):
         approach(scene_with(block_at(RIGHT)), LEFT, RIGHT, SETTINGS)
 
 
@@ -62,7 +62,7 @@ def test_the_way_home_must_be_free() -> None:
     goal = over(0.55, 0.25, 0.52)
     start = over(0.55, -0.25, 0.52)
     assert len(retreat(scene_with(), start, goal, LEFT, SETTINGS)) == 2
-    with pytest.raises(PathRefused, match=r"on the way home from the goal: .* of post"):
+    with pytest.raises(PathRefused, match=r"on the way home from the goal: .* into post"):
         retreat(scene_with(block_at((LEFT + HOME) / 2)), start, goal, LEFT, SETTINGS)
 
 
