@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial.distance import cdist
 
 from teachpath.learning.settings import Progress, ignore
 from teachpath.records import Array
@@ -55,7 +56,7 @@ def nearest_of(
 
 def frechet(one: Array, other: Array) -> float:
     """Return the discrete Fréchet distance [m] of two polylines (n, 3) of as many points."""
-    return float(_widest(np.linalg.norm(one[:, None] - other, axis=2)[None])[0])
+    return float(_widest(cdist(one, other)[None])[0])
 
 
 def _compiled(paths: Array, kind: int, progress: Progress) -> Distances:
@@ -90,7 +91,7 @@ def _warped(paths: Array, kind: int, progress: Progress) -> Array:
     for begin in range(0, len(left), CHUNK):
         progress(begin / len(left), SENTENCE)
         pairs = slice(begin, begin + CHUNK)
-        apart = np.linalg.norm(paths[left[pairs], :, None] - paths[right[pairs], None], axis=3)  # (pairs, n, n)
+        apart = np.stack([cdist(paths[i], paths[j]) for i, j in zip(left[pairs], right[pairs], strict=True)])
         found.append(_widest(apart) if kind == 1 else _cheapest(apart))
     return np.concatenate(found)
 

@@ -5,6 +5,7 @@ Piegl & Tiller, The NURBS Book, section 9.4.1 (least squares with fixed end poin
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -71,17 +72,28 @@ def approximate(
 
 
 def distances_to(curve: Curve, points: Array) -> Array:
-    """Return the true nearest distance of every point from the curve: (n,) [m].
+    """Return the true nearest distance of every point from the curve: (n,) [m]."""
+    return distances_from(curve)(points)
+
+
+def distances_from(curve: Curve) -> Callable[[Array], Array]:
+    """Return what `distances_to` of this curve is, for many sets of points.
 
     The curve is sampled densely and taken for a polyline, whose segments beside the nearest sample are measured.
     """
     samples = curve(np.linspace(0.0, 1.0, max(DENSE, 64 * len(curve.control_points)) + 1))
-    nearest = np.asarray(cKDTree(samples).query(points)[1])
-    before = np.maximum(nearest - 1, 0)
-    after = np.minimum(nearest + 1, len(samples) - 1)
-    return np.minimum(
-        _to_segments(points, samples[before], samples[nearest]), _to_segments(points, samples[nearest], samples[after])
-    )
+    tree = cKDTree(samples)
+
+    def distances(points: Array) -> Array:
+        nearest = np.asarray(tree.query(points)[1])
+        before = np.maximum(nearest - 1, 0)
+        after = np.minimum(nearest + 1, len(samples) - 1)
+        return np.minimum(
+            _to_segments(points, samples[before], samples[nearest]),
+            _to_segments(points, samples[nearest], samples[after]),
+        )
+
+    return distances
 
 
 class _Problem:

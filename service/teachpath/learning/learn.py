@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import asdict, replace
+from functools import cache
 from importlib.metadata import version
 
 import numpy as np
@@ -23,6 +24,7 @@ from teachpath.records import Array, Cluster, Learned, LearnedPath, Trajectory
 PATH_POINTS = 100  # at equal arc length, for the distance of two paths
 CHOOSING = "looking for inconsistent demonstrations"
 LIBRARIES = ("teachpath", "numpy", "scipy", "hmmlearn", "numba")
+_version = cache(version)  # reads a file
 
 
 def learn(
@@ -117,7 +119,7 @@ def from_ways(
         paths=paths,
         notes=(grouping.note,) if grouping.note else (),
         settings=asdict(settings),
-        versions={name: version(name) for name in LIBRARIES},
+        versions={name: _version(name) for name in LIBRARIES},
         inputs={name: fingerprint(trajectory) for name, trajectory in demonstrations.items()},
     )
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from teachpath.errors import LearningFailed
 from teachpath.learning.distances import frechet
-from teachpath.learning.fitting import DENSE, Approximation, approximate, distances_to
+from teachpath.learning.fitting import DENSE, Approximation, approximate, distances_from, distances_to
 from teachpath.learning.orienting import mean_orientations, orient
 from teachpath.learning.resampling import SMOOTHING, arc_lengths, at_equal_arc_length, smoothed
 from teachpath.learning.settings import LearningSettings, Tick
@@ -153,11 +153,12 @@ def _path(
     note: str,
     tick: Tick,
 ) -> LearnedPath:
-    apart = distances_to(fit.curve, fitted)
+    distances = distances_from(fit.curve)
+    apart = distances(fitted)
     course = consensus([smoothed(trajectory) for trajectory in selected])
     tube = 0.0
     for trajectory in selected:
-        tube = max(tube, float(distances_to(fit.curve, trajectory.positions).max()))
+        tube = max(tube, float(distances(trajectory.positions).max()))
         tick()
     mean, orientation, turn = mean_orientations(selected, len(course)), None, None
     s = arc_lengths(course)
