@@ -84,8 +84,11 @@ class Executions:
         return [self._recorder.fault] if self._recorder.fault else []
 
     def recording(self, execution: str) -> Path:
-        """Return the file of all that an execution sent and the arm did; raises NotFound."""
-        return self._store.motions.path(self._store.execution(execution).id)
+        """Return the file of all that an execution sent and the arm did, whole once it is over; raises NotFound."""
+        row = self.get(execution)
+        if row.status.state in RESTING:
+            self._recorder.wait_for(row.id)
+        return self._store.motions.path(row.id)
 
     def series(self, execution: str, points: int) -> Series:
         """Return what the arm did over time in an execution; raises NotFound."""

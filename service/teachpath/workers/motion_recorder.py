@@ -22,6 +22,7 @@ ROUND: Final = 0.05  # [s] between two looks at what came
 FLUSH_NS: Final = 1_000_000_000  # between two flushes
 AFTER_NS: Final = 500_000_000  # behind the end of an execution, in which the arm still settles
 OVER: Final = ("ended", "faulted")
+PATIENCE: Final = 3.0  # [s] that somebody waits for the end of a file
 
 
 class MotionRecorder:
@@ -38,6 +39,7 @@ class MotionRecorder:
         self._bus, self._keys, self._motions, self._robot, self._clock = bus, keys, motions, robot, clock
         self._came: deque[tuple[str, int, bytes]] = deque()
         self._lock = threading.Lock()
+        self._left = threading.Condition(self._lock)  # a file is whole, or given up
         self._take: MotionTake | None = None
         self._execution = ""
         self._setpoints = self._lost = 0
@@ -94,6 +96,12 @@ class MotionRecorder:
         with self._lock:
             self._until = self._until or self._clock() + AFTER_NS
 
+    def wait_for(self, execution: str) -> None:
+        """Wait until the file of an execution that is over has its end."""
+        if self._thread is not None:
+            with self._left:
+                self._left.wait_for(lambda: self._take is None or self._execution != execution, PATIENCE)
+
     def work(self) -> None:
         """Write what came; the thread calls it all the time."""
         with self._lock:
@@ -146,6 +154,7 @@ class MotionRecorder:
         take, self._take, self._until = self._take, None, 0
         if take is None:
             return
+        self._left.notify_all()
         facts = {"execution": self._execution, "setpoints": str(self._setpoints), "lost": str(self._lost)}
         try:
             take.finish(facts)
@@ -157,5 +166,6 @@ class MotionRecorder:
         if self._take is not None:
             self._take.leave()
         self._take = None
+        self._left.notify_all()
         self.fault = f"execution {self._execution} is not recorded: {error}; make room on the disk"
         log.error("%s", self.fault)

@@ -1,6 +1,7 @@
 """Everything that is executed is in one file, also when the service was killed or the disk was full."""
 
 import io
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
@@ -69,6 +70,20 @@ def test_a_motion_is_written_whole_and_read_back(tmp_path: Path, middle: Plan) -
     desk.recorder.stop()
     with pytest.raises(NotFound, match="has no recording"):
         desk.motions.path("execution-2")
+
+
+def test_who_asks_right_after_the_end_waits_for_the_whole_file(tmp_path: Path) -> None:
+    desk = Desk(tmp_path)
+    desk.recorder.begin(MotionHeader("execution-1", "puma560"))
+    desk.send(0)
+    desk.tell("ended")
+    with ThreadPoolExecutor() as pool:
+        asked = pool.submit(lambda: (desk.recorder.wait_for("execution-1"), desk.motions.path("execution-1"))[1])
+        desk.recorder.wait_for("execution-0")  # of another one nothing is to come
+        assert desk.motions.path("execution-1").suffix == ".part"
+        desk.now += AFTER_NS + 1
+        assert asked.result().suffix == ".mcap"
+    desk.recorder.stop()
 
 
 def test_a_file_that_a_kill_left_is_made_whole_at_the_next_start(tmp_path: Path) -> None:
