@@ -1,6 +1,7 @@
 """The review package: what it holds, that it fetches nothing, and that nothing of it can break out of its place."""
 
 import re
+from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
@@ -34,8 +35,10 @@ def trajectory(shown: Demonstration) -> Trajectory:
 
 
 @pytest.fixture(scope="module")
-def store(tmp_path_factory: pytest.TempPathFactory) -> Store:
-    return learned(Store(StoreSettings(str(tmp_path_factory.mktemp("report")))))
+def store(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Store]:
+    store = learned(Store(StoreSettings(str(tmp_path_factory.mktemp("report")))))
+    yield store
+    store.close()
 
 
 def learned(store: Store) -> Store:
