@@ -17,6 +17,8 @@ from teachpath.errors import Unreachable
 if TYPE_CHECKING:
     from teachpath.app import Station
 
+SIGNALS = frozenset({signal.SIGINT, signal.SIGTERM})
+
 
 @contextmanager
 def serving(settings: Settings) -> Iterator[Station]:
@@ -69,11 +71,31 @@ def free_port() -> int:
 
 @contextmanager
 def until_signalled() -> Iterator[threading.Event]:
-    """Set an event on Ctrl-C or SIGTERM instead of breaking off; the old handlers come back on leaving."""
+    """Set an event on Ctrl-C or SIGTERM instead of breaking off; the old handlers come back on leaving.
+
+    The system may give a signal to any thread, one of Zenoh's too, and then the main thread sleeps on; and a handler
+    must take no lock that it may have interrupted. So the signal's number goes through a socket to a thread that sets
+    the event.
+    """
     stop = threading.Event()
-    handlers = {s: signal.signal(s, lambda *_: stop.set()) for s in (signal.SIGINT, signal.SIGTERM)}
+    hearing, telling = socket.socketpair()
+    telling.setblocking(False)
+
+    def listen() -> None:
+        while numbers := hearing.recv(64):
+            if not SIGNALS.isdisjoint(numbers):
+                stop.set()
+
+    handlers = {number: signal.signal(number, lambda *_: None) for number in SIGNALS}
+    before = signal.set_wakeup_fd(telling.fileno(), warn_on_full_buffer=False)
+    listener = threading.Thread(target=listen, name="signals", daemon=True)
+    listener.start()
     try:
         yield stop
     finally:
+        signal.set_wakeup_fd(before)
         for number, handler in handlers.items():
             signal.signal(number, handler)
+        telling.close()
+        listener.join()
+        hearing.close()
