@@ -39,7 +39,6 @@ for command in (
     evaluate.evaluate,
     evaluate.diff,
     files.export,
-    files.report,
     files.doctor,
 ):
     app.command(name=command.__name__.rstrip("_"))(command)

@@ -116,19 +116,6 @@ def _demonstrations(
         print(f"{left_out} rejected, discarded or bad ones are left out; --all writes them too", file=sys.stderr)
 
 
-def report(
-    run: Annotated[str, typer.Argument(help="Id of a learning run, or a task: its newest run.")],
-    into: Annotated[Path | None, typer.Option(help="File to write; RUN.html without it.")] = None,
-    config: Config = None,
-    data: Data = None,
-) -> None:
-    """Write a review package: one HTML file about a learning run, as `export --report` does.
-
-    It holds the animated 3-D scene, tables and plots, opens in any browser without the service, and fetches nothing.
-    """
-    _review(run, into or Path(f"{run}.html"), settings_of(config, data))
-
-
 def _review(run: str, file: Path, settings: Settings) -> None:
     import numpy as np
 

@@ -71,6 +71,7 @@ class _Timing:
 
     @staticmethod
     def of(path: JointPath, limits: Limits, intervals: int, reserve: Reserve) -> _Timing:
+        """Return the coefficients of a joint path, for joints that move on it, where limits are imposed."""
         places = ((np.arange(intervals)[:, None] + PLACES) / intervals).ravel()
         one, two, three = (path(places, k)[:, :6] for k in (1, 2, 3))
         moves = np.abs(one).max(axis=0) > STILL * limits.speed

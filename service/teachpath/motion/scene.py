@@ -34,12 +34,14 @@ class Clearance:
     other: str
 
     def too_near(self, distance: float, least: float) -> str:
-        """Return the words for less than the least distance [m], where at this distance [m] they are, or deeper."""
-        if distance < 0.0:
-            return (
-                f"{self.part} goes {-1000 * distance:.1f} mm into {self.other}, has to stay {1000 * least:.1f} mm away"
-            )
-        return f"{self.part} comes within {1000 * distance:.1f} mm of {self.other}, least allowed {1000 * least:.1f} mm"
+        """Return the words for a distance [m] below the least one; that is negative where they may overlap so deep."""
+        if distance >= 0.0:
+            near = f"{self.part} comes within {1000 * distance:.1f} mm of {self.other}"
+            return f"{near}, least allowed {1000 * least:.1f} mm"
+        deep = f"{self.part} goes {-1000 * distance:.1f} mm into {self.other}"
+        if least < 0.0:
+            return f"{deep}, at most {-1000 * least:.1f} mm are allowed"
+        return f"{deep}, has to stay {1000 * least:.1f} mm away"
 
 
 @dataclass(frozen=True, eq=False)

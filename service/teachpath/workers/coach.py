@@ -71,7 +71,10 @@ class Coach:
         usable = [d for d in self._demonstrations(task) if d.is_usable][-MOST:]
         courses = [self._course(d) for d in usable]
         self._courses = {(d.id, d.transport): c for d, c in zip(usable, courses, strict=True)}
-        return advise(_ways(np.array(courses), self._settings))
+        if not courses:
+            return ""
+        length = float(np.median([arc_lengths(course)[-1] for course in courses]))
+        return advise(_ways(np.array(courses), self._settings, length), length)
 
     def _run(self) -> None:
         while STOP not in (burst := self._burst()):
@@ -95,11 +98,10 @@ class Coach:
         return at_equal_arc_length(smoothed(self._trajectory(demonstration)), POINTS)
 
 
-def _ways(courses: Array, settings: LearningSettings) -> list[Shown]:
+def _ways(courses: Array, settings: LearningSettings, length: float) -> list[Shown]:
     if len(courses) < 2:
         return [Shown(len(courses), 0.0)]
     condensed = distances(courses)
-    length = float(np.median([arc_lengths(course)[-1] for course in courses]))
     labels = group(condensed, len(courses), settings, length=length).labels
     left, right = np.triu_indices(len(courses), 1)
     shown = []

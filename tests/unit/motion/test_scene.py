@@ -4,7 +4,7 @@ import pytest
 from teachpath.motion.kinematics import downward, inverse, tool_pose
 from teachpath.motion.moves import left_behind
 from teachpath.motion.puma560 import LOWER, UPPER
-from teachpath.motion.scene import FAR, CollisionModel, Load
+from teachpath.motion.scene import FAR, Clearance, CollisionModel, Load
 from teachpath.motion.scenes import paper_scene
 from teachpath.motion.settings import MotionSettings
 from teachpath.records import Scene, Shape
@@ -115,3 +115,15 @@ def test_the_object_stands_turned_where_a_turned_tool_left_it() -> None:
 
 def test_nothing_near_is_far() -> None:
     assert CollisionModel(Scene("s")).clearances(over(0.5, 0.0, 0.8))[0].distance <= FAR
+
+
+@pytest.mark.parametrize(
+    ("distance", "least", "sentence"),
+    [
+        (0.002, 0.005, "block comes within 2.0 mm of box, least allowed 5.0 mm"),
+        (-0.012, 0.005, "block goes 12.0 mm into box, has to stay 5.0 mm away"),
+        (-0.012, -0.003, "block goes 12.0 mm into box, at most 3.0 mm are allowed"),
+    ],
+)
+def test_what_is_too_near_is_said_without_a_negative_number(distance: float, least: float, sentence: str) -> None:
+    assert Clearance(distance, "block", "box").too_near(distance, least) == sentence

@@ -2,6 +2,8 @@ import pytest
 
 from teachpath.recording.coach import Shown, advise
 
+LENGTH = 0.7  # m
+
 
 @pytest.mark.parametrize(
     ("ways", "sentence"),
@@ -29,4 +31,10 @@ from teachpath.recording.coach import Shown, advise
     ],
 )
 def test_the_coach_says_what_agrees_and_what_to_show_again(ways: list[Shown], sentence: str) -> None:
-    assert advise(ways) == sentence
+    assert advise(ways, LENGTH) == sentence
+
+
+@pytest.mark.parametrize("scale", [0.1, 1.0, 10.0])
+def test_whether_they_agree_does_not_depend_on_the_size_of_the_task(scale: float) -> None:
+    assert "agree" in advise([Shown(3, 0.08 * scale)], LENGTH * scale)
+    assert "apart" in advise([Shown(3, 0.24 * scale)], LENGTH * scale)

@@ -66,9 +66,17 @@ class Executor:
         self._hearing = Hearing(robot, self._settings.silence, clock)
         self._uptake = Uptake()
         self._controls = Controls(
-            bus, keys, self._settings, motion or MotionSettings(), self._hearing,
-            robot=robot, told=self._status, begun=self._pacer.reset, clock=clock, wall=wall,
-        )  # fmt: skip
+            bus,
+            keys,
+            self._settings,
+            motion or MotionSettings(),
+            self._hearing,
+            robot=robot,
+            told=self._status,
+            begun=self._pacer.reset,
+            clock=clock,
+            wall=wall,
+        )
         self._scheduling = "real-time scheduling was not asked for"
         self._told = ("", "", 0)  # execution, state and time of the newest status
 
