@@ -22,24 +22,24 @@ from teachpath.errors import NotFound
 from teachpath.io.bus import Bus, open_bus
 from teachpath.io.store.store import Store
 from teachpath.io.wire import report_document
+from teachpath.jobs import worker
+from teachpath.jobs.curve_assessor import Assessor
+from teachpath.jobs.jobs import Jobs, Kind
 from teachpath.learning.settings import LearningSettings
-from teachpath.motion.drawing import drawing
+from teachpath.live.event_hub import News
+from teachpath.live.preview import Preview
+from teachpath.live.state_poller import Look, Lookout
+from teachpath.motion.arm.geometry import drawing
 from teachpath.offline.lock import StationLock
+from teachpath.recorder.annotations import Curation
+from teachpath.recorder.calibrations import Calibrations
+from teachpath.recorder.guidance import Coach
+from teachpath.recorder.recorder import Recorder
+from teachpath.recorder.websocket_trackers import TrackerGate
 from teachpath.records import Demonstration, Job, Learned, Plan, Trajectory
-from teachpath.workers import desk
-from teachpath.workers.assessor import Assessor
-from teachpath.workers.calibrations import Calibrations
-from teachpath.workers.coach import Coach
-from teachpath.workers.curation import Curation
-from teachpath.workers.executions import Executions
-from teachpath.workers.gate import TrackerGate
-from teachpath.workers.jobs import Jobs, Kind
-from teachpath.workers.joints import JointFeed
-from teachpath.workers.lookout import Look, Lookout
-from teachpath.workers.news import News
-from teachpath.workers.preview import Preview
-from teachpath.workers.processes import WorkerProcess
-from teachpath.workers.recorder import Recorder
+from teachpath.robot.executions import Executions
+from teachpath.robot.joint_feed import JointFeed
+from teachpath.robot.processes import WorkerProcess
 from teachpath_proto.keys import Keys
 
 log = logging.getLogger("teachpath")
@@ -206,9 +206,9 @@ class Station:
 
     def _kinds(self) -> dict[str, Kind]:
         return {
-            "learn": Kind(self._prepare_learning, desk.learn_paths, self._finish_learning),
-            "recut": Kind(self._prepare_recut, desk.recut_run, self._finish_learning),
-            "plan": Kind(self._prepare_planning, desk.plan_path, self._finish_planning),
+            "learn": Kind(self._prepare_learning, worker.learn_paths, self._finish_learning),
+            "recut": Kind(self._prepare_recut, worker.recut_run, self._finish_learning),
+            "plan": Kind(self._prepare_planning, worker.plan_path, self._finish_planning),
         }
 
     def _prepare_learning(self, job: Job) -> tuple[dict[str, Trajectory], LearningSettings]:

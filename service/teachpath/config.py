@@ -18,18 +18,18 @@ from annotated_types import Ge, Le
 from pydantic import BaseModel, ConfigDict, ValidationError
 
 from teachpath.errors import NotFound, UnusableSettings
+from teachpath.executor.settings import ExecutorSettings
 from teachpath.io.bus import BusSettings
 from teachpath.io.meshes import read_hull
 from teachpath.io.store.settings import StoreSettings
+from teachpath.jobs.jobs import JobSettings
 from teachpath.learning.settings import LearningSettings
-from teachpath.motion.arm import choose
-from teachpath.motion.scenes import empty_scene, paper_scene
+from teachpath.motion.arm.variants import choose
+from teachpath.motion.collision.builtin_scenes import empty_scene, paper_scene
 from teachpath.motion.settings import MotionSettings
 from teachpath.recording.settings import RecordingSettings
 from teachpath.records import Calibration, Scene, Shape
-from teachpath.workers.executor.settings import ExecutorSettings
-from teachpath.workers.jobs import JobSettings
-from teachpath.workers.simulator.settings import SimulatorSettings
+from teachpath.simulator.settings import SimulatorSettings
 from teachpath_proto.keys import is_name
 
 PREFIX = "TEACHPATH_"

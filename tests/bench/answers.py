@@ -10,9 +10,9 @@ from dataclasses import dataclass, field
 import numpy as np
 from report import Figure, against
 
-from teachpath.motion import kernels
-from teachpath.motion.governor import Governor
-from teachpath.motion.track import Track
+from teachpath.motion.execution.governor import Governor
+from teachpath.motion.timing import kernels
+from teachpath.motion.timing.timed_trajectory import Track
 
 ALLOWED = 0.1  # s
 EXACT = 1e-9  # s

@@ -10,7 +10,7 @@ from itertools import pairwise
 import numpy as np
 
 from teachpath.exchange import to_geomdl
-from teachpath.motion.drawing import solids
+from teachpath.motion.arm.geometry import solids
 from teachpath.nurbs import Curve
 from teachpath.records import Scene, Shape
 

@@ -9,7 +9,7 @@ few percent, so a plan that is no slower than this has missed no better basin.
 import numba
 import numpy as np
 
-from teachpath.motion.joints import JointPath, Limits
+from teachpath.motion.arm.joint_path import JointPath, Limits
 
 PIECES = 120
 LEVELS = 1000  # of x

@@ -8,8 +8,8 @@ import time
 import numpy as np
 from report import Figure, against
 
-from teachpath.motion.kinematics import inverse, tool_pose
-from teachpath.motion.puma560 import DEFAULT, LOWER, TOOL_LENGTH, UPPER, VARIANTS
+from teachpath.motion.arm.kinematics import inverse, tool_pose
+from teachpath.motion.arm.puma560 import DEFAULT, LOWER, TOOL_LENGTH, UPPER, VARIANTS
 
 POSES = 1000
 

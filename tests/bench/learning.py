@@ -8,8 +8,8 @@ from report import Figure, against
 
 from teachpath.learning.learn import learn
 from teachpath.learning.settings import LearningSettings
-from teachpath.motion.plan import plan
-from teachpath.motion.scenes import paper_scene
+from teachpath.motion.collision.builtin_scenes import paper_scene
+from teachpath.motion.planning.plan import plan
 from teachpath.motion.settings import MotionSettings
 from teachpath.records import Learned, Trajectory
 

@@ -15,11 +15,11 @@ from scipy.cluster.hierarchy import fcluster, linkage
 from scipy.interpolate import BSpline, make_lsq_spline, splev, splprep
 from scipy.spatial import cKDTree
 
-from teachpath.learning.distances import distances
-from teachpath.learning.features import families
-from teachpath.learning.fitting import approximate, distances_to
+from teachpath.learning.clustering.distances import distances
+from teachpath.learning.fitting.nurbs_fit import approximate, distances_to
 from teachpath.learning.learn import learn
 from teachpath.learning.resampling import arc_lengths, at_equal_arc_length, smoothed
+from teachpath.learning.selection.features import families
 from teachpath.learning.settings import LearningSettings
 from teachpath.records import Array, Trajectory
 

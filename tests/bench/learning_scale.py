@@ -11,10 +11,10 @@ import numba
 import numpy as np
 from report import Figure, against
 
-from teachpath.learning.crowd import grouped
-from teachpath.learning.distances import distances
-from teachpath.learning.kernels import _mean_distance
-from teachpath.learning.selection import select
+from teachpath.learning.clustering.distances import distances
+from teachpath.learning.clustering.kernels import _mean_distance
+from teachpath.learning.clustering.subsampled_clustering import grouped
+from teachpath.learning.selection.default_mode import select
 from teachpath.learning.settings import LearningSettings
 from teachpath.records import Array, Trajectory
 

@@ -8,7 +8,7 @@ none. It is a local optimum of a finite number of pieces: an estimate of the bes
 import numpy as np
 from scipy.optimize import linprog
 
-from teachpath.motion.track import Track
+from teachpath.motion.timing.timed_trajectory import Track
 
 PIECES = 30
 PROGRAMS = 10  # per duration

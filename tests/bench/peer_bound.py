@@ -6,9 +6,9 @@ toppra has wheels for Linux on x86-64 only, and is left out elsewhere.
 import numpy as np
 from report import Figure, against
 
-from teachpath.motion.branches import Candidate, configurations
-from teachpath.motion.joints import Limits
-from teachpath.motion.route import Route
+from teachpath.motion.arm.joint_path import Limits
+from teachpath.motion.paths.ik_branches import Candidate, configurations
+from teachpath.motion.paths.tool_path import Route
 
 POINTS = 1600  # of the curve, even in its parameter
 

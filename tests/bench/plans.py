@@ -16,7 +16,7 @@ from refusals import search
 from report import Figure, against
 
 from teachpath.errors import PathRefused
-from teachpath.motion.plan import plan
+from teachpath.motion.planning.plan import plan
 from teachpath.records import Fit, LearnedPath
 
 DT = 0.004

@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from teachpath.motion.certificate import track
-from teachpath.motion.governor import Governor
-from teachpath.motion.scenes import empty_scene
+from teachpath.motion.collision.builtin_scenes import empty_scene
+from teachpath.motion.execution.governor import Governor
+from teachpath.motion.planning.certificate import track
 from teachpath.nurbs import Curve
 from teachpath.records import Plan, Scene, Shape
 

@@ -20,10 +20,10 @@ from teachpath.commands.serving import free_port
 from teachpath.io.bus import Bus, BusSettings, MemoryBus, open_bus
 from teachpath.io.store.settings import StoreSettings
 from teachpath.io.store.store import Store
-from teachpath.motion.scenes import paper_scene
+from teachpath.motion.collision.builtin_scenes import paper_scene
+from teachpath.recorder.recorder import Recorder
 from teachpath.recording.settings import RecordingSettings
 from teachpath.records import Calibration, Demonstration, Trajectory
-from teachpath.workers.recorder import Recorder
 from teachpath_client.synthetic import RATE
 
 DEMO = 4236  # samples of the demo's twelve demonstrations

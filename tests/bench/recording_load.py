@@ -19,10 +19,10 @@ from teachpath.commands.serving import free_port
 from teachpath.io.bus import Bus, BusSettings, open_bus
 from teachpath.io.store.settings import StoreSettings
 from teachpath.io.store.store import Store
-from teachpath.motion.scenes import empty_scene
+from teachpath.motion.collision.builtin_scenes import empty_scene
+from teachpath.recorder.recorder import Recorder
 from teachpath.recording.settings import RecordingSettings
 from teachpath.records import Calibration
-from teachpath.workers.recorder import Recorder
 from teachpath_proto import tracker_pb2
 
 TRACKERS = 400

@@ -10,14 +10,14 @@ from global_optimum import best_duration
 from optimum import shortest_stop
 from report import Figure, against
 
-from teachpath.motion.branches import Candidate, candidates, usable
-from teachpath.motion.governor import Governor, warm_up
-from teachpath.motion.joints import ARM, JointPath
-from teachpath.motion.route import Route, route
+from teachpath.motion.arm.joint_path import ARM, JointPath
+from teachpath.motion.execution.governor import Governor, warm_up
+from teachpath.motion.paths.ik_branches import Candidate, candidates, usable
+from teachpath.motion.paths.tool_path import Route, route
 from teachpath.motion.settings import MotionSettings
-from teachpath.motion.shares import NOTHING_LEFT, uses
-from teachpath.motion.timing import lower_bound, timed
-from teachpath.motion.track import Track, paced
+from teachpath.motion.timing.limit_margins import NOTHING_LEFT, uses
+from teachpath.motion.timing.timed_trajectory import Track, paced
+from teachpath.motion.timing.timing import lower_bound, timed
 from teachpath.nurbs import Curve
 
 RATE = 250.0

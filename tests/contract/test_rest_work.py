@@ -7,9 +7,9 @@ from typing import Any
 import pytest
 
 from teachpath.app import Station
+from teachpath.executor.lease import ControlLease
 from teachpath.io.wire import decode_lease_request, encode_lease
 from teachpath.records import Job, JobState, JournalEntry
-from teachpath.workers.executor.lease import ControlLease
 from tests.contract.desk import API, Desk, csv, refused
 from tests.unit.io.test_documents import a_plan
 

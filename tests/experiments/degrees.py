@@ -8,16 +8,16 @@ from typing import Any
 
 import numpy as np
 
-from teachpath.learning.fitting import approximate
+from teachpath.learning.fitting.nurbs_fit import approximate
+from teachpath.learning.fitting.synthesis import best_fit, consensus
 from teachpath.learning.resampling import smoothed
 from teachpath.learning.settings import LearningSettings
-from teachpath.learning.synthesis import best_fit, consensus
-from teachpath.motion.branches import candidates, usable
-from teachpath.motion.joints import ARM
-from teachpath.motion.route import route
+from teachpath.motion.arm.joint_path import ARM
+from teachpath.motion.paths.ik_branches import candidates, usable
+from teachpath.motion.paths.tool_path import route
 from teachpath.motion.settings import MotionSettings
-from teachpath.motion.timing import timed
-from teachpath.motion.track import paced
+from teachpath.motion.timing.timed_trajectory import paced
+from teachpath.motion.timing.timing import timed
 from teachpath.nurbs import Curve
 from tests.experiments.scenarios import SHAPES, along
 from tests.unit.learning import synthetic

@@ -17,8 +17,8 @@ from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 from matplotlib.ticker import PercentFormatter
 
+from teachpath.live.preview import WAYS
 from teachpath.records import Array, Learned, Trajectory
-from teachpath.workers.preview import WAYS
 from tests.experiments import quoted
 from tests.experiments.scenarios import GROUPINGS, SCENARIOS, SHAPES, along
 from tests.experiments.trials import MODES, Rate, course, learn, settings

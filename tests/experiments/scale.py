@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from teachpath.learning.paper import RIDGE, select_as_paper
-from teachpath.learning.symbols import spectra, symbol_sequences
+from teachpath.learning.selection.paper_mode import RIDGE, select_as_paper
+from teachpath.learning.selection.symbols import spectra, symbol_sequences
 from teachpath.records import Array
 from tests.experiments import quoted
 from tests.experiments.scenarios import THREE

@@ -9,7 +9,7 @@ from math import sqrt
 import numpy as np
 
 from teachpath.errors import LearningFailed
-from teachpath.learning.distances import frechet
+from teachpath.learning.clustering.distances import frechet
 from teachpath.learning.learn import learn
 from teachpath.learning.resampling import at_equal_arc_length
 from teachpath.learning.settings import LearningSettings

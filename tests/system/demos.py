@@ -3,8 +3,8 @@
 import json
 from collections.abc import Callable
 
+from teachpath.executor.settings import ExecutorSettings
 from teachpath.learning.settings import LearningSettings
-from teachpath.workers.executor.settings import ExecutorSettings
 from tests.system.processes import Command
 
 Start = Callable[..., Command]

@@ -17,10 +17,10 @@ from teachpath.io.bus import MemoryBus
 from teachpath.io.store.settings import StoreSettings
 from teachpath.io.store.store import Store
 from teachpath.io.wire import sample_message
-from teachpath.motion.scenes import paper_scene
+from teachpath.motion.collision.builtin_scenes import paper_scene
+from teachpath.recorder.recorder import Recorder
 from teachpath.recording.settings import RecordingSettings
 from teachpath.records import Calibration, Sample
-from teachpath.workers.recorder import Recorder
 from teachpath_proto.keys import Keys
 from tests.unit.recording.hands import demonstration
 

@@ -13,9 +13,9 @@ from teachpath.io.bus import BusSettings, open_bus
 from teachpath.io.store.settings import StoreSettings
 from teachpath.io.store.store import Store
 from teachpath.io.wire import sample_message
+from teachpath.recorder.recorder import Recorder
 from teachpath.recording.settings import RecordingSettings
 from teachpath.records import Calibration, Sample, Scene, Shape
-from teachpath.workers.recorder import Recorder
 from teachpath_client import Link
 from teachpath_proto import tracker_pb2
 from teachpath_proto.keys import Keys

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from teachpath.motion.puma560 import TOOL_LENGTH
+from teachpath.motion.arm.puma560 import TOOL_LENGTH
 from teachpath_client import HandReading, Link, Tracker
 from teachpath_proto.keys import Keys
 from tests.system.test_view import Visit, wait_until

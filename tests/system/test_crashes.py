@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from teachpath.workers.scribe import FLUSH_EVERY
+from teachpath.recorder.recording_thread import FLUSH_EVERY
 from teachpath_client import HandReading, Link, Tracker
 from teachpath_client.synthetic import RATE, experiment_1
 from tests.system.processes import OUTLIVED, Service, run, wait_until

@@ -10,10 +10,10 @@ import pytest
 from teachpath.io.bus import BusSettings, open_bus
 from teachpath.io.store.settings import StoreSettings
 from teachpath.io.store.store import Store
-from teachpath.motion.scenes import paper_scene
+from teachpath.motion.collision.builtin_scenes import paper_scene
+from teachpath.recorder.recorder import Recorder
 from teachpath.recording.settings import RecordingSettings
 from teachpath.records import Calibration
-from teachpath.workers.recorder import Recorder
 from teachpath_client.__main__ import main
 from teachpath_proto.keys import Keys
 from tests.system.processes import free_ports

@@ -11,7 +11,7 @@ import pytest
 from teachpath.io.store.recordings import salvage
 from teachpath.io.store.settings import StoreSettings
 from teachpath.io.store.store import Store
-from teachpath.motion.scenes import paper_scene
+from teachpath.motion.collision.builtin_scenes import paper_scene
 from teachpath.offline.doctor import examine
 from teachpath.recording.settings import RecordingSettings
 

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from teachpath.motion.kinematics import link_frames
+from teachpath.motion.arm.kinematics import link_frames
 from tests.system.access import grave
 from tests.system.carriers import HEADSET, START, begin, carry, carry_worn, move_hand, phase
 from tests.system.operators import PATIENT, RESTING, Leader, Operator, Status

@@ -22,16 +22,16 @@ from teachpath.api.view import view_router
 from teachpath.io import wire
 from teachpath.io.bus import MemoryBus
 from teachpath.io.documents import to_document
-from teachpath.learning.cuts import dendrogram
-from teachpath.motion.assessment import assess
-from teachpath.motion.drawing import drawing
-from teachpath.motion.kinematics import link_frames
-from teachpath.motion.scenes import paper_scene
+from teachpath.learning.clustering.cuts import dendrogram
+from teachpath.live.event_hub import News
+from teachpath.live.preview import Preview
+from teachpath.motion.arm.geometry import drawing
+from teachpath.motion.arm.kinematics import link_frames
+from teachpath.motion.collision.builtin_scenes import paper_scene
+from teachpath.motion.planning.assessment import assess
 from teachpath.motion.settings import MotionSettings
 from teachpath.nurbs import Curve
 from teachpath.records import Cluster, Fit, JointState, Learned, LearnedPath, Task, Trajectory
-from teachpath.workers.news import News
-from teachpath.workers.preview import Preview
 from teachpath_proto.keys import Keys
 from tests.contract.rows import demonstration
 

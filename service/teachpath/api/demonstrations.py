@@ -10,8 +10,8 @@ from pydantic import BaseModel, Field
 
 from teachpath.api.parts import Parts
 from teachpath.io.documents import to_document
+from teachpath.recorder.annotations import Amendment
 from teachpath.records import Demonstration
-from teachpath.workers.curation import Amendment
 
 
 class Amended(BaseModel):

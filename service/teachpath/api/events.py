@@ -14,7 +14,7 @@ import json
 from fastapi import APIRouter, WebSocket
 
 from teachpath.api import sockets
-from teachpath.workers.news import Document, Listener, News
+from teachpath.live.event_hub import Document, Listener, News
 
 
 def events_router(news: News) -> APIRouter:

@@ -13,7 +13,7 @@ from teachpath.errors import UnusableInput
 from teachpath.io.documents import to_document
 from teachpath.io.store.store import ExecutionRow
 from teachpath.records import Command, ExecutorStatus, Mirroring
-from teachpath.workers.executions import Executions
+from teachpath.robot.executions import Executions
 from teachpath_proto.keys import NAME
 
 Token = Annotated[

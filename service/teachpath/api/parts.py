@@ -8,14 +8,14 @@ from typing import Any
 
 from teachpath.config import Settings
 from teachpath.io.store.store import Store
+from teachpath.jobs.curve_assessor import Assessor
+from teachpath.jobs.jobs import Jobs
+from teachpath.recorder.calibrations import Calibrations
+from teachpath.recorder.recorder import Recorder
+from teachpath.recorder.websocket_trackers import TrackerGate
 from teachpath.records import Demonstration, Trajectory
-from teachpath.workers.assessor import Assessor
-from teachpath.workers.calibrations import Calibrations
-from teachpath.workers.executions import Executions
-from teachpath.workers.gate import TrackerGate
-from teachpath.workers.jobs import Jobs
-from teachpath.workers.joints import JointFeed
-from teachpath.workers.recorder import Recorder
+from teachpath.robot.executions import Executions
+from teachpath.robot.joint_feed import JointFeed
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ from pydantic import BaseModel, Field
 from teachpath.api.parts import Parts
 from teachpath.errors import UnusableInput
 from teachpath.io.wire import report_document
-from teachpath.recording.control import Routine
+from teachpath.recording.take_control import Routine
 from teachpath.records import Demonstration
 
 

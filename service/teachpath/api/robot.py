@@ -13,10 +13,10 @@ from fastapi import APIRouter, WebSocket, WebSocketDisconnect
 from teachpath.api.parts import Parts
 from teachpath.api.sockets import same_origin
 from teachpath.io.documents import to_document
-from teachpath.motion.arm import arm
-from teachpath.motion.puma560 import ACCELERATION, FINGER_TRAVEL, JERK, LOWER, SPEED, TOOL_LENGTH, TORQUE, UPPER
+from teachpath.motion.arm.puma560 import ACCELERATION, FINGER_TRAVEL, JERK, LOWER, SPEED, TOOL_LENGTH, TORQUE, UPPER
+from teachpath.motion.arm.variants import arm
 from teachpath.records import ExecutorStatus
-from teachpath.workers.joints import JointFrame
+from teachpath.robot.joint_feed import JointFrame
 
 RATE: Final = 25.0  # [Hz] joint frames to a page, at most
 PULSE: Final = 1.0  # [s] between two frames of an arm at rest
@@ -50,7 +50,9 @@ def robot_router(parts: Parts) -> APIRouter:
 
         Times [s], joints [rad], pose of the carried object [m, world], and what the arm does when, in words.
         """
-        from teachpath.motion.rehearsal import rehearse  # with the libraries of planning, which nothing else here needs
+        from teachpath.motion.execution.motion_preview import (
+            rehearse,  # with the libraries of planning, which nothing else here needs
+        )
 
         stored = parts.store.plan(plan)
         return to_document(rehearse(stored, parts.settings.motion, dwell=parts.settings.executor.dwell))

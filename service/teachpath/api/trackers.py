@@ -25,7 +25,7 @@ from teachpath.api.parts import Parts
 from teachpath.api.sockets import same_origin
 from teachpath.errors import TeachpathError, UnusableInput
 from teachpath.io.wire import LARGEST_SAMPLE
-from teachpath.workers.gate import GatedTracker
+from teachpath.recorder.websocket_trackers import GatedTracker
 
 SILENCE: Final = 10.0  # [s] after which a page that says nothing, not even a ping, has gone
 REFUSED: Final = 1008  # close code: policy violation

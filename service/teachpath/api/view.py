@@ -9,7 +9,7 @@ from fastapi import APIRouter, Response, WebSocket
 from fastapi.responses import FileResponse, PlainTextResponse
 
 from teachpath.api import sockets
-from teachpath.workers.preview import Page, Preview, viewer_files, web_files
+from teachpath.live.preview import Page, Preview, viewer_files, web_files
 
 # The two hashes are the style elements that meshcat's bundle puts into the page: its own (empty) one and dat.gui's.
 STYLE_HASHES: Final = (

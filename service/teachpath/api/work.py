@@ -11,7 +11,7 @@ from teachpath.api.parts import Parts
 from teachpath.errors import NotFound
 from teachpath.io.documents import to_document
 from teachpath.io.store.store import Store
-from teachpath.learning.cuts import dendrogram, recut
+from teachpath.learning.clustering.cuts import dendrogram, recut
 from teachpath.records import Job, LearnedPath
 
 

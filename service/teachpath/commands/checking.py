@@ -12,7 +12,7 @@ from teachpath.errors import UnusableRecording
 from teachpath.io.documents import from_document
 from teachpath.io.setpoints import read_setpoints
 from teachpath.io.store.motions import read_motion
-from teachpath.motion.judgement import SetpointLog, judge
+from teachpath.motion.analysis.log_check import SetpointLog, judge
 from teachpath.nurbs import Curve
 from teachpath.records import LearnedPath
 

@@ -35,7 +35,7 @@ def import_(
     """
     from teachpath.io.store.store import Store
     from teachpath.offline.importing import Source, import_file
-    from teachpath.workers.calibrations import Calibrations
+    from teachpath.recorder.calibrations import Calibrations
 
     settings = settings_of(config, data)
     robottasks = format == "robottasks"

@@ -17,7 +17,7 @@ from teachpath.commands.options import Config, Data, settings_of
 from teachpath.commands.serving import serving, until_signalled
 from teachpath.config import Settings, load
 from teachpath.io.bus import open_bus
-from teachpath.workers.processes import GRACE
+from teachpath.robot.processes import GRACE
 from teachpath_proto.keys import Keys
 
 Attached = Annotated[bool, typer.Option("--attached", hidden=True)]
@@ -46,7 +46,7 @@ def executor(config: Config = None, attached: Attached = False) -> None:
 
     It streams the setpoints of certified plans.
     """
-    from teachpath.workers.executor.worker import Executor
+    from teachpath.executor.loop import Executor
 
     settings = _settings(config, attached)
     with until_signalled() as stop:
@@ -69,7 +69,7 @@ def simulator(config: Config = None, attached: Attached = False) -> None:
 
     It follows the setpoints and publishes its joint state, as the driver of a real arm would.
     """
-    from teachpath.workers.simulator.worker import Simulator
+    from teachpath.simulator.loop import Simulator
 
     settings = _settings(config, attached)
     with until_signalled() as stop:

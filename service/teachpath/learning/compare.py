@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 
-from teachpath.learning.distances import frechet
+from teachpath.learning.clustering.distances import frechet
 from teachpath.learning.resampling import at_equal_arc_length
 from teachpath.records import Array, Cluster, Fit, Learned, LearnedPath
 

@@ -9,16 +9,16 @@ from importlib.metadata import version
 
 import numpy as np
 
-from teachpath.learning.clustering import Grouping
-from teachpath.learning.crowd import grouped
-from teachpath.learning.dendrogram import groups
-from teachpath.learning.describing import ambiguities, fingerprint, representatives, tube
-from teachpath.learning.paper import models_of_paper, select_as_paper
+from teachpath.learning.clustering.dendrogram import groups
+from teachpath.learning.clustering.partition import Grouping
+from teachpath.learning.clustering.subsampled_clustering import grouped
+from teachpath.learning.fitting.synthesis import synthesise, synthesise_as_paper
+from teachpath.learning.input_validation import screen
 from teachpath.learning.resampling import arc_lengths, at_equal_arc_length, smoothed, undersampled
-from teachpath.learning.screening import screen
-from teachpath.learning.selection import pieces_of_work, select
+from teachpath.learning.selection.default_mode import pieces_of_work, select
+from teachpath.learning.selection.paper_mode import models_of_paper, select_as_paper
 from teachpath.learning.settings import LearningSettings, Progress, ignore, part, ticker
-from teachpath.learning.synthesis import synthesise, synthesise_as_paper
+from teachpath.learning.summary import ambiguities, fingerprint, representatives, tube
 from teachpath.records import Array, Cluster, Learned, LearnedPath, Trajectory
 
 PATH_POINTS = 100  # at equal arc length, for the distance of two paths

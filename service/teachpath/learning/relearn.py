@@ -7,11 +7,11 @@ from dataclasses import fields, replace
 from typing import Any
 
 from teachpath.errors import LearningFailed
-from teachpath.learning.clustering import Grouping
-from teachpath.learning.cuts import moved
-from teachpath.learning.describing import fingerprint
+from teachpath.learning.clustering.cuts import moved
+from teachpath.learning.clustering.partition import Grouping
 from teachpath.learning.learn import courses_of, from_ways, metric_of
 from teachpath.learning.settings import LearningSettings, Progress, ignore
+from teachpath.learning.summary import fingerprint
 from teachpath.records import Learned, Trajectory
 
 

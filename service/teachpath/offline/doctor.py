@@ -10,9 +10,9 @@ from teachpath.io.documents import decode
 from teachpath.io.store.recordings import read_facts, salvage
 from teachpath.io.store.store import Store
 from teachpath.offline.lock import StationLock
+from teachpath.recorder.session import RecordingSession
 from teachpath.recording.settings import RecordingSettings
 from teachpath.records import Demonstration, Scene
-from teachpath.workers.session import RecordingSession
 
 SALVAGED = ".salvaged"
 

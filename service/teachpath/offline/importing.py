@@ -12,14 +12,14 @@ from teachpath.io.files import Track, read_tracks
 from teachpath.io.sample_files import holds_samples, read_samples
 from teachpath.io.store.recordings import read_facts_stream, salvage_stream
 from teachpath.io.store.store import Store
+from teachpath.recorder.annotations import MARKS, Amendment, Curation
+from teachpath.recorder.session import RecordingSession
 from teachpath.recording.demonstration import point_to_world
-from teachpath.recording.parts import Parts, parts_of
+from teachpath.recording.phase_statistics import Parts, parts_of
 from teachpath.recording.phases import GRASP_BUTTON, Cut, Segmenter
 from teachpath.recording.settings import RecordingSettings
 from teachpath.recording.verdict import Verdict, judge_again
 from teachpath.records import Calibration, Demonstration, Sample, Scene, Trajectory
-from teachpath.workers.curation import MARKS, Amendment, Curation
-from teachpath.workers.session import RecordingSession
 from teachpath_proto.keys import is_name
 
 MOST_REFUSED = 100_000  # of a file that says so

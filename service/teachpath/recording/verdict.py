@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from teachpath.recording.parts import Parts
+from teachpath.recording.phase_statistics import Parts
 from teachpath.recording.settings import RecordingSettings
 from teachpath.records import Account
 

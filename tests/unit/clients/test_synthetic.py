@@ -4,7 +4,7 @@ import math
 import numpy as np
 import pytest
 
-from teachpath.motion.scenes import TABLE_TOP, paper_scene
+from teachpath.motion.collision.builtin_scenes import TABLE_TOP, paper_scene
 from teachpath_client import synthetic
 from teachpath_client.reading import HandReading
 from teachpath_client.synthetic import GOAL, HAND_ABOVE, RATE, START, WAYS, experiment_1, experiment_2

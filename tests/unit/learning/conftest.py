@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import pytest
-import synthetic
 
 from teachpath.learning.learn import learn
 from teachpath.learning.settings import LearningSettings
 from teachpath.records import Learned, Trajectory
+from tests.unit.learning import synthetic
 
 
 @pytest.fixture(scope="session")

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-import synthetic
-from usable import BOTH, PAPER, WAYS, assert_usable
 
 from teachpath.errors import Cancelled, LearningFailed
-from teachpath.learning.cuts import recut
+from teachpath.learning.clustering.cuts import recut
 from teachpath.learning.learn import learn
 from teachpath.learning.settings import LearningSettings
 from teachpath.nurbs import unit
 from teachpath.records import Learned, Trajectory
+from tests.unit.learning import synthetic
+from tests.unit.learning.usable import BOTH, PAPER, WAYS, assert_usable
 
 
 def test_three_ways_are_learned_from_the_first_experiment(learned: Learned, twelve: dict[str, Trajectory]) -> None:

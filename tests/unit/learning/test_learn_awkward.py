@@ -6,13 +6,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-import synthetic
-from usable import BOTH, assert_usable
 
 from teachpath.errors import LearningFailed
 from teachpath.learning.learn import learn
 from teachpath.learning.settings import LearningSettings
 from teachpath.records import Trajectory
+from tests.unit.learning import synthetic
+from tests.unit.learning.usable import BOTH, assert_usable
 
 
 def short(samples: int, seed: int = 1) -> Trajectory:

@@ -6,12 +6,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-import synthetic
-from usable import BOTH
 
 from teachpath.learning.learn import learn
 from teachpath.learning.settings import LearningSettings
 from teachpath.records import Learned, Trajectory
+from tests.unit.learning import synthetic
+from tests.unit.learning.usable import BOTH
 
 
 @BOTH

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-import synthetic
 
 from teachpath.learning.resampling import arc_lengths, at_equal_arc_length, at_equal_times, smoothed, undersampled
 from teachpath.records import Trajectory
+from tests.unit.learning import synthetic
 
 
 def one(seed: int = 1, **options: float) -> Trajectory:

@@ -9,11 +9,11 @@ from pathlib import Path
 
 SCRIPT = """
 from hashlib import sha256
-import synthetic
+from tests.unit.learning import synthetic
 from teachpath.io.documents import encode
 from teachpath.learning.learn import learn
 from teachpath.learning.settings import LearningSettings
-from teachpath.learning.crowd import grouped
+from teachpath.learning.clustering.subsampled_clustering import grouped
 import numpy as np
 
 five = synthetic.turning(synthetic.experiment_2(3))
@@ -27,7 +27,7 @@ print(sha256(found.linkage.tobytes() + found.labels.tobytes()).hexdigest())
 
 def learned_with(threads: int) -> str:
     names = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
-    environment = os.environ | dict.fromkeys(names, str(threads)) | {"PYTHONPATH": str(Path(__file__).parent)}
+    environment = os.environ | dict.fromkeys(names, str(threads)) | {"PYTHONPATH": str(Path(__file__).parents[3])}
     done = subprocess.run([sys.executable, "-c", SCRIPT], env=environment, check=True, capture_output=True, text=True)
     return done.stdout
 

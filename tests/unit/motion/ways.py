@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from teachpath.motion.scenes import empty_scene, paper_scene
+from teachpath.motion.collision.builtin_scenes import empty_scene, paper_scene
 from teachpath.nurbs import Curve
 from teachpath.records import Fit, LearnedPath, Scene, Shape
 

@@ -6,11 +6,11 @@ from dataclasses import replace
 import numpy as np
 
 from teachpath.io.store.store import Store
+from teachpath.recorder.annotations import Curation
+from teachpath.recorder.session import RecordingSession
 from teachpath.recording.phases import GRASP_BUTTON
 from teachpath.recording.settings import RecordingSettings
 from teachpath.records import Calibration, Demonstration, Sample, Scene, Trajectory
-from teachpath.workers.curation import Curation
-from teachpath.workers.session import RecordingSession
 from tests.unit.recording.hands import demonstration
 
 EMPTY = Scene("empty")

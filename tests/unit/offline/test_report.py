@@ -16,12 +16,12 @@ from teachpath.io.store.settings import StoreSettings
 from teachpath.io.store.store import Store
 from teachpath.learning.learn import learn
 from teachpath.learning.settings import LearningSettings
-from teachpath.motion.scenes import paper_scene
+from teachpath.live.preview.commands import pose_of
+from teachpath.motion.collision.builtin_scenes import paper_scene
 from teachpath.motion.settings import MotionSettings
 from teachpath.offline.report import Review, review_of, write
 from teachpath.offline.report.scene import scene_batch
 from teachpath.records import Demonstration, Departure, Scene, Shape, Trajectory
-from teachpath.workers.preview.commands import pose_of
 from tests.contract.rows import a_job, demonstration
 
 HOME = np.array(MotionSettings().home)

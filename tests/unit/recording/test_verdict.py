@@ -3,7 +3,7 @@ from dataclasses import replace
 import pytest
 
 from teachpath.errors import UnusableSettings
-from teachpath.recording.parts import Parts
+from teachpath.recording.phase_statistics import Parts
 from teachpath.recording.settings import RecordingSettings
 from teachpath.recording.verdict import judge
 from teachpath.records import Account

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from teachpath.errors import NotFound, PathRefused
 from teachpath.io.store.store import RunRow, Store
-from teachpath.motion.rehearsal import Rehearsal, rehearse
+from teachpath.motion.execution.motion_preview import Rehearsal, rehearse
 from teachpath.motion.settings import MotionSettings
 from teachpath.records import Demonstration, LearnedPath, Plan, Scene, Trajectory
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from html import escape
 
-from teachpath.learning.cuts import Dendrogram, dendrogram
+from teachpath.learning.clustering.cuts import Dendrogram, dendrogram
 from teachpath.offline.report.content import Review
 from teachpath.offline.report.scene import way_color
 

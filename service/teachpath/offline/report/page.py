@@ -12,11 +12,11 @@ from string import Template
 
 from teachpath import __version__
 from teachpath.errors import UnusableInput
+from teachpath.live.preview import viewer_files, web_files
 from teachpath.offline.report import figures, tables
 from teachpath.offline.report.content import Review
 from teachpath.offline.report.scene import frames, scene_batch
 from teachpath.records import Array
-from teachpath.workers.preview import viewer_files, web_files
 
 
 def write(review: Review, file: Path, *, home: Array) -> int:

@@ -7,13 +7,13 @@ from typing import Any
 import numpy as np
 
 from teachpath.io.bus import MemoryBus
-from teachpath.motion.drawing import drawing
-from teachpath.motion.kinematics import link_frames
-from teachpath.motion.rehearsal import Rehearsal
+from teachpath.live.preview import WAYS, Preview, commands
+from teachpath.live.preview.tree import pack
+from teachpath.motion.arm.geometry import drawing
+from teachpath.motion.arm.kinematics import link_frames
+from teachpath.motion.execution.motion_preview import Rehearsal
 from teachpath.offline.report.content import Review
 from teachpath.records import Array
-from teachpath.workers.preview import WAYS, Preview, commands
-from teachpath.workers.preview.tree import pack
 from teachpath_proto.keys import Keys
 
 POINTS = 160  # of a path and of a demonstration as drawn

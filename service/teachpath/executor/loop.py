@@ -1,0 +1,185 @@
+"""The executor: streams the setpoints of one plan at a time to the arm and obeys the operator meanwhile.
+
+It lives in a process of its own, in which nothing else runs. The loop never raises in mid-motion: whatever goes wrong
+brings the arm to rest on its path, with a reason in the status.
+"""
+
+from __future__ import annotations
+
+import gc
+import logging
+import threading
+import time
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Final
+
+import numpy as np
+
+from teachpath.executor.command_handler import Controls
+from teachpath.executor.execution import Execution
+from teachpath.executor.joint_state_monitor import Hearing, Uptake
+from teachpath.executor.pacing import Pacer, ask_for_realtime
+from teachpath.executor.settings import ExecutorSettings
+from teachpath.io import wire
+from teachpath.io.bus import Bus
+from teachpath.motion.execution.governor import warm_up
+from teachpath.motion.settings import MotionSettings
+from teachpath.records import ExecutorStatus
+from teachpath_proto.keys import Keys
+
+log = logging.getLogger(__name__)
+
+IDLE_PERIODS: Final = 5  # control periods between two looks while nothing is under way
+DEAF: Final = 0.5  # [s] that an arm may take up no setpoint; a driver plays them up to 0.05 s late
+IDLE_RATE: Final = 4.0  # [Hz] statuses then, at most; the service takes an executor for gone after a second
+
+
+class Executor:
+    """Owns the control loop; `run` is its life."""
+
+    def __init__(
+        self,
+        bus: Bus,
+        keys: Keys,
+        settings: ExecutorSettings | None = None,
+        *,
+        robot: str = "puma560",
+        motion: MotionSettings | None = None,
+        clock: Callable[[], int] = time.monotonic_ns,
+        wall: Callable[[], int] = time.time_ns,
+        sleep: Callable[[float], object] = time.sleep,
+    ) -> None:
+        """Prepare the executor; nothing runs before `run`.
+
+        Args:
+            robot: name of the arm in its keys.
+            clock: monotonic nanoseconds, by which the loop is paced.
+            wall: nanoseconds since the Unix epoch, for the stamps of setpoints.
+            sleep: waits for so many seconds.
+        """
+        self._bus, self._keys, self._robot = bus, keys, robot
+        self._settings = settings or ExecutorSettings()
+        self._wall = wall
+        self._period = 1.0 / self._settings.rate
+        self._pacer = Pacer(round(1e9 * self._period), clock=clock, sleep=sleep)
+        self._hearing = Hearing(robot, self._settings.silence, clock)
+        self._uptake = Uptake()
+        self._controls = Controls(
+            bus,
+            keys,
+            self._settings,
+            motion or MotionSettings(),
+            self._hearing,
+            robot=robot,
+            told=self._status,
+            begun=self._pacer.reset,
+            clock=clock,
+            wall=wall,
+        )
+        self._scheduling = "real-time scheduling was not asked for"
+        self._told = ("", "", 0)  # execution, state and time of the newest status
+
+    def run(self, stop: threading.Event) -> None:
+        """Stream until `stop` is set; then the arm is brought to rest on its path first."""
+        warm_up(self._period)
+        handles = [
+            self._bus.subscribe(self._keys.state(self._robot), self._hearing.receive),
+            *self._controls.serve(),
+            self._bus.announce(self._keys.alive("executor", self._robot)),
+        ]
+        if self._settings.realtime:
+            self._scheduling = ask_for_realtime()
+        log.info("%s", self._scheduling)
+        # A collection in the loop can last a hundred periods; nothing in this process makes cyclic garbage in bulk.
+        gc.collect()
+        gc.freeze()
+        gc.disable()
+        controls = self._controls
+        try:
+            self._cycle(self._pacer.wait(counted=False))  # says at once that it is there
+            while not (stop.is_set() and controls.resting):
+                if stop.is_set() and controls.current is not None:
+                    controls.current.end("ended", "the executor was told to stop")
+                resting = controls.resting
+                self._cycle(self._pacer.wait(IDLE_PERIODS if resting else 1, counted=not resting))
+        finally:
+            gc.enable()
+            gc.unfreeze()
+            for handle in handles:
+                handle.close()
+
+    def _cycle(self, due: int) -> None:
+        self._hearing.listen()
+        current = self._controls.current
+        if current is not None and not current.resting:
+            orders = self._controls.orders
+            while orders:
+                orders.popleft()(current)
+            self._watch(current, due)
+            if current.displaced:
+                current.wait()
+            else:
+                setpoint = current.step(due, self._wall())
+                self._bus.publish(self._keys.setpoint(self._robot), wire.encode_setpoint(setpoint))
+                current.think()
+        self._tell(due)
+
+    def _watch(self, current: Execution, due: int) -> None:
+        lost = self._controls.lease.take_lost()
+        if lost:
+            self._hold(current, f"nothing was heard of {lost}, who was in control; resume when somebody is there again")
+        heard = self._hearing.newest(due)
+        if heard is None:
+            return
+        silent, arm = heard
+        if silent > self._settings.silence:
+            self._hold(
+                current, f"no joint state for {silent:.2f} s: is the arm's driver running? resume when it is back"
+            )
+            return
+        stalled = self._uptake.stalled(due, current.execution, arm)
+        if current.settled or current.displaced:
+            if current.rests_with(arm) or stalled > DEAF:  # else it is late, and still on its way there
+                off = float(np.abs(arm.position - current.program.here).max())
+                current.displaced = off if off > self._settings.regain else 0.0
+            if current.displaced:
+                self._uptake.pause(due)
+            return
+        if stalled > DEAF:
+            why = f"the arm has taken up no setpoint for {stalled:.1f} s"
+            self._hold(current, f"{why}: does its driver hear them? resume when it does")
+        current.wait_for(arm)
+        if arm.execution == current.execution:
+            self._judge_tracking(current, arm.tracking_error)
+
+    def _hold(self, current: Execution, reason: str) -> None:
+        if not current.program.stopped:
+            self._controls.note("the executor", "hold", reason)
+        current.hold(reason)
+
+    def _judge_tracking(self, current: Execution, error: float) -> None:
+        current.tracking_error = max(current.tracking_error, error)
+        if error > self._settings.largest_error:
+            current.end(
+                "faulted",
+                f"tracking error {error:.3f} rad {current.program.place}, limit "
+                f"{self._settings.largest_error:g}: is the arm blocked? free it, or start again at a lower override",
+            )
+
+    def _tell(self, due: int) -> None:
+        """Publish the status: at once when the state has changed, else now and then."""
+        current = self._controls.current
+        status = (current.execution, current.state) if current is not None else ("", "idle")
+        rate = self._settings.status_rate
+        if self._controls.resting:
+            rate = min(rate, IDLE_RATE)
+        if status == self._told[:2] and due - self._told[2] < 1e9 / rate:
+            return
+        self._told = (*status, due)
+        self._bus.publish(self._keys.executor_status, wire.encode_status(self._status()))
+
+    def _status(self) -> ExecutorStatus:
+        current, lease = self._controls.current, self._controls.lease.seen()
+        told = current.status(self._pacer) if current is not None else ExecutorStatus()
+        return replace(told, operator=lease.holder, asking=lease.asking, scheduling=self._scheduling)

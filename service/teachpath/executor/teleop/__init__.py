@@ -1,0 +1,1 @@
+"""Teleoperation: the arm follows a tracked hand while its clutch is pressed."""

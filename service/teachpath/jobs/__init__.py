@@ -1,0 +1,1 @@
+"""Background work: learning and planning in processes of their own."""

@@ -1,0 +1,179 @@
+"""The jobs: learning and planning in a process of their own, in order, surviving a restart of the service."""
+
+from __future__ import annotations
+
+import queue
+import threading
+import time
+import uuid
+from collections.abc import Callable
+from concurrent.futures import Future, ProcessPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
+from dataclasses import dataclass
+from multiprocessing import active_children, get_context
+from multiprocessing.synchronize import Event
+from typing import TYPE_CHECKING, Annotated, Any
+
+from annotated_types import Ge, Le
+
+from teachpath.errors import Cancelled, Conflict, TeachpathError
+from teachpath.io.wire import encode_progress
+from teachpath.jobs import worker
+from teachpath.records import Job, JobState
+from teachpath_proto.keys import Keys
+
+if TYPE_CHECKING:  # the settings of jobs are read in processes that have no store
+    from teachpath.io.bus import Bus
+    from teachpath.io.store.store import Store
+
+# What a kind of job does: `prepare` gathers its input from the store, `work` (a function of `desk`) runs in the other
+# process, `finish` stores the outcome and marks the job succeeded in one transaction.
+Prepare = Callable[[Job], tuple[Any, ...]]
+Finish = Callable[[Job, Any], str]
+
+
+@dataclass(frozen=True)
+class JobSettings:
+    """How background work is done."""
+
+    # how often a job is begun anew after its process died
+    attempts: Annotated[int, Ge(1), Le(10)] = 3
+
+
+@dataclass(frozen=True)
+class Kind:
+    """One kind of job."""
+
+    prepare: Prepare
+    work: Callable[..., Any]
+    finish: Finish
+
+
+class Jobs:
+    """Runs the queued jobs of the store one after another.
+
+    Args:
+        kinds: what can be done, by name.
+        finished: called with each job that has ended.
+    """
+
+    def __init__(
+        self,
+        bus: Bus,
+        keys: Keys,
+        store: Store,
+        settings: JobSettings,
+        kinds: dict[str, Kind],
+        *,
+        finished: Callable[[Job], None] = lambda job: None,
+    ) -> None:
+        self._bus, self._keys, self._store, self._settings = bus, keys, store, settings
+        self._kinds, self._finished = kinds, finished
+        self._queue: queue.SimpleQueue[str | None] = queue.SimpleQueue()
+        self._context = get_context("spawn")
+        self._news = self._context.Queue()
+        self._cancel: Event = self._context.Event()
+        self._stopping = threading.Event()
+        self._running = ""
+        self._pool = self._open_pool()
+        self._threads: list[threading.Thread] = []
+
+    def start(self) -> None:
+        """Begin; jobs that an earlier service left unfinished come first."""
+        for job in self._store.jobs(unfinished=True):
+            self._queue.put(job.id)
+        for run, name in ((self._run, "jobs"), (self._tell, "job progress")):
+            thread = threading.Thread(target=run, name=name, daemon=True)
+            thread.start()
+            self._threads.append(thread)
+        self._pool.submit(worker.warm_up)
+
+    def stop(self) -> None:
+        """Stop at once; a running job stays unfinished in the store and is run again at the next start."""
+        self._stopping.set()
+        self._cancel.set()
+        self._queue.put(None)
+        self._news.put(None)
+        processes = active_children()
+        self._pool.shutdown(wait=False, cancel_futures=True)
+        for process in processes:  # pure work: nothing is lost that would not be done again
+            process.kill()
+            process.join()
+        for thread in self._threads:
+            thread.join(timeout=1.0)
+        self._news.close()
+        self._news.cancel_join_thread()
+
+    def submit(self, task: str, kind: str, request: dict[str, Any]) -> Job:
+        """Queue a job and return it."""
+        key = f"{kind}-{uuid.uuid4().hex[:12]}"
+        job = Job(key, task, kind, request, JobState.QUEUED, 0.0, "", "", 0, time.time_ns(), 0)
+        self._store.add_job(job)
+        self._queue.put(key)
+        return job
+
+    def cancel(self, key: str) -> Job:
+        """Cancel a queued or running job; raises Conflict when it has already ended."""
+        if self._store.job(key).state is JobState.RUNNING and key == self._running:
+            self._cancel.set()
+            return self._store.job(key)
+        return self._end(key, JobState.CANCELLED, "cancelled before it began")
+
+    def _open_pool(self) -> ProcessPoolExecutor:
+        return ProcessPoolExecutor(
+            max_workers=1, mp_context=self._context, initializer=worker.sit_down, initargs=(self._news, self._cancel)
+        )
+
+    def _run(self) -> None:
+        while (key := self._queue.get()) is not None and not self._stopping.is_set():
+            try:
+                self._do(key)
+            except Conflict:
+                continue  # cancelled while it was queued
+            except Exception as error:  # a fault of one job must not stop the others
+                if not self._stopping.is_set():
+                    self._end(key, JobState.FAILED, f"this is a fault of teachpath, please report it: {error!r}")
+
+    def _do(self, key: str) -> None:
+        job = self._store.set_job(key, state=JobState.RUNNING.value, attempt=self._store.job(key).attempt + 1)
+        if job.attempt > self._settings.attempts:
+            self._end(key, JobState.FAILED, f"its process died {self._settings.attempts} times; is memory short?")
+            return
+        self._cancel.clear()
+        self._running = key
+        kind = self._kinds[job.kind]
+        try:
+            future: Future[Any] = self._pool.submit(worker.work, key, kind.work, kind.prepare(job))
+            kind.finish(job, future.result())
+            self._announce(self._store.job(key))
+        except Cancelled as error:
+            if not self._stopping.is_set():
+                self._end(key, JobState.CANCELLED, str(error))
+        except TeachpathError as error:
+            self._end(key, JobState.FAILED, str(error))
+        except BrokenProcessPool:
+            if not self._stopping.is_set():
+                self._pool = self._open_pool()
+                self._queue.put(key)
+        finally:
+            self._running = ""
+
+    def _end(self, key: str, state: JobState, message: str) -> Job:
+        job = self._store.set_job(key, state=state.value, message=message, finished_ns=time.time_ns())
+        self._announce(job)
+        return job
+
+    def _announce(self, job: Job) -> None:
+        self._bus.publish(self._keys.job(job.id), encode_progress(job))
+        if job.finished_ns:
+            self._finished(job)
+
+    def _tell(self) -> None:
+        """Pass on the progress that the working process reports."""
+        while (news := self._news.get()) is not None:
+            key, fraction, message = news
+            try:
+                job = self._store.set_job(key, fraction=fraction, message=message)
+            except Conflict:
+                continue  # ended meanwhile
+            self._bus.publish(self._keys.job(key), encode_progress(job))

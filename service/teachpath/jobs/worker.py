@@ -1,0 +1,105 @@
+"""What runs in the process of the jobs: the work itself, with progress out and cancel in.
+
+The service only names these functions, so what they call is loaded where it runs: here, at the first job.
+"""
+
+from __future__ import annotations
+
+import os
+import signal
+import threading
+import time
+from collections.abc import Callable
+from multiprocessing import Queue, parent_process
+from multiprocessing.synchronize import Event
+from typing import Any
+
+from teachpath.errors import Cancelled
+from teachpath.learning.settings import LearningSettings
+from teachpath.motion.arm.variants import choose
+from teachpath.motion.settings import MotionSettings
+from teachpath.records import Learned, LearnedPath, Plan, Scene, Trajectory
+
+Progress = Callable[[float, str], None]
+
+INTERVAL = 0.05  # s between two tellings of one sentence: each is a row in the store and a message to every page
+
+_news: Queue[tuple[str, float, str]] | None = None
+_cancel: Event | None = None
+
+
+def sit_down(news: Queue[tuple[str, float, str]], cancel: Event) -> None:
+    """Prepare this process: it ignores Ctrl-C, which its parent handles, and never outlives its parent."""
+    global _news, _cancel
+    _news, _cancel = news, cancel
+    live_with_parent()
+
+
+def live_with_parent() -> None:
+    """Ignore Ctrl-C, which the parent handles, and never outlive it."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    threading.Thread(target=_leave_with_parent, name="parent", daemon=True).start()
+
+
+def _leave_with_parent() -> None:
+    parent = parent_process()
+    if parent is not None:
+        parent.join()
+    os._exit(1)
+
+
+def warm_up() -> None:
+    """Load what the first job needs."""
+    from teachpath.learning.relearn import relearn
+    from teachpath.motion.planning.plan import plan
+
+    del relearn, plan
+
+
+def work(key: str, function: Callable[..., Any], inputs: tuple[Any, ...]) -> Any:
+    """Call `function(*inputs, progress=...)` for job `key`.
+
+    The work may tell its progress as often as it likes, and is cancelled there; what could be seen is passed on.
+    """
+    told, due = "", 0.0
+
+    def progress(fraction: float, sentence: str) -> None:
+        nonlocal told, due
+        if _cancel is not None and _cancel.is_set():
+            raise Cancelled("cancelled by the operator")
+        now = time.monotonic()
+        if _news is not None and (sentence != told or now >= due or fraction >= 1.0):
+            _news.put((key, fraction, sentence))
+            told, due = sentence, now + INTERVAL
+
+    return function(*inputs, progress=progress)
+
+
+def learn_paths(demonstrations: dict[str, Trajectory], settings: LearningSettings, *, progress: Progress) -> Learned:
+    """Cluster, select and fit."""
+    from teachpath.learning.learn import learn
+
+    return learn(demonstrations, settings, progress=progress)
+
+
+def recut_run(
+    learned: Learned,
+    demonstrations: dict[str, Trajectory],
+    threshold: float | None,
+    clusters: int | None,
+    *,
+    progress: Progress,
+) -> Learned:
+    """Cut a run's dendrogram elsewhere, select and fit."""
+    from teachpath.learning.relearn import relearn
+
+    return relearn(learned, demonstrations, threshold=threshold, clusters=clusters, progress=progress)
+
+
+def plan_path(path: LearnedPath, scene: Scene, settings: MotionSettings, *, progress: Progress) -> Plan:
+    """Plan one path."""
+    from teachpath.motion.planning.plan import plan
+
+    choose(settings.variant)
+    progress(0.1, f"planning path {path.id}")
+    return plan(path, scene, settings)

@@ -1,0 +1,1 @@
+"""Clustering: the different ways of doing a task."""

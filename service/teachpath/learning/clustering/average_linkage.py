@@ -1,0 +1,41 @@
+"""Average linkage: the dendrogram of all pairs' distances."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.cluster import hierarchy
+
+from teachpath.learning.clustering.dendrogram import named
+from teachpath.learning.clustering.distances import Distances
+from teachpath.learning.settings import Progress, ignore
+from teachpath.records import Array
+
+FEW = 200  # demonstrations up to which scipy is done before the compiled kernel is loaded
+STRIDE = 64  # merges between two looks at progress
+
+
+def average_linkage(condensed: Distances, count: int, progress: Progress = ignore) -> Array:
+    """Merge the two closest clusters, by the mean distance of their members, until one is left.
+
+    Args:
+        condensed: distances of all pairs [m], in scipy's order.
+        count: number m of demonstrations.
+        progress: is told how far the work has come; what it raises passes through.
+
+    Returns:
+        (m - 1, 4) merges as scipy writes them.
+    """
+    if count == 1:
+        return np.empty((0, 4))
+    if count <= FEW:
+        return np.asarray(hierarchy.linkage(condensed, "average"))
+    from teachpath.learning.clustering import kernels
+
+    apart = np.array(condensed, dtype=np.float32)
+    merges = np.empty((count - 1, 4))
+    sizes, chain, state = np.ones(count, dtype=np.int64), np.zeros(count, dtype=np.int64), np.zeros(2, dtype=np.int64)
+    while state[1] < count - 1:
+        progress(float(state[1]) / count, "merging the closest demonstrations")
+        kernels.merge(apart, sizes, chain, state, merges, STRIDE)
+    order = np.argsort(merges[:, 2], kind="stable")
+    return named([(float(height), int(one), int(other)) for one, other, height, _ in merges[order]], count)

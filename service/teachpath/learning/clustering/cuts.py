@@ -1,0 +1,128 @@
+"""The cuts of a run's dendrogram: where it can be cut elsewhere, and into what. No distance is needed again."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from teachpath.errors import UnusableSettings
+from teachpath.learning.clustering.dendrogram import groups, height_between, labels_into, leaves
+from teachpath.learning.clustering.partition import Grouping, cut_at, cut_into
+from teachpath.records import Learned
+
+LEAST_HEIGHT = 1e-9  # m, of a cut; 0 is none
+
+
+@dataclass(frozen=True, slots=True)
+class Cut:
+    """One possible cut.
+
+    Attributes:
+        clusters: their number.
+        lowest, highest: heights [m] between which a cut leaves so many; None = without end.
+        height: one of them, halfway.
+        ways: of each cluster the first and the one behind the last of its members in the dendrogram's `leaves`;
+            clusters in the order in which a run numbers them.
+    """
+
+    clusters: int
+    lowest: float
+    highest: float | None
+    height: float
+    ways: tuple[tuple[int, int], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Dendrogram:
+    """The tree of merges of a run, as it is drawn.
+
+    Attributes:
+        demonstrations: ids, as they are numbered in `merges`: 0 to m - 1.
+        leaves: ids from left to right, so that no merge crosses another and every cluster's members are neighbours.
+        merges: left, right, height [m] and members of each, as scipy writes them; merge i is numbered m + i.
+        threshold: height of the run's own cut [m].
+        clusters: that it left.
+        cuts: the possible ones, from one cluster on.
+    """
+
+    demonstrations: tuple[str, ...]
+    leaves: tuple[str, ...]
+    merges: tuple[tuple[int, int, float, int], ...]
+    threshold: float
+    clusters: int
+    cuts: tuple[Cut, ...]
+
+
+def dendrogram(learned: Learned, most: int) -> Dendrogram:
+    """Return the dendrogram of a run with its cuts into 1 to `most` clusters, or as many as there are."""
+    linkage, names = learned.linkage, learned.demonstrations
+    order = leaves(linkage)
+    places = np.empty(len(names), dtype=int)
+    places[order] = np.arange(len(names))
+    cuts = []
+    for count in range(1, min(most, len(names)) + 1):
+        labels = labels_into(linkage, count)
+        begins = np.full(count, len(names))
+        np.minimum.at(begins, labels - 1, places)
+        ends = begins + np.bincount(labels)[1:]
+        ways = tuple((int(begin), int(end)) for begin, end in zip(begins, ends, strict=True))
+        merges = len(names) - count
+        lowest = float(linkage[merges - 1, 2]) if merges else 0.0
+        highest = float(linkage[merges, 2]) if count > 1 else None
+        cuts.append(Cut(count, lowest, highest, height_between(linkage, count), ways))
+    return Dendrogram(
+        names,
+        tuple(names[i] for i in order),
+        tuple((int(left), int(right), float(height), int(size)) for left, right, height, size in linkage),
+        learned.threshold,
+        len(learned.clusters),
+        tuple(cuts),
+    )
+
+
+def recut(
+    learned: Learned, *, threshold: float | None = None, clusters: int | None = None
+) -> tuple[tuple[str, ...], ...]:
+    """Return the members of every cluster when the dendrogram of a run is cut somewhere else.
+
+    Args:
+        learned: a run; its distances are not needed again.
+        threshold: height of the cut [m].
+        clusters: or their number.
+
+    Returns:
+        for every cluster its demonstrations in listed order; clusters in the order of their first members.
+
+    Raises:
+        UnusableSettings: see `moved`.
+    """
+    return groups(learned.demonstrations, moved(learned, threshold, clusters).labels)
+
+
+def moved(learned: Learned, threshold: float | None, clusters: int | None) -> Grouping:
+    """Return the grouping of a run's demonstrations by another cut.
+
+    Raises:
+        UnusableSettings: neither or both are given, or one is outside what the dendrogram allows.
+    """
+    if threshold is not None and clusters is None:
+        if not 0 < threshold < float("inf"):
+            raise UnusableSettings(
+                f"a dendrogram cannot be cut at {threshold:g} m; the threshold is greater than 0 and finite"
+            )
+        return cut_at(learned.linkage, threshold)
+    if clusters is None or threshold is not None:
+        raise UnusableSettings("a dendrogram is cut at a threshold or into a number of clusters; give one of the two")
+    count = len(learned.demonstrations)
+    if not 1 <= clusters <= count:
+        raise UnusableSettings(f"{count} demonstrations cannot be cut into {clusters} clusters; give 1 to {count}")
+    if learned.mode == "default":
+        return cut_into(learned.linkage, clusters)
+    grouping = cut_at(learned.linkage, max(height_between(learned.linkage, clusters), LEAST_HEIGHT))
+    if grouping.labels.max() != clusters:
+        raise UnusableSettings(
+            f"no height leaves {clusters} clusters, for merges of one height are made together; "
+            f"mode {learned.mode} cuts at a height: give another number"
+        )
+    return grouping

@@ -1,0 +1,129 @@
+"""How far apart two demonstrations are: the distances of all pairs of paths, for clustering."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial.distance import cdist
+
+from teachpath.learning.settings import Progress, ignore
+from teachpath.records import Array
+
+Distances = NDArray[np.float64] | NDArray[np.float32]  # of all pairs [m], condensed in scipy's order
+
+KINDS = {"arc": 0, "undersampled": 0, "frechet": 1, "dtw": 2}
+FEW = (200, 24, 24)  # paths of each kind up to which numpy is done before the compiled kernels are loaded
+STRIP = 64  # rows that a kernel does between two looks at progress
+CHUNK = 128  # pairs that are warped at a time
+SENTENCE = "measuring the distances between demonstrations"
+
+
+def distances(paths: Array, metric: str = "arc", progress: Progress = ignore) -> Distances:
+    """Return the distance of every pair of paths.
+
+    Metric `arc` or `undersampled` is the mean distance of corresponding points (Aleotti & Caselli, eq. (1)),
+    `frechet` the discrete Fréchet distance (Eiter & Mannila 1994), `dtw` the mean distance along the best monotone
+    matching (Sakoe & Chiba 1978). Large sets are measured in single precision.
+
+    Args:
+        paths: (m, n, 3) [m].
+        metric: one of the four.
+        progress: is told how far the work has come; what it raises passes through.
+
+    Returns:
+        (m (m - 1) / 2,) [m], condensed in scipy's order, those of large sets in single precision.
+    """
+    kind = KINDS[metric]
+    if len(paths) > FEW[kind]:
+        return _compiled(paths, kind, progress)
+    return _mean(paths, progress) if kind == 0 else _warped(paths, kind, progress)
+
+
+def nearest_of(
+    paths: Array, chosen: Array, metric: str, progress: Progress = ignore
+) -> tuple[NDArray[np.int64], Array]:
+    """Return for every path the number of the nearest chosen one and its distance [m]."""
+    from teachpath.learning.clustering import kernels
+
+    centre = paths.mean(axis=(0, 1))
+    ours, theirs = _single(paths, centre), _single(chosen, centre)
+    found = []
+    for begin in range(0, len(paths), 16 * STRIP):
+        progress(begin / len(paths), "assigning the others to the nearest of the sample")
+        found.append(kernels.nearest_of(ours[begin : begin + 16 * STRIP], theirs, KINDS[metric]))
+    return np.concatenate([index for index, _ in found]), np.concatenate([apart for _, apart in found])
+
+
+def frechet(one: Array, other: Array) -> float:
+    """Return the discrete Fréchet distance [m] of two polylines (n, 3) of as many points."""
+    return float(_widest(cdist(one, other)[None])[0])
+
+
+def _compiled(paths: Array, kind: int, progress: Progress) -> Distances:
+    from teachpath.learning.clustering import kernels
+
+    m = len(paths)
+    single = _single(paths, paths.mean(axis=(0, 1)))
+    out = np.empty(m * (m - 1) // 2, dtype=np.float32)
+    for begin in range(0, m, STRIP):
+        progress(1 - ((m - begin) / m) ** 2, SENTENCE)
+        kernels.fill_rows(single, out, begin, kind)
+    return out
+
+
+def _single(paths: Array, centre: Array) -> NDArray[np.float32]:
+    # Single precision is spent on the differences between paths, not on where in the world they are.
+    return np.ascontiguousarray((paths - centre).transpose(0, 2, 1), dtype=np.float32)
+
+
+def _mean(paths: Array, progress: Progress) -> Array:
+    m = len(paths)
+    rows = [np.empty(0)]
+    for i in range(m - 1):
+        progress(1 - ((m - i) / m) ** 2, SENTENCE)
+        rows.append(np.sqrt(np.square(paths[i + 1 :] - paths[i]).sum(axis=2)).mean(axis=1))
+    return np.concatenate(rows)
+
+
+def _warped(paths: Array, kind: int, progress: Progress) -> Array:
+    left, right = np.triu_indices(len(paths), 1)
+    found = [np.empty(0)]
+    for begin in range(0, len(left), CHUNK):
+        progress(begin / len(left), SENTENCE)
+        pairs = slice(begin, begin + CHUNK)
+        apart = np.stack([cdist(paths[i], paths[j]) for i, j in zip(left[pairs], right[pairs], strict=True)])
+        found.append(_widest(apart) if kind == 1 else _cheapest(apart))
+    return np.concatenate(found)
+
+
+def _widest(apart: Array) -> Array:
+    """Return the discrete Fréchet distances of pairs: the leash, along the diagonals of the table."""
+    pairs, n, _ = apart.shape
+    flat, stride = apart.reshape(pairs, -1), max(n - 1, 1)  # from one to the next of a diagonal
+    last, before = np.full((2, pairs, n + 1), np.inf)  # column i + 1 is row i of the table
+    before[:, 0] = -np.inf
+    for step in range(2 * n - 1):
+        first, end = max(0, step - n + 1), min(step, n - 1) + 1
+        reached = np.full((pairs, n + 1), np.inf)
+        shortest = np.minimum(np.minimum(last[:, first:end], last[:, first + 1 : end + 1]), before[:, first:end])
+        diagonal = flat[:, step + first * stride : step + (end - 1) * stride + 1 : stride]
+        np.maximum(diagonal, shortest, out=reached[:, first + 1 : end + 1])
+        last, before = reached, last
+    return np.asarray(last[:, -1])
+
+
+def _cheapest(apart: Array) -> Array:
+    """Return the mean distances along the cheapest monotone matchings of pairs, along the diagonals of the table."""
+    pairs, n, _ = apart.shape
+    last, before = np.full((2, pairs, n + 1, 2), np.inf)  # cost and steps; column i + 1 is row i of the table
+    before[:, 0] = 0.0
+    for step in range(2 * n - 1):
+        rows = np.arange(max(0, step - n + 1), min(step, n - 1) + 1)
+        best = last[:, rows]
+        for other, wins in ((last[:, rows + 1], np.less), (before[:, rows], np.less_equal)):
+            best = np.where(wins(other[..., :1], best[..., :1]), other, best)
+        reached = np.full((pairs, n + 1, 2), np.inf)
+        reached[:, rows + 1, 0] = best[..., 0] + apart[:, rows, step - rows]
+        reached[:, rows + 1, 1] = best[..., 1] + 1
+        last, before = reached, last
+    return np.asarray(last[:, -1, 0] / last[:, -1, 1])

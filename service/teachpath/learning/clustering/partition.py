@@ -1,0 +1,168 @@
+"""The different ways of doing a task: hierarchical clustering of demonstrations by the distance of their paths."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from teachpath.learning.clustering.average_linkage import average_linkage
+from teachpath.learning.clustering.dendrogram import Labels, height_between, labels_at, labels_into
+from teachpath.learning.clustering.distances import Distances
+from teachpath.learning.clustering.silhouettes import Silhouettes
+from teachpath.learning.settings import LearningSettings, Progress, ignore, part
+from teachpath.records import Array
+
+MOST_CLUSTERS = 10  # that the silhouette chooses among
+APART = 0.1  # share of the path length: two demonstrations farther apart are two ways
+CAUTION = 0.5  # divided by its members, added to the guard of a cluster: few fall apart by chance
+CLOSE_CALL = 0.08  # of the silhouette
+CLOSE_MERGE = 1.1  # ratio of a merge's height to that of the cut
+
+
+@dataclass(frozen=True, eq=False)
+class Grouping:
+    """Demonstrations in clusters.
+
+    Attributes:
+        linkage: (m - 1, 4) merges as scipy writes them, heights in metres.
+        threshold: height of the cut [m].
+        labels: (m,) cluster of each demonstration, 1, 2, ... in the order of their first members.
+        note: what is doubtful about it, or empty.
+        rival: number of clusters of the next best cut when the choice was close, else None.
+    """
+
+    linkage: Array
+    threshold: float
+    labels: Labels
+    note: str = ""
+    rival: int | None = None
+
+
+def group(
+    condensed: Distances, count: int, settings: LearningSettings, *, length: float, progress: Progress = ignore
+) -> Grouping:
+    """Merge by average link and cut as the settings say: at a height, into a number, or where the silhouette is best.
+
+    Args:
+        condensed: distances of all pairs [m], in scipy's order.
+        count: number m of demonstrations.
+        settings: `clusters`, else `threshold`, else `guard` decide.
+        length: of a typical path [m].
+        progress: is told how far the work has come.
+    """
+    if settings.clusters is not None and settings.mode == "default":
+        return cut_into(average_linkage(condensed, count, progress), settings.clusters)
+    if settings.threshold is not None:
+        return cut_at(average_linkage(condensed, count, progress), settings.threshold)
+    return cut_by_silhouette(condensed, count, guard=settings.guard, length=length, progress=progress)
+
+
+def cut_at(tree: Array, threshold: float) -> Grouping:
+    """Make the merges up to `threshold` [m]: clusters farther apart stay apart."""
+    labels = labels_at(tree, threshold)
+    rival = _next_merge(tree, int(labels.max()), threshold)
+    if rival is None:
+        return Grouping(tree, threshold, labels)
+    least = float(tree[1 - max(rival, int(labels.max())), 2])
+    note = (
+        f"{_ways(int(labels.max()))}, but ambiguous: two clusters {least * 100:.1f} cm apart are close to "
+        f"learning.threshold {threshold * 100:.1f} cm, on its other side there are {rival}"
+    )
+    return Grouping(tree, threshold, labels, note, rival)
+
+
+def cut_into(tree: Array, clusters: int) -> Grouping:
+    """Make merges until `clusters` are left, or none, every demonstration alone, when there are fewer."""
+    count = len(tree) + 1
+    left = min(clusters, count)
+    height = height_between(tree, left)
+    note = f"{count} demonstrations cannot be {clusters} ways; every one is its own" if left < clusters else ""
+    return Grouping(tree, height, labels_into(tree, left), note, _next_merge(tree, left, height))
+
+
+def cut_by_silhouette(
+    condensed: Distances, count: int, *, guard: float, length: float, progress: Progress = ignore
+) -> Grouping:
+    """Merge by average link and cut where the mean silhouette is best (Rousseeuw 1987).
+
+    A silhouette is not defined for one single cluster, so below `guard` the demonstrations count as one way. The
+    best cut of all favours coarse ones when some ways are far apart; it is lowered while the cluster that splits
+    next, taken alone, would be more than one way too. One demonstration is one way; two are one way when their
+    distance is at most a tenth of the path length.
+
+    Args:
+        condensed: distances of all pairs [m].
+        count: number m of demonstrations.
+        guard: least mean silhouette for more than one cluster.
+        length: of a typical path [m], the yardstick for two demonstrations and for doubts.
+        progress: is told how far the work has come.
+    """
+    if count == 1:
+        return cut_into(np.empty((0, 4)), 1)
+    tree = average_linkage(condensed, count, part(progress, 0.0, 0.6))
+    top = float(tree[-1, 2])
+    wide = top > APART * length
+    if count == 2:
+        threshold = top / 2 if wide else top
+        return Grouping(tree, threshold, labels_at(tree, threshold), _pair_note(top, wide), 1 if wide else 2)
+    most = min(MOST_CLUSTERS, count - 1)
+    silhouettes = Silhouettes(condensed, tree, most, part(progress, 0.6, 1.0))
+    scores = {k: silhouettes.mean(k) for k in range(2, most + 1)}
+    best = max(scores, key=lambda k: scores[k])
+    if scores[best] < guard:
+        doubt = _doubt_one(scores[best], guard, top, wide)
+        return Grouping(tree, top, labels_into(tree, 1), doubt, best if doubt else None)
+    while best < most:
+        alone, members = silhouettes.of_split(best)
+        if alone < guard + CAUTION / members:
+            break
+        best += 1
+    rivals = _rivals(scores, best, guard)
+    note, rival = _doubt_many(best, rivals), rivals[0] if rivals else None
+    return Grouping(tree, height_between(tree, best), labels_into(tree, best), note, rival)
+
+
+def _next_merge(tree: Array, clusters: int, height: float) -> int | None:
+    """Return the number of clusters on the other side of the nearest merge, when that is close to the cut."""
+    near: list[tuple[float, int]] = []
+    if not height > 0:
+        return None
+    if clusters > 1:
+        near.append((float(tree[-clusters + 1, 2]) / height, clusters - 1))
+    if clusters <= len(tree) and tree[-clusters, 2] > 0:
+        near.append((height / float(tree[-clusters, 2]), clusters + 1))
+    ratio, other = min(near, default=(np.inf, 0))
+    return other if ratio < CLOSE_MERGE else None
+
+
+def _rivals(scores: dict[int, float], best: int, guard: float) -> list[int]:
+    """Return the cuts that would do nearly as well, the best of them first."""
+    close = [k for k, score in scores.items() if k != best and score > scores[best] - CLOSE_CALL]
+    close.sort(key=lambda k: -scores[k])
+    return close + ([1] if scores[best] < guard + CLOSE_CALL else [])
+
+
+def _ways(count: int) -> str:
+    return "one way" if count == 1 else f"{count} ways"
+
+
+def _pair_note(top: float, wide: bool) -> str:
+    ways = "two ways" if wide else "one way"
+    return f"two demonstrations, {top * 100:.1f} cm apart, are taken for {ways}; set learning.threshold to decide it"
+
+
+def _doubt_one(score: float, guard: float, top: float, wide: bool) -> str:
+    if wide or score > guard - CLOSE_CALL:
+        return (
+            f"one way, but ambiguous: the demonstrations are up to {top * 100:.1f} cm apart and the best partition "
+            f"has silhouette {score:.2f} (guard {guard:.2f}); set learning.threshold to decide it"
+        )
+    return ""
+
+
+def _doubt_many(best: int, rivals: list[int]) -> str:
+    if not rivals:
+        return ""
+    others = " or ".join(str(k) for k in sorted(rivals))
+    return f"{best} ways, but ambiguous: {others} would do nearly as well; set learning.threshold to decide it"

@@ -1,0 +1,1 @@
+"""Fitting: the NURBS and the orientations that follow the selected demonstrations."""

@@ -1,0 +1,84 @@
+"""How the object is turned along a learned path: a curve of quaternions with the parameter of the positions."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from teachpath.errors import LearningFailed
+from teachpath.learning.fitting.nurbs_fit import approximate
+from teachpath.learning.resampling import arc_lengths, continuous, smoothed, smoothed_orientations
+from teachpath.learning.settings import LearningSettings
+from teachpath.nurbs import Curve, unit
+from teachpath.records import Array, Trajectory
+
+
+def mean_orientations(selected: Sequence[Trajectory], count: int) -> Array | None:
+    """Average orientations at equal arc length.
+
+    The mean is the principal axis of the quaternions' outer products, to which signs do not matter (Markley et al.
+    2007). Turning on the spot has no arc length: it is kept only as the difference of neighbours.
+
+    Args:
+        selected: the trajectories.
+        count: number of points.
+
+    Returns:
+        (count, 4) unit quaternions, neighbours on one half of the sphere, first w positive; None when a trajectory
+        has no orientations.
+    """
+    courses = []
+    for trajectory in selected:
+        if trajectory.orientations is None:
+            return None
+        courses.append(_at_equal_arc_length(trajectory, trajectory.orientations, count))
+    stacked = np.stack(courses)  # (m, count, 4)
+    axes = np.linalg.eigh(np.einsum("mki,mkj->kij", stacked, stacked))[1]
+    mean = axes[..., -1]
+    return continuous(mean if mean[0, 0] >= 0 else -mean)
+
+
+def orient(cluster: int, mean: Array, at: Array, degree: int, settings: LearningSettings) -> tuple[Curve, float]:
+    """Fit a curve of quaternions within `turn_bound`.
+
+    Args:
+        cluster: its number, for the message.
+        mean: (n, 4) unit quaternions, neighbours on one half of the sphere.
+        at: (n,) their parameters on the position curve.
+        degree: of the curve.
+        settings: `turn_bound` and `most_control_points`.
+
+    Returns:
+        the curve and its largest angle from the quaternions [rad].
+
+    Raises:
+        LearningFailed: the bound cannot be kept.
+    """
+    # A point within sin(a / 2) of a unit quaternion is within the angle a of it after normalisation.
+    most = settings.most_control_points
+    fit = approximate(mean, float(np.sin(settings.turn_bound / 2)), degree=degree, most=most, at=at)
+    largest = float(angles(unit(fit.curve, at), mean).max())
+    if largest > settings.turn_bound:
+        raise LearningFailed(
+            f"the orientations of way {cluster} cannot be followed within {np.degrees(settings.turn_bound):.3g}° by "
+            f"{most} control points, which reach {np.degrees(largest):.3g}°; raise learning.turn_bound or "
+            "learning.most_control_points"
+        )
+    return fit.curve, largest
+
+
+def angles(one: Array, other: Array) -> Array:
+    """Return the angles between unit quaternions as rotations: (n,) [rad], whatever their signs."""
+    signs = np.where((one * other).sum(axis=1) < 0, -1.0, 1.0)[:, None]
+    return np.asarray(4 * np.arcsin(np.clip(np.linalg.norm(one - signs * other, axis=1) / 2, 0.0, 1.0)))
+
+
+def _at_equal_arc_length(trajectory: Trajectory, orientations: Array, count: int) -> Array:
+    smooth = smoothed_orientations(trajectory.times, orientations)
+    s = arc_lengths(smoothed(trajectory))
+    forward = np.concatenate([[True], np.diff(s) > 0])
+    stations = np.linspace(0.0, s[-1], count)
+    course = np.column_stack([np.interp(stations, s[forward], smooth[forward, k]) for k in range(4)])
+    course[[0, -1]] = smooth[[0, -1]]
+    return np.asarray(course / np.linalg.norm(course, axis=1, keepdims=True))

@@ -1,0 +1,1 @@
+"""Selection: the consistent demonstrations of a cluster."""

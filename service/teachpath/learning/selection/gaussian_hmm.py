@@ -1,0 +1,51 @@
+"""The hidden Markov model of mode default: Gaussians with one diagonal covariance that cannot collapse."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from teachpath.learning.selection.hmm import LOG_2PI, LeftRightHmm
+from teachpath.records import Array
+
+ONE_ONLY = 4.0  # factor on the variance of a model of one sequence
+
+
+class TiedGaussianHmm(LeftRightHmm):
+    """One Gaussian per state, with one diagonal covariance that all states share.
+
+    Args:
+        floor: (features,) least variance.
+        options: see `LeftRightHmm`.
+    """
+
+    def __init__(self, floor: Array, **options: Any) -> None:
+        super().__init__(**options)
+        self.floor = floor
+
+    def widen(self, sequences: int) -> None:
+        """Widen the variance to what a new sequence shows against means that were estimated from so few.
+
+        The variance about the estimated means is too small by (n - 1) / n, that of a new sequence larger than the true
+        one by (n + 1) / n.
+        """
+        self.variance_ *= (sequences + 1) / (sequences - 1) if sequences > 1 else ONE_ONLY
+
+    def _begin(self, owners: NDArray[np.int64], frames: Array) -> None:
+        self.means_ = np.zeros((self.n_components, self.n_features))
+        self._maximise(frames, np.eye(self.n_components)[owners])
+
+    def _compute_log_likelihood(self, X: Array) -> Array:
+        scaled = np.square(X[:, None, :] - self.means_) / self.variance_  # (frames, states, features)
+        constant = self.n_features * LOG_2PI + np.log(self.variance_).sum()
+        return np.asarray(-0.5 * (scaled.sum(axis=2) + constant))
+
+    def _maximise(self, frames: Array, posteriors: Array) -> None:
+        weight = posteriors.sum(axis=0)[:, None]
+        # No matrix product: its rounding depends on the number of threads.
+        first = np.einsum("tq,td->qd", posteriors, frames)
+        self.means_ = np.where(weight > 1e-8, first / np.maximum(weight, 1e-8), self.means_)
+        squares = np.einsum("tq,tqd->d", posteriors, np.square(frames[:, None, :] - self.means_))
+        self.variance_ = np.maximum(squares / weight.sum(), self.floor)

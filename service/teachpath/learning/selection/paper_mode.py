@@ -1,0 +1,119 @@
+"""Selection as Aleotti & Caselli 2005 describe it, and repaired where the description leads to chance.
+
+Symbols are codeword numbers of short-time spectra; one hidden Markov model is trained on all members of a cluster,
+which are then scored by it (section III-B).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from teachpath.learning.selection.mixture_hmm import MixtureHmm
+from teachpath.learning.selection.scoring import robust_z
+from teachpath.learning.selection.symbols import WINDOW, spectra, symbol_sequences
+from teachpath.learning.settings import LearningSettings, Tick
+from teachpath.records import Array, Cluster, Score
+
+RIDGE = 0.01  # squared codeword numbers, added to every covariance
+ITERATIONS = 10
+TOLERANCE = 1e-4
+REPAIRED_STATES, REPAIRED_MIXTURES = 5, 1
+
+
+def select_as_paper(
+    equalised: Mapping[str, Array], ways: Sequence[Sequence[str]], settings: LearningSettings, *, tick: Tick
+) -> tuple[Cluster, ...]:
+    """Score the members of every cluster by the cluster's own model and keep the n best.
+
+    Mode repaired numbers the codewords in the order of their first principal component, starts the states from
+    slices of time, and has fewer of them with one Gaussian each. With `repeats`, all is done again from other seeds.
+
+    Args:
+        equalised: id -> positions (n, 3) [m], all of one length.
+        ways: the members of every cluster.
+        settings: `keep` members are kept; with fewer members selection is skipped.
+        tick: called once per model trained.
+    """
+    shortest = min(len(positions) for positions in equalised.values())
+    if shortest < WINDOW:
+        note = "selection skipped: a demonstration is shorter than the analysis window"
+        return tuple(unscored(index + 1, way, note) for index, way in enumerate(ways))
+    names = sorted(equalised)
+    heard = [spectra(equalised[name]) for name in names]
+    first = _once(names, heard, ways, settings, np.random.default_rng(settings.seed), tick)
+    kept = dict.fromkeys(equalised, 0)
+    for repeat in range(settings.repeats):
+        rng = np.random.default_rng([settings.seed, repeat + 1])
+        for cluster in _once(names, heard, ways, settings, rng, tick):
+            for score in cluster.scores:
+                kept[score.demonstration] += score.selected
+    if settings.repeats == 0:
+        return first
+    return tuple(
+        replace(cluster, scores=tuple(_with_stability(score, kept, settings.repeats) for score in cluster.scores))
+        for cluster in first
+    )
+
+
+def unscored(index: int, names: Sequence[str], note: str) -> Cluster:
+    """Return a cluster all of which is kept without a score, and why."""
+    scores = tuple(Score(name, 0.0, rank + 1, True, "not scored") for rank, name in enumerate(names))
+    return Cluster(index, tuple(names), scores, (), note)
+
+
+def models_of_paper(ways: int, repeats: int) -> int:
+    """Return how often `select_as_paper` ticks."""
+    return ways * (1 + repeats)
+
+
+def _once(
+    names: list[str],
+    heard: list[Array],
+    ways: Sequence[Sequence[str]],
+    settings: LearningSettings,
+    rng: np.random.Generator,
+    tick: Tick,
+) -> tuple[Cluster, ...]:
+    words = symbol_sequences(heard, settings.codebook, rng, ordered=settings.mode == "repaired")
+    symbols = dict(zip(names, words, strict=True))
+    clusters = []
+    for index, way in enumerate(ways):
+        clusters.append(_selected(index + 1, {name: symbols[name] for name in sorted(way)}, settings, rng))
+        tick()
+    return tuple(clusters)
+
+
+def _selected(
+    index: int, symbols: Mapping[str, Array], settings: LearningSettings, rng: np.random.Generator
+) -> Cluster:
+    names = list(symbols)
+    if len(names) < settings.keep:
+        return unscored(index, names, f"selection skipped: fewer than {settings.keep} demonstrations")
+    repaired = settings.mode == "repaired"
+    model = MixtureHmm(
+        REPAIRED_MIXTURES if repaired else settings.mixtures,
+        RIDGE,
+        rng,
+        in_time=repaired,
+        states=REPAIRED_STATES if repaired else settings.states,
+        iterations=ITERATIONS,
+        tolerance=TOLERANCE,
+        pseudo_count=0.0,
+    )
+    model.train(list(symbols.values()))
+    likelihoods = np.array([model.log_likelihood(sequence) for sequence in symbols.values()])
+    z = robust_z(likelihoods / len(next(iter(symbols.values()))))
+    order = np.argsort(-likelihoods, kind="stable")
+    margins = [*(float(step) for step in -np.diff(likelihoods[order])), None]
+    scores = tuple(
+        Score(names[i], float(likelihoods[i]), rank + 1, rank < settings.keep, margin=margins[rank], z=float(z[i]))
+        for rank, i in enumerate(order)
+    )
+    return Cluster(index, tuple(score.demonstration for score in scores), scores, model.history)
+
+
+def _with_stability(score: Score, kept: Mapping[str, int], repeats: int) -> Score:
+    return replace(score, stability=kept[score.demonstration] / repeats)

@@ -1,0 +1,89 @@
+"""What a run says about its clusters and inputs beside scores and paths: doubts, tubes, fingerprints."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from hashlib import sha256
+
+import numpy as np
+
+from teachpath.learning.clustering.dendrogram import Labels, labels_into
+from teachpath.learning.clustering.partition import Grouping
+from teachpath.learning.resampling import at_equal_arc_length, smoothed
+from teachpath.learning.settings import Tick
+from teachpath.nurbs import Curve
+from teachpath.records import Array, Trajectory
+
+TUBE_POINTS = 50
+DENSE = 1000  # points of the polyline that stands for a curve
+
+
+def ambiguities(grouping: Grouping) -> list[str]:
+    """Return for every cluster what the next best cut would do with it, empty where that is nothing."""
+    labels = grouping.labels
+    count = int(labels.max())
+    if grouping.rival is None:
+        return [""] * count
+    other = labels_into(grouping.linkage, grouping.rival)
+    sentences = []
+    for label in range(1, count + 1):
+        parts, sizes = np.unique(other[labels == label], return_counts=True)
+        within = np.unique(labels[np.isin(other, parts)])
+        if len(parts) > 1:
+            sizes_told = " and ".join(str(size) for size in sizes)
+            sentences.append(f"ambiguous: could as well be {len(parts)} ways, of {sizes_told} demonstrations")
+        elif len(within) > 1:
+            partners = " and ".join(str(partner) for partner in within if partner != label)
+            sentences.append(f"ambiguous: could as well be one way together with {partners}")
+        else:
+            sentences.append("")
+    return sentences
+
+
+def representatives(courses: Array, labels: Labels) -> Labels:
+    """Return for every cluster 1, 2, ... the member that is nearest to the mean of its members.
+
+    Args:
+        courses: (m, n, 3) [m], what the demonstrations are compared by.
+        labels: (m,).
+    """
+    found = []
+    for label in range(1, int(labels.max()) + 1):
+        members = np.flatnonzero(labels == label)
+        own = courses[members]
+        apart = np.linalg.norm(own - own.mean(axis=0), axis=2).mean(axis=1)
+        # The first of those equal but for rounding, as the two of a pair are.
+        found.append(members[np.argmax(apart <= apart.min() * (1 + 1e-9))])
+    return np.array(found)
+
+
+def tube(curve: Curve, selected: Sequence[Trajectory], *, tick: Tick) -> Array:
+    """Return how far the selected demonstrations are from the path across its direction, at equal arc length.
+
+    Args:
+        curve: the learned path.
+        selected: what it was learned from.
+        tick: called once for each of them.
+
+    Returns:
+        (50,) [m], the largest distance at each place.
+    """
+    course = at_equal_arc_length(curve(np.linspace(0.0, 1.0, DENSE)), TUBE_POINTS)
+    along = np.gradient(course, axis=0)
+    along /= np.maximum(np.linalg.norm(along, axis=1, keepdims=True), 1e-12)
+    radius = np.zeros(TUBE_POINTS)
+    for trajectory in selected:
+        apart = at_equal_arc_length(smoothed(trajectory), TUBE_POINTS) - course
+        across = apart - (apart * along).sum(axis=1, keepdims=True) * along
+        radius = np.maximum(radius, np.linalg.norm(across, axis=1))
+        tick()
+    return radius
+
+
+def fingerprint(trajectory: Trajectory) -> str:
+    """Return the SHA-256 of a trajectory's times, positions and orientations as little-endian doubles."""
+    digest = sha256()
+    for part in (trajectory.times, trajectory.positions, trajectory.orientations):
+        if part is not None:
+            digest.update(np.ascontiguousarray(part, dtype="<f8").tobytes())
+    return digest.hexdigest()

@@ -1,0 +1,1 @@
+"""What the page sees live: events, and the 3-D preview."""

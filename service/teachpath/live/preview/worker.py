@@ -1,0 +1,241 @@
+"""The running preview: one thread that lets arm, object and hands follow the bus."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections import deque
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, field
+from types import TracebackType
+from typing import Annotated
+
+import numpy as np
+from annotated_types import Ge, Gt, Le
+
+from teachpath.errors import UnusableInput
+from teachpath.io.bus import Bus, Handle
+from teachpath.io.wire import decode_state
+from teachpath.live.preview import commands
+from teachpath.live.preview.tree import Page, SceneTree
+from teachpath.motion.arm.geometry import Part
+from teachpath.motion.arm.kinematics import link_frames
+from teachpath.recording.live_hand import Hand
+from teachpath.records import Array, Phase, Shape, Vector
+from teachpath_proto.keys import Keys
+
+HAND_OPEN, HAND_CLOSED = 0x3F7FBF, 0xE08A00
+
+Hands = Callable[[], Iterable[Hand]]
+
+
+@dataclass(frozen=True)
+class PreviewSettings:
+    """How the view follows."""
+
+    # [Hz] how often arm, object and hands are drawn
+    rate: Annotated[float, Gt(0), Le(60)] = 30.0
+    # [Hz] how often the trail of a hand is drawn
+    trail_rate: Annotated[float, Gt(0), Le(30)] = 5.0
+    # points in the trail of a hand
+    trail_points: Annotated[int, Ge(2), Le(10_000)] = 600
+    # [s] without a sample after which a hand disappears
+    hand_silence: Annotated[float, Gt(0)] = 2.0
+
+
+@dataclass
+class _Drawn:
+    """A hand as drawn now."""
+
+    trail: deque[Vector]
+    seen: float
+    received: int = -1
+    take: int = 0
+    closed: bool | None = None
+    holds: bool = False
+    trail_drawn: float = field(default=-np.inf)
+
+
+class Preview:
+    """Draws for every connected page; start it, or use it as a context manager."""
+
+    def __init__(
+        self,
+        bus: Bus,
+        keys: Keys,
+        drawing: Sequence[Part],
+        *,
+        robot: str,
+        home: Array,
+        hands: Hands,
+        settings: PreviewSettings | None = None,
+        clock: Callable[[], float] = time.monotonic,
+    ) -> None:
+        """Prepare the view; nothing runs before `start`.
+
+        Args:
+            drawing: the primitives of the arm, each in the frame of its link.
+            robot: name of the arm whose joint states are followed.
+            home: (6,) configuration shown until the first joint state comes [rad].
+            hands: gives the hands that are being recorded, as they are seen now.
+            clock: seconds, monotonic.
+        """
+        self._bus, self._keys, self._robot = bus, keys, robot
+        self._look_at_hands, self._clock = hands, clock
+        self._settings = settings or PreviewSettings()
+        self._tree = SceneTree()
+        self._state: bytes | None = None
+        self._hands: dict[str, _Drawn] = {}
+        self._thing: Shape | None = None
+        self._handles: list[Handle] = []
+        self._stopped = threading.Event()
+        self._thread: threading.Thread | None = None
+        self._fingers: list[tuple[str, Array]] = []
+        for part in drawing:
+            self._put_part(part)
+        self._pose_arm(home, gripper_closed=False)
+
+    def start(self) -> None:
+        """Follow the bus from now on."""
+        self._stopped.clear()
+        self._handles = [
+            self._bus.subscribe(self._keys.state(self._robot), self._receive_state),
+        ]
+        self._thread = threading.Thread(target=self._run, name="preview", daemon=True)
+        self._thread.start()
+
+    def stop(self) -> None:
+        """Stop following; a second call does nothing."""
+        for handle in self._handles:
+            handle.close()
+        self._handles.clear()
+        self._stopped.set()
+        if self._thread is not None:
+            self._thread.join()
+            self._thread = None
+
+    def __enter__(self) -> Preview:
+        self.start()
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.stop()
+
+    def attach(self, wake: Callable[[], None]) -> Page:
+        """Add a page; its `take()` says what to tell it, and `wake()` is called, from any thread, on news."""
+        return self._tree.attach(wake)
+
+    def detach(self, page: Page) -> None:
+        """Forget a page that has gone."""
+        self._tree.detach(page)
+
+    def paths(self, prefix: str = "/") -> list[str]:
+        """Return the names in the tree, at and below `prefix`, that hold an object."""
+        return self._tree.paths(prefix)
+
+    def show_object(self, carried: Shape | None) -> None:
+        """Show this object at its start instead of the one shown before; None: there is none."""
+        self.clear("/object")
+        self._thing = carried
+        if carried is not None:
+            body = commands.solid("/object", carried.kind, carried.size, color=carried.color, vertices=carried.vertices)
+            self._tree.put_object("/object", body)
+            self._place("/object", commands.pose_of(carried.position, carried.orientation))
+            self._tree.flush()
+
+    def clear(self, prefix: str) -> None:
+        """Take away all at and below `prefix`, e.g. `/hand`."""
+        self._tree.delete(prefix, commands.delete(prefix))
+
+    def update(self) -> None:
+        """Draw what has arrived since the last call."""
+        payload, self._state = self._state, None
+        if payload is not None:
+            self._follow_arm(payload)
+        self._follow_hands()
+        self._tree.flush()
+
+    def _receive_state(self, key: str, payload: bytes) -> None:
+        self._state = payload
+
+    def _run(self) -> None:
+        while not self._stopped.wait(1.0 / self._settings.rate):
+            self.update()
+
+    def _follow_arm(self, payload: bytes) -> None:
+        try:
+            state = decode_state(payload)
+        except UnusableInput:
+            return  # the next one comes in 10 ms; whoever commands the arm reports it
+        self._pose_arm(state.position, gripper_closed=state.gripper_closed)
+        if any(drawn.holds for drawn in self._hands.values()):
+            return  # whoever shows the task has the object
+        # an orientation of zeros says that the arm's scene has no object
+        if any(state.object_orientation) and self._tree.paths("/object"):
+            self._place("/object", commands.pose_of(state.object_position, state.object_orientation))
+
+    def _put_part(self, part: Part) -> None:
+        path = f"/robot/link{part.link}/{part.name.replace(' ', '-')}"
+        pose = commands.pose_of(part.position, part.orientation)
+        body = commands.solid(path, part.kind, part.size, pose=pose, color=part.color, outline=part.outline)
+        self._tree.put_object(path, body)
+        if any(part.opens):
+            self._fingers.append((path, commands.pose_of(part.opens)))
+
+    def _pose_arm(self, q: Array, *, gripper_closed: bool) -> None:
+        for i, frame in enumerate(link_frames(q)):
+            self._place(f"/robot/link{i}", frame)
+        for path, opened in self._fingers:
+            self._place(path, np.eye(4) if gripper_closed else opened)
+
+    def _place(self, path: str, pose: Array) -> None:
+        # A hundredth of a millimetre is less than a pixel: an arm at rest sends nothing.
+        self._tree.put_transform(path, commands.transform(path, np.round(pose, 5) + 0.0))
+
+    def _follow_hands(self) -> None:
+        now = self._clock()
+        for hand in self._look_at_hands():
+            drawn = self._hands.get(hand.tracker)
+            if drawn is None:
+                drawn = self._hands[hand.tracker] = _Drawn(deque(maxlen=self._settings.trail_points), now)
+            if hand.received != drawn.received:
+                drawn.seen, drawn.received = now, hand.received
+                self._draw_hand(hand, drawn, now)
+                self._draw_object(hand, drawn)
+        for tracker in [t for t, drawn in self._hands.items() if now - drawn.seen > self._settings.hand_silence]:
+            self._put_back(self._hands.pop(tracker))
+            self.clear(f"/hand/{tracker}")
+
+    def _draw_hand(self, hand: Hand, drawn: _Drawn, now: float) -> None:
+        marker, trail = f"/hand/{hand.tracker}/marker", f"/hand/{hand.tracker}/trail"
+        if drawn.take != hand.take:
+            drawn.take = hand.take
+            drawn.trail.clear()
+            self.clear(trail)
+        drawn.trail.append(hand.position)
+        if drawn.closed != hand.closed:
+            drawn.closed = hand.closed
+            color = HAND_CLOSED if hand.closed else HAND_OPEN
+            self._tree.put_object(marker, commands.solid(marker, "sphere", (0.016,), color=color))
+        self._place(marker, commands.pose_of(hand.position))
+        if len(drawn.trail) >= 2 and now - drawn.trail_drawn >= 1.0 / self._settings.trail_rate:
+            drawn.trail_drawn = now
+            self._tree.put_object(trail, commands.line(trail, np.array(drawn.trail), color=HAND_OPEN))
+
+    def _draw_object(self, hand: Hand, drawn: _Drawn) -> None:
+        """Let the object go with the hand that took it; it lies where it was let go until the next reach begins."""
+        if hand.thing is None or hand.thing != self._thing:
+            return
+        if hand.holds:
+            drawn.holds = True
+            if hand.carried is not None:
+                self._place("/object", commands.pose_of(*hand.carried))
+        elif hand.phase is Phase.REACH:
+            self._put_back(drawn)
+
+    def _put_back(self, drawn: _Drawn) -> None:
+        if drawn.holds and self._thing is not None:
+            self._place("/object", commands.pose_of(self._thing.position))
+        drawn.holds = False

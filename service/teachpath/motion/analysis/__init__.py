@@ -1,0 +1,1 @@
+"""Analysis: a recorded motion, checked against its limits and drawn over time."""

@@ -1,0 +1,166 @@
+"""Judges a log of setpoints against limits and path, from the numbers alone.
+
+Nothing that makes motion is used here: no track, no governor, no kinematics of ours but the table of the arm. What is
+measured is what was sent, differenced and put through a chain of matrices of its own.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
+
+from teachpath.motion.arm.puma560 import ACCELERATION, JERK, LOWER, SPEED, TOOL_LENGTH, UPPER, Array
+from teachpath.motion.arm.variants import arm
+from teachpath.nurbs import Curve
+
+OFF: Final = 1e-4  # m, that the tool may be off the path
+SLACK: Final = 1e-6  # relative, for the rounding of differences
+UNEVEN: Final = 0.01  # of the period, by which setpoints may be off their even times
+CHORDS: Final = 20_000  # of which the path is made to measure the distance to it
+NAMES: Final = ("speed", "acceleration", "jerk")
+
+
+@dataclass(frozen=True, eq=False)
+class SetpointLog:
+    """A log of setpoints.
+
+    Attributes:
+        times: (n,) when each is due [s].
+        positions: (n, 6) of the joints [rad].
+        on_path: (n,) whether the tool is said to be on the path; None when the log does not say.
+        missing: setpoints that are not in it, as far as its numbering tells.
+    """
+
+    times: Array
+    positions: Array
+    on_path: NDArray[np.bool_] | None = None
+    missing: int = 0
+
+
+@dataclass(frozen=True)
+class Judgement:
+    """What was found.
+
+    Attributes:
+        faults: what is wrong, each a sentence; empty when all is kept.
+        measured: what was measured, each a sentence.
+    """
+
+    faults: tuple[str, ...]
+    measured: tuple[str, ...]
+
+
+def judge(log: SetpointLog, path: Curve | None) -> Judgement:
+    """Judge a log.
+
+    Args:
+        log: at least 4 setpoints.
+        path: that the tool follows [m], world; None when only the limits are judged.
+    """
+    faults, measured = [], []
+    period = float(np.median(np.diff(log.times)))
+    measured.append(f"{len(log.times)} setpoints over {log.times[-1] - log.times[0]:.2f} s at {1 / period:.0f} Hz")
+    if log.missing:
+        faults.append(f"{log.missing} setpoints are missing, so it cannot be judged whole")
+    for judged in (_positions(log), *_differences(log, period), *(_path(log, path) if path is not None else [])):
+        (measured if judged[0] else faults).append(judged[1])
+    if path is None:
+        measured.append("without a path: only the limits were judged")
+    return Judgement(tuple(faults), tuple(measured))
+
+
+def _positions(log: SetpointLog) -> tuple[bool, str]:
+    outside = np.maximum(LOWER - log.positions, log.positions - UPPER)
+    row, joint = np.unravel_index(int(np.argmax(outside)), outside.shape)
+    least = float(outside[row, joint])
+    where = f"joint {joint + 1} at {log.times[row] - log.times[0]:.3f} s"
+    if least > 0:
+        return False, f"{where} is {least:.4f} rad beyond its limit ({LOWER[joint]:.3f} to {UPPER[joint]:.3f})"
+    return True, f"every joint within its range, least {-least:.3f} rad to spare: {where}"
+
+
+def _differences(log: SetpointLog, period: float) -> list[tuple[bool, str]]:
+    """Judge speed, acceleration and jerk; the arm is taken to rest before the log and wherever nothing was sent."""
+    steps, moves = np.diff(log.times), np.any(np.diff(log.positions, axis=0) != 0.0, axis=1)
+    uneven = np.abs(steps - period) > UNEVEN * period
+    rested = np.concatenate([[True], ~moves[:-1]])  # before each step
+    broken = np.flatnonzero(uneven & ~(rested & (steps > period)))
+    found = []
+    if len(broken):
+        first = int(broken[0])
+        when, gap = log.times[first] - log.times[0], 1e3 * steps[first]
+        sentence = f"{len(broken)} setpoints of a moving arm are not one period apart, the first at {when:.3f} s"
+        found.append((False, f"{sentence} ({gap:.1f} ms)"))
+    runs = np.split(np.arange(len(log.times)), np.flatnonzero(uneven & rested & (steps > period)) + 1)
+    for order, (name, limit) in enumerate(zip(NAMES, (SPEED, ACCELERATION, JERK), strict=True), 1):
+        uses = np.concatenate([_use(log.positions[run], order) / period**order / limit for run in runs])
+        row, joint = np.unravel_index(int(np.argmax(uses)), uses.shape)
+        where = f"joint {joint + 1} at {log.times[row] - log.times[0]:.3f} s"
+        largest = float(uses[row, joint])
+        found.append((largest <= 1.0 + SLACK, f"{name} limit used to {100 * largest:.2f} % by {where}"))
+    return found
+
+
+def _use(positions: Array, order: int) -> Array:
+    """Return the differences (n, 6) that end in each of the positions (n, 6), behind a rest."""
+    return np.abs(np.diff(np.concatenate([np.repeat(positions[:1], order, axis=0), positions]), order, axis=0))
+
+
+def _path(log: SetpointLog, path: Curve) -> list[tuple[bool, str]]:
+    points = path(np.linspace(0.0, 1.0, CHORDS + 1))
+    tool = _tool(log.positions)
+    said = log.on_path if log.on_path is not None else _guessed(tool, points)
+    if not said.any():
+        return [(False, "the tool never comes to the start of the path")]
+    off = _distance(tool[said], points)
+    worst = int(np.argmax(off))
+    when = log.times[said][worst] - log.times[0]
+    nearest = cKDTree(points).query(tool[said])[1]
+    share = float(nearest.max() - nearest.min()) / CHORDS
+    return [
+        (
+            float(off[worst]) <= OFF,
+            f"tool up to {1e3 * off[worst]:.4f} mm off the path at {when:.3f} s, allowed 0.1 mm",
+        ),
+        (True, f"{int(said.sum())} setpoints on the path, over {100 * share:.1f} % of its parameter"),
+    ]
+
+
+def _guessed(tool: Array, points: Array) -> NDArray[np.bool_]:
+    """Say which setpoints should be on the path: from the first at its start to the last at its end, or to the last."""
+    starts = np.flatnonzero(np.linalg.norm(tool - points[0], axis=1) <= OFF)
+    ends = np.flatnonzero(np.linalg.norm(tool - points[-1], axis=1) <= OFF)
+    said = np.zeros(len(tool), dtype=np.bool_)
+    if len(starts):
+        later = ends[ends > starts[0]]
+        said[starts[0] : (later[-1] + 1 if len(later) else None)] = True
+    return said
+
+
+def _distance(places: Array, points: Array) -> Array:
+    """Return the distance (n,) of places (n, 3) to a chain of chords through points (m, 3) [m]."""
+    nearest = cKDTree(points).query(places)[1]
+    best = np.full(len(places), np.inf)
+    for shift in (-1, 0):
+        a = points[np.clip(nearest + shift, 0, len(points) - 2)]
+        chord = points[np.clip(nearest + shift, 0, len(points) - 2) + 1] - a
+        along = np.einsum("ij,ij->i", places - a, chord) / np.maximum(np.einsum("ij,ij->i", chord, chord), 1e-30)
+        best = np.minimum(best, np.linalg.norm(places - a - np.clip(along, 0.0, 1.0)[:, None] * chord, axis=1))
+    return best
+
+
+def _tool(q: Array) -> Array:
+    """Return the grasp point (n, 3) [m] of configurations (n, 6), link by link from the tip to the base."""
+    point = np.tile([0.0, 0.0, TOOL_LENGTH], (len(q), 1))
+    for joint in reversed(range(6)):
+        link = arm().links[joint]
+        x, y, z = point.T
+        ca, sa = np.cos(link.alpha), np.sin(link.alpha)
+        x, y, z = x + link.a, ca * y - sa * z, sa * y + ca * z + link.d
+        c, s = np.cos(q[:, joint]), np.sin(q[:, joint])
+        point = np.column_stack([c * x - s * y, s * x + c * y, z])
+    return point

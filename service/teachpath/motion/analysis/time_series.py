@@ -1,0 +1,86 @@
+"""A recorded motion as curves over time: as many points as a plot shows, and no peak lost."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from teachpath.motion.arm.kinematics import tool_pose
+from teachpath.motion.arm.puma560 import Array
+from teachpath.records import JointState, Setpoint
+
+
+@dataclass(frozen=True, eq=False)
+class Series:
+    """What the arm did over time.
+
+    Attributes:
+        times: (n,) since the first setpoint [s].
+        positions: (n, 6) of the joints [rad].
+        velocities: (n, 6), of those between two times the one of largest size [rad/s].
+        torques: (n, 6), likewise [N m].
+        tool: (n, 3) grasp point [m], world.
+        object: (n, 3) carried object [m], world; empty when there is none.
+        gripper_closed: (n,).
+        tracking_error: (n,) largest since the time before [rad].
+        lateness: (n,) of the setpoints sent since the time before, the largest [s]; 0 where none was sent.
+    """
+
+    times: Array
+    positions: Array
+    velocities: Array
+    torques: Array
+    tool: Array
+    object: Array
+    gripper_closed: tuple[bool, ...]
+    tracking_error: Array
+    lateness: Array
+
+
+def series(setpoints: Sequence[Setpoint], states: Sequence[JointState], points: int) -> Series:
+    """Draw a recorded motion with at most `points` points.
+
+    Args:
+        setpoints: as they were sent.
+        states: of the arm, with increasing stamps.
+        points: at least 2.
+    """
+    count = len(states)
+    if count == 0:
+        return _nothing()
+    groups = np.unique(np.linspace(0, count, min(points, count) + 1).astype(np.int64))[:-1]
+    begin = setpoints[0].nominal_ns if setpoints else states[0].stamp_ns
+    stamps = np.array([s.stamp_ns - begin for s in states], dtype=np.float64) / 1e9
+    ends = np.append(groups[1:], count) - 1  # the newest state of each group stands for it
+    positions = np.array([states[k].position for k in ends])
+    seen = states[-1].object_orientation != (0.0, 0.0, 0.0, 0.0)
+    late = np.zeros(len(groups))
+    if setpoints:
+        sent = np.array([s.sent_ns - begin for s in setpoints], dtype=np.float64) / 1e9
+        behind = np.array([s.sent_ns - s.nominal_ns for s in setpoints], dtype=np.float64) / 1e9
+        np.maximum.at(late, np.minimum(np.searchsorted(stamps[ends], sent), len(groups) - 1), behind)
+    return Series(
+        times=stamps[ends],
+        positions=positions,
+        velocities=_largest(np.array([s.velocity for s in states]), groups),
+        torques=_largest(np.array([s.torque for s in states]), groups),
+        tool=tool_pose(positions)[:, :3, 3],
+        object=np.array([states[k].object_position for k in ends]) if seen else np.empty((0, 3)),
+        gripper_closed=tuple(states[k].gripper_closed for k in ends),
+        tracking_error=np.maximum.reduceat(np.array([s.tracking_error for s in states]), groups),
+        lateness=late,
+    )
+
+
+def _largest(values: Array, groups: NDArray[np.int64]) -> Array:
+    """Return of each group of rows (n, 6) the value of largest size, with its sign."""
+    high, low = np.maximum.reduceat(values, groups), np.minimum.reduceat(values, groups)
+    return np.where(high > -low, high, low)
+
+
+def _nothing() -> Series:
+    joints, place, value = np.empty((0, 6)), np.empty((0, 3)), np.empty(0)
+    return Series(value, joints, joints, joints, place, place, (), value, value)

@@ -1,0 +1,98 @@
+"""What the motors must give along a motion: inverse dynamics of the arm's table (MuJoCo), with friction and a load."""
+
+from __future__ import annotations
+
+from math import pi
+from typing import Final
+
+import mujoco
+import numpy as np
+from scipy.spatial import ConvexHull
+
+from teachpath.motion.arm.kinematics import jacobian, tool_pose
+from teachpath.motion.arm.mjcf import OBJECT_DENSITY, mjcf
+from teachpath.motion.arm.puma560 import TORQUE, Array
+from teachpath.motion.arm.variants import arm
+from teachpath.records import Scene, Shape
+
+GRAVITY: Final = np.array([0.0, 0.0, -9.81])  # m/s^2
+SLOW: Final = 0.02  # rad/s, below which Coulomb friction fades out
+
+
+class Dynamics:
+    """The arm without surroundings; what it carries is a mass at the grasp point."""
+
+    def __init__(self, carried: Shape | None = None) -> None:
+        self._model = mujoco.MjModel.from_xml_string(mjcf(Scene("nothing")))
+        self._data = mujoco.MjData(self._model)
+        # Coulomb friction at the joint is the mean of both directions, as the simulated arm has it.
+        self._coulomb = np.array([abs(link.gear) * sum(link.coulomb) / 2 for link in arm().links])
+        self._viscous = np.array([link.viscous * link.gear**2 for link in arm().links])
+        self._mass = 0.0 if carried is None else OBJECT_DENSITY * _volume(carried)
+
+    def torques(self, q: Array, velocity: Array, acceleration: Array) -> Array:
+        """Return the torques (n, 6) [N m] at configurations, velocities and accelerations (n, 6).
+
+        Siciliano et al., Robotics, Springer 2009, eq. (7.42), with the motors' inertia, viscous and Coulomb friction.
+        """
+        inertia, gravity, coriolis = self._terms(q, velocity)
+        friction = self._viscous * velocity + self._coulomb * np.tanh(velocity / SLOW)
+        return np.asarray(np.einsum("nij,nj->ni", inertia, acceleration) + gravity + coriolis + friction)
+
+    def largest(self, q: Array, velocity: Array, acceleration: Array) -> Array:
+        """Bound the torques (n, 6) [N m] of everything that may happen on a way.
+
+        Args:
+            q: (n, 6) configurations on the way.
+            velocity: (n, 6) there, at full speed; the arm may be slower, to and fro.
+            acceleration: (6,) largest ones, in any combination of signs.
+        """
+        inertia, gravity, coriolis = self._terms(q, velocity)
+        # Gravity does not depend on the rate, Coriolis and centrifugal torques grow with its square.
+        steady = np.maximum(np.abs(gravity), np.abs(gravity + coriolis))
+        return np.asarray(np.abs(inertia) @ acceleration + steady + np.abs(self._viscous * velocity) + self._coulomb)
+
+    def share_left(self, q: Array, velocity: Array, acceleration: Array) -> float:
+        """Return the largest share of the acceleration limits (6,) with which `largest` keeps the motors' torques.
+
+        Zero or less means that the motors cannot even hold this.
+        """
+        steady = self.largest(q, velocity, 0.0 * acceleration)
+        moving = self.largest(q, velocity, acceleration) - steady
+        return float(np.min((TORQUE - steady) / moving))
+
+    def _terms(self, q: Array, velocity: Array) -> tuple[Array, Array, Array]:
+        """Return inertia matrices (n, 6, 6) and the torques (n, 6) of gravity and of turning at these velocities."""
+        model, data = self._model, self._data
+        inertia, gravity, coriolis = np.empty((len(q), 6, 6)), np.empty_like(q), np.empty_like(q)
+        whole = np.empty((model.nv, model.nv))
+        for row, (at, speed) in enumerate(zip(q, velocity, strict=True)):
+            data.qpos[:6], data.qvel[:6] = at, 0.0
+            mujoco.mj_fwdPosition(model, data)
+            mujoco.mj_fwdVelocity(model, data)
+            gravity[row] = data.qfrc_bias[:6]
+            data.qvel[:6] = speed
+            mujoco.mj_fwdVelocity(model, data)
+            coriolis[row] = data.qfrc_bias[:6] - gravity[row]
+            mujoco.mj_fullM(model, data, whole)
+            inertia[row] = whole[:6, :6]
+        if self._mass:
+            here, turning = jacobian(q)[:, :3], _turning(q, velocity)
+            inertia += self._mass * np.einsum("nki,nkj->nij", here, here)
+            gravity -= self._mass * here.transpose(0, 2, 1) @ GRAVITY
+            coriolis += self._mass * np.einsum("nki,nk->ni", here, turning)
+        return inertia, gravity, coriolis
+
+
+def _turning(q: Array, velocity: Array, step: float = 1e-4) -> Array:
+    """Return the grasp point's acceleration (n, 3) at constant joint velocities, by differences over `step` [s]."""
+    before, now, after = (tool_pose(q + k * step * velocity)[:, :3, 3] for k in (-1, 0, 1))
+    return np.asarray((before - 2 * now + after) / step**2, dtype=np.float64)
+
+
+def _volume(shape: Shape) -> float:
+    if shape.kind == "mesh":
+        return float(ConvexHull(shape.size[0] * np.array(shape.vertices)).volume)
+    if shape.kind == "sphere":
+        return 4 / 3 * pi * shape.size[0] ** 3
+    return float(np.prod(shape.size)) if shape.kind == "box" else pi * shape.size[0] ** 2 * shape.size[1]

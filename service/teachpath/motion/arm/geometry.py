@@ -1,0 +1,98 @@
+"""The arm's body from simple solids: the one list that is drawn, simulated and checked for collisions.
+
+What makes it a Puma: a slim column, a drum across its top, a long tapered upper arm on the drum's one end, beside the
+column, a thinner forearm on the inner side of the elbow, a slender wrist.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import atan2, cos, pi, radians, sin, sqrt
+from typing import Final
+
+from teachpath.motion.arm.puma560 import FINGER_TRAVEL
+
+Vector = tuple[float, float, float]
+Quaternion = tuple[float, float, float, float]
+
+CREAM: Final = 0xF7F2E6  # the shell
+DARK: Final = 0x2F343B  # joints, foot and gripper
+STEEL: Final = 0xA3ABB4
+BLUE: Final = 0x1F4E87
+
+UPRIGHT: Final[Quaternion] = (1.0, 0.0, 0.0, 0.0)
+Z_ALONG_Y: Final[Quaternion] = (cos(radians(45)), sin(radians(-45)), 0.0, 0.0)  # the solid's z along y of the link
+
+
+@dataclass(frozen=True, slots=True)
+class Part:
+    """One solid, fixed to a link.
+
+    Attributes:
+        name: unique, e.g. "upper arm".
+        link: 0 for the fixed base (frame `world`), i for the Denavit-Hartenberg frame behind joint i.
+        kind: `box` (size = full edges x, y, z), `cylinder` (radius, height; axis along its z), `sphere` (radius) or
+            `prism` (thickness along its z, convex `outline` in its xy plane, counter-clockwise).
+        position: of the solid's centre in the link's frame [m].
+        orientation: of the solid in the link's frame.
+        opens: how far the part moves, in the link's frame, when the gripper opens [m].
+        trim: drawn alone; it stands out of the solid below it by a few millimetres at places that meet nothing.
+    """
+
+    name: str
+    link: int
+    kind: str
+    size: tuple[float, ...]
+    position: Vector
+    orientation: Quaternion = UPRIGHT
+    color: int = CREAM
+    outline: tuple[tuple[float, float], ...] = ()
+    opens: Vector = (0.0, 0.0, 0.0)
+    trim: bool = False
+
+
+def solids() -> tuple[Part, ...]:
+    """Return every part that is simulated and kept clear of all others."""
+    return tuple(part for part in _PARTS if not part.trim)
+
+
+def drawing() -> tuple[Part, ...]:
+    """Return every part of the Puma 560 and its gripper; proportions are our own after photographs of the arm."""
+    return _PARTS
+
+
+def _tapered(x0: float, r0: float, x1: float, r1: float, corners: int = 12) -> tuple[tuple[float, float], ...]:
+    """Outline around two circles on the x axis, x0 < x1, joined by their outer tangents."""
+    lean = atan2(r0 - r1, sqrt((x1 - x0) ** 2 - (r0 - r1) ** 2))
+    quarter = pi / 2 - lean
+    right = [-quarter + 2 * quarter * k / (corners - 1) for k in range(corners)]
+    left = [quarter + (2 * pi - 2 * quarter) * k / (corners - 1) for k in range(corners)]
+    return tuple([(x1 + r1 * cos(t), r1 * sin(t)) for t in right] + [(x0 + r0 * cos(t), r0 * sin(t)) for t in left])
+
+
+_PARTS: Final = (
+    Part("foot", 0, "cylinder", (0.16, 0.03), (0.0, 0.0, 0.015), color=DARK),
+    Part("pedestal", 0, "cylinder", (0.085, 0.47), (0.0, 0.0, 0.265)),
+    Part("collar", 0, "cylinder", (0.088, 0.016), (0.0, 0.0, 0.494), color=DARK, trim=True),
+    Part("trunk", 1, "cylinder", (0.09, 0.27), (0.0, -0.035, 0.0), Z_ALONG_Y),
+    Part("shoulder", 1, "cylinder", (0.1, 0.285), (0.0, 0.0, 0.0425)),
+    Part("shoulder cap", 1, "cylinder", (0.075, 0.03), (0.0, 0.0, -0.115), color=DARK),
+    Part("shoulder ring", 1, "cylinder", (0.1015, 0.014), (0.0, 0.0, 0.183), color=DARK, trim=True),
+    Part("upper arm", 2, "prism", (0.085,), (0.0, 0.0, 0.2325), outline=_tapered(-0.4318, 0.125, 0.0, 0.075)),
+    Part("shoulder cover", 2, "cylinder", (0.08, 0.02), (-0.4318, 0.0, 0.285), color=DARK),
+    Part("elbow cover", 2, "cylinder", (0.05, 0.02), (0.0, 0.0, 0.285), color=DARK),
+    Part("name plate", 2, "box", (0.16, 0.022, 0.004), (-0.2, 0.0, 0.275), color=BLUE, trim=True),
+    Part("elbow ring", 2, "cylinder", (0.06, 0.008), (0.0, 0.0, 0.1885), color=DARK, trim=True),
+    # The prism's x runs along z of frame 3 (the forearm), its z along -y, its y along -x.
+    Part("forearm", 3, "prism", (0.07,), (0.0, 0.0, 0.0), (0.5, 0.5, -0.5, 0.5),
+         outline=_tapered(-0.02, 0.08, 0.31, 0.05)),
+    Part("wrist roll", 4, "cylinder", (0.038, 0.075), (0.0, -0.075, 0.0), Z_ALONG_Y, DARK),
+    Part("wrist yoke", 4, "cylinder", (0.034, 0.09), (0.0, 0.0, 0.0)),
+    Part("wrist", 5, "sphere", (0.037,), (0.0, 0.0, 0.0), color=DARK),
+    Part("flange", 6, "cylinder", (0.028, 0.025), (0.0, 0.0, -0.0125), color=STEEL),
+    Part("palm", 6, "box", (0.044, 0.11, 0.035), (0.0, 0.0, 0.0175), color=DARK),
+    Part("left finger", 6, "box", (0.022, 0.012, 0.1), (0.0, 0.026, 0.085), color=STEEL,
+         opens=(0.0, FINGER_TRAVEL, 0.0)),
+    Part("right finger", 6, "box", (0.022, 0.012, 0.1), (0.0, -0.026, 0.085), color=STEEL,
+         opens=(0.0, -FINGER_TRAVEL, 0.0)),
+)  # fmt: skip

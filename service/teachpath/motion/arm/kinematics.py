@@ -1,0 +1,231 @@
+"""Where the arm's links are, how the tool moves, and which configurations bring it to a pose."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import atan2, cos, hypot, sin
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from teachpath.motion.arm.puma560 import TOOL_LENGTH, Variant
+from teachpath.motion.arm.variants import arm
+
+Array = NDArray[np.float64]
+
+# Below this sine of joint 5 the axes of joints 4 and 6 coincide and only the sum of their angles is determined.
+WRIST_SINGULAR: Final = 1e-9
+
+BRANCHES: Final = tuple(
+    f"{shoulder} {elbow} {wrist}"
+    for shoulder in ("righty", "lefty")
+    for elbow in ("up", "down")
+    for wrist in ("noflip", "flip")
+)
+
+
+@dataclass(frozen=True)
+class Lengths:
+    """What the inverse kinematics uses of an arm [m]; `bend` is the angle between forearm and link 3 [rad]."""
+
+    shoulder: float  # of joint 2 above the floor
+    upper_arm: float
+    offset: float  # of the arm beside the axis of joint 1
+    forearm: float  # from elbow to wrist
+    bend: float
+    hand: float  # from wrist to grasp point
+
+    @classmethod
+    def of(cls, variant: Variant) -> Lengths:
+        """Return the lengths of a variant."""
+        rows = variant.links
+        forearm, bend = hypot(rows[2].a, rows[3].d), atan2(rows[3].d, rows[2].a)
+        return cls(rows[0].d, rows[1].a, rows[2].d, forearm, bend, rows[5].d + TOOL_LENGTH)
+
+
+def link_frames(q: Array, variant: Variant | None = None) -> Array:
+    """Compute the frames of all links (standard Denavit-Hartenberg; Paul, Robot Manipulators, MIT Press 1981, ch. 2).
+
+    Args:
+        q: (..., 6) configurations [rad].
+        variant: of the arm; that of this process when it is left out, as in all that follows.
+
+    Returns:
+        (..., 7, 4, 4) poses to world from link 0 (the world itself) to link 6 (the flange).
+    """
+    q = np.asarray(q, dtype=np.float64)
+    frames = np.zeros((*q.shape[:-1], 7, 4, 4))
+    frames[..., 0, :, :] = np.eye(4)
+    for i, link in enumerate((variant or arm()).links):
+        frames[..., i + 1, :, :] = frames[..., i, :, :] @ _link_matrix(q[..., i], link.d, link.a, link.alpha)
+    return frames
+
+
+def tool_pose(q: Array, variant: Variant | None = None) -> Array:
+    """Compute the pose (..., 4, 4) to world from the tool (origin: grasp point, z: out of the gripper)."""
+    pose = link_frames(q, variant)[..., 6, :, :].copy()
+    pose[..., :3, 3] += TOOL_LENGTH * pose[..., :3, 2]
+    return pose
+
+
+def jacobian(q: Array, variant: Variant | None = None) -> Array:
+    """Compute the geometric Jacobian of the grasp point in world axes.
+
+    Args:
+        q: (..., 6) configurations [rad].
+
+    Returns:
+        (..., 6, 6): rows velocity x y z [m/rad], then angular velocity x y z [1].
+    """
+    frames = link_frames(q, variant)
+    tool = frames[..., 6, :3, 3] + TOOL_LENGTH * frames[..., 6, :3, 2]
+    axes = frames[..., :6, :3, 2]  # (..., 6 joints, 3)
+    arms = tool[..., None, :] - frames[..., :6, :3, 3]
+    return np.concatenate([np.swapaxes(np.cross(axes, arms), -1, -2), np.swapaxes(axes, -1, -2)], axis=-2)
+
+
+def downward(positions: Array, roll: float) -> Array:
+    """Build tool poses that point straight down.
+
+    Args:
+        positions: (..., 3) grasp points [m], world.
+        roll: angle about the vertical [rad]; at 0 the fingers close along y of the world.
+
+    Returns:
+        (..., 4, 4) poses to world from the tool.
+    """
+    c, s = cos(roll), sin(roll)
+    poses = np.zeros((*np.shape(positions)[:-1], 4, 4))
+    poses[..., :3, :3] = np.array([[c, s, 0.0], [s, -c, 0.0], [0.0, 0.0, -1.0]])
+    poses[..., :3, 3] = positions
+    poses[..., 3, 3] = 1.0
+    return poses
+
+
+@dataclass(frozen=True, eq=False)
+class Solutions:
+    """All inverse kinematics of n poses.
+
+    Attributes:
+        joints: (n, 8, 6) [rad], each in (-pi, pi]; order of `BRANCHES`; where `excess` is positive the nearest
+            stretch of the arm, which misses the pose.
+        excess: (n, 8) how far the wrist centre lies outside the reach [m]; at most 0 when the pose is reachable.
+        beyond: (n,) True where the excess is beyond the outer reach, False where it is within the inner one.
+    """
+
+    joints: Array
+    excess: Array
+    beyond: NDArray[np.bool_]
+
+
+def inverse(poses: Array, *, q4_before: float = 0.0, variant: Variant | None = None) -> Solutions:
+    """Solve the inverse kinematics in closed form, all 8 branches (after Paul 1981, ch. 3, and Lee & Ziegler 1984).
+
+    At a singular wrist (joint 5 zero) joint 4 keeps the value of the pose before it.
+
+    Args:
+        poses: (n, 4, 4) to world from the tool.
+        q4_before: joint 4 before the first pose [rad], for a path that begins at a singular wrist.
+    """
+    of = variant or arm()
+    lengths = Lengths.of(of)
+    joints = np.zeros((len(poses), 8, 6))
+    reach = _Reach.of(poses, lengths)
+    for branch in range(8):
+        side = 1.0 if branch < 4 else -1.0
+        up = (branch // 2) % 2 == 0
+        joints[:, branch, :3] = reach.shoulder_and_elbow(side, (-1.0 if up else 1.0) * side)
+        joints[:, branch, 3:] = _wrist(joints[:, branch, :3], poses, of, flip=branch % 2 == 1, before=q4_before)
+    joints = np.pi - np.mod(np.pi - joints, 2 * np.pi)
+    return Solutions(joints, np.repeat(reach.excess[:, None], 8, axis=1), reach.beyond)
+
+
+def least_singular_value(q: Array) -> Array:
+    """Compute the least singular value (...,) of the Jacobian at configurations (..., 6)."""
+    return np.asarray(np.linalg.svd(jacobian(q), compute_uv=False)[..., -1], dtype=np.float64)
+
+
+def explain_reach(excess: float, beyond: bool, s: float) -> str:
+    """Say why a pose at arc length `s` [m] has no configuration."""
+    where = "outside the reach" if beyond else "too near to the arm's own axis"
+    return f"wrist centre {100 * excess:.1f} cm {where} at s = {s:.3f} m"
+
+
+def rotations(quaternions: Array) -> Array:
+    """Return the rotation matrices (m, 3, 3) of unit quaternions (m, 4), w first."""
+    w, x, y, z = quaternions.T
+    rows = [
+        [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+        [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+        [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
+    ]
+    return np.moveaxis(np.array(rows), 2, 0)
+
+
+@dataclass(frozen=True, eq=False)
+class _Reach:
+    """Where n wrist centres lie, seen from the shoulder [m]."""
+
+    lengths: Lengths
+    wrist: Array  # (n, 3)
+    along: Array  # (n,) level distance in the plane of the arm
+    height: Array
+    far: Array  # distance
+
+    @classmethod
+    def of(cls, poses: Array, lengths: Lengths) -> _Reach:
+        wrist = poses[:, :3, 3] - lengths.hand * poses[:, :3, 2]
+        along = np.sqrt(np.maximum(wrist[:, 0] ** 2 + wrist[:, 1] ** 2 - lengths.offset**2, 0.0))
+        height = wrist[:, 2] - lengths.shoulder
+        return cls(lengths, wrist, along, height, np.hypot(along, height))
+
+    @property
+    def beyond(self) -> NDArray[np.bool_]:
+        return np.asarray(self.far > self.lengths.upper_arm + self.lengths.forearm)
+
+    @property
+    def excess(self) -> Array:
+        """How far each lies outside the reach; at most 0 inside."""
+        long, short = self.lengths.upper_arm, self.lengths.forearm
+        inner = self.lengths.offset - np.hypot(self.wrist[:, 0], self.wrist[:, 1])
+        return np.maximum(np.maximum(inner, self.far - (long + short)), abs(long - short) - self.far)
+
+    def shoulder_and_elbow(self, side: float, knee: float) -> Array:
+        """Return joints 1 to 3 (n, 3) with the arm on one side (1: righty, -1: lefty) and the knee bent one way."""
+        of = self.lengths
+        bend = np.clip((self.far**2 - of.upper_arm**2 - of.forearm**2) / (2 * of.upper_arm * of.forearm), -1.0, 1.0)
+        # Seen along joint 2 the wrist lies ahead for righty, behind for lefty; z of frame 1 points to the arm's side.
+        q1 = np.arctan2(self.wrist[:, 1], self.wrist[:, 0]) + np.arctan2(of.offset, side * self.along)
+        inside = knee * np.arccos(bend)
+        across, onward = of.forearm * np.sin(inside), of.upper_arm + of.forearm * np.cos(inside)
+        q2 = np.arctan2(self.height, side * self.along) - np.arctan2(across, onward)
+        return np.column_stack([q1, q2, inside - of.bend])
+
+
+def _wrist(arm_joints: Array, poses: Array, variant: Variant, *, flip: bool, before: float) -> Array:
+    frame = np.broadcast_to(np.eye(4), (len(arm_joints), 4, 4))
+    for i, link in enumerate(variant.links[:3]):
+        frame = frame @ _link_matrix(arm_joints[:, i], link.d, link.a, link.alpha)
+    turn = np.swapaxes(frame[:, :3, :3], 1, 2) @ poses[:, :3, :3]  # R of joints 4, 5, 6: Rz(q4) Ry(-q5) Rz(q6)
+    sign = -1.0 if flip else 1.0
+    sine = np.hypot(turn[:, 0, 2], turn[:, 1, 2])
+    q5 = np.arctan2(sign * sine, turn[:, 2, 2])
+    q4 = np.arctan2(-sign * turn[:, 1, 2], -sign * turn[:, 0, 2])
+    for k in np.flatnonzero(sine < WRIST_SINGULAR):
+        q4[k] = q4[k - 1] if k else before
+        q5[k] = 0.0 if turn[k, 2, 2] > 0 else np.pi
+    # With joint 4 known, the rest of the turn is Ry(-q5) Rz(q6), whose middle row is that of Rz(q6).
+    c4, s4 = np.cos(q4), np.sin(q4)
+    row = -s4[:, None] * turn[:, 0, :] + c4[:, None] * turn[:, 1, :]
+    return np.column_stack([q4, q5, np.arctan2(row[:, 0], row[:, 1])])
+
+
+def _link_matrix(angle: Array, d: float, a: float, alpha: float) -> Array:
+    c, s, ca, sa = np.cos(angle), np.sin(angle), cos(alpha), sin(alpha)
+    matrix = np.zeros((*np.shape(angle), 4, 4))
+    matrix[..., 0, 0], matrix[..., 0, 1], matrix[..., 0, 2], matrix[..., 0, 3] = c, -s * ca, s * sa, a * c
+    matrix[..., 1, 0], matrix[..., 1, 1], matrix[..., 1, 2], matrix[..., 1, 3] = s, c * ca, -c * sa, a * s
+    matrix[..., 2, 1], matrix[..., 2, 2], matrix[..., 2, 3] = sa, ca, d
+    matrix[..., 3, 3] = 1.0
+    return matrix

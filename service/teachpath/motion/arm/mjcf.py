@@ -1,0 +1,183 @@
+"""The arm and its scene as a MuJoCo model (MJCF), written from the one table and the one list of solids."""
+
+from __future__ import annotations
+
+from typing import Final
+from xml.sax.saxutils import quoteattr
+
+import numpy as np
+
+from teachpath.errors import UnusableInput
+from teachpath.motion.arm.geometry import Part, solids
+from teachpath.motion.arm.kinematics import link_frames
+from teachpath.motion.arm.puma560 import GRIPPER_COM, GRIPPER_INERTIA, GRIPPER_MASS, TOOL_LENGTH, Array, Link, Variant
+from teachpath.motion.arm.variants import arm
+from teachpath.records import Scene, Shape
+
+CARRIED: Final = "carried"  # body and geom of the carried object
+GRASP: Final = "grasp"  # the weld that holds it: set its relative pose, then eq_active
+TOOL: Final = "tool"  # site at the grasp point
+OBJECT_DENSITY: Final = 300.0  # kg/m^3, of the carried object: a light wooden block
+
+# Contacts: the arm touches obstacles, not itself nor what it carries (the certificate keeps it clear of itself).
+_OBSTACLE: Final = 'contype="1" conaffinity="1"'
+_ARM: Final = 'contype="0" conaffinity="1"'
+_OBJECT: Final = 'contype="2" conaffinity="1"'
+
+
+def mjcf(scene: Scene, *, timestep: float = 0.001, variant: Variant | None = None) -> str:
+    """Write the MJCF of arm and scene.
+
+    Bodies `link1` to `link6` lie in the Denavit-Hartenberg frames, so that a body's pose is that of `link_frames`;
+    joints are `joint1` to `joint6`, torque motors `motor1` to `motor6` [N m]. A geom has the name of its part, an
+    obstacle's geom is `obstacle:<name>`, the carried object's body is `carried`.
+
+    Args:
+        scene: obstacles and carried object, in the world.
+        timestep: of the simulation [s].
+        variant: of the arm; that of this process when it is left out.
+
+    Raises:
+        UnusableInput: a shape of the scene is neither box, cylinder, sphere nor mesh.
+    """
+    of = variant or arm()
+    return "\n".join(
+        [
+            '<mujoco model="puma560">',
+            '<compiler angle="radian" autolimits="true"/>',
+            f'<option timestep="{timestep}" gravity="0 0 -9.81" integrator="implicitfast"/>',
+            "<asset>",
+            *[_mesh(part) for part in solids() if part.kind == "prism"],
+            *[_hull(shape, name) for name, shape in _bodies(scene) if shape.kind == "mesh"],
+            "</asset>",
+            "<worldbody>",
+            *_parts_of(0),
+            *[_obstacle(shape) for shape in scene.obstacles],
+            *_arm(of),
+            *([_carried(scene.carried)] if scene.carried else []),
+            "</worldbody>",
+            *([_grasp()] if scene.carried else []),
+            "<actuator>",
+            *[_motor(i + 1, link) for i, link in enumerate(of.links)],
+            "</actuator>",
+            "</mujoco>",
+        ]
+    )
+
+
+def physical_inertia(link: Link) -> Array:
+    """Return the moments of inertia (3,) that a rigid body can have, nearest to the published ones of `link`.
+
+    No body has a moment above the sum of the other two. Of link 1 only the middle one was published and of link 3 the
+    middle one is too large by its neighbours; the others keep their values.
+    """
+    moments = np.array(link.inertia)
+    if link.mass == 0.0:
+        return np.array([moments[1] / 2, moments[1], moments[1] / 2])
+    largest = int(np.argmax(moments))
+    moments[largest] = min(moments[largest], (1.0 - 1e-9) * (moments.sum() - moments[largest]))
+    return moments
+
+
+def _arm(variant: Variant) -> list[str]:
+    zero = link_frames(np.zeros(6), variant)
+    lines: list[str] = []
+    for i, link in enumerate(variant.links, start=1):
+        relative = np.linalg.inv(zero[i - 1]) @ zero[i]
+        anchor = -relative[:3, :3].T @ relative[:3, 3]  # origin and z of the frame before, seen from this one
+        lines += [
+            f'<body name="link{i}" pos="{_text(relative[:3, 3])}" xyaxes="{_text(relative[:3, :2].T.ravel())}">',
+            f'<joint name="joint{i}" pos="{_text(anchor)}" axis="{_text(relative[2, :3])}" '
+            f'range="{link.lower!r} {link.upper!r}" armature="{link.motor_inertia * link.gear**2!r}" '
+            f'damping="{link.viscous * link.gear**2!r}" '
+            f'frictionloss="{abs(link.gear) * sum(link.coulomb) / 2!r}"/>',
+            f'<inertial pos="{_text(link.com)}" mass="{max(link.mass, 1e-3)!r}" '
+            f'diaginertia="{_text(physical_inertia(link))}"/>',
+            *_parts_of(i),
+        ]
+    lines += [
+        f'<site name="{TOOL}" pos="0 0 {TOOL_LENGTH}" size="0.004"/>',
+        '<body name="gripper">',
+        f'<inertial pos="{_text(GRIPPER_COM)}" mass="{GRIPPER_MASS}" diaginertia="{_text(GRIPPER_INERTIA)}"/>',
+        "</body>",
+    ]
+    return lines + ["</body>"] * len(variant.links)
+
+
+def _parts_of(link: int) -> list[str]:
+    return [_part(part) for part in solids() if part.link == link]
+
+
+def _part(part: Part) -> str:
+    sizes = {
+        "box": f'type="box" size="{_text(np.array(part.size) / 2)}"',
+        "sphere": f'type="sphere" size="{_text(part.size)}"',
+        "prism": f'type="mesh" mesh={quoteattr(part.name)}',
+    }
+    size = sizes.get(part.kind) or f'type="cylinder" size="{part.size[0]!r} {part.size[1] / 2!r}"'
+    return (
+        f'<geom name={quoteattr(part.name)} {size} pos="{_text(part.position)}" quat="{_text(part.orientation)}" '
+        f'rgba="{_color(part.color)}" mass="0" {_ARM}/>'
+    )
+
+
+def _mesh(part: Part) -> str:
+    half = part.size[0] / 2
+    corners = [[x, y, z] for x, y in part.outline for z in (-half, half)]
+    return f'<mesh name={quoteattr(part.name)} vertex="{_text(np.ravel(corners))}"/>'
+
+
+def _bodies(scene: Scene) -> list[tuple[str, Shape]]:
+    carried = [(CARRIED, scene.carried)] if scene.carried else []
+    return [(f"obstacle:{shape.name}", shape) for shape in scene.obstacles] + carried
+
+
+def _hull(shape: Shape, name: str) -> str:
+    return f'<mesh name={quoteattr(name)} vertex="{_text(shape.size[0] * np.ravel(shape.vertices))}"/>'
+
+
+def _obstacle(shape: Shape) -> str:
+    name = f"obstacle:{shape.name}"
+    return (
+        f'<geom name={quoteattr(name)} {_solid(shape, name)} pos="{_text(shape.position)}" '
+        f'quat="{_text(shape.orientation)}" rgba="{_color(shape.color)}" {_OBSTACLE}/>'
+    )
+
+
+def _carried(shape: Shape) -> str:
+    return (
+        f'<body name="{CARRIED}" pos="{_text(shape.position)}" quat="{_text(shape.orientation)}">'
+        f'<freejoint name="{CARRIED}"/><geom name="{CARRIED}" {_solid(shape, CARRIED)} density="{OBJECT_DENSITY}" '
+        f'rgba="{_color(shape.color)}" {_OBJECT}/></body>'
+    )
+
+
+def _grasp() -> str:
+    return f'<equality><weld name="{GRASP}" body1="link6" body2="{CARRIED}" active="false"/></equality>'
+
+
+def _motor(number: int, link: Link) -> str:
+    return f'<motor name="motor{number}" joint="joint{number}" ctrlrange="{-link.torque} {link.torque}"/>'
+
+
+def _solid(shape: Shape, name: str) -> str:
+    if shape.kind == "box" and len(shape.size) == 3:
+        return f'type="box" size="{_text(np.array(shape.size) / 2)}"'
+    if shape.kind == "cylinder" and len(shape.size) == 2:
+        return f'type="cylinder" size="{shape.size[0]!r} {shape.size[1] / 2!r}"'
+    if shape.kind == "sphere" and len(shape.size) == 1:
+        return f'type="sphere" size="{shape.size[0]!r}"'
+    if shape.kind == "mesh" and len(shape.size) == 1 and len(shape.vertices) > 3:
+        return f'type="mesh" mesh={quoteattr(name)}'
+    raise UnusableInput(
+        f"{shape.name!r} is a {shape.kind} of {len(shape.size)} sizes and {len(shape.vertices)} vertices; a scene has "
+        "boxes of 3, cylinders of 2, spheres of 1 and meshes of 1 and 4 vertices at least"
+    )
+
+
+def _color(color: int) -> str:
+    return f"{(color >> 16 & 255) / 255:.4f} {(color >> 8 & 255) / 255:.4f} {(color & 255) / 255:.4f} 1"
+
+
+def _text(values: object) -> str:
+    return " ".join(repr(float(v)) for v in np.ravel(np.asarray(values, dtype=np.float64)))

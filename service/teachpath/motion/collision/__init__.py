@@ -1,0 +1,1 @@
+"""Collision: the distance between arm, load and scene, at samples and between them."""

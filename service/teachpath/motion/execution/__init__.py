@@ -1,0 +1,1 @@
+"""Execution: what a plan or a live hand asks of the arm, cycle by cycle."""

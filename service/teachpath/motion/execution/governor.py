@@ -1,0 +1,212 @@
+"""Runs plan time, live: any override, hold, resume and reverse, within all limits and never off the path.
+
+The state is always on a *ramp* of the rate that was judged setpoint by setpoint, together with the setpoints already
+sent, and that ends at a constant rate of at most 1, at which the plan itself keeps every limit. Another ramp takes its
+place only after it was judged as well. So nothing else is needed for safety, and nothing can fail in mid-motion.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from ruckig import ControlInterface, InputParameter, Result, Ruckig, RuckigError, Trajectory
+
+from teachpath.motion.arm.joint_path import ARM
+from teachpath.motion.arm.puma560 import Array
+from teachpath.motion.timing import kernels
+from teachpath.motion.timing.joint_moves import straight
+from teachpath.motion.timing.timed_trajectory import Track
+
+SLOWEST: Final = 0.01  # an override below this holds
+TRIES: Final = 20  # ramps judged in one period at most
+ROOM: Final = 1 + 1e-12
+AGREE: Final = 1e-6  # s, between the closed form of a ramp and Ruckig's
+BACKWARD: Final = 0.96  # rate of the way back at most: a plan has its reserve on the other side (see `shares`)
+
+
+@dataclass(frozen=True, slots=True)
+class Progress:
+    """Where the arm is: `s` [m], `rate` of plan time; `standing` at rest, `finished` at rest at the end."""
+
+    s: float
+    rate: float
+    standing: bool
+    finished: bool
+
+
+class Governor:
+    """Drives one track.
+
+    Args:
+        track: what to run through, from its beginning, at rest.
+        dt: control period [s].
+        override: share of the full speed, 0 to 1.
+    """
+
+    def __init__(self, track: Track, dt: float, *, override: float = 1.0) -> None:
+        self._table, self._step, self._end, self._dt = track.table, track.step, track.duration, dt
+        limits = track.limits
+        self._limits = np.stack([limits.speed * dt, limits.acceleration * dt**2, limits.jerk * dt**3])
+        self._override, self._held, self._back, self._waits = _share(override), False, False, False
+        self._state = np.zeros(3)  # tau, its rate, the rate's derivative
+        self._ramp = np.zeros(8)
+        self._trial = np.zeros(8)
+        self._elapsed = 0.0
+        self._motion = np.zeros((3, 7))
+        kernels.motion(self._table, self._step, self._state, self._motion)
+        self._sent = np.repeat(self._motion[:1, :6], 3, axis=0)  # newest last
+        self._ruckig, self._inputs, self._answer = Ruckig(1), _inputs(), Trajectory(1)
+
+    @property
+    def override(self) -> float:
+        """The share of the full speed now asked for, 0 to 1."""
+        return self._override
+
+    @property
+    def held(self) -> bool:
+        """Whether rest was asked for, by `hold` or an override of zero."""
+        return self._held or self._override < SLOWEST
+
+    @property
+    def backward(self) -> bool:
+        """Whether the way back was asked for."""
+        return self._back
+
+    @property
+    def motion(self) -> Array:
+        """The nominal motion now (3, 7): joints and length, their velocity and acceleration."""
+        return self._motion
+
+    @property
+    def progress(self) -> Progress:
+        """The present state."""
+        tau, rate, slope = self._state
+        standing = bool(rate == 0.0 and slope == 0.0)
+        return Progress(float(self._motion[0, 6]), float(rate), standing, standing and bool(tau >= self._end))
+
+    def set_override(self, share: float) -> None:
+        """Go at `share` of the full speed from now on, clipped to 0 to 1; zero holds."""
+        self._override = _share(share)
+
+    def hold(self) -> None:
+        """Come to rest as soon as the limits allow."""
+        self._held = True
+
+    def wait(self, waits: bool) -> None:
+        """Come to rest as for `hold`, or go on as is asked for; `held` does not tell of it."""
+        self._waits = waits
+
+    def resume(self) -> None:
+        """Go on to the end."""
+        self._held = self._back = False
+
+    def reverse(self) -> None:
+        """Go back along the path to its beginning, at 96 % of the full speed at most."""
+        self._held, self._back = False, True
+
+    def place(self, tau: float) -> None:
+        """Stand at plan time `tau` [s], held; only for an arm that rests there already."""
+        self._rest(min(max(tau, 0.0), self._end))
+        kernels.motion(self._table, self._step, self._state, self._motion)
+        self._sent[:] = self._motion[0, :6]
+        self._held, self._back = True, False
+
+    @property
+    def tau(self) -> float:
+        """The present plan time [s]."""
+        return float(self._state[0])
+
+    @property
+    def state(self) -> Array:
+        """The present plan time [s], its rate and the rate's derivative [1/s] (3,)."""
+        return self._state.copy()
+
+    @property
+    def wish(self) -> float:
+        """The rate now asked for, negative on the way back."""
+        return 0.0 if self.held or self._waits else (-min(self._override, BACKWARD) if self._back else self._override)
+
+    @property
+    def bound_for(self) -> float:
+        """The rate in which the ramp now followed ends; it is `wish` as soon as that could be answered."""
+        return float(self._ramp[7])
+
+    def step(self) -> Progress:
+        """Advance by one control period; never raises."""
+        wish = self.wish
+        left = self._ramp[3] + self._ramp[4] + self._ramp[5] - self._elapsed
+        if self._ramp[7] != wish or left > 0.0:
+            self._turn_to(wish, left if self._ramp[7] == wish else np.inf)
+        self._elapsed += self._dt
+        state = self._state
+        state[:] = kernels.along(self._ramp, self._elapsed)
+        if (state[0] >= self._end and state[1] >= 0.0) or (state[0] <= 0.0 and state[1] <= 0.0):
+            # The track begins and ends at rest, whatever the rate.
+            self._rest(0.0 if state[0] <= 0.0 else self._end)
+        kernels.motion(self._table, self._step, state, self._motion)
+        self._sent[:2] = self._sent[1:]
+        self._sent[2] = self._motion[0, :6]
+        return self.progress
+
+    def _turn_to(self, wish: float, within: float) -> None:
+        trial, state = self._trial, self._state
+        if (state[0] <= 0.0 and wish >= 0.0) or (state[0] >= self._end and wish <= 0.0):
+            trial[:] = (state[0], wish, 0.0, 0.0, 0.0, 0.0, 0.0, wish)
+            kept = kernels.judge(self._table, self._step, trial, self._sent, self._limits, self._dt)
+            if kept[0] == kernels.KEPT:
+                self._follow()
+            return
+        peak = kernels.seek(
+            self._table, self._step, state, wish, self._sent, self._limits, self._dt, within, TRIES, trial
+        )
+        if peak >= 0.0 and self._confirmed(peak):
+            self._follow()
+
+    def _follow(self) -> None:
+        self._ramp[:] = self._trial
+        self._elapsed = 0.0
+
+    def _rest(self, tau: float) -> None:
+        self._state[:] = (tau, 0.0, 0.0)
+        self._ramp[:] = 0.0
+        self._ramp[0] = tau
+        self._elapsed = 0.0
+
+    def _confirmed(self, peak: float) -> bool:
+        """Tell whether Ruckig finds the same ramp."""
+        trial, inputs = self._trial, self._inputs
+        inputs.current_position, inputs.current_velocity = [float(trial[0])], [float(trial[1])]
+        inputs.current_acceleration, inputs.target_velocity = [float(trial[2])], [float(trial[7])]
+        # Room for the present acceleration, on its side alone: without it Ruckig would brake first, and with as much
+        # on the other side it would go beyond the peak.
+        along, against = peak * ROOM, max(peak, abs(float(trial[2]))) * ROOM
+        upward, downward = (along, against) if trial[6] > 0.0 else (against, along)
+        inputs.max_acceleration, inputs.min_acceleration = [upward], [-downward]
+        inputs.max_jerk = [abs(float(trial[6]))]
+        try:
+            result = self._ruckig.calculate(inputs, self._answer)
+        except RuckigError:
+            return False
+        closed_form = float(trial[3] + trial[4] + trial[5])
+        return bool(result == Result.Working and abs(self._answer.duration - closed_form) <= AGREE)
+
+
+def warm_up(dt: float) -> None:
+    """Compile the kernels, or load them from disk, so that the first motion does not wait for them."""
+    turn = np.array([0.01, 0.0, 0.0, 0.0, 0.0, 0.0])
+    governor = Governor(straight(np.zeros(6), turn, ARM, reserve=(0.5, 0.5, 0.5)), dt)
+    for act in (governor.step, governor.hold, governor.step, governor.reverse, governor.step):
+        act()
+
+
+def _inputs() -> InputParameter:
+    inputs = InputParameter(1)
+    inputs.control_interface = ControlInterface.Velocity
+    inputs.target_acceleration = [0.0]
+    return inputs
+
+
+def _share(value: float) -> float:
+    return min(max(value, 0.0), 1.0) if value == value else 0.0

@@ -1,0 +1,118 @@
+"""A plan's whole motion against time, to be looked at before anything moves."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
+
+from teachpath.motion.arm.kinematics import tool_pose
+from teachpath.motion.arm.puma560 import Array
+from teachpath.motion.execution.segments import Stretch, stretches
+from teachpath.motion.planning.certificate import verify
+from teachpath.motion.settings import MotionSettings
+from teachpath.records import Plan
+
+MOST: Final = 6000  # instants; a plan that takes longer has them farther apart
+
+
+@dataclass(frozen=True, slots=True)
+class Scope:
+    """When a stretch of the motion lasts, in words and seconds."""
+
+    name: str
+    begin: float
+    end: float
+
+
+@dataclass(frozen=True, eq=False)
+class Rehearsal:
+    """The motion at full speed from the arm's home, at even instants.
+
+    Attributes:
+        times: (n,) [s], from 0.
+        joints: (n, 6) configurations [rad].
+        progress: (n,) share of the learned path's length that is done.
+        gripper_closed: (n,)
+        object_position: (n, 3) centre of the carried object [m, world]; (0, 3) when the scene has none.
+        object_orientation: (n, 4) w, x, y, z; (0, 4) when the scene has none.
+        stretches: what the arm does when.
+    """
+
+    plan: str
+    times: Array
+    joints: Array
+    progress: Array
+    gripper_closed: tuple[bool, ...]
+    object_position: Array
+    object_orientation: Array
+    stretches: tuple[Scope, ...]
+
+
+def rehearse(plan: Plan, settings: MotionSettings, *, dwell: float, rate: float = 50.0) -> Rehearsal:
+    """Return the motion that an execution of `plan` makes at full speed; nothing is sent.
+
+    Args:
+        plan: certified; checked again here.
+        settings: as for planning.
+        dwell: how long the gripper takes to close or open [s].
+        rate: instants a second [Hz].
+
+    Raises:
+        PathRefused: the plan has changed since it was certified, or the way from home to its start is not free.
+    """
+    verify(plan)
+    parts = stretches(plan, np.array(settings.home), settings, dwell)
+    begins = np.concatenate([[0.0], np.cumsum([_lasting(part) for part in parts])])
+    times = np.linspace(0.0, begins[-1], min(int(np.ceil(begins[-1] * rate)) + 1, MOST))
+    which = np.clip(np.searchsorted(begins, times, side="right") - 1, 0, len(parts) - 1)
+    rows = _rows(parts, begins, times, which, np.array(settings.home))
+    taught = next(index for index, part in enumerate(parts) if part.taught)
+    share = rows[:, 6] / plan.lengths[-1]
+    positions, orientations = _object(plan, rows[:, :6], which - taught)
+    return Rehearsal(
+        plan=plan.id,
+        times=times,
+        joints=rows[:, :6],
+        progress=np.where(which == taught, share, np.where(which < taught, 0.0, 1.0)),
+        gripper_closed=tuple(parts[index].gripper_closed for index in which),
+        object_position=positions,
+        object_orientation=orientations,
+        stretches=tuple(
+            Scope(part.name, float(a), float(b)) for part, a, b in zip(parts, begins[:-1], begins[1:], strict=True)
+        ),
+    )
+
+
+def _rows(parts: Sequence[Stretch], begins: Array, times: Array, which: NDArray[np.intp], home: Array) -> Array:
+    """Return joints and length (n, 7) at times, each in the stretch `which` says (n,)."""
+    rows = np.zeros((len(times), 7))
+    here = np.append(home, 0.0)
+    for index, (part, begin) in enumerate(zip(parts, begins[:-1], strict=True)):
+        mine = which == index
+        if part.track is None:
+            rows[mine] = here
+        else:
+            rows[mine] = part.track(times[mine] - begin)
+            here = part.track(np.array([part.track.duration]))[0]
+    return rows
+
+
+def _lasting(part: Stretch) -> float:
+    return part.track.duration if part.track is not None else part.rest
+
+
+def _object(plan: Plan, joints: Array, since: NDArray[np.intp]) -> tuple[Array, Array]:
+    """Find where the carried object is: `since` is under 0 before the path, 0 on it, over 0 behind it."""
+    if plan.scene.carried is None:
+        return np.zeros((0, 3)), np.zeros((0, 4))
+    away = since[:, None]
+    carrying = np.where(away < 0, plan.joints[0], np.where(away > 0, plan.joints[-1], joints))
+    at_start = np.eye(4)
+    at_start[:3, 3] = plan.scene.carried.position
+    poses = tool_pose(carrying) @ np.linalg.inv(tool_pose(plan.joints[0])) @ at_start
+    return poses[:, :3, 3], Rotation.from_matrix(poses[:, :3, :3]).as_quat(scalar_first=True)

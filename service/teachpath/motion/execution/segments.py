@@ -1,0 +1,120 @@
+"""What an execution does from where the arm is to its end: moves and rests, each checked against the scene."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Final
+
+import numpy as np
+
+from teachpath.motion.arm.joint_path import ARM
+from teachpath.motion.arm.puma560 import Array
+from teachpath.motion.collision.collision_model import CollisionModel, Load, grasp_of
+from teachpath.motion.planning.certificate import track
+from teachpath.motion.settings import MotionSettings
+from teachpath.motion.timing.joint_moves import approach, left_behind, retreat, straight
+from teachpath.motion.timing.limit_margins import RESERVE
+from teachpath.motion.timing.timed_trajectory import Track
+from teachpath.records import Plan
+
+NOWHERE: Final = 1e-9  # rad, a move shorter than this is none
+
+
+@dataclass(frozen=True, eq=False)
+class Moment:
+    """The arm's nominal motion at one instant: (6,) in rad, rad/s, rad/s^2."""
+
+    position: Array
+    velocity: Array
+    acceleration: Array
+    gripper_closed: bool
+    on_path: bool = False
+
+
+@dataclass(frozen=True, eq=False)
+class Aside:
+    """Motion that is not the next stretch: a step on the path, or the way back to it.
+
+    Attributes:
+        name: in words, for the operator; empty on the path.
+        tracks: one behind the other.
+        landing: plan time [s] at which a step ends; None for a way back, behind which the program goes on.
+    """
+
+    name: str
+    tracks: tuple[Track, ...]
+    landing: float | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Stretch:
+    """A piece of an execution: motion along a track, or a rest when `track` is None.
+
+    Attributes:
+        name: in words, for the operator.
+        before: whether it comes before the path is followed.
+        taught: whether this is the learned path itself.
+        gripper_closed: while it lasts.
+        rest: how long a rest lasts [s].
+    """
+
+    name: str
+    before: bool
+    gripper_closed: bool
+    track: Track | None = None
+    rest: float = 0.0
+    taught: bool = False
+
+
+def stretches(plan: Plan, here: Array, settings: MotionSettings, dwell: float) -> list[Stretch]:
+    """Return what an execution does from `here` (6,) to its end.
+
+    Raises:
+        PathRefused: the way from here to the start of the path, or home from its goal, is not free.
+    """
+    carries = plan.scene.carried is not None
+    load = Load(placed=plan.scene.carried.position) if plan.scene.carried else None
+    model = CollisionModel(plan.scene)
+    stops = approach(model, here, plan.above_start, settings, load=load, gripper_open=carries)
+    start, goal = plan.joints[0], plan.joints[-1]
+    leave = retreat(model, start, goal, plan.above_goal, settings)
+    closed = not carries
+    return [
+        *[piece for a, b in pairwise(stops) for piece in _move("on the approach", a, b, True, closed, settings)],
+        *_move("on the way down", plan.above_start, start, True, closed, settings),
+        Stretch("closing the gripper", True, True, rest=dwell if carries else 0.0),
+        Stretch("on the path", False, True, track(plan), taught=True),
+        Stretch("opening the gripper", False, closed, rest=dwell if carries else 0.0),
+        *_move("on the way up", goal, plan.above_goal, False, closed, settings),
+        *_move("on the way home", *leave, False, closed, settings),
+    ]
+
+
+def way_back(plan: Plan, stretch: Stretch, here: Array, there: Array, settings: MotionSettings) -> list[Track]:
+    """Lead the arm from `here` (6,) back to the point `there` of a stretch at which it was held, slowly.
+
+    Raises:
+        PathRefused: the way is not free.
+    """
+    carried = plan.scene.carried
+    load = None
+    if carried is not None and stretch.gripper_closed:
+        load = grasp_of(plan.scene, plan.joints[0])
+    elif carried is not None and stretch.before:
+        load = Load(placed=carried.position)
+    elif carried is not None:
+        load = left_behind(plan.scene, plan.joints[0], plan.joints[-1])
+    opened = carried is not None and not stretch.gripper_closed
+    what = "on the way back to the path"
+    stops = approach(CollisionModel(plan.scene), here, there, settings, load=load, gripper_open=opened, what=what)
+    limits = ARM.scaled(*[settings.move_share] * 3)
+    legs = [(a, b) for a, b in pairwise(stops) if np.abs(b - a).max() >= NOWHERE]
+    return [straight(a, b, limits, reserve=RESERVE) for a, b in legs]
+
+
+def _move(name: str, start: Array, goal: Array, before: bool, closed: bool, settings: MotionSettings) -> list[Stretch]:
+    if np.abs(goal - start).max() < NOWHERE:
+        return []
+    limits = ARM.scaled(*[settings.move_share] * 3)
+    return [Stretch(name, before, closed, straight(start, goal, limits, reserve=RESERVE))]

@@ -1,0 +1,1 @@
+"""Paths: the tool's poses along a curve, and the arm's configurations for them."""

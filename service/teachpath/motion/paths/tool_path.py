@@ -1,0 +1,153 @@
+"""The curve as the arm must follow it: even arc lengths along it, and the tool's pose at each of them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Final
+
+import numpy as np
+from numpy.polynomial.legendre import leggauss
+from scipy.interpolate import CubicHermiteSpline, make_interp_spline
+
+from teachpath.errors import PathRefused
+from teachpath.motion.arm.kinematics import downward, rotations
+from teachpath.motion.arm.puma560 import Array
+from teachpath.motion.settings import MotionSettings
+from teachpath.nurbs import Curve, unit
+
+SHORTEST: Final = 0.01  # m, of a path that is worth following
+FEWEST_NODES: Final = 60
+FINEST: Final = 3  # times that the nodes are doubled where the curve bends sharply
+STANDSTILL: Final = 1e-4  # share of the mean speed |dc/du| below which a curve has a cusp
+
+
+class ArcLength:
+    """The arc length of a curve, and its inverse, both smooth."""
+
+    def __init__(self, curve: Curve) -> None:
+        grid = np.unique(np.concatenate([np.linspace(a, b, 120) for a, b in pairwise(np.unique(curve.knots))]))
+        nodes, weights = leggauss(6)
+        half = np.diff(grid) / 2
+        inner = (grid[:-1] + half)[:, None] + half[:, None] * nodes
+        pieces = half * (np.linalg.norm(curve(inner.ravel(), 1), axis=1).reshape(inner.shape) @ weights)
+        self._grid = grid
+        self._lengths = np.concatenate([[0.0], np.cumsum(pieces)])
+        self._speeds = np.linalg.norm(curve(grid, 1), axis=1)
+        self._arc = CubicHermiteSpline(grid, self._lengths, self._speeds)
+        self.total = float(self._lengths[-1])
+
+    def standstill(self) -> float | None:
+        """Return the arc length [m] where the curve has a cusp, or None."""
+        still = int(np.argmin(self._speeds))
+        return float(self._lengths[still]) if self._speeds[still] < STANDSTILL * self.total else None
+
+    def lengths(self, u: Array) -> Array:
+        """Return the arc lengths (m,) [m] at the curve's parameters (m,)."""
+        return np.asarray(self._arc(u), dtype=np.float64)
+
+    def parameters(self, lengths: Array) -> Array:
+        """Return the curve's parameters (m,) at arc lengths (m,) [m]."""
+        # Inverting by linear interpolation alone would put its kinks into the third derivative of q(s).
+        slope = self._arc.derivative()
+        u = np.interp(lengths, self._lengths, self._grid)
+        for _ in range(3):
+            u = np.clip(u - (self._arc(u) - lengths) / slope(u), 0.0, 1.0)
+        return np.asarray(u, dtype=np.float64)
+
+
+@dataclass(frozen=True, eq=False)
+class Route:
+    """A curve sampled at even arc lengths.
+
+    Attributes:
+        curve: what was sampled.
+        turn: quaternions of what is carried, at the same parameter; None when the tool points down all the way.
+        arc: the curve's arc length.
+        lengths: (n,) arc length of the nodes [m].
+        parameters: (n,) of the curve at the nodes.
+        positions: (n, 3) [m], world.
+    """
+
+    curve: Curve
+    turn: Curve | None
+    arc: ArcLength
+    lengths: Array
+    parameters: Array
+    positions: Array
+
+    @staticmethod
+    def sampled(curve: Curve, turn: Curve | None, arc: ArcLength, count: int) -> Route:
+        """Sample a curve at `count` + 1 nodes."""
+        lengths = np.linspace(0.0, arc.total, count + 1)
+        parameters = arc.parameters(lengths)
+        return Route(curve, turn, arc, lengths, parameters, curve(parameters))
+
+    def poses(self, u: Array) -> Array:
+        """Return the tool's poses (m, 4, 4) to world at parameters (m,), before any roll about its own axis.
+
+        The tool points down with its fingers closing along y, and from there turns as what is carried turns from its
+        own orientation at the start.
+        """
+        poses = downward(self.curve(u), 0.0)
+        if self.turn is not None:
+            turned = rotations(unit(self.turn, u))
+            start = rotations(unit(self.turn, np.zeros(1)))[0]
+            poses[:, :3, :3] = turned @ start.T @ poses[:, :3, :3]
+        return poses
+
+    def place(self, index: int) -> str:
+        """Name a node."""
+        x, y, z = self.positions[index]
+        return f"at s = {self.lengths[index]:.3f} m ({x:.3f}, {y:.3f}, {z:.3f})"
+
+
+def route(curve: Curve, settings: MotionSettings, *, turn: Curve | None = None) -> Route:
+    """Sample a curve at even arc lengths, as densely as its sharpest bend needs.
+
+    Args:
+        curve: positions [m].
+        settings: how dense.
+        turn: quaternions of what is carried, at the same parameter; None to keep the tool pointing down.
+
+    Raises:
+        PathRefused: it has no 3 dimensions, is too short or stands still on its way.
+    """
+    arc = measured(curve)
+    count = max(FEWEST_NODES, int(np.ceil(arc.total / settings.node_spacing)))
+    found = Route.sampled(curve, turn, arc, count)
+    for _ in range(FINEST):
+        if _spline_error(found) <= settings.path_tolerance / 10:
+            break
+        count *= 2
+        found = Route.sampled(curve, turn, arc, count)
+    return found
+
+
+def measured(curve: Curve) -> ArcLength:
+    """Return the arc length of a curve that an arm can follow.
+
+    Raises:
+        PathRefused: it has no 3 dimensions, is too short or stands still on its way.
+    """
+    if curve.control_points.shape[1] != 3:
+        raise PathRefused(f"a path in the world has 3 dimensions, this one has {curve.control_points.shape[1]}")
+    arc = ArcLength(curve)
+    if arc.total < SHORTEST:
+        raise PathRefused(
+            f"the path is {1000 * arc.total:.1f} mm long, the shortest followed is {1000 * SHORTEST:.0f} mm"
+        )
+    still = arc.standstill()
+    if still is not None:
+        raise PathRefused(
+            f"the curve stands still at s = {still:.3f} m: control points coincide there, move them apart"
+        )
+    return arc
+
+
+def _spline_error(found: Route) -> float:
+    """Return how far [m] the spline through the nodes leaves the curve half way between them."""
+    middle = (found.lengths[1:] + found.lengths[:-1]) / 2
+    spline = make_interp_spline(found.lengths, found.positions, k=5)
+    wanted = found.curve(found.arc.parameters(middle))
+    return float(np.linalg.norm(spline(middle) - wanted, axis=1).max())

@@ -1,0 +1,1 @@
+"""Planning: from a learned path to a plan with its certificate, or to the reason why not."""

@@ -1,0 +1,81 @@
+"""The proof behind a plan: its digest, and how much of each limit its setpoints use, measured on the setpoints."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from dataclasses import asdict
+
+import numpy as np
+
+from teachpath.errors import PathRefused
+from teachpath.motion.arm.joint_path import ARM, JointPath, Limits
+from teachpath.motion.arm.puma560 import ACCELERATION, JERK, LOWER, SPEED, TORQUE, UPPER, Array
+from teachpath.motion.arm.variants import arm
+from teachpath.motion.timing.limit_margins import uses
+from teachpath.motion.timing.timed_trajectory import Track, paced
+from teachpath.records import Extreme, Plan, Scene
+
+
+def digest(plan: Plan) -> str:
+    """Compute the SHA-256 (hex) over all that decides the motion: arm, path, scene, configurations, limits, timing."""
+    total = hashlib.sha256()
+    total.update(repr(arm().links).encode())
+    total.update(f"{plan.path}|{plan.path_version}|".encode())
+    total.update(_scene_text(plan.scene).encode())
+    numbers = (plan.lengths, plan.joints, plan.pace, plan.limits, plan.above_start, plan.above_goal, plan.duration)
+    for value in (*numbers, LOWER, UPPER, SPEED, ACCELERATION, JERK, TORQUE):
+        array = np.ascontiguousarray(value, dtype="<f8")
+        total.update(f"{array.shape}".encode())
+        total.update(array.tobytes())
+    return total.hexdigest()
+
+
+def verify(plan: Plan) -> None:
+    """Check that a plan is the one that was certified.
+
+    Raises:
+        PathRefused: the digest does not match: path, scene, limits or timing have changed since.
+    """
+    if digest(plan) != plan.certificate.digest:
+        raise PathRefused(
+            f"plan {plan.id} has changed since it was certified (or the arm has: motion.variant); plan the path again"
+        )
+
+
+def track(plan: Plan) -> Track:
+    """Make the motion of a plan against time, the same wherever it is made."""
+    path = JointPath(np.linspace(0.0, 1.0, len(plan.lengths)), plan.lengths, plan.joints)
+    return paced(path, plan.pace, Limits(*plan.limits))
+
+
+def limit_uses(setpoints: Array, rate: float) -> tuple[Extreme, Extreme, Extreme, Extreme]:
+    """Measure how much of the joints' position, speed, acceleration and jerk limits setpoints use.
+
+    Args:
+        setpoints: (n, 7) joints [rad] and where on the path each lies [m].
+        rate: setpoints a second [Hz].
+    """
+    middle, half = (LOWER + UPPER) / 2, (UPPER - LOWER) / 2
+    shares = [np.abs(setpoints[:, :6] - middle) / half, *uses(setpoints, ARM, rate)]
+    position, velocity, acceleration, jerk = (largest_use(share, setpoints[:, 6]) for share in shares)
+    return position, velocity, acceleration, jerk
+
+
+def largest_use(values: Array, lengths: Array, limits: Array | float = 1.0) -> Extreme:
+    """Find the largest share of the joints' limits (6,) in values (n, 6), and its joint and place [m]."""
+    share = values / limits
+    row, joint = np.unravel_index(int(np.argmax(share)), share.shape)
+    s = float(lengths[row])
+    return Extreme(float(share[row, joint]), f"joint {joint + 1} at s = {s:.3f} m", s)
+
+
+def _scene_text(scene: Scene) -> str:
+    def plain(value: object) -> object:
+        if isinstance(value, dict):
+            return {key: plain(inner) for key, inner in value.items()}
+        if isinstance(value, list | tuple):
+            return [plain(inner) for inner in value]
+        return float(value) if isinstance(value, int | float) else value
+
+    return json.dumps(plain(asdict(scene)), sort_keys=True)

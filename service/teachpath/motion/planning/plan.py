@@ -1,0 +1,169 @@
+"""From a learned path to a plan the arm can execute, with its certificate, or to the reason why not."""
+
+from __future__ import annotations
+
+import uuid
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from teachpath.errors import PathRefused, UnusableSettings
+from teachpath.motion.arm.dynamics import Dynamics
+from teachpath.motion.arm.joint_path import JointPath
+from teachpath.motion.arm.kinematics import tool_pose
+from teachpath.motion.arm.puma560 import LOWER, UPPER
+from teachpath.motion.collision.collision_model import CollisionModel
+from teachpath.motion.paths.ik_branches import Candidate, candidates, least_wrong
+from teachpath.motion.paths.tool_path import Route, route
+from teachpath.motion.planning.approach import entry, leaving
+from teachpath.motion.planning.candidates import clear, fitting
+from teachpath.motion.planning.certificate import digest, limit_uses
+from teachpath.motion.planning.clearance import path_clearance, too_near
+from teachpath.motion.planning.failure import in_words, kinematic_failure, start_failure
+from teachpath.motion.planning.suggestion import nearest_point
+from teachpath.motion.planning.torque_limited import within_torques
+from teachpath.motion.settings import MotionSettings
+from teachpath.motion.timing.timed_trajectory import Track, paced
+from teachpath.nurbs import Curve
+from teachpath.records import Certificate, Extreme, Failure, LearnedPath, Plan, Scene
+
+
+@dataclass(frozen=True, eq=False)
+class _Job:
+    """What stays the same while branches are tried."""
+
+    path: LearnedPath
+    scene: Scene
+    settings: MotionSettings
+    way: Route
+    model: CollisionModel
+
+
+def plan(path: LearnedPath, scene: Scene, settings: MotionSettings | None = None) -> Plan:
+    """Plan the pick and place along a path: the centre of the carried object follows it, the tool points down.
+
+    The arm goes from its home to above the start (or nearer, or beside it), down, closes the gripper, follows the path,
+    opens the gripper, goes up and home. Without a carried object it follows the path with the gripper closed.
+
+    Args:
+        path: what to follow.
+        scene: what stands around.
+        settings: what may be used of the arm; the defaults when None.
+
+    Returns:
+        A plan with its certificate.
+
+    Raises:
+        PathRefused: the arm cannot; the sentence says why, where, and which control point to move.
+        UnusableSettings: the arm's home is outside the joint limits.
+    """
+    settings = settings or MotionSettings()
+    _home_within_limits(settings)
+    way = route(path.curve, settings, turn=_turn(path, settings))
+    _refuse(start_failure(way, scene, settings))
+    every = candidates(way, settings)
+    fit = fitting(every, settings)
+    if not fit:
+        _refuse(kinematic_failure(way, least_wrong(every), settings))
+    job = _Job(path, scene, settings, way, CollisionModel(scene))
+    return _first_certified(job, fit)
+
+
+def _first_certified(job: _Job, fit: list[Candidate]) -> Plan:
+    """Certify the first of the candidates that keep clear with which everything else can be done too."""
+    free = clear(job.way, fit, job.model, job.settings)
+    if not free:
+        raise too_near(job.way, fit[0], job.model, job.settings)
+    refused: PathRefused | None = None
+    for candidate in free:
+        try:
+            return _certified(job, candidate)
+        except PathRefused as error:
+            refused = refused or error
+    assert refused is not None
+    raise refused
+
+
+def _home_within_limits(settings: MotionSettings) -> None:
+    for joint, angle in enumerate(settings.home):
+        if not LOWER[joint] <= angle <= UPPER[joint]:
+            limits = f"{LOWER[joint]:.3f} to {UPPER[joint]:.3f}"
+            raise UnusableSettings(f"motion.home puts joint {joint + 1} to {angle:.3f} rad, limits {limits}")
+
+
+def _certified(job: _Job, candidate: Candidate) -> Plan:
+    settings, way = job.settings, job.way
+    joints, pace, limits, torque = within_torques(way, candidate, Dynamics(job.scene.carried), settings)
+    _tool_on_path(way, joints, settings)
+    clearance = path_clearance(way, candidate, job.model, settings, joints)
+    start, goal = joints.joints[0], joints.joints[-1]
+    above_start = entry(job.model, start, settings)
+    above_goal = leaving(job.model, start, goal, settings)
+    track = paced(joints, pace, limits)
+    drawn = Plan(
+        id=f"plan-{uuid.uuid4().hex[:12]}",
+        path=job.path.id,
+        path_version=job.path.version,
+        scene=job.scene,
+        lengths=joints.lengths,
+        joints=joints.joints,
+        pace=pace,
+        limits=np.stack([limits.speed, limits.acceleration, limits.jerk]),
+        above_start=above_start,
+        above_goal=above_goal,
+        duration=track.duration,
+        certificate=_certificate(way, candidate, track, settings, torque, clearance),
+    )
+    return replace(drawn, certificate=replace(drawn.certificate, digest=digest(drawn)))
+
+
+def _certificate(
+    way: Route, candidate: Candidate, track: Track, settings: MotionSettings, torque: Extreme, clearance: Extreme
+) -> Certificate:
+    """Measure what the setpoints use of the limits; the digest is left out.
+
+    Raises:
+        PathRefused: it is more than what may be used.
+    """
+    position, velocity, acceleration, jerk = limit_uses(track.setpoints(settings.rate), settings.rate)
+    worst = max((velocity, acceleration, jerk), key=lambda extreme: extreme.value)
+    if worst.value > settings.path_share:
+        raise PathRefused(
+            f"a limit is used to {100 * worst.value:.1f} % by {worst.place}, at most "
+            f"{100 * settings.path_share:.1f} %; smooth the path there: move {nearest_point(way, worst.s)}"
+        )
+    singular_s = float(way.lengths[int(np.argmin(candidate.singular))])
+    return Certificate(
+        digest="",
+        branch=candidate.branch,
+        position_use=position,
+        velocity_use=velocity,
+        acceleration_use=acceleration,
+        jerk_use=jerk,
+        torque_use=torque,
+        least_singular=Extreme(candidate.conditioned, f"s = {singular_s:.3f} m", singular_s),
+        clearance=clearance,
+    )
+
+
+def _tool_on_path(way: Route, joints: JointPath, settings: MotionSettings) -> None:
+    samples = joints.dense()
+    reached = joints(samples)
+    wanted = way.curve(way.arc.parameters(reached[:, 6]))
+    off = np.linalg.norm(tool_pose(reached[:, :6])[:, :3, 3] - wanted, axis=1)
+    worst = int(np.argmax(off))
+    if off[worst] > settings.path_tolerance:
+        s = float(reached[worst, 6])
+        raise PathRefused(
+            f"the path bends too sharply to be followed within its tolerance "
+            f"{way.place(int(np.argmin(np.abs(way.lengths - s))))}; move {nearest_point(way, s)}"
+        )
+
+
+def _turn(path: LearnedPath, settings: MotionSettings) -> Curve | None:
+    return path.orientation if settings.orientation == "demonstrated" else None
+
+
+def _refuse(failure: Failure | None) -> None:
+    if failure is not None:
+        raise PathRefused(in_words(failure))

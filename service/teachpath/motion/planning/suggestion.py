@@ -1,0 +1,135 @@
+"""Where a path fails, which control point to move, which way and how far: found by moving the tool a little."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from scipy.interpolate import BSpline
+
+from teachpath.motion.arm.kinematics import inverse, least_singular_value
+from teachpath.motion.arm.puma560 import LOWER, UPPER, Array
+from teachpath.motion.paths.ik_branches import Candidate, rolled
+from teachpath.motion.paths.tool_path import Route
+from teachpath.motion.settings import MotionSettings
+from teachpath.nurbs import Curve
+from teachpath.records import Remedy, Vector
+
+NUDGE: Final = 0.004  # m, by which the tool is moved to see what becomes better
+FLAT: Final = 1e-9  # slope of a margin that shows no way
+TRIED: Final = (0.005, 0.01, 0.015, 0.02, 0.03, 0.04, 0.06, 0.08, 0.12, 0.16, 0.24)  # m
+# Seen from the robot: x ahead, y to its left, z up.
+WAYS: Final = (("away from the robot", "towards the robot"), ("to the left", "to the right"), ("up", "down"))
+WORTH: Final = 0.45  # share of the largest component from which on another is named as well
+
+# How good some configurations (m, 6) are, reached from poses whose wrist lies (m,) [m] out of reach: (m,), growing.
+Margin = Callable[[Array, Array], Array]
+
+
+def influences(curve: Curve, u: float) -> Array:
+    """Return how far each control point (n,) takes the curve's point at `u` along when it is moved.
+
+    Piegl & Tiller, The NURBS Book, eq. (4.2).
+    """
+    row = BSpline.design_matrix(np.array([min(max(u, 0.0), 1.0)]), curve.knots, curve.degree).toarray()[0]
+    return np.asarray(row * curve.weights / (row @ curve.weights), dtype=np.float64)
+
+
+def nearest_point(way: Route, s: float) -> str:
+    """Name the control point that takes the path along most at arc length `s` [m]."""
+    shares = influences(way.curve, float(way.arc.parameters(np.array([s]))[0]))
+    return f"control point {int(np.argmax(shares)) + 1} of {len(shares)}"
+
+
+def margin_of(fault: str, candidate: Candidate, node: int) -> Margin:
+    """Return what to raise so that a fault of a branch (see `branches.faults`) goes away."""
+    if fault == "reach":
+        return lambda q, outside: -outside
+    if fault == "limit":
+        joint = int(np.argmax(candidate.over[node]))
+        return lambda q, outside: np.minimum(UPPER - q, q - LOWER)[:, joint]
+    if fault == "turn":
+        return lambda q, outside: np.abs(np.sin(q[:, 4]))
+    return lambda q, outside: least_singular_value(q)
+
+
+def remedy(way: Route, candidate: Candidate, node: int, margin: Margin, lacking: float) -> Remedy:
+    """Propose a move of one control point after which a margin at a node suffices: the shortest of those tried.
+
+    Args:
+        way: the route.
+        candidate: branch of the arm.
+        node: where on the route.
+        margin: what to raise.
+        lacking: how much of it is missing.
+    """
+    shares = influences(way.curve, float(way.parameters[node]))
+    point = int(np.argmax(shares))
+    measure = _Nearby(way, candidate, node, margin)
+    moves = _moves(measure)
+    values = measure(moves) - measure(np.zeros((1, 3)))[0]
+    enough = np.flatnonzero(values >= lacking)
+    best = min(enough, key=lambda k: float(np.linalg.norm(moves[k])), default=int(np.argmax(values)))
+    move = moves[best] / shares[point]
+    x, y, z = (float(v) for v in move)
+    about = max(5 * round(200 * float(np.linalg.norm(move))), 5)
+    far = f"by about {about} mm" if len(enough) else f"by more than {about} mm"
+    sentence = f"move control point {point + 1} of {len(shares)} {far} {_direction((x, y, z))}"
+    return Remedy(point, (x, y, z), sentence)
+
+
+def _moves(measure: _Nearby) -> Array:
+    """Return what to try (m, 3): up the margin's slope, and along the axes."""
+    slope = measure.slope()
+    ways = [*np.eye(3), *-np.eye(3)]
+    if (steepness := float(np.linalg.norm(slope))) > FLAT:
+        ways.append(slope / steepness)
+    return np.concatenate([far * np.array(ways) for far in TRIED])
+
+
+@dataclass(frozen=True, eq=False)
+class _Nearby:
+    """The margin with the tool moved from a node, turned neither way, on the same branch."""
+
+    way: Route
+    candidate: Candidate
+    node: int
+    margin: Margin
+
+    def __call__(self, moves: Array) -> Array:
+        """Return the margin (m,) after moves (m, 3) [m]."""
+        poses = np.repeat(self.way.poses(self.way.parameters[self.node : self.node + 1]), len(moves), axis=0)
+        poses[:, :3, 3] += moves
+        here = self.candidate.joints[self.node]
+        solutions = inverse(poses, q4_before=float(here[3]))
+        roll = self.candidate.roll(self.way.parameters[self.node : self.node + 1])
+        q = rolled(solutions.joints[:, self.candidate.arm.index], roll)
+        return self.margin(q + 2 * np.pi * np.round((here - q) / (2 * np.pi)), solutions.excess[:, 0])
+
+    def slope(self) -> Array:
+        """Return the slope (3,) of the margin."""
+        values = self(NUDGE * np.concatenate([np.eye(3), -np.eye(3)]))
+        return np.asarray((values[:3] - values[3:]) / (2 * NUDGE), dtype=np.float64)
+
+
+def lacking_of(fault: str, candidate: Candidate, node: int, settings: MotionSettings) -> float:
+    """Return by how much the margin of a fault falls short at a node."""
+    if fault == "reach":
+        return float(candidate.arm.outside[node])
+    if fault == "limit":
+        return float(candidate.over[node].max())
+    if fault == "turn":
+        return 0.1
+    return settings.least_singular - float(candidate.singular[node])
+
+
+def _direction(move: Vector) -> str:
+    largest = max(abs(v) for v in move)
+    named = sorted(
+        (-abs(value), ways[0] if value > 0 else ways[1])
+        for value, ways in zip(move, WAYS, strict=True)
+        if abs(value) >= WORTH * largest
+    )
+    return " and ".join(words for _, words in named)

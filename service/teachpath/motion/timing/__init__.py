@@ -1,0 +1,1 @@
+"""Timing: the fastest motion along a path within the limits of the joints."""

@@ -1,0 +1,169 @@
+"""Moves of the joints to a path and away from it: straight lines in the joints, checked against the scene."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import partial
+from typing import Final
+
+import numpy as np
+from ruckig import InputParameter, Ruckig, Trajectory
+
+from teachpath.errors import PathRefused
+from teachpath.motion.arm.joint_path import Limits
+from teachpath.motion.arm.kinematics import tool_pose
+from teachpath.motion.arm.puma560 import Array
+from teachpath.motion.collision.collision_model import Clearance, CollisionModel, Load, standing
+from teachpath.motion.collision.continuous import Sweep, least
+from teachpath.motion.settings import MotionSettings
+from teachpath.motion.timing.timed_trajectory import STEP, Track, composed
+from teachpath.records import Scene
+
+NEAR_FINGERS: Final = 0.001  # m, that open fingers stay away from the object between them
+
+
+def straight(start: Array, goal: Array, limits: Limits, *, reserve: tuple[float, float, float]) -> Track:
+    """Run from rest to rest on the straight line between two configurations, as fast as Ruckig finds.
+
+    Args:
+        start: configuration (6,) [rad].
+        goal: another one.
+        limits: to keep.
+        reserve: shares of speed, acceleration and jerk limits that the run itself uses.
+    """
+    turn = float(np.abs(goal - start).max())
+    direction = (goal - start) / turn
+    slowest = np.maximum(np.abs(direction), 1e-12)
+    shared = limits.scaled(*reserve)
+    run = rest_to_rest(
+        turn,
+        float(np.min(shared.speed / slowest)),
+        float(np.min(shared.acceleration / slowest)),
+        float(np.min(shared.jerk / slowest)),
+        STEP,
+    )
+    place, speed, acceleration, jerk, step = run
+    count = len(place) - 1
+    ahead, still = np.append(direction, 1.0), np.zeros((count + 1, 7))
+    line = [np.append(start, 0.0) + place[:, None] * ahead, np.tile(ahead, (count + 1, 1)), still, still]
+    return Track(composed(line, speed, acceleration, jerk), step, limits)
+
+
+def rest_to_rest(
+    distance: float, speed: float, acceleration: float, jerk: float, step: float
+) -> tuple[Array, Array, Array, Array, float]:
+    """Go a distance in one dimension from rest to rest, as fast as limits allow (one call of Ruckig).
+
+    Args:
+        distance: to go, positive.
+        speed: limit, per second; `acceleration` and `jerk` likewise.
+        step: between two instants at most [s].
+
+    Returns:
+        (n,) place, speed, acceleration and jerk at even instants, and the time between two of them [s].
+    """
+    inputs = InputParameter(1)
+    inputs.target_position = [distance]
+    inputs.max_velocity, inputs.max_acceleration, inputs.max_jerk = [speed], [acceleration], [jerk]
+    run = Trajectory(1)
+    Ruckig(1).calculate(inputs, run)
+    count = max(1, int(np.ceil(run.duration / step)))
+    place, rate, slope, third = _phases(run, np.linspace(0.0, run.duration, count + 1))
+    place[-1], rate[-1], slope[-1] = distance, 0.0, 0.0
+    return place, rate, slope, third, float(run.duration) / count
+
+
+def _phases(run: Trajectory, instants: Array) -> tuple[Array, Array, Array, Array]:
+    """Evaluate the one degree of freedom of Ruckig's answer, with its third derivative."""
+    profile = run.profiles[0][0]
+    begins = np.concatenate([[0.0], np.cumsum(profile.t)])[:-1]
+    phase = np.clip(np.searchsorted(begins, instants, side="right") - 1, 0, len(begins) - 1)
+    p, v, a, j = (np.array(values)[phase] for values in (profile.p, profile.v, profile.a, profile.j))
+    t = instants - begins[phase]
+    return p + t * (v + t * (a / 2 + t * j / 6)), v + t * (a + t * j / 2), a + t * j, j
+
+
+def check_free(
+    model: CollisionModel, stops: Array, settings: MotionSettings, *, load: Load | None, gripper_open: bool, what: str
+) -> float:
+    """Return the clearance [m] that is proved for straight lines of the joints between configurations (n, 6).
+
+    Open fingers stay away from an object that stands in the scene, or keep it between them.
+
+    Raises:
+        PathRefused: something comes too near; `what` names the move.
+    """
+
+    def measure(q: Array) -> list[Clearance]:
+        return model.clearances(q, load=load, gripper_open=gripper_open)
+
+    proved = least(Sweep.through(stops, model.levers(load)), measure, settings.clearance_min)
+    if proved.distance < settings.clearance_min:
+        near = proved.measured
+        raise PathRefused(f"{what}: {near.too_near(proved.distance, settings.clearance_min)}")
+    if load is not None and load.placed is not None and gripper_open:
+        fingers = least(Sweep.through(stops, model.levers()), partial(model.straddles, load=load), NEAR_FINGERS)
+        if fingers.distance < NEAR_FINGERS:
+            raise PathRefused(f"{what}: the open fingers would hit the object; is the path centred on it?")
+    return proved.distance
+
+
+def approach(
+    model: CollisionModel,
+    here: Array,
+    goal: Array,
+    settings: MotionSettings,
+    *,
+    load: Load | None = None,
+    gripper_open: bool = False,
+    what: str = "on the way to the path's start",
+) -> Sequence[Array]:
+    """Find the stops on the way from one configuration to another: straight, or over the arm's home.
+
+    Returns:
+        Two or three configurations (6,), from `here` to `goal`.
+
+    Raises:
+        PathRefused: neither way is free; says what comes too near on the straight one.
+    """
+    home = np.array(settings.home)
+    refused: PathRefused | None = None
+    for stops in ((here, goal), (here, home, goal)):
+        try:
+            check_free(model, np.array(stops), settings, load=load, gripper_open=gripper_open, what=what)
+            return stops
+        except PathRefused as error:
+            refused = refused or error
+    assert refused is not None
+    raise PathRefused(f"{refused}; bring the arm nearer to its home first")
+
+
+def retreat(
+    model: CollisionModel, start: Array, goal: Array, above_goal: Array, settings: MotionSettings
+) -> tuple[Array, Array]:
+    """Find the stops on the way home behind a path, with the carried object left at its goal.
+
+    Args:
+        model: of the scene.
+        start: configuration (6,) at the path's start.
+        goal: the one at its end.
+        above_goal: the one above its end.
+        settings: home and clearances.
+
+    Raises:
+        PathRefused: the way is not free.
+    """
+    home = np.array(settings.home)
+    load = left_behind(model.scene, start, goal)
+    what = "on the way home from the goal"
+    check_free(model, np.stack([above_goal, home]), settings, load=load, gripper_open=load is not None, what=what)
+    return above_goal, home
+
+
+def left_behind(scene: Scene, start: Array, goal: Array) -> Load | None:
+    """Say where the carried object stands once it was moved along a path between two configurations."""
+    if scene.carried is None:
+        return None
+    pose = tool_pose(goal) @ np.linalg.inv(tool_pose(start)) @ standing(scene.carried)
+    x, y, z = (float(value) for value in pose[:3, 3])
+    return Load(placed=(x, y, z), turned=pose[:3, :3])

@@ -1,0 +1,193 @@
+"""The arithmetic of the control loop, compiled: where a ramp of the rate leads, and whether its setpoints keep limits.
+
+Plan time tau runs at the rate r = d tau / dt; a *ramp* takes r to a new constant value in three phases of constant
+third derivative of tau (up, constant, down). A ramp is an array of eight: tau, r and r' at its beginning, the
+durations of its phases, the third derivative in the first phase, and r at its end.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from math import ceil, sqrt
+from typing import Any, Final, TypeVar, cast
+
+import numba
+import numpy as np
+
+from teachpath.motion.arm.puma560 import Array
+
+CLOSE: Final = 0.997  # use of acceleration and jerk limits up to which a ramp is accepted
+AFTER: Final = 3  # setpoints behind a ramp that its differences still reach
+SOFTER: Final = 0.6  # the next try after a broken jerk limit
+SLOWER: Final = 0.7  # the next try after a broken acceleration limit
+SOONER: Final = 0.002  # s, by which a ramp must be shorter than the one followed
+AHEAD: Final = 0.03  # s, over which the speed of the joints sets what is worth a try
+STEEPEST: Final = 1e4  # 1/s^2, of a ramp
+HARDEST: Final = 1e6  # 1/s^3
+
+KEPT, SPEED_BROKEN, ACCELERATION_BROKEN, JERK_BROKEN = 0, 1, 2, 3
+
+F = TypeVar("F", bound=Callable[..., Any])
+
+
+def compiled(function: F) -> F:
+    """Compile a function at its first call, and keep the result on disk where a place for it can be written."""
+    try:
+        return cast(F, numba.njit(cache=True)(function))
+    except RuntimeError:  # no directory that numba could write to
+        return cast(F, numba.njit(function))
+
+
+@compiled
+def look(table: Array, step: float, tau: float, out: Array) -> None:
+    """Write joints and length (7,) at plan time `tau` to `out`; at rest before and behind."""
+    last = table.shape[0] - 1
+    tau = min(max(tau, 0.0), last * step)
+    row = min(int(tau / step + 0.5), last)
+    ahead = tau - row * step
+    for i in range(7):
+        out[i] = table[row, 0, i] + ahead * (
+            table[row, 1, i] + ahead / 2.0 * (table[row, 2, i] + ahead / 3.0 * table[row, 3, i])
+        )
+
+
+@compiled
+def along(ramp: Array, t: float) -> tuple[float, float, float]:
+    """Return tau, r and r' at time `t` after the beginning of a ramp."""
+    tau, r, a, jerk = ramp[0], ramp[1], ramp[2], ramp[6]
+    for phase in range(3):
+        j = jerk if phase == 0 else (0.0 if phase == 1 else -jerk)
+        d = min(t, ramp[3 + phase])
+        tau += d * (r + d * (a / 2.0 + d * j / 6.0))
+        r += d * (a + d * j / 2.0)
+        a += d * j
+        t -= d
+        if t <= 0.0:
+            return tau, r, a
+    return tau + t * ramp[7], ramp[7], 0.0
+
+
+@compiled
+def draw(ramp: Array, state: Array, target: float, steepest: float, hardest: float) -> float:
+    """Write the shortest ramp from a state (tau, r, r') to a constant rate; return its peak |r'|, or -1 without one.
+
+    The velocity problem of L. Berscheid & T. Kröger, Jerk-limited real-time trajectory generation with arbitrary target
+    states (Robotics: Science and Systems 2021), in one dimension and to zero acceleration.
+    """
+    r, a = state[1], state[2]
+    d = 1.0 if target - r - a * abs(a) / (2.0 * hardest) >= 0.0 else -1.0
+    rise, b = d * (target - r), d * a
+    peak = sqrt(max(hardest * rise + b * b / 2.0, 0.0))
+    flat = 0.0
+    if peak > steepest:
+        peak = steepest
+        flat = (rise - (2.0 * peak * peak - b * b) / (2.0 * hardest)) / peak
+    if peak < b or flat < 0.0:
+        return -1.0
+    if target == 0.0 and r * d > 0.0:  # it would stop only behind a turn
+        return -1.0
+    ramp[0], ramp[1], ramp[2] = state[0], r, a
+    ramp[3], ramp[4], ramp[5] = (peak - b) / hardest, flat, peak / hardest
+    ramp[6], ramp[7] = d * hardest, target
+    return peak
+
+
+@compiled
+def judge(table: Array, step: float, ramp: Array, sent: Array, limits: Array, dt: float) -> tuple[int, float]:
+    """Stream a ramp in thought, from the newest setpoints on.
+
+    Args:
+        sent: (3, 6) newest setpoints, newest last [rad].
+        limits: (3, 6) of first, second and third difference of setpoints [rad].
+        dt: control period [s].
+
+    Returns:
+        Which limit is broken first, or KEPT, and how long after the beginning [s].
+    """
+    q0, q1, q2, q3 = sent[0].copy(), sent[1].copy(), sent[2].copy(), np.empty(7)
+    count = ceil((ramp[3] + ramp[4] + ramp[5]) / dt) + AFTER
+    for k in range(1, count + 1):
+        tau, _, _ = along(ramp, k * dt)
+        look(table, step, tau, q3)
+        for i in range(6):
+            if abs(q3[i] - q2[i]) > limits[0, i]:
+                return SPEED_BROKEN, k * dt
+            if abs(q3[i] - 2.0 * q2[i] + q1[i]) > CLOSE * limits[1, i]:
+                return ACCELERATION_BROKEN, k * dt
+            if abs(q3[i] - 3.0 * q2[i] + 3.0 * q1[i] - q0[i]) > CLOSE * limits[2, i]:
+                return JERK_BROKEN, k * dt
+        for i in range(6):
+            q0[i], q1[i], q2[i] = q1[i], q2[i], q3[i]
+    return KEPT, 0.0
+
+
+@compiled
+def seek(
+    table: Array, step: float, state: Array, target: float, sent: Array, limits: Array, dt: float, within: float,
+    tries: int, ramp: Array,
+) -> float:  # fmt: skip
+    """Look for the shortest ramp to the constant rate `target` within all limits; return its peak |r'|, or -1.
+
+    A try that breaks a limit says where, and so what to lower: the jerk when the jerk breaks in the first or last
+    phase, else the acceleration. Once a ramp was found, the rest of the tries go half way to what was broken before.
+
+    Args:
+        within: duration that it must stay below by `SOONER` [s].
+        tries: ramps that are judged at most.
+        ramp: (8,) where it is written.
+    """
+    steepest, hardest = _most(table, step, state, limits, dt)
+    failed_a, failed_j, kept_a, kept_j, best = 0.0, 0.0, 0.0, 0.0, -1.0
+    trial = np.empty(8)
+    for _ in range(tries):
+        peak = draw(trial, state, target, steepest, hardest)
+        if peak < 0.0 or trial[3] + trial[4] + trial[5] >= within - SOONER:
+            return best
+        broken, when = judge(table, step, trial, sent, limits, dt)
+        if broken == SPEED_BROKEN:
+            return best
+        if broken == KEPT:
+            best, within = peak, trial[3] + trial[4] + trial[5]
+            ramp[:] = trial
+            kept_a, kept_j = min(steepest, peak), hardest
+            if failed_a == 0.0 and failed_j == 0.0:
+                return best
+            failed_a, failed_j = max(failed_a, kept_a), max(failed_j, kept_j)
+        elif broken == JERK_BROKEN and not trial[3] <= when - 1.5 * dt <= trial[3] + trial[4]:
+            failed_j, hardest = hardest, SOFTER * hardest
+        else:
+            failed_a = min(steepest, peak)
+            steepest = SLOWER * failed_a
+        if best >= 0.0:
+            steepest, hardest = sqrt(kept_a * failed_a), sqrt(kept_j * failed_j)
+    return best
+
+
+@compiled
+def _most(table: Array, step: float, state: Array, limits: Array, dt: float) -> tuple[float, float]:
+    """Return the largest |r'| and |r''| that are worth a try: they would leave nothing to the rest of the motion."""
+    last = table.shape[0] - 1
+    row = min(max(int(state[0] / step + 0.5), 0), last)
+    reach = int(state[1] * AHEAD / step)
+    steepest, hardest = STEEPEST, HARDEST
+    for i in range(6):
+        moving = 1e-12
+        for share in range(3):
+            moving = max(moving, abs(table[min(max(row + reach * share // 2, 0), last), 1, i]))
+        steepest = min(steepest, 1.15 * limits[1, i] / dt**2 / moving)
+        hardest = min(hardest, 1.3 * limits[2, i] / dt**3 / moving)
+    return max(steepest, abs(state[2])), hardest
+
+
+@compiled
+def motion(table: Array, step: float, state: Array, out: Array) -> None:
+    """Write the joints' and the length's value, velocity and acceleration (3, 7) at a state (tau, r, r') to `out`."""
+    look(table, step, state[0], out[0])
+    last = table.shape[0] - 1
+    row = min(max(int(state[0] / step + 0.5), 0), last)
+    ahead = min(max(state[0], 0.0), last * step) - row * step
+    for i in range(7):
+        first = table[row, 1, i] + ahead * (table[row, 2, i] + ahead / 2.0 * table[row, 3, i])
+        second = table[row, 2, i] + ahead * table[row, 3, i]
+        out[1, i] = first * state[1]
+        out[2, i] = second * state[1] ** 2 + first * state[2]

@@ -1,0 +1,107 @@
+"""The plan against time: configurations and length at even instants, so fine that a Taylor step lies on the path.
+
+A track runs at full speed. The arm may run through it slower, to and fro: at a rate r = d tau / dt, the joints use r of
+their speed limits, r^2 of their acceleration limits and r^3 of their jerk limits, if r is constant.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from scipy.interpolate import CubicHermiteSpline
+
+from teachpath.motion.arm.joint_path import JointPath, Limits
+from teachpath.motion.arm.puma560 import Array
+from teachpath.motion.timing.jerk_limited_topp import spline_rows
+
+STEP: Final = 0.0005  # s, between two instants at most
+LONGEST: Final = 120_000  # instants; a track that takes longer has them farther apart
+PIECES: Final = 20  # per interval of the pace, in which time is integrated
+
+
+@dataclass(frozen=True, eq=False)
+class Track:
+    """Joints and length by plan time.
+
+    Attributes:
+        table: (n, 4, 7) of the six joints [rad] and the length [m]: value and three time derivatives.
+        step: between two rows [s].
+        limits: which the arm must keep while it runs on this track.
+    """
+
+    table: Array
+    step: float
+    limits: Limits
+
+    @property
+    def duration(self) -> float:
+        """Time from end to end at full speed [s]."""
+        return (len(self.table) - 1) * self.step
+
+    def __call__(self, times: Array) -> Array:
+        """Return the joints and the length (m, 7) at plan times (m,) [s]; at rest before and behind."""
+        at = np.clip(times, 0.0, self.duration)
+        row = np.rint(at / self.step).astype(np.int64)
+        ahead = (at - row * self.step)[:, None]
+        value, first, second, third = (self.table[row, k] for k in range(4))
+        return np.asarray(value + ahead * (first + ahead / 2 * (second + ahead / 3 * third)), dtype=np.float64)
+
+    def setpoints(self, rate: float, *, phase: float = 0.0, override: float = 1.0) -> Array:
+        """Return what is streamed (n, 7) at a constant override, with the standstill before and behind.
+
+        Args:
+            rate: setpoints a second [Hz].
+            phase: of the first moving setpoint, as a share of a period.
+            override: share of the full speed.
+        """
+        count = int(np.ceil(self.duration * rate / override))
+        return self((np.arange(-3.0, count + 4) + phase) * (override / rate))
+
+
+def paced(path: JointPath, pace: Array, limits: Limits) -> Track:
+    """Run through a path whose parameter sigma goes from 0 to 1 at (d sigma / dt)^2 = x(sigma).
+
+    Args:
+        path: the joints by sigma.
+        pace: coefficients of x (see `pace.spline_rows`) [1/s^2].
+        limits: which the arm must keep.
+    """
+    intervals = len(pace) - 2
+    grid = np.linspace(0.0, 1.0, PIECES * intervals + 1)
+    nodes, weights = np.polynomial.legendre.leggauss(4)
+    half = 0.5 / (PIECES * intervals)
+    inner = ((grid[:-1] + half)[:, None] + half * nodes).ravel()
+    pieces = half * ((1.0 / np.sqrt(_pace(pace, inner)[0])).reshape(-1, 4) @ weights)
+    elapsed = np.concatenate([[0.0], np.cumsum(pieces)])
+    clock = CubicHermiteSpline(grid, elapsed, 1.0 / np.sqrt(_pace(pace, grid)[0]))
+    count = min(int(np.ceil(elapsed[-1] / STEP)), LONGEST)
+    instants = np.linspace(0.0, elapsed[-1], count + 1)
+    sigma = np.interp(instants, elapsed, grid)
+    for _ in range(3):
+        sigma = np.clip(sigma - (clock(sigma) - instants) * np.sqrt(_pace(pace, sigma)[0]), 0.0, 1.0)
+    x, slope, curvature = _pace(pace, sigma)
+    one, two, three = np.sqrt(x), slope / 2, curvature * np.sqrt(x) / 2  # d sigma / dt and so on
+    return Track(composed([path(sigma, k) for k in range(4)], one, two, three), float(elapsed[-1]) / count, limits)
+
+
+def composed(values: list[Array], one: Array, two: Array, three: Array) -> Array:
+    """Return a table (n, 4, 7) by the chain rule.
+
+    Args:
+        values: (n, 7) values and three derivatives with respect to a parameter.
+        one: (n,) first time derivative of the parameter; `two` and `three` are the next.
+    """
+    zeroth, first, second, third = values
+    v, a, j = one[:, None], two[:, None], three[:, None]
+    return np.stack(
+        [zeroth, first * v, second * v**2 + first * a, third * v**3 + 3 * second * v * a + first * j], axis=1
+    )
+
+
+def _pace(pace: Array, sigma: Array) -> tuple[Array, Array, Array]:
+    first, *shares = spline_rows(sigma, len(pace) - 2)
+    near = pace[first[:, None] + np.arange(3)]
+    x, slope, curvature = (np.einsum("ij,ij->i", near, share) for share in shares)
+    return x, slope, curvature

@@ -1,0 +1,1 @@
+"""The recorder: samples from trackers become takes, and takes become demonstrations."""

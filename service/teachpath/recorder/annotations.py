@@ -1,0 +1,103 @@
+"""What an operator says of demonstrations that are stored: discard, restore, mark, trim. Nothing is ever deleted."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+from typing import Any, Final
+
+from teachpath.errors import NotFound, UnusableInput
+from teachpath.io.store.store import Store
+from teachpath.recorder.take_completion import judged_again
+from teachpath.recording.demonstration import object_trajectory
+from teachpath.recording.phases import Cut
+from teachpath.recording.settings import RecordingSettings
+from teachpath.records import Demonstration, Scene, Trajectory
+
+MARKS: Final = ("", "good", "bad")
+
+
+@dataclass(frozen=True)
+class Amendment:
+    """What is to be changed of a demonstration; None leaves a thing as it is."""
+
+    mark: str | None = None
+    discarded: bool | None = None
+    trim: tuple[int, int] | None = None  # an empty span brings back the recorder's own cut
+
+
+@dataclass(frozen=True)
+class Curation:
+    """Changes what is said of demonstrations.
+
+    Attributes:
+        scene: gives the scene of a name; raises NotFound.
+        changed: told of every demonstration that has changed.
+    """
+
+    store: Store
+    settings: RecordingSettings
+    scene: Callable[[str], Scene]
+    changed: Callable[[Demonstration], None] = field(default=lambda demonstration: None)
+
+    def trajectory(self, demonstration: Demonstration) -> Trajectory:
+        """Return the object's trajectory of a stored demonstration, from its recording."""
+        carried = self.scene(self.store.task(demonstration.task).scene).carried
+        return object_trajectory(
+            self.store.recordings.samples(demonstration.recording),
+            Cut(*demonstration.transport),
+            demonstration.calibration,
+            carried.position if carried else None,
+            left_out=demonstration.left_out,
+        )
+
+    def discard_last(self, task: str) -> Demonstration:
+        """Discard the newest demonstration of a task that is kept; raises NotFound when there is none."""
+        kept = [d for d in self.store.demonstrations(self.store.task(task).name) if not d.discarded_ns]
+        if not kept:
+            raise NotFound(f"task {task} has no demonstration that could be discarded")
+        return self.amend(kept[-1].id, Amendment(discarded=True))
+
+    def restore_last(self, task: str) -> Demonstration:
+        """Bring back the demonstration of a task that was discarded last; raises NotFound when there is none."""
+        discarded = [d for d in self.store.demonstrations(self.store.task(task).name) if d.discarded_ns]
+        if not discarded:
+            raise NotFound(f"task {task} has no discarded demonstration")
+        return self.amend(max(discarded, key=lambda d: d.discarded_ns).id, Amendment(discarded=False))
+
+    def amend(self, key: str, amendment: Amendment) -> Demonstration:
+        """Change what is said of a demonstration and return it; one that is trimmed is judged by what is left of it.
+
+        Raises:
+            NotFound: no such demonstration.
+            UnusableInput: an unknown mark, or a trim outside the recording or too short.
+        """
+        stored = self.store.demonstration(key)
+        changes: dict[str, Any] = {}
+        if amendment.mark is not None:
+            if amendment.mark not in MARKS:
+                raise UnusableInput(f"{amendment.mark!r} is no mark: say good, bad, or nothing")
+            changes["mark"] = amendment.mark
+        if amendment.discarded is not None:
+            changes["discarded_ns"] = time.time_ns() if amendment.discarded else 0
+        if amendment.trim is not None:
+            changes |= self._trimmed(stored, amendment.trim)
+        changed = self.store.change_demonstration(key, **changes)
+        self.changed(changed)
+        return changed
+
+    def _trimmed(self, stored: Demonstration, trim: tuple[int, int]) -> dict[str, Any]:
+        begin, end = trim
+        chosen = None if begin == end else trim
+        least = self.settings.shortest_transport
+        if chosen and not (begin >= 0 and end <= stored.samples and end - begin >= least):
+            raise UnusableInput(
+                f"{begin} to {end} is no transport phase of a recording with {stored.samples} samples: it needs at "
+                f"least {least} of them"
+            )
+        samples = self.store.recordings.samples(stored.recording)
+        changed = replace(stored, trim=chosen)
+        changes = judged_again(stored, changed, samples, self.settings)
+        times = self.trajectory(replace(changed, **changes)).times
+        return {"trim": chosen, **changes, "duration": float(times[-1])}

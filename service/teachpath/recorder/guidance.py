@@ -1,0 +1,111 @@
+"""The running coach: compares the demonstrations of a task after every new one, on a thread of its own."""
+
+from __future__ import annotations
+
+import queue
+import threading
+from collections.abc import Callable
+
+import numpy as np
+
+from teachpath.errors import TeachpathError
+from teachpath.learning.clustering.distances import distances
+from teachpath.learning.clustering.partition import group
+from teachpath.learning.resampling import arc_lengths, at_equal_arc_length, smoothed
+from teachpath.learning.settings import LearningSettings
+from teachpath.recording.guidance import Shown, advise
+from teachpath.records import Array, Demonstration, Trajectory
+
+MOST = 60  # newest demonstrations that are compared
+POINTS = 50  # of each, at equal arc length
+STOP = ""  # asked for at the end; no task has this name
+
+
+class Coach:
+    """Keeps one sentence a task.
+
+    Args:
+        demonstrations: gives the demonstrations of a task.
+        trajectory: gives the object's trajectory of one.
+        settings: of learning, whose clustering tells the ways apart.
+    """
+
+    def __init__(
+        self,
+        demonstrations: Callable[[str], list[Demonstration]],
+        trajectory: Callable[[Demonstration], Trajectory],
+        settings: LearningSettings,
+    ) -> None:
+        self._demonstrations, self._trajectory, self._settings = demonstrations, trajectory, settings
+        self._asked: queue.SimpleQueue[str] = queue.SimpleQueue()
+        self._courses: dict[tuple[str, tuple[int, int]], Array] = {}
+        self._sentences: dict[str, str] = {}
+        self._thread: threading.Thread | None = None
+
+    def start(self) -> None:
+        """Compare from now on."""
+        self._thread = threading.Thread(target=self._run, name="coach", daemon=True)
+        self._thread.start()
+
+    def stop(self) -> None:
+        """Compare no more; a second call does nothing."""
+        if self._thread is not None:
+            self._asked.put(STOP)
+            self._thread.join()
+            self._thread = None
+
+    def consider(self, task: str) -> None:
+        """Compare a task's demonstrations anew, soon."""
+        self._asked.put(task)
+
+    def sentence(self, task: str) -> str:
+        """Return what was found last for a task, or nothing."""
+        return self._sentences.get(task, "")
+
+    def sentences(self) -> dict[str, str]:
+        """Return what was found last, by task."""
+        return dict(self._sentences)
+
+    def look_at(self, task: str) -> str:
+        """Compare a task's demonstrations now and return the sentence."""
+        usable = [d for d in self._demonstrations(task) if d.is_usable][-MOST:]
+        courses = [self._course(d) for d in usable]
+        self._courses = {(d.id, d.transport): c for d, c in zip(usable, courses, strict=True)}
+        if not courses:
+            return ""
+        length = float(np.median([arc_lengths(course)[-1] for course in courses]))
+        return advise(_ways(np.array(courses), self._settings, length), length)
+
+    def _run(self) -> None:
+        while STOP not in (burst := self._burst()):
+            for task in burst:
+                try:
+                    self._sentences[task] = self.look_at(task)
+                except TeachpathError as error:
+                    self._sentences[task] = f"the demonstrations cannot be compared: {error}"
+
+    def _burst(self) -> dict[str, None]:
+        """Return what was asked for meanwhile, each once."""
+        asked = {self._asked.get(): None}
+        while not self._asked.empty():
+            asked[self._asked.get()] = None
+        return asked
+
+    def _course(self, demonstration: Demonstration) -> Array:
+        known = self._courses.get((demonstration.id, demonstration.transport))
+        if known is not None:
+            return known
+        return at_equal_arc_length(smoothed(self._trajectory(demonstration)), POINTS)
+
+
+def _ways(courses: Array, settings: LearningSettings, length: float) -> list[Shown]:
+    if len(courses) < 2:
+        return [Shown(len(courses), 0.0)]
+    condensed = distances(courses)
+    labels = group(condensed, len(courses), settings, length=length).labels
+    left, right = np.triu_indices(len(courses), 1)
+    shown = []
+    for way in range(1, int(labels.max()) + 1):
+        within = condensed[(labels[left] == way) & (labels[right] == way)]
+        shown.append(Shown(int(np.count_nonzero(labels == way)), float(within.max(initial=0.0))))
+    return shown

@@ -1,0 +1,151 @@
+"""The scribe: the thread that records what has been received, one tracker after the other."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable
+
+from teachpath.errors import NotFound, UnusableSample
+from teachpath.io.wire import decode_sample
+from teachpath.recorder.presence import Presence
+from teachpath.recorder.sample_queues import Intake, Received
+from teachpath.recorder.session import RecordingSession
+from teachpath.recorder.take import Finished
+from teachpath.recording.settings import RecordingSettings
+
+FLUSH_EVERY = 0.75  # [s] under a second, with a margin for a busy machine
+ROUND = 0.02  # [s] between two looks at what has come; no pause while more waits than one round takes
+BATCH = 200  # samples of one tracker that are recorded before the next one's turn
+
+
+class Scribe:
+    """Holds the running recordings, one a tracker, and writes into them what waits in the intake.
+
+    Args:
+        made: called with new demonstrations, on this thread.
+        unwanted: called with a recording whose hand asks for its last demonstration to be discarded.
+        clock: [s] monotonic.
+
+    Attributes:
+        sessions: the running recordings by tracker; touched only while `changed` is held.
+        changed: notified whenever samples have been recorded.
+    """
+
+    def __init__(
+        self,
+        intake: Intake,
+        presence: Presence,
+        settings: RecordingSettings,
+        *,
+        made: Callable[[list[Finished]], None],
+        unwanted: Callable[[RecordingSession], None],
+        clock: Callable[[], float],
+    ) -> None:
+        self._intake, self._presence, self._settings, self._clock = intake, presence, settings, clock
+        self._made, self._unwanted = made, unwanted
+        self.sessions: dict[str, RecordingSession] = {}
+        self.changed = threading.Condition()
+        self._stopped = threading.Event()
+        self._thread: threading.Thread | None = None
+
+    def start(self) -> None:
+        """Record from now on."""
+        self._stopped.clear()
+        self._thread = threading.Thread(target=self._run, name="recorder", daemon=True)
+        self._thread.start()
+
+    def stop(self) -> None:
+        """Record what still waits, end every recording, and stop; a second call does nothing."""
+        self._stopped.set()
+        if self._thread is not None:
+            self._thread.join()
+            self._thread = None
+        with self.changed:
+            for session in self.sessions.values():
+                self.catch_up(session)
+                session.finish()
+            self.sessions.clear()
+
+    def session(self, tracker: str) -> RecordingSession:
+        """Return the running recording of a tracker; raises NotFound."""
+        session = self.sessions.get(tracker)
+        if session is None:
+            raise NotFound(f"{tracker!r} is not being recorded; running: {sorted(self.sessions) or 'none'}")
+        return session
+
+    def catch_up(self, session: RecordingSession) -> list[Finished]:
+        """Record all that waits of one tracker; call it while `changed` is held."""
+        finished = []
+        while batch := self._intake.take(session.tracker, BATCH):
+            finished += self._record(session, batch)
+        return finished
+
+    def go_round(self) -> bool:
+        """Record a batch of each tracker in turn, so that none keeps the others waiting.
+
+        Returns:
+            Whether a batch was full: more waits, and the next round should begin at once. What trickles in meanwhile
+            does not count, or rounds of hundreds of trackers would follow each other for a sample each.
+        """
+        with self.changed:
+            sessions = list(self.sessions.values())
+        now, more = self._clock(), False
+        for session in sessions:
+            if not self._intake.is_empty(session.tracker) or now - session.flushed >= FLUSH_EVERY:
+                more |= self._visit(session, now) == BATCH
+            elif session.is_carrying:
+                self._look_for_silence(session)
+        return more
+
+    def _run(self) -> None:
+        more = False
+        while not self._stopped.wait(0.0 if more else ROUND):
+            more = self.go_round()
+
+    def _visit(self, session: RecordingSession, now: float) -> int:
+        with self.changed:
+            batch = self._intake.take(session.tracker, BATCH)
+            finished = self._record(session, batch)
+            if now - session.flushed >= FLUSH_EVERY:
+                session.flush(now)
+            unwanted = session.asks_to_discard()
+            self.changed.notify_all()
+        self._made(finished)
+        if unwanted:
+            self._unwanted(session)
+        return len(batch)
+
+    def _record(self, session: RecordingSession, batch: list[Received]) -> list[Finished]:
+        if batch and batch[-1].payload is not None:
+            self._presence.hear(session.tracker)
+        if turned_away := self._intake.turned_away(session.tracker):
+            session.remark(f"{turned_away} samples came faster than they can be recorded, and were turned away")
+        return [made for received in batch if (made := self._take_in(session, received)) is not None]
+
+    def _take_in(self, session: RecordingSession, received: Received) -> Finished | None:
+        payload, receive_ns = received
+        try:
+            if payload is None:
+                return session.lose("the tracker has gone" + " in mid-take" * session.is_carrying)
+            return session.add(decode_sample(session.tracker, payload, receive_ns), payload)
+        except UnusableSample as error:
+            session.refuse(str(error))
+        except Exception as error:  # one take's fault must not end the others
+            session.fail(f"recording failed: {error!r}")
+        return None
+
+    def _look_for_silence(self, session: RecordingSession) -> None:
+        limit = self._settings.longest_silence
+        if self._presence.silence_of(session.tracker) <= limit:
+            return
+        with self.changed:
+            # Samples that wait are no silence.
+            if not (self._intake.is_empty(session.tracker) and session.is_carrying):
+                return
+            try:
+                finished = session.lose(f"no sample came for {limit:g} s in mid-take")
+            except Exception as error:  # one take's fault must not end the others
+                finished = None
+                session.fail(f"recording failed: {error!r}")
+        if finished is not None:
+            self._made([finished])

@@ -1,0 +1,52 @@
+"""The account of a take, part by part: what is learned of it, and the hand's ways to the object and back."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+from teachpath.recording.phases import Cut
+from teachpath.recording.settings import RecordingSettings
+from teachpath.recording.stream_statistics import StreamAccount
+from teachpath.records import Account, Sample
+
+
+@dataclass(frozen=True, slots=True)
+class Parts:
+    """A take and its parts; every sample is in one of them, and every step to a sample belongs to its part.
+
+    Attributes:
+        whole: of the take, as the recorder kept it: with what was refused, and the faults of the positions.
+        reach: up to the last sample before the grasp.
+        carried: from the grasp to the first sample after the release: what is learned, and how it began and ended.
+        back: what came after that.
+    """
+
+    whole: Account
+    reach: Account
+    carried: Account
+    back: Account
+
+
+def parts_of(samples: Sequence[Sample], cut: Cut, whole: Account, settings: RecordingSettings) -> Parts:
+    """Return the parts of a take.
+
+    A sample that came only after the release is lost of what is learned, which is without it. What only the handshake
+    told to be lost comes after all samples.
+
+    Args:
+        samples: in the order received.
+        cut: its transport phase.
+        whole: the account of the take.
+    """
+    stream = StreamAccount(declared_rate=whole.declared_rate, largest_clock_step=settings.largest_clock_step)
+    borders, parts = (cut.grasp, cut.release + 1), []
+    for index, sample in enumerate(samples):
+        if index in borders:
+            parts.append(stream.part())
+            stream.begin_part(joined=True)
+        stream.observe(sample)
+    unseen = max(whole.lost - stream.account().lost, 0)
+    last = stream.part()
+    reach, carried, back = [*parts, replace(last, lost=last.lost + unseen), Account()][:3]
+    return Parts(whole, reach, carried, back)

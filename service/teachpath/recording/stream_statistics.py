@@ -1,0 +1,253 @@
+"""The account of a sample stream: what came, what did not, what came twice or late, and how its clock ran."""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from collections.abc import Iterable
+
+from teachpath.recording.clock import REAL_TIME, DeviceClock
+from teachpath.recording.message_counter import Tally
+from teachpath.records import Account, Sample
+
+LARGEST_JUMP = 100_000  # sequence numbers; a larger gap is a restarted device, not loss
+NAMED_GAPS = 20
+REMEMBERED_SAMPLES = 512
+FASTEST = 100.0  # device seconds in one of ours; beyond it the receive times come from a burst
+RESTARTED = 10  # older numbers in a row, each with a newer time: the device counts anew
+
+
+class StreamAccount:
+    """Counts the samples of one tracker by their sequence numbers, all of them and those of the part that is open.
+
+    A sample below the highest number seen fills a gap (reordered) or was there before (duplicated; in conflict when
+    it was taken at another time).
+
+    Args:
+        declared_rate: [Hz] what the client says it sends; 0: it says nothing.
+        largest_clock_step: [s] see RecordingSettings.
+    """
+
+    def __init__(self, *, declared_rate: float = 0.0, largest_clock_step: float = 0.25) -> None:
+        self.first: int | None = None
+        self.highest = -1
+        self._declared_rate = declared_rate
+        self._largest_clock_step_ns = round(largest_clock_step * 1e9)
+        self._missing: list[tuple[int, int]] = []  # stretches of numbers, rising, first and last of each
+        self._settled: list[tuple[int, int]] = []  # those of before the device counted anew
+        self._lost = 0
+        self._received = self._duplicated = self._reordered = self._refused = self._untracked = 0
+        self._conflicts = self._clock_jumps = self._late_in_a_row = 0
+        self._recent: list[tuple[int, int]] = [(-1, 0)] * REMEMBERED_SAMPLES
+        self._last_device_ns = self._last_receive_ns = 0
+        self._steps = self._device_ns = self._receive_ns = 0  # sums over the steps of the clock that were no jumps
+        self._longest_gap_ns = self._longest_gap_of_part_ns = 0
+        self._clock = DeviceClock()
+        self._interrupted = False
+        self._notes, self._notes_of_part = _notes(), _notes()
+        self._refusals, self._refusals_of_part = _refusals(), _refusals()
+        self._part_is_empty = True
+        self._first_of_part = 0
+        self._before_part = self._counts()
+
+    def observe(self, sample: Sample) -> bool:
+        """Count one sample; return whether it is newer than all before (neither late nor a duplicate)."""
+        self._received += 1
+        if self.first is None or (self._interrupted and sample.sequence <= self.highest):
+            self._count_anew(sample.sequence)
+        self._interrupted = False
+        step = sample.sequence - self.highest
+        if step <= 0:
+            self._observe_late(sample)
+            return False
+        if step > LARGEST_JUMP:
+            self.note(f"the sequence jumps from {self.highest} to {sample.sequence}: was the device restarted?")
+        elif step > 1:
+            self._miss(self.highest + 1, sample.sequence - 1)
+        self.highest = sample.sequence
+        self._late_in_a_row = 0
+        self._untracked += not sample.tracked
+        self._recent[sample.sequence % REMEMBERED_SAMPLES] = (sample.sequence, sample.device_ns)
+        if self._last_device_ns:
+            self._observe_clock(sample, step)
+        self._last_device_ns, self._last_receive_ns = sample.device_ns, sample.receive_ns
+        self._clock.observe(sample)
+        if self._part_is_empty:
+            self._begin_with_this(sample.sequence)
+        return True
+
+    @property
+    def received(self) -> int:
+        """How many samples came."""
+        return self._received
+
+    @property
+    def restarted(self) -> bool:
+        """Whether the device seems to count anew: only older numbers come, with newer times."""
+        return self._late_in_a_row >= RESTARTED
+
+    def interrupt(self) -> None:
+        """Expect that the device may count anew: it was away."""
+        self._interrupted = True
+
+    def refuse(self, reason: str) -> None:
+        """Count a payload that is no usable sample."""
+        self._refused += 1
+        self._refusals.add(reason)
+        self._refusals_of_part.add(reason)
+
+    def begin_part(self, *, joined: bool = False, newest: Sample | None = None) -> None:
+        """Begin another part.
+
+        Args:
+            joined: what was lost before its first sample is lost of it; else it is lost of no part.
+            newest: the sample that was observed last, when it is the first of this part.
+        """
+        self._part_is_empty = not joined and newest is None
+        self._first_of_part = self.highest + (newest is None)
+        self._before_part = self._counts()
+        if newest is not None:
+            self._before_part["received"] -= 1
+            self._before_part["untracked"] -= not newest.tracked
+        self._longest_gap_of_part_ns = 0
+        self._notes_of_part, self._refusals_of_part = _notes(), _refusals()
+
+    def expect(self, last_sequence: int) -> None:
+        """Count as lost what the client says it sent after the highest number seen."""
+        if self.first is None:
+            self.first = last_sequence  # nothing came at all; how many were sent is not known
+            self.note(f"no sample came, though the client says it sent up to number {last_sequence}")
+        if 0 < last_sequence - self.highest <= LARGEST_JUMP:
+            self._miss(self.highest + 1, last_sequence)
+            self.highest = last_sequence
+
+    def note(self, sentence: str) -> None:
+        """Keep a sentence for the operator."""
+        self._notes.add(sentence)
+        self._notes_of_part.add(sentence)
+
+    def account(self) -> Account:
+        """Return the counts so far."""
+        notes = self._refusals.sentences() + self._notes.sentences()
+        return self._stated(self._counts(), self._longest_gap_ns, notes, first=0)
+
+    def part(self, *, but: Sample | None = None) -> Account:
+        """Return the counts of the part that is open, but for one sample: the newest, when it is of the next part."""
+        counts = {name: max(count - self._before_part[name], 0) for name, count in self._counts().items()}
+        if but is not None:
+            counts["received"] -= 1
+            counts["untracked"] -= not but.tracked
+        # A late sample of a former part fills a gap there and none here.
+        counts |= self._missing_since(self._first_of_part)
+        notes = self._refusals_of_part.sentences() + self._notes_of_part.sentences()
+        return self._stated(counts, self._longest_gap_of_part_ns, notes, first=self._first_of_part)
+
+    def _counts(self) -> dict[str, int]:
+        return {
+            "received": self._received,
+            "lost": self._lost,
+            "duplicated": self._duplicated,
+            "reordered": self._reordered,
+            "refused": self._refused,
+            "untracked": self._untracked,
+            "gaps": len(self._settled) + len(self._missing),
+            "conflicts": self._conflicts,
+            "clock_jumps": self._clock_jumps,
+            "steps": self._steps,
+            "device_ns": self._device_ns,
+        }
+
+    def _missing_since(self, first: int) -> dict[str, int]:
+        gaps = [(max(a, first), b) for a, b in self._missing[max(bisect_right(self._missing, (first,)) - 1, 0) :]]
+        lost = [b - a + 1 for a, b in gaps if b >= a]
+        return {"gaps": len(lost), "lost": sum(lost)}
+
+    def _stated(self, counts: dict[str, int], longest_gap_ns: int, kept: Iterable[str], *, first: int) -> Account:
+        clock, notes = self._clock.estimate(), tuple(kept)
+        if clock is not None and abs(clock.rate - 1.0) > REAL_TIME:
+            notes = (*notes, f"the device's clock runs {clock.rate:.3g} x ours")
+        steps, device_ns = counts.pop("steps"), counts.pop("device_ns")
+        missing = self._missing if first else self._settled + self._missing
+        return Account(
+            **counts,
+            missing=tuple(stretch for stretch in missing if stretch[1] >= first)[:NAMED_GAPS],
+            longest_gap_ns=longest_gap_ns,
+            declared_rate=self._declared_rate,
+            seen_rate=1e9 * steps / device_ns if device_ns else 0.0,
+            clock=clock,
+            notes=notes,
+        )
+
+    def _begin_with_this(self, sequence: int) -> None:
+        self._part_is_empty = False
+        self._first_of_part = sequence
+        now = self._counts()
+        self._before_part |= {name: now[name] for name in ("clock_jumps", "steps", "device_ns")}
+        self._longest_gap_of_part_ns = 0
+
+    def _count_anew(self, sequence: int) -> None:
+        if self.first is not None:
+            self.note(f"the device counts anew from number {sequence}")
+        self.first, self.highest = sequence, sequence - 1
+        self._settled += self._missing
+        self._missing.clear()
+        self._recent = [(-1, 0)] * REMEMBERED_SAMPLES
+        self._last_device_ns = self._late_in_a_row = 0
+        self._clock.restart()
+
+    def _observe_late(self, sample: Sample) -> None:
+        if self._fills_gap(sample.sequence):
+            self._reordered += 1
+            self._untracked += not sample.tracked
+            self._recent[sample.sequence % REMEMBERED_SAMPLES] = (sample.sequence, sample.device_ns)
+            return
+        self._duplicated += 1
+        self._late_in_a_row = self._late_in_a_row + 1 if sample.device_ns > self._last_device_ns else 0
+        number, device_ns = self._recent[sample.sequence % REMEMBERED_SAMPLES]
+        if number == sample.sequence and device_ns != sample.device_ns:
+            self._conflicts += 1
+            self.note(f"two different samples have the number {number}: do two trackers share this name?")
+        elif sample.sequence < (self.first or 0):
+            self.note(f"sequence {sample.sequence} is below the first one, {self.first}")
+
+    def _observe_clock(self, sample: Sample, step: int) -> None:
+        device, receive = sample.device_ns - self._last_device_ns, sample.receive_ns - self._last_receive_ns
+        excess = device - self._largest_clock_step_ns
+        if device < 0 or (excess > 0 and not self._is_explained(excess, step, receive)):
+            self._clock_jumps += 1
+            self.note(f"the device's clock jumps by {device * 1e-9:+.3g} s at sample {sample.sequence}")
+            self._clock.restart()
+            return
+        self._steps += step
+        self._device_ns += device
+        self._receive_ns += receive
+        if device > self._longest_gap_of_part_ns:
+            self._longest_gap_of_part_ns = device
+            self._longest_gap_ns = max(self._longest_gap_ns, device)
+
+    def _is_explained(self, device: int, step: int, receive: int) -> bool:
+        """Tell whether the numbers explain a step of the device's clock (loss), or our clock does (a pause)."""
+        period = 1e9 / self._declared_rate if self._declared_rate else self._device_ns / max(self._steps, 1)
+        rate = min(max(self._device_ns / max(self._receive_ns, 1), 1.0), FASTEST)
+        return device <= max(step * period, receive * rate)
+
+    def _miss(self, first: int, last: int) -> None:
+        self._missing.append((first, last))
+        self._lost += last - first + 1
+
+    def _fills_gap(self, sequence: int) -> bool:
+        i = bisect_right(self._missing, (sequence, LARGEST_JUMP + sequence)) - 1
+        if i < 0 or sequence > self._missing[i][1]:
+            return False
+        first, last = self._missing[i]
+        rest = [(first, sequence - 1), (sequence + 1, last)]
+        self._missing[i : i + 1] = [(a, b) for a, b in rest if a <= b]
+        self._lost -= 1
+        return True
+
+
+def _notes() -> Tally:
+    return Tally("more happened than can be listed")
+
+
+def _refusals() -> Tally:
+    return Tally("samples were refused for other reasons")

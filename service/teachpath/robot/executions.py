@@ -1,0 +1,262 @@
+"""The executions: sends plans and commands to the executor's process and keeps what it says of itself."""
+
+from __future__ import annotations
+
+import queue
+import threading
+import time
+import uuid
+from collections.abc import Callable
+from contextlib import suppress
+from pathlib import Path
+
+from teachpath.errors import Conflict, NotFound, PathRefused, TeachpathError, Unreachable, UnusableInput
+from teachpath.io.bus import Bus, Handle
+from teachpath.io.documents import encode
+from teachpath.io.store.motions import MotionHeader, read_motion
+from teachpath.io.store.store import ExecutionRow, Store
+from teachpath.io.wire import (
+    decode_entry,
+    decode_lease,
+    decode_status,
+    encode_command,
+    encode_lease_request,
+)
+from teachpath.motion.analysis.time_series import Series, series
+from teachpath.records import (
+    Command,
+    ExecutorStatus,
+    JournalEntry,
+    Lease,
+    LeaseRequest,
+    Mirroring,
+    Plan,
+    Scene,
+)
+from teachpath.robot.motion_recorder import MotionRecorder
+from teachpath_proto.keys import Keys
+
+RESTING = frozenset({"idle", "ended", "faulted"})
+VERBS = ("override", "hold", "resume", "step", "reverse", "stop")
+
+
+class Executions:
+    """Starts and steers executions; one at a time.
+
+    Args:
+        robot: name of the robot that is moved.
+        scene: returns the scene of a name as it is now; raises NotFound.
+    """
+
+    def __init__(self, bus: Bus, keys: Keys, store: Store, *, robot: str, scene: Callable[[str], Scene]) -> None:
+        self._bus, self._keys, self._store, self._robot, self._scene = bus, keys, store, robot, scene
+        self._recorder = MotionRecorder(bus, keys, store.motions, robot=robot)
+        self._changed = threading.Condition()
+        self._status: ExecutorStatus | None = None
+        self._heard = 0.0
+        self._plans: dict[str, str | None] = {}
+        self._handles: list[Handle] = []
+        self._news: queue.SimpleQueue[ExecutorStatus | JournalEntry | None] = queue.SimpleQueue()
+        self._writer: threading.Thread | None = None
+
+    def start(self) -> None:
+        """Begin to listen to the executor."""
+        self._recorder.start()
+        self._handles = [
+            self._bus.subscribe(self._keys.executor_status, self._receive),
+            self._bus.subscribe(self._keys.executor_journal, self._note),
+        ]
+        self._writer = threading.Thread(target=self._write, name="executions", daemon=True)
+        self._writer.start()
+
+    def stop(self) -> None:
+        """Stop listening."""
+        for handle in self._handles:
+            handle.close()
+        if self._writer is not None:
+            self._news.put(None)
+            self._writer.join()
+            self._writer = None
+        self._recorder.stop()
+
+    def faults(self) -> list[str]:
+        """Say why something is not recorded, for the operator."""
+        return [self._recorder.fault] if self._recorder.fault else []
+
+    def recording(self, execution: str) -> Path:
+        """Return the file of all that an execution sent and the arm did, whole once it is over; raises NotFound."""
+        row = self.get(execution)
+        if row.status.state in RESTING:
+            self._recorder.wait_for(row.id)
+        return self._store.motions.path(row.id)
+
+    def series(self, execution: str, points: int) -> Series:
+        """Return what the arm did over time in an execution; raises NotFound."""
+        motion = read_motion(self.recording(execution))
+        return series(motion.setpoints, motion.states, points)
+
+    @property
+    def status(self) -> ExecutorStatus | None:
+        """What the executor said last, or None when it has been silent for over a second."""
+        return self._status if time.monotonic() - self._heard < 1.0 else None
+
+    def begin(self, plan: str, *, override: float = 1.0, lease: str = "", who: str = "") -> ExecutionRow:
+        """Move the robot along a plan.
+
+        Args:
+            plan: id of a stored plan.
+            override: share of the planned speed.
+            lease: token of the one who holds control, when somebody does.
+            who: name for the journal without a lease.
+
+        Raises:
+            NotFound: no such plan.
+            Conflict: another execution is running, or somebody else is in control.
+            PathRefused: the certificate does not hold, or the way to its start is not free.
+            Unreachable: the executor does not answer.
+        """
+        stored = self._store.plan(plan)
+        self._check_certificate(stored)
+        status = self.status
+        if status is not None and status.state not in RESTING:
+            raise Conflict(f"execution {status.execution} is {status.state}; stop it first")
+        key = f"execution-{uuid.uuid4().hex[:12]}"
+        command = Command("start", key, plan=encode(stored), override=override, lease=lease, who=who)
+        path = None
+        with suppress(NotFound):  # a file without it is judged by its limits alone
+            path = self._store.versions.get(stored.path, stored.path_version)[1]
+        return self._begin(command, MotionHeader(key, self._robot, stored, path))
+
+    def mirror(self, order: Mirroring, *, lease: str = "", who: str = "") -> ExecutionRow:
+        """Let the robot mirror a live hand; steer and stop it as any execution.
+
+        Raises:
+            UnusableInput: a scale or share outside its limits.
+            Conflict: an execution is running, or somebody else is in control.
+            PathRefused: the arm stands where it can follow nothing.
+            Unreachable: the executor does not answer.
+        """
+        key = f"execution-{uuid.uuid4().hex[:12]}"
+        command = Command("mirror", key, mirror=encode(order), lease=lease, who=who)
+        return self._begin(command, MotionHeader(key, self._robot))
+
+    def command(self, execution: str, command: Command) -> ExecutionRow:
+        """Steer an execution: override (speed, 0 to 1), hold, resume, step, reverse or stop.
+
+        A stop is always answered: an execution that has ended is stopped.
+
+        Raises:
+            UnusableInput: an unknown verb.
+            NotFound: no such execution.
+            Conflict: it is not the one that is running, or somebody else is in control.
+        """
+        if command.verb not in VERBS:
+            raise UnusableInput(f"{command.verb!r} is no command; say {', '.join(VERBS)}")
+        row = self.get(execution)
+        if command.verb == "stop":
+            if row.status.state not in RESTING:
+                self._bus.ask(self._keys.executor_stop, encode_command(command))
+            return self.get(execution)
+        status = self.status
+        if status is None or status.execution != execution:
+            raise Conflict(f"execution {execution} is not running")
+        self._bus.ask(self._keys.executor_command, encode_command(command))
+        return self.get(execution)
+
+    def halt(self, *, lease: str = "", who: str = "") -> ExecutorStatus:
+        """Stop whatever moves; raises Unreachable when the executor does not answer."""
+        command = Command("stop", lease=lease, who=who)
+        return decode_status(self._bus.ask(self._keys.executor_stop, encode_command(command)))
+
+    def control(self, request: LeaseRequest) -> Lease:
+        """Say a word about who is in control.
+
+        Raises:
+            Conflict: somebody else is, or the token is out of date.
+            Unreachable: the executor does not answer.
+        """
+        return decode_lease(self._bus.ask(self._keys.executor_lease, encode_lease_request(request)))
+
+    def revoke(self, plan: str, *, reason: str, who: str = "") -> None:
+        """Take a plan's certificate back: it is never started again, and held for good where it moves the arm now.
+
+        Raises:
+            NotFound: no such plan.
+        """
+        stored = self._store.plan(plan)
+        self._store.journal.revoke(stored.id, who=who, reason=reason)
+        status = self.status
+        if status is not None and status.state not in RESTING:
+            command = Command("revoke", plan_id=stored.id, reason=reason, who=who)
+            self._bus.ask(self._keys.executor_command, encode_command(command))
+
+    def get(self, execution: str) -> ExecutionRow:
+        """Return an execution as it stands now; raises NotFound."""
+        row = self._store.execution(execution)
+        status = self._status
+        if status is not None and status.execution == execution:
+            return ExecutionRow(row.id, row.plan, row.created_ns, status)
+        return row
+
+    def wait(self, execution: str, *, timeout: float) -> ExecutorStatus:
+        """Return the final status of an execution.
+
+        Raises:
+            Unreachable: it did not end within `timeout` [s].
+        """
+
+        def ended() -> bool:
+            return self._status is not None and self._status.execution == execution and self._status.state in RESTING
+
+        with self._changed:
+            if not self._changed.wait_for(ended, timeout):
+                state = self._status.state if self._status else "silent"
+                raise Unreachable(f"execution {execution} did not end within {timeout:g} s; the executor is {state}")
+            assert self._status is not None
+            return self._status
+
+    def _begin(self, command: Command, header: MotionHeader) -> ExecutionRow:
+        key, plan = command.execution, header.plan.id if header.plan else None
+        self._store.put_execution(key, plan, ExecutorStatus(execution=key, state="starting", override=command.override))
+        self._plans[key] = plan
+        self._recorder.begin(header)
+        try:
+            self._bus.ask(self._keys.executor_command, encode_command(command), timeout=10.0)
+        except TeachpathError as error:
+            refused = ExecutorStatus(execution=key, state="faulted", reason=str(error))
+            self._store.put_execution(key, plan, refused)
+            self._recorder.abandon()
+            raise
+        return self.get(key)
+
+    def _check_certificate(self, plan: Plan) -> None:
+        reason = self._store.journal.revoked(plan.id)
+        if reason:
+            raise PathRefused(f"the certificate of {plan.id} was revoked: {reason}; plan the path again")
+        with suppress(NotFound):
+            if self._scene(plan.scene.name) != plan.scene:
+                raise PathRefused(
+                    f"scene {plan.scene.name} has changed since {plan.id} was certified; plan the path again"
+                )
+
+    def _receive(self, _: str, payload: bytes) -> None:
+        with suppress(UnusableInput):
+            status = decode_status(payload)
+            with self._changed:
+                before, self._status = self._status, status
+                self._heard = time.monotonic()
+                self._changed.notify_all()
+            if before is None or (before.execution, before.state) != (status.execution, status.state):
+                self._news.put(status)
+
+    def _note(self, _: str, payload: bytes) -> None:
+        with suppress(UnusableInput):
+            self._news.put(decode_entry(payload))
+
+    def _write(self) -> None:
+        """Store what came; a thread of its own, because the bus's must not wait for the disk."""
+        while (news := self._news.get()) is not None:
+            if isinstance(news, JournalEntry):
+                self._store.journal.write(news)
+            elif news.execution in self._plans:
+                self._store.put_execution(news.execution, self._plans[news.execution], news)

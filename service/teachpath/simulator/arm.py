@@ -1,0 +1,110 @@
+"""The physics of the simulated arm: a dynamic Puma 560, its gripper, the object and the obstacles, in MuJoCo."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Final
+
+import mujoco
+import numpy as np
+
+from teachpath.errors import UnusableInput
+from teachpath.motion.arm.mjcf import CARRIED, GRASP, TOOL, mjcf
+from teachpath.motion.arm.puma560 import TORQUE
+from teachpath.records import Array, Quaternion, Scene, Vector
+from teachpath.simulator.settings import SimulatorSettings
+
+STEP_NS: Final = 1_000_000
+STILL: Final = 1e-3  # rad/s and m/s, below which a thing stands still
+
+
+class SimulatedArm:
+    """The physics: arm, gripper, object and obstacles, advanced by 1 ms a step."""
+
+    def __init__(self, scene: Scene, settings: SimulatorSettings, position: Sequence[float]) -> None:
+        """Build the model of `scene`; raises UnusableInput when MuJoCo cannot."""
+        try:
+            self._model = mujoco.MjModel.from_xml_string(mjcf(scene, timestep=STEP_NS / 1e9))
+        except ValueError as error:
+            raise UnusableInput(f"scene {scene.name!r} cannot be simulated: {error}") from None
+        self._settings, self._start = settings, np.array(position)
+        self._carries = scene.carried is not None
+        self._friction = np.array(self._model.dof_frictionloss[:6])
+        self._acceleration = np.zeros(self._model.nv)
+        self._force = np.zeros(self._model.nv)
+        self.data = mujoco.MjData(self._model)
+        self.reset()
+
+    def reset(self) -> None:
+        """Put the arm to where it began, at rest and open, and the object to its start."""
+        mujoco.mj_resetData(self._model, self.data)
+        self.data.qpos[:6] = self._start
+        mujoco.mj_forward(self._model, self.data)
+
+    @property
+    def position(self) -> Array:
+        """Joint angles (6,) [rad]."""
+        return np.array(self.data.qpos[:6])
+
+    @property
+    def velocity(self) -> Array:
+        """Joint velocities (6,) [rad/s]."""
+        return np.array(self.data.qvel[:6])
+
+    @property
+    def still(self) -> bool:
+        """Whether arm and object stand still."""
+        return bool(np.abs(self.data.qvel).max() < STILL)
+
+    @property
+    def torque(self) -> Array:
+        """Torques of the motors at the joints (6,) [N m]."""
+        return np.array(self.data.qfrc_actuator[:6])
+
+    @property
+    def object_pose(self) -> tuple[Vector, Quaternion]:
+        """Position [m] and orientation of the carried object; all zeros when the scene has none."""
+        if not self._carries:
+            return (0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 0.0)
+        x, y, z, w, i, j, k = (float(v) for v in self.data.qpos[6:13])
+        return (x, y, z), (w, i, j, k)
+
+    def step(self, position: Array, velocity: Array, acceleration: Array) -> None:
+        """Follow the wanted motion for 1 ms by computed torque (Siciliano et al., Robotics, Springer 2009, 8.5.2).
+
+        Coulomb friction is compensated along the wanted velocity, so that the motors do not chatter at rest.
+        """
+        mujoco.mj_step1(self._model, self.data)
+        w = self._settings.bandwidth
+        self._acceleration[:6] = (
+            acceleration + 2 * w * (velocity - self.data.qvel[:6]) + w**2 * (position - self.data.qpos[:6])
+        )
+        mujoco.mj_mulM(self._model, self.data, self._force, self._acceleration)
+        torque = self._force[:6] + self.data.qfrc_bias[:6] - self.data.qfrc_passive[:6]
+        torque += self._friction * np.tanh(velocity / 0.02)
+        self.data.ctrl[:6] = np.clip(torque, -TORQUE, TORQUE)
+        mujoco.mj_step2(self._model, self.data)
+
+    def grasp(self) -> bool:
+        """Take the object as it lies between the fingers; False when it is out of reach and the gripper is empty."""
+        if not self._carries:
+            return False
+        tool = self.data.site(TOOL).xpos
+        if np.linalg.norm(tool - self.data.body(CARRIED).xpos) > self._settings.reach:
+            return False
+        hand, carried = self.data.body("link6"), self.data.body(CARRIED)
+        rotation = hand.xmat.reshape(3, 3)
+        back, turn = np.empty(4), np.empty(4)
+        mujoco.mju_negQuat(back, hand.xquat)
+        mujoco.mju_mulQuat(turn, back, carried.xquat)
+        weld = self._model.equality(GRASP)
+        weld.data[:3] = 0.0  # anchor, in the object
+        weld.data[3:6] = rotation.T @ (carried.xpos - hand.xpos)
+        weld.data[6:10] = turn
+        self.data.eq_active[weld.id] = True
+        return True
+
+    def release(self) -> None:
+        """Let the object go."""
+        if self._carries:
+            self.data.eq_active[self._model.equality(GRASP).id] = False

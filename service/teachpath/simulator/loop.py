@@ -1,0 +1,222 @@
+"""The simulated arm: a dynamic Puma 560 that follows the setpoints on the bus and says what it does.
+
+It speaks the two keys that a driver of a real arm would speak, and one query that puts the object back to its start.
+"""
+
+from __future__ import annotations
+
+import logging
+import threading
+import time
+from collections import deque
+from collections.abc import Callable, Sequence
+from typing import Final
+
+import numpy as np
+
+from teachpath.errors import Conflict, UnusableInput
+from teachpath.io import documents, wire
+from teachpath.io.bus import Bus
+from teachpath.motion.settings import MotionSettings
+from teachpath.records import JointState, Scene
+from teachpath.simulator.arm import STEP_NS, SimulatedArm
+from teachpath.simulator.setpoint_player import Playback
+from teachpath.simulator.settings import SimulatorSettings
+from teachpath_proto.keys import Keys
+
+log = logging.getLogger(__name__)
+
+STATE_STEPS: Final = 10  # steps between two joint states: 100 Hz
+CALM_STEPS: Final = 200  # steps of standstill after which the arm dozes
+DOZE: Final = 0.04  # [s] between two joint states of an arm that dozes: 25 Hz, the contract asks for 20
+# A starved process catches up, each setpoint played when it was due: on a busy machine the arm is late, not wrong.
+LAG_NS: Final = 1_000_000_000
+ENDED: Final = ("idle", "ended", "faulted")
+
+
+class Simulator:
+    """The running arm; `run` is its life, `step` one millisecond of it."""
+
+    def __init__(
+        self,
+        bus: Bus,
+        keys: Keys,
+        scene: Scene,
+        settings: SimulatorSettings | None = None,
+        *,
+        robot: str = "puma560",
+        home: Sequence[float] = MotionSettings().home,
+        clock: Callable[[], int] = time.time_ns,
+        sleep: Callable[[float], object] = time.sleep,
+        doze: Callable[[threading.Event, float], object] = threading.Event.wait,
+    ) -> None:
+        """Prepare the arm; nothing runs before `run`.
+
+        Args:
+            scene: what stands around the arm until a reset brings another one.
+            robot: name of the arm in its keys.
+            home: (6,) configuration in which the arm starts [rad].
+            clock: nanoseconds since the Unix epoch, the clock of the setpoints.
+            sleep: waits for so many seconds.
+            doze: waits for so many seconds, or until the event is set.
+        """
+        self._bus, self._keys, self._robot = bus, keys, robot
+        self._settings = settings or SimulatorSettings()
+        self._clock, self._sleep, self._wait = clock, sleep, doze
+        self._woken = threading.Event()
+        self._calm = 0  # newest steps in which everything stood still
+        self._lock = threading.Lock()
+        self._setpoints: deque[bytes] = deque(maxlen=1000)
+        self._statuses: deque[bytes] = deque(maxlen=100)
+        self._begin(scene, home)
+
+    def run(self, stop: threading.Event) -> None:
+        """Live in real time until `stop` is set."""
+        robot = self._robot
+        handles = [
+            self._bus.subscribe(self._keys.setpoint(robot), self._receive),
+            self._bus.subscribe(self._keys.executor_status, lambda _, payload: self._statuses.append(payload)),
+            self._bus.serve(self._keys.reset(robot), self.reset),
+            self._bus.announce(self._keys.alive("robot", robot)),
+        ]
+        try:
+            due = self._clock()
+            while not stop.is_set():
+                if self._dozing:
+                    due = self._doze(due)
+                    continue
+                self.step(due)
+                due += STEP_NS
+                wait = due - self._clock()
+                if abs(wait) > LAG_NS:
+                    due = self._clock()
+                elif wait > 0:
+                    self._sleep(wait / 1e9)
+        finally:
+            for handle in handles:
+                handle.close()
+
+    def reset(self, payload: bytes) -> bytes:
+        """Answer the reset query: the object to its start, in the scene given as JSON or the one there is.
+
+        The arm stays where it is, at rest, with its gripper open: no arm ever jumps. While an execution is under way
+        nothing around the arm may change, because its certificate is of this scene.
+
+        Returns:
+            The joint state after it, as published.
+
+        Raises:
+            UnusableInput: the payload is no scene.
+            Conflict: an execution is under way.
+        """
+        scene = documents.decode(Scene, payload) if payload else self._scene
+        with self._lock:
+            self._hear()
+            moving = self._playback.execution
+            if moving not in ("", self._over) and not self._playback.holding:
+                raise Conflict(f"execution {moving} is under way in scene {self._scene.name}; stop it first")
+            self._begin(scene, self._arm.position.tolist())
+            self._woken.set()
+            return wire.encode_state(self._state(self._clock()))
+
+    def step(self, now: int) -> None:
+        """Advance by 1 ms from `now` [ns since the Unix epoch]; every tenth time a joint state is published."""
+        with self._lock:
+            self._read(now)
+            wanted = self._playback.wanted
+            self._error = float(np.max(np.abs(wanted.position - self._arm.position)))
+            state = self._state(now) if self._steps % STATE_STEPS == 0 else None
+            self._arm.step(wanted.position, wanted.velocity, wanted.acceleration)
+            self._steps += 1
+            self._calm = self._calm + 1 if self._playback.resting and self._arm.still else 0
+        if state is not None:
+            self._tell(state)
+
+    @property
+    def _dozing(self) -> bool:
+        """Whether arm and object have stood still for a while and nothing is there to change that."""
+        return self._calm >= CALM_STEPS and not self._setpoints
+
+    def _doze(self, since: int) -> int:
+        """Let an arm at rest be until something comes, or its next joint state is due; returns when that was [ns].
+
+        Nothing is computed: what stands still under constant torques goes on standing still.
+        """
+        with self._lock:
+            state = self._state(since)
+        self._tell(state)
+        self._wait(self._woken, DOZE)
+        self._woken.clear()
+        now = self._clock()
+        with self._lock:
+            self._hear()
+            if now > since:  # the clock may be set back
+                self._playback.play((now - since) / 1e9, now)
+        return now
+
+    def _receive(self, _: str, payload: bytes) -> None:
+        self._setpoints.append(payload)
+        self._woken.set()
+
+    def _tell(self, state: JointState) -> None:
+        self._bus.publish(self._keys.state(self._robot), wire.encode_state(state))
+
+    def _begin(self, scene: Scene, position: Sequence[float]) -> None:
+        settings = self._settings
+        self._arm = SimulatedArm(scene, settings, position)
+        self._scene = scene
+        self._playback = Playback(self._arm.position, delay=settings.delay, silence=settings.silence)
+        self._setpoints.clear()
+        self._over = ""  # the execution that said that it has ended
+        self._closed = False
+        self._error = 0.0
+        self._steps = 0
+        self._calm = 0
+
+    def _read(self, now: int) -> None:
+        try:
+            while self._setpoints:
+                self._playback.take(wire.decode_setpoint(self._setpoints.popleft()), now)
+        except UnusableInput as error:
+            log.warning("left out: %s", error)
+        self._hear()
+        reached = self._playback.play(STEP_NS / 1e9, now)
+        if reached is not None:
+            self._grip(reached.gripper_closed)
+
+    def _hear(self) -> None:
+        """Read what the executor says of itself."""
+        try:
+            while self._statuses:
+                status = wire.decode_status(self._statuses.popleft())
+                if status.state in ENDED:
+                    self._over = status.execution
+        except UnusableInput as error:
+            log.warning("left out: %s", error)
+
+    def _grip(self, closed: bool) -> None:
+        if closed and not self._closed:
+            self._arm.grasp()
+        elif self._closed and not closed:
+            self._arm.release()
+        self._closed = closed
+
+    def _state(self, now: int) -> JointState:
+        playback, newest = self._playback, self._playback.reached
+        holding = newest is not None and newest.execution != self._over and playback.holding
+        place, turn = self._arm.object_pose
+        return JointState(
+            stamp_ns=now,
+            cycle=newest.cycle if newest is not None else 0,
+            position=self._arm.position,
+            velocity=self._arm.velocity,
+            torque=self._arm.torque,
+            tracking_error=self._error,
+            missed=playback.missed + (playback.overdue if holding else 0),
+            holding=holding,
+            gripper_closed=self._closed,
+            object_position=place,
+            object_orientation=turn,
+            execution=newest.execution if newest is not None else "",
+            late=playback.late,
+        )

@@ -1,1 +1,0 @@
-"""The running things: recorder, jobs, executor, simulator, preview; strangers to each other."""

@@ -1,1 +1,0 @@
-"""The simulated arm, in a process of its own."""

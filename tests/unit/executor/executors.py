@@ -1,0 +1,143 @@
+"""An executor on a clock of its own, for the tests."""
+
+import threading
+from collections.abc import Callable
+
+import numpy as np
+
+from teachpath.executor.loop import Executor
+from teachpath.executor.settings import ExecutorSettings
+from teachpath.io import wire
+from teachpath.io.bus import MemoryBus
+from teachpath.io.documents import encode
+from teachpath.motion.arm.puma560 import ACCELERATION, JERK, SPEED
+from teachpath.motion.settings import MotionSettings
+from teachpath.records import Command, ExecutorStatus, JointState, JournalEntry, Lease, LeaseRequest, Plan, Setpoint
+from teachpath_proto.keys import Keys
+
+KEYS = Keys()
+HOME = np.array(MotionSettings().home)
+PERIOD_NS = 4_000_000
+EPOCH = 1_700_000_000 * 10**9
+STUCK = 60.0  # s, after which a test gives up
+
+
+class Bench:
+    """An executor on a clock of its own, with an arm that is always exactly where its newest setpoint says."""
+
+    def __init__(self, position: np.ndarray = HOME) -> None:
+        self.bus = MemoryBus()
+        self.now = 0
+        self.position = position
+        self.error = 0.0
+        self.pushed = 0.0  # [rad] that somebody keeps all joints off their setpoints
+        self.velocity = 0.0
+        self.speaking = True
+        self.deaf: Setpoint | None = None  # the setpoint after which it takes up no other
+        self.behind = 0  # setpoints that it is late with
+        self.pace = 1.0  # setpoints that it takes up in a period, but for those of a standstill: they take no time
+        self._played = 0.0
+        self.oversleep: dict[int, int] = {}  # setpoints sent -> ns too late
+        self.setpoints: list[Setpoint] = []
+        self.statuses: list[ExecutorStatus] = []
+        self.journal: list[JournalEntry] = []
+        self.stop = threading.Event()
+        self.todo: list[tuple[Callable[[], bool], Callable[[], object]]] = []
+        self.bus.subscribe(KEYS.setpoint("puma560"), lambda _, p: self.setpoints.append(wire.decode_setpoint(p)))
+        self.bus.subscribe(KEYS.executor_status, lambda _, p: self.statuses.append(wire.decode_status(p)))
+        self.bus.subscribe(KEYS.executor_journal, lambda _, p: self.journal.append(wire.decode_entry(p)))
+        self.executor = Executor(
+            self.bus,
+            KEYS,
+            ExecutorSettings(realtime=False),
+            clock=lambda: self.now,
+            wall=lambda: EPOCH + self.now,
+            sleep=self.sleep,
+        )
+
+    def when(self, condition: Callable[[], bool], act: Callable[[], object]) -> None:
+        """Do something as soon as a condition holds, one thing behind the other."""
+        self.todo.append((condition, act))
+
+    def run(self) -> None:
+        """Run until all is done and `stop` is set."""
+        self.executor.run(self.stop)
+
+    def sleep(self, duration: float) -> None:
+        self.now += round(duration * 1e9) + self.oversleep.pop(len(self.setpoints), 0)
+        assert self.now < STUCK * 1e9, f"stuck before step {self.todo[:1]} in {self.statuses[-1]}"
+        if self.setpoints:
+            self._play()
+            self.position = self.taken().position + self.pushed
+        if self.speaking:
+            self.bus.publish(KEYS.state("puma560"), wire.encode_state(self.joint_state()))
+        if self.todo and self.todo[0][0]():
+            self.todo.pop(0)[1]()
+
+    def taken(self) -> Setpoint:
+        """The newest setpoint that the arm has taken up."""
+        if self.pace < 1.0:
+            return self.setpoints[int(self._played)]
+        return self.deaf or self.setpoints[-1 - min(self.behind, len(self.setpoints) - 1)]
+
+    @property
+    def late(self) -> int:
+        """How many setpoints of a motion the arm has not taken up yet."""
+        waiting = self.setpoints[self.taken().cycle + 1 :] if self.setpoints else []
+        return sum(not standing([each]) for each in waiting)
+
+    def _play(self) -> None:
+        newest = len(self.setpoints) - 1
+        self._played = min(self._played + self.pace, newest)
+        while (here := int(self._played)) < newest and all(standing([s]) for s in self.setpoints[here : here + 2]):
+            self._played += 1
+
+    def joint_state(self) -> JointState:
+        newest = self.taken() if self.setpoints else None
+        return JointState(
+            stamp_ns=EPOCH + self.now,
+            cycle=newest.cycle if newest else 0,
+            position=self.position,
+            velocity=np.full(6, self.velocity),
+            torque=np.zeros(6),
+            tracking_error=self.error,
+            missed=0,
+            holding=False,
+            gripper_closed=bool(newest and newest.gripper_closed),
+            object_position=(0.0, 0.0, 0.0),
+            object_orientation=(1.0, 0.0, 0.0, 0.0),
+            execution=newest.execution if newest else "",
+        )
+
+    def command(self, verb: str, execution: str = "run-1", **given: object) -> ExecutorStatus:
+        return wire.decode_status(
+            self.bus.ask(KEYS.executor_command, wire.encode_command(Command(verb, execution, **given)))  # type: ignore[arg-type]
+        )
+
+    def control(self, action: str, name: str = "", **given: object) -> Lease:
+        request = LeaseRequest(action, name, **given)  # type: ignore[arg-type]
+        return wire.decode_lease(self.bus.ask(KEYS.executor_lease, wire.encode_lease_request(request)))
+
+    def start(self, what: Plan, override: float = 1.0) -> None:
+        self.when(lambda: self.now > PERIOD_NS, lambda: self.command("start", plan=encode(what), override=override))
+
+    @property
+    def state(self) -> str:
+        return self.statuses[-1].state if self.statuses else ""
+
+    def states(self) -> list[str]:
+        """The states in order, without repetitions."""
+        seen = [status.state for status in self.statuses]
+        return [s for s, before in zip(seen, ["", *seen], strict=False) if s != before]
+
+
+def standing(setpoints: list[Setpoint]) -> bool:
+    return bool(np.all(setpoints[-1].velocity == 0) and np.all(setpoints[-1].acceleration == 0))
+
+
+def within_limits(setpoints: list[Setpoint]) -> bool:
+    positions = np.array([setpoints[0].position] * 3 + [s.position for s in setpoints])
+    return all(
+        bool(np.all(np.abs(np.diff(positions, k, axis=0)) * 250.0**k <= limit * (1 + 1e-6)))
+        for k, limit in ((1, SPEED), (2, ACCELERATION), (3, JERK))
+    )

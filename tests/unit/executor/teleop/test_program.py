@@ -1,0 +1,131 @@
+"""The arm mirrors a live hand: the clutch, a lost hand, and who may."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from teachpath.errors import Conflict, UnusableInput
+from teachpath.io.documents import encode
+from teachpath.io.wire import sample_message
+from teachpath.motion.arm.kinematics import tool_pose
+from teachpath.motion.collision.builtin_scenes import empty_scene
+from teachpath.records import Calibration, Mirroring
+from tests.unit.executor.executors import HOME, KEYS, PERIOD_NS, Bench, standing, within_limits
+from tests.unit.recording.hands import sample
+
+CLUTCH = 4
+ORDER = Mirroring("glove", Calibration("identity"), empty_scene())
+
+
+class Held(Bench):
+    """A bench with a hand that is shown 50 times a second."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.hand, self.buttons, self.shown, self.number = np.zeros(3), 0, True, 0
+        self.page: int | None = None  # buttons of a page that looks on; None: there is none
+
+    def sleep(self, duration: float) -> None:
+        if self.now // PERIOD_NS % 5 == 0:
+            self.number += 1
+            if self.shown:
+                self.show("glove", self.hand, self.buttons)
+            if self.page is not None:
+                self.show("page", np.ones(3), self.page)
+        super().sleep(duration)
+
+    def show(self, tracker: str, hand: np.ndarray, buttons: int) -> None:
+        shown = sample(self.number, tuple(hand), buttons=buttons)
+        self.bus.publish(KEYS.samples(tracker), sample_message(shown).SerializeToString())
+
+    def press(self) -> None:
+        self.buttons = CLUTCH
+
+    def mirror(self, order: Mirroring = ORDER) -> None:
+        self.when(lambda: self.now > PERIOD_NS, lambda: self.command("mirror", mirror=encode(order)))
+        self.when(lambda: "press the clutch" in self.statuses[-1].reason, lambda: None)
+        self.after(0.1)
+        self.when(lambda: True, self.press)
+
+    def after(self, seconds: float) -> None:
+        """Let time pass."""
+        until: list[int] = []
+        self.when(lambda: True, lambda: until.append(self.now + round(seconds * 1e9)))
+        self.when(lambda: self.now > until[0], lambda: None)
+
+
+def moved(bench: Held) -> np.ndarray:
+    return tool_pose(bench.setpoints[-1].position)[:3, 3] - tool_pose(HOME)[:3, 3]
+
+
+def test_the_arm_follows_while_the_clutch_is_pressed_and_a_lost_hand_needs_it_again() -> None:
+    bench, seen = Held(), []
+    bench.mirror()
+    bench.when(lambda: bench.state == "following", lambda: setattr(bench, "hand", np.array([0.0, 0.05, 0.03])))
+    bench.after(2.0)
+    bench.when(lambda: True, lambda: seen.append(moved(bench)))
+    bench.when(lambda: True, lambda: setattr(bench, "shown", False))
+    bench.when(lambda: "the hand was lost" in bench.statuses[-1].reason, lambda: setattr(bench, "hand", np.ones(3)))
+    bench.when(lambda: True, lambda: setattr(bench, "shown", True))
+    bench.after(0.5)
+    bench.when(lambda: True, lambda: seen.append(moved(bench)))
+    bench.when(lambda: True, lambda: bench.command("stop"))
+    bench.when(lambda: bench.state == "ended", bench.stop.set)
+    bench.run()
+    np.testing.assert_allclose(seen, [[0.0, 0.05, 0.03]] * 2, atol=1e-5)
+    assert bench.states() == ["idle", "held", "following", "held", "ended"]
+    assert standing(bench.setpoints)
+    assert within_limits(bench.setpoints)
+    assert 0 < bench.statuses[-1].hand_latency_p50_us <= bench.statuses[-1].hand_latency_p99_us < 100_000
+
+
+def test_what_does_not_fit_a_live_hand_is_refused() -> None:
+    bench, seen = Held(), []
+
+    def refuse() -> None:
+        for verb, kind, given in (
+            ("step", Conflict, {"length": 0.1}),
+            ("start", Conflict, {"plan": b"{}"}),
+            ("mirror", Conflict, {"mirror": encode(ORDER)}),
+        ):
+            with pytest.raises(kind):
+                bench.command(verb, **given)
+        seen.append("refused")
+
+    def too_large() -> None:
+        with pytest.raises(UnusableInput, match="scale 90"):
+            bench.command("mirror", mirror=encode(Mirroring("glove", Calibration("identity"), empty_scene(), 90.0)))
+
+    bench.when(lambda: bench.now > PERIOD_NS, too_large)
+    bench.mirror()
+    bench.when(lambda: bench.state == "following", refuse)
+    bench.when(lambda: True, lambda: bench.command("hold"))
+    bench.when(lambda: bench.state == "held", lambda: bench.command("stop"))
+    bench.when(lambda: bench.state == "ended", bench.stop.set)
+    bench.run()
+    assert seen == ["refused"]
+
+
+@pytest.mark.parametrize(("left", "why"), [(0, "press the clutch"), (None, "nothing was heard of page")])
+def test_a_page_that_looks_on_presses_the_clutch_and_letting_go_or_leaving_holds_the_arm(
+    left: int | None, why: str
+) -> None:
+    bench, seen = Held(), []
+    bench.page = 0
+    bench.mirror(replace(ORDER, clutch="page"))
+    bench.after(0.3)
+    bench.when(lambda: True, lambda: seen.append(moved(bench)))  # the hand's own button is no clutch now
+    bench.when(lambda: bench.state == "held", lambda: setattr(bench, "page", CLUTCH))
+    bench.when(lambda: bench.state == "following", lambda: setattr(bench, "hand", np.array([0.0, 0.05, 0.03])))
+    bench.after(2.0)
+    bench.when(lambda: True, lambda: setattr(bench, "page", left))
+    bench.when(lambda: why in bench.statuses[-1].reason, lambda: setattr(bench, "hand", np.ones(3)))
+    bench.after(0.5)
+    bench.when(lambda: True, lambda: seen.append(moved(bench)))
+    bench.when(lambda: True, lambda: bench.command("stop"))
+    bench.when(lambda: bench.state == "ended", bench.stop.set)
+    bench.run()
+    np.testing.assert_allclose(seen, [np.zeros(3), [0.0, 0.05, 0.03]], atol=1e-5)
+    assert standing(bench.setpoints)
+    assert within_limits(bench.setpoints)

@@ -1,0 +1,103 @@
+import pytest
+
+from teachpath.errors import Conflict, UnusableInput
+from teachpath.executor.lease import GRANTED, USUAL, ControlLease
+from teachpath.io import wire
+from teachpath.records import LeaseRequest
+
+
+class Desk:
+    """A lease on a clock that the test turns."""
+
+    def __init__(self) -> None:
+        self.now = 0.0
+        self.lease = ControlLease(lambda: round(self.now * 1e9))
+
+    def say(self, action: str, name: str = "", token: str = "", **more: object) -> str:
+        return self.lease.answer(LeaseRequest(action, name, token, **more)).token  # type: ignore[arg-type]
+
+    def holder(self) -> str:
+        return self.lease.seen().holder
+
+
+@pytest.fixture
+def desk() -> Desk:
+    return Desk()
+
+
+def test_without_a_lease_everybody_may_command(desk: Desk) -> None:
+    assert desk.lease.require("", "a script") == "a script"
+
+
+def test_one_at_a_time_and_its_token_is_its_own(desk: Desk) -> None:
+    token = desk.say("acquire", "Ada")
+    assert desk.lease.require(token, "") == "Ada"
+    assert desk.lease.seen().token == ""
+    for use in (lambda: desk.say("acquire", "Bea"), lambda: desk.lease.require("", "Bea")):
+        with pytest.raises(Conflict, match="Ada is in control"):
+            use()
+    desk.say("release", token=token)
+    assert desk.holder() == ""
+    with pytest.raises(Conflict, match="this hold on control is over"):
+        desk.lease.require(token, "")
+
+
+def test_it_lapses_without_beats_and_not_with_them(desk: Desk) -> None:
+    token = desk.say("acquire", "Ada")
+    for _ in range(5):
+        desk.now += 0.9 * USUAL
+        desk.say("beat", token=token)
+    assert desk.holder() == "Ada"
+    desk.now += 1.1 * USUAL
+    assert desk.holder() == ""
+    assert desk.lease.take_lost() == ""  # she did not ask for that
+
+
+def test_a_lost_holder_is_told_once(desk: Desk) -> None:
+    desk.say("acquire", "Ada", hold_when_lost=True)
+    desk.now += 1.1 * USUAL
+    assert [desk.lease.take_lost(), desk.lease.take_lost()] == ["Ada", ""]
+
+
+@pytest.mark.parametrize("answer", ["release", "keep", "nothing"])
+def test_who_asks_gets_it_unless_the_holder_keeps_it(desk: Desk, answer: str) -> None:
+    ada = desk.say("acquire", "Ada", seconds=60.0)
+    bea = desk.say("ask", "Bea", seconds=8.0)
+    assert (desk.lease.seen().asking, desk.lease.seen().granted_in) == ("Bea", GRANTED)
+    with pytest.raises(Conflict, match="Bea asks for control already"):
+        desk.say("ask", "Cem")
+    with pytest.raises(Conflict, match="Ada is in control"):
+        desk.lease.require(bea, "")  # not yet
+    if answer != "nothing":
+        desk.say(answer, token=ada)
+    for _ in range(2):
+        desk.now += 0.55 * GRANTED
+        if answer != "keep":
+            desk.say("beat", token=bea)
+    assert desk.holder() == ("Ada" if answer == "keep" else "Bea")
+    if answer == "keep":
+        with pytest.raises(Conflict, match="kept"):
+            desk.say("beat", token=bea)
+
+
+def test_who_asks_and_goes_away_gets_nothing(desk: Desk) -> None:
+    ada = desk.say("acquire", "Ada", seconds=60.0)
+    desk.say("ask", "Bea")
+    desk.now += 1.1 * GRANTED
+    assert desk.holder() == "Ada"
+    desk.say("beat", token=ada)
+
+
+@pytest.mark.parametrize(
+    ("request_", "sentence"),
+    [
+        (LeaseRequest("acquire", " "), "under a name"),
+        (LeaseRequest("acquire", "x" * 65), "more than 64"),
+        (LeaseRequest("acquire", "a\nb"), "unprintable"),
+        (LeaseRequest("acquire", "Ada", seconds=float("nan")), "between two beats"),
+        (LeaseRequest("acquire", "Ada", seconds=1e9), "at most 60"),
+    ],
+)
+def test_an_unusable_word_is_refused_on_the_wire(request_: LeaseRequest, sentence: str) -> None:
+    with pytest.raises(UnusableInput, match=sentence):
+        wire.decode_lease_request(wire.encode_lease_request(request_))

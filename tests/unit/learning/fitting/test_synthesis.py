@@ -1,0 +1,82 @@
+"""The path of one cluster stays with the mean clean path, loops and retreats or not."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from teachpath.errors import LearningFailed
+from teachpath.learning.clustering.distances import frechet
+from teachpath.learning.fitting import synthesis
+from teachpath.learning.fitting.synthesis import noise_left
+from teachpath.learning.resampling import at_equal_arc_length
+from teachpath.learning.settings import LearningSettings
+from teachpath.records import Array, LearnedPath, Trajectory
+from tests.unit.learning import synthetic
+
+KINDS = {"loop": synthetic.curl(), "retreat": synthetic.retreat(), "closed": synthetic.closed()}
+PAPER = LearningSettings(mode="paper", threshold=0.1)
+
+
+def synthesise(trajectories: list[Trajectory], **settings: float) -> LearnedPath:
+    return synthesis.synthesise(1, trajectories, LearningSettings(**settings), tick=lambda: None)  # type: ignore[arg-type]
+
+
+def off(path: LearnedPath, clean: Array) -> float:
+    """Fréchet distance from the mean clean path, ends and order included."""
+    return frechet(at_equal_arc_length(path.curve(np.linspace(0, 1, 2000)), 300), clean)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("count", [2, 5])
+@pytest.mark.parametrize("seed", range(3))
+def test_the_path_is_within_a_centimetre_of_the_mean_clean_path(kind: str, count: int, seed: int) -> None:
+    trajectories, clean = synthetic.shown(KINDS[kind], count, seed)
+    path = synthesise(trajectories)
+    assert off(path, clean) <= 0.01
+    assert path.fit.largest <= path.fit.bound
+    assert path.fit.frechet is not None
+    assert path.fit.frechet >= path.fit.largest - 0.002
+    assert path.note == ""
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_mode_paper_scrambles_such_paths_and_says_so(kind: str) -> None:
+    trajectories, clean = synthetic.shown(KINDS[kind], 2)
+    path = synthesis.synthesise_as_paper(1, trajectories, PAPER, tick=lambda: None)
+    assert "back towards the start" in path.note
+    assert off(path, clean) > 0.02
+    assert path.fit.frechet is not None
+    assert path.fit.frechet > 0.02
+
+
+def test_a_bound_below_the_noise_names_the_noise() -> None:
+    trajectories, _ = synthetic.shown(synthetic.loop(), 2)
+    with pytest.raises(
+        LearningFailed, match=r"within 0\.02 mm: noise leaves some 0\.\d+ mm .* raise learning.error_bound to"
+    ):
+        synthesise(trajectories, error_bound=2e-5, most_control_points=40)
+
+
+def test_a_wiggly_mean_is_followed_as_closely_as_can_be_and_the_note_says_how() -> None:
+    rng = np.random.default_rng(2)
+    wiggly = [synthetic.demonstration(rng, duration=3.98, wiggle=0.06) for _ in range(2)]
+    path = synthesise(wiggly, most_control_points=12)
+    assert path.fit.largest > path.fit.bound
+    assert f"within {path.fit.largest * 1e3:.2g}" in path.note
+    assert "not 5 mm, by 12 control points" in path.note
+    assert len(path.curve.weights) == 12
+    closer = synthesise(wiggly, most_control_points=100)
+    assert closer.fit.largest <= closer.fit.bound
+    assert closer.note == ""
+
+
+def test_noise_left_falls_with_the_number_of_demonstrations() -> None:
+    few, many = (noise_left(synthetic.shown(synthetic.loop(), count)[0]) for count in (2, 8))
+    assert many == pytest.approx(few / 2, rel=0.3)
+
+
+def test_thirteen_control_points_are_enough_for_half_a_centimetre() -> None:
+    for kind in KINDS.values():
+        trajectories, _ = synthetic.shown(kind, 3)
+        assert len(synthesise(trajectories, error_bound=0.005).curve.weights) <= 13

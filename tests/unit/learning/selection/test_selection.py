@@ -1,0 +1,269 @@
+"""Who is found inconsistent, wherever it stands in the list; and that nobody is when nobody is."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from teachpath.learning.selection.default_mode import pieces_of_work, select
+from teachpath.learning.selection.paper_mode import select_as_paper
+from teachpath.learning.settings import LearningSettings
+from teachpath.records import Array, Cluster, Trajectory
+from tests.unit.learning import synthetic
+
+SETTINGS = LearningSettings(repeats=0)
+PAPER = LearningSettings(mode="paper", threshold=0.08, repeats=0)
+
+
+def selected(demonstrations: dict[str, Trajectory], settings: LearningSettings = SETTINGS) -> Cluster:
+    return select(1, demonstrations, settings, tick=lambda: None)
+
+
+def selected_as_paper(demonstrations: dict[str, Trajectory], **changes: object) -> Cluster:
+    positions = {name: d.positions for name, d in demonstrations.items()}
+    settings = replace(PAPER, **changes)  # type: ignore[arg-type]
+    (cluster,) = select_as_paper(positions, [list(demonstrations)], settings, tick=lambda: None)
+    return cluster
+
+
+def kept(cluster: Cluster) -> set[str]:
+    return {score.demonstration for score in cluster.scores if score.selected}
+
+
+@pytest.mark.parametrize("marked", [1, 2, 3, 4, 5])
+@pytest.mark.parametrize("wiggle", [0.025, 0.005])
+def test_the_wiggly_demonstration_is_rejected_at_any_place_in_the_list(marked: int, wiggle: float) -> None:
+    cluster = selected(synthetic.experiment_2(10 + marked, wiggle=wiggle, marked=marked))
+    assert cluster.members[-1] == str(marked)
+    assert str(marked) not in kept(cluster)
+    assert "smoothness" in cluster.scores[-1].note
+    assert len(kept(cluster)) >= 3
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_two_that_shake_do_not_excuse_each_other(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    shaking = rng.permutation(5)[:2]
+    five = {str(i): synthetic.demonstration(rng, wiggle=0.025 * (i in shaking)) for i in range(5)}
+    assert kept(selected(five)).isdisjoint(map(str, shaking))
+
+
+def paused(positions: Array, rng: np.random.Generator) -> Array:
+    still = np.repeat(positions[100:101], 40, axis=0) + rng.normal(0, 0.001, (40, 3))
+    return np.concatenate([positions[:100], still, positions[100:]])
+
+
+def frozen(positions: Array, _rng: np.random.Generator) -> Array:
+    positions[100:115] = positions[100]
+    return positions
+
+
+def spiked(positions: Array, _rng: np.random.Generator) -> Array:
+    positions[105, 1] += 0.08
+    return positions
+
+
+def detoured(positions: Array, rng: np.random.Generator) -> Array:
+    side = rng.normal(size=3)
+    bump = np.exp(-0.5 * np.square((np.linspace(0, 1, len(positions)) - 0.5) / 0.09))
+    return np.asarray(positions + 0.06 * bump[:, None] * side / np.linalg.norm(side))
+
+
+def jittered(positions: Array, rng: np.random.Generator) -> Array:
+    return np.asarray(positions + rng.normal(0, 0.004, positions.shape))
+
+
+def spoilt(seed: int, fault: Callable[[Array, np.random.Generator], Array]) -> dict[str, Trajectory]:
+    """Five of one way, the third with a fault in its middle."""
+    demonstrations = synthetic.experiment_2(seed, wiggle=0.0)
+    positions = fault(demonstrations["3"].positions.copy(), np.random.default_rng(seed))
+    return {**demonstrations, "3": Trajectory(np.arange(len(positions)) * synthetic.PERIOD, positions)}
+
+
+@pytest.mark.parametrize(
+    ("fault", "words", "least"),
+    [
+        (paused, "stands still for 0.", 4),
+        (frozen, "the tracker repeats one reading for 0.3 s", 4),
+        (spiked, "jumps by", 4),
+        (jittered, "times a second", 4),
+        (detoured, "beside the others", 3),
+    ],
+)
+def test_every_fault_is_outside_the_best_two_and_told_with_its_place(
+    fault: Callable[[Array, np.random.Generator], Array], words: str, least: int
+) -> None:
+    clusters = [selected(spoilt(seed, fault)) for seed in range(4)]
+    assert all("3" in cluster.members[2:] for cluster in clusters)
+    last = [cluster.scores[-1] for cluster in clusters if cluster.members[-1] == "3"]
+    assert sum(not score.selected for score in last) >= least
+    told = [score.departure for score in last if score.departure is not None]
+    assert told
+    for departure in told:
+        assert words in departure.sentence
+        begin, end = departure.share
+        assert 0 <= begin < end <= 1
+        assert departure.seconds[0] < 2.3
+        assert departure.seconds[1] > 2.0
+
+
+def test_the_span_lies_around_the_fault() -> None:
+    departure = selected(spoilt(7, frozen)).scores[-1].departure  # frozen from 2.0 to 2.3 s
+    assert departure is not None
+    begin, end = departure.seconds
+    assert 1.4 < begin <= 2.1
+    assert 2.2 <= end < 3.0
+    assert 0.3 < departure.share[0] < departure.share[1] < 0.9
+
+
+def test_consistent_demonstrations_have_no_departure_and_a_score_of_nearly_nought() -> None:
+    cluster = selected(synthetic.experiment_2(11))
+    for score in cluster.scores[:2]:
+        assert score.departure is None
+        assert score.z is not None
+        assert -1.0 < score.z <= 0.0
+    margins = [score.margin for score in cluster.scores]
+    assert margins[-1] is None
+    assert all(margin is not None and margin >= 0 for margin in margins[:-1])
+
+
+@pytest.mark.parametrize("repeats", [0, 3, 20])
+def test_stability_is_the_share_of_repetitions_in_which_it_is_selected(repeats: int) -> None:
+    cluster = selected(synthetic.experiment_2(12), replace(SETTINGS, repeats=repeats))
+    stabilities = [score.stability for score in cluster.scores]
+    if repeats == 0:
+        assert set(stabilities) == {None}
+    else:
+        assert stabilities[-1] == 0.0  # the wiggly one never is
+        assert stabilities[0] == 1.0
+
+
+def test_repetitions_change_nothing_but_the_stability() -> None:
+    demonstrations = synthetic.experiment_2(13)
+    once, often = (selected(demonstrations, replace(SETTINGS, repeats=repeats)) for repeats in (0, 5))
+    assert once.scores == tuple(replace(score, stability=None) for score in often.scores)
+
+
+@pytest.fixture(scope="module")
+def without_wiggle() -> list[Cluster]:
+    return [selected(synthetic.experiment_2(seed, wiggle=0.0)) for seed in range(30)]
+
+
+def test_without_wiggle_the_marked_one_is_treated_like_the_others(without_wiggle: list[Cluster]) -> None:
+    rejected = np.mean([cluster.members.index("5") >= 2 for cluster in without_wiggle])  # keep 2 of 5: chance is 0.6
+    assert abs(rejected - 0.6) <= 3 * np.sqrt(0.6 * 0.4 / len(without_wiggle))
+
+
+def test_consistent_demonstrations_are_seldom_called_inconsistent(without_wiggle: list[Cluster]) -> None:
+    flagged = np.mean([1 - len(kept(cluster)) / 5 for cluster in without_wiggle])
+    assert flagged <= 0.06  # one of twenty, the price of finding detours no larger than the hand's own scatter
+
+
+def test_in_clusters_of_three_false_alarms_are_rare_too() -> None:
+    clusters = [selected(synthetic.experiment_2(seed, wiggle=0.0, count=3)) for seed in range(30)]
+    assert np.mean([1 - len(kept(cluster)) / 3 for cluster in clusters]) <= 0.04
+
+
+def test_ranking_does_not_depend_on_the_order_or_the_frame() -> None:
+    demonstrations = synthetic.experiment_2(3)
+    rotation = np.linalg.qr(np.random.default_rng(1).normal(size=(3, 3)))[0]
+    here = selected(demonstrations)
+    for other in (
+        selected(dict(reversed(demonstrations.items()))),
+        selected(synthetic.moved(demonstrations, rotation, np.array([1.0, 2.0, 3.0]))),
+    ):
+        assert other.members == here.members
+        assert kept(other) == kept(here)
+        np.testing.assert_allclose(
+            [score.log_likelihood for score in other.scores],
+            [score.log_likelihood for score in here.scores],
+            rtol=1e-6,
+        )
+
+
+@pytest.mark.parametrize("keep", [1, 3, 5, 9])
+def test_at_least_the_demanded_number_is_kept(keep: int) -> None:
+    cluster = selected(synthetic.experiment_2(4), LearningSettings(keep=keep, inconsistent=0.0, repeats=0))
+    assert len(kept(cluster)) >= min(keep, 5)
+
+
+def test_one_demonstration_is_kept_unscored() -> None:
+    cluster = selected({"a": synthetic.experiment_2(1)["1"]})
+    assert kept(cluster) == {"a"}
+    assert "one demonstration only" in cluster.note
+
+
+def test_identical_demonstrations_are_all_consistent() -> None:
+    one = synthetic.experiment_2(1)["1"]
+    for names in ("ab", "abc", "abcde"):
+        cluster = selected(dict.fromkeys(names, one))
+        assert kept(cluster) == set(names)
+        assert np.all(np.isfinite([score.log_likelihood for score in cluster.scores]))
+
+
+def test_demonstrations_shorter_than_the_window_are_judged_by_their_course() -> None:
+    rng = np.random.default_rng(5)
+    cluster = selected({str(i): synthetic.demonstration(rng, duration=0.3) for i in range(5)})
+    assert "shorter than the analysis window" in cluster.note
+    assert np.all(np.isfinite([score.log_likelihood for score in cluster.scores]))
+
+
+def test_many_demonstrations_are_judged_in_folds() -> None:
+    rng = np.random.default_rng(6)
+    crowd = {f"{i:02}": synthetic.demonstration(rng, wiggle=0.025 * (i == 17)) for i in range(33)}
+    ticks: list[int] = []
+    cluster = select(1, crowd, SETTINGS, tick=lambda: ticks.append(1))
+    assert cluster.members[-1] == "17"
+    assert len(ticks) == pieces_of_work([33], 0) < pieces_of_work([30], 0)
+
+
+def test_mode_paper_keeps_exactly_the_n_best_by_likelihood() -> None:
+    cluster = selected_as_paper(synthetic.experiment_2(1))
+    likelihoods = [score.log_likelihood for score in cluster.scores]
+    assert likelihoods == sorted(likelihoods, reverse=True)
+    assert [score.selected for score in cluster.scores] == [True, True, False, False, False]
+    assert 2 <= len(cluster.convergence) <= 10
+    assert cluster.convergence[-1] > cluster.convergence[0]
+
+
+def test_mode_paper_repeats_itself_with_the_same_seed_and_not_with_another() -> None:
+    demonstrations = synthetic.experiment_2(1)
+    assert selected_as_paper(demonstrations).scores == selected_as_paper(dict(reversed(demonstrations.items()))).scores
+    assert selected_as_paper(demonstrations).scores != selected_as_paper(demonstrations, seed=2).scores
+
+
+def test_mode_paper_skips_selection_when_there_are_fewer_than_n() -> None:
+    cluster = selected_as_paper({"a": synthetic.experiment_2(1)["1"]})
+    assert kept(cluster) == {"a"}
+    assert "fewer than 2" in cluster.note
+
+
+def test_mode_paper_is_on_the_scale_of_the_papers_table() -> None:
+    # Table I: -119 to -232 for 159 samples.
+    scores = []
+    for seed in range(5):
+        demonstrations = {k: d for k, d in synthetic.experiment_1(seed).items() if k in {"1", "6", "8", "10", "12"}}
+        scores += [score.log_likelihood for score in selected_as_paper(demonstrations, seed=seed).scores]
+    assert -232 < np.median(scores) < -119
+
+
+def test_mode_paper_counts_its_stability_over_other_seeds() -> None:
+    cluster = selected_as_paper(synthetic.experiment_2(2), repeats=10)
+    stabilities = [score.stability for score in cluster.scores]
+    assert all(stability is not None and 0 <= stability <= 1 for stability in stabilities)
+    assert sum(s for s in stabilities if s is not None) == pytest.approx(2)  # two of five are kept each time
+
+
+def test_mode_repaired_rejects_the_wiggly_one_where_mode_paper_guesses() -> None:
+    seeds = range(20)
+    rates = {
+        mode: np.mean(
+            [5 not in map(int, kept(selected_as_paper(synthetic.experiment_2(s), mode=mode, seed=s))) for s in seeds]
+        )
+        for mode in ("paper", "repaired")
+    }
+    assert rates["repaired"] >= 0.85
+    assert rates["paper"] < rates["repaired"]

@@ -1,0 +1,213 @@
+"""The preview: what pages are told, and that a page that does not listen costs nothing."""
+
+import re
+from pathlib import Path
+
+import numpy as np
+
+from teachpath.io import wire
+from teachpath.io.bus import MemoryBus
+from teachpath.live.preview import WAYS, Page, Preview, PreviewSettings
+from teachpath.motion.arm.geometry import drawing
+from teachpath.motion.arm.kinematics import link_frames
+from teachpath.motion.collision.builtin_scenes import empty_scene, paper_scene
+from teachpath.motion.settings import MotionSettings
+from teachpath.recording.demonstration import Pose
+from teachpath.recording.live_hand import Hand
+from teachpath.records import JointState, Phase
+from teachpath_proto.keys import Keys
+from tests.unit.live.pages import ignore, take
+
+KEYS = Keys()
+HOME = np.array(MotionSettings().home)
+
+
+class Station:
+    """A preview on an in-memory bus and a clock that the test turns."""
+
+    def __init__(self) -> None:
+        self.bus = MemoryBus()
+        self.now = 0.0
+        self.hands: list[Hand] = []
+        self.preview = Preview(
+            self.bus,
+            KEYS,
+            drawing(),
+            robot="puma560",
+            home=HOME,
+            hands=lambda: self.hands,
+            settings=PreviewSettings(rate=0.01),  # its own thread stays out of the way
+            clock=lambda: self.now,
+        )
+
+    def publish_state(self, q: np.ndarray, *, closed: bool = False, at: tuple[float, float, float] = (0, 0, 0)) -> None:
+        zero = np.zeros(6)
+        state = JointState(1, 1, q, zero, zero, 0.0, 0, False, closed, at, (1.0, 0.0, 0.0, 0.0))
+        self.bus.publish(KEYS.state("puma560"), wire.encode_state(state))
+
+    def see(self, x: float, phase: Phase = Phase.REACH, *, take: int = 1, carried: Pose | None = None) -> None:
+        """Let the hand be at `x` and draw it."""
+        self.now += 0.02
+        received = self.hands[0].received + 1 if self.hands else 1
+        held = phase is Phase.TRANSPORT
+        self.hands = [Hand("glove", received, take, phase, held, (x, 0.0, 0.6), paper_scene().carried, carried)]
+        self.preview.update()
+
+
+# what is drawn
+
+
+def test_a_new_page_gets_arm_and_object() -> None:
+    preview = Station().preview
+    preview.show_object(paper_scene().carried)
+    sent = take(preview.attach(ignore))
+    objects = {c["path"] for c in sent if c["type"] == "set_object"}
+    assert "/object" in objects
+    assert len([path for path in objects if path.startswith("/robot/link")]) == len(drawing())
+    assert objects == set(preview.paths())
+
+
+def test_the_arm_follows_the_newest_joint_state() -> None:
+    station = Station()
+    with station.preview as preview:
+        page = preview.attach(ignore)
+        take(page)
+        for q1 in (0.1, 0.2, 0.3):
+            station.publish_state(HOME + np.array([q1, 0, 0, 0, 0, 0]))
+        preview.update()
+        sent = {c["path"]: np.reshape(c["matrix"], (4, 4)).T for c in take(page)}
+        frames = link_frames(HOME + np.array([0.3, 0, 0, 0, 0, 0]))
+        for i in range(1, 7):
+            assert np.allclose(sent[f"/robot/link{i}"], frames[i], atol=1e-5)
+        station.publish_state(HOME + np.array([0.3, 0, 0, 0, 0, 1e-9]))
+        preview.update()
+        assert take(page) == []  # at rest nothing is sent
+
+
+def test_the_object_follows_and_the_fingers_close() -> None:
+    station = Station()
+    with station.preview as preview:
+        preview.show_object(paper_scene().carried)
+        page = preview.attach(ignore)
+        take(page)
+        station.publish_state(HOME, closed=True, at=(0.1, 0.2, 0.7))
+        preview.update()
+        sent = {c["path"]: np.reshape(c["matrix"], (4, 4)).T for c in take(page)}
+        assert np.allclose(sent["/object"][:3, 3], (0.1, 0.2, 0.7))
+        assert {"/robot/link6/left-finger", "/robot/link6/right-finger"} <= set(sent)
+
+
+def test_the_object_stays_when_the_arm_knows_of_none() -> None:
+    station = Station()
+    with station.preview as preview:
+        preview.show_object(paper_scene().carried)
+        page = preview.attach(ignore)
+        take(page)
+        zero = np.zeros(6)
+        state = JointState(1, 1, HOME + 0.1, zero, zero, 0.0, 0, False, False, (0, 0, 0), (0, 0, 0, 0))
+        station.bus.publish(KEYS.state("puma560"), wire.encode_state(state))
+        preview.update()
+        assert "/object" not in {c["path"] for c in take(page)}
+
+
+def test_a_scene_without_an_object_shows_none() -> None:
+    station = Station()
+    with station.preview as preview:
+        preview.show_object(paper_scene().carried)
+        preview.show_object(empty_scene().carried)
+        station.publish_state(HOME)
+        preview.update()
+        assert preview.paths("/object") == []
+
+
+def test_malformed_states_are_left_out() -> None:
+    station = Station()
+    with station.preview as preview:
+        page = preview.attach(ignore)
+        take(page)
+        station.bus.publish(KEYS.state("puma560"), b"\xff\xff")
+        preview.update()
+        assert take(page) == []
+
+
+def placed(page: Page, path: str) -> list[tuple[float, ...]]:
+    """Return where the page is told to put what is at `path`, in order."""
+    told = [c for c in take(page) if c["path"] == path and c["type"] == "set_transform"]
+    return [tuple(round(v, 4) for v in c["matrix"][12:15]) for c in told]
+
+
+def test_a_hand_is_drawn_with_its_trail_until_it_falls_silent() -> None:
+    station = Station()
+    with station.preview as preview:
+        page = preview.attach(ignore)
+        take(page)
+        for i in range(10):
+            station.see(0.01 * i)
+        assert placed(page, "/hand/glove/marker")[-1] == (0.09, 0.0, 0.6)
+        assert preview.paths("/hand") == ["/hand/glove/marker", "/hand/glove/trail"]
+        station.now += PreviewSettings().hand_silence + 0.1
+        preview.update()
+        assert preview.paths("/hand") == []
+
+
+def test_the_trail_is_that_of_the_current_take() -> None:
+    station = Station()
+    with station.preview as preview:
+        for i in range(20):
+            station.see(0.01 * i)
+        station.see(0.5, take=2)
+        assert preview.paths("/hand") == ["/hand/glove/marker"]
+
+
+def test_the_object_goes_with_the_hand_lies_where_it_was_let_go_and_goes_back() -> None:
+    station, thing = Station(), paper_scene().carried
+    assert thing is not None
+    turned = (0.0, 1.0, 0.0, 0.0)
+    with station.preview as preview:
+        preview.show_object(thing)
+        page = preview.attach(ignore)
+        take(page)
+        station.see(0.1)
+        assert placed(page, "/object") == []
+        station.see(0.2, Phase.TRANSPORT, carried=((0.3, 0.1, 0.7), turned))
+        assert placed(page, "/object") == [(0.3, 0.1, 0.7)]
+        station.publish_state(HOME, at=(9.0, 9.0, 9.0))  # the arm does not take it out of the hand
+        station.see(0.2, Phase.TRANSPORT)  # not tracked for a moment
+        station.see(0.3, Phase.RETURN)
+        assert placed(page, "/object") == []
+        station.see(0.3, Phase.REACH, take=2)
+        assert placed(page, "/object") == [tuple(round(v, 4) for v in thing.position)]
+        station.publish_state(HOME, at=(0.4, 0.4, 0.4))
+        preview.update()
+        assert placed(page, "/object") == [(0.4, 0.4, 0.4)]
+
+
+def test_an_object_in_a_hand_that_vanishes_goes_back() -> None:
+    station, thing = Station(), paper_scene().carried
+    assert thing is not None
+    with station.preview as preview:
+        preview.show_object(thing)
+        page = preview.attach(ignore)
+        station.see(0.2, Phase.TRANSPORT, carried=((0.3, 0.1, 0.7), (1.0, 0.0, 0.0, 0.0)))
+        take(page)
+        station.now += PreviewSettings().hand_silence + 0.1
+        preview.update()
+        assert placed(page, "/object") == [tuple(round(v, 4) for v in thing.position)]
+
+
+def test_stops_listening_when_stopped() -> None:
+    station = Station()
+    with station.preview as preview:
+        page = preview.attach(ignore)
+        take(page)
+    station.publish_state(HOME + 0.1)
+    station.preview.update()
+    assert take(page) == []
+
+
+def test_the_page_uses_the_same_colours_everywhere() -> None:
+    web = Path(__file__).parents[3] / "clients" / "web"
+    style = dict(re.findall(r"--way-(\d): #([0-9a-f]{6});", (web / "style.css").read_text()))
+    (drawn,) = re.findall(r"WAYS = \[(.*?)\]", (web / "shapes.js").read_text())
+    assert [int(style[str(i)], 16) for i in range(len(WAYS))] == list(WAYS)
+    assert [int(colour, 16) for colour in drawn.split(",")] == list(WAYS)

@@ -1,0 +1,94 @@
+import numpy as np
+import pytest
+
+from teachpath.errors import UnusableRecording
+from teachpath.io.setpoints import read_setpoints
+from teachpath.motion.analysis.log_check import SetpointLog, judge
+from teachpath.motion.arm.kinematics import tool_pose
+from teachpath.motion.collision.builtin_scenes import paper_scene
+from teachpath.motion.planning.certificate import track
+from teachpath.motion.planning.plan import plan
+from teachpath.motion.settings import MotionSettings
+from teachpath.records import Plan
+from tests.unit.motion.ways import FAR, MIDDLE, way
+
+RATE = 250.0
+
+
+@pytest.fixture(scope="module")
+def planned() -> Plan:
+    return plan(way(MIDDLE), paper_scene())
+
+
+def streamed(planned: Plan, **changes: object) -> SetpointLog:
+    positions = track(planned).setpoints(RATE)[:, :6]
+    return SetpointLog(np.arange(len(positions)) / RATE, positions, **changes)  # type: ignore[arg-type]
+
+
+def test_what_was_planned_is_judged_to_keep_everything(planned: Plan) -> None:
+    judgement = judge(streamed(planned), way(MIDDLE).curve)
+    assert judgement.faults == ()
+    assert any("over 100.0 % of its parameter" in sentence for sentence in judgement.measured)
+
+
+def test_its_own_kinematics_agree_with_ours() -> None:
+    from teachpath.motion.analysis.log_check import _tool
+
+    q = np.random.default_rng(2).uniform(-2, 2, (50, 6))
+    np.testing.assert_allclose(_tool(q), tool_pose(q)[:, :3, 3], atol=1e-12)
+
+
+def test_a_setpoint_that_was_dropped_repeated_or_moved_is_found(planned: Plan) -> None:
+    whole = streamed(planned)
+    middle = len(whole.times) // 2
+    dropped = SetpointLog(np.delete(whole.times, middle), np.delete(whole.positions, middle, axis=0), missing=1)
+    repeated = SetpointLog(whole.times, np.concatenate([whole.positions[:middle], whole.positions[middle - 1 : -1]]))
+    moved = whole.positions.copy()
+    moved[middle] += 2e-4
+    for log, words in ((dropped, "missing"), (repeated, "limit used to"), (SetpointLog(whole.times, moved), "jerk")):
+        faults = judge(log, way(MIDDLE).curve).faults
+        assert any(words in fault for fault in faults), faults
+
+
+def test_a_gap_at_rest_is_no_fault_and_one_in_motion_is(planned: Plan) -> None:
+    whole = streamed(planned)
+    rest = np.repeat(whole.positions[:1], 10, axis=0)
+    positions = np.concatenate([rest, whole.positions])
+    times = np.concatenate([np.arange(10) / RATE, 1.0 + whole.times])
+    assert judge(SetpointLog(times, positions), None).faults == ()
+    middle = len(times) // 2
+    times[middle:] += 0.5
+    assert any("not one period apart" in fault for fault in judge(SetpointLog(times, positions), None).faults)
+
+
+def test_another_path_or_other_limits_are_broken(planned: Plan) -> None:
+    assert any("off the path" in f for f in judge(streamed(planned), way(MIDDLE, height=0.61).curve).faults)
+    faster = streamed(planned)
+    quick = SetpointLog(faster.times / 1.2, faster.positions)
+    assert len([f for f in judge(quick, way(MIDDLE).curve).faults if "limit used to" in f]) == 3
+    beyond = SetpointLog(faster.times, faster.positions + np.array([0, 0, 0, 0, 4.0, 0]))
+    assert any("beyond its limit" in f for f in judge(beyond, None).faults)
+    far = tool_pose(np.array(MotionSettings().home))[:3, 3]
+    rest = SetpointLog(faster.times, np.tile(MotionSettings().home, (len(faster.times), 1)))
+    assert np.linalg.norm(way(FAR).curve(0.0) - far) > 0.01
+    assert any("never comes to the start" in f for f in judge(rest, way(FAR).curve).faults)
+
+
+def test_a_csv_is_read_back_and_a_broken_one_names_its_line() -> None:
+    header = "t,q1,q2,q3,q4,q5,q6,on_path\n"
+    rows = [f"{0.004 * k},0.1,0.2,0.3,0.4,0.5,{0.001 * k},1" for k in range(6)]
+    times, positions, on_path = read_setpoints((header + "\n".join(rows)).encode(), "log.csv")
+    np.testing.assert_allclose(positions[:, 5], 0.001 * np.arange(6))
+    assert on_path is not None
+    assert on_path.all()
+    assert len(times) == 6
+    for text, sentence in (
+        ("", "first line must be"),
+        (header, "0 setpoints are too few"),
+        (header + "\n".join([*rows, "1,2,3"]), "line 8: 3 values"),
+        (header + "\n".join([*rows, "0,nan,0,0,0,0,0,1"]), "line 8: a value is not finite"),
+        (header + "\n".join([*rows, rows[0]]), "line 8: time does not go on"),
+        (header + "\n".join(r.replace("0.2", "20.5") for r in rows), "are these degrees"),
+    ):
+        with pytest.raises(UnusableRecording, match=sentence):
+            read_setpoints(text.encode(), "log.csv")

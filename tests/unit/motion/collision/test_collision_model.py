@@ -1,0 +1,129 @@
+import numpy as np
+import pytest
+
+from teachpath.motion.arm.kinematics import downward, inverse, tool_pose
+from teachpath.motion.arm.puma560 import LOWER, UPPER
+from teachpath.motion.collision.builtin_scenes import paper_scene
+from teachpath.motion.collision.collision_model import FAR, Clearance, CollisionModel, Load
+from teachpath.motion.settings import MotionSettings
+from teachpath.motion.timing.joint_moves import left_behind
+from teachpath.records import Scene, Shape
+from tests.unit.motion.collision.solids import Surface
+
+HOME = np.array(MotionSettings().home)
+
+
+def over(x: float, y: float, z: float) -> np.ndarray:
+    """A configuration with the tool pointing down at a place, elbow up."""
+    return inverse(downward(np.array([[x, y, z]]), 0.0)).joints[:, 1]
+
+
+def test_the_distance_of_the_fingers_to_a_table_is_the_gap_below_them() -> None:
+    table = Shape("table", "box", (0.9, 1.2, 0.04), (0.6, 0.0, 0.48))
+    for gap in (0.01, 0.03):
+        tip = 0.135 - 0.13  # of the fingers below the grasp point
+        least = CollisionModel(Scene("s", (table,))).clearances(over(0.5, 0.1, 0.5 + tip + gap))[0]
+        assert least.distance == pytest.approx(gap, abs=1e-6)
+        assert least.other == "table"
+        assert "finger" in least.part
+
+
+def test_a_place_is_free_in_the_middle_and_struck_at_its_worst() -> None:
+    post = Shape("post", "cylinder", (0.02, 0.3), (0.5, 0.0, 0.65))
+    model = CollisionModel(Scene("s", (post,)))
+    q = np.concatenate([over(0.5, y, 0.7) for y in (-0.3, -0.15, 0.0, 0.15)])
+    distances = [row.distance for row in model.clearances(q)]
+    assert int(np.argmin(distances)) == 2
+    assert distances[2] < 0 < 0.05 < distances[0]
+
+
+def test_the_arm_at_home_is_clear_of_itself() -> None:
+    assert CollisionModel(Scene("s")).clearances(HOME)[0].distance > 0.02
+
+
+def test_a_folded_arm_meets_itself() -> None:
+    least = CollisionModel(Scene("s")).clearances(over(0.15, -0.05, 0.4))[0]
+    assert least.distance < 0.0
+    assert {least.part, least.other} & {"pedestal", "trunk", "shoulder", "upper arm"}
+
+
+def test_the_block_may_touch_the_table_it_stands_on_but_not_what_is_beside_it() -> None:
+    scene = paper_scene()
+    assert scene.carried is not None
+    q = over(*scene.carried.position)
+    upright = np.eye(4)
+    upright[:3, 3] = scene.carried.position
+    load = Load(grasp=np.linalg.inv(tool_pose(q[0])) @ upright)
+    model = CollisionModel(scene)
+    assert model.supports(q, load)[0].distance == pytest.approx(0.0, abs=1e-6)
+    assert model.clearances(q, load=load)[0].distance > 0.01
+    assert model.straddles(q, Load(placed=scene.carried.position))[0].distance > 0.005
+    (beside,) = model.clearances(over(0.445 - 0.02 - 0.002, 0.0, 0.6), load=load)  # the box's face is at x = 0.445
+    assert beside.distance == pytest.approx(0.002, abs=1e-6)
+    assert (beside.part, beside.other) == ("block", "box")
+
+
+def test_no_moving_point_is_farther_from_an_axis_than_its_lever() -> None:
+    surface, levers = Surface(), CollisionModel(paper_scene()).levers()
+    q = np.random.default_rng(5).uniform(LOWER, UPPER, (60, 6))
+    longest = np.zeros(6)
+    for joint in range(6):
+        step = np.zeros(6)
+        step[joint] = 1e-6
+        for one, other in zip(surface(q), surface(q + step), strict=True):
+            longest[joint] = max(longest[joint], float(np.linalg.norm(other - one, axis=1).max() / 1e-6))
+    assert np.all(longest <= levers + 1e-6)
+    assert np.all(longest > 0.35 * levers)
+
+
+BALL = Shape("ball", "sphere", (0.05,), (0.5, 0.0, 0.75))
+CUBE = tuple((x, y, z) for x in (-1.0, 1.0) for y in (-1.0, 1.0) for z in (-1.0, 1.0))
+
+
+TURNED = (np.cos(np.pi / 8), 0.0, 0.0, np.sin(np.pi / 8))
+
+
+@pytest.mark.parametrize(
+    ("shape", "distance"),
+    [
+        # A finger's edge is 7 cm before and 2 cm beside the middle of the shape.
+        (BALL, np.hypot(0.07, 0.02) - 0.05),
+        (Shape("box", "box", (0.1, 0.1, 0.1), BALL.position), 0.02),
+        (
+            Shape("turned", "box", (0.1, 0.1, 0.1), BALL.position, orientation=TURNED),
+            (0.09 - np.sqrt(0.005)) / np.sqrt(2),
+        ),
+        (Shape("mesh", "mesh", (0.05,), BALL.position, vertices=CUBE), 0.02),
+    ],
+)
+def test_every_kind_of_shape_is_met_where_it_is(shape: Shape, distance: float) -> None:
+    model = CollisionModel(Scene("s", (shape,)))
+    (least,) = model.clearances(over(0.5 - 0.07 - 0.011, 0.0, 0.75))
+    assert least.other == shape.name
+    assert least.distance == pytest.approx(distance, abs=2e-5)
+
+
+def test_the_object_stands_turned_where_a_turned_tool_left_it() -> None:
+    scene = paper_scene()
+    assert scene.carried is not None
+    start, goal = over(*scene.carried.position)[0], over(0.6, 0.2, 0.6)[0]
+    load = left_behind(scene, start, goal + np.array([0, 0, 0, 0, 0, 0.5]))
+    assert load is not None
+    assert load.turned is not None
+    assert np.arctan2(load.turned[1, 0], load.turned[0, 0]) == pytest.approx(-0.5, abs=1e-9)
+
+
+def test_nothing_near_is_far() -> None:
+    assert CollisionModel(Scene("s")).clearances(over(0.5, 0.0, 0.8))[0].distance <= FAR
+
+
+@pytest.mark.parametrize(
+    ("distance", "least", "sentence"),
+    [
+        (0.002, 0.005, "block comes within 2.0 mm of box, least allowed 5.0 mm"),
+        (-0.012, 0.005, "block goes 12.0 mm into box, has to stay 5.0 mm away"),
+        (-0.012, -0.003, "block goes 12.0 mm into box, at most 3.0 mm are allowed"),
+    ],
+)
+def test_what_is_too_near_is_said_without_a_negative_number(distance: float, least: float, sentence: str) -> None:
+    assert Clearance(distance, "block", "box").too_near(distance, least) == sentence

@@ -1,0 +1,121 @@
+"""The arm mirrors a hand: within all limits and clear of everything, whatever the hand does."""
+
+import numpy as np
+import pytest
+
+from teachpath.motion.arm.kinematics import tool_pose
+from teachpath.motion.arm.puma560 import ACCELERATION, JERK, LOWER, SPEED, UPPER
+from teachpath.motion.collision.builtin_scenes import empty_scene, paper_scene
+from teachpath.motion.collision.collision_model import CollisionModel
+from teachpath.motion.execution.teleop_follower import Mirror
+from teachpath.motion.settings import MotionSettings
+from teachpath.records import Scene
+
+SETTINGS = MotionSettings()
+HOME = np.array(SETTINGS.home)
+DT, EVERY = 0.004, 5  # control period, and periods between two samples of the hand
+SHARE = 0.5
+
+
+class Session:
+    """A mirror, the setpoints that it made, and a hand."""
+
+    def __init__(self, scene: Scene | None = None, **given: float) -> None:
+        self.model = CollisionModel(scene or empty_scene())
+        self.mirror = Mirror(self.model, HOME, SETTINGS, share=SHARE, **given)
+        self.sent = [HOME] * 3
+        self.reasons: set[str] = set()
+
+    def run(self, periods: int, hand: np.ndarray | None = None) -> np.ndarray:
+        for k in range(periods):
+            if hand is not None and k % EVERY == 0:
+                self.mirror.move(hand, len(self.sent))
+            self.sent.append(self.mirror.step()[0])
+            self.mirror.think()
+            self.reasons.add(self.mirror.reason)
+        return self.tool()
+
+    def tool(self) -> np.ndarray:
+        return tool_pose(self.sent[-1])[:3, 3]
+
+    def within_limits(self) -> bool:
+        q = np.array(self.sent)
+        return bool(np.all(q >= LOWER) and np.all(q <= UPPER)) and all(
+            bool(np.all(np.abs(np.diff(q, k, axis=0)) / DT**k <= SHARE * limit * (1 + 1e-6)))
+            for k, limit in ((1, SPEED), (2, ACCELERATION), (3, JERK))
+        )
+
+
+@pytest.mark.parametrize("scale", [1.0, 0.3])
+def test_the_tool_goes_where_the_hand_went_scaled_and_keeps_its_orientation(scale: float) -> None:
+    session = Session(scale=scale)
+    begin, hand = session.tool(), np.array([3.0, 1.0, -2.0])
+    session.mirror.press(hand)
+    way = np.array([0.05, 0.08, 0.04])
+    end = session.run(600, hand + way)
+    np.testing.assert_allclose(end - begin, scale * way, atol=1e-6)
+    np.testing.assert_allclose(tool_pose(session.sent[-1])[:3, :3], tool_pose(HOME)[:3, :3], atol=1e-6)
+    assert session.mirror.standing
+    assert session.within_limits()
+    assert session.reasons == {""}
+
+
+def test_a_clutch_that_is_pressed_again_elsewhere_makes_no_jump() -> None:
+    session = Session()
+    session.mirror.press(np.zeros(3))
+    there = session.run(400, np.array([0.0, 0.06, 0.0]))
+    session.mirror.release()
+    session.run(100)
+    session.mirror.press(np.array([9.0, 9.0, 9.0]))
+    np.testing.assert_allclose(session.run(300, np.array([9.0, 9.0, 9.0])), there, atol=1e-6)
+    np.testing.assert_allclose(session.run(400, np.array([9.0, 9.0, 9.05])), there + np.array([0, 0, 0.05]), atol=1e-6)
+    assert session.within_limits()
+
+
+def test_a_released_clutch_stops_the_arm_soon() -> None:
+    session = Session()
+    session.mirror.press(np.zeros(3))
+    session.run(60, np.array([0.0, 0.3, 0.0]))
+    assert not session.mirror.standing
+    session.mirror.release()
+    session.run(125)  # half a second
+    assert session.mirror.standing
+    assert session.within_limits()
+
+
+def test_a_wild_hand_leaves_the_arm_within_its_limits_and_clear() -> None:
+    rng = np.random.default_rng(5)
+    session = Session(paper_scene())
+    session.mirror.press(np.zeros(3))
+    for _ in range(60):
+        hand = rng.normal(0.0, 0.25, 3) if rng.random() < 0.3 else rng.normal(0.0, 5.0, 3)
+        session.run(int(rng.integers(3, 40)), hand)
+    session.run(300)
+    assert session.within_limits()
+    rows = session.model.clearances(np.array(session.sent[::4]))
+    assert min(row.distance for row in rows) >= SETTINGS.clearance_min
+    assert len(session.reasons) > 2
+
+
+@pytest.mark.parametrize(
+    ("way", "words"),
+    [
+        ([2.0, 0.0, 0.0], "reach|stretched|limit"),
+        ([0.0, 0.0, -0.6], "would come within"),
+        ([0, 0, 3.0], "reach|stretched|limit"),
+    ],
+)
+def test_what_cannot_be_reached_is_said_and_the_arm_stays_as_near_as_it_safely_may(
+    way: list[float], words: str
+) -> None:
+    session = Session(paper_scene())
+    begin = session.tool()
+    session.mirror.press(np.zeros(3))
+    session.run(900, np.array(way))
+    assert any(word in reason for word in words.split("|") for reason in session.reasons)
+    gone = (session.tool() - begin) @ np.array(way) / np.linalg.norm(way)
+    assert gone > 0.02
+    assert session.within_limits()
+    back = session.run(900, np.zeros(3))
+    np.testing.assert_allclose(back, begin, atol=2e-3)
+    assert session.mirror.reason == ""

@@ -1,0 +1,46 @@
+"""Plans of random paths, judged by an independent checker; `make bench` judges a hundred."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from checker import GRIP, frames, judge
+from random_plans import random_case, streamed
+from refusals import configurations, search
+
+from teachpath.motion.planning.plan import plan
+from teachpath.records import Shape
+from tests.unit.motion.ways import learned
+
+ACCEPTED = (3, 4)
+
+
+@pytest.mark.parametrize("seed", ACCEPTED)
+def test_an_accepted_plan_keeps_everything_when_it_is_streamed(seed: int) -> None:
+    curve, scene = random_case(seed)
+    made = plan(learned(curve), scene)
+    found = judge(streamed(made), curve, scene, every=25)
+    assert max(found.position, found.speed, found.acceleration, found.jerk) <= 1.0
+    assert found.off_path <= 1e-4
+    assert found.clearance >= made.certificate.clearance.value - 1e-3
+
+
+def test_the_judge_of_refusals_knows_every_configuration_of_a_plan_and_what_blocks_it() -> None:
+    curve, scene = random_case(ACCEPTED[0])
+    made = plan(learned(curve), scene)
+    for q in made.joints[:: len(made.joints) // 7]:
+        pose = frames(q)[6]
+        point = pose[:3, 3] + GRIP * pose[:3, 2]
+        every = configurations(point, float(np.arctan2(pose[1, 0], pose[0, 0])))
+        assert min(np.abs(other - q).max() for other in every) < 1e-6
+    ball = Shape("ball in the way", "sphere", (0.03,), tuple(curve(np.zeros(1))[0]))
+    assert not search(curve, replace(scene, obstacles=(ball,))).possible
+
+
+def test_the_checker_notices_what_is_wrong() -> None:
+    curve, scene = random_case(ACCEPTED[0])
+    sent = streamed(plan(learned(curve), scene))
+    sent[len(sent) // 2 :, 0] += 2e-3
+    found = judge(sent, curve, scene, every=999)
+    assert found.jerk > 1.0
+    assert found.off_path > 1e-4

@@ -1,0 +1,183 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from teachpath.errors import PathRefused
+from teachpath.io.documents import decode, encode
+from teachpath.motion.arm.kinematics import tool_pose
+from teachpath.motion.arm.puma560 import ACCELERATION, JERK, LOWER, SPEED, UPPER
+from teachpath.motion.collision.builtin_scenes import empty_scene, paper_scene
+from teachpath.motion.paths.tool_path import ArcLength
+from teachpath.motion.planning.certificate import digest, limit_uses, track, verify
+from teachpath.motion.planning.plan import plan
+from teachpath.motion.settings import MotionSettings
+from teachpath.nurbs import Curve
+from teachpath.records import Plan, Shape
+from tests.unit.motion.ways import FAR, MIDDLE, NEAR, clamped, learned, way
+
+
+@pytest.fixture(scope="module")
+def middle() -> Plan:
+    return plan(way(MIDDLE), paper_scene())
+
+
+@pytest.mark.parametrize("degree", [3, 5])
+@pytest.mark.parametrize("x", [NEAR, MIDDLE, FAR])
+def test_the_three_ways_of_the_paper_keep_every_limit_and_the_path(x: float, degree: int) -> None:
+    path = way(x, degree=degree)
+    made = plan(path, paper_scene())
+    setpoints = track(made).setpoints(250.0)
+    q, s = setpoints[:, :6], setpoints[:, 6]
+    assert np.all((q >= LOWER) & (q <= UPPER))
+    for order, limit in ((1, SPEED), (2, ACCELERATION), (3, JERK)):
+        assert np.all(np.abs(np.diff(q, order, axis=0)) * 250.0**order <= limit)
+    wanted = path.curve(ArcLength(path.curve).parameters(s))
+    poses = tool_pose(q)
+    assert np.linalg.norm(poses[:, :3, 3] - wanted, axis=1).max() < 1e-4
+    np.testing.assert_allclose(poses[:, :3, 2], np.tile([0, 0, -1], (len(s), 1)), atol=1e-4)
+    assert made.certificate.clearance.value >= MotionSettings().clearance_min
+    assert track(made).duration == made.duration
+
+
+def test_the_certificate_agrees_with_setpoints_differenced_again(middle: Plan) -> None:
+    certificate = middle.certificate
+    written = certificate.position_use, certificate.velocity_use, certificate.acceleration_use, certificate.jerk_use
+    assert written == limit_uses(track(middle).setpoints(250.0), 250.0)
+
+
+def test_a_plan_survives_json_and_any_change_of_it_is_noticed(middle: Plan) -> None:
+    back = decode(Plan, encode(middle))
+    verify(back)
+    bent = back.joints.copy()
+    bent[10, 2] += 1e-9
+    assert middle.scene.carried is not None
+    moved = replace(middle.scene, obstacles=middle.scene.obstacles[:-1])
+    for changed in (
+        replace(back, joints=bent),
+        replace(back, scene=moved),
+        replace(back, pace=back.pace * 1.01),
+        replace(back, limits=back.limits * 1.01),
+        replace(back, duration=back.duration * 0.99),
+        replace(back, path_version=2),
+        replace(back, above_goal=back.above_goal + 1e-9),
+    ):
+        with pytest.raises(PathRefused, match="changed since it was certified"):
+            verify(changed)
+    assert digest(back) == middle.certificate.digest
+
+
+def test_a_path_through_an_obstacle_is_refused_by_name_and_place() -> None:
+    with pytest.raises(PathRefused, match=r"into box, has to stay .* mm away, at s = 0\.\d+ m .*control point \d of 9"):
+        plan(way(0.48), paper_scene())
+    with pytest.raises(PathRefused, match="into cylinder, has to stay"):
+        plan(way(0.67), paper_scene())
+
+
+def test_a_path_out_of_reach_is_refused_with_its_place() -> None:
+    with pytest.raises(PathRefused, match=r"wrist centre .* cm outside the reach at s = .* control point 5 of 9"):
+        plan(way(1.5), paper_scene())
+    with pytest.raises(PathRefused, match="too near to the arm's own axis at s ="):
+        plan(way(-0.1), paper_scene())
+
+
+def test_a_path_beyond_a_joint_limit_names_joint_and_limit() -> None:
+    with pytest.raises(
+        PathRefused, match=r"joint 3 needs -22[0-9.]+ deg, limit -225\.0, at s = .* control point 5 of 9"
+    ):
+        plan(way(0.31), paper_scene())
+
+
+def test_a_path_into_the_table_is_refused() -> None:
+    with pytest.raises(PathRefused, match="table"):
+        plan(way(MIDDLE, height=0.505), paper_scene())
+
+
+def test_a_path_that_does_not_start_at_the_object_is_refused() -> None:
+    path = way(MIDDLE)
+    shifted = clamped(path.curve.control_points + np.array([0.0, 0.06, 0.0]))
+    with pytest.raises(PathRefused, match=r"starts 6\.0 cm from where block stands"):
+        plan(learned(shifted), paper_scene())
+
+
+def test_a_path_that_stands_still_or_has_no_length_is_refused() -> None:
+    points = way(MIDDLE).curve.control_points
+    with pytest.raises(PathRefused, match="control points coincide"):
+        plan(learned(clamped(np.repeat(points[[0, 4, 8]], 4, axis=0))), empty_scene())
+    with pytest.raises(PathRefused, match=r"0\.0 mm long"):
+        plan(learned(clamped(np.repeat(points[:1], 5, axis=0))), empty_scene())
+
+
+def test_without_an_object_the_path_is_simply_followed() -> None:
+    made = plan(way(MIDDLE), empty_scene())
+    assert made.scene.carried is None
+    verify(made)
+
+
+def test_the_same_path_gives_the_same_motion(middle: Plan) -> None:
+    again = plan(way(MIDDLE), paper_scene())
+    assert again.certificate.digest == middle.certificate.digest
+
+
+def test_where_above_is_not_free_the_arm_comes_and_goes_from_nearer_or_from_a_side() -> None:
+    scene = paper_scene()
+    assert scene.carried is not None
+    x, y, _ = scene.carried.position
+    lid = Shape("lid", "box", (0.3, 0.3, 0.02), (x - 0.05, y - 0.2, 0.80))
+    settings = MotionSettings()
+    free, covered = (plan(way(MIDDLE), replace(scene, obstacles=(*scene.obstacles, *more))) for more in ((), (lid,)))
+    straight_up = tool_pose(free.above_start)[:3, 3] - tool_pose(free.joints[0])[:3, 3]
+    np.testing.assert_allclose(straight_up, [0.0, 0.0, settings.lift], atol=1e-9)
+    assert not np.allclose(covered.above_start, free.above_start)
+    verify(covered)
+
+
+def test_the_tool_rolls_along_the_path_where_no_one_roll_leads_through() -> None:
+    corner = [
+        [0.42, -0.2],
+        [0.5, -0.2],
+        [0.58, -0.2],
+        [0.64, -0.2],
+        [0.64, -0.14],
+        [0.64, -0.06],
+        [0.64, 0.02],
+        [0.64, 0.1],
+    ]
+    curve = clamped(np.column_stack([corner, np.full(8, 0.6)]), degree=5)
+    # Two gates, too narrow for the broad side of the gripper, one across x and one across y.
+    gates = [(0.5, -0.2 - 0.05), (0.5, -0.2 + 0.05), (0.64 - 0.05, 0.0), (0.64 + 0.05, 0.0)]
+    posts = tuple(Shape(f"post {k}", "cylinder", (0.01, 0.2), (x, y, 0.6)) for k, (x, y) in enumerate(gates))
+    scene = empty_scene()
+    one, other = (replace(scene, obstacles=(*scene.obstacles, *some)) for some in (posts[:2], posts[2:]))
+    both = replace(scene, obstacles=(*scene.obstacles, *posts))
+    assert {"rolling" in plan(learned(curve), single).certificate.branch for single in (one, other)} == {False}
+    made = plan(learned(curve), both)
+    assert "rolling" in made.certificate.branch
+    assert made.certificate.clearance.value >= MotionSettings().clearance_min
+    setpoints = track(made).setpoints(250.0)
+    poses = tool_pose(setpoints[:, :6])
+    wanted = curve(ArcLength(curve).parameters(setpoints[:, 6]))
+    assert np.linalg.norm(poses[:, :3, 3] - wanted, axis=1).max() < 1e-4
+    assert np.degrees(np.arccos(np.clip(poses[:, :3, 0] @ poses[0, :3, 0], -1, 1))).max() > 45.0
+
+
+def test_an_end_that_the_arm_cannot_come_to_is_refused() -> None:
+    in_the_way = Shape("crate", "box", (0.04, 0.04, 0.04), tuple(tool_pose(np.array(MotionSettings().home))[:3, 3]))
+    scene = empty_scene()
+    aside = np.linspace([0.45, -0.5, 0.65], [0.5, -0.35, 0.65], 6)
+    with pytest.raises(PathRefused, match=r"into crate.*none of \d+ ways to the start of the path is free"):
+        plan(learned(clamped(aside, degree=5)), replace(scene, obstacles=(*scene.obstacles, in_the_way)))
+
+
+def test_a_demonstrated_turn_is_followed_by_the_tool_when_it_is_asked_for() -> None:
+    curve = way(MIDDLE, degree=5).curve
+    angles = np.linspace(0.0, 0.3, len(curve.control_points))
+    turns = np.column_stack([np.cos(angles / 2), 0 * angles, np.sin(angles / 2), 0 * angles])
+    path = replace(learned(curve), orientation=Curve(curve.degree, curve.knots, turns, curve.weights))
+    made = plan(path, empty_scene(), MotionSettings(orientation="demonstrated"))
+    first, last = tool_pose(made.joints[[0, -1]])[:, :3, :3]
+    c, s = np.cos(0.3), np.sin(0.3)
+    np.testing.assert_allclose(last @ first.T, [[c, 0, s], [0, 1, 0], [-s, 0, c]], atol=1e-6)
+    np.testing.assert_allclose(first[:, 2], [0, 0, -1], atol=1e-9)
+    fixed = plan(path, empty_scene())
+    np.testing.assert_allclose(tool_pose(fixed.joints)[:, 2, 2], -1.0, atol=1e-9)

@@ -1,0 +1,66 @@
+"""A recorder on an in-memory bus for tests, with a clock of its own."""
+
+import time
+from collections.abc import Callable
+from typing import Any
+
+from teachpath.io.bus import MemoryBus
+from teachpath.io.store.store import Store
+from teachpath.io.wire import sample_message
+from teachpath.recorder.recorder import Recorder
+from teachpath.recording.settings import RecordingSettings
+from teachpath.records import Calibration, Demonstration, Sample, Scene, Shape, Trajectory
+from teachpath_proto import tracker_pb2
+from teachpath_proto.keys import Keys
+
+KEYS = Keys("test")
+SCENE = Scene("paper", (), Shape("block", "box", (0.04, 0.04, 0.04), (0.5, 0.0, 0.48)))
+
+
+class Bench:
+    """A recorder on an in-memory bus, and a tracker that speaks to it."""
+
+    def __init__(self, store: Store, *, recorded: Callable[..., None] | None = None) -> None:
+        self.bus, self.store = MemoryBus(), store
+        self.recorded: list[tuple[Demonstration, Trajectory]] = []
+        self.changed: list[Demonstration] = []
+        self.now = 0.0  # [s]
+        self.recorder = Recorder(
+            self.bus,
+            KEYS,
+            store,
+            RecordingSettings(handshake_timeout=1.0),
+            scene=lambda name: {"paper": SCENE}[name],
+            calibration=Calibration,
+            recorded=recorded or (lambda *made: self.recorded.append(made)),
+            changed=self.changed.append,
+            clock=lambda: self.now,
+        )
+        self.recorder.start()
+
+    def send(self, samples: list[Sample], tracker: str = "glove") -> None:
+        for s in samples:
+            self.bus.publish(KEYS.samples(tracker), sample_message(s).SerializeToString())
+
+    def begin(self, tracker: str = "glove", task: str = "lift", **wishes: Any) -> None:
+        request = tracker_pb2.StartRecording(task=task, tracker=tracker, scene="paper", **wishes)
+        self.bus.ask(KEYS.recorder_start, request.SerializeToString())
+
+    def end(self, last: int, tracker: str = "glove", *, discard: bool = False) -> tracker_pb2.RecordingReport:
+        request = tracker_pb2.StopRecording(tracker=tracker, last_sequence=last, discard=discard)
+        answer = self.bus.ask(KEYS.recorder_stop, request.SerializeToString())
+        return tracker_pb2.RecordingReport.FromString(answer)
+
+    def received(self, count: int, tracker: str = "glove") -> tracker_pb2.RecordingReport:
+        """Return the report of a running recording as soon as `count` samples are in it."""
+        return self.until(lambda report: report.received >= count, tracker)
+
+    def until(
+        self, true: Callable[[tracker_pb2.RecordingReport], bool], tracker: str = "glove"
+    ) -> tracker_pb2.RecordingReport:
+        deadline = time.monotonic() + 10.0
+        while True:
+            (report,) = (r for r in self.recorder.reports() if r.tracker == tracker)
+            if true(report):
+                return report
+            assert time.monotonic() < deadline, report

@@ -1,0 +1,95 @@
+import threading
+from dataclasses import replace
+
+import numpy as np
+
+from teachpath.errors import UnusableRecording
+from teachpath.learning.settings import LearningSettings
+from teachpath.recorder.guidance import Coach
+from teachpath.records import Demonstration, Trajectory
+from tests.contract.rows import demonstration
+
+SHOWN = (0.0, 0.0, 0.3, 0.0, 0.0, 0.3)  # how far each demonstration swings out [m]
+
+
+def stored(count: int = len(SHOWN)) -> list[Demonstration]:
+    return [demonstration(f"d{i}", number=i + 1) for i in range(count)]
+
+
+def trajectory(shown: Demonstration) -> Trajectory:
+    t = np.linspace(0.0, 1.0, 150)
+    swing = SHOWN[shown.number - 1] + 0.008 * np.sin(7.0 * shown.number)
+    return Trajectory(3.0 * t, np.column_stack([0.6 * t, swing * np.sin(np.pi * t), np.full(150, 0.5)]))
+
+
+def test_it_tells_the_ways_apart_and_asks_for_the_one_that_is_thin() -> None:
+    coach = Coach(lambda _: stored(), trajectory, LearningSettings())
+    sentence = coach.look_at("t")
+    assert sentence.startswith("6 demonstrations show 2 ways and agree within 0.")
+    assert sentence.endswith("; the second way has only two, show it again")
+
+
+def test_discarded_marked_and_rejected_ones_do_not_count() -> None:
+    changes = ({"discarded_ns": 5}, {"mark": "bad"}, {"verdict": "reject"})
+    kept = [replace(d, **change) for d, change in zip(stored(3), changes, strict=True)]  # type: ignore[arg-type]
+    assert Coach(lambda _: kept, trajectory, LearningSettings()).look_at("t") == ""
+    assert "one demonstration" in Coach(lambda _: [*kept, stored()[3]], trajectory, LearningSettings()).look_at("t")
+
+
+def test_each_demonstration_is_read_once_and_again_when_it_was_trimmed() -> None:
+    read: list[tuple[str, tuple[int, int]]] = []
+    rows = stored()
+
+    def reading(shown: Demonstration) -> Trajectory:
+        read.append((shown.id, shown.transport))
+        return trajectory(shown)
+
+    coach = Coach(lambda _: rows, reading, LearningSettings())
+    coach.look_at("t")
+    coach.look_at("t")
+    assert len(read) == len(rows)
+    rows[2] = replace(rows[2], trim=(2, 3))
+    coach.look_at("t")
+    assert read[len(rows) :] == [(rows[2].id, (2, 3))]
+
+
+def test_it_answers_from_its_own_thread_and_outlives_what_cannot_be_read() -> None:
+    asked, answered = threading.Semaphore(0), threading.Semaphore(0)
+
+    def rows(task: str) -> list[Demonstration]:
+        asked.release()
+        if task == "broken":
+            raise UnusableRecording("recording t/d0.mcap is damaged")
+        answered.release()
+        return stored(1)
+
+    coach = Coach(rows, trajectory, LearningSettings())
+    coach.start()
+    assert coach.sentence("t") == ""
+    coach.consider("broken")
+    assert asked.acquire(timeout=5)
+    coach.consider("t")
+    assert answered.acquire(timeout=5)
+    coach.stop()
+    assert coach.sentence("t") == "one demonstration so far; show it again"
+    assert "damaged" in coach.sentence("broken")
+    coach.stop()
+
+
+def test_of_a_burst_every_task_is_compared() -> None:
+    done, asked = threading.Event(), []
+
+    def rows(task: str) -> list[Demonstration]:
+        asked.append(task)
+        if len(asked) == 2:
+            done.set()
+        return stored(1)
+
+    coach = Coach(rows, trajectory, LearningSettings())
+    for task in ("a", "b", "a"):
+        coach.consider(task)
+    coach.start()
+    assert done.wait(timeout=30)
+    coach.stop()
+    assert asked == ["a", "b"]
+    assert set(coach.sentences()) == {"a", "b"}

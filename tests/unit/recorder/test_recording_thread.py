@@ -1,0 +1,86 @@
+"""The rounds of the scribe, made one by one: who waits for whom, and when it may rest."""
+
+from collections.abc import Iterator
+
+import pytest
+
+from teachpath.io.store.store import Store
+from teachpath.io.wire import sample_message
+from teachpath.recorder.presence import Presence
+from teachpath.recorder.recording_thread import BATCH, FLUSH_EVERY, Scribe
+from teachpath.recorder.sample_queues import Intake
+from teachpath.recorder.session import RecordingSession
+from teachpath.recording.settings import RecordingSettings
+from teachpath.records import Calibration, Scene
+from tests.unit.recorder.recorders import KEYS
+from tests.unit.recording.hands import sample
+
+SETTINGS = RecordingSettings()
+
+
+class Desk:
+    """A scribe whose rounds are made by the test."""
+
+    def __init__(self, store: Store, trackers: tuple[str, ...]) -> None:
+        self.now = 0.0
+        presence = Presence(lambda: self.now)
+        self.intake = Intake(KEYS, presence, SETTINGS.longest_backlog)
+        self.scribe = Scribe(
+            self.intake,
+            presence,
+            SETTINGS,
+            made=lambda made: None,
+            unwanted=lambda session: None,
+            clock=lambda: self.now,
+        )
+        for tracker in trackers:
+            self.scribe.sessions[tracker] = RecordingSession(
+                store,
+                SETTINGS,
+                task="lift",
+                tracker=tracker,
+                calibration=Calibration("identity"),
+                scene=Scene("empty"),
+                clock=lambda: self.now,
+            )
+            self.intake.open(tracker)
+
+    def send(self, tracker: str, count: int, first: int = 1) -> None:
+        for n in range(first, first + count):
+            self.intake.receive(KEYS.samples(tracker), sample_message(sample(n, (0.0, 0.0, 0.0))).SerializeToString())
+
+    def recorded(self, tracker: str) -> int:
+        return self.scribe.sessions[tracker].account.received
+
+
+@pytest.fixture
+def desk(store: Store) -> Iterator[Desk]:
+    desk = Desk(store, ("left", "right"))
+    yield desk
+    desk.scribe.stop()
+
+
+def test_it_rests_only_when_no_batch_was_full(desk: Desk) -> None:
+    desk.send("left", 2 * BATCH + 50)
+    assert [desk.scribe.go_round() for _ in range(4)] == [True, True, False, False]
+    assert desk.recorded("left") == 2 * BATCH + 50
+    assert desk.intake.backlog == 0
+
+
+def test_samples_that_trickle_in_from_many_hurry_nobody(desk: Desk) -> None:
+    for tracker in ("left", "right"):
+        desk.send(tracker, BATCH - 1)
+    assert not desk.scribe.go_round()
+
+
+def test_a_flood_keeps_no_other_waiting_for_more_than_one_batch(desk: Desk) -> None:
+    desk.send("left", 10 * BATCH)
+    desk.send("right", 1)
+    assert desk.scribe.go_round()
+    assert (desk.recorded("left"), desk.recorded("right")) == (BATCH, 1)
+
+
+def test_a_flush_that_is_due_is_no_reason_to_hurry(desk: Desk) -> None:
+    desk.now = 2 * FLUSH_EVERY
+    assert not desk.scribe.go_round()
+    assert desk.scribe.sessions["left"].flushed == desk.now

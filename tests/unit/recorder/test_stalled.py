@@ -1,0 +1,57 @@
+"""Whoever watches may stall: a page that sleeps, a coach that ponders. The recorder records on."""
+
+import threading
+import time
+
+import numpy as np
+
+from teachpath.errors import UnusableRecording
+from teachpath.learning.settings import LearningSettings
+from teachpath.live.preview import Preview
+from teachpath.motion.arm.geometry import drawing
+from teachpath.recorder.guidance import Coach
+from teachpath.records import Demonstration, Trajectory
+from tests.unit.recorder.recorders import KEYS, Bench
+from tests.unit.recording.hands import demonstration
+
+SHOWN = 110
+TAKES = 8
+
+
+def record(bench: Bench) -> None:
+    bench.begin()
+    for take in range(TAKES):
+        bench.send(demonstration(1 + take * SHOWN))
+    began = time.monotonic()
+    report = bench.end(TAKES * SHOWN)
+    assert time.monotonic() - began < 10.0
+    assert (report.received, report.lost, len(report.demonstrations)) == (TAKES * SHOWN, 0, TAKES)
+
+
+def test_a_page_that_takes_nothing_keeps_the_recorder_from_nothing(bench: Bench) -> None:
+    view = Preview(bench.bus, KEYS, drawing(), robot="puma", home=np.zeros(6), hands=bench.recorder.hands)
+    with view:
+        page = view.attach(lambda: None)
+        assert page.take()  # the first batch, which it never acknowledges
+        record(bench)
+        assert page.pending < 100
+
+
+def test_a_coach_that_ponders_keeps_the_recorder_from_nothing(store: object) -> None:
+    ponders, asked = threading.Event(), threading.Event()
+
+    def ponder(_: Demonstration) -> Trajectory:
+        asked.set()
+        ponders.wait(30.0)
+        raise UnusableRecording("nobody needs it any more")
+
+    bench = Bench(store, recorded=lambda made, _: coach.consider(made.task))  # type: ignore[arg-type]
+    coach = Coach(bench.store.demonstrations, ponder, LearningSettings())
+    coach.start()
+    try:
+        record(bench)
+        assert asked.wait(5.0)
+    finally:
+        ponders.set()
+        coach.stop()
+        bench.recorder.stop()

@@ -1,0 +1,173 @@
+from typing import Any
+
+import pytest
+
+from teachpath.errors import Conflict, NotFound, UnusableInput
+from teachpath.io.wire import sample_message
+from teachpath.recorder import websocket_trackers
+from teachpath.recorder.websocket_trackers import GatedTracker, TrackerGate
+from teachpath.records import Sample
+from tests.unit.recorder.recorders import KEYS, Bench
+from tests.unit.recording.hands import demonstration, sample
+
+
+class Door:
+    """A gate on a bench, and what it told those who had to leave."""
+
+    def __init__(self, bench: Bench) -> None:
+        self.bench, self.now, self.told = bench, 0.0, list[str]()
+        self.gate = TrackerGate(bench.bus, KEYS, bench.recorder, clock=lambda: self.now)
+
+    def admit(self, name: str = "page") -> GatedTracker:
+        return self.gate.admit(name, self.told.append)
+
+
+@pytest.fixture
+def door(bench: Bench) -> Door:
+    return Door(bench)
+
+
+def as_json(s: Sample) -> dict[str, Any]:
+    x, y, z = s.position
+    named = {"sequence": s.sequence, "device_ns": s.device_ns, "position": {"x": x, "y": y, "z": z}}
+    return named | {"flexions": list(s.flexions), "tracked": s.tracked, "buttons": s.buttons}
+
+
+def test_a_demonstration_over_the_gate_gets_the_verdict_and_the_account_of_any_other(door: Door) -> None:
+    stream = demonstration()
+    bench = door.bench
+    bench.begin("page")
+    page = door.admit()
+    for s in stream[:55]:
+        assert page.take(as_json(s)) == ""
+    for s in stream[55:]:
+        assert page.take(sample_message(s).SerializeToString()) == ""
+    report = page.end(len(stream), discard=False)
+    bench.begin("glove", "other")
+    bench.send(stream)
+    other = bench.end(len(stream))
+    assert (page.passed, page.refused) == (len(stream), 0)
+    ours, theirs = bench.store.demonstrations("lift"), bench.store.demonstrations("other")
+    assert [(d.verdict, d.samples, d.grasp, d.release) for d in ours] == [
+        ("clean", len(stream) - report["idle"], 20, 70)
+    ]
+    assert [(d.verdict, d.samples, d.grasp, d.release) for d in theirs] == [
+        (d.verdict, d.samples, d.grasp, d.release) for d in ours
+    ]
+    assert (report["received"], report["lost"]) == (other.received, other.lost)
+    with pytest.raises(NotFound, match="not being recorded"):
+        page.end(1, discard=False)
+
+
+@pytest.mark.parametrize(
+    ("changes", "sentence"),
+    [
+        ({"position": {"x": float("nan")}}, "not finite"),
+        ({"position": {"x": float("inf")}}, "not finite"),
+        ({"position": {"x": 580.0}}, "are its units metres"),
+        ({"orientation": {"w": 2.0}}, "no unit quaternion"),
+        ({"flexions": [0.5] * 7}, "7 flexions"),
+        ({"flexions": [1.5] * 18}, "outside 0"),
+        ({"device_ns": 0}, "nanoseconds since the Unix epoch"),
+    ],
+)
+def test_unsound_values_are_refused_with_a_sentence_and_counted_by_the_recorder_too(
+    door: Door, changes: dict[str, Any], sentence: str
+) -> None:
+    door.bench.begin("page")
+    page = door.admit()
+    assert sentence in page.take(as_json(sample(1, (0.5, 0.0, 0.5))) | changes)
+    assert page.take(as_json(sample(2, (0.5, 0.0, 0.5)))) == ""
+    report = page.end(2, discard=True)
+    assert (page.passed, page.refused, report["received"], report["refused"]) == (1, 1, 1, 1)
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        {"sequence": -1},
+        {"sequence": 2**64},
+        {"sequence": "1"},
+        {"sequence": 1.5},
+        {"position": [1, 2, 3]},
+        {"position": {"x": "1"}},
+        {"flexions": "open"},
+        {"self": 1},
+        {"colour": "\ud800"},
+        b"rubbish",
+        bytes(100_000),
+    ],
+)
+def test_what_is_no_sample_is_refused_and_does_not_reach_the_bus(door: Door, content: Any) -> None:
+    seen: list[bytes] = []
+    door.bench.bus.subscribe(KEYS.all_samples, lambda _, payload: seen.append(payload))
+    page = door.admit()
+    assert len(page.take(content)) > 15
+    assert (seen, page.refused) == ([], 1)
+
+
+def test_a_flood_has_to_leave_and_a_burst_after_a_pause_may_stay(door: Door) -> None:
+    page = door.admit()
+    one = as_json(sample(1, (0.5, 0.0, 0.5)))
+    for _ in range(int(websocket_trackers.BURST)):
+        page.take(one)
+    with pytest.raises(UnusableInput, match="faster than 1000 a second"):
+        page.take(one)
+    door.now += 1.0
+    for _ in range(int(websocket_trackers.FASTEST) - 1):
+        page.take(one)
+
+
+def test_one_that_never_makes_sense_has_to_leave(door: Door) -> None:
+    page = door.admit()
+    for _ in range(websocket_trackers.PATIENCE):
+        page.refuse("nonsense")
+    with pytest.raises(UnusableInput, match="101 messages in a row were refused; the last one: nonsense"):
+        page.refuse("nonsense")
+
+
+def test_names_are_kept_apart(door: Door) -> None:
+    with pytest.raises(UnusableInput, match="cannot name a tracker"):
+        door.admit("../glove")
+    token = door.bench.bus.announce(KEYS.alive("tracker", "glove"))
+    door.bench.begin("glove")
+    while not door.bench.recorder.trackers():
+        pass
+    with pytest.raises(Conflict, match="a tracker glove is there already"):
+        door.admit("glove")
+    token.close()
+    many = [door.admit(f"page-{k}") for k in range(websocket_trackers.MOST)]
+    with pytest.raises(Conflict, match="close some"):
+        door.admit("one-more")
+    door.gate.let_out(many[0])
+    door.gate.let_out(many[0])
+    door.admit("one-more")
+
+
+def test_one_that_comes_back_at_once_is_not_taken_for_another(door: Door) -> None:
+    recorder = door.bench.recorder
+    page = door.admit()
+    while not any(tracker.announced for tracker in recorder.trackers()):
+        pass
+    other = door.bench.bus.announce(KEYS.alive("tracker", "page"))  # as if the bus still told of it
+    door.gate.let_out(page)
+    door.gate.let_out(door.admit())
+    other.close()
+    door.now += websocket_trackers.AFTERGLOW
+    door.bench.bus.announce(KEYS.alive("tracker", "page"))
+    while not any(tracker.announced for tracker in recorder.trackers()):
+        pass
+    with pytest.raises(Conflict):
+        door.admit()
+
+
+def test_the_newest_page_of_a_name_wins_and_leaving_is_seen_on_the_bus(door: Door) -> None:
+    alive: list[tuple[str, bool]] = []
+    door.bench.bus.watch(KEYS.all_trackers_alive, lambda key, there: alive.append((key.rsplit("/")[-1], there)))
+    first = door.admit()
+    second = door.admit()
+    assert door.told == ["another page came as page"]
+    door.gate.let_out(first)  # its connection ends later than the new one began
+    assert alive == [("page", True), ("page", False), ("page", True)]
+    door.gate.let_out(second)
+    assert alive[-1] == ("page", False)

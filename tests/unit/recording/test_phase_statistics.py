@@ -1,0 +1,122 @@
+"""What is learned of a take decides its verdict; what happened on the ways to the object and back is said."""
+
+from dataclasses import replace
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from teachpath.recording.phase_statistics import Parts, parts_of
+from teachpath.recording.phases import Cut
+from teachpath.recording.settings import RecordingSettings
+from teachpath.recording.stream_statistics import StreamAccount
+from teachpath.recording.verdict import Verdict, judge
+from teachpath.records import Sample
+from tests.unit.recording.hands import PERIOD_NS, sample
+
+SETTINGS = RecordingSettings()
+REACH, CARRY, BACK = 40, 60, 40  # samples that are sent
+SENT = REACH + CARRY + BACK
+LONGEST = int(SETTINGS.longest_gap * 1e9) // PERIOD_NS - 1  # samples that may be missing in a row
+
+
+def sent(count: int = SENT) -> list[Sample]:
+    return [sample(n, (0.0, 0.0, 0.0)) for n in range(count)]
+
+
+def parts(samples: list[Sample], *, until: int = SENT, opened: bool = True) -> Parts:
+    """Return the parts of a take; `until`: samples that the client says it sent; `opened`: the hand was seen to."""
+    stream = StreamAccount()
+    for each in samples:
+        stream.observe(each)
+    stream.expect(until - 1)
+    grasp = next(i for i, s in enumerate(samples) if s.sequence >= REACH)
+    release = next((i for i, s in enumerate(samples) if s.sequence >= REACH + CARRY), len(samples))
+    return parts_of(samples, Cut(grasp, release, not opened), stream.account(), SETTINGS)
+
+
+def verdict(samples: list[Sample]) -> Verdict:
+    return judge(parts(samples), SETTINGS)
+
+
+@given(lost=st.sets(st.integers(1, SENT - 1)), twice=st.sets(st.integers(0, SENT - 1), max_size=5))
+def test_every_sample_is_in_one_part(lost: set[int], twice: set[int]) -> None:
+    kept = [s for s in sent() if s.sequence not in lost]
+    try:
+        made = parts([s for s in kept for _ in range(1 + (s.sequence in twice))])
+    except StopIteration:  # nothing came after the reach
+        return
+    for name in ("received", "lost", "duplicated"):
+        assert sum(getattr(part, name) for part in (made.reach, made.carried, made.back)) == getattr(made.whole, name)
+    gap = max(part.longest_gap_ns for part in (made.reach, made.carried, made.back))
+    assert gap == made.whole.longest_gap_ns
+
+
+@given(begin=st.integers(1, SENT - 2), length=st.integers(1, 40))
+def test_a_hole_rejects_a_take_only_where_it_is_learned(begin: int, length: int) -> None:
+    hole = range(begin, min(begin + length, SENT - 1))
+    judged = verdict([s for s in sent() if s.sequence not in hole])
+    # The step over the hole is one to or from a sample that is carried.
+    learned = begin + len(hole) >= REACH and begin <= REACH + CARRY
+    few = SETTINGS.largest_loss * CARRY
+    if not learned:
+        way = "reaching" if begin < REACH else "returning"
+        assert judged.word == "repaired"
+        (reason,) = judged.reasons
+        assert reason.startswith(f"while {way}, outside what is learned: ")
+        assert f"{len(hole)} sample" in reason
+        assert (f"a gap of {(len(hole) + 1) * 0.02:.2f} s" in reason) == (len(hole) > LONGEST)
+    elif not few - 1 <= len(hole) <= few + 1:
+        assert judged.word == ("repaired" if len(hole) < few else "reject")
+
+
+def test_a_long_reach_does_not_make_light_of_what_is_lost_of_the_carried() -> None:
+    count = 3000
+    samples = [sample(n, (0.0, 0.0, 0.0)) for n in range(count + CARRY + BACK)]
+    kept = [s for s in samples if s.sequence < count or s.sequence % 10 != 5]
+    stream = StreamAccount()
+    for each in kept:
+        stream.observe(each)
+    release = next(i for i, s in enumerate(kept) if s.sequence >= count + CARRY)
+    judged = judge(parts_of(kept, Cut(count, release), stream.account(), SETTINGS), SETTINGS)
+    assert judged.word == "reject"
+    assert "of 61 samples are faulty" in judged.reasons[0]
+
+
+def test_a_late_sample_of_the_reach_hides_no_loss_of_the_carried() -> None:
+    late, lost = 10, REACH + 10
+    samples = [s for s in sent() if s.sequence not in (late, lost)]
+    samples.insert(REACH + 20, sample(late, (0.0, 0.0, 0.0)))
+    made = parts(samples)
+    assert (made.whole.lost, made.carried.lost, made.carried.reordered) == (1, 1, 1)
+
+
+def test_a_sample_that_comes_after_the_release_is_missing_from_what_is_learned() -> None:
+    late = REACH + 10
+    samples = [s for s in sent() if s.sequence != late] + [sample(late, (0.0, 0.0, 0.0))]
+    made = parts(samples)
+    assert (made.whole.lost, made.carried.lost, made.back.reordered) == (0, 1, 1)
+
+
+@pytest.mark.parametrize("opened", [True, False])
+def test_what_only_the_handshake_told_was_sent_after_all_that_came(opened: bool) -> None:
+    samples = sent() if opened else sent(REACH + CARRY)
+    made = parts(samples, until=len(samples) + 7, opened=opened)
+    assert (made.whole.lost, made.back.lost, made.carried.lost) == (7, 7 * opened, 7 * (not opened))
+
+
+def test_a_clock_that_jumps_while_the_hand_returns_is_said_and_rejects_nothing() -> None:
+    for place, word in ((REACH // 2, "repaired"), (REACH + 5, "reject"), (SENT - 5, "repaired")):
+        moved = [replace(s, device_ns=s.device_ns + 10**12 * (s.sequence >= place)) for s in sent()]
+        judged = verdict(moved)
+        assert judged.word == word, place
+        assert "clock jumps once" in judged.reasons[0]
+
+
+def test_untracked_samples_and_duplicates_are_said_of_their_part() -> None:
+    samples = [replace(s, tracked=not 5 <= s.sequence < 25) for s in sent()]
+    samples.insert(SENT - 3, samples[SENT - 4])
+    assert verdict(samples).reasons == (
+        "while reaching, outside what is learned: 20 samples untracked",
+        "while returning, outside what is learned: 1 sample came twice",
+    )

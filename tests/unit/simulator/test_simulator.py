@@ -1,0 +1,279 @@
+"""The simulated arm on the in-memory bus, with a clock that the test turns: no test waits."""
+
+import threading
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from teachpath.errors import Conflict, UnusableInput
+from teachpath.io import documents, wire
+from teachpath.io.bus import MemoryBus
+from teachpath.motion.arm.kinematics import downward, inverse, link_frames, tool_pose
+from teachpath.motion.arm.puma560 import LOWER, TORQUE, UPPER
+from teachpath.motion.collision.builtin_scenes import empty_scene, paper_scene
+from teachpath.motion.settings import MotionSettings
+from teachpath.records import ExecutorStatus, JointState, Scene, Setpoint
+from teachpath.simulator.loop import Simulator
+from teachpath.simulator.settings import SimulatorSettings
+from teachpath_proto.keys import Keys
+
+KEYS = Keys()
+SETTINGS = SimulatorSettings()
+HOME = np.array(MotionSettings().home)
+START = 1_700_000_000_000_000_000
+PERIOD_NS = 4_000_000
+
+
+class Bench:
+    """A simulator in its own time, a sender of setpoints and all joint states that were published."""
+
+    def __init__(self, scene: Scene | None = None) -> None:
+        self.bus = MemoryBus()
+        self.states: list[JointState] = []
+        self.now = START
+        self.stop = threading.Event()
+        self.simulator = Simulator(
+            self.bus,
+            KEYS,
+            scene or empty_scene(),
+            SETTINGS,
+            clock=lambda: self.now,
+            sleep=self._sleep,
+            doze=self._doze,
+        )
+        self.steps = 0  # of 1 ms that were computed
+        self.bus.subscribe(KEYS.state("puma560"), lambda _, p: self.states.append(wire.decode_state(p)))
+        self.until = START
+        self.each: Callable[[int], None] = lambda now: None
+        self.cycle = 0
+        self.wanted = HOME
+
+    def _sleep(self, seconds: float) -> None:
+        self.steps += 1
+        self._pass(round(seconds * 1e9))
+
+    def _doze(self, woken: threading.Event, seconds: float) -> None:
+        end = self.now + round(seconds * 1e9)
+        while self.now < end and not woken.is_set() and not self.stop.is_set():
+            self._pass(1_000_000)
+
+    def _pass(self, duration: int) -> None:
+        self.now += duration
+        self.each(self.now)
+        if self.now >= self.until:
+            self.stop.set()
+
+    def run(self, seconds: float, each: Callable[[int], None] = lambda now: None) -> list[JointState]:
+        """Let it run for a while, calling `each(now)` every millisecond; returns the joint states of that while."""
+        before = len(self.states)
+        self.until, self.each = self.now + round(seconds * 1e9), each
+        self.stop.clear()
+        self.simulator.run(self.stop)
+        return self.states[before:]
+
+    def send(self, q: np.ndarray, v: np.ndarray, a: np.ndarray, *, closed: bool = False, execution: str = "e1") -> None:
+        self.cycle += 1
+        setpoint = Setpoint(self.cycle, self.now, self.now, q, v, a, closed, execution)
+        self.bus.publish(KEYS.setpoint("puma560"), wire.encode_setpoint(setpoint))
+
+    def move(self, goal: np.ndarray, seconds: float, *, closed: bool = False, skip: int = 0) -> list[JointState]:
+        """Stream a quintic move to `goal` at 250 Hz; every `skip`-th setpoint gets lost."""
+        begin, origin = self.wanted, self.now
+
+        def each(now: int) -> None:
+            if (now - origin) % PERIOD_NS:
+                return
+            t = min((now - origin) / 1e9 / seconds, 1.0)
+            s, ds = 10 * t**3 - 15 * t**4 + 6 * t**5, (30 * t**2 - 60 * t**3 + 30 * t**4) / seconds
+            dds = (60 * t - 180 * t**2 + 120 * t**3) / seconds**2
+            if skip and (self.cycle + 1) % skip == 0:
+                self.cycle += 1
+            else:
+                self.send(begin + s * (goal - begin), ds * (goal - begin), dds * (goal - begin), closed=closed)
+
+        states = self.run(seconds, each)
+        self.wanted = goal
+        return states
+
+
+def above(position: tuple[float, float, float]) -> np.ndarray:
+    """A configuration within the limits, of the branch of the home position, with the tool straight down."""
+    q = inverse(downward(np.array([position]), np.pi)).joints[0, 1]
+    for turn in (-2 * np.pi, 2 * np.pi):
+        q = np.where((q < LOWER) & (turn > 0) | (q > UPPER) & (turn < 0), q + turn, q)
+    assert np.all((q >= LOWER) & (q <= UPPER))
+    return q
+
+
+def test_stays_at_home_without_setpoints() -> None:
+    states = Bench().run(0.5)
+    assert np.allclose(states[-1].position, HOME, atol=1e-3)
+    assert not states[-1].holding
+    assert states[-1].missed == 0
+
+
+def test_an_arm_at_rest_dozes_speaks_as_often_as_the_contract_asks_and_wakes_at_once() -> None:
+    bench = Bench(paper_scene())
+    bench.run(0.5)  # the object settles on the table
+    bench.steps = 0
+    idle = bench.run(2.0)
+    assert bench.steps == 0
+    assert np.diff([state.stamp_ns for state in idle]).max() <= 50e6  # 20 Hz
+    states = bench.move(HOME + 0.5, 1.0)
+    assert np.diff([state.stamp_ns for state in states]).max() <= 10e6  # 100 Hz
+    assert max(state.tracking_error for state in states) < 0.003
+    assert not any(state.late or state.missed for state in states)
+    assert np.abs(bench.run(0.2)[-1].position - HOME - 0.5).max() < 2e-3
+
+
+def test_what_still_falls_does_not_doze() -> None:
+    scene = paper_scene()
+    assert scene.carried is not None
+    x, y, z = scene.carried.position
+    bench = Bench(replace(scene, carried=replace(scene.carried, position=(x, y, z + 0.3))))
+    assert bench.run(1.0)[-1].object_position[2] == pytest.approx(z, abs=2e-3)
+
+
+def test_follows_a_smooth_move_closely_and_within_its_torques() -> None:
+    states = Bench().move(HOME + np.array([0.8, -0.4, 0.5, 0.6, 0.5, -1.0]), 1.2)
+    assert np.max([np.abs(s.velocity).max() for s in states]) > 1.0  # a real move, not a crawl
+    assert max(s.tracking_error for s in states) < 0.003
+    assert all(np.all(np.abs(s.torque) <= TORQUE) for s in states)
+    assert not any(s.holding or s.missed for s in states)
+
+
+def test_an_impossible_move_saturates_the_torques_instead_of_passing_them() -> None:
+    bench = Bench()
+    states = bench.move(HOME + np.array([1.5, -0.8, 0.0, 0.0, 0.0, 0.0]), 0.25)
+    torques = np.abs([s.torque for s in states])
+    assert np.all(torques <= TORQUE)
+    assert np.any(torques == TORQUE)
+    assert max(s.tracking_error for s in states) > 0.05
+
+
+def test_holds_on_silence_and_says_so_until_setpoints_come_again() -> None:
+    bench = Bench()
+    bench.send(HOME, np.zeros(6), np.zeros(6))
+    step = np.array([0.3, 0, 0, 0, 0, 0])
+    bench.move(HOME + step, 0.4)
+    silent = bench.run(0.5)
+    assert not silent[0].holding  # not yet: 20 ms are allowed
+    assert silent[-1].holding
+    assert silent[-1].missed == pytest.approx((0.49 - SETTINGS.delay) / 0.004, abs=2)
+    assert np.allclose(silent[-1].position, HOME + step, atol=2e-3)
+    assert np.abs(silent[-1].velocity).max() < 1e-2
+    again = bench.move(HOME, 0.4)
+    assert not again[-1].holding
+    assert again[-1].missed == 0  # no cycle number was left out: the sender had only been quiet
+
+
+def test_the_end_of_an_execution_is_no_silence() -> None:
+    bench = Bench()
+    bench.move(HOME + 0.1, 0.4)
+
+    def tell(now: int) -> None:
+        status = wire.encode_status(ExecutorStatus(execution="e1", state="ended"))
+        bench.bus.publish(KEYS.executor_status, status)
+
+    assert not any(state.holding for state in bench.run(0.2, tell))
+
+
+def test_counts_the_setpoints_that_never_came() -> None:
+    bench = Bench()
+    states = bench.move(HOME + 0.2, 1.0, skip=10)
+    assert states[-1].missed == pytest.approx(bench.cycle // 10, abs=1)
+    assert states[-1].missed > 20
+    assert max(s.tracking_error for s in states) < 0.005  # one left out is bridged by extrapolation
+
+
+def test_a_late_or_repeated_setpoint_changes_nothing() -> None:
+    bench = Bench()
+    bench.move(HOME, 0.1)
+    newest = bench.cycle
+    for cycle in (1, newest):
+        bench.cycle = cycle - 1
+        bench.send(HOME + 1.0, np.zeros(6), np.zeros(6))
+    states = bench.run(0.05)
+    assert states[-1].cycle == newest
+    assert np.allclose(states[-1].position, HOME, atol=2e-3)
+
+
+def test_carries_the_object_only_when_gripped_near_it() -> None:
+    scene = paper_scene()
+    assert scene.carried is not None
+    x, y, z = scene.carried.position
+    for offset, carried in (0.0, True), (0.08, False):
+        bench = Bench(scene)
+        bench.move(above((x + offset, y, z + 0.15)), 1.5)
+        bench.move(above((x + offset, y, z)), 1.0)
+        bench.move(above((x + offset, y, z)), 0.2, closed=True)
+        states = bench.move(above((x + offset, y, z + 0.15)), 1.0, closed=True)
+        lifted = states[-1].object_position[2] - z
+        assert states[-1].gripper_closed
+        assert lifted == pytest.approx(0.15 if carried else 0.0, abs=2e-3)
+        if carried:
+            tool = tool_pose(states[-1].position)[:3, 3]
+            assert np.allclose(states[-1].object_position, tool, atol=2e-3)
+            dropped = bench.move(above((x + offset, y, z + 0.15)), 1.0, closed=False)
+            assert dropped[-1].object_position[2] == pytest.approx(z, abs=2e-3)  # it falls back onto the table
+
+
+def test_reset_brings_the_object_back_leaves_the_arm_and_takes_a_new_scene() -> None:
+    bench = Bench(paper_scene())
+    bench.move(HOME + 0.3, 0.5)
+    bench.run(0.1)  # nothing comes any more
+    state = wire.decode_state(bench.simulator.reset(b""))
+    assert np.allclose(state.position, HOME + 0.3, atol=0.01)
+    assert (state.missed, state.cycle, state.execution) == (0, 0, "")
+    assert state.object_position == paper_scene().carried.position  # type: ignore[union-attr]
+    state = wire.decode_state(bench.simulator.reset(documents.encode(empty_scene())))
+    assert not any(state.object_orientation)  # no object there
+    with pytest.raises(UnusableInput):
+        bench.simulator.reset(b"no scene")
+
+
+def test_the_scene_is_not_changed_under_an_execution() -> None:
+    bench = Bench(paper_scene())
+    refused: list[str] = []
+
+    def change(now: int) -> None:
+        bench.send(HOME, np.zeros(6), np.zeros(6), execution="run-1")
+        if now < START + 50_000_000:
+            return
+        try:
+            bench.simulator.reset(documents.encode(empty_scene()))
+        except Conflict as error:
+            refused.append(str(error))
+
+    states = bench.run(0.2, change)
+    assert "run-1 is under way in scene paper" in refused[-1]
+    assert any(states[-1].object_orientation)  # the object is still there
+    ended = wire.encode_status(ExecutorStatus(execution="run-1", state="ended"))
+    bench.run(0.002, lambda now: bench.bus.publish(KEYS.executor_status, ended))
+    assert not any(wire.decode_state(bench.simulator.reset(documents.encode(empty_scene()))).object_orientation)
+
+
+def test_answers_the_reset_query_and_shows_that_it_lives() -> None:
+    bench = Bench()
+    alive: list[bool] = []
+    bench.bus.watch(KEYS.alive("robot", "puma560"), lambda key, here: alive.append(here))
+    answers: list[bytes] = []
+    bench.run(0.005, lambda now: answers.append(bench.bus.ask(KEYS.reset("puma560"))))
+    assert np.array_equal(wire.decode_state(answers[0]).position, HOME)
+    assert alive == [True, False]
+
+
+def test_malformed_setpoints_are_left_out() -> None:
+    bench = Bench()
+    states = bench.run(0.1, lambda now: bench.bus.publish(KEYS.setpoint("puma560"), b"\xff\xff"))
+    assert np.allclose(states[-1].position, HOME, atol=1e-3)
+
+
+def test_the_models_links_are_where_the_kinematics_says() -> None:
+    bench = Bench(paper_scene())
+    arm = bench.simulator._arm
+    frames = link_frames(arm.position)
+    for i in range(1, 7):
+        assert np.allclose(arm.data.body(f"link{i}").xpos, frames[i, :3, 3], atol=1e-9)
