@@ -34,7 +34,7 @@ def test_a_whole_pick_and_place(bench: Bench, middle: Plan) -> None:
     np.testing.assert_allclose(tool, way(MIDDLE).curve(np.array([0.0, 1.0])), atol=1e-6)
     np.testing.assert_allclose(bench.setpoints[-1].position, HOME, atol=1e-9)
     last = bench.statuses[-1]
-    assert last.progress == pytest.approx(1.0)
+    assert last.progress == 1.0
     assert last.cycles == len(bench.setpoints)
     assert last.duration == pytest.approx(len(bench.setpoints) / 250.0)
     assert (last.late, last.missed) == (0, 0)
@@ -67,7 +67,7 @@ def test_hold_stands_on_the_path_and_resume_goes_on(bench: Bench, middle: Plan) 
     assert standing(bench.setpoints[: held.cycles])
     assert 0.3 < held.progress < 1.0
     assert within_limits(bench.setpoints)
-    assert bench.statuses[-1].progress == pytest.approx(1.0)
+    assert bench.statuses[-1].progress == 1.0
 
 
 def test_the_approach_can_be_held_too(bench: Bench, middle: Plan) -> None:
@@ -140,7 +140,7 @@ def test_a_lost_joint_state_holds_with_a_reason_and_may_be_resumed(bench: Bench,
     held = next(s for s in bench.statuses if s.state == "held")
     assert "no joint state for 0.2" in held.reason
     assert refused
-    assert bench.statuses[-1].progress == pytest.approx(1.0)
+    assert bench.statuses[-1].progress == 1.0
     assert within_limits(bench.setpoints)
 
 
@@ -255,7 +255,7 @@ def test_an_ended_execution_may_be_followed_by_another_from_where_the_arm_is(ben
     first = [s for s in bench.setpoints if s.execution == "run-1"]
     second = [s for s in bench.setpoints if s.execution == "run-2"]
     np.testing.assert_allclose(second[0].position, first[-1].position, atol=1e-4)
-    assert bench.statuses[-1].progress == pytest.approx(1.0)
+    assert bench.statuses[-1].progress == 1.0
     assert within_limits(second)
 
 
@@ -271,5 +271,5 @@ def test_reverse_goes_back_to_the_beginning_of_the_path_and_resume_on_to_its_end
     assert held.progress == 0.0
     assert "back at the beginning" in held.reason
     assert bench.states()[-4:] == ["following", "held", "following", "ended"]
-    assert bench.statuses[-1].progress == pytest.approx(1.0)
+    assert bench.statuses[-1].progress == 1.0
     assert within_limits(bench.setpoints)

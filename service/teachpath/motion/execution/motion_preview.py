@@ -72,7 +72,7 @@ def rehearse(plan: Plan, settings: MotionSettings, *, dwell: float, rate: float 
     which = np.clip(np.searchsorted(begins, times, side="right") - 1, 0, len(parts) - 1)
     rows = _rows(parts, begins, times, which, np.array(settings.home))
     taught = next(index for index, part in enumerate(parts) if part.taught)
-    share = rows[:, 6] / plan.lengths[-1]
+    share = np.clip(rows[:, 6] / plan.lengths[-1], 0.0, 1.0)  # the track ends within rounding of the length
     positions, orientations = _object(plan, rows[:, :6], which - taught)
     return Rehearsal(
         plan=plan.id,

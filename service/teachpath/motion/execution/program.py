@@ -234,7 +234,7 @@ class Program:
         state = governor.step()
         on_path = stretch.taught and self.doing == stretch.name
         if on_path:
-            self._done = state.s
+            self._done = self._length if state.finished else state.s  # the table ends within rounding of the length
         position, velocity, acceleration = governor.motion[:, :6].copy()
         self._moment = Moment(position, velocity, acceleration, stretch.gripper_closed, on_path)
         if state.finished and not self.held:

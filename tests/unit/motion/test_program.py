@@ -1,0 +1,39 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from teachpath.motion.certificate import digest, track
+from teachpath.motion.plan import plan
+from teachpath.motion.program import Program
+from teachpath.motion.rehearsal import rehearse
+from teachpath.motion.scenes import paper_scene
+from teachpath.motion.settings import MotionSettings
+from teachpath.records import Plan
+from tests.unit.motion.ways import MIDDLE, way
+
+SETTINGS = MotionSettings()
+
+
+@pytest.fixture(scope="module")
+def slower() -> list[Plan]:
+    """One plan at several paces; the tables of some end a last bit away from the length of the path."""
+    made = plan(way(MIDDLE), paper_scene())
+    paces = [replace(made, pace=made.pace * share) for share in np.linspace(0.5, 1.0, 20)]
+    timed = [replace(one, duration=track(one).duration) for one in paces]
+    return [replace(one, certificate=replace(one.certificate, digest=digest(one))) for one in timed]
+
+
+def test_whoever_has_done_all_has_done_exactly_one_whatever_the_last_bit_of_the_table(slower: list[Plan]) -> None:
+    for made in slower:
+        program = Program(made, np.array(SETTINGS.home), SETTINGS)
+        while not program.over:
+            program.step()
+        assert (program.progress, program.length) == (1.0, made.lengths[-1])
+
+
+def test_what_is_rehearsed_goes_from_nothing_to_one_and_never_back(slower: list[Plan]) -> None:
+    for made in slower:
+        progress = rehearse(made, SETTINGS, dwell=0.5).progress
+        assert (progress[0], progress[-1]) == (0.0, 1.0)
+        assert np.all(np.diff(progress) >= 0.0)
