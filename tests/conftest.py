@@ -1,0 +1,41 @@
+"""The browser of all tests that look at the page, and a last line that says when they were left out."""
+
+import os
+import shutil
+from collections.abc import Generator, Iterator
+from typing import Any
+
+import pytest
+
+NAMES = ("chromium", "chromium-browser", "google-chrome")
+ABSENT = "no Chromium to look at the page with; get it with: sudo apt-get install chromium"
+REQUIRED = "TEACHPATH_REQUIRE_BROWSER"  # set where the browser tests must run: without a browser they fail
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Any]:
+    """Chromium, headless; without one the test is left out, or fails where browser tests are asked for."""
+    found = next((path for name in NAMES if (path := shutil.which(name))), None)
+    if found is None:
+        if os.environ.get(REQUIRED):
+            pytest.fail(f"{ABSENT} (or unset {REQUIRED})")
+        pytest.skip(ABSENT)
+    from playwright.sync_api import sync_playwright
+
+    # Without a graphics card; these flags keep the console free of messages about that.
+    flags = ["--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-dev-shm-usage"]
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=found, headless=True, args=flags)
+        yield browser
+        browser.close()
+
+
+@pytest.hookimpl(wrapper=True, tryfirst=True)  # around the terminal's own, so that nothing comes behind
+def pytest_sessionfinish(session: pytest.Session) -> Generator[None, object, object]:
+    result = yield
+    terminal = session.config.pluginmanager.get_plugin("terminalreporter")
+    skipped = terminal.stats.get("skipped", []) if terminal else []
+    left_out = [report for report in skipped if ABSENT in str(report.longrepr)]
+    if left_out:
+        terminal.write_line(f"browser tests left out: {len(left_out)}, {ABSENT}", yellow=True)
+    return result
