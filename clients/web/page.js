@@ -10,17 +10,17 @@
 //             open(id) }                choose another tab
 // A panel reads context.store.state, changes it with context.store.set(), and speaks REST through api.js.
 import { at, post } from "./api.js";
-import { Feed } from "./feed.js";
-import { Gallery } from "./gallery.js";
+import { Feed } from "./event_stream.js";
+import { Gallery } from "./scene_layers.js";
 import { header } from "./header.js";
-import { journal } from "./journal.js";
+import { journal } from "./event_log.js";
 import { Messages } from "./messages.js";
-import { newTask } from "./newtask.js";
+import { newTask } from "./new_task.js";
 import { panel as demonstrate } from "./panels/demonstrate.js";
 import { panel as edit } from "./panels/edit.js";
 import { panel as run } from "./panels/run.js";
 import { panel as ways } from "./panels/ways.js";
-import { point } from "./pointing.js";
+import { point } from "./path_picking.js";
 import { Store, moving } from "./store.js";
 import { Tabs } from "./tabs.js";
 import { View } from "./view.js";

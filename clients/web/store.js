@@ -11,7 +11,7 @@
 // path         id of the learned path that is looked at       focus          {kind, id} under the pointer, or null;
 // courses      how many courses of demonstrations have come                  kind is demonstrations or paths
 // newest       {path id: its newest version}, of the run
-// prospects    {path: what lies before it, see panels/prospects.js}
+// prospects    {path: what lies before it, see panels/path_summaries.js}
 // Lists are null until they have been read, and stay as they were while the service is away.
 export const EMPTY = Object.freeze({
   connection: "connecting",

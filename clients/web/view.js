@@ -2,8 +2,8 @@
 // Server to page: batches of [u32 little-endian length][umsgpack command]; the first batch of a connection is the
 // whole scene. Page to server: the number of batches drawn, as text, from the next animation frame.
 import { socketAddress } from "./api.js";
-import { Easel } from "./easel.js";
-import { dress } from "./stage.js";
+import { Easel } from "./overlay.js";
+import { dress } from "./environment.js";
 
 const SHORTEST = 250; // [ms] first pause before connecting again
 const LONGEST = 5000;

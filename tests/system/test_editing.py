@@ -42,7 +42,7 @@ def desks(browser: Any, service: Service) -> Iterator[Any]:
 
 def test_the_page_evaluates_a_curve_as_the_service_does(desks: Any, service: Service, paths: list[str]) -> None:
     desk, rng = desks(paths[0]), np.random.default_rng(5)
-    script = "async ([curve, u]) => (await import('/web/basis.js')).evaluate(curve, u)"
+    script = "async ([curve, u]) => (await import('/web/nurbs.js')).evaluate(curve, u)"
     for degree, count in ((1, 2), (2, 9), (3, 20), (5, 8), (7, 30)):
         inner = np.sort(rng.choice(np.repeat(np.linspace(0.1, 0.9, 17), degree), count - degree - 1, replace=False))
         curve = {

@@ -162,7 +162,7 @@ def worn(browser: Any, service: Service) -> Iterator[Visit]:
 
 
 PICTURES = """async ([cost, frames]) => {
-  const { Pictures } = await import("/web/hand/pictures.js");
+  const { Pictures } = await import("/web/hand/frame_skipping.js");
   const pictures = new Pictures();
   let [time, drawn] = [0, false];
   return frames.map((busy) => {

@@ -1,7 +1,7 @@
 // The draft: the curve as it is edited, what it began from, which control points are chosen, and every step back.
 //
 // A draft lives in this tab: it survives a reload (sessionStorage), and the service knows nothing of it before it is saved.
-import { sameCurve } from "./curve.js";
+import { sameCurve } from "./curve_edits.js";
 
 const KEY = "teachpath.draft/";
 const LARGEST = 1_500_000; // characters that the storage is asked to hold; older steps are left out beyond

@@ -3,13 +3,13 @@
 // Parts of the panel are { update(editor, what) }; `what` is "draft" (another path or version), "curve" (a step was made),
 // "choice" (other control points are chosen), "drag" (every frame of a gesture) or "verdict" (the service has looked).
 import { at, get, post } from "../api.js";
-import { movedBy, sameCurve } from "./curve.js";
+import { movedBy, sameCurve } from "./curve_edits.js";
 import { Draft } from "./draft.js";
 import { Gizmo } from "./gizmo.js";
-import { grab } from "./grab.js";
-import { HELP, keys } from "./keys.js";
-import { Sketch } from "./sketch.js";
-import { Stopwatch } from "./stopwatch.js";
+import { grab } from "./picking.js";
+import { HELP, keys } from "./keyboard.js";
+import { Sketch } from "./curve_overlay.js";
+import { Stopwatch } from "./timing_stats.js";
 
 const MAIN = "main";
 const AGAIN = 1000; // [ms] before the service is asked again

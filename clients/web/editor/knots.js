@@ -1,6 +1,6 @@
 // Knots: more of them for finer edits, fewer for a calmer curve, a higher degree; the shape stays.
 import { element, number } from "../elements.js";
-import { grevilleOf, innerKnots, middleOfSpan } from "./curve.js";
+import { grevilleOf, innerKnots, middleOfSpan } from "./curve_edits.js";
 
 export function knots(place, editor) {
   const u = element("input", { type: "number", id: "edit-u", min: "0", max: "1", step: "any", title: "place of the new knot, from 0 at the start to 1 at the goal" });

@@ -1,8 +1,8 @@
 // Demonstrate: who is there, what is being recorded, and the demonstrations so far with their verdicts.
 import { section } from "../elements.js";
 import { recordings } from "./recordings.js";
-import { show } from "./show.js";
-import { takes } from "./takes.js";
+import { show } from "./demonstration_panel.js";
+import { takes } from "./demonstration_list.js";
 
 let parts = [];
 

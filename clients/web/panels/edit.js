@@ -1,11 +1,11 @@
 // Edit: the chosen path's control points, knots and versions; the curve itself is edited in the 3-D view.
-import { certifying } from "../editor/certifying.js";
+import { certifying } from "../editor/certification.js";
 import { Editor } from "../editor/editor.js";
-import { HELP } from "../editor/keys.js";
+import { HELP } from "../editor/keyboard.js";
 import { knots } from "../editor/knots.js";
-import { points } from "../editor/points.js";
-import { saving } from "../editor/saving.js";
-import { verdict } from "../editor/verdict.js";
+import { points } from "../editor/control_points.js";
+import { saving } from "../editor/save_form.js";
+import { verdict } from "../editor/feasibility.js";
 import { versions } from "../editor/versions.js";
 import { element, hint, next, replace, section } from "../elements.js";
 import { pathOf, runOf } from "../store.js";

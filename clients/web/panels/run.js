@@ -1,10 +1,10 @@
 // Run: preview as a ghost, then the arm itself, by a plan or by a live hand, its joints, and what was executed before.
-import { control } from "./control.js";
-import { leading } from "./leading.js";
-import { live } from "./live.js";
-import { composed } from "./parts.js";
-import { preview } from "./preview.js";
-import { replay } from "./replay.js";
+import { control } from "./arm_controls.js";
+import { leading } from "./teleop_panel.js";
+import { live } from "./live_joints.js";
+import { composed } from "./sectioned_panel.js";
+import { preview } from "./plan_preview.js";
+import { replay } from "./execution_replay.js";
 
 const run = composed("run", "Run", [
   ["preview", "Preview", preview],

@@ -2,8 +2,8 @@
 import { at, patch, post } from "../api.js";
 import { command, element, facts, hint, number, plural, replace, sentence } from "../elements.js";
 import { runOf } from "../store.js";
-import { flattening, thumbnail } from "../thumbnails.js";
-import { markFocus, pointAt, wayClass } from "./cards.js";
+import { flattening, thumbnail } from "../thumbnail.js";
+import { markFocus, pointAt, wayClass } from "./path_cards.js";
 
 const LISTED = 60; // newest demonstrations
 const SIGNS = { "": "☆", good: "★", bad: "⚑" };

@@ -2,8 +2,8 @@
 import { at, get, post } from "../api.js";
 import { element, number, plural, replace } from "../elements.js";
 import { runOf } from "../store.js";
-import { markFocus, pointAt } from "./cards.js";
-import { Tree } from "./tree.js";
+import { markFocus, pointAt } from "./path_cards.js";
+import { Tree } from "./dendrogram.js";
 
 export function cut(place, { store, attempt }) {
   const tree = new Tree(place);

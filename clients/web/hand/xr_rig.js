@@ -1,6 +1,6 @@
 // Where the operator of a headset stands: at the free side of the table, facing the arm. Draws the view's own scene with
 // a renderer and a camera of its own, so that the view on the page stays as it is.
-import { Pictures } from "./pictures.js";
+import { Pictures } from "./frame_skipping.js";
 
 const STAND = [1.25, 0, 0]; // [m] robot coordinates, on the floor
 

@@ -1,6 +1,6 @@
 // The drawing of a dendrogram: leaves on the left, one below the other, merges to the right of them by their height.
 import { drawing, element } from "../elements.js";
-import { wayClass } from "./cards.js";
+import { wayClass } from "./path_cards.js";
 
 const WIDTH = 356;
 const LEFT = 30; // room for the numbers of the leaves

@@ -1,5 +1,5 @@
 // The edited curve as a plain value {degree, knots, control_points, weights}; it is never changed in place.
-import { spanOf } from "../basis.js";
+import { spanOf } from "../nurbs.js";
 
 export function sameCurve(a, b) {
   return JSON.stringify([a.degree, a.knots, a.control_points, a.weights]) === JSON.stringify([b.degree, b.knots, b.control_points, b.weights]);

@@ -1,10 +1,10 @@
 // Live hand: the arm follows a hand for as long as its clutch is held. What it says of limits and of what is near is told.
 import { at, get, post } from "../api.js";
-import { JointStream } from "../arm/joints.js";
+import { JointStream } from "../arm/joint_state_stream.js";
 import { lease } from "../arm/lease.js";
 import { element, facts, hint, replace, sentence } from "../elements.js";
-import { Leading } from "../hand/leading.js";
-import { HeadsetHand, unavailable } from "../hand/xr.js";
+import { Leading } from "../hand/teleop_session.js";
+import { HeadsetHand, unavailable } from "../hand/xr_hand.js";
 
 const HERE = "this page";
 const WORN = "a headset";

@@ -1,11 +1,11 @@
 // Keyboard and gamepad: velocities of the hand, as seen by the camera, and the grasp, or the clutch that is held.
-import { facing } from "./pointer.js";
+import { facing } from "./pointer_drag.js";
 
 const SPEED = 0.35; // [m/s] at full deflection, or while a key is held
 const DEAD = 0.15; // share of a stick's way that counts as none
 const KEYS = { ArrowLeft: [-1, 0, 0], ArrowRight: [1, 0, 0], ArrowUp: [0, 1, 0], ArrowDown: [0, -1, 0], PageUp: [0, 0, 1], PageDown: [0, 0, -1] };
 
-// `may`, `grasp` and `release` as in pointer.js. `held`: Enter must be held, and letting it go releases; else it is pressed
+// `may`, `grasp` and `release` as in pointer_drag.js. `held`: Enter must be held, and letting it go releases; else it is pressed
 // once to grasp and once to release. `places`: elements beside the view whose keys count.
 // Returns {step(seconds), end()}; step is called with every sample.
 export function steering(easel, carry, { may, grasp, release }, { held: mustHold = false, places = [] } = {}) {

@@ -1,8 +1,8 @@
 // What the editor draws in the 3-D view: the curve as a tube, its control polygon, its control points, and ghosts of
 // what it began from. Everything is rewritten in place, so that a drag costs a fraction of a frame.
-import { Basis, evaluate, evenly } from "../basis.js";
-import { lengths } from "../curve.js";
-import { Tube } from "./tube.js";
+import { Basis, evaluate, evenly } from "../nurbs.js";
+import { lengths } from "../polyline.js";
+import { Tube } from "./tube_mesh.js";
 
 const SAMPLES = 201;
 const MOST = 512; // control points

@@ -1,7 +1,7 @@
 // Table I: who was selected in each way, how they rank, by what margin, and in words why one was left out.
 import { element, number, replace, sentence } from "../elements.js";
 import { runOf } from "../store.js";
-import { markFocus, pointAt, wayClass } from "./cards.js";
+import { markFocus, pointAt, wayClass } from "./path_cards.js";
 
 // The columns between a demonstration and whether it is kept: [name, what it says, of a score]; what is not known is left empty.
 const COLUMNS = {

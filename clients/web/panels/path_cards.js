@@ -2,7 +2,7 @@
 import { at, post } from "../api.js";
 import { command, element, facts, hint, next, number, plural, replace, sentence } from "../elements.js";
 import { pathOf, pathsOf, runOf } from "../store.js";
-import { Prospects } from "./prospects.js";
+import { Prospects } from "./path_summaries.js";
 
 const WAYS = 6; // colours --way-0 to --way-5
 

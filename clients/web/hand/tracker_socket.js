@@ -1,6 +1,6 @@
 // The page as a tracker: numbered, stamped samples over a WebSocket, and the offset of the page's clock.
 import { socketAddress } from "../api.js";
-import { encode } from "./wire.js";
+import { encode } from "./hand_sample.js";
 
 const FULL = 64 * 1024; // bytes waiting in the socket, over which samples are left out, but counted
 const PING = 1000; // [ms]

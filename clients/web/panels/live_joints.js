@@ -1,7 +1,7 @@
 // Live plots of the joints, while the panel is looked at.
 import { get } from "../api.js";
-import { JointStream } from "../arm/joints.js";
-import { Plots, row } from "../arm/plots.js";
+import { JointStream } from "../arm/joint_state_stream.js";
+import { Plots, row } from "../arm/joint_plots.js";
 
 const WINDOW = 15; // [s]
 

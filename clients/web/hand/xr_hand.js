@@ -1,7 +1,7 @@
 // A headset as the hand: pinch, or hold a controller's trigger, at the object and carry it. Samples are taken inside the
 // session's own frames, before anything is drawn.
-import { clock } from "./link.js";
-import { Rig } from "./rig.js";
+import { clock } from "./tracker_socket.js";
+import { Rig } from "./xr_rig.js";
 
 const PINCHED = 0.02; // [m] between the tips of thumb and index finger
 const OPENED = 0.035; // [m] at which a pinch ends: between the two it stays as it is

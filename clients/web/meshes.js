@@ -1,6 +1,6 @@
 // What the 3-D view's ways and bodies look like, as objects of three.js in robot coordinates [m].
-import { distance, even, sampled, stretch } from "./curve.js";
-import { tube } from "./tubes.js";
+import { distance, even, sampled, stretch } from "./polyline.js";
+import { tube } from "./tube_geometry.js";
 
 // One colour a way, the same as --way-0 ... in the style sheet (Okabe & Ito's palette for all eyes).
 export const WAYS = [0x0072b2, 0xd55e00, 0x009e73, 0xcc79a7, 0xe69f00, 0x56b4e9];

@@ -1,8 +1,8 @@
 // Preview: the plan of the chosen path as a ghost in the view, before anything moves.
 import { at, get, post } from "../api.js";
-import { Ghost } from "../arm/ghost.js";
+import { Ghost } from "../arm/ghost_arm.js";
 import { Motion } from "../arm/motion.js";
-import { Player } from "../arm/player.js";
+import { Player } from "../arm/motion_player.js";
 import { bar, element, facts, hint, next, number, percent, replace } from "../elements.js";
 import { pathOf } from "../store.js";
 

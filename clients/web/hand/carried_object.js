@@ -5,7 +5,7 @@ const HELD = 0xe08a00;
 const WRONG = 0xb3391f;
 
 export class Prop {
-  // `easel` as in easel.js; `shape` the carried object of the scene.
+  // `easel` as in overlay.js; `shape` the carried object of the scene.
   constructor(easel, shape) {
     const { THREE } = easel;
     this.easel = easel;

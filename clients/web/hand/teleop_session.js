@@ -3,13 +3,13 @@
 // The page is a tracker all the while, and its samples say whether the clutch is held: a page that breaks off, is hidden
 // or stands still lets go by itself.
 import { linkFrames } from "../arm/kinematics.js";
-import { Carry } from "./carry.js";
-import { Courier } from "./courier.js";
-import { name } from "./name.js";
-import { pointer } from "./pointer.js";
-import { Prop } from "./prop.js";
-import { Sampler } from "./sampler.js";
-import { steering } from "./steering.js";
+import { Carry } from "./hand_model.js";
+import { Courier } from "./sample_sender.js";
+import { name } from "./tracker_name.js";
+import { pointer } from "./pointer_drag.js";
+import { Prop } from "./carried_object.js";
+import { Sampler } from "./fixed_rate_timer.js";
+import { steering } from "./keyboard_gamepad.js";
 
 const BALL = { kind: "sphere", size: [0.028] }; // [m] what is dragged; it waits at the gripper
 

@@ -1,9 +1,9 @@
 // Show it here: demonstrations without a glove, by mouse, touch, keyboard, gamepad or headset, take after take.
 import { at, get, patch, put } from "../api.js";
 import { element, facts, hint, number, plural, sentence } from "../elements.js";
-import { Showing } from "../hand/showing.js";
-import { RATE } from "../hand/sampler.js";
-import { HeadsetHand, unavailable } from "../hand/xr.js";
+import { Showing } from "../hand/demonstration_session.js";
+import { RATE } from "../hand/fixed_rate_timer.js";
+import { HeadsetHand, unavailable } from "../hand/xr_hand.js";
 
 const PHASES = {
   countdown: "Get ready …",

@@ -1,5 +1,5 @@
 // The ghost: a pale copy of the drawn arm and of what it carries, placed by the page alone. Nothing of it is sent.
-import { solid } from "../hand/prop.js";
+import { solid } from "../hand/carried_object.js";
 import { linkFrames } from "./kinematics.js";
 
 const COLOR = 0x2f7fb5;

@@ -1,7 +1,7 @@
-// The thread of courier.js: samples the hand where the page last said it to be, evenly whatever the page is doing, and
+// The thread of sample_sender.js: samples the hand where the page last said it to be, evenly whatever the page is doing, and
 // sends it.
-import { HandLink, clock } from "./link.js";
-import { Sampler } from "./sampler.js";
+import { HandLink, clock } from "./tracker_socket.js";
+import { Sampler } from "./fixed_rate_timer.js";
 
 const STALE = 2000; // [ms] without news of the page, after which its hand counts as lost: until then it stands still
 const STRIDE = 0.036; // [m] between two samples: more would be taken for a jump of the tracker

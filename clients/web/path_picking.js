@@ -1,5 +1,5 @@
 // The pointer in the 3-D view: on a way it puts the focus there, a click on a learned path chooses it.
-import { sampled } from "./curve.js";
+import { sampled } from "./polyline.js";
 import { pathsOf } from "./store.js";
 
 const NEAR = 9; // [px] the pointer is on a way

@@ -1,8 +1,8 @@
 // Two plots: how the likelihood grew while each way's model was trained (the paper's Fig. 4), and how the demonstrations score.
 import { element, hint, number, replace } from "../elements.js";
 import { runOf } from "../store.js";
-import { wayColor } from "../shapes.js";
-import { plot } from "../plot.js";
+import { wayColor } from "../meshes.js";
+import { plot } from "../line_plot.js";
 
 export function scores(place, { store }) {
   let shown = "";

@@ -1,7 +1,7 @@
 // The events: what has happened since the page was opened, newest first, whoever did it.
 import { element, hint, plural, replace, sentence } from "./elements.js";
 import { DOING } from "./panels/jobs.js";
-import { WORDS } from "./panels/control.js";
+import { WORDS } from "./panels/arm_controls.js";
 
 const KEPT = 100;
 const ENDS = { succeeded: "succeeded", failed: "failed", cancelled: "was cancelled" };

@@ -1,7 +1,7 @@
 // What the arm thinks of the draft: a sentence, the stretch that fails, what to move, and the colours along the curve.
 import { drawing, element, number, replace, sentence } from "../elements.js";
-import { movedBy } from "./curve.js";
-import { MEASURES, colouring, ends } from "./scale.js";
+import { movedBy } from "./curve_edits.js";
+import { MEASURES, colouring, ends } from "./color_scale.js";
 
 export function verdict(place, editor) {
   const told = element("div", { id: "edit-verdict", role: "status" });

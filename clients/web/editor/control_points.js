@@ -1,6 +1,6 @@
 // The control points in numbers: a list to choose from, coordinates in millimetres, the weight, and the pins.
 import { element } from "../elements.js";
-import { movedBy, withPoint, withWeights } from "./curve.js";
+import { movedBy, withPoint, withWeights } from "./curve_edits.js";
 
 const AXES = ["x", "y", "z"];
 const LIMIT = 10_000; // [mm] the service accepts no more

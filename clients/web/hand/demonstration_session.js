@@ -3,13 +3,13 @@
 // phase: "countdown" > "ready" (the object waits at its start) > "carrying" > "judging" (let go, the recorder decides)
 //        > "returning" (the object goes back) > "ready" ...; "lost" while the connection is away
 import { at, get, post } from "../api.js";
-import { Carry } from "./carry.js";
-import { Courier } from "./courier.js";
-import { name } from "./name.js";
-import { pointer } from "./pointer.js";
-import { Prop } from "./prop.js";
-import { Sampler } from "./sampler.js";
-import { steering } from "./steering.js";
+import { Carry } from "./hand_model.js";
+import { Courier } from "./sample_sender.js";
+import { name } from "./tracker_name.js";
+import { pointer } from "./pointer_drag.js";
+import { Prop } from "./carried_object.js";
+import { Sampler } from "./fixed_rate_timer.js";
+import { steering } from "./keyboard_gamepad.js";
 
 const UNDECIDED = 4; // [s] after which a take of which nothing was heard is asked for
 const ASK = 0.25; // [s] between two questions whether a take has been judged

@@ -1,5 +1,5 @@
 // What is measured along the points of a curve.
-import { evaluate, evenly } from "./basis.js";
+import { evaluate, evenly } from "./nurbs.js";
 
 // `count` points at even parameters.
 export function sampled(curve, count = 161) {

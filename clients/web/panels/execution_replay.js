@@ -1,9 +1,9 @@
 // Past executions: what the arm did, as curves and as a ghost, at any instant.
 import { at, get } from "../api.js";
-import { Ghost } from "../arm/ghost.js";
+import { Ghost } from "../arm/ghost_arm.js";
 import { Motion } from "../arm/motion.js";
-import { Player } from "../arm/player.js";
-import { Plots, row } from "../arm/plots.js";
+import { Player } from "../arm/motion_player.js";
+import { Plots, row } from "../arm/joint_plots.js";
 import { element, number, replace, sentence } from "../elements.js";
 
 const POINTS = 1500; // at most, of the curves

@@ -1,4 +1,4 @@
-// Takes the hand's samples to the service from a thread of its own (post.js): a page that draws, or waits for its turn on a
+// Takes the hand's samples to the service from a thread of its own (sample_worker.js): a page that draws, or waits for its turn on a
 // busy machine, tears no gap into them.
 const STANDING = { live: false, offset: null, leftOut: 0, sequence: 0 };
 
@@ -11,7 +11,7 @@ export class Courier {
   // As of HandLink.
   constructor(name, { changed, refused }) {
     Object.assign(this, { changed, refused });
-    this.#worker = new Worker(new URL("./post.js", import.meta.url), { type: "module" });
+    this.#worker = new Worker(new URL("./sample_worker.js", import.meta.url), { type: "module" });
     this.#worker.onmessage = ({ data }) => this.#hear(data);
     this.#worker.onerror = () => this.#break(new Error("The page's own thread for samples does not run. Load the page again."));
     this.#worker.postMessage({ name });

@@ -4,7 +4,7 @@ const REACH = { mouse: 28, pen: 32, touch: 48 }; // [px] around the object
 const WHEEL = 0.0004; // [m] of height for a pixel of the wheel
 const FINGER = 0.0012; // [m] of height for a pixel of the second finger
 
-// `carry` as in carry.js; `may()` tells whether the object may be grasped now; `grasp()` and `release()` are called.
+// `carry` as in hand_model.js; `may()` tells whether the object may be grasped now; `grasp()` and `release()` are called.
 export function pointer(easel, carry, { may, grasp, release }) {
   let first = null; // id of the pointer that carries
   let second = null; // {id, y} of the finger for the height

@@ -2,7 +2,7 @@
 // Names in the view's tree: /scene/NAME, /demonstrations/ID, /paths/ID, /departures/ID (of a demonstration), /spread/ID
 // (of a path); panels may draw beside them on the easel.
 import { at, get } from "./api.js";
-import { departure, line, marked, solid, spreadTube, way } from "./shapes.js";
+import { departure, line, marked, solid, spreadTube, way } from "./meshes.js";
 import { pathsOf, runOf } from "./store.js";
 
 const POINTS = 150; // of a demonstration as drawn
