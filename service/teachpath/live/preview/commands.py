@@ -6,7 +6,6 @@ listens on every interface.
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Sequence
 
 import numpy as np
@@ -14,10 +13,9 @@ import umsgpack
 
 from teachpath.errors import UnusableInput
 from teachpath.records import Array, Quaternion, Vector
+from teachpath.workers.preview.bare_package import without_init
 
-with warnings.catch_warnings():
-    # meshcat imports its server with it, which imports a deprecated module of pyzmq.
-    warnings.simplefilter("ignore", DeprecationWarning)
+with without_init("meshcat"):  # which imports the server, and with it tornado, pyzmq, IPython and Pillow
     from meshcat import commands, geometry
     from meshcat.path import Path as TreePath
 
