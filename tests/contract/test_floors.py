@@ -124,7 +124,7 @@ def test_ruckigs_network_service_is_never_asked() -> None:
         ("teachpath.simulator.loop", {"scipy.linalg", "numba", "hmmlearn", "sqlalchemy", "fastapi"}),
         ("teachpath.executor.loop", {"hmmlearn", "sqlalchemy", "fastapi", "meshcat"}),
         ("teachpath.app", {"numba", "hmmlearn", "mujoco"}),
-        ("teachpath.workers.preview.commands", {"meshcat", "meshcat.visualizer", "IPython", "tornado", "zmq", "PIL"}),
+        ("teachpath.live.preview.commands", {"meshcat", "meshcat.visualizer", "IPython", "tornado", "zmq", "PIL"}),
     ],
 )
 def test_a_process_loads_only_what_it_uses(module: str, needless: set[str]) -> None:

@@ -13,7 +13,7 @@ import umsgpack
 
 from teachpath.errors import UnusableInput
 from teachpath.records import Array, Quaternion, Vector
-from teachpath.workers.preview.bare_package import without_init
+from teachpath.live.preview.bare_package import without_init
 
 with without_init("meshcat"):  # which imports the server, and with it tornado, pyzmq, IPython and Pillow
     from meshcat import commands, geometry
