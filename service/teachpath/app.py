@@ -26,16 +26,16 @@ from teachpath.jobs import worker
 from teachpath.jobs.curve_assessor import Assessor
 from teachpath.jobs.jobs import Jobs, Kind
 from teachpath.learning.settings import LearningSettings
-from teachpath.live.event_hub import News
+from teachpath.live.event_hub import EventHub
 from teachpath.live.preview import Preview
-from teachpath.live.state_poller import Look, Lookout
+from teachpath.live.state_poller import Poll, StatePoller
 from teachpath.motion.arm.geometry import drawing
 from teachpath.offline.lock import StationLock
-from teachpath.recorder.annotations import Curation
+from teachpath.recorder.annotations import Annotations
 from teachpath.recorder.calibrations import Calibrations
-from teachpath.recorder.guidance import Coach
+from teachpath.recorder.guidance import GuidanceThread
 from teachpath.recorder.recorder import Recorder
-from teachpath.recorder.websocket_trackers import TrackerGate
+from teachpath.recorder.websocket_trackers import WebSocketTrackers
 from teachpath.records import Demonstration, Job, Learned, Plan, Trajectory
 from teachpath.robot.executions import Executions
 from teachpath.robot.joint_feed import JointFeed
@@ -47,7 +47,7 @@ log = logging.getLogger("teachpath")
 
 def trajectory_of(store: Store, settings: Settings, demonstration: Demonstration) -> Trajectory:
     """Return the object's trajectory of a stored demonstration, from its recording."""
-    return Curation(store, settings.recording, settings.scene).trajectory(demonstration)
+    return Annotations(store, settings.recording, settings.scene).trajectory(demonstration)
 
 
 class Station:
@@ -70,7 +70,7 @@ class Station:
             self._lock.__exit__(None, None, None)
             raise
         self.keys = Keys(settings.bus.prefix)
-        self.news = News()
+        self.news = EventHub()
         self.store = Store(settings.store, changed=self.news.tell)
         self.calibrations = Calibrations(self.store, settings.recording, settings.calibrations, settings.scene)
         self.recorder = Recorder(
@@ -83,10 +83,10 @@ class Station:
             recorded=lambda demonstration, trajectory: self._turn_to(demonstration.task),
             changed=lambda demonstration: self._turn_to(demonstration.task),
         )
-        self.coach = Coach(self.store.demonstrations, self.trajectory, settings.learning)
+        self.coach = GuidanceThread(self.store.demonstrations, self.trajectory, settings.learning)
         self.jobs = Jobs(self.bus, self.keys, self.store, settings.jobs, self._kinds())
         self.assessor = Assessor()
-        self.gate = TrackerGate(self.bus, self.keys, self.recorder)
+        self.websocket_trackers = WebSocketTrackers(self.bus, self.keys, self.recorder)
         self.joints = JointFeed(self.bus, self.keys, robot=settings.bus.robot)
         self.executions = Executions(self.bus, self.keys, self.store, robot=settings.bus.robot, scene=settings.scene)
         self.preview = Preview(
@@ -100,7 +100,7 @@ class Station:
         ours = ("simulator", "executor") if settings.simulator.start else ("executor",)
         self.processes = [WorkerProcess(name, settings.model_dump_json()) for name in ours]
         self.web: FastAPI = build_api(self._parts(), view_router(self.preview), events_router(self.news))
-        self._lookout = Lookout(self.news, self._looks())
+        self._lookout = StatePoller(self.news, self._looks())
         self._shown = ""
         self._started = time.monotonic()
 
@@ -176,7 +176,7 @@ class Station:
             notes.append(f"{len(unfinished)} recordings were cut off; stop the service and run: teachpath doctor")
         return notes
 
-    def _looks(self) -> dict[str, Look]:
+    def _looks(self) -> dict[str, Poll]:
         """Return what pages are told of without asking, because no row of the store holds it."""
         return {
             "recordings": lambda: {r.tracker: report_document(r) for r in self.recorder.reports()},
@@ -197,7 +197,7 @@ class Station:
             self.jobs,
             self.assessor,
             self.executions,
-            self.gate,
+            self.websocket_trackers,
             self.joints,
             self.trajectory,
             self.health,

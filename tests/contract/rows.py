@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from teachpath.records import Account, Calibration, Cluster, Demonstration, Job, JobState, Learned, Score
+from teachpath.records import Calibration, Cluster, Demonstration, Job, JobState, Learned, Score, StreamStatistics
 from tests.unit.io.test_documents import a_path
 
 
@@ -21,7 +21,7 @@ def demonstration(key: str, **changes: object) -> Demonstration:
         "grasp": 1,
         "release": 4,
         "verdict": "clean",
-        "account": Account(received=5),
+        "account": StreamStatistics(received=5),
         "recording": f"t/{key}.mcap",
     }
     return Demonstration(**{**values, **changes})  # type: ignore[arg-type]

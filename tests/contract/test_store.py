@@ -21,10 +21,10 @@ from teachpath.io.store.settings import StoreSettings
 from teachpath.io.store.store import Store
 from teachpath.io.store.tables import Base
 from teachpath.records import (
-    Account,
     Calibration,
     ExecutorStatus,
     JobState,
+    StreamStatistics,
 )
 from tests.contract.rows import a_job, demonstration, learned
 from tests.unit.io.test_documents import a_path, a_plan
@@ -136,7 +136,7 @@ COUNT = st.integers(0, 2**62)
     created_ns=COUNT,
     source=TEXT,
     calibration=st.builds(Calibration, TEXT, FINITE, st.tuples(*[FINITE] * 4), st.tuples(*[FINITE] * 3)),
-    account=st.builds(Account, COUNT, notes=st.lists(TEXT, max_size=3).map(tuple)),
+    account=st.builds(StreamStatistics, COUNT, notes=st.lists(TEXT, max_size=3).map(tuple)),
 )
 def test_a_demonstration_survives_to_the_last_bit(store: Store, **values: object) -> None:
     key = f"d-{len(store.demonstrations('t'))}"

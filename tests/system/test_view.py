@@ -23,7 +23,7 @@ from teachpath.io import wire
 from teachpath.io.bus import MemoryBus
 from teachpath.io.documents import to_document
 from teachpath.learning.clustering.cuts import dendrogram
-from teachpath.live.event_hub import News
+from teachpath.live.event_hub import EventHub
 from teachpath.live.preview import Preview
 from teachpath.motion.arm.geometry import drawing
 from teachpath.motion.arm.kinematics import link_frames
@@ -58,7 +58,7 @@ class Server:
         self.preview.start()
         app = FastAPI()
         app.include_router(view_router(self.preview))
-        app.include_router(events_router(News()))
+        app.include_router(events_router(EventHub()))
         for resource, document in documents(demonstrations).items():
             app.add_api_route(f"/api/v1/{resource}", lambda document=document: document)
         app.add_api_route("/api/v1/paths/{path}/assessment", look, methods=["POST"])

@@ -77,7 +77,7 @@ def calibrations_router(parts: Parts) -> APIRouter:
         if not stored:
             raise NotFound(f"task {task} has no demonstrations yet")
         changed = calibrations.convert(stored, converted.calibration)
-        parts.recorder.curation.changed(changed[-1])
+        parts.recorder.annotations.changed(changed[-1])
         return changed
 
     return router

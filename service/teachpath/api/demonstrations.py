@@ -37,7 +37,7 @@ def demonstrations_router(parts: Parts) -> APIRouter:
     @router.patch("/demonstrations/{demonstration}")
     def amend_demonstration(demonstration: str, amended: Amended) -> Demonstration:
         """Mark, discard, restore or trim a demonstration; its recording and the recorder's own cut stay."""
-        return parts.recorder.curation.amend(
+        return parts.recorder.annotations.amend(
             demonstration, Amendment(mark=amended.mark, discarded=amended.discarded, trim=amended.trim)
         )
 

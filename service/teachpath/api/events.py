@@ -14,10 +14,10 @@ import json
 from fastapi import APIRouter, WebSocket
 
 from teachpath.api import sockets
-from teachpath.live.event_hub import Document, Listener, News
+from teachpath.live.event_hub import Document, EventHub, Subscriber
 
 
-def events_router(news: News) -> APIRouter:
+def events_router(news: EventHub) -> APIRouter:
     """Return the route of the events: `/api/v1/events`."""
     router = APIRouter(include_in_schema=False)
 
@@ -32,5 +32,5 @@ def events_router(news: News) -> APIRouter:
     return router
 
 
-def _refuse(text: str, listener: Listener) -> str:
+def _refuse(text: str, listener: Subscriber) -> str:
     return "nothing is expected here; give orders over REST"

@@ -12,7 +12,7 @@ from teachpath.jobs.curve_assessor import Assessor
 from teachpath.jobs.jobs import Jobs
 from teachpath.recorder.calibrations import Calibrations
 from teachpath.recorder.recorder import Recorder
-from teachpath.recorder.websocket_trackers import TrackerGate
+from teachpath.recorder.websocket_trackers import WebSocketTrackers
 from teachpath.records import Demonstration, Trajectory
 from teachpath.robot.executions import Executions
 from teachpath.robot.joint_feed import JointFeed
@@ -29,7 +29,7 @@ class Parts:
     jobs: Jobs
     assessor: Assessor
     executions: Executions
-    gate: TrackerGate
+    websocket_trackers: WebSocketTrackers
     joints: JointFeed
     trajectory: Callable[[Demonstration], Trajectory]
     health: Callable[[], dict[str, Any]]

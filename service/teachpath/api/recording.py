@@ -75,12 +75,12 @@ def recording_router(parts: Parts) -> APIRouter:
     @router.post("/tasks/{task}/recording/discard")
     def discard_last(task: str) -> Demonstration:
         """Discard the newest demonstration that is kept; it is marked, not deleted."""
-        return recorder.curation.discard_last(task)
+        return recorder.annotations.discard_last(task)
 
     @router.post("/tasks/{task}/recording/restore")
     def restore_last(task: str) -> Demonstration:
         """Bring back the demonstration that was discarded last."""
-        return recorder.curation.restore_last(task)
+        return recorder.annotations.restore_last(task)
 
     def of_task(task: str, tracker: str) -> str:
         name = parts.store.task(task).name

@@ -25,7 +25,7 @@ from teachpath.api.parts import Parts
 from teachpath.api.sockets import same_origin
 from teachpath.errors import TeachpathError, UnusableInput
 from teachpath.io.wire import LARGEST_SAMPLE
-from teachpath.recorder.websocket_trackers import GatedTracker
+from teachpath.recorder.websocket_trackers import WebSocketTracker
 
 SILENCE: Final = 10.0  # [s] after which a page that says nothing, not even a ping, has gone
 REFUSED: Final = 1008  # close code: policy violation
@@ -53,7 +53,7 @@ def trackers_router(parts: Parts, *, silence: float = SILENCE) -> APIRouter:
                 loop.call_soon_threadsafe(dismissed.put_nowait, why)
 
         try:
-            tracker = parts.gate.admit(name, leave)
+            tracker = parts.websocket_trackers.register(name, leave)
         except TeachpathError as error:
             await _close(socket, str(error))
             return
@@ -63,7 +63,7 @@ def trackers_router(parts: Parts, *, silence: float = SILENCE) -> APIRouter:
             done, _ = await asyncio.wait((listening, leaving), return_when=asyncio.FIRST_COMPLETED)
             await _close(socket, next(iter(done)).result())
         finally:
-            parts.gate.let_out(tracker)
+            parts.websocket_trackers.unregister(tracker)
             for task in (listening, leaving):
                 task.cancel()
             await asyncio.gather(listening, leaving, return_exceptions=True)
@@ -71,7 +71,7 @@ def trackers_router(parts: Parts, *, silence: float = SILENCE) -> APIRouter:
     return router
 
 
-async def _listen(socket: WebSocket, tracker: GatedTracker, silence: float) -> str:
+async def _listen(socket: WebSocket, tracker: WebSocketTracker, silence: float) -> str:
     """Answer message after message; return why the tracker has to leave, or nothing when it left by itself."""
     try:
         while True:
@@ -90,7 +90,7 @@ async def _listen(socket: WebSocket, tracker: GatedTracker, silence: float) -> s
         return ""
 
 
-def _answer(tracker: GatedTracker, content: bytes | str) -> Answer:
+def _answer(tracker: WebSocketTracker, content: bytes | str) -> Answer:
     """Do what a message asks for; raises UnusableInput when the tracker has to leave."""
     if isinstance(content, bytes):
         return _refusal(tracker.take(content))

@@ -16,7 +16,7 @@ ALL: Final = "all"  # the topic of the first piece, and of the one after an over
 LONGEST: Final = 256  # changed resources that wait for one listener
 
 
-class Listener:
+class Subscriber:
     """One who listens: what it has not been told yet, the newest piece of each topic and id."""
 
     def __init__(self, wake: Callable[[], None], first: Document, standing: dict[Key, Document]) -> None:
@@ -50,7 +50,7 @@ class Listener:
                 self._changes = {(ALL, ""): _anew(piece["sequence"], "too much has changed to tell it one by one")}
 
 
-class News:
+class EventHub:
     """Tells every listener; safe to use from several threads, and never waits for anybody."""
 
     def __init__(self, *, longest: int = LONGEST) -> None:
@@ -58,20 +58,20 @@ class News:
         self._lock = threading.Lock()
         self._longest = longest
         self._sequence = 0
-        self._listeners: set[Listener] = set()
+        self._listeners: set[Subscriber] = set()
         self._standing: dict[Key, Document] = {}
 
-    def attach(self, wake: Callable[[], None]) -> Listener:
+    def attach(self, wake: Callable[[], None]) -> Subscriber:
         """Add a listener; `wake()` is called, from any thread, when there is news for it.
 
         It is told first to read everything, then how all that stands which no resource holds.
         """
         with self._lock:
-            listener = Listener(wake, _anew(self._sequence, "connected"), self._standing)
+            listener = Subscriber(wake, _anew(self._sequence, "connected"), self._standing)
             self._listeners.add(listener)
         return listener
 
-    def detach(self, listener: Listener) -> None:
+    def detach(self, listener: Subscriber) -> None:
         """Forget a listener."""
         with self._lock:
             self._listeners.discard(listener)

@@ -6,24 +6,24 @@ import logging
 import threading
 from collections.abc import Callable, Mapping
 
-from teachpath.live.event_hub import Document, News
+from teachpath.live.event_hub import Document, EventHub
 
 PERIOD = 0.2  # [s] a person sees no delay, and a moving arm no more than five documents a second
 
 # How all things of one topic stand now, by id.
-Look = Callable[[], Mapping[str, Document]]
+Poll = Callable[[], Mapping[str, Document]]
 
 log = logging.getLogger("teachpath")
 
 
-class Lookout:
+class StatePoller:
     """Looks again and again, on a thread of its own; start it and stop it.
 
     Args:
         looks: for every topic, what gives its documents.
     """
 
-    def __init__(self, news: News, looks: Mapping[str, Look], *, period: float = PERIOD) -> None:
+    def __init__(self, news: EventHub, looks: Mapping[str, Poll], *, period: float = PERIOD) -> None:
         self._news, self._looks, self._period = news, dict(looks), period
         self._seen: dict[str, dict[str, Document]] = {topic: {} for topic in looks}
         self._stopped = threading.Event()

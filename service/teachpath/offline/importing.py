@@ -12,10 +12,10 @@ from teachpath.io.files import Track, read_tracks
 from teachpath.io.sample_files import holds_samples, read_samples
 from teachpath.io.store.recordings import read_facts_stream, salvage_stream
 from teachpath.io.store.store import Store
-from teachpath.recorder.annotations import MARKS, Amendment, Curation
+from teachpath.recorder.annotations import MARKS, Amendment, Annotations
 from teachpath.recorder.session import RecordingSession
 from teachpath.recording.demonstration import point_to_world
-from teachpath.recording.phase_statistics import Parts, parts_of
+from teachpath.recording.phase_statistics import PhaseStatistics, phase_statistics
 from teachpath.recording.phases import GRASP_BUTTON, Cut, Segmenter
 from teachpath.recording.settings import RecordingSettings
 from teachpath.recording.verdict import Verdict, judge_again
@@ -68,8 +68,8 @@ def import_file(
     judged = [_judged(store, settings, each, read) for each in _recorded(store, settings, task, scene, read)]
     if read.stated is None:
         return judged
-    curation = Curation(store, settings, lambda _: scene)
-    return [_curated(curation, settings, each, read.stated) for each in judged]
+    annotations = Annotations(store, settings, lambda _: scene)
+    return [_curated(annotations, settings, each, read.stated) for each in judged]
 
 
 def _recorded(
@@ -146,7 +146,7 @@ def _judged(
 
 
 def _curated(
-    curation: Curation, settings: RecordingSettings, made: tuple[Demonstration, Trajectory], stated: Demonstration
+    annotations: Annotations, settings: RecordingSettings, made: tuple[Demonstration, Trajectory], stated: Demonstration
 ) -> tuple[Demonstration, Trajectory]:
     """Say again what the operator said where the demonstration was shown; a trim only of the same take."""
     row, trajectory = made
@@ -156,12 +156,12 @@ def _curated(
     if not (stated.mark or trim or stated.discarded_ns):
         return made
     amendment = Amendment(mark=stated.mark, discarded=True if stated.discarded_ns else None, trim=trim)
-    said = curation.amend(row.id, amendment)
-    return said, curation.trajectory(said) if trim else trajectory
+    said = annotations.amend(row.id, amendment)
+    return said, annotations.trajectory(said) if trim else trajectory
 
 
-def _parts(row: Demonstration, samples: list[Sample], settings: RecordingSettings) -> Parts:
-    return parts_of(samples, Cut(*row.transport), row.account, settings)
+def _parts(row: Demonstration, samples: list[Sample], settings: RecordingSettings) -> PhaseStatistics:
+    return phase_statistics(samples, Cut(*row.transport), row.account, settings)
 
 
 def _check(

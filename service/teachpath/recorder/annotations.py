@@ -9,7 +9,7 @@ from typing import Any, Final
 
 from teachpath.errors import NotFound, UnusableInput
 from teachpath.io.store.store import Store
-from teachpath.recorder.take_completion import judged_again
+from teachpath.recorder.take_completion import reassess
 from teachpath.recording.demonstration import object_trajectory
 from teachpath.recording.phases import Cut
 from teachpath.recording.settings import RecordingSettings
@@ -28,7 +28,7 @@ class Amendment:
 
 
 @dataclass(frozen=True)
-class Curation:
+class Annotations:
     """Changes what is said of demonstrations.
 
     Attributes:
@@ -98,6 +98,6 @@ class Curation:
             )
         samples = self.store.recordings.samples(stored.recording)
         changed = replace(stored, trim=chosen)
-        changes = judged_again(stored, changed, samples, self.settings)
+        changes = reassess(stored, changed, samples, self.settings)
         times = self.trajectory(replace(changed, **changes)).times
         return {"trim": chosen, **changes, "duration": float(times[-1])}

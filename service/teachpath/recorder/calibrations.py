@@ -8,8 +8,8 @@ from typing import Any
 
 from teachpath.errors import Conflict, NotFound, UnusableInput
 from teachpath.io.store.store import Store
-from teachpath.recorder.annotations import Curation
-from teachpath.recorder.take_completion import judged_again
+from teachpath.recorder.annotations import Annotations
+from teachpath.recorder.take_completion import reassess
 from teachpath.recording.frame_fit import fit_frame
 from teachpath.recording.settings import RecordingSettings
 from teachpath.records import Calibration, Demonstration, MeasuredCalibration, Scene, TaughtPoint
@@ -129,9 +129,9 @@ class Calibrations:
             return {}
         samples = self.store.recordings.samples(demonstration.recording)
         changed = replace(demonstration, calibration=calibration)
-        changes = judged_again(demonstration, changed, samples, self.settings)
+        changes = reassess(demonstration, changed, samples, self.settings)
         moved = replace(changed, **changes)
-        times = Curation(self.store, self.settings, self.scene).trajectory(moved).times
+        times = Annotations(self.store, self.settings, self.scene).trajectory(moved).times
         return {"calibration": calibration, **changes, "duration": float(times[-1])}
 
     def _present(self, calibration: Calibration) -> Calibration:

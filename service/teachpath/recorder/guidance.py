@@ -13,7 +13,7 @@ from teachpath.learning.clustering.distances import distances
 from teachpath.learning.clustering.partition import group
 from teachpath.learning.resampling import arc_lengths, at_equal_arc_length, smoothed
 from teachpath.learning.settings import LearningSettings
-from teachpath.recording.guidance import Shown, advise
+from teachpath.recording.guidance import ClusterSummary, advise
 from teachpath.records import Array, Demonstration, Trajectory
 
 MOST = 60  # newest demonstrations that are compared
@@ -21,7 +21,7 @@ POINTS = 50  # of each, at equal arc length
 STOP = ""  # asked for at the end; no task has this name
 
 
-class Coach:
+class GuidanceThread:
     """Keeps one sentence a task.
 
     Args:
@@ -98,14 +98,14 @@ class Coach:
         return at_equal_arc_length(smoothed(self._trajectory(demonstration)), POINTS)
 
 
-def _ways(courses: Array, settings: LearningSettings, length: float) -> list[Shown]:
+def _ways(courses: Array, settings: LearningSettings, length: float) -> list[ClusterSummary]:
     if len(courses) < 2:
-        return [Shown(len(courses), 0.0)]
+        return [ClusterSummary(len(courses), 0.0)]
     condensed = distances(courses)
     labels = group(condensed, len(courses), settings, length=length).labels
     left, right = np.triu_indices(len(courses), 1)
     shown = []
     for way in range(1, int(labels.max()) + 1):
         within = condensed[(labels[left] == way) & (labels[right] == way)]
-        shown.append(Shown(int(np.count_nonzero(labels == way)), float(within.max(initial=0.0))))
+        shown.append(ClusterSummary(int(np.count_nonzero(labels == way)), float(within.max(initial=0.0))))
     return shown

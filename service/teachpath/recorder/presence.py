@@ -6,8 +6,10 @@ import threading
 from collections.abc import Callable
 from dataclasses import dataclass
 
-HEARD = 0.8  # [s] after a sample a tracker is silent, and one without a token has gone; a page shows it within 1 s
-MOST = 1000  # trackers that are remembered; a flood of names must not fill the memory
+SILENCE_TIMEOUT = (
+    0.8  # [s] after a sample a tracker is silent, and one without a token has gone; a page shows it within 1 s
+)
+MAX_TRACKERS = 1000  # trackers that are remembered; a flood of names must not fill the memory
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,7 +23,7 @@ class Tracker:
     @property
     def is_silent(self) -> bool:
         """Whether it has sent and does not any more: stopped, stuck, or its line is dead."""
-        return self.silence > HEARD
+        return self.silence > SILENCE_TIMEOUT
 
 
 class Presence:
@@ -35,7 +37,7 @@ class Presence:
     def announce(self, tracker: str, alive: bool) -> None:
         """Take note that a tracker came or went."""
         with self._lock:
-            if alive and len(self._announced) < MOST:
+            if alive and len(self._announced) < MAX_TRACKERS:
                 self._announced.add(tracker)
             elif not alive:
                 self._announced.discard(tracker)
@@ -47,10 +49,10 @@ class Presence:
             self._heard[tracker] = self._clock()
             return
         with self._lock:
-            if len(self._heard) < MOST:
+            if len(self._heard) < MAX_TRACKERS:
                 self._heard[tracker] = self._clock()
             else:
-                limit = self._clock() - HEARD
+                limit = self._clock() - SILENCE_TIMEOUT
                 self._heard = {name: at for name, at in self._heard.items() if at > limit}
 
     def silence_of(self, tracker: str) -> float:
@@ -62,7 +64,7 @@ class Presence:
         """Return who is there, by name."""
         now = self._clock()
         with self._lock:
-            sending = {name for name, at in self._heard.items() if now - at <= HEARD}
+            sending = {name for name, at in self._heard.items() if now - at <= SILENCE_TIMEOUT}
             return [
                 Tracker(name, name in self._announced, round(now - self._heard.get(name, now + 1.0), 1))
                 for name in sorted(self._announced | sending)

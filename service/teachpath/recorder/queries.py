@@ -20,7 +20,7 @@ class RecorderQueries:
     """Answers the queries under `recorder/`."""
 
     def __init__(self, bus: Bus, keys: Keys, recorder: Recorder) -> None:
-        self._bus, self._keys, self._recorder, self._curation = bus, keys, recorder, recorder.curation
+        self._bus, self._keys, self._recorder, self._curation = bus, keys, recorder, recorder.annotations
         self._handles: list[Handle] = []
 
     def start(self) -> None:

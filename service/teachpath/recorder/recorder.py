@@ -9,22 +9,22 @@ from collections.abc import Callable
 from teachpath.errors import Conflict, UnusableInput
 from teachpath.io.bus import Bus, Handle
 from teachpath.io.store.store import Store
-from teachpath.recorder.annotations import Amendment, Curation
+from teachpath.recorder.annotations import Amendment, Annotations
 from teachpath.recorder.feedback import Feedback, Standing
 from teachpath.recorder.presence import Presence, Tracker
 from teachpath.recorder.queries import RecorderQueries
-from teachpath.recorder.recording_thread import Scribe
-from teachpath.recorder.sample_queues import Intake
+from teachpath.recorder.recording_thread import RecordingThread
+from teachpath.recorder.sample_queues import SampleQueues
 from teachpath.recorder.session import RecordingSession
-from teachpath.recorder.take import Finished
+from teachpath.recorder.take import FinishedTake
 from teachpath.recording.live_hand import Hand
 from teachpath.recording.settings import RecordingSettings
-from teachpath.recording.take_control import Routine, State
+from teachpath.recording.take_control import RecordingState, Routine
 from teachpath.records import Calibration, Demonstration, Scene, Trajectory
 from teachpath_proto import tracker_pb2
 from teachpath_proto.keys import Keys, is_name
 
-MOST_HANDS = 32  # that are shown; more would hide each other
+MAX_SHOWN_HANDS = 32  # that are shown; more would hide each other
 
 log = logging.getLogger("teachpath")
 Recorded = Callable[[Demonstration, Trajectory], None]
@@ -58,11 +58,11 @@ class Recorder:
     ) -> None:
         self._bus, self._keys, self._store, self._settings = bus, keys, store, settings
         self._scene, self._calibration, self._recorded, self._clock = scene, calibration, recorded, clock
-        self.curation = Curation(store, settings, scene, changed)
+        self.annotations = Annotations(store, settings, scene, changed)
         self._queries = RecorderQueries(bus, keys, self)
         self._presence = Presence(clock)
-        self._intake = Intake(keys, self._presence, settings.longest_backlog)
-        self._scribe = Scribe(
+        self._intake = SampleQueues(keys, self._presence, settings.longest_backlog)
+        self._scribe = RecordingThread(
             self._intake, self._presence, settings, made=self._hand_out, unwanted=self._discard_last_of, clock=clock
         )
         self._feedback = Feedback(bus, keys, self.standings, store.demonstration, clock=clock)
@@ -75,7 +75,7 @@ class Recorder:
         self._feedback.start()
         self._handles = [
             self._bus.subscribe(self._keys.all_samples, self._intake.receive, missed=self._miss),
-            self._bus.watch(self._keys.all_trackers_alive, self._intake.come_or_go),
+            self._bus.watch(self._keys.all_trackers_alive, self._intake.on_liveliness),
         ]
         self._queries.start()
 
@@ -121,8 +121,8 @@ class Recorder:
         stored = self._store.task(task)
         with self._scribe.changed:
             before = self._scribe.sessions.get(tracker)
-            finished = self._scribe.catch_up(before) if before is not None else []
-            if before is not None and before.state is not State.LOST:
+            finished = self._scribe.drain(before) if before is not None else []
+            if before is not None and before.state is not RecordingState.LOST:
                 raise Conflict(f"{tracker} is already recording {before.task}; stop that first")
             session = RecordingSession(
                 self._store,
@@ -153,7 +153,7 @@ class Recorder:
             if last_sequence is not None:
                 arrived = lambda: session.account.highest >= last_sequence  # noqa: E731
                 self._scribe.changed.wait_for(arrived, timeout=self._settings.handshake_timeout)
-            finished = self._scribe.catch_up(session)
+            finished = self._scribe.drain(session)
             if last_sequence is not None:
                 session.expect(last_sequence)
             if self._scribe.sessions.get(tracker) is session:
@@ -204,12 +204,12 @@ class Recorder:
             ]
         if self._missed:
             found.append(f"Zenoh reports {self._missed} samples that never came")
-        return found + [said for said in [self._intake.misnamed()] if said]
+        return found + [said for said in [self._intake.invalid_names()] if said]
 
     def hands(self) -> list[Hand]:
-        """Return the hands that are recorded, as they are seen now; at most `MOST_HANDS`."""
+        """Return the hands that are recorded, as they are seen now; at most `MAX_SHOWN_HANDS`."""
         with self._scribe.changed:
-            seen = [session.hand() for session in list(self._scribe.sessions.values())[:MOST_HANDS]]
+            seen = [session.hand() for session in list(self._scribe.sessions.values())[:MAX_SHOWN_HANDS]]
         return [hand for hand in seen if hand is not None]
 
     def task_of(self, tracker: str) -> str:
@@ -219,7 +219,7 @@ class Recorder:
     def _miss(self, count: int) -> None:  # on the transport's thread
         self._missed += count
 
-    def _hand_out(self, finished: list[Finished]) -> None:
+    def _hand_out(self, finished: list[FinishedTake]) -> None:
         for demonstration, trajectory in finished:
             try:
                 self._recorded(demonstration, trajectory)
@@ -229,5 +229,5 @@ class Recorder:
     def _discard_last_of(self, session: RecordingSession) -> None:
         for key in reversed(session.demonstrations):
             if not self._store.demonstration(key).discarded_ns:
-                self.curation.amend(key, Amendment(discarded=True))
+                self.annotations.amend(key, Amendment(discarded=True))
                 return

@@ -8,17 +8,17 @@ from collections.abc import Callable
 from teachpath.errors import NotFound, UnusableSample
 from teachpath.io.wire import decode_sample
 from teachpath.recorder.presence import Presence
-from teachpath.recorder.sample_queues import Intake, Received
+from teachpath.recorder.sample_queues import QueueItem, SampleQueues
 from teachpath.recorder.session import RecordingSession
-from teachpath.recorder.take import Finished
+from teachpath.recorder.take import FinishedTake
 from teachpath.recording.settings import RecordingSettings
 
-FLUSH_EVERY = 0.75  # [s] under a second, with a margin for a busy machine
-ROUND = 0.02  # [s] between two looks at what has come; no pause while more waits than one round takes
-BATCH = 200  # samples of one tracker that are recorded before the next one's turn
+FLUSH_INTERVAL = 0.75  # [s] under a second, with a margin for a busy machine
+ROUND_INTERVAL = 0.02  # [s] between two looks at what has come; no pause while more waits than one round takes
+BATCH_SIZE = 200  # samples of one tracker that are recorded before the next one's turn
 
 
-class Scribe:
+class RecordingThread:
     """Holds the running recordings, one a tracker, and writes into them what waits in the intake.
 
     Args:
@@ -33,11 +33,11 @@ class Scribe:
 
     def __init__(
         self,
-        intake: Intake,
+        intake: SampleQueues,
         presence: Presence,
         settings: RecordingSettings,
         *,
-        made: Callable[[list[Finished]], None],
+        made: Callable[[list[FinishedTake]], None],
         unwanted: Callable[[RecordingSession], None],
         clock: Callable[[], float],
     ) -> None:
@@ -62,7 +62,7 @@ class Scribe:
             self._thread = None
         with self.changed:
             for session in self.sessions.values():
-                self.catch_up(session)
+                self.drain(session)
                 session.finish()
             self.sessions.clear()
 
@@ -73,14 +73,14 @@ class Scribe:
             raise NotFound(f"{tracker!r} is not being recorded; running: {sorted(self.sessions) or 'none'}")
         return session
 
-    def catch_up(self, session: RecordingSession) -> list[Finished]:
+    def drain(self, session: RecordingSession) -> list[FinishedTake]:
         """Record all that waits of one tracker; call it while `changed` is held."""
         finished = []
-        while batch := self._intake.take(session.tracker, BATCH):
+        while batch := self._intake.take(session.tracker, BATCH_SIZE):
             finished += self._record(session, batch)
         return finished
 
-    def go_round(self) -> bool:
+    def process_round(self) -> bool:
         """Record a batch of each tracker in turn, so that none keeps the others waiting.
 
         Returns:
@@ -91,22 +91,22 @@ class Scribe:
             sessions = list(self.sessions.values())
         now, more = self._clock(), False
         for session in sessions:
-            if not self._intake.is_empty(session.tracker) or now - session.flushed >= FLUSH_EVERY:
-                more |= self._visit(session, now) == BATCH
+            if not self._intake.is_empty(session.tracker) or now - session.flushed >= FLUSH_INTERVAL:
+                more |= self._visit(session, now) == BATCH_SIZE
             elif session.is_carrying:
                 self._look_for_silence(session)
         return more
 
     def _run(self) -> None:
         more = False
-        while not self._stopped.wait(0.0 if more else ROUND):
-            more = self.go_round()
+        while not self._stopped.wait(0.0 if more else ROUND_INTERVAL):
+            more = self.process_round()
 
     def _visit(self, session: RecordingSession, now: float) -> int:
         with self.changed:
-            batch = self._intake.take(session.tracker, BATCH)
+            batch = self._intake.take(session.tracker, BATCH_SIZE)
             finished = self._record(session, batch)
-            if now - session.flushed >= FLUSH_EVERY:
+            if now - session.flushed >= FLUSH_INTERVAL:
                 session.flush(now)
             unwanted = session.asks_to_discard()
             self.changed.notify_all()
@@ -115,14 +115,14 @@ class Scribe:
             self._unwanted(session)
         return len(batch)
 
-    def _record(self, session: RecordingSession, batch: list[Received]) -> list[Finished]:
+    def _record(self, session: RecordingSession, batch: list[QueueItem]) -> list[FinishedTake]:
         if batch and batch[-1].payload is not None:
             self._presence.hear(session.tracker)
-        if turned_away := self._intake.turned_away(session.tracker):
-            session.remark(f"{turned_away} samples came faster than they can be recorded, and were turned away")
+        if dropped := self._intake.dropped(session.tracker):
+            session.remark(f"{dropped} samples came faster than they can be recorded, and were turned away")
         return [made for received in batch if (made := self._take_in(session, received)) is not None]
 
-    def _take_in(self, session: RecordingSession, received: Received) -> Finished | None:
+    def _take_in(self, session: RecordingSession, received: QueueItem) -> FinishedTake | None:
         payload, receive_ns = received
         try:
             if payload is None:

@@ -14,22 +14,22 @@ from teachpath.recorder.presence import Presence
 from teachpath_proto.keys import Keys, is_name
 
 
-class Received(NamedTuple):
+class QueueItem(NamedTuple):
     """One payload and when it came; None stands for the news that its tracker has gone."""
 
     payload: bytes | None
     receive_ns: int
 
 
-class _Line:
-    __slots__ = ("turned_away", "waiting")
+class _Queue:
+    __slots__ = ("dropped", "waiting")
 
     def __init__(self) -> None:
-        self.waiting: deque[Received] = deque()
-        self.turned_away = 0
+        self.waiting: deque[QueueItem] = deque()
+        self.dropped = 0
 
 
-class Intake:
+class SampleQueues:
     """The lines of the trackers that are recorded.
 
     Args:
@@ -38,9 +38,9 @@ class Intake:
 
     def __init__(self, keys: Keys, presence: Presence, longest: int) -> None:
         self._keys, self._presence, self.longest = keys, presence, longest
-        self._lines: dict[str, _Line] = {}  # by the key of the samples
-        self._misnamed = 0
-        self._misname = ""
+        self._lines: dict[str, _Queue] = {}  # by the key of the samples
+        self._invalid_name_count = 0
+        self._last_invalid_name = ""
 
     # on the transport's threads: append only
 
@@ -50,50 +50,50 @@ class Intake:
         if line is None:
             self._hear(self._keys.tracker_of(key))
         elif len(line.waiting) < self.longest:
-            line.waiting.append(Received(payload, time.time_ns()))
+            line.waiting.append(QueueItem(payload, time.time_ns()))
         else:
-            line.turned_away += 1
+            line.dropped += 1
 
-    def come_or_go(self, key: str, alive: bool) -> None:
+    def on_liveliness(self, key: str, alive: bool) -> None:
         """Take from the bus that a tracker came or went; what it sent before is recorded before."""
         tracker = self._keys.announced(key)
         if not is_name(tracker):
-            self._misnamed, self._misname = self._misnamed + 1, tracker
+            self._invalid_name_count, self._last_invalid_name = self._invalid_name_count + 1, tracker
             return
         self._presence.announce(tracker, alive)
         line = self._lines.get(self._keys.samples(tracker))
         if line is not None and not alive:
-            line.waiting.append(Received(None, 0))
+            line.waiting.append(QueueItem(None, 0))
 
     def _hear(self, tracker: str) -> None:
         if is_name(tracker):
             self._presence.hear(tracker)
         else:
-            self._misnamed, self._misname = self._misnamed + 1, tracker
+            self._invalid_name_count, self._last_invalid_name = self._invalid_name_count + 1, tracker
 
     # on the recorder's
 
     def open(self, tracker: str) -> None:
         """Let the samples of `tracker` wait from now on."""
-        self._lines[self._keys.samples(tracker)] = _Line()
+        self._lines[self._keys.samples(tracker)] = _Queue()
 
     def close(self, tracker: str) -> None:
         """Only hear `tracker` from now on."""
         self._lines.pop(self._keys.samples(tracker), None)
 
-    def take(self, tracker: str, most: int) -> list[Received]:
+    def take(self, tracker: str, most: int) -> list[QueueItem]:
         """Take up to `most` from the line of `tracker`, in the order they came."""
         line = self._lines.get(self._keys.samples(tracker))
         if line is None:
             return []
         return [line.waiting.popleft() for _ in range(min(most, len(line.waiting)))]
 
-    def turned_away(self, tracker: str) -> int:
+    def dropped(self, tracker: str) -> int:
         """Return how many samples of `tracker` were turned away since this was last asked."""
         line = self._lines.get(self._keys.samples(tracker))
-        if line is None or not line.turned_away:
+        if line is None or not line.dropped:
             return 0
-        count, line.turned_away = line.turned_away, 0
+        count, line.dropped = line.dropped, 0
         return count
 
     def is_empty(self, tracker: str) -> bool:
@@ -101,13 +101,13 @@ class Intake:
         line = self._lines.get(self._keys.samples(tracker))
         return line is None or not line.waiting
 
-    def misnamed(self) -> str:
+    def invalid_names(self) -> str:
         """Say who came under a name that cannot be recorded, or nothing."""
-        if not self._misnamed:
+        if not self._invalid_name_count:
             return ""
         return (
-            f"{self._misnamed} messages came from trackers whose names cannot be recorded, the last of them from "
-            f"{self._misname[:80]!r}: use letters, digits, '.', '_' or '-', at most 64"
+            f"{self._invalid_name_count} messages came from trackers whose names cannot be recorded, the last of them "
+            f"from {self._last_invalid_name[:80]!r}: use letters, digits, '.', '_' or '-', at most 64"
         )
 
     @property

@@ -9,14 +9,14 @@ from teachpath.io.store.recordings import RecordingHeader
 from teachpath.io.store.store import Store
 from teachpath.io.wire import encode_report
 from teachpath.recorder.feedback import Standing
-from teachpath.recorder.take import Finished, OpenTake
+from teachpath.recorder.take import FinishedTake, Take
 from teachpath.recording.demonstration import object_pose, point_to_world
-from teachpath.recording.fist_gesture import FistGesture, Sign
+from teachpath.recording.fist_gesture import FistCommand, FistGesture
 from teachpath.recording.live_hand import Hand
-from teachpath.recording.phases import TOGGLE_BUTTON, Cut, Segmenter, closure_of
+from teachpath.recording.phases import TOGGLE_BUTTON, Cut, Segmenter, hand_closure
 from teachpath.recording.settings import RecordingSettings
-from teachpath.recording.stream_statistics import StreamAccount
-from teachpath.recording.take_control import Control, Routine, State
+from teachpath.recording.stream_statistics import StreamCounter
+from teachpath.recording.take_control import RecordingState, RecordingStateMachine, Routine
 from teachpath.records import Calibration, Phase, Sample, Scene, Vector
 from teachpath_proto import tracker_pb2
 
@@ -51,8 +51,8 @@ class RecordingSession:
         self.task, self.tracker, self.calibration = task, tracker, calibration
         self._store, self._settings, self._clock = store, settings, clock
         # of the whole recording; its open part is that of the open take
-        self.account = StreamAccount(declared_rate=rate, largest_clock_step=settings.largest_clock_step)
-        self._control = Control(routine or Routine(), clock(), countdown=settings.countdown)
+        self.account = StreamCounter(declared_rate=rate, largest_clock_step=settings.largest_clock_step)
+        self._control = RecordingStateMachine(routine or Routine(), clock(), countdown=settings.countdown)
         self._thing = scene.carried
         self._carried = scene.carried.position if scene.carried else None
         self._to_world = point_to_world(calibration)
@@ -67,7 +67,7 @@ class RecordingSession:
         self._gesture = FistGesture(settings, self._carried)
 
     @property
-    def state(self) -> State:
+    def state(self) -> RecordingState:
         """What is done with the samples that come."""
         return self._control.state
 
@@ -81,7 +81,7 @@ class RecordingSession:
         """Why the open take is not written, or empty."""
         return self._take.fault
 
-    def add(self, sample: Sample, payload: bytes = b"") -> Finished | None:
+    def add(self, sample: Sample, payload: bytes = b"") -> FinishedTake | None:
         """Write one sample, `payload` as it came; return the demonstration that it completes."""
         fresh = self.account.observe(sample)
         if self.account.restarted:
@@ -93,9 +93,9 @@ class RecordingSession:
         position = self._to_world(sample.position)
         if fresh:
             self._follow_signs(sample, position)
-        if self.state is State.COUNTDOWN and self._control.count_down(self._clock()):
+        if self.state is RecordingState.COUNTDOWN and self._control.count_down(self._clock()):
             self._drop()
-        if self.state in (State.PAUSED, State.COUNTDOWN):
+        if self.state in (RecordingState.PAUSED, RecordingState.COUNTDOWN):
             self._idle += 1
             return None
         if not fresh:
@@ -107,16 +107,16 @@ class RecordingSession:
     def pause(self) -> None:
         """Record nothing until `resume`; what is carried now is recorded to its end first."""
         self._control.pause(carrying=self.is_carrying)
-        if self.state is State.PAUSED:
+        if self.state is RecordingState.PAUSED:
             self._drop()
 
     def resume(self) -> None:
         """Record again, after the countdown if there is one."""
-        if self.state is State.PAUSED:
+        if self.state is RecordingState.PAUSED:
             self.account.begin_part()
         self._control.resume(self._clock())
 
-    def interrupt(self, reason: str) -> Finished | None:
+    def interrupt(self, reason: str) -> FinishedTake | None:
         """End the open take because its samples ended, never as a silent short one; return what it makes.
 
         What was let go before is whole, and repaired at best; what was still carried is rejected.
@@ -130,7 +130,7 @@ class RecordingSession:
         self._segmenter = Segmenter(self._settings, self._carried, closed=True)
         return finished
 
-    def lose(self, reason: str) -> Finished | None:
+    def lose(self, reason: str) -> FinishedTake | None:
         """Take note that the tracker has gone; as `interrupt`."""
         finished = self.interrupt(reason)
         self._control.lose()
@@ -159,7 +159,7 @@ class RecordingSession:
         """Stop writing the open take and leave its file as it is; the next one is tried again."""
         self._take.fail(reason)
 
-    def finish(self, *, discard: bool = False, torn: bool = False) -> list[Finished]:
+    def finish(self, *, discard: bool = False, torn: bool = False) -> list[FinishedTake]:
         """End the recording; return the demonstration that its end completes, if there is one.
 
         Args:
@@ -191,7 +191,7 @@ class RecordingSession:
             received=self.account.received,
             take=self._takes,
             phase=phase,
-            closed=closure_of(newest) > self._settings.close_at,
+            closed=hand_closure(newest) > self._settings.close_at,
             position=self._to_world(newest.position),
             thing=self._thing,
             carried=carried,
@@ -232,14 +232,14 @@ class RecordingSession:
         self._buttons = sample.buttons
         self._pedal_was_used |= bool(pressed)
         sign = self._gesture.push(sample, position, carrying=self.is_carrying)
-        self._unwanted |= sign is Sign.DISCARD
-        if pressed or sign is Sign.TOGGLE:
-            if self.state in (State.RECORDING, State.COUNTDOWN):
+        self._unwanted |= sign is FistCommand.DISCARD
+        if pressed or sign is FistCommand.TOGGLE:
+            if self.state in (RecordingState.RECORDING, RecordingState.COUNTDOWN):
                 self.pause()
             else:
                 self.resume()
 
-    def _follow_phases(self, sample: Sample, payload: bytes, position: Vector) -> Finished | None:
+    def _follow_phases(self, sample: Sample, payload: bytes, position: Vector) -> FinishedTake | None:
         before = self._segmenter.phase
         cut = self._segmenter.push(sample, position)
         phase = self._segmenter.phase
@@ -257,7 +257,7 @@ class RecordingSession:
                 self._drop()
         return None
 
-    def _close(self, cut: Cut, *, fault: str = "", following: Sample | None = None) -> Finished | None:
+    def _close(self, cut: Cut, *, fault: str = "", following: Sample | None = None) -> FinishedTake | None:
         # A device without a glove lets go by ending its recording; a glove would have shown the release.
         if cut.open_ended and not fault and (self._torn or self._take.samples[-1].flexions):
             fault = "the recording ended before the hand let go"
@@ -280,7 +280,7 @@ class RecordingSession:
         self._take = self._new_take()
         self.account.begin_part(newest=first)
 
-    def _new_take(self) -> OpenTake:
+    def _new_take(self) -> Take:
         self._takes += 1
         header = RecordingHeader(self.task, self.tracker, self.calibration)
-        return OpenTake(self._store, self._settings, header, self.account.note)
+        return Take(self._store, self._settings, header, self.account.note)

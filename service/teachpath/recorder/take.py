@@ -6,17 +6,17 @@ import uuid
 from collections.abc import Callable
 
 from teachpath.errors import UnusableRecording
-from teachpath.io.store.recordings import RecordingHeader, Take
+from teachpath.io.store.recordings import RecordingFile, RecordingHeader
 from teachpath.io.store.store import Store
 from teachpath.recorder.take_completion import TakenSamples, close_take
 from teachpath.recording.phases import Cut
 from teachpath.recording.settings import RecordingSettings
-from teachpath.records import Account, Demonstration, Sample, Trajectory, Vector
+from teachpath.records import Demonstration, Sample, StreamStatistics, Trajectory, Vector
 
-Finished = tuple[Demonstration, Trajectory]
+FinishedTake = tuple[Demonstration, Trajectory]
 
 
-class OpenTake:
+class Take:
     """Keeps and writes samples until they become a demonstration or are dropped.
 
     A file that cannot be written is left as it is, for the doctor; the samples are kept no less.
@@ -32,7 +32,7 @@ class OpenTake:
         self.samples: list[Sample] = []
         self.fault = ""  # why nothing is written
         self._id = f"demo-{uuid.uuid4().hex[:12]}"
-        self._file: Take | None = None
+        self._file: RecordingFile | None = None
 
     @property
     def seconds(self) -> float:
@@ -67,7 +67,7 @@ class OpenTake:
             self._file.leave()
             self._file = None
 
-    def close(self, cut: Cut, account: Account, carried: Vector | None, fault: str) -> Finished | None:
+    def close(self, cut: Cut, account: StreamStatistics, carried: Vector | None, fault: str) -> FinishedTake | None:
         """Make a demonstration of it; one that cannot be made leaves a note that says why, and no file.
 
         Args:

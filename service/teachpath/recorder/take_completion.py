@@ -10,15 +10,15 @@ from typing import Any
 import numpy as np
 
 from teachpath.errors import UnusableRecording
-from teachpath.io.store.recordings import Take, facts_of
+from teachpath.io.store.recordings import RecordingFile, facts_of
 from teachpath.io.store.store import Store
 from teachpath.recording.demonstration import object_trajectory, to_world, usable
-from teachpath.recording.phase_statistics import Parts, parts_of
+from teachpath.recording.phase_statistics import PhaseStatistics, phase_statistics
 from teachpath.recording.phases import Cut
-from teachpath.recording.position_outliers import faults_of
+from teachpath.recording.position_outliers import find_outliers
 from teachpath.recording.settings import RecordingSettings
 from teachpath.recording.verdict import Verdict, judge, judge_again
-from teachpath.records import Account, Calibration, Demonstration, Sample, Trajectory, Vector
+from teachpath.records import Calibration, Demonstration, Sample, StreamStatistics, Trajectory, Vector
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,14 +33,14 @@ class TakenSamples:
 
     samples: Sequence[Sample]
     cut: Cut
-    account: Account
+    account: StreamStatistics
     calibration: Calibration
     carried: Vector | None
     fault: str = ""
 
 
 def close_take(
-    store: Store, settings: RecordingSettings, take: Take, taken: TakenSamples, facts: Mapping[str, str]
+    store: Store, settings: RecordingSettings, take: RecordingFile, taken: TakenSamples, facts: Mapping[str, str]
 ) -> tuple[Demonstration, Trajectory]:
     """Finish a take's file and store its demonstration; `facts` are its id, task and source.
 
@@ -56,7 +56,7 @@ def close_take(
         )
     account, left_out = with_positions(taken, settings)
     trajectory = object_trajectory(taken.samples, cut, taken.calibration, taken.carried, left_out=left_out)
-    verdict = _judge(parts_of(taken.samples, cut, account, settings), taken, settings)
+    verdict = _judge(phase_statistics(taken.samples, cut, account, settings), taken, settings)
     demonstration = Demonstration(
         id=facts["id"],
         task=facts["task"],
@@ -79,18 +79,18 @@ def close_take(
     return stored, trajectory
 
 
-def with_positions(taken: TakenSamples, settings: RecordingSettings) -> tuple[Account, tuple[int, ...]]:
+def with_positions(taken: TakenSamples, settings: RecordingSettings) -> tuple[StreamStatistics, tuple[int, ...]]:
     """Return a take's account with the faults of its positions, and the numbers of the samples that jumped."""
     ordered = usable(taken.samples[taken.cut.grasp : taken.cut.release])
     if not ordered:
         return taken.account, ()
     positions = to_world(taken.calibration, np.array([s.position for s in ordered]))
-    faults = faults_of(ordered, positions, settings)
+    faults = find_outliers(ordered, positions, settings)
     account = replace(taken.account, jumps=len(faults.jumped), leaps=faults.leaps, out_of_workspace=faults.outside)
     return account, faults.jumped
 
 
-def judged_again(
+def reassess(
     before: Demonstration, after: Demonstration, samples: Sequence[Sample], settings: RecordingSettings
 ) -> dict[str, Any]:
     """Return what is thought of a demonstration whose calibration or trim has changed, as changes of its row.
@@ -104,14 +104,14 @@ def judged_again(
     account, left_out = with_positions(TakenSamples(samples, cut, before.account, after.calibration, None), settings)
     verdict = judge_again(
         Verdict(before.verdict, before.reasons),
-        parts_of(samples, Cut(*before.transport), before.account, settings),
-        parts_of(samples, cut, account, settings),
+        phase_statistics(samples, Cut(*before.transport), before.account, settings),
+        phase_statistics(samples, cut, account, settings),
         settings,
     )
     return {"account": account, "left_out": left_out, "verdict": verdict.word, "reasons": verdict.reasons}
 
 
-def _judge(parts: Parts, taken: TakenSamples, settings: RecordingSettings) -> Verdict:
+def _judge(parts: PhaseStatistics, taken: TakenSamples, settings: RecordingSettings) -> Verdict:
     verdict = judge(parts, settings)
     if not taken.fault:
         return verdict

@@ -16,17 +16,17 @@ from teachpath.recorder.recorder import Recorder
 from teachpath_proto import tracker_pb2
 from teachpath_proto.keys import Keys, is_name
 
-MOST: Final = 32  # trackers that may be here at once
-FASTEST: Final = 1000.0  # samples a second in the long run
-BURST: Final = 2000.0  # samples that may come at once, after a pause of the network
-PATIENCE: Final = 100  # refused messages in a row, after which a tracker has to leave
+MAX_TRACKERS: Final = 32  # trackers that may be here at once
+RATE_LIMIT: Final = 1000.0  # samples a second in the long run
+RATE_BURST: Final = 2000.0  # samples that may come at once, after a pause of the network
+MAX_CONSECUTIVE_REJECTS: Final = 100  # refused messages in a row, after which a tracker has to leave
 
-AFTERGLOW: Final = 5.0  # [s] a tracker that has just been let out may still be seen on the bus
+REANNOUNCE_GRACE: Final = 5.0  # [s] a tracker that has just been let out may still be seen on the bus
 
-Leave = Callable[[str], None]
+OnDisconnect = Callable[[str], None]
 
 
-class TrackerGate:
+class WebSocketTrackers:
     """Lets trackers in and out; safe to use from several threads.
 
     Args:
@@ -39,15 +39,15 @@ class TrackerGate:
     ) -> None:
         self._bus, self._keys, self._recorder, self._clock = bus, keys, recorder, clock
         self._lock = threading.Lock()
-        self._here: dict[str, GatedTracker] = {}
+        self._here: dict[str, WebSocketTracker] = {}
         self._left: dict[str, float] = {}  # when
 
-    def admit(self, name: str, leave: Leave) -> GatedTracker:
+    def register(self, name: str, on_disconnect: OnDisconnect) -> WebSocketTracker:
         """Let a tracker in; one of the same name that came through the gate before has to leave.
 
         Args:
             name: of the tracker, unique at the station.
-            leave: called with a sentence, from any thread, when it has to leave.
+            on_disconnect: called with a sentence, from any thread, when it has to leave.
 
         Raises:
             UnusableInput: the name cannot be a key.
@@ -61,31 +61,31 @@ class TrackerGate:
             before = self._here.get(name)
             if before is None:
                 self._check_free(name, self._recorder.trackers())
-            tracker = GatedTracker(self._bus, self._keys, self._recorder, name, leave, self._clock)
+            tracker = WebSocketTracker(self._bus, self._keys, self._recorder, name, on_disconnect, self._clock)
             self._here[name] = tracker
         if before is not None:
-            before.dismiss(f"another page came as {name}")
+            before.disconnect(f"another page came as {name}")
         tracker.announce()
         return tracker
 
-    def let_out(self, tracker: GatedTracker) -> None:
+    def unregister(self, tracker: WebSocketTracker) -> None:
         """Forget a tracker that has gone; a second call does nothing."""
         with self._lock:
             if self._here.get(tracker.name) is tracker:
                 del self._here[tracker.name]
-                recent = {name: at for name, at in self._left.items() if self._clock() - at < AFTERGLOW}
+                recent = {name: at for name, at in self._left.items() if self._clock() - at < REANNOUNCE_GRACE}
                 self._left = recent | {tracker.name: self._clock()}
         tracker.withdraw()
 
     def _check_free(self, name: str, trackers: Sequence[Tracker]) -> None:
-        just_left = self._clock() - self._left.get(name, -AFTERGLOW) < AFTERGLOW
+        just_left = self._clock() - self._left.get(name, -REANNOUNCE_GRACE) < REANNOUNCE_GRACE
         if not just_left and any(tracker.name == name and tracker.announced for tracker in trackers):
             raise Conflict(f"a tracker {name} is there already, not from a page; choose another name")
-        if len(self._here) >= MOST:
+        if len(self._here) >= MAX_TRACKERS:
             raise Conflict(f"{len(self._here)} trackers are connected from pages, the most there may be; close some")
 
 
-class GatedTracker:
+class WebSocketTracker:
     """One tracker that came through the gate.
 
     Attributes:
@@ -95,16 +95,22 @@ class GatedTracker:
     """
 
     def __init__(
-        self, bus: Bus, keys: Keys, recorder: Recorder, name: str, leave: Leave, clock: Callable[[], float]
+        self,
+        bus: Bus,
+        keys: Keys,
+        recorder: Recorder,
+        name: str,
+        on_disconnect: OnDisconnect,
+        clock: Callable[[], float],
     ) -> None:
         self.name = name
         self.passed = self.refused = 0
         self._bus, self._recorder, self._clock = bus, recorder, clock
         self._key, self._alive = keys.samples(name), keys.alive("tracker", name)
-        self._leave = leave
+        self._on_disconnect = on_disconnect
         self._token: Handle | None = None
         self._in_a_row = 0
-        self._room, self._counted = BURST, clock()
+        self._room, self._counted = RATE_BURST, clock()
 
     def announce(self) -> None:
         """Show that the tracker is there."""
@@ -116,10 +122,10 @@ class GatedTracker:
         if token is not None:
             token.close()
 
-    def dismiss(self, sentence: str) -> None:
+    def disconnect(self, sentence: str) -> None:
         """Tell it to leave, and why."""
         self.withdraw()
-        self._leave(sentence)
+        self._on_disconnect(sentence)
 
     def take(self, content: bytes | dict[str, Any]) -> str:
         """Put a sample on the bus and return an empty text, or why it was refused.
@@ -148,7 +154,7 @@ class GatedTracker:
         """Count something that cannot be used and return the sentence; raises UnusableInput as `take` does."""
         self.refused += 1
         self._in_a_row += 1
-        if self._in_a_row > PATIENCE:
+        if self._in_a_row > MAX_CONSECUTIVE_REJECTS:
             raise UnusableInput(f"{self._in_a_row} messages in a row were refused; the last one: {sentence}")
         return sentence
 
@@ -162,10 +168,10 @@ class GatedTracker:
 
     def _count_rate(self) -> None:
         now = self._clock()
-        self._room = min(BURST, self._room + FASTEST * (now - self._counted)) - 1.0
+        self._room = min(RATE_BURST, self._room + RATE_LIMIT * (now - self._counted)) - 1.0
         self._counted = now
         if self._room < 0.0:
-            raise UnusableInput(f"samples come faster than {FASTEST:g} a second; slow down")
+            raise UnusableInput(f"samples come faster than {RATE_LIMIT:g} a second; slow down")
 
 
 def _message(content: bytes | dict[str, Any]) -> tracker_pb2.HandSample:

@@ -9,14 +9,14 @@ from __future__ import annotations
 import math
 from enum import StrEnum
 
-from teachpath.recording.phases import closure_of
+from teachpath.recording.phases import hand_closure
 from teachpath.recording.settings import RecordingSettings
 from teachpath.records import Sample, Vector
 
 DISCARD, REST = 3, 6  # times `fist_time`
 
 
-class Sign(StrEnum):
+class FistCommand(StrEnum):
     """What a fist asks for."""
 
     TOGGLE = "toggle"
@@ -39,20 +39,20 @@ class FistGesture:
         self._held_ns = 0
 
     @property
-    def offered(self) -> Sign | None:
+    def offered(self) -> FistCommand | None:
         """What the fist would ask for if it opened now."""
         if self._began is None or self._spoilt or not self._settings.fist_time:
             return None
         turns = self._held_ns * 1e-9 / self._settings.fist_time
         if turns < 1 or turns > REST:
             return None
-        return Sign.DISCARD if turns >= DISCARD else Sign.TOGGLE
+        return FistCommand.DISCARD if turns >= DISCARD else FistCommand.TOGGLE
 
-    def push(self, sample: Sample, position: Vector, *, carrying: bool) -> Sign | None:
+    def push(self, sample: Sample, position: Vector, *, carrying: bool) -> FistCommand | None:
         """Take the next sample, newer than all before, and its hand position [m, world]; return the sign it ends."""
         if self._carried is None or not sample.flexions or not self._settings.fist_time:
             return None
-        closure = closure_of(sample)
+        closure = hand_closure(sample)
         if self._began is None:
             if closure > self._settings.fist_at:
                 self._begin(sample, position, carrying)
@@ -71,7 +71,7 @@ class FistGesture:
         near = math.dist(position, self._carried) < self._settings.fist_distance
         self._spoilt = carrying or near or not sample.tracked
 
-    def _open(self, sample: Sample) -> Sign | None:
+    def _open(self, sample: Sample) -> FistCommand | None:
         if self._opened is None:
             self._opened = sample.device_ns
         if sample.device_ns - self._opened < self._settings.release_time * 1e9:

@@ -12,14 +12,14 @@ PLACES = ("first", "second", "third", "fourth", "fifth", "sixth", "seventh", "ei
 
 
 @dataclass(frozen=True, slots=True)
-class Shown:
+class ClusterSummary:
     """One way of doing the task, as shown so far."""
 
     count: int  # of demonstrations
     spread: float  # [m] largest distance of two of them
 
 
-def advise(ways: Sequence[Shown], length: float) -> str:
+def advise(ways: Sequence[ClusterSummary], length: float) -> str:
     """Return the sentence for the operator, or nothing before the first demonstration.
 
     Args:

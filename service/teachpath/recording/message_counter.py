@@ -8,7 +8,7 @@ KINDS = 20  # that are told apart; the rest are only counted
 NUMBER = re.compile(r"[-+]?(\d[\w.+-]*|nan|inf)\b")
 
 
-class Tally:
+class MessageCounter:
     """Counts sentences that differ in their numbers only as one kind.
 
     Args:

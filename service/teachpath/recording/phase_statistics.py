@@ -7,12 +7,12 @@ from dataclasses import dataclass, replace
 
 from teachpath.recording.phases import Cut
 from teachpath.recording.settings import RecordingSettings
-from teachpath.recording.stream_statistics import StreamAccount
-from teachpath.records import Account, Sample
+from teachpath.recording.stream_statistics import StreamCounter
+from teachpath.records import Sample, StreamStatistics
 
 
 @dataclass(frozen=True, slots=True)
-class Parts:
+class PhaseStatistics:
     """A take and its parts; every sample is in one of them, and every step to a sample belongs to its part.
 
     Attributes:
@@ -22,13 +22,15 @@ class Parts:
         back: what came after that.
     """
 
-    whole: Account
-    reach: Account
-    carried: Account
-    back: Account
+    whole: StreamStatistics
+    reach: StreamStatistics
+    carried: StreamStatistics
+    back: StreamStatistics
 
 
-def parts_of(samples: Sequence[Sample], cut: Cut, whole: Account, settings: RecordingSettings) -> Parts:
+def phase_statistics(
+    samples: Sequence[Sample], cut: Cut, whole: StreamStatistics, settings: RecordingSettings
+) -> PhaseStatistics:
     """Return the parts of a take.
 
     A sample that came only after the release is lost of what is learned, which is without it. What only the handshake
@@ -39,7 +41,7 @@ def parts_of(samples: Sequence[Sample], cut: Cut, whole: Account, settings: Reco
         cut: its transport phase.
         whole: the account of the take.
     """
-    stream = StreamAccount(declared_rate=whole.declared_rate, largest_clock_step=settings.largest_clock_step)
+    stream = StreamCounter(declared_rate=whole.declared_rate, largest_clock_step=settings.largest_clock_step)
     borders, parts = (cut.grasp, cut.release + 1), []
     for index, sample in enumerate(samples):
         if index in borders:
@@ -48,5 +50,5 @@ def parts_of(samples: Sequence[Sample], cut: Cut, whole: Account, settings: Reco
         stream.observe(sample)
     unseen = max(whole.lost - stream.account().lost, 0)
     last = stream.part()
-    reach, carried, back = [*parts, replace(last, lost=last.lost + unseen), Account()][:3]
-    return Parts(whole, reach, carried, back)
+    reach, carried, back = [*parts, replace(last, lost=last.lost + unseen), StreamStatistics()][:3]
+    return PhaseStatistics(whole, reach, carried, back)

@@ -22,7 +22,7 @@ class Cut:
     open_ended: bool = False  # the stream ended while the hand was closed
 
 
-def closure_of(sample: Sample) -> float:
+def hand_closure(sample: Sample) -> float:
     """Return how far a hand is closed, 0 (open) to 1: the mean of its flexions, or the grasp button."""
     if sample.buttons & GRASP_BUTTON:
         return 1.0
@@ -76,7 +76,7 @@ class Segmenter:
         """
         index, self._count = self._count, self._count + 1
         was_closed = self._closed
-        self._closed = closure_of(sample) > (self._settings.open_at if was_closed else self._settings.close_at)
+        self._closed = hand_closure(sample) > (self._settings.open_at if was_closed else self._settings.close_at)
         grasps = self._closed and not was_closed and self._near(position)
         if self.phase is Phase.REACH:
             if grasps:

@@ -17,7 +17,7 @@ GAUSSIAN = 1.4826  # standard deviation over median absolute deviation
 
 
 @dataclass(frozen=True, slots=True)
-class Faults:
+class PositionOutliers:
     """Faults of the positions of a transport phase."""
 
     jumped: tuple[int, ...]  # numbers of the samples that their neighbours contradict
@@ -25,7 +25,7 @@ class Faults:
     outside: int  # samples out of the workspace
 
 
-def faults_of(samples: Sequence[Sample], positions: Array, settings: RecordingSettings) -> Faults:
+def find_outliers(samples: Sequence[Sample], positions: Array, settings: RecordingSettings) -> PositionOutliers:
     """Find the faults of a transport phase.
 
     A position has jumped when it is farther than `largest_jump` from the median of its neighbours and farther than
@@ -39,7 +39,7 @@ def faults_of(samples: Sequence[Sample], positions: Array, settings: RecordingSe
     low, high = np.array(settings.workspace_low), np.array(settings.workspace_high)
     outside = int(np.count_nonzero(np.any((positions < low) | (positions > high), axis=1)))
     if len(positions) <= 2 * REACH:
-        return Faults((), 0, outside)
+        return PositionOutliers((), 0, outside)
     away = np.linalg.norm(positions - _medians(positions), axis=1)
     jumped = _gated(away, settings.largest_jump)
     stayed = positions[~jumped]
@@ -52,7 +52,7 @@ def faults_of(samples: Sequence[Sample], positions: Array, settings: RecordingSe
         speed = _medians((steps / dt)[:, None])[:, 0]
         leaps = int(np.count_nonzero(_gated(steps - speed * dt, settings.largest_jump)))
     numbers = tuple(s.sequence for s, bad in zip(samples, jumped, strict=True) if bad)
-    return Faults(numbers, leaps, outside)
+    return PositionOutliers(numbers, leaps, outside)
 
 
 def _medians(values: Array) -> Array:

@@ -6,8 +6,8 @@ from bisect import bisect_right
 from collections.abc import Iterable
 
 from teachpath.recording.clock import REAL_TIME, DeviceClock
-from teachpath.recording.message_counter import Tally
-from teachpath.records import Account, Sample
+from teachpath.recording.message_counter import MessageCounter
+from teachpath.records import Sample, StreamStatistics
 
 LARGEST_JUMP = 100_000  # sequence numbers; a larger gap is a restarted device, not loss
 NAMED_GAPS = 20
@@ -16,7 +16,7 @@ FASTEST = 100.0  # device seconds in one of ours; beyond it the receive times co
 RESTARTED = 10  # older numbers in a row, each with a newer time: the device counts anew
 
 
-class StreamAccount:
+class StreamCounter:
     """Counts the samples of one tracker by their sequence numbers, all of them and those of the part that is open.
 
     A sample below the highest number seen fills a gap (reordered) or was there before (duplicated; in conflict when
@@ -125,12 +125,12 @@ class StreamAccount:
         self._notes.add(sentence)
         self._notes_of_part.add(sentence)
 
-    def account(self) -> Account:
+    def account(self) -> StreamStatistics:
         """Return the counts so far."""
         notes = self._refusals.sentences() + self._notes.sentences()
         return self._stated(self._counts(), self._longest_gap_ns, notes, first=0)
 
-    def part(self, *, but: Sample | None = None) -> Account:
+    def part(self, *, but: Sample | None = None) -> StreamStatistics:
         """Return the counts of the part that is open, but for one sample: the newest, when it is of the next part."""
         counts = {name: max(count - self._before_part[name], 0) for name, count in self._counts().items()}
         if but is not None:
@@ -161,13 +161,15 @@ class StreamAccount:
         lost = [b - a + 1 for a, b in gaps if b >= a]
         return {"gaps": len(lost), "lost": sum(lost)}
 
-    def _stated(self, counts: dict[str, int], longest_gap_ns: int, kept: Iterable[str], *, first: int) -> Account:
+    def _stated(
+        self, counts: dict[str, int], longest_gap_ns: int, kept: Iterable[str], *, first: int
+    ) -> StreamStatistics:
         clock, notes = self._clock.estimate(), tuple(kept)
         if clock is not None and abs(clock.rate - 1.0) > REAL_TIME:
             notes = (*notes, f"the device's clock runs {clock.rate:.3g} x ours")
         steps, device_ns = counts.pop("steps"), counts.pop("device_ns")
         missing = self._missing if first else self._settled + self._missing
-        return Account(
+        return StreamStatistics(
             **counts,
             missing=tuple(stretch for stretch in missing if stretch[1] >= first)[:NAMED_GAPS],
             longest_gap_ns=longest_gap_ns,
@@ -245,9 +247,9 @@ class StreamAccount:
         return True
 
 
-def _notes() -> Tally:
-    return Tally("more happened than can be listed")
+def _notes() -> MessageCounter:
+    return MessageCounter("more happened than can be listed")
 
 
-def _refusals() -> Tally:
-    return Tally("samples were refused for other reasons")
+def _refusals() -> MessageCounter:
+    return MessageCounter("samples were refused for other reasons")

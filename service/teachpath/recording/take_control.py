@@ -10,7 +10,7 @@ from teachpath.errors import UnusableInput
 LONGEST_COUNTDOWN = 60.0  # [s]
 
 
-class State(StrEnum):
+class RecordingState(StrEnum):
     """What a recording does with the samples that come."""
 
     RECORDING = "recording"
@@ -34,7 +34,7 @@ class Routine:
             raise UnusableInput(f"a countdown of {self.countdown:g} s is outside 0 to {LONGEST_COUNTDOWN:g}")
 
 
-class Control:
+class RecordingStateMachine:
     """Follows the state of one recording; `now` is in seconds of a monotonic clock.
 
     Args:
@@ -46,7 +46,7 @@ class Control:
         self._countdown = countdown if routine.countdown is None else routine.countdown
         self._begins_at = 0.0  # the take, while it is counted down
         self._made = 0
-        self.state = State.PAUSED
+        self.state = RecordingState.PAUSED
         if not routine.armed:
             self._arm(now)
 
@@ -57,50 +57,50 @@ class Control:
 
     def seconds_left(self, now: float) -> float:
         """Return what is left of the countdown [s]."""
-        return max(0.0, self._begins_at - now) if self.state is State.COUNTDOWN else 0.0
+        return max(0.0, self._begins_at - now) if self.state is RecordingState.COUNTDOWN else 0.0
 
     def pause(self, *, carrying: bool) -> None:
         """Record nothing until `resume`; what is carried is recorded to its end first."""
-        if carrying and self.state in (State.RECORDING, State.PAUSING):
-            self.state = State.PAUSING
+        if carrying and self.state in (RecordingState.RECORDING, RecordingState.PAUSING):
+            self.state = RecordingState.PAUSING
         else:
-            self.state = State.PAUSED
+            self.state = RecordingState.PAUSED
 
     def resume(self, now: float) -> None:
         """Record again; a lost tracker has to come back for that, and one that was to pause goes on."""
-        if self.state is State.PAUSING:
-            self.state = State.RECORDING
-        elif self.state is State.PAUSED:
+        if self.state is RecordingState.PAUSING:
+            self.state = RecordingState.RECORDING
+        elif self.state is RecordingState.PAUSED:
             if self._routine.takes and not self.takes_left:
                 self._made = 0  # another series
             self._arm(now)
 
     def count_down(self, now: float) -> bool:
         """Return whether this moment ends the countdown."""
-        if self.state is not State.COUNTDOWN or now < self._begins_at:
+        if self.state is not RecordingState.COUNTDOWN or now < self._begins_at:
             return False
-        self.state = State.RECORDING
+        self.state = RecordingState.RECORDING
         return True
 
     def lose(self) -> None:
         """Take note that the tracker has gone."""
-        if self.state in (State.RECORDING, State.PAUSING):
-            self.state = State.LOST
+        if self.state in (RecordingState.RECORDING, RecordingState.PAUSING):
+            self.state = RecordingState.LOST
 
     def hear(self) -> None:
         """Take note that the tracker sends."""
-        if self.state is State.LOST:
-            self.state = State.RECORDING
+        if self.state is RecordingState.LOST:
+            self.state = RecordingState.RECORDING
 
     def end_one(self, now: float, *, made: bool) -> None:
         """Take note that a take has ended, as a demonstration or as nothing, and make ready for the next."""
         self._made += made
         enough = self._routine.takes and not self.takes_left
-        if self.state is State.PAUSING or (made and (enough or self._routine.one_by_one)):
-            self.state = State.PAUSED
-        elif self.state is State.RECORDING:
+        if self.state is RecordingState.PAUSING or (made and (enough or self._routine.one_by_one)):
+            self.state = RecordingState.PAUSED
+        elif self.state is RecordingState.RECORDING:
             self._arm(now)
 
     def _arm(self, now: float) -> None:
         self._begins_at = now + self._countdown
-        self.state = State.COUNTDOWN if self._countdown else State.RECORDING
+        self.state = RecordingState.COUNTDOWN if self._countdown else RecordingState.RECORDING

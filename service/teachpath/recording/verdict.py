@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from teachpath.recording.phase_statistics import Parts
+from teachpath.recording.phase_statistics import PhaseStatistics
 from teachpath.recording.settings import RecordingSettings
-from teachpath.records import Account
+from teachpath.records import StreamStatistics
 
 FAULTS = {
     "lost": "lost",
@@ -29,7 +29,7 @@ class Verdict:
     reasons: tuple[str, ...] = ()
 
 
-def judge(parts: Parts, settings: RecordingSettings) -> Verdict:
+def judge(parts: PhaseStatistics, settings: RecordingSettings) -> Verdict:
     """Return the verdict on a demonstration, its gravest reasons first.
 
     What is learned decides whether it is rejected: the samples from grasp to release. What happened while the hand
@@ -45,7 +45,7 @@ def judge(parts: Parts, settings: RecordingSettings) -> Verdict:
     return Verdict(word, (*rejections, *repairs))
 
 
-def judge_again(former: Verdict, before: Parts, now: Parts, settings: RecordingSettings) -> Verdict:
+def judge_again(former: Verdict, before: PhaseStatistics, now: PhaseStatistics, settings: RecordingSettings) -> Verdict:
     """Return the verdict on a changed take; what was said for other reasons (a torn end) is said again.
 
     Args:
@@ -62,12 +62,12 @@ def judge_again(former: Verdict, before: Parts, now: Parts, settings: RecordingS
     return Verdict("reject" if rejected else "repaired", (*kept, *fresh.reasons))
 
 
-def _learned(parts: Parts) -> Account:
+def _learned(parts: PhaseStatistics) -> StreamStatistics:
     """Return the account of what is learned, with all that has no place within the take."""
     return replace(parts.whole, **{name: getattr(parts.carried, name) for name in PLACED})
 
 
-def _too_many(parts: Parts, learned: Account, settings: RecordingSettings) -> list[str]:
+def _too_many(parts: PhaseStatistics, learned: StreamStatistics, settings: RecordingSettings) -> list[str]:
     limit, found = settings.largest_loss, []
     total = parts.carried.received + parts.carried.lost
     faults = sum(getattr(learned, name) for name in FAULTS if name != "refused")
@@ -79,7 +79,7 @@ def _too_many(parts: Parts, learned: Account, settings: RecordingSettings) -> li
     return found
 
 
-def _unusable(account: Account, settings: RecordingSettings) -> list[str]:
+def _unusable(account: StreamStatistics, settings: RecordingSettings) -> list[str]:
     found = _breaks(account, settings, f", limit {settings.longest_gap:.2f} s")
     if account.leaps:
         found.append(
@@ -88,7 +88,7 @@ def _unusable(account: Account, settings: RecordingSettings) -> list[str]:
     return found
 
 
-def _breaks(account: Account, settings: RecordingSettings, limit: str = "") -> list[str]:
+def _breaks(account: StreamStatistics, settings: RecordingSettings, limit: str = "") -> list[str]:
     found = []
     if account.longest_gap_ns > settings.longest_gap * 1e9:
         found.append(f"a gap of {account.longest_gap_ns * 1e-9:.2f} s{limit}")
@@ -97,7 +97,7 @@ def _breaks(account: Account, settings: RecordingSettings, limit: str = "") -> l
     return found
 
 
-def _repairs(account: Account) -> list[str]:
+def _repairs(account: StreamStatistics) -> list[str]:
     return [
         f"{_samples(getattr(account, name))} {words}"
         for name, words in (FAULTS | REPAIRS).items()
@@ -105,7 +105,7 @@ def _repairs(account: Account) -> list[str]:
     ]
 
 
-def _elsewhere(parts: Parts, settings: RecordingSettings) -> list[str]:
+def _elsewhere(parts: PhaseStatistics, settings: RecordingSettings) -> list[str]:
     """Say what happened where nothing is learned."""
     ways = {"reaching": parts.reach, "returning": parts.back}
     said = {way: [*_breaks(account, settings), *_repairs(account)] for way, account in ways.items()}

@@ -8,7 +8,7 @@ from teachpath.records.arrays import Array, Quaternion, Vector
 from teachpath.records.assessments import Assessment, Failure, Remedy
 from teachpath.records.calibrations import Calibration, MeasuredCalibration, TaughtPoint
 from teachpath.records.control import Command, JournalEntry, Lease, LeaseRequest, Mirroring
-from teachpath.records.demonstrations import Account, Clock, Demonstration, Phase, Sample, Task, Trajectory
+from teachpath.records.demonstrations import Clock, Demonstration, Phase, Sample, StreamStatistics, Task, Trajectory
 from teachpath.records.learned import Cluster, Departure, Fit, Learned, LearnedPath, Score
 from teachpath.records.motion import (
     Certificate,
@@ -25,7 +25,6 @@ from teachpath.records.work import Job, JobState
 
 __all__ = [
     "MAIN",
-    "Account",
     "Array",
     "Assessment",
     "Calibration",
@@ -60,6 +59,7 @@ __all__ = [
     "Score",
     "Setpoint",
     "Shape",
+    "StreamStatistics",
     "Task",
     "TaughtPoint",
     "Trajectory",

@@ -93,7 +93,7 @@ class Clock:
 
 
 @dataclass(frozen=True, slots=True)
-class Account:
+class StreamStatistics:
     """What became of the samples of one recording or demonstration.
 
     Jumps, leaps and samples out of the workspace are those of the transport phase.
@@ -138,7 +138,7 @@ class Demonstration:
     grasp: int
     release: int
     verdict: str  # clean, repaired, reject
-    account: Account
+    account: StreamStatistics
     recording: str  # place of the MCAP file within the recordings
     reasons: tuple[str, ...] = ()  # why the verdict is not clean
     left_out: tuple[int, ...] = ()  # numbers of the samples that jumped

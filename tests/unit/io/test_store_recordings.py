@@ -14,7 +14,7 @@ from scipy.spatial.transform import Rotation
 
 from teachpath.errors import NotFound, UnusableRecording
 from teachpath.io.documents import encode
-from teachpath.io.store.recordings import RecordingHeader, Recordings, Take, read_facts, salvage
+from teachpath.io.store.recordings import RecordingFile, RecordingHeader, Recordings, read_facts, salvage
 from teachpath.io.wire import sample_message
 from teachpath.recording.demonstration import to_world
 from teachpath.records import Calibration, Sample
@@ -25,7 +25,7 @@ HEADER = RecordingHeader("lift", "glove", Calibration("lab", scale=0.5))
 SAMPLES = demonstration()
 
 
-def take(folder: Path, samples: list[Sample] = SAMPLES) -> tuple[Recordings, Take]:
+def take(folder: Path, samples: list[Sample] = SAMPLES) -> tuple[Recordings, RecordingFile]:
     recordings = Recordings(folder)
     begun = recordings.begin("d", HEADER)
     for sample in samples:

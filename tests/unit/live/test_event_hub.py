@@ -1,14 +1,14 @@
 import threading
 
-from teachpath.live.event_hub import ALL, Document, Listener, News
-from teachpath.live.state_poller import Lookout
+from teachpath.live.event_hub import ALL, Document, EventHub, Subscriber
+from teachpath.live.state_poller import StatePoller
 
 
-def listen(news: News) -> Listener:
+def listen(news: EventHub) -> Subscriber:
     return news.attach(lambda: None)
 
 
-def taken(listener: Listener) -> list[Document]:
+def taken(listener: Subscriber) -> list[Document]:
     pieces = []
     while (piece := listener.take()) is not None:
         pieces.append(piece)
@@ -20,7 +20,7 @@ def about(pieces: list[Document]) -> list[tuple[str, str]]:
 
 
 def test_a_listener_reads_everything_first_and_then_hears_of_changes_in_their_order() -> None:
-    news = News()
+    news = EventHub()
     news.tell("tasks", "before")
     listener = listen(news)
     assert about(taken(listener)) == [(ALL, "")]
@@ -32,7 +32,7 @@ def test_a_listener_reads_everything_first_and_then_hears_of_changes_in_their_or
 
 
 def test_what_changes_twice_is_told_once_and_later() -> None:
-    news = News()
+    news = EventHub()
     listener = listen(news)
     taken(listener)
     for topic in ("jobs", "runs", "jobs"):
@@ -41,7 +41,7 @@ def test_what_changes_twice_is_told_once_and_later() -> None:
 
 
 def test_whoever_falls_behind_reads_everything_anew_and_keeps_how_things_stand() -> None:
-    news = News(longest=10)
+    news = EventHub(longest=10)
     listener = listen(news)
     taken(listener)
     news.stand("executor", "", {"progress": 0.5})
@@ -55,7 +55,7 @@ def test_whoever_falls_behind_reads_everything_anew_and_keeps_how_things_stand()
 
 
 def test_what_stands_is_told_to_whoever_comes_later_until_it_is_gone() -> None:
-    news = News()
+    news = EventHub()
     news.stand("trackers", "glove", {"announced": True})
     assert taken(listen(news))[1]["now"] == {"announced": True}
     early = listen(news)
@@ -65,7 +65,7 @@ def test_what_stands_is_told_to_whoever_comes_later_until_it_is_gone() -> None:
 
 
 def test_listeners_are_woken_and_those_that_have_left_are_not() -> None:
-    news, woken = News(), []
+    news, woken = EventHub(), []
     one, other = news.attach(lambda: woken.append(1)), news.attach(lambda: woken.append(2))
     news.tell("tasks", "a")
     news.detach(one)
@@ -76,7 +76,7 @@ def test_listeners_are_woken_and_those_that_have_left_are_not() -> None:
 
 
 def test_many_threads_tell_and_no_sequence_number_comes_twice() -> None:
-    news = News(longest=10_000)
+    news = EventHub(longest=10_000)
     listener = listen(news)
     taken(listener)
     threads = [
@@ -92,9 +92,9 @@ def test_many_threads_tell_and_no_sequence_number_comes_twice() -> None:
 
 
 def test_the_lookout_tells_what_is_different_and_nothing_else() -> None:
-    news = News()
+    news = EventHub()
     now: dict[str, Document] = {"glove": {"received": 1}}
-    lookout = Lookout(news, {"recordings": lambda: now})
+    lookout = StatePoller(news, {"recordings": lambda: now})
     listener = listen(news)
     taken(listener)
     lookout.look()
@@ -106,7 +106,7 @@ def test_the_lookout_tells_what_is_different_and_nothing_else() -> None:
 
 
 def test_a_look_that_fails_does_not_end_the_lookout() -> None:
-    news, looked = News(), threading.Event()
+    news, looked = EventHub(), threading.Event()
     calls = []
 
     def look() -> dict[str, Document]:
@@ -116,7 +116,7 @@ def test_a_look_that_fails_does_not_end_the_lookout() -> None:
         looked.set()
         return {}
 
-    lookout = Lookout(news, {"station": look}, period=0.01)
+    lookout = StatePoller(news, {"station": look}, period=0.01)
     lookout.start()
     assert looked.wait(10)
     lookout.stop()

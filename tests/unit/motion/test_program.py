@@ -2,12 +2,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-
 from teachpath.motion.certificate import digest, track
 from teachpath.motion.plan import plan
 from teachpath.motion.program import Program
 from teachpath.motion.rehearsal import rehearse
 from teachpath.motion.scenes import paper_scene
+
 from teachpath.motion.settings import MotionSettings
 from teachpath.records import Plan
 from tests.unit.motion.ways import MIDDLE, way

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from teachpath.io.store.store import Store
-from teachpath.recorder.annotations import Curation
+from teachpath.recorder.annotations import Annotations
 from teachpath.recorder.session import RecordingSession
 from teachpath.recording.phases import GRASP_BUTTON
 from teachpath.recording.settings import RecordingSettings
@@ -68,7 +68,7 @@ def record(store: Store, samples: Sequence[Sample], *, gone: bool = False, rate:
 
 
 def trajectory(store: Store) -> Callable[[Demonstration], Trajectory]:
-    return Curation(store, SETTINGS, lambda _: EMPTY).trajectory
+    return Annotations(store, SETTINGS, lambda _: EMPTY).trajectory
 
 
 def said(row: Demonstration) -> Iterator[object]:

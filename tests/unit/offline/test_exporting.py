@@ -16,7 +16,7 @@ from teachpath.io.store.settings import StoreSettings
 from teachpath.io.store.store import Store
 from teachpath.offline.exporting import chosen, export_demonstrations
 from teachpath.offline.importing import Source, import_file
-from teachpath.recorder.annotations import Amendment, Curation
+from teachpath.recorder.annotations import Amendment, Annotations
 from teachpath.records import Calibration, Demonstration
 from tests.unit.offline.takes import EMPTY, SETTINGS, TAKES, record, said, trajectory, whole
 
@@ -61,13 +61,13 @@ def test_what_is_imported_again_has_the_same_samples_and_the_same_verdict(
 def test_what_an_operator_said_is_said_again(
     store: Store, tmp_path: Path, mark: str, trim: tuple[int, int], discarded: bool, kind: str
 ) -> None:
-    curation = Curation(store, SETTINGS, lambda _: EMPTY)
-    row = curation.amend(record(store, whole()).id, Amendment(mark=mark, trim=trim, discarded=discarded))
+    annotations = Annotations(store, SETTINGS, lambda _: EMPTY)
+    row = annotations.amend(record(store, whole()).id, Amendment(mark=mark, trim=trim, discarded=discarded))
     (file,) = exported(store, [row], kind, tmp_path / "out")
     again = imported(store, file, kind)
     assert list(said(again)) == list(said(row))
     assert (again.mark, again.trim, bool(again.discarded_ns)) == (row.mark, row.trim, discarded)
-    assert np.array_equal(curation.trajectory(again).positions, curation.trajectory(row).positions)
+    assert np.array_equal(annotations.trajectory(again).positions, annotations.trajectory(row).positions)
     (twice,) = exported(store, [again], kind, tmp_path / "twice")
     assert list(said(imported(store, twice, kind))) == list(said(row))
 

@@ -57,33 +57,33 @@ def test_a_mark_is_kept_and_a_bad_one_is_not_learned_from(shown: Bench) -> None:
     shown.bus.ask(KEYS.recorder_amend, request.SerializeToString())
     assert [d.mark for d in shown.store.demonstrations("lift")] == ["", "bad", ""]
     assert not shown.store.demonstration(key).is_usable
-    assert shown.recorder.curation.amend(key, Amendment(mark="")).is_usable
+    assert shown.recorder.annotations.amend(key, Amendment(mark="")).is_usable
     with pytest.raises(UnusableInput, match="'so-so' is no mark"):
-        shown.recorder.curation.amend(key, Amendment(mark="so-so"))
+        shown.recorder.annotations.amend(key, Amendment(mark="so-so"))
     with pytest.raises(NotFound):
-        shown.recorder.curation.amend("moon", Amendment(mark="bad"))
+        shown.recorder.annotations.amend("moon", Amendment(mark="bad"))
 
 
 def test_trimming_changes_what_is_learned_and_keeps_what_was_recorded(shown: Bench) -> None:
     row = shown.store.demonstrations("lift")[0]
-    whole = shown.recorder.curation.trajectory(row)
+    whole = shown.recorder.annotations.trajectory(row)
     trim = tracker_pb2.Span(begin=row.grasp + 5, end=row.release - 10)
     request = tracker_pb2.AmendDemonstration(demonstration=row.id, trim=trim)
     answer = tracker_pb2.DemonstrationReport.FromString(shown.bus.ask(KEYS.recorder_amend, request.SerializeToString()))
     assert (answer.transport.begin, answer.transport.end) == (row.grasp + 5, row.release - 10)
     trimmed = shown.store.demonstration(row.id)
     assert (trimmed.grasp, trimmed.release, trimmed.samples) == (row.grasp, row.release, row.samples)
-    shorter = shown.recorder.curation.trajectory(trimmed)
+    shorter = shown.recorder.annotations.trajectory(trimmed)
     assert len(shorter) == len(whole) - 15
     assert trimmed.duration == pytest.approx(shorter.times[-1])
-    assert shown.recorder.curation.amend(row.id, Amendment(trim=(0, 0))) == row
+    assert shown.recorder.annotations.amend(row.id, Amendment(trim=(0, 0))) == row
 
 
 @pytest.mark.parametrize("trim", [(-1, 40), (0, 10_000), (40, 20), (10, 15)])
 def test_a_trim_that_is_no_transport_phase_is_refused(shown: Bench, trim: tuple[int, int]) -> None:
     row = shown.store.demonstrations("lift")[0]
     with pytest.raises(UnusableInput, match="no transport phase of a recording with"):
-        shown.recorder.curation.amend(row.id, Amendment(trim=trim))
+        shown.recorder.annotations.amend(row.id, Amendment(trim=trim))
     assert shown.store.demonstration(row.id) == row
 
 
@@ -94,11 +94,11 @@ def test_what_is_left_of_a_trimmed_demonstration_is_judged(bench: Bench) -> None
     bench.end(120)
     (row,) = bench.store.demonstrations("lift")
     assert (row.verdict, row.reasons[-1]) == ("reject", "15 samples lost")
-    trimmed = bench.recorder.curation.amend(row.id, Amendment(trim=(row.grasp, row.grasp + 35)))
+    trimmed = bench.recorder.annotations.amend(row.id, Amendment(trim=(row.grasp, row.grasp + 35)))
     assert trimmed.reasons == ("while returning, outside what is learned: a gap of 0.32 s, 15 samples lost",)
     assert trimmed.is_usable
-    assert bench.recorder.curation.amend(row.id, Amendment(trim=(row.grasp + 5, row.release))).verdict == "reject"
-    assert bench.recorder.curation.amend(row.id, Amendment(trim=(0, 0))) == row
+    assert bench.recorder.annotations.amend(row.id, Amendment(trim=(row.grasp + 5, row.release))).verdict == "reject"
+    assert bench.recorder.annotations.amend(row.id, Amendment(trim=(0, 0))) == row
 
 
 def test_no_trim_forgives_a_tracker_that_went_away(bench: Bench) -> None:
@@ -106,5 +106,5 @@ def test_no_trim_forgives_a_tracker_that_went_away(bench: Bench) -> None:
     bench.send(demonstration()[:60])
     bench.end(60)
     (row,) = bench.store.demonstrations("lift")
-    trimmed = bench.recorder.curation.amend(row.id, Amendment(trim=(row.grasp, row.grasp + 30)))
+    trimmed = bench.recorder.annotations.amend(row.id, Amendment(trim=(row.grasp, row.grasp + 30)))
     assert (trimmed.verdict, trimmed.reasons) == ("reject", ("the recording ended before the hand let go",))

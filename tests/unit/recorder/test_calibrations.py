@@ -10,7 +10,7 @@ import pytest
 from teachpath.errors import Conflict, NotFound, UnusableInput
 from teachpath.io.store.settings import StoreSettings
 from teachpath.io.store.store import Store
-from teachpath.recorder.annotations import Curation
+from teachpath.recorder.annotations import Annotations
 from teachpath.recorder.calibrations import Calibrations
 from teachpath.recorder.session import RecordingSession
 from teachpath.recording.settings import RecordingSettings
@@ -52,7 +52,7 @@ def recorded(store: Store, calibration: Calibration) -> Demonstration:
 
 
 def positions(store: Store, row: Demonstration) -> np.ndarray:
-    return Curation(store, RecordingSettings(), scene).trajectory(row).positions
+    return Annotations(store, RecordingSettings(), scene).trajectory(row).positions
 
 
 def test_every_version_outlives_the_service_and_the_newest_counts(store: Store, tmp_path: Path) -> None:

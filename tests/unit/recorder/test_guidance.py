@@ -5,7 +5,7 @@ import numpy as np
 
 from teachpath.errors import UnusableRecording
 from teachpath.learning.settings import LearningSettings
-from teachpath.recorder.guidance import Coach
+from teachpath.recorder.guidance import GuidanceThread
 from teachpath.records import Demonstration, Trajectory
 from tests.contract.rows import demonstration
 
@@ -23,7 +23,7 @@ def trajectory(shown: Demonstration) -> Trajectory:
 
 
 def test_it_tells_the_ways_apart_and_asks_for_the_one_that_is_thin() -> None:
-    coach = Coach(lambda _: stored(), trajectory, LearningSettings())
+    coach = GuidanceThread(lambda _: stored(), trajectory, LearningSettings())
     sentence = coach.look_at("t")
     assert sentence.startswith("6 demonstrations show 2 ways and agree within 0.")
     assert sentence.endswith("; the second way has only two, show it again")
@@ -32,8 +32,10 @@ def test_it_tells_the_ways_apart_and_asks_for_the_one_that_is_thin() -> None:
 def test_discarded_marked_and_rejected_ones_do_not_count() -> None:
     changes = ({"discarded_ns": 5}, {"mark": "bad"}, {"verdict": "reject"})
     kept = [replace(d, **change) for d, change in zip(stored(3), changes, strict=True)]  # type: ignore[arg-type]
-    assert Coach(lambda _: kept, trajectory, LearningSettings()).look_at("t") == ""
-    assert "one demonstration" in Coach(lambda _: [*kept, stored()[3]], trajectory, LearningSettings()).look_at("t")
+    assert GuidanceThread(lambda _: kept, trajectory, LearningSettings()).look_at("t") == ""
+    assert "one demonstration" in GuidanceThread(
+        lambda _: [*kept, stored()[3]], trajectory, LearningSettings()
+    ).look_at("t")
 
 
 def test_each_demonstration_is_read_once_and_again_when_it_was_trimmed() -> None:
@@ -44,7 +46,7 @@ def test_each_demonstration_is_read_once_and_again_when_it_was_trimmed() -> None
         read.append((shown.id, shown.transport))
         return trajectory(shown)
 
-    coach = Coach(lambda _: rows, reading, LearningSettings())
+    coach = GuidanceThread(lambda _: rows, reading, LearningSettings())
     coach.look_at("t")
     coach.look_at("t")
     assert len(read) == len(rows)
@@ -63,7 +65,7 @@ def test_it_answers_from_its_own_thread_and_outlives_what_cannot_be_read() -> No
         answered.release()
         return stored(1)
 
-    coach = Coach(rows, trajectory, LearningSettings())
+    coach = GuidanceThread(rows, trajectory, LearningSettings())
     coach.start()
     assert coach.sentence("t") == ""
     coach.consider("broken")
@@ -85,7 +87,7 @@ def test_of_a_burst_every_task_is_compared() -> None:
             done.set()
         return stored(1)
 
-    coach = Coach(rows, trajectory, LearningSettings())
+    coach = GuidanceThread(rows, trajectory, LearningSettings())
     for task in ("a", "b", "a"):
         coach.consider(task)
     coach.start()

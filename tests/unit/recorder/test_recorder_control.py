@@ -219,7 +219,7 @@ def test_positions_that_jump_are_left_out_of_what_is_learned(bench: Bench) -> No
     (_, trajectory) = bench.recorded[0]
     assert len(trajectory) == 59
     assert abs(trajectory.positions[:, 1]).max() < 0.01
-    assert (bench.recorder.curation.trajectory(row).positions == trajectory.positions).all()
+    assert (bench.recorder.annotations.trajectory(row).positions == trajectory.positions).all()
     assert len(bench.store.recordings.samples(row.recording)) == row.samples
 
 

@@ -94,6 +94,6 @@ def test_a_fist_held_longer_discards_the_last_demonstration_and_once(bench: Benc
     assert not first.discarded_ns
     assert second.discarded_ns
     assert bench.changed == [second]
-    assert bench.recorder.curation.restore_last("lift") == first.__class__(
+    assert bench.recorder.annotations.restore_last("lift") == first.__class__(
         **{f: getattr(second, f) for f in first.__dataclass_fields__} | {"discarded_ns": 0}
     )

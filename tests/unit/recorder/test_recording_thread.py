@@ -7,8 +7,8 @@ import pytest
 from teachpath.io.store.store import Store
 from teachpath.io.wire import sample_message
 from teachpath.recorder.presence import Presence
-from teachpath.recorder.recording_thread import BATCH, FLUSH_EVERY, Scribe
-from teachpath.recorder.sample_queues import Intake
+from teachpath.recorder.recording_thread import BATCH_SIZE, FLUSH_INTERVAL, RecordingThread
+from teachpath.recorder.sample_queues import SampleQueues
 from teachpath.recorder.session import RecordingSession
 from teachpath.recording.settings import RecordingSettings
 from teachpath.records import Calibration, Scene
@@ -24,8 +24,8 @@ class Desk:
     def __init__(self, store: Store, trackers: tuple[str, ...]) -> None:
         self.now = 0.0
         presence = Presence(lambda: self.now)
-        self.intake = Intake(KEYS, presence, SETTINGS.longest_backlog)
-        self.scribe = Scribe(
+        self.intake = SampleQueues(KEYS, presence, SETTINGS.longest_backlog)
+        self.scribe = RecordingThread(
             self.intake,
             presence,
             SETTINGS,
@@ -61,26 +61,26 @@ def desk(store: Store) -> Iterator[Desk]:
 
 
 def test_it_rests_only_when_no_batch_was_full(desk: Desk) -> None:
-    desk.send("left", 2 * BATCH + 50)
-    assert [desk.scribe.go_round() for _ in range(4)] == [True, True, False, False]
-    assert desk.recorded("left") == 2 * BATCH + 50
+    desk.send("left", 2 * BATCH_SIZE + 50)
+    assert [desk.scribe.process_round() for _ in range(4)] == [True, True, False, False]
+    assert desk.recorded("left") == 2 * BATCH_SIZE + 50
     assert desk.intake.backlog == 0
 
 
 def test_samples_that_trickle_in_from_many_hurry_nobody(desk: Desk) -> None:
     for tracker in ("left", "right"):
-        desk.send(tracker, BATCH - 1)
-    assert not desk.scribe.go_round()
+        desk.send(tracker, BATCH_SIZE - 1)
+    assert not desk.scribe.process_round()
 
 
 def test_a_flood_keeps_no_other_waiting_for_more_than_one_batch(desk: Desk) -> None:
-    desk.send("left", 10 * BATCH)
+    desk.send("left", 10 * BATCH_SIZE)
     desk.send("right", 1)
-    assert desk.scribe.go_round()
-    assert (desk.recorded("left"), desk.recorded("right")) == (BATCH, 1)
+    assert desk.scribe.process_round()
+    assert (desk.recorded("left"), desk.recorded("right")) == (BATCH_SIZE, 1)
 
 
 def test_a_flush_that_is_due_is_no_reason_to_hurry(desk: Desk) -> None:
-    desk.now = 2 * FLUSH_EVERY
-    assert not desk.scribe.go_round()
+    desk.now = 2 * FLUSH_INTERVAL
+    assert not desk.scribe.process_round()
     assert desk.scribe.sessions["left"].flushed == desk.now

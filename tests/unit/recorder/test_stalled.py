@@ -9,7 +9,7 @@ from teachpath.errors import UnusableRecording
 from teachpath.learning.settings import LearningSettings
 from teachpath.live.preview import Preview
 from teachpath.motion.arm.geometry import drawing
-from teachpath.recorder.guidance import Coach
+from teachpath.recorder.guidance import GuidanceThread
 from teachpath.records import Demonstration, Trajectory
 from tests.unit.recorder.recorders import KEYS, Bench
 from tests.unit.recording.hands import demonstration
@@ -46,7 +46,7 @@ def test_a_coach_that_ponders_keeps_the_recorder_from_nothing(store: object) -> 
         raise UnusableRecording("nobody needs it any more")
 
     bench = Bench(store, recorded=lambda made, _: coach.consider(made.task))  # type: ignore[arg-type]
-    coach = Coach(bench.store.demonstrations, ponder, LearningSettings())
+    coach = GuidanceThread(bench.store.demonstrations, ponder, LearningSettings())
     coach.start()
     try:
         record(bench)

@@ -5,7 +5,7 @@ import pytest
 from teachpath.errors import Conflict, NotFound, UnusableInput
 from teachpath.io.wire import sample_message
 from teachpath.recorder import websocket_trackers
-from teachpath.recorder.websocket_trackers import GatedTracker, TrackerGate
+from teachpath.recorder.websocket_trackers import WebSocketTracker, WebSocketTrackers
 from teachpath.records import Sample
 from tests.unit.recorder.recorders import KEYS, Bench
 from tests.unit.recording.hands import demonstration, sample
@@ -16,10 +16,10 @@ class Door:
 
     def __init__(self, bench: Bench) -> None:
         self.bench, self.now, self.told = bench, 0.0, list[str]()
-        self.gate = TrackerGate(bench.bus, KEYS, bench.recorder, clock=lambda: self.now)
+        self.gate = WebSocketTrackers(bench.bus, KEYS, bench.recorder, clock=lambda: self.now)
 
-    def admit(self, name: str = "page") -> GatedTracker:
-        return self.gate.admit(name, self.told.append)
+    def register(self, name: str = "page") -> WebSocketTracker:
+        return self.gate.register(name, self.told.append)
 
 
 @pytest.fixture
@@ -37,7 +37,7 @@ def test_a_demonstration_over_the_gate_gets_the_verdict_and_the_account_of_any_o
     stream = demonstration()
     bench = door.bench
     bench.begin("page")
-    page = door.admit()
+    page = door.register()
     for s in stream[:55]:
         assert page.take(as_json(s)) == ""
     for s in stream[55:]:
@@ -75,7 +75,7 @@ def test_unsound_values_are_refused_with_a_sentence_and_counted_by_the_recorder_
     door: Door, changes: dict[str, Any], sentence: str
 ) -> None:
     door.bench.begin("page")
-    page = door.admit()
+    page = door.register()
     assert sentence in page.take(as_json(sample(1, (0.5, 0.0, 0.5))) | changes)
     assert page.take(as_json(sample(2, (0.5, 0.0, 0.5)))) == ""
     report = page.end(2, discard=True)
@@ -101,26 +101,26 @@ def test_unsound_values_are_refused_with_a_sentence_and_counted_by_the_recorder_
 def test_what_is_no_sample_is_refused_and_does_not_reach_the_bus(door: Door, content: Any) -> None:
     seen: list[bytes] = []
     door.bench.bus.subscribe(KEYS.all_samples, lambda _, payload: seen.append(payload))
-    page = door.admit()
+    page = door.register()
     assert len(page.take(content)) > 15
     assert (seen, page.refused) == ([], 1)
 
 
 def test_a_flood_has_to_leave_and_a_burst_after_a_pause_may_stay(door: Door) -> None:
-    page = door.admit()
+    page = door.register()
     one = as_json(sample(1, (0.5, 0.0, 0.5)))
-    for _ in range(int(websocket_trackers.BURST)):
+    for _ in range(int(websocket_trackers.RATE_BURST)):
         page.take(one)
     with pytest.raises(UnusableInput, match="faster than 1000 a second"):
         page.take(one)
     door.now += 1.0
-    for _ in range(int(websocket_trackers.FASTEST) - 1):
+    for _ in range(int(websocket_trackers.RATE_LIMIT) - 1):
         page.take(one)
 
 
 def test_one_that_never_makes_sense_has_to_leave(door: Door) -> None:
-    page = door.admit()
-    for _ in range(websocket_trackers.PATIENCE):
+    page = door.register()
+    for _ in range(websocket_trackers.MAX_CONSECUTIVE_REJECTS):
         page.refuse("nonsense")
     with pytest.raises(UnusableInput, match="101 messages in a row were refused; the last one: nonsense"):
         page.refuse("nonsense")
@@ -128,46 +128,46 @@ def test_one_that_never_makes_sense_has_to_leave(door: Door) -> None:
 
 def test_names_are_kept_apart(door: Door) -> None:
     with pytest.raises(UnusableInput, match="cannot name a tracker"):
-        door.admit("../glove")
+        door.register("../glove")
     token = door.bench.bus.announce(KEYS.alive("tracker", "glove"))
     door.bench.begin("glove")
     while not door.bench.recorder.trackers():
         pass
     with pytest.raises(Conflict, match="a tracker glove is there already"):
-        door.admit("glove")
+        door.register("glove")
     token.close()
-    many = [door.admit(f"page-{k}") for k in range(websocket_trackers.MOST)]
+    many = [door.register(f"page-{k}") for k in range(websocket_trackers.MAX_TRACKERS)]
     with pytest.raises(Conflict, match="close some"):
-        door.admit("one-more")
-    door.gate.let_out(many[0])
-    door.gate.let_out(many[0])
-    door.admit("one-more")
+        door.register("one-more")
+    door.gate.unregister(many[0])
+    door.gate.unregister(many[0])
+    door.register("one-more")
 
 
 def test_one_that_comes_back_at_once_is_not_taken_for_another(door: Door) -> None:
     recorder = door.bench.recorder
-    page = door.admit()
+    page = door.register()
     while not any(tracker.announced for tracker in recorder.trackers()):
         pass
     other = door.bench.bus.announce(KEYS.alive("tracker", "page"))  # as if the bus still told of it
-    door.gate.let_out(page)
-    door.gate.let_out(door.admit())
+    door.gate.unregister(page)
+    door.gate.unregister(door.register())
     other.close()
-    door.now += websocket_trackers.AFTERGLOW
+    door.now += websocket_trackers.REANNOUNCE_GRACE
     door.bench.bus.announce(KEYS.alive("tracker", "page"))
     while not any(tracker.announced for tracker in recorder.trackers()):
         pass
     with pytest.raises(Conflict):
-        door.admit()
+        door.register()
 
 
 def test_the_newest_page_of_a_name_wins_and_leaving_is_seen_on_the_bus(door: Door) -> None:
     alive: list[tuple[str, bool]] = []
     door.bench.bus.watch(KEYS.all_trackers_alive, lambda key, there: alive.append((key.rsplit("/")[-1], there)))
-    first = door.admit()
-    second = door.admit()
+    first = door.register()
+    second = door.register()
     assert door.told == ["another page came as page"]
-    door.gate.let_out(first)  # its connection ends later than the new one began
+    door.gate.unregister(first)  # its connection ends later than the new one began
     assert alive == [("page", True), ("page", False), ("page", True)]
-    door.gate.let_out(second)
+    door.gate.unregister(second)
     assert alive[-1] == ("page", False)

@@ -5,7 +5,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from teachpath.recording.fist_gesture import FistGesture, Sign
+from teachpath.recording.fist_gesture import FistCommand, FistGesture
 from teachpath.recording.settings import RecordingSettings
 from teachpath.records import Sample, Vector
 from tests.unit.recording.hands import demonstration, sample
@@ -14,10 +14,10 @@ OBJECT = (0.5, 0.0, 0.5)
 AWAY = (0.2, 0.4, 0.5)
 RATE = 50
 
-Signs = list[Sign | None]
+Signs = list[FistCommand | None]
 
 
-def signs(stream: list[Sample], *, carrying: bool = False) -> list[Sign]:
+def signs(stream: list[Sample], *, carrying: bool = False) -> list[FistCommand]:
     gesture = FistGesture(RecordingSettings(), OBJECT)
     given = [gesture.push(s, s.position, carrying=carrying) for s in stream]
     return [sign for sign in given if sign is not None]
@@ -33,11 +33,18 @@ def fist(seconds: float, *, at: Callable[[int], Vector] = lambda i: AWAY, noise:
 
 @pytest.mark.parametrize(
     ("seconds", "asked"),
-    [(0.5, []), (1.2, [Sign.TOGGLE]), (2.8, [Sign.TOGGLE]), (3.2, [Sign.DISCARD]), (5.8, [Sign.DISCARD]), (7.0, [])],
+    [
+        (0.5, []),
+        (1.2, [FistCommand.TOGGLE]),
+        (2.8, [FistCommand.TOGGLE]),
+        (3.2, [FistCommand.DISCARD]),
+        (5.8, [FistCommand.DISCARD]),
+        (7.0, []),
+    ],
 )
 @pytest.mark.parametrize("noise", [0.0, 0.2])
 def test_a_fist_says_what_it_was_held_for_and_nothing_when_it_rests(
-    seconds: float, asked: list[Sign], noise: float
+    seconds: float, asked: list[FistCommand], noise: float
 ) -> None:
     assert signs(fist(seconds, noise=noise)) == asked
 
@@ -46,13 +53,13 @@ def test_fingers_that_flicker_are_one_fist() -> None:
     stream = fist(1.5)
     for i in (70, 71, 90):
         stream[i] = sample(stream[i].sequence, AWAY, (0.1,) * 22)
-    assert signs(stream) == [Sign.TOGGLE]
+    assert signs(stream) == [FistCommand.TOGGLE]
 
 
 def test_two_fists_are_two_signs() -> None:
     first = fist(1.2)
     second = [sample(s.sequence + len(first), AWAY, s.flexions) for s in fist(1.2)]
-    assert signs(first + second) == [Sign.TOGGLE, Sign.TOGGLE]
+    assert signs(first + second) == [FistCommand.TOGGLE, FistCommand.TOGGLE]
 
 
 def test_a_fist_at_the_object_or_while_it_is_carried_is_a_grasp() -> None:
@@ -86,4 +93,4 @@ def test_what_opening_would_ask_for_is_offered_while_the_fist_is_held() -> None:
         gesture.push(s, AWAY, carrying=False)
         if not offered or offered[-1] is not gesture.offered:
             offered.append(gesture.offered)
-    assert offered == [None, Sign.TOGGLE, Sign.DISCARD, None]
+    assert offered == [None, FistCommand.TOGGLE, FistCommand.DISCARD, None]

@@ -1,6 +1,6 @@
 import pytest
 
-from teachpath.recording.guidance import Shown, advise
+from teachpath.recording.guidance import ClusterSummary, advise
 
 LENGTH = 0.7  # m
 
@@ -9,32 +9,35 @@ LENGTH = 0.7  # m
     ("ways", "sentence"),
     [
         ([], ""),
-        ([Shown(0, 0.0)], ""),
-        ([Shown(1, 0.0)], "one demonstration so far; show it again"),
-        ([Shown(2, 0.012)], "2 demonstrations agree within 1.2 cm; there are only two, show it again"),
-        ([Shown(4, 0.012)], "4 demonstrations agree within 1.2 cm"),
+        ([ClusterSummary(0, 0.0)], ""),
+        ([ClusterSummary(1, 0.0)], "one demonstration so far; show it again"),
+        ([ClusterSummary(2, 0.012)], "2 demonstrations agree within 1.2 cm; there are only two, show it again"),
+        ([ClusterSummary(4, 0.012)], "4 demonstrations agree within 1.2 cm"),
         (
-            [Shown(4, 0.012), Shown(2, 0.008)],
+            [ClusterSummary(4, 0.012), ClusterSummary(2, 0.008)],
             "6 demonstrations show 2 ways and agree within 1.2 cm; the second way has only two, show it again",
         ),
         (
-            [Shown(2, 0.004), Shown(1, 0.0)],
+            [ClusterSummary(2, 0.004), ClusterSummary(1, 0.0)],
             "3 demonstrations show 2 ways and agree within 0.4 cm; the second way has only one, show it again",
         ),
-        ([Shown(1, 0.0), Shown(1, 0.0)], "2 demonstrations show 2 ways; the first way has only one, show it again"),
-        ([Shown(3, 0.01)] * 3, "9 demonstrations show 3 ways and agree within 1.0 cm"),
-        ([Shown(3, 0.241)], "3 demonstrations are up to 24.1 cm apart, discard what you did not mean"),
         (
-            [Shown(3, 0.01), Shown(3, 0.2)],
+            [ClusterSummary(1, 0.0), ClusterSummary(1, 0.0)],
+            "2 demonstrations show 2 ways; the first way has only one, show it again",
+        ),
+        ([ClusterSummary(3, 0.01)] * 3, "9 demonstrations show 3 ways and agree within 1.0 cm"),
+        ([ClusterSummary(3, 0.241)], "3 demonstrations are up to 24.1 cm apart, discard what you did not mean"),
+        (
+            [ClusterSummary(3, 0.01), ClusterSummary(3, 0.2)],
             "6 demonstrations show 2 ways; some of one way are up to 20.0 cm apart, discard what you did not mean",
         ),
     ],
 )
-def test_the_coach_says_what_agrees_and_what_to_show_again(ways: list[Shown], sentence: str) -> None:
+def test_the_coach_says_what_agrees_and_what_to_show_again(ways: list[ClusterSummary], sentence: str) -> None:
     assert advise(ways, LENGTH) == sentence
 
 
 @pytest.mark.parametrize("scale", [0.1, 1.0, 10.0])
 def test_whether_they_agree_does_not_depend_on_the_size_of_the_task(scale: float) -> None:
-    assert "agree" in advise([Shown(3, 0.08 * scale)], LENGTH * scale)
-    assert "apart" in advise([Shown(3, 0.24 * scale)], LENGTH * scale)
+    assert "agree" in advise([ClusterSummary(3, 0.08 * scale)], LENGTH * scale)
+    assert "apart" in advise([ClusterSummary(3, 0.24 * scale)], LENGTH * scale)

@@ -1,8 +1,8 @@
-from teachpath.recording.message_counter import KINDS, Tally
+from teachpath.recording.message_counter import KINDS, MessageCounter
 
 
 def test_reasons_that_differ_in_numbers_are_one_kind_and_hide_no_other() -> None:
-    refusals = Tally("samples were refused for other reasons")
+    refusals = MessageCounter("samples were refused for other reasons")
     for i in range(1000):
         refusals.add(f"sample {i} of glove: position ({i / 7}, nan, -inf) is not finite")
     refusals.add("a sample of 5000 bytes is over the limit of 4096")
@@ -12,7 +12,7 @@ def test_reasons_that_differ_in_numbers_are_one_kind_and_hide_no_other() -> None
 
 
 def test_a_flood_of_kinds_is_counted_and_not_remembered() -> None:
-    refusals = Tally("samples were refused for other reasons")
+    refusals = MessageCounter("samples were refused for other reasons")
     for i in range(300):
         refusals.add("fault " + "x" * i)
     said = refusals.sentences()

@@ -6,10 +6,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from teachpath.recording.phase_statistics import Parts, parts_of
+from teachpath.recording.phase_statistics import PhaseStatistics, phase_statistics
 from teachpath.recording.phases import Cut
 from teachpath.recording.settings import RecordingSettings
-from teachpath.recording.stream_statistics import StreamAccount
+from teachpath.recording.stream_statistics import StreamCounter
 from teachpath.recording.verdict import Verdict, judge
 from teachpath.records import Sample
 from tests.unit.recording.hands import PERIOD_NS, sample
@@ -24,15 +24,15 @@ def sent(count: int = SENT) -> list[Sample]:
     return [sample(n, (0.0, 0.0, 0.0)) for n in range(count)]
 
 
-def parts(samples: list[Sample], *, until: int = SENT, opened: bool = True) -> Parts:
+def parts(samples: list[Sample], *, until: int = SENT, opened: bool = True) -> PhaseStatistics:
     """Return the parts of a take; `until`: samples that the client says it sent; `opened`: the hand was seen to."""
-    stream = StreamAccount()
+    stream = StreamCounter()
     for each in samples:
         stream.observe(each)
     stream.expect(until - 1)
     grasp = next(i for i, s in enumerate(samples) if s.sequence >= REACH)
     release = next((i for i, s in enumerate(samples) if s.sequence >= REACH + CARRY), len(samples))
-    return parts_of(samples, Cut(grasp, release, not opened), stream.account(), SETTINGS)
+    return phase_statistics(samples, Cut(grasp, release, not opened), stream.account(), SETTINGS)
 
 
 def verdict(samples: list[Sample]) -> Verdict:
@@ -74,11 +74,11 @@ def test_a_long_reach_does_not_make_light_of_what_is_lost_of_the_carried() -> No
     count = 3000
     samples = [sample(n, (0.0, 0.0, 0.0)) for n in range(count + CARRY + BACK)]
     kept = [s for s in samples if s.sequence < count or s.sequence % 10 != 5]
-    stream = StreamAccount()
+    stream = StreamCounter()
     for each in kept:
         stream.observe(each)
     release = next(i for i, s in enumerate(kept) if s.sequence >= count + CARRY)
-    judged = judge(parts_of(kept, Cut(count, release), stream.account(), SETTINGS), SETTINGS)
+    judged = judge(phase_statistics(kept, Cut(count, release), stream.account(), SETTINGS), SETTINGS)
     assert judged.word == "reject"
     assert "of 61 samples are faulty" in judged.reasons[0]
 

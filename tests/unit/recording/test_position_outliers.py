@@ -3,7 +3,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from teachpath.recording.position_outliers import faults_of
+from teachpath.recording.position_outliers import find_outliers
 from teachpath.recording.settings import RecordingSettings
 from teachpath.records import Array
 from tests.unit.recording.hands import PERIOD_NS, START_NS, sample
@@ -20,7 +20,7 @@ def moved(seconds: float = 2.4, length: float = 0.6) -> Array:
 
 def faults(positions: Array, *, period_ns: int = PERIOD_NS):  # type: ignore[no-untyped-def]
     samples = [sample(i, tuple(p), device_ns=START_NS + i * period_ns) for i, p in enumerate(positions.tolist())]
-    return faults_of(samples, positions, SETTINGS)
+    return find_outliers(samples, positions, SETTINGS)
 
 
 @given(noise=st.floats(0.0, 0.004), seed=st.integers(0, 1000), length=st.floats(0.0, 2.0))
@@ -62,7 +62,7 @@ def test_a_hand_that_moved_on_during_a_loss_has_not_leapt() -> None:
         sample(int(i), tuple(p), device_ns=START_NS + int(i) * PERIOD_NS)
         for i, p in zip(kept, positions.tolist(), strict=True)
     ]
-    assert faults_of(samples, positions, SETTINGS).leaps == 0
+    assert find_outliers(samples, positions, SETTINGS).leaps == 0
 
 
 def test_samples_out_of_the_workspace_are_counted() -> None:

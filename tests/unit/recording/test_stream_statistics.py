@@ -2,12 +2,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from teachpath.recording.stream_statistics import StreamAccount
+from teachpath.recording.stream_statistics import StreamCounter
 from tests.unit.recording.hands import PERIOD_NS, START_NS, sample
 
 
-def account_of(sequences: list[int], expected: int | None = None) -> StreamAccount:
-    account = StreamAccount()
+def account_of(sequences: list[int], expected: int | None = None) -> StreamCounter:
+    account = StreamCounter()
     for sequence in sequences:
         account.observe(sample(sequence, (0.0, 0.0, 0.0)))
     if expected is not None:
@@ -51,8 +51,8 @@ def test_the_longest_gap_is_that_of_the_devices_clock() -> None:
     assert account_of([1, 2, 6, 7]).account().longest_gap_ns == 4 * 20_000_000
 
 
-def stream(*changes: dict[str, object], rate: float = 0.0) -> StreamAccount:
-    account = StreamAccount(declared_rate=rate)
+def stream(*changes: dict[str, object], rate: float = 0.0) -> StreamCounter:
+    account = StreamCounter(declared_rate=rate)
     for n, change in enumerate(changes, 1):
         account.observe(sample(n, (0.0, 0.0, 0.0), **change))
     return account
@@ -102,7 +102,7 @@ def test_a_clock_jump_is_what_neither_the_numbers_nor_our_clock_explain(
 
 
 def test_loss_at_many_times_real_time_is_no_clock_jump() -> None:
-    account = StreamAccount()
+    account = StreamCounter()
     for n in [*range(1, 50), *range(150, 200)]:
         account.observe(sample(n, (0.0, 0.0, 0.0), receive_ns=START_NS + n * PERIOD_NS // 8))
     assert account.account().clock_jumps == 0
@@ -144,7 +144,7 @@ def test_a_device_that_counts_anew_is_told_from_late_samples() -> None:
 
 
 def test_the_parts_of_a_stream_add_up_but_for_what_was_lost_between_them() -> None:
-    whole = StreamAccount()
+    whole = StreamCounter()
     parts = []
     for numbers in ([1, 2, 4, 3, 5], [9, 10, 12, 12], [13, 20]):
         whole.begin_part()

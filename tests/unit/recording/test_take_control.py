@@ -1,76 +1,79 @@
 import pytest
 
 from teachpath.errors import UnusableInput
-from teachpath.recording.take_control import Control, Routine, State
+from teachpath.recording.take_control import RecordingState, RecordingStateMachine, Routine
 
 
 def test_records_at_once_or_waits_armed() -> None:
-    assert Control(Routine(), 0.0).state is State.RECORDING
-    armed = Control(Routine(armed=True), 0.0)
-    assert armed.state is State.PAUSED
+    assert RecordingStateMachine(Routine(), 0.0).state is RecordingState.RECORDING
+    armed = RecordingStateMachine(Routine(armed=True), 0.0)
+    assert armed.state is RecordingState.PAUSED
     armed.resume(1.0)
-    assert armed.state is State.RECORDING
+    assert armed.state is RecordingState.RECORDING
 
 
 def test_counts_down_before_every_take() -> None:
-    control = Control(Routine(countdown=3.0), 10.0)
-    assert (control.state, control.seconds_left(11.0)) == (State.COUNTDOWN, pytest.approx(2.0))
+    control = RecordingStateMachine(Routine(countdown=3.0), 10.0)
+    assert (control.state, control.seconds_left(11.0)) == (RecordingState.COUNTDOWN, pytest.approx(2.0))
     assert not control.count_down(12.9)
     assert control.count_down(13.0)
-    assert (control.state, control.seconds_left(13.0)) == (State.RECORDING, 0.0)
+    assert (control.state, control.seconds_left(13.0)) == (RecordingState.RECORDING, 0.0)
     control.end_one(20.0, made=True)
-    assert (control.state, control.seconds_left(20.0)) == (State.COUNTDOWN, pytest.approx(3.0))
+    assert (control.state, control.seconds_left(20.0)) == (RecordingState.COUNTDOWN, pytest.approx(3.0))
 
 
 def test_what_the_routine_does_not_say_the_settings_do() -> None:
-    assert Control(Routine(), 0.0, countdown=2.0).seconds_left(0.0) == 2.0
-    assert Control(Routine(countdown=0.0), 0.0, countdown=2.0).state is State.RECORDING
+    assert RecordingStateMachine(Routine(), 0.0, countdown=2.0).seconds_left(0.0) == 2.0
+    assert RecordingStateMachine(Routine(countdown=0.0), 0.0, countdown=2.0).state is RecordingState.RECORDING
 
 
 def test_pauses_by_itself_after_so_many_takes_and_begins_another_series() -> None:
-    control = Control(Routine(takes=2), 0.0)
+    control = RecordingStateMachine(Routine(takes=2), 0.0)
     control.end_one(1.0, made=True)
     control.end_one(2.0, made=False)  # let go at once: no take
-    assert (control.state, control.takes_left) == (State.RECORDING, 1)
+    assert (control.state, control.takes_left) == (RecordingState.RECORDING, 1)
     control.end_one(3.0, made=True)
-    assert (control.state, control.takes_left) == (State.PAUSED, 0)
+    assert (control.state, control.takes_left) == (RecordingState.PAUSED, 0)
     control.resume(4.0)
-    assert (control.state, control.takes_left) == (State.RECORDING, 2)
+    assert (control.state, control.takes_left) == (RecordingState.RECORDING, 2)
 
 
 def test_one_by_one_waits_after_each_take() -> None:
-    control = Control(Routine(one_by_one=True), 0.0)
+    control = RecordingStateMachine(Routine(one_by_one=True), 0.0)
     control.end_one(1.0, made=True)
-    assert control.state is State.PAUSED
+    assert control.state is RecordingState.PAUSED
 
 
 @pytest.mark.parametrize("made", [True, False])
 def test_a_pause_waits_for_what_is_carried_and_no_longer(made: bool) -> None:
-    control = Control(Routine(), 0.0)
+    control = RecordingStateMachine(Routine(), 0.0)
     control.pause(carrying=True)
     control.pause(carrying=True)
-    assert control.state is State.PAUSING
+    assert control.state is RecordingState.PAUSING
     control.end_one(1.0, made=made)
-    assert control.state is State.PAUSED
+    assert control.state is RecordingState.PAUSED
 
 
 def test_a_pause_during_the_countdown_is_a_pause() -> None:
-    control = Control(Routine(countdown=3.0), 0.0)
+    control = RecordingStateMachine(Routine(countdown=3.0), 0.0)
     control.pause(carrying=False)
-    assert control.state is State.PAUSED
+    assert control.state is RecordingState.PAUSED
     assert not control.count_down(99.0)
 
 
 def test_a_tracker_that_comes_back_goes_on_as_it_was() -> None:
-    for before, after in ((State.RECORDING, State.RECORDING), (State.PAUSED, State.PAUSED)):
-        control = Control(Routine(armed=before is State.PAUSED), 0.0)
+    for before, after in (
+        (RecordingState.RECORDING, RecordingState.RECORDING),
+        (RecordingState.PAUSED, RecordingState.PAUSED),
+    ):
+        control = RecordingStateMachine(Routine(armed=before is RecordingState.PAUSED), 0.0)
         control.lose()
         control.hear()
         assert control.state is after
-    lost = Control(Routine(), 0.0)
+    lost = RecordingStateMachine(Routine(), 0.0)
     lost.lose()
     lost.resume(0.0)
-    assert lost.state is State.LOST
+    assert lost.state is RecordingState.LOST
 
 
 @pytest.mark.parametrize("countdown", [-1.0, 61.0, float("nan"), float("inf")])

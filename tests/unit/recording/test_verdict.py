@@ -3,18 +3,18 @@ from dataclasses import replace
 import pytest
 
 from teachpath.errors import UnusableSettings
-from teachpath.recording.phase_statistics import Parts
+from teachpath.recording.phase_statistics import PhaseStatistics
 from teachpath.recording.settings import RecordingSettings
 from teachpath.recording.verdict import judge
-from teachpath.records import Account
+from teachpath.records import StreamStatistics
 
 SETTINGS = RecordingSettings()
-CLEAN = Account(received=100, declared_rate=50.0, seen_rate=50.0)
+CLEAN = StreamStatistics(received=100, declared_rate=50.0, seen_rate=50.0)
 
 
-def carried(account: Account) -> Parts:
+def carried(account: StreamStatistics) -> PhaseStatistics:
     """Return a take of which everything is learned."""
-    return Parts(account, Account(), account, Account())
+    return PhaseStatistics(account, StreamStatistics(), account, StreamStatistics())
 
 
 @pytest.mark.parametrize(
@@ -48,7 +48,7 @@ def test_the_verdict_follows_the_numbers_and_says_them(changes: dict[str, int], 
 
 
 def test_the_limits_are_those_of_the_settings() -> None:
-    lost = Account(received=90, lost=10)
+    lost = StreamStatistics(received=90, lost=10)
     assert judge(carried(lost), replace(SETTINGS, largest_loss=0.1)).word == "repaired"
     gap = carried(replace(CLEAN, longest_gap_ns=300_000_000))
     assert judge(gap, replace(SETTINGS, longest_gap=0.3)).word == "clean"

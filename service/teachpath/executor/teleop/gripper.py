@@ -8,7 +8,7 @@ import numpy as np
 
 from teachpath.motion.arm.kinematics import rotations, tool_pose
 from teachpath.motion.collision.collision_model import Load
-from teachpath.recording.phases import closure_of
+from teachpath.recording.phases import hand_closure
 from teachpath.records import JointState, Sample
 
 CLOSES: Final = 0.6  # closure of the hand above which the gripper closes
@@ -30,11 +30,11 @@ class Grip:
 
     def begin(self, sample: Sample) -> None:
         """Take the hand as it is now; what it does from here on counts."""
-        self._shut = closure_of(sample) > (CLOSES + OPENS) / 2
+        self._shut = hand_closure(sample) > (CLOSES + OPENS) / 2
 
     def follow(self, sample: Sample) -> None:
         """Close or open the gripper when the hand has closed or opened."""
-        how = closure_of(sample)
+        how = hand_closure(sample)
         if (self._shut and how < OPENS) or (not self._shut and how > CLOSES):
             self._shut = self.closed = not self._shut
 

@@ -49,7 +49,7 @@ class RecordingHeader:
     calibration: Calibration
 
 
-class Take:
+class RecordingFile:
     """A recording that is being written."""
 
     def __init__(self, part: Path, header: RecordingHeader, opener: Opener = open_new) -> None:
@@ -114,9 +114,9 @@ class Recordings:
     def __init__(self, root: Path, opener: Opener = open_new) -> None:
         self._root, self._opener = root, opener
 
-    def begin(self, demonstration: str, header: RecordingHeader) -> Take:
+    def begin(self, demonstration: str, header: RecordingHeader) -> RecordingFile:
         """Open the recording of a new demonstration."""
-        return Take(self.folder(header.task) / f"{demonstration}.mcap.part", header, self._opener)
+        return RecordingFile(self.folder(header.task) / f"{demonstration}.mcap.part", header, self._opener)
 
     def folder(self, task: str) -> Path:
         """Return the folder of a task's recordings."""

@@ -7,7 +7,7 @@ from typing import Any
 
 from teachpath.errors import UnusableInput, UnusableSample
 from teachpath.io.wire.parsing import parse
-from teachpath.records import Account, Clock, Demonstration, Quaternion, Sample, Vector
+from teachpath.records import Clock, Demonstration, Quaternion, Sample, StreamStatistics, Vector
 from teachpath_proto import tracker_pb2
 
 LARGEST_SAMPLE = 4096  # bytes; an honest one has about 200
@@ -96,7 +96,7 @@ def sample_message(sample: Sample) -> tracker_pb2.HandSample:
 
 
 def encode_report(
-    task: str, tracker: str, demonstrations: list[str], account: Account, *, idle: int = 0, **state: Any
+    task: str, tracker: str, demonstrations: list[str], account: StreamStatistics, *, idle: int = 0, **state: Any
 ) -> tracker_pb2.RecordingReport:
     """Return the report of a recording; `state` is its phase, state and pedal."""
     clock = account.clock or Clock(0, 0, 0.0)

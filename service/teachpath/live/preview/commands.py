@@ -12,8 +12,8 @@ import numpy as np
 import umsgpack
 
 from teachpath.errors import UnusableInput
-from teachpath.records import Array, Quaternion, Vector
 from teachpath.live.preview.bare_package import without_init
+from teachpath.records import Array, Quaternion, Vector
 
 with without_init("meshcat"):  # which imports the server, and with it tornado, pyzmq, IPython and Pillow
     from meshcat import commands, geometry
