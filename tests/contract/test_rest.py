@@ -15,6 +15,14 @@ from tests.contract.desk import API, Desk, csv, refused
 
 # what is not there
 
+NEEDED = {
+    "/tasks/moon/jobs": {},
+    "/tasks/moon/recording": {"tracker": "glove"},
+    "/tasks/moon/recording/stop": {"tracker": "glove"},
+    "/executions": {"plan": "moon"},
+    "/executions/moon/override": {"override": 0.5},
+}
+
 
 @pytest.mark.parametrize(
     ("method", "resource", "what"),
@@ -46,8 +54,7 @@ from tests.contract.desk import API, Desk, csv, refused
     ],
 )
 def test_what_is_not_there_is_404_and_named(desk: Desk, method: str, resource: str, what: str) -> None:
-    body = {"tracker": "glove", "plan": "moon", "override": 0.5}
-    answer = desk.send(method, API + resource, json=body if method == "POST" else None)
+    answer = desk.send(method, API + resource, json=NEEDED.get(resource) if method == "POST" else None)
     refused(answer, 404, f"there is no {what}")
 
 

@@ -163,6 +163,29 @@ def test_identical_points_are_refused_with_a_sentence(desk: Desk) -> None:
 # executions
 
 
+@pytest.mark.parametrize(
+    ("body", "sentence"),
+    [
+        ({"plan": "p", "overide": 0.2}, "body.overide: there is no field 'overide'; did you mean override?"),
+        ({"plan": "p", "speed": 0.2, "how": 1}, "no field 'speed'; known here: plan, override, and 1 more"),
+        ({"plan": "p", "x" * 500_000: 0}, f"there is no field '{'x' * 80}'"),
+        ({"plan": "p"} | {f"x{n}": 0 for n in range(20_000)}, "and 19999 more"),
+    ],
+)
+def test_a_field_that_is_not_known_moves_nothing(desk: Desk, body: dict[str, Any], sentence: str) -> None:
+    before = desk.get("/executions").json()
+    answer = desk.post("/executions", body)
+    refused(answer, 422, sentence)
+    assert len(answer.json()["errors"]) <= 20
+    assert desk.get("/executions").json() == before
+
+
+def test_a_field_of_another_kind_of_job_is_refused(desk: Desk) -> None:
+    desk.put("/tasks/unshown", {})
+    body = {"kind": "recut", "run": "r", "settings": {"seed": 1}}
+    refused(desk.post("/tasks/unshown/jobs", body), 422, "there is no field of a job 'recut' 'settings'")
+
+
 def test_without_an_executor_an_execution_is_503_and_kept_with_its_reason(desk: Desk) -> None:
     plan = planned(desk.station, "plan-good")
     assert desk.get(f"/plans/{plan}").json()["id"] == plan
@@ -173,8 +196,8 @@ def test_without_an_executor_an_execution_is_503_and_kept_with_its_reason(desk: 
     assert desk.get(f"/executions/{newest['id']}").json() == newest
     for verb in ("hold", "resume", "reverse"):
         refused(desk.post(f"/executions/{newest['id']}/{verb}"), 409, "is not running")
-    for _ in range(2):
-        assert desk.post(f"/executions/{newest['id']}/stop").json() == newest  # a stop is always answered
+    for body in (None, {"overide": 0.2}):  # a stop is always answered, whatever comes with it
+        assert desk.post(f"/executions/{newest['id']}/stop?soon=1", body).json() == newest
     refused(desk.post(f"/executions/{newest['id']}/step", {"nodes": 1}), 409, "is not running")
     refused(desk.post(f"/executions/{newest['id']}/step", {}), 422, "one of the two")
     refused(desk.post(f"/executions/{newest['id']}/step", {"nodes": 1, "length": 0.1}), 422, "one of the two")
@@ -183,7 +206,7 @@ def test_without_an_executor_an_execution_is_503_and_kept_with_its_reason(desk: 
     refused(
         desk.post(f"/executions/{newest['id']}/jump"),
         422,
-        "path.verb: it should be 'hold', 'resume', 'reverse' or 'stop'",
+        "path.verb: it should be 'hold', 'resume' or 'reverse'",
     )
 
 

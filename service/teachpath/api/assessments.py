@@ -5,14 +5,15 @@ from __future__ import annotations
 from typing import Any
 
 from fastapi import APIRouter
-from pydantic import BaseModel, Field
+from pydantic import Field
 
+from teachpath.api.closed import Body
 from teachpath.api.curves import CurveBody
 from teachpath.api.parts import Parts
 from teachpath.io.documents import to_document
 
 
-class Edited(BaseModel):
+class Edited(Body):
     """A curve that is being edited."""
 
     curve: CurveBody | None = Field(None, description="left out: that of the version")

@@ -5,8 +5,9 @@ from __future__ import annotations
 from typing import Annotated
 
 from fastapi import APIRouter
-from pydantic import BaseModel, Field
+from pydantic import Field
 
+from teachpath.api.closed import Body
 from teachpath.api.parts import Parts
 from teachpath.errors import NotFound
 from teachpath.records import Demonstration, MeasuredCalibration, TaughtPoint
@@ -16,14 +17,14 @@ Coordinate = Annotated[float, Field(allow_inf_nan=False)]
 Place = tuple[Coordinate, Coordinate, Coordinate]
 
 
-class Taught(BaseModel):
+class Taught(Body):
     """One place that was shown to the tracker."""
 
     tracker: Place = Field(description="where the tracker saw it [m]")
     world: Place = Field(description="where it is [m, world]")
 
 
-class Measured(BaseModel):
+class Measured(Body):
     """What a calibration is measured with."""
 
     points: list[Taught] = Field(max_length=MOST_POINTS, description="three or more, not on one line")
@@ -32,7 +33,7 @@ class Measured(BaseModel):
     keep: bool = Field(True, description="false: only say what the calibration and its residuals would be")
 
 
-class Converted(BaseModel):
+class Converted(Body):
     """Under which calibration demonstrations are put."""
 
     calibration: str = Field(

@@ -5,14 +5,15 @@ from __future__ import annotations
 from typing import Annotated, Literal
 
 from fastapi import APIRouter, Query
-from pydantic import BaseModel, Field
+from pydantic import Field
 
+from teachpath.api.closed import Body
 from teachpath.api.executions import Token, Who
 from teachpath.api.parts import Parts
 from teachpath.records import JournalEntry, Lease, LeaseRequest
 
 
-class Claim(BaseModel):
+class Claim(Body):
     """A claim to control."""
 
     name: str = Field(min_length=1, max_length=64, description="shown to everybody")
@@ -20,7 +21,7 @@ class Claim(BaseModel):
     hold_when_lost: bool = Field(False, description="hold a moving arm on its path when the beats stop")
 
 
-class Reason(BaseModel):
+class Reason(Body):
     """Why something is taken back."""
 
     reason: str = Field(min_length=1, max_length=500)

@@ -5,8 +5,9 @@ from __future__ import annotations
 from typing import Annotated, Any, Literal
 
 from fastapi import APIRouter
-from pydantic import BaseModel, Field
+from pydantic import Field
 
+from teachpath.api.closed import Body
 from teachpath.api.parts import Parts
 from teachpath.editing import MOST_POINTS, Operated, check_editable, elevate, insert, remove
 from teachpath.errors import UnusableInput
@@ -18,7 +19,7 @@ MOST_PARAMETERS = 2001
 Point = tuple[float, float, float]
 
 
-class CurveBody(BaseModel):
+class CurveBody(Body):
     """A clamped NURBS on [0, 1]."""
 
     degree: int = Field(ge=1, le=7)
@@ -32,14 +33,14 @@ class CurveBody(BaseModel):
         return check_editable(Curve(self.degree, self.knots, points, self.weights))  # type: ignore[arg-type]
 
 
-class Evaluation(BaseModel):
+class Evaluation(Body):
     """Where to evaluate a curve."""
 
     curve: CurveBody
     u: list[Annotated[float, Field(ge=0.0, le=1.0)]] = Field(max_length=MOST_PARAMETERS, description="parameters")
 
 
-class Operation(BaseModel):
+class Operation(Body):
     """A curve to operate on."""
 
     curve: CurveBody

@@ -6,15 +6,16 @@ from typing import Annotated, Any, Literal
 
 from fastapi import APIRouter, Query
 from fastapi.responses import FileResponse
-from pydantic import BaseModel, Field
+from pydantic import Field
 
+from teachpath.api.closed import Body
 from teachpath.api.parts import Parts
 from teachpath.io.documents import to_document
 from teachpath.recorder.annotations import Amendment
 from teachpath.records import Demonstration
 
 
-class Amended(BaseModel):
+class Amended(Body):
     """What an operator says of a demonstration; what is left out stays as it is."""
 
     mark: Literal["", "good", "bad"] | None = Field(None, description="good, bad, or empty for none")

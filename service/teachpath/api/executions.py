@@ -6,8 +6,9 @@ from typing import Annotated, Any, Literal
 
 from fastapi import APIRouter, Header, Query, Response
 from fastapi.responses import FileResponse
-from pydantic import BaseModel, Field
+from pydantic import Field
 
+from teachpath.api.closed import Body
 from teachpath.api.parts import Parts
 from teachpath.errors import UnusableInput
 from teachpath.io.documents import to_document
@@ -26,14 +27,14 @@ Who = Annotated[
 ]
 
 
-class NewExecution(BaseModel):
+class NewExecution(Body):
     """A plan to execute."""
 
     plan: str = Field(description="id of a plan; only a plan with a valid certificate moves the arm")
     override: float = Field(1.0, ge=0.0, le=1.0, description="share of the planned speed")
 
 
-class NewTeleoperation(BaseModel):
+class NewTeleoperation(Body):
     """A live hand for the arm to mirror."""
 
     tracker: str = Field(pattern=NAME.pattern, max_length=64, description="name of the tracker")
@@ -49,13 +50,13 @@ class NewTeleoperation(BaseModel):
     )
 
 
-class Speed(BaseModel):
+class Speed(Body):
     """A speed override."""
 
     override: float = Field(ge=0.0, le=1.0, description="share of the planned speed")
 
 
-class Step(BaseModel):
+class Step(Body):
     """A step on the path, of one kind."""
 
     length: float | None = Field(None, ge=-10.0, le=10.0, description="metres along the path; negative is back")
@@ -152,16 +153,31 @@ def _add_steering(router: APIRouter, executions: Executions) -> None:
 
     @router.post("/executions/{execution}/{verb}")
     def steer(
-        execution: str, verb: Literal["hold", "resume", "reverse", "stop"], lease: Token = "", who: Who = ""
+        execution: str, verb: Literal["hold", "resume", "reverse"], lease: Token = "", who: Who = ""
     ) -> ExecutionRow:
-        """Hold on the path, resume, go back along it, or stop and end.
+        """Hold on the path, resume, or go back along it.
 
-        A stop is open to everybody and may be said twice. It brings the arm to rest on its path: it is not an emergency
-        stop. Resume brings an arm that was pushed away while it was held back to the path first.
+        Resume brings an arm that was pushed away while it was held back to the path first.
         """
         return executions.command(execution, Command(verb, execution, lease=lease, who=who))
+
+
+def stops_router(parts: Parts) -> APIRouter:
+    """Return the routes that stop the arm: they are answered whatever else the request holds."""
+    router, executions = APIRouter(tags=["executions"]), parts.executions
+
+    @router.post("/executions/{execution}/stop")
+    def stop(execution: str, lease: Token = "", who: Who = "") -> ExecutionRow:
+        """Stop and end an execution; open to everybody, and may be said twice.
+
+        A stop brings the arm to rest on its path: it is not an emergency stop. It is never refused for a field or
+        parameter that it does not know.
+        """
+        return executions.command(execution, Command("stop", execution, lease=lease, who=who))
 
     @router.post("/stop")
     def stop_whatever_moves(lease: Token = "", who: Who = "") -> ExecutorStatus:
         """Stop whatever moves the arm, on its path; open to everybody. This is not an emergency stop."""
         return executions.halt(lease=lease, who=who)
+
+    return router

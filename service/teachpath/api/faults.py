@@ -11,6 +11,7 @@ from fastapi.responses import JSONResponse
 from pydantic import BaseModel, Field
 from starlette.exceptions import HTTPException
 
+from teachpath.api.closed import EXTRA, unknown_field
 from teachpath.errors import (
     Conflict,
     LearningFailed,
@@ -22,6 +23,8 @@ from teachpath.errors import (
     UnusableInput,
 )
 from teachpath.io.documents import to_document
+
+MOST_FAULTS: Final = 20  # fields that a refusal lists
 
 STATUS: dict[type[TeachpathError], int] = {
     NotFound: 404,
@@ -45,7 +48,9 @@ class Refusal(BaseModel):
 
     detail: str = Field(description="a sentence for the operator: value, limit, place, way out")
     error: str = Field(description="kind of the error")
-    errors: list[Fault] = Field(default=[], description="every unusable field of the request, when that is the reason")
+    errors: list[Fault] = Field(
+        default=[], description="the unusable fields of the request, at most 20, when that is the reason"
+    )
     newer: dict[str, Any] | None = Field(None, description="the version saved meanwhile, when that is the reason")
 
 
@@ -74,9 +79,10 @@ def answer_errors(app: FastAPI) -> None:
         return _answer(status_of(error), str(error), type(error).__name__, newer=newer)
 
     @app.exception_handler(RequestValidationError)
-    async def name_fields(_: Request, error: RequestValidationError) -> JSONResponse:
-        faults = [_fault(e) for e in error.errors()]
-        sentence = f"{faults[0].place}: {faults[0].fault}" + (f", and {len(faults) - 1} more" if faults[1:] else "")
+    async def name_fields(request: Request, error: RequestValidationError) -> JSONResponse:
+        errors = error.errors()
+        faults = [_fault(request, e) for e in errors[:MOST_FAULTS]]
+        sentence = f"{faults[0].place}: {faults[0].fault}" + (f", and {len(errors) - 1} more" if errors[1:] else "")
         return _answer(422, sentence, "UnusableInput", faults)
 
     @app.exception_handler(HTTPException)
@@ -103,10 +109,12 @@ def _answer(
     return JSONResponse(refusal.model_dump(exclude_defaults=True), status)
 
 
-def _fault(error: dict[str, Any]) -> Fault:
+def _fault(request: Request, error: dict[str, Any]) -> Fault:
     place = ".".join(str(piece) for piece in error["loc"])
     if error["type"] == "json_invalid":
         return Fault(place="body", fault=f"this is no JSON: {error['ctx']['error']} at character {error['loc'][-1]}")
+    if error["type"] == EXTRA:
+        return Fault(place=_printable(place), fault=_printable(unknown_field(request, error["loc"])))
     return Fault(place=_printable(place), fault=_printable(error["msg"]).replace("Input should", "it should"))
 
 

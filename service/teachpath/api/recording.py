@@ -5,8 +5,9 @@ from __future__ import annotations
 from typing import Any
 
 from fastapi import APIRouter
-from pydantic import BaseModel, Field
+from pydantic import Field
 
+from teachpath.api.closed import Body
 from teachpath.api.parts import Parts
 from teachpath.errors import UnusableInput
 from teachpath.io.wire import report_document
@@ -14,20 +15,26 @@ from teachpath.recording.take_control import Routine
 from teachpath.records import Demonstration
 
 
-class Recording(BaseModel):
-    """A recording to start or stop."""
+class Recording(Body):
+    """A recording to start."""
 
     tracker: str = Field(description="name of the tracker that shows the task")
-    calibration: str = Field("", description="start: instead of the task's own")
-    rate: float = Field(0.0, ge=0.0, le=10_000.0, description="start: samples a second that it sends; 0 = not said")
-    armed: bool = Field(False, description="start: paused, until pedal, fist or `resume` begins the first take")
-    countdown: float | None = Field(None, ge=0.0, le=60.0, description="start: [s] before each take; else the setting")
-    takes: int = Field(0, ge=0, le=10_000, description="start: pause by itself after so many demonstrations; 0 = never")
-    one_by_one: bool = Field(False, description="start: pause after each demonstration")
-    discard: bool = Field(False, description="stop: throw away the demonstration that is still open")
+    calibration: str = Field("", description="instead of the task's own")
+    rate: float = Field(0.0, ge=0.0, le=10_000.0, description="samples a second that it sends; 0 = not said")
+    armed: bool = Field(False, description="paused, until pedal, fist or `resume` begins the first take")
+    countdown: float | None = Field(None, ge=0.0, le=60.0, description="[s] before each take; else the setting")
+    takes: int = Field(0, ge=0, le=10_000, description="pause by itself after so many demonstrations; 0 = never")
+    one_by_one: bool = Field(False, description="pause after each demonstration")
 
 
-class Named(BaseModel):
+class Ended(Body):
+    """A recording to stop."""
+
+    tracker: str = Field(description="name of the tracker that is recording the task")
+    discard: bool = Field(False, description="throw away the demonstration that is still open")
+
+
+class Named(Body):
     """A tracker whose recording is meant."""
 
     tracker: str = Field(description="name of the tracker that is recording the task")
@@ -58,9 +65,9 @@ def recording_router(parts: Parts) -> APIRouter:
         )
 
     @router.post("/tasks/{task}/recording/stop")
-    def stop_recording(task: str, recording: Recording) -> dict[str, Any]:
+    def stop_recording(task: str, ended: Ended) -> dict[str, Any]:
         """Stop recording and return the account of every sample."""
-        return report_document(recorder.end(of_task(task, recording.tracker), discard=recording.discard))
+        return report_document(recorder.end(of_task(task, ended.tracker), discard=ended.discard))
 
     @router.post("/tasks/{task}/recording/pause")
     def pause_recording(task: str, named: Named) -> dict[str, Any]:

@@ -5,10 +5,17 @@ from __future__ import annotations
 import asyncio
 from collections.abc import Awaitable, Callable, Mapping
 from contextlib import suppress
-from typing import Any, Protocol, TypeVar
+from typing import Any, Final, Protocol, TypeVar
 from urllib.parse import urlsplit
 
 from fastapi import WebSocket, WebSocketDisconnect
+from starlette.websockets import WebSocketState
+
+from teachpath.api.closed import unknown
+
+DONE: Final = 1000  # close codes: normal closure, and policy violation
+REFUSED: Final = 1008
+LONGEST_REASON: Final = 120  # bytes; the protocol allows 123
 
 Piece = TypeVar("Piece", covariant=True)
 
@@ -30,12 +37,25 @@ def same_origin(headers: Mapping[str, str]) -> bool:
 
 
 async def admit(socket: WebSocket) -> bool:
-    """Accept a WebSocket, unless a page of another origin opens it: that handshake is answered with 403."""
+    """Accept a WebSocket, and say whether it may stay.
+
+    A page of another origin is refused: its handshake is answered with 403. So is a query parameter: there are none.
+    """
     if not same_origin(socket.headers):
         await socket.close()
         return False
     await socket.accept()
+    for name in socket.query_params:
+        await close(socket, unknown("parameter", name, ()))
+        return False
     return True
+
+
+async def close(socket: WebSocket, reason: str = "") -> None:
+    """Close a WebSocket that is still open: with a reason as refused, else as done."""
+    if socket.client_state is WebSocketState.CONNECTED and socket.application_state is WebSocketState.CONNECTED:
+        short = reason.encode(errors="replace")[:LONGEST_REASON].decode(errors="ignore")
+        await socket.close(REFUSED if reason else DONE, short)
 
 
 async def serve(
@@ -63,7 +83,7 @@ async def serve(
         with suppress(WebSocketDisconnect, KeyError):  # KeyError: bytes where text belongs
             while not (fault := receive(await socket.receive_text(), reader)):
                 pass
-            await socket.close(1008, fault)
+            await close(socket, fault)
 
     async def tell() -> None:
         with suppress(WebSocketDisconnect, RuntimeError):

@@ -4,19 +4,21 @@ from __future__ import annotations
 
 from typing import Any
 
-from fastapi import APIRouter, FastAPI
+from fastapi import APIRouter, Depends, FastAPI
 from starlette.middleware.trustedhost import TrustedHostMiddleware
 
 from teachpath import __version__
 from teachpath.api.assessments import assessments_router
 from teachpath.api.calibrations import calibrations_router
+from teachpath.api.closed import refuse_unknown
 from teachpath.api.control import control_router
 from teachpath.api.curves import curves_router
 from teachpath.api.demonstrations import demonstrations_router
-from teachpath.api.executions import executions_router
+from teachpath.api.executions import executions_router, stops_router
 from teachpath.api.exports import exports_router
 from teachpath.api.faults import REFUSALS, answer_errors
 from teachpath.api.guard import Guard
+from teachpath.api.joints import joints_router
 from teachpath.api.parts import Parts
 from teachpath.api.recording import recording_router
 from teachpath.api.robot import robot_router
@@ -25,6 +27,8 @@ from teachpath.api.trackers import trackers_router
 from teachpath.api.versions import versions_router
 from teachpath.api.work import jobs_router, results_router
 from teachpath.io.documents import to_document
+
+PREFIX = "/api/v1"
 
 DESCRIPTION = """Show a task a few times; teachpath finds the different ways it was done, learns a path for each, proves
 that the arm can follow it, and moves the arm. Metres, radians, seconds; quaternions w, x, y, z; times ending in `_ns`
@@ -45,7 +49,6 @@ def build_api(parts: Parts, *pages: APIRouter) -> FastAPI:
         recording_router,
         exports_router,
         calibrations_router,
-        trackers_router,
         jobs_router,
         results_router,
         versions_router,
@@ -56,8 +59,12 @@ def build_api(parts: Parts, *pages: APIRouter) -> FastAPI:
         robot_router,
         station_router,
     )
+    app.include_router(stops_router(parts), prefix=PREFIX, responses=REFUSALS)  # never refused for what comes with it
+    closed = [Depends(refuse_unknown)]
     for router in routers:
-        app.include_router(router(parts), prefix="/api/v1", responses=REFUSALS)
+        app.include_router(router(parts), prefix=PREFIX, responses=REFUSALS, dependencies=closed)
+    for socket in (trackers_router, joints_router):
+        app.include_router(socket(parts), prefix=PREFIX)
     for page in pages:
         app.include_router(page)
     return app

@@ -2,20 +2,26 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Final
 
 from fastapi import APIRouter, Query, Request
-from pydantic import BaseModel, Field
+from pydantic import Field
 from starlette.concurrency import run_in_threadpool
 
+from teachpath.api.closed import Body
 from teachpath.api.parts import Parts
 from teachpath.errors import UnusableInput
 from teachpath.offline.importing import Source, import_file
 from teachpath.records import Demonstration, Task
 from teachpath_proto.keys import is_name
 
+FILE: Final = {
+    "required": True,
+    "content": {"application/octet-stream": {"schema": {"type": "string", "format": "binary"}}},
+}
 
-class NewTask(BaseModel):
+
+class NewTask(Body):
     """A task to make."""
 
     scene: str = Field("paper", description="what stands around the arm; see /scenes")
@@ -50,7 +56,7 @@ def tasks_router(parts: Parts) -> APIRouter:
         """List a task's demonstrations in their order, each with its verdict and account."""
         return store.demonstrations(store.task(task).name)
 
-    @router.post("/tasks/{task}/demonstrations", status_code=201)
+    @router.post("/tasks/{task}/demonstrations", status_code=201, openapi_extra={"requestBody": FILE})
     async def import_demonstrations(
         task: str,
         request: Request,

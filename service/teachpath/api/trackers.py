@@ -19,19 +19,18 @@ from typing import Any, Final
 
 from fastapi import APIRouter, WebSocket, WebSocketDisconnect
 from starlette.concurrency import run_in_threadpool
-from starlette.websockets import WebSocketState
 
+from teachpath.api import sockets
+from teachpath.api.closed import unknown
 from teachpath.api.parts import Parts
-from teachpath.api.sockets import same_origin
 from teachpath.errors import TeachpathError, UnusableInput
 from teachpath.io.wire import LARGEST_SAMPLE
 from teachpath.recorder.websocket_trackers import WebSocketTracker
 
 SILENCE: Final = 10.0  # [s] after which a page that says nothing, not even a ping, has gone
-REFUSED: Final = 1008  # close code: policy violation
-REASON: Final = 120  # bytes of a close reason, at most 123
-
 LARGEST_PING: Final = 1e18  # what is no number, or infinite, could not be answered in JSON
+
+FIELDS: Final = {"sample": ("sample",), "ping": ("ping",), "end": ("end", "discard")}  # of each kind of message
 
 Answer = dict[str, Any]
 
@@ -42,10 +41,8 @@ def trackers_router(parts: Parts, *, silence: float = SILENCE) -> APIRouter:
 
     @router.websocket("/trackers/{name}/samples")
     async def samples(socket: WebSocket, name: str) -> None:
-        if not same_origin(socket.headers):
-            await socket.close()  # before it was accepted: the handshake is answered with 403
+        if not await sockets.admit(socket):
             return
-        await socket.accept()
         loop, dismissed = asyncio.get_running_loop(), asyncio.Queue[str]()
 
         def leave(why: str) -> None:
@@ -55,13 +52,13 @@ def trackers_router(parts: Parts, *, silence: float = SILENCE) -> APIRouter:
         try:
             tracker = parts.websocket_trackers.register(name, leave)
         except TeachpathError as error:
-            await _close(socket, str(error))
+            await sockets.close(socket, str(error))
             return
         listening = asyncio.create_task(_listen(socket, tracker, silence))
         leaving = asyncio.create_task(dismissed.get())
         try:
             done, _ = await asyncio.wait((listening, leaving), return_when=asyncio.FIRST_COMPLETED)
-            await _close(socket, next(iter(done)).result())
+            await sockets.close(socket, next(iter(done)).result())
         finally:
             parts.websocket_trackers.unregister(tracker)
             for task in (listening, leaving):
@@ -95,6 +92,8 @@ def _answer(tracker: WebSocketTracker, content: bytes | str) -> Answer:
     if isinstance(content, bytes):
         return _refusal(tracker.take(content))
     order = _parse(content)
+    if stray := _stray(order):
+        return _refusal(tracker.refuse(stray))
     if isinstance(order.get("sample"), dict):
         return _refusal(tracker.take(order["sample"]))
     ping, end = order.get("ping"), order.get("end")
@@ -117,11 +116,12 @@ def _parse(text: str) -> Answer:
     return order if isinstance(order, dict) else {}
 
 
+def _stray(order: Answer) -> str:
+    """Say which field of a message has no meaning in it; empty when there is none."""
+    kind = next((kind for kind in FIELDS if kind in order), None)
+    known = FIELDS[kind] if kind else ()
+    return next((unknown("field", name, known) for name in order if kind and name not in known), "")
+
+
 def _refusal(sentence: str) -> Answer:
     return {"refused": sentence} if sentence else {}
-
-
-async def _close(socket: WebSocket, reason: str) -> None:
-    if socket.client_state is WebSocketState.CONNECTED and socket.application_state is WebSocketState.CONNECTED:
-        short = reason.encode(errors="replace")[:REASON].decode(errors="ignore")
-        await socket.close(REFUSED if reason else 1000, short)

@@ -5,8 +5,9 @@ from __future__ import annotations
 from typing import Any
 
 from fastapi import APIRouter, Response
-from pydantic import BaseModel, Field
+from pydantic import Field
 
+from teachpath.api.closed import Body
 from teachpath.api.curves import CurveBody
 from teachpath.api.parts import Parts
 from teachpath.editing import difference
@@ -18,7 +19,7 @@ TEXT = r"^[^\x00-\x1f\x7f]*$"  # one line
 BRANCH = r"^([^\W_][\w .-]*)?$"
 
 
-class NewVersion(BaseModel):
+class NewVersion(Body):
     """An edited curve to save."""
 
     base: int = Field(description="number of the version that was edited")

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Final, Literal, Self
 
 from fastapi import APIRouter, Query, Response
-from pydantic import BaseModel, Field
+from pydantic import Field, model_validator
+from pydantic_core import PydanticCustomError
 
+from teachpath.api.closed import Body, unknown
 from teachpath.api.parts import Parts
 from teachpath.errors import NotFound
 from teachpath.io.documents import to_document
@@ -14,8 +16,15 @@ from teachpath.io.store.store import Store
 from teachpath.learning.clustering.cuts import dendrogram, recut
 from teachpath.records import Job, LearnedPath
 
+# The fields that each kind of job takes.
+FIELDS: Final = {
+    "learn": {"kind", "settings", "calibrations"},
+    "recut": {"kind", "run", "threshold", "clusters", "calibrations"},
+    "plan": {"kind", "path", "version"},
+}
 
-class NewJob(BaseModel):
+
+class NewJob(Body):
     """Work to begin on a task."""
 
     kind: Literal["learn", "recut", "plan"] = Field(
@@ -36,8 +45,17 @@ class NewJob(BaseModel):
         None, description="plan: number of its version; without it the newest on its main branch"
     )
 
+    @model_validator(mode="after")
+    def refuse_fields_of_other_kinds(self) -> Self:
+        """Refuse a field that has no meaning for this kind of job, as one that is unknown."""
+        for name in self.model_fields_set - FIELDS[self.kind]:
+            raise PydanticCustomError(
+                "field_of_another_kind", unknown(f"field of a job {self.kind!r}", name, sorted(FIELDS[self.kind]))
+            )
+        return self
 
-class NewPlan(BaseModel):
+
+class NewPlan(Body):
     """What to plan of a path."""
 
     version: int | None = Field(None, description="number of the version; without it the newest on the main branch")

@@ -1,0 +1,74 @@
+"""Closed requests: what an operation does not know is refused by name, never dropped without a word."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Collection, Sequence
+from typing import Any, Final, get_args
+
+from fastapi import Request
+from fastapi.exceptions import RequestValidationError
+from pydantic import BaseModel, ConfigDict
+
+EXTRA: Final = "extra_forbidden"  # pydantic's name of this fault
+EMPTY: Final = (b"", b"{}", b"null")  # bodies that say nothing
+LONGEST_SHOWN: Final = 80  # characters of an unknown name
+
+
+class Body(BaseModel):
+    """A request body; a field that it does not have is refused."""
+
+    model_config = ConfigDict(extra="forbid")
+
+
+async def refuse_unknown(request: Request) -> None:
+    """Refuse the query parameters that an operation does not have, and a body where it takes none.
+
+    Raises:
+        RequestValidationError: names every one of them.
+    """
+    route = request.scope["route"]
+    known = _parameters(request)
+    faults = [{"loc": ("query", name), "type": EXTRA, "msg": ""} for name in request.query_params if name not in known]
+    takes_a_body = route.body_field is not None or "requestBody" in (route.openapi_extra or {})
+    if not takes_a_body and (await request.body()).strip() not in EMPTY:
+        faults.append({"loc": ("body",), "type": EXTRA, "msg": ""})
+    if faults:
+        raise RequestValidationError(faults)
+
+
+def unknown_field(request: Request, place: Sequence[str | int]) -> str:
+    """Say what a request holds at `place` that is not known there, and what is known, e.g. `("body", "overide")`."""
+    if place == ("body",):
+        return f"{request.method} {request.url.path} takes none; send it without"
+    if place[0] == "query":
+        return unknown("parameter", str(place[-1]), _parameters(request))
+    return unknown("field", str(place[-1]), _fields(request, place[1:-1]))
+
+
+def unknown(kind: str, name: str, known: Collection[str]) -> str:
+    """Say that there is no `kind` of this name, which known name is nearest, and which names are known."""
+    name = name[:LONGEST_SHOWN]
+    near = difflib.get_close_matches(name, known, 1)
+    meant = f"did you mean {near[0]}? " if near else ""
+    return f"there is no {kind} {name!r}; {meant}known here: {', '.join(known) or 'none'}"
+
+
+def _parameters(request: Request) -> list[str]:
+    return [field.alias for field in request.scope["route"].dependant.query_params]
+
+
+def _fields(request: Request, place: Sequence[str | int]) -> list[str]:
+    """Return the fields that the body has at a place within it, e.g. `("points", 0)`."""
+    kind = request.scope["route"].body_field.field_info.annotation
+    for piece in place:
+        if isinstance(piece, str):
+            kind = _model(kind).model_fields[piece].annotation
+    return list(_model(kind).model_fields)
+
+
+def _model(kind: Any) -> type[BaseModel]:
+    """Return the model in a type such as `list[Model]` or `Model | None`; `Body` when there is none."""
+    if isinstance(kind, type) and issubclass(kind, BaseModel):
+        return kind
+    return next((found for inner in get_args(kind) if (found := _model(inner)) is not Body), Body)
