@@ -23,8 +23,8 @@ from teachpath.io.bus import Bus, open_bus
 from teachpath.io.store.store import Store
 from teachpath.io.wire import report_document
 from teachpath.jobs import worker
-from teachpath.jobs.curve_assessor import Assessor
-from teachpath.jobs.jobs import Jobs, Kind
+from teachpath.jobs.curve_assessor import CurveAssessor
+from teachpath.jobs.jobs import JobKind, Jobs
 from teachpath.learning.settings import LearningSettings
 from teachpath.live.event_hub import EventHub
 from teachpath.live.preview import Preview
@@ -85,7 +85,7 @@ class Station:
         )
         self.coach = GuidanceThread(self.store.demonstrations, self.trajectory, settings.learning)
         self.jobs = Jobs(self.bus, self.keys, self.store, settings.jobs, self._kinds())
-        self.assessor = Assessor()
+        self.assessor = CurveAssessor()
         self.websocket_trackers = WebSocketTrackers(self.bus, self.keys, self.recorder)
         self.joints = JointFeed(self.bus, self.keys, robot=settings.bus.robot)
         self.executions = Executions(self.bus, self.keys, self.store, robot=settings.bus.robot, scene=settings.scene)
@@ -132,7 +132,7 @@ class Station:
     ) -> None:
         self._lookout.stop()
         for process in self.processes:
-            process.ask_to_stop()
+            process.request_stop()
         self.recorder.stop()
         self.coach.stop()
         self.jobs.stop()
@@ -169,7 +169,7 @@ class Station:
 
     def notes(self) -> list[str]:
         """Say what an operator should know."""
-        notes = [f"the {p.name} has ended: {p.last_words()}" for p in self.processes if not p.is_alive()]
+        notes = [f"the {p.name} has ended: {p.last_error()}" for p in self.processes if not p.is_alive()]
         notes += self.recorder.faults() + self.executions.faults()
         unfinished = self.store.recordings.unfinished()
         if unfinished and not self.recorder.reports():
@@ -204,11 +204,11 @@ class Station:
             lambda demonstration, trajectory: self._turn_to(demonstration.task),
         )
 
-    def _kinds(self) -> dict[str, Kind]:
+    def _kinds(self) -> dict[str, JobKind]:
         return {
-            "learn": Kind(self._prepare_learning, worker.learn_paths, self._finish_learning),
-            "recut": Kind(self._prepare_recut, worker.recut_run, self._finish_learning),
-            "plan": Kind(self._prepare_planning, worker.plan_path, self._finish_planning),
+            "learn": JobKind(self._prepare_learning, worker.learn_paths, self._finish_learning),
+            "recut": JobKind(self._prepare_recut, worker.recut_run, self._finish_learning),
+            "plan": JobKind(self._prepare_planning, worker.plan_path, self._finish_planning),
         }
 
     def _prepare_learning(self, job: Job) -> tuple[dict[str, Trajectory], LearningSettings]:

@@ -8,7 +8,7 @@ from typing import Any
 
 from teachpath.config import Settings
 from teachpath.io.store.store import Store
-from teachpath.jobs.curve_assessor import Assessor
+from teachpath.jobs.curve_assessor import CurveAssessor
 from teachpath.jobs.jobs import Jobs
 from teachpath.recorder.calibrations import Calibrations
 from teachpath.recorder.recorder import Recorder
@@ -27,7 +27,7 @@ class Parts:
     recorder: Recorder
     calibrations: Calibrations
     jobs: Jobs
-    assessor: Assessor
+    assessor: CurveAssessor
     executions: Executions
     websocket_trackers: WebSocketTrackers
     joints: JointFeed

@@ -41,10 +41,10 @@ def robot_router(parts: Parts) -> APIRouter:
         Times [s], joints [rad], pose of the carried object [m, world], and what the arm does when, in words.
         """
         from teachpath.motion.execution.motion_preview import (
-            rehearse,  # with the libraries of planning, which nothing else here needs
+            preview_motion,  # with the libraries of planning, which nothing else here needs
         )
 
         stored = parts.store.plan(plan)
-        return to_document(rehearse(stored, parts.settings.motion, dwell=parts.settings.executor.dwell))
+        return to_document(preview_motion(stored, parts.settings.motion, dwell=parts.settings.executor.dwell))
 
     return router

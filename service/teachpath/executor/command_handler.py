@@ -15,13 +15,13 @@ import numpy as np
 
 from teachpath.errors import Conflict, TeachpathError, Unreachable, UnusableInput
 from teachpath.executor.execution import Execution
-from teachpath.executor.joint_state_monitor import Hearing
+from teachpath.executor.joint_state_monitor import JointStateMonitor
 from teachpath.executor.lease import ControlLease
 from teachpath.executor.settings import ExecutorSettings
-from teachpath.executor.teleop.program import Hand
+from teachpath.executor.teleop.program import TeleopProgram
 from teachpath.io import documents, wire
 from teachpath.io.bus import Bus, Handle
-from teachpath.motion.execution.program import Program
+from teachpath.motion.execution.program import PlanProgram
 from teachpath.motion.settings import MotionSettings
 from teachpath.records import Array, Command, ExecutorStatus, JournalEntry, Mirroring, Plan, Scene
 from teachpath_proto.keys import Keys
@@ -31,7 +31,7 @@ RESET = 5.0  # [s] that the simulated arm may take to build a scene
 FREE = ("stop", "revoke")  # verbs that need no lease
 
 
-class Controls:
+class CommandHandler:
     """Keeps the execution that is under way and what it was told.
 
     Args:
@@ -49,7 +49,7 @@ class Controls:
         keys: Keys,
         settings: ExecutorSettings,
         motion: MotionSettings,
-        hearing: Hearing,
+        hearing: JointStateMonitor,
         *,
         robot: str,
         told: Callable[[], ExecutorStatus],
@@ -152,7 +152,7 @@ class Controls:
         if off > self._settings.regain:
             raise Conflict(f"the arm is {off:.3f} rad off the path; resume brings it back, then hold it and step")
         here = current.program.here
-        if isinstance(current.program, Hand):
+        if isinstance(current.program, TeleopProgram):
             raise Conflict("a live hand has no path to step on; stop it, and run a plan")
         aside = current.program.plan_step(length=command.length, nodes=command.nodes)
         self.orders.append(lambda execution: execution.take_aside(aside, here))
@@ -167,7 +167,7 @@ class Controls:
             return
         if not current.settled or not (current.displaced or current.rests_with(self._hearing.present())):
             raise Conflict(f"the arm is {off:.3f} rad off its setpoint and not at rest yet; hold it first, and wait")
-        if isinstance(current.program, Hand):
+        if isinstance(current.program, TeleopProgram):
             raise Conflict(f"the arm was pushed {off:.3f} rad away; stop, and begin again from where it is")
         here = self._resting_arm()
         aside = current.program.plan_return(here)
@@ -184,7 +184,9 @@ class Controls:
         if self.current is not None and self.current.plan == command.plan_id:
             self.orders.append(partial(Execution.revoke, reason=command.reason or "no reason was given"))
 
-    def _start(self, command: Command, make: Callable[[Command], tuple[Program | Hand, str, Scene]]) -> None:
+    def _start(
+        self, command: Command, make: Callable[[Command], tuple[PlanProgram | TeleopProgram, str, Scene]]
+    ) -> None:
         stops = self._stops
         with self._starting:
             if self.current is not None and not self.current.resting:
@@ -194,21 +196,21 @@ class Controls:
                 self._bus.ask(self._keys.reset(self._robot), documents.encode(scene), timeout=RESET)
             if self._stops != stops:
                 raise Conflict("it was stopped before it began")
-            if self.current is not None and isinstance(self.current.program, Hand):
+            if self.current is not None and isinstance(self.current.program, TeleopProgram):
                 self.current.program.close()
             self._begun()
             self.orders.clear()
             offset = self._wall() - self._clock()
             self.current = Execution(command.execution, program, plan=plan, rate=self._settings.rate, offset=offset)
 
-    def _program(self, command: Command) -> tuple[Program, str, Scene]:
+    def _program(self, command: Command) -> tuple[PlanProgram, str, Scene]:
         plan = documents.decode(Plan, command.plan)
         settings, period = self._settings, 1.0 / self._settings.rate
         here, override = self._resting_arm(), command.override
-        program = Program(plan, here, self._motion, override=override, dwell=settings.dwell, period=period)
+        program = PlanProgram(plan, here, self._motion, override=override, dwell=settings.dwell, period=period)
         return program, plan.id, plan.scene
 
-    def _hand(self, command: Command) -> tuple[Hand, str, Scene]:
+    def _hand(self, command: Command) -> tuple[TeleopProgram, str, Scene]:
         order = documents.decode(Mirroring, command.mirror)
         if not (0.05 <= order.scale <= 5.0 and 0.05 <= order.share <= 1.0):
             raise UnusableInput(
@@ -216,7 +218,7 @@ class Controls:
             )
         period = 1.0 / self._settings.rate
         here = self._resting_arm()
-        hand = Hand(
+        hand = TeleopProgram(
             self._bus,
             self._keys,
             order,

@@ -6,9 +6,9 @@ from typing import Final
 
 from teachpath.executor.limit_meter import LimitMeter
 from teachpath.executor.pacing import Pacer
-from teachpath.executor.teleop.program import Hand
-from teachpath.motion.execution.program import Program
-from teachpath.motion.execution.segments import Aside
+from teachpath.executor.teleop.program import TeleopProgram
+from teachpath.motion.execution.program import PlanProgram
+from teachpath.motion.execution.segments import Detour
 from teachpath.records import Array, ExecutorStatus, JointState, Setpoint
 
 RESTING: Final = ("idle", "ended", "faulted")
@@ -29,7 +29,9 @@ class Execution:
         offset: added to the loop's clock to get nanoseconds since the Unix epoch.
     """
 
-    def __init__(self, execution: str, program: Program | Hand, *, plan: str, rate: float, offset: int) -> None:
+    def __init__(
+        self, execution: str, program: PlanProgram | TeleopProgram, *, plan: str, rate: float, offset: int
+    ) -> None:
         self.execution = execution
         self.program = program
         self.plan = plan
@@ -98,14 +100,14 @@ class Execution:
         if not self._ending:
             self.reason = self.revoked
 
-    def take_aside(self, aside: Aside, here: Array) -> None:
+    def take_aside(self, aside: Detour, here: Array) -> None:
         """Begin a step, or a way back from `here` (6,), unless it is being ended or moves already."""
         if self._ending or not self.program.standing:
             return
         if self.displaced:
             self._meter = LimitMeter(self._rate, here, self._meter)
         self.displaced, self.reason = 0.0, ""
-        if isinstance(self.program, Program):
+        if isinstance(self.program, PlanProgram):
             self.program.take_aside(aside)
 
     def end(self, state: str, reason: str) -> None:
@@ -116,7 +118,7 @@ class Execution:
 
     def think(self) -> None:
         """Do what is to be done behind a setpoint; only a live hand leaves something."""
-        if isinstance(self.program, Hand):
+        if isinstance(self.program, TeleopProgram):
             self.program.think()
 
     def wait(self) -> None:
@@ -160,7 +162,7 @@ class Execution:
     def status(self, pacer: Pacer) -> ExecutorStatus:
         """Tell where it stands, with the account of the loop that runs it."""
         late = pacer.lateness()
-        hand = self.program.latency if isinstance(self.program, Hand) else (0.0, 0.0)
+        hand = self.program.latency if isinstance(self.program, TeleopProgram) else (0.0, 0.0)
         return ExecutorStatus(
             execution=self.execution,
             state=self.state,

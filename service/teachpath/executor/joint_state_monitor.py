@@ -13,7 +13,7 @@ from teachpath.records import JointState
 log = logging.getLogger(__name__)
 
 
-class Hearing:
+class JointStateMonitor:
     """Keeps the newest joint state.
 
     Args:
@@ -54,7 +54,7 @@ class Hearing:
         return heard[1]
 
 
-class Uptake:
+class SetpointStallDetector:
     """Notices an arm that speaks, but takes up no setpoints any more."""
 
     def __init__(self) -> None:

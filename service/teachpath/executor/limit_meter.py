@@ -14,7 +14,7 @@ _LIMITS: Final = np.stack([SPEED, ACCELERATION, JERK])
 _NAMES: Final = ("speed", "acceleration", "jerk")
 
 
-class Placed(Protocol):
+class Located(Protocol):
     """Something that can say in words where it is."""
 
     @property
@@ -37,7 +37,7 @@ class LimitMeter:
         self.largest: float = before.largest if before else 0.0
         self.place: str = before.place if before else ""
 
-    def add(self, position: Array, where: Placed) -> None:
+    def add(self, position: Array, where: Located) -> None:
         """Measure the setpoint `position` (6,) [rad]; its place is asked of `where` when it is the largest."""
         third, second, first = self._last
         differences = np.stack(

@@ -16,9 +16,9 @@ from typing import Final
 
 import numpy as np
 
-from teachpath.executor.command_handler import Controls
+from teachpath.executor.command_handler import CommandHandler
 from teachpath.executor.execution import Execution
-from teachpath.executor.joint_state_monitor import Hearing, Uptake
+from teachpath.executor.joint_state_monitor import JointStateMonitor, SetpointStallDetector
 from teachpath.executor.pacing import Pacer, ask_for_realtime
 from teachpath.executor.settings import ExecutorSettings
 from teachpath.io import wire
@@ -31,7 +31,7 @@ from teachpath_proto.keys import Keys
 log = logging.getLogger(__name__)
 
 IDLE_PERIODS: Final = 5  # control periods between two looks while nothing is under way
-DEAF: Final = 0.5  # [s] that an arm may take up no setpoint; a driver plays them up to 0.05 s late
+STALL_TIMEOUT: Final = 0.5  # [s] that an arm may take up no setpoint; a driver plays them up to 0.05 s late
 IDLE_RATE: Final = 4.0  # [Hz] statuses then, at most; the service takes an executor for gone after a second
 
 
@@ -63,9 +63,9 @@ class Executor:
         self._wall = wall
         self._period = 1.0 / self._settings.rate
         self._pacer = Pacer(round(1e9 * self._period), clock=clock, sleep=sleep)
-        self._hearing = Hearing(robot, self._settings.silence, clock)
-        self._uptake = Uptake()
-        self._controls = Controls(
+        self._hearing = JointStateMonitor(robot, self._settings.silence, clock)
+        self._uptake = SetpointStallDetector()
+        self._controls = CommandHandler(
             bus,
             keys,
             self._settings,
@@ -140,13 +140,13 @@ class Executor:
             return
         stalled = self._uptake.stalled(due, current.execution, arm)
         if current.settled or current.displaced:
-            if current.rests_with(arm) or stalled > DEAF:  # else it is late, and still on its way there
+            if current.rests_with(arm) or stalled > STALL_TIMEOUT:  # else it is late, and still on its way there
                 off = float(np.abs(arm.position - current.program.here).max())
                 current.displaced = off if off > self._settings.regain else 0.0
             if current.displaced:
                 self._uptake.pause(due)
             return
-        if stalled > DEAF:
+        if stalled > STALL_TIMEOUT:
             why = f"the arm has taken up no setpoint for {stalled:.1f} s"
             self._hold(current, f"{why}: does its driver hear them? resume when it does")
         current.wait_for(arm)

@@ -20,7 +20,7 @@ LONGEST: Final = 60.0  # s, until a look counts as stuck; the first one has to l
 POLITE: Final = 5  # added niceness, so that the control loop goes first
 
 
-class Assessor:
+class CurveAssessor:
     """Looks at one curve after another; of several that wait for the same path only the newest is looked at."""
 
     def __init__(self) -> None:
@@ -41,7 +41,7 @@ class Assessor:
             if self._newest[path.id] is not ticket:
                 raise Conflict(f"a newer curve of path {path.id} came meanwhile; this one was not looked at")
             if self._pool is None:
-                self._pool = ProcessPoolExecutor(1, get_context("spawn"), initializer=_sit_down)
+                self._pool = ProcessPoolExecutor(1, get_context("spawn"), initializer=_init_worker)
             try:
                 found = self._pool.submit(_assess, curve, scene, settings, path.orientation)
                 return found.result(timeout=LONGEST)
@@ -65,8 +65,8 @@ class Assessor:
             process.join()
 
 
-def _sit_down() -> None:
-    worker.live_with_parent()
+def _init_worker() -> None:
+    worker.exit_with_parent()
     os.nice(POLITE)
 
 

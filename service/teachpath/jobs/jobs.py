@@ -41,7 +41,7 @@ class JobSettings:
 
 
 @dataclass(frozen=True)
-class Kind:
+class JobKind:
     """One kind of job."""
 
     prepare: Prepare
@@ -63,7 +63,7 @@ class Jobs:
         keys: Keys,
         store: Store,
         settings: JobSettings,
-        kinds: dict[str, Kind],
+        kinds: dict[str, JobKind],
         *,
         finished: Callable[[Job], None] = lambda job: None,
     ) -> None:
@@ -121,7 +121,7 @@ class Jobs:
 
     def _open_pool(self) -> ProcessPoolExecutor:
         return ProcessPoolExecutor(
-            max_workers=1, mp_context=self._context, initializer=worker.sit_down, initargs=(self._news, self._cancel)
+            max_workers=1, mp_context=self._context, initializer=worker.init_worker, initargs=(self._news, self._cancel)
         )
 
     def _run(self) -> None:

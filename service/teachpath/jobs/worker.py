@@ -28,20 +28,20 @@ _news: Queue[tuple[str, float, str]] | None = None
 _cancel: Event | None = None
 
 
-def sit_down(news: Queue[tuple[str, float, str]], cancel: Event) -> None:
+def init_worker(news: Queue[tuple[str, float, str]], cancel: Event) -> None:
     """Prepare this process: it ignores Ctrl-C, which its parent handles, and never outlives its parent."""
     global _news, _cancel
     _news, _cancel = news, cancel
-    live_with_parent()
+    exit_with_parent()
 
 
-def live_with_parent() -> None:
+def exit_with_parent() -> None:
     """Ignore Ctrl-C, which the parent handles, and never outlive it."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    threading.Thread(target=_leave_with_parent, name="parent", daemon=True).start()
+    threading.Thread(target=_exit_with_parent, name="parent", daemon=True).start()
 
 
-def _leave_with_parent() -> None:
+def _exit_with_parent() -> None:
     parent = parent_process()
     if parent is not None:
         parent.join()

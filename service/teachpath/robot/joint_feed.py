@@ -39,7 +39,7 @@ class JointFeed:
     def __init__(self, bus: Bus, keys: Keys, *, robot: str) -> None:
         self._bus, self._keys, self._robot = bus, keys, robot
         self._lock = threading.Lock()
-        self._onlookers: tuple[Onlooker, ...] = ()
+        self._onlookers: tuple[JointStateSubscriber, ...] = ()
         self._last: bytes | None = None
         self._handles: list[Handle] = []
 
@@ -56,16 +56,16 @@ class JointFeed:
             handle.close()
         self._handles.clear()
 
-    def attach(self) -> Onlooker:
+    def attach(self) -> JointStateSubscriber:
         """Return an onlooker, who begins with the newest joint state."""
-        onlooker = Onlooker()
+        onlooker = JointStateSubscriber()
         if self._last is not None:
             onlooker.states.append(self._last)
         with self._lock:
             self._onlookers = (*self._onlookers, onlooker)
         return onlooker
 
-    def detach(self, onlooker: Onlooker) -> None:
+    def detach(self, onlooker: JointStateSubscriber) -> None:
         """Forget an onlooker who has gone."""
         with self._lock:
             self._onlookers = tuple(o for o in self._onlookers if o is not onlooker)
@@ -82,7 +82,7 @@ class JointFeed:
             onlooker.setpoints.append(payload)
 
 
-class Onlooker:
+class JointStateSubscriber:
     """One who looks at the arm, as often as it likes."""
 
     def __init__(self) -> None:

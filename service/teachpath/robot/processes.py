@@ -41,12 +41,12 @@ class WorkerProcess:
         """Tell whether the process runs."""
         return self._process is not None and self._process.poll() is None
 
-    def last_words(self) -> str:
+    def last_error(self) -> str:
         """Return the last line the process wrote, or its exit status."""
         code = self._process.poll() if self._process else None
         return self._words[-1] if self._words else f"exit status {code}"
 
-    def ask_to_stop(self) -> None:
+    def request_stop(self) -> None:
         """Ask the process to end by itself."""
         if self._process is not None and self._process.poll() is None:
             self._process.send_signal(signal.SIGTERM)
@@ -55,7 +55,7 @@ class WorkerProcess:
         """End the process; it is killed when it does not end in time."""
         if self._process is None:
             return
-        self.ask_to_stop()
+        self.request_stop()
         with contextlib.suppress(OSError):
             self._process.stdin.close()  # type: ignore[union-attr]
         try:

@@ -20,7 +20,7 @@ from teachpath.io.bus import Bus
 from teachpath.motion.settings import MotionSettings
 from teachpath.records import JointState, Scene
 from teachpath.simulator.arm import STEP_NS, SimulatedArm
-from teachpath.simulator.setpoint_player import Playback
+from teachpath.simulator.setpoint_player import SetpointPlayer
 from teachpath.simulator.settings import SimulatorSettings
 from teachpath_proto.keys import Keys
 
@@ -165,7 +165,7 @@ class Simulator:
         settings = self._settings
         self._arm = SimulatedArm(scene, settings, position)
         self._scene = scene
-        self._playback = Playback(self._arm.position, delay=settings.delay, silence=settings.silence)
+        self._playback = SetpointPlayer(self._arm.position, delay=settings.delay, silence=settings.silence)
         self._setpoints.clear()
         self._over = ""  # the execution that said that it has ended
         self._closed = False

@@ -25,7 +25,7 @@ WRONG: Final = 1.0  # s, of a clock that is so far off that its times cannot be 
 
 
 @dataclass(frozen=True, eq=False)
-class Wanted:
+class TargetMotion:
     """The motion that is wanted now: (6,) in rad, rad/s, rad/s^2."""
 
     position: Array
@@ -33,7 +33,7 @@ class Wanted:
     acceleration: Array
 
 
-class Playback:
+class SetpointPlayer:
     """The motion of one arm over its own time.
 
     Args:
@@ -50,7 +50,7 @@ class Playback:
         self._begin, self._played, self._rate = 0, 0.0, 1.0  # first nominal time [ns], instant behind it [s]
         self._zero = 0  # [ns] of real time, from when on the player would have played if it never was late
         self._offset: tuple[Array, Array, float] = (still, still, HANDED)  # what is handed back, and for how long
-        self.wanted = Wanted(np.array(position), still, still)
+        self.wanted = TargetMotion(np.array(position), still, still)
         self.missed = self.late = 0
         self._newest = -1
         self._piece: _Piece | None = None  # between the two setpoints that are next to the played instant
@@ -168,7 +168,7 @@ class Playback:
         if since < HANDED:
             p, v, a = (value + part for value, part in zip((p, v, a), _handed(error, drift, since), strict=True))
             self._offset = (error, drift, since + dt)
-        self.wanted = Wanted(p, v, a)
+        self.wanted = TargetMotion(p, v, a)
 
 
 class _Piece:

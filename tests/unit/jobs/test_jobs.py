@@ -10,7 +10,7 @@ import pytest
 from teachpath.errors import Conflict, LearningFailed
 from teachpath.io.bus import MemoryBus
 from teachpath.io.store.store import Store
-from teachpath.jobs.jobs import Jobs, JobSettings, Kind
+from teachpath.jobs.jobs import JobKind, Jobs, JobSettings
 from teachpath.records import Job, JobState
 from teachpath_proto.keys import Keys
 
@@ -50,7 +50,7 @@ class Bench:
         self.ended: queue.Queue[Job] = queue.Queue()
         self.outcomes: list[str] = []
         works = {f.__name__: f for f in (echo, refuse, crash, linger, fault)} | instead
-        kinds = {name: Kind(self.prepare, work, self.finish) for name, work in works.items()}
+        kinds = {name: JobKind(self.prepare, work, self.finish) for name, work in works.items()}
         settings = JobSettings(attempts=2)
         self.jobs = Jobs(self.bus, KEYS, store, settings, kinds, finished=self.ended.put)
 

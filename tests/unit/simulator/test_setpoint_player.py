@@ -7,7 +7,7 @@ import pytest
 
 from teachpath.motion.arm.puma560 import ACCELERATION, SPEED
 from teachpath.records import Setpoint
-from teachpath.simulator.setpoint_player import Playback
+from teachpath.simulator.setpoint_player import SetpointPlayer
 
 PERIOD, DELAY, SILENCE = 0.004, 0.03, 0.02
 START = np.zeros(6)
@@ -25,11 +25,11 @@ def wanted_at(t: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     return s * GOAL, ds * GOAL, dds * GOAL
 
 
-def played(arrives: Arrival, left_out: Iterable[int] = (), seconds: float = 2.0) -> tuple[Playback, np.ndarray]:
+def played(arrives: Arrival, left_out: Iterable[int] = (), seconds: float = 2.0) -> tuple[SetpointPlayer, np.ndarray]:
     """Play the move; returns the player, and what was wanted each millisecond (n, 3, 6)."""
     gone = set(left_out)
     coming = sorted((arrives(k), k) for k in range(int(seconds / PERIOD)) if k not in gone)
-    player = Playback(START, delay=DELAY, silence=SILENCE)
+    player = SetpointPlayer(START, delay=DELAY, silence=SILENCE)
     log = []
     for ms in range(int(1e3 * seconds)):
         while coming and coming[0][0] <= ms / 1e3:
@@ -87,7 +87,7 @@ def test_a_sender_that_is_gone_leaves_an_arm_that_brakes_and_says_that_it_holds(
 
 
 def test_who_is_behind_catches_up_at_a_standstill_without_a_jump() -> None:
-    player = Playback(START, delay=DELAY, silence=SILENCE)
+    player = SetpointPlayer(START, delay=DELAY, silence=SILENCE)
     log, reached = [], 0
     for ms in range(4000):
         if ms % 4 == 0:
@@ -112,7 +112,7 @@ def test_who_is_behind_catches_up_at_a_standstill_without_a_jump() -> None:
 
 
 def test_a_player_that_computes_in_bursts_is_never_ahead_of_its_setpoints() -> None:
-    player = Playback(START, delay=DELAY, silence=SILENCE)
+    player = SetpointPlayer(START, delay=DELAY, silence=SILENCE)
     for burst in range(40):  # a rest of a second, the move, a rest: each 0.1 s of it heard, then played
         for k in range(25 * burst, 25 * burst + 25):
             p, v, a = wanted_at(k * PERIOD - 1.0)

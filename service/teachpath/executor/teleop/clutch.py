@@ -59,7 +59,7 @@ class Clutch:
         self.stopped, self.why = False, WAITING
 
 
-class Presser:
+class RemoteClutch:
     """Another tracker whose button is the clutch: somebody who looks on, while the hand has no button.
 
     Attributes:

@@ -16,7 +16,7 @@ OPENS: Final = 0.4  # and below which it opens
 HELD: Final = 0.05  # m, from the grasp point to the object's centre: farther off it is not in the gripper
 
 
-class Grip:
+class GripperFollower:
     """Follows how far a hand is closed, or its grasp button, while the clutch is pressed.
 
     Only a change counts: who lets the clutch go with the object in the gripper, and presses it again with the hand
@@ -39,7 +39,7 @@ class Grip:
             self._shut = self.closed = not self._shut
 
 
-def load_of(arm: JointState, before: Load | None) -> Load | None:
+def observed_load(arm: JointState, before: Load | None) -> Load | None:
     """Return where the arm says that the object is: in its gripper, or in the world.
 
     Args:

@@ -8,13 +8,13 @@ from typing import Final
 
 import numpy as np
 
-from teachpath.executor.joint_state_monitor import Hearing
-from teachpath.executor.teleop.clutch import CLUTCH, Clutch, Presser, tracked
-from teachpath.executor.teleop.gripper import Grip, load_of
+from teachpath.executor.joint_state_monitor import JointStateMonitor
+from teachpath.executor.teleop.clutch import CLUTCH, Clutch, RemoteClutch, tracked
+from teachpath.executor.teleop.gripper import GripperFollower, observed_load
 from teachpath.io.bus import Bus
 from teachpath.motion.collision.collision_model import CollisionModel, Load
-from teachpath.motion.execution.segments import Moment
-from teachpath.motion.execution.teleop_follower import Mirror
+from teachpath.motion.execution.segments import MotionState
+from teachpath.motion.execution.teleop_follower import TeleopFollower
 from teachpath.motion.settings import MotionSettings
 from teachpath.recording.demonstration import to_world
 from teachpath.records import Array, Mirroring, Sample
@@ -24,7 +24,7 @@ KEPT: Final = 5000  # latencies
 LATE: Final = "the arm is late; let the clutch go and press it again"
 
 
-class Hand:
+class TeleopProgram:
     """Drives an execution by the samples of one tracker, as a program does.
 
     Args:
@@ -47,24 +47,24 @@ class Hand:
         here: Array,
         settings: MotionSettings,
         *,
-        hearing: Hearing,
+        hearing: JointStateMonitor,
         period: float,
         silence: float,
         clock: Callable[[], int],
     ) -> None:
         self._order, self._clock, self._hearing = order, clock, hearing
         self._patience = silence * 1e9  # [ns]
-        self._grip = Grip(hearing.present().gripper_closed)
+        self._grip = GripperFollower(hearing.present().gripper_closed)
         model = CollisionModel(order.scene)
-        self._mirror = Mirror(model, here, settings, scale=order.scale, share=order.share, period=period)
+        self._mirror = TeleopFollower(model, here, settings, scale=order.scale, share=order.share, period=period)
         if order.scene.carried is not None:
             self._mirror.load = Load(placed=order.scene.carried.position)
         still = np.zeros(6)
-        self._moment = Moment(np.array(here), still, still, self._grip.closed)
+        self._moment = MotionState(np.array(here), still, still, self._grip.closed)
         self._came: deque[tuple[int, bytes]] = deque(maxlen=1)
         self._seen = 0  # [ns of the clock] when the newest tracked sample came
         self._clutch = Clutch()
-        self._presser = Presser(bus, keys, order.clutch, clock) if order.clutch else None
+        self._presser = RemoteClutch(bus, keys, order.clutch, clock) if order.clutch else None
         self._latencies: deque[float] = deque(maxlen=KEPT)
         self._answered = 0
         self._handle = bus.subscribe(keys.samples(order.tracker), self._receive)
@@ -119,7 +119,7 @@ class Hand:
         p50, p99 = np.percentile(np.array(self._latencies), (50, 99))
         return float(p50), float(p99)
 
-    def step(self) -> Moment:
+    def step(self) -> MotionState:
         """Advance by one control period; never raises."""
         now = self._clock()
         if self._presser is not None:
@@ -132,7 +132,7 @@ class Hand:
         if self._mirror.answered != self._answered:
             self._answered = self._mirror.answered
             self._latencies.append((now - self._answered) / 1e3)
-        self._moment = Moment(position, velocity, acceleration, self._grip.closed)
+        self._moment = MotionState(position, velocity, acceleration, self._grip.closed)
         return self._moment
 
     def think(self) -> None:
@@ -193,7 +193,7 @@ class Hand:
         self._seen = when
         arm = self._hearing.newest(when)
         if arm is not None and self._order.scene.carried is not None:
-            self._mirror.load = load_of(arm[1], self._mirror.load)
+            self._mirror.load = observed_load(arm[1], self._mirror.load)
         followed = self._clutch.pressed
         down = self._presser.down if self._presser is not None else bool(sample.buttons & CLUTCH)
         if self._clutch.hear(down):

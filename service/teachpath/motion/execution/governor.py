@@ -27,7 +27,7 @@ BACKWARD: Final = 0.96  # rate of the way back at most: a plan has its reserve o
 
 
 @dataclass(frozen=True, slots=True)
-class Progress:
+class GovernorState:
     """Where the arm is: `s` [m], `rate` of plan time; `standing` at rest, `finished` at rest at the end."""
 
     s: float
@@ -80,11 +80,11 @@ class Governor:
         return self._motion
 
     @property
-    def progress(self) -> Progress:
+    def progress(self) -> GovernorState:
         """The present state."""
         tau, rate, slope = self._state
         standing = bool(rate == 0.0 and slope == 0.0)
-        return Progress(float(self._motion[0, 6]), float(rate), standing, standing and bool(tau >= self._end))
+        return GovernorState(float(self._motion[0, 6]), float(rate), standing, standing and bool(tau >= self._end))
 
     def set_override(self, share: float) -> None:
         """Go at `share` of the full speed from now on, clipped to 0 to 1; zero holds."""
@@ -133,7 +133,7 @@ class Governor:
         """The rate in which the ramp now followed ends; it is `wish` as soon as that could be answered."""
         return float(self._ramp[7])
 
-    def step(self) -> Progress:
+    def step(self) -> GovernorState:
         """Advance by one control period; never raises."""
         wish = self.wish
         left = self._ramp[3] + self._ramp[4] + self._ramp[5] - self._elapsed

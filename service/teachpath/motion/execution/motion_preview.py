@@ -12,7 +12,7 @@ from scipy.spatial.transform import Rotation
 
 from teachpath.motion.arm.kinematics import tool_pose
 from teachpath.motion.arm.puma560 import Array
-from teachpath.motion.execution.segments import Stretch, stretches
+from teachpath.motion.execution.segments import Segment, stretches
 from teachpath.motion.planning.certificate import verify
 from teachpath.motion.settings import MotionSettings
 from teachpath.records import Plan
@@ -21,7 +21,7 @@ MOST: Final = 6000  # instants; a plan that takes longer has them farther apart
 
 
 @dataclass(frozen=True, slots=True)
-class Scope:
+class SegmentInterval:
     """When a stretch of the motion lasts, in words and seconds."""
 
     name: str
@@ -30,7 +30,7 @@ class Scope:
 
 
 @dataclass(frozen=True, eq=False)
-class Rehearsal:
+class MotionPreview:
     """The motion at full speed from the arm's home, at even instants.
 
     Attributes:
@@ -50,10 +50,10 @@ class Rehearsal:
     gripper_closed: tuple[bool, ...]
     object_position: Array
     object_orientation: Array
-    stretches: tuple[Scope, ...]
+    stretches: tuple[SegmentInterval, ...]
 
 
-def rehearse(plan: Plan, settings: MotionSettings, *, dwell: float, rate: float = 50.0) -> Rehearsal:
+def preview_motion(plan: Plan, settings: MotionSettings, *, dwell: float, rate: float = 50.0) -> MotionPreview:
     """Return the motion that an execution of `plan` makes at full speed; nothing is sent.
 
     Args:
@@ -74,7 +74,7 @@ def rehearse(plan: Plan, settings: MotionSettings, *, dwell: float, rate: float 
     taught = next(index for index, part in enumerate(parts) if part.taught)
     share = np.clip(rows[:, 6] / plan.lengths[-1], 0.0, 1.0)  # the track ends within rounding of the length
     positions, orientations = _object(plan, rows[:, :6], which - taught)
-    return Rehearsal(
+    return MotionPreview(
         plan=plan.id,
         times=times,
         joints=rows[:, :6],
@@ -83,12 +83,13 @@ def rehearse(plan: Plan, settings: MotionSettings, *, dwell: float, rate: float 
         object_position=positions,
         object_orientation=orientations,
         stretches=tuple(
-            Scope(part.name, float(a), float(b)) for part, a, b in zip(parts, begins[:-1], begins[1:], strict=True)
+            SegmentInterval(part.name, float(a), float(b))
+            for part, a, b in zip(parts, begins[:-1], begins[1:], strict=True)
         ),
     )
 
 
-def _rows(parts: Sequence[Stretch], begins: Array, times: Array, which: NDArray[np.intp], home: Array) -> Array:
+def _rows(parts: Sequence[Segment], begins: Array, times: Array, which: NDArray[np.intp], home: Array) -> Array:
     """Return joints and length (n, 7) at times, each in the stretch `which` says (n,)."""
     rows = np.zeros((len(times), 7))
     here = np.append(home, 0.0)
@@ -102,7 +103,7 @@ def _rows(parts: Sequence[Stretch], begins: Array, times: Array, which: NDArray[
     return rows
 
 
-def _lasting(part: Stretch) -> float:
+def _lasting(part: Segment) -> float:
     return part.track.duration if part.track is not None else part.rest
 
 

@@ -11,7 +11,7 @@ import numpy as np
 from teachpath.errors import Conflict
 from teachpath.motion.arm.puma560 import Array
 from teachpath.motion.execution.governor import SLOWEST, Governor
-from teachpath.motion.execution.segments import Aside, Moment, Stretch, stretches, way_back
+from teachpath.motion.execution.segments import Detour, MotionState, Segment, plan_return_path, stretches
 from teachpath.motion.planning.certificate import verify
 from teachpath.motion.settings import MotionSettings
 from teachpath.motion.timing.jog import place_of, stepped
@@ -21,7 +21,7 @@ from teachpath.records import Plan
 REACHED: Final = 1e-5  # m, a node as near as this is where the arm is
 
 
-class Program:
+class PlanProgram:
     """Runs through the stretches, one control period at a time.
 
     Args:
@@ -48,16 +48,16 @@ class Program:
     ) -> None:
         verify(plan)
         self._plan, self._settings = plan, settings
-        self._rest_of: Iterator[Stretch] = iter(stretches(plan, here, settings, dwell))
+        self._rest_of: Iterator[Segment] = iter(stretches(plan, here, settings, dwell))
         self._length = float(plan.lengths[-1])
         self._override, self._held, self._waits, self._period = override, False, False, period
         self._elapsed = 0.0
         self._done = 0.0
         still = np.zeros(6)
-        self._moment = Moment(np.array(here, dtype=np.float64), still, still, False)
-        self._stretch: Stretch | None = None
+        self._moment = MotionState(np.array(here, dtype=np.float64), still, still, False)
+        self._stretch: Segment | None = None
         self._governor: Governor | None = None  # of the stretch
-        self._aside: Aside | None = None
+        self._aside: Detour | None = None
         self._aside_governors: deque[Governor] = deque()
         self._advance()
 
@@ -172,7 +172,7 @@ class Program:
         for governor in self._governors():
             governor.set_override(share)
 
-    def plan_step(self, *, length: float = 0.0, nodes: int = 0) -> Aside:
+    def plan_step(self, *, length: float = 0.0, nodes: int = 0) -> Detour:
         """Work out a step from where the arm is held on the path; `take_aside` begins it.
 
         Args:
@@ -194,7 +194,7 @@ class Program:
         goal = self._node(nodes) if nodes else self._done + length
         landing = place_of(stretch.track, min(max(goal, 0.0), self._length))
         begin = governor.tau if self._aside is None else place_of(stretch.track, self._done)
-        return Aside("", (stepped(stretch.track, begin, landing, 1.0 / self._period),), landing)
+        return Detour("", (stepped(stretch.track, begin, landing, 1.0 / self._period),), landing)
 
     def _node(self, count: int) -> float:
         """Return the length [m] of the node that is `count` nodes away; one that is reached already does not count."""
@@ -205,23 +205,23 @@ class Program:
             node = int(np.searchsorted(lengths, self._done - REACHED, side="left")) + count
         return float(lengths[min(max(node, 0), len(lengths) - 1)])
 
-    def plan_return(self, here: Array) -> Aside:
+    def plan_return(self, here: Array) -> Detour:
         """Work out the way back from `here` (6,) to the point where the arm was held; `take_aside` begins it.
 
         Raises:
             PathRefused: the way is not free.
         """
         assert self._stretch is not None
-        tracks = way_back(self._plan, self._stretch, here, self.here, self._settings)
-        return Aside("on the way back to the path", tuple(tracks))
+        tracks = plan_return_path(self._plan, self._stretch, here, self.here, self._settings)
+        return Detour("on the way back to the path", tuple(tracks))
 
-    def take_aside(self, aside: Aside) -> None:
+    def take_aside(self, aside: Detour) -> None:
         """Begin a step or a way back; the arm rests at its beginning."""
         self._aside = aside if aside.tracks else None
         self._aside_governors = deque(self._governor_of(track) for track in aside.tracks)
         self._held = False
 
-    def step(self) -> Moment:
+    def step(self) -> MotionState:
         """Advance by one control period and return the nominal motion; never raises."""
         stretch, governor = self._stretch, self._driver
         if stretch is None:
@@ -236,7 +236,7 @@ class Program:
         if on_path:
             self._done = self._length if state.finished else state.s  # the table ends within rounding of the length
         position, velocity, acceleration = governor.motion[:, :6].copy()
-        self._moment = Moment(position, velocity, acceleration, stretch.gripper_closed, on_path)
+        self._moment = MotionState(position, velocity, acceleration, stretch.gripper_closed, on_path)
         if state.finished and not self.held:
             self._finish()
         return self._moment
@@ -272,7 +272,7 @@ class Program:
         if self._stretch is None:
             return
         closed = self._stretch.gripper_closed
-        self._moment = Moment(self._moment.position, np.zeros(6), np.zeros(6), closed)
+        self._moment = MotionState(self._moment.position, np.zeros(6), np.zeros(6), closed)
         if self._stretch.track is not None:
             self._governor = self._governor_of(self._stretch.track)
             if self._held:

@@ -22,7 +22,7 @@ NOWHERE: Final = 1e-9  # rad, a move shorter than this is none
 
 
 @dataclass(frozen=True, eq=False)
-class Moment:
+class MotionState:
     """The arm's nominal motion at one instant: (6,) in rad, rad/s, rad/s^2."""
 
     position: Array
@@ -33,7 +33,7 @@ class Moment:
 
 
 @dataclass(frozen=True, eq=False)
-class Aside:
+class Detour:
     """Motion that is not the next stretch: a step on the path, or the way back to it.
 
     Attributes:
@@ -48,7 +48,7 @@ class Aside:
 
 
 @dataclass(frozen=True, eq=False)
-class Stretch:
+class Segment:
     """A piece of an execution: motion along a track, or a rest when `track` is None.
 
     Attributes:
@@ -67,7 +67,7 @@ class Stretch:
     taught: bool = False
 
 
-def stretches(plan: Plan, here: Array, settings: MotionSettings, dwell: float) -> list[Stretch]:
+def stretches(plan: Plan, here: Array, settings: MotionSettings, dwell: float) -> list[Segment]:
     """Return what an execution does from `here` (6,) to its end.
 
     Raises:
@@ -83,15 +83,15 @@ def stretches(plan: Plan, here: Array, settings: MotionSettings, dwell: float) -
     return [
         *[piece for a, b in pairwise(stops) for piece in _move("on the approach", a, b, True, closed, settings)],
         *_move("on the way down", plan.above_start, start, True, closed, settings),
-        Stretch("closing the gripper", True, True, rest=dwell if carries else 0.0),
-        Stretch("on the path", False, True, track(plan), taught=True),
-        Stretch("opening the gripper", False, closed, rest=dwell if carries else 0.0),
+        Segment("closing the gripper", True, True, rest=dwell if carries else 0.0),
+        Segment("on the path", False, True, track(plan), taught=True),
+        Segment("opening the gripper", False, closed, rest=dwell if carries else 0.0),
         *_move("on the way up", goal, plan.above_goal, False, closed, settings),
         *_move("on the way home", *leave, False, closed, settings),
     ]
 
 
-def way_back(plan: Plan, stretch: Stretch, here: Array, there: Array, settings: MotionSettings) -> list[Track]:
+def plan_return_path(plan: Plan, stretch: Segment, here: Array, there: Array, settings: MotionSettings) -> list[Track]:
     """Lead the arm from `here` (6,) back to the point `there` of a stretch at which it was held, slowly.
 
     Raises:
@@ -113,8 +113,8 @@ def way_back(plan: Plan, stretch: Stretch, here: Array, there: Array, settings: 
     return [straight(a, b, limits, reserve=RESERVE) for a, b in legs]
 
 
-def _move(name: str, start: Array, goal: Array, before: bool, closed: bool, settings: MotionSettings) -> list[Stretch]:
+def _move(name: str, start: Array, goal: Array, before: bool, closed: bool, settings: MotionSettings) -> list[Segment]:
     if np.abs(goal - start).max() < NOWHERE:
         return []
     limits = ARM.scaled(*[settings.move_share] * 3)
-    return [Stretch(name, before, closed, straight(start, goal, limits, reserve=RESERVE))]
+    return [Segment(name, before, closed, straight(start, goal, limits, reserve=RESERVE))]

@@ -45,7 +45,7 @@ class _Next:
     heard: int  # stamp of the hand's sample that it answers
 
 
-class Mirror:
+class TeleopFollower:
     """Follows a hand with the tool; one per session.
 
     Args:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from teachpath.errors import NotFound, PathRefused
 from teachpath.io.store.store import RunRow, Store
-from teachpath.motion.execution.motion_preview import Rehearsal, rehearse
+from teachpath.motion.execution.motion_preview import MotionPreview, preview_motion
 from teachpath.motion.settings import MotionSettings
 from teachpath.records import Demonstration, LearnedPath, Plan, Scene, Trajectory
 
@@ -30,7 +30,7 @@ class Review:
     trajectories: dict[str, Trajectory]
     paths: tuple[LearnedPath, ...]
     plans: dict[str, Plan]
-    motions: dict[str, Rehearsal]
+    motions: dict[str, MotionPreview]
 
     def number(self, demonstration: str) -> int:
         """Return the number of a demonstration within its task; 0 when it is gone."""
@@ -66,7 +66,7 @@ def review_of(
     motions = {}
     for path, plan in plans.items():
         try:
-            motions[path] = rehearse(plan, motion, dwell=dwell)
+            motions[path] = preview_motion(plan, motion, dwell=dwell)
         except PathRefused:
             continue  # a plan under other settings: its certificate is shown, its motion is not
     return Review(

@@ -11,7 +11,7 @@ from teachpath.live.preview import WAYS, Preview, commands
 from teachpath.live.preview.tree import pack
 from teachpath.motion.arm.geometry import drawing
 from teachpath.motion.arm.kinematics import link_frames
-from teachpath.motion.execution.motion_preview import Rehearsal
+from teachpath.motion.execution.motion_preview import MotionPreview
 from teachpath.offline.report.content import Review
 from teachpath.records import Array
 from teachpath_proto.keys import Keys
@@ -71,7 +71,7 @@ def _departures(review: Review) -> list[bytes]:
     return drawn
 
 
-def frames(motion: Rehearsal) -> dict[str, Any]:
+def frames(motion: MotionPreview) -> dict[str, Any]:
     """Return the poses of links and object: times [s] and, for each, 4 x 4 matrices column by column."""
     at = np.linspace(0, len(motion.times) - 1, min(FRAMES, len(motion.times))).round().astype(int)
     links = np.array([link_frames(q) for q in motion.joints[at]])  # (n, 7, 4, 4)

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from teachpath.executor.teleop.gripper import Grip
+from teachpath.executor.teleop.gripper import GripperFollower
 from teachpath.motion.arm.kinematics import downward, inverse, tool_pose
 from teachpath.motion.arm.puma560 import LOWER, UPPER
 from teachpath.motion.collision.builtin_scenes import paper_scene
@@ -94,7 +94,7 @@ def test_the_block_is_taken_carried_through_the_clutch_and_put_down() -> None:
 
 @pytest.mark.parametrize("closed", [False, True])
 def test_only_a_change_of_the_hand_moves_the_gripper(closed: bool) -> None:
-    grip = Grip(closed)
+    grip = GripperFollower(closed)
     grip.begin(sample(1, (0.0, 0.0, 0.0), OPEN if closed else CLOSED))
     grip.follow(sample(2, (0.0, 0.0, 0.0), OPEN if closed else CLOSED))
     assert grip.closed == closed

@@ -7,8 +7,8 @@ from teachpath.errors import PathRefused
 from teachpath.motion.arm.kinematics import tool_pose
 from teachpath.motion.arm.puma560 import SPEED
 from teachpath.motion.collision.builtin_scenes import empty_scene, paper_scene
-from teachpath.motion.execution.motion_preview import Rehearsal, rehearse
-from teachpath.motion.execution.program import Program
+from teachpath.motion.execution.motion_preview import MotionPreview, preview_motion
+from teachpath.motion.execution.program import PlanProgram
 from teachpath.motion.paths.tool_path import ArcLength
 from teachpath.motion.planning.plan import plan
 from teachpath.motion.settings import MotionSettings
@@ -25,12 +25,12 @@ def middle() -> Plan:
 
 
 @pytest.fixture(scope="module")
-def motion(middle: Plan) -> Rehearsal:
-    return rehearse(middle, SETTINGS, dwell=DWELL)
+def motion(middle: Plan) -> MotionPreview:
+    return preview_motion(middle, SETTINGS, dwell=DWELL)
 
 
-def test_it_is_the_motion_of_the_execution(middle: Plan, motion: Rehearsal) -> None:
-    program = Program(middle, np.array(SETTINGS.home), SETTINGS, dwell=DWELL)
+def test_it_is_the_motion_of_the_execution(middle: Plan, motion: MotionPreview) -> None:
+    program = PlanProgram(middle, np.array(SETTINGS.home), SETTINGS, dwell=DWELL)
     executed = []
     while not program.over:
         executed.append(program.step().position)
@@ -42,7 +42,7 @@ def test_it_is_the_motion_of_the_execution(middle: Plan, motion: Rehearsal) -> N
     assert nearest.max() < 0.004 * SPEED.max()
 
 
-def test_it_begins_and_ends_at_home_without_a_jump(motion: Rehearsal) -> None:
+def test_it_begins_and_ends_at_home_without_a_jump(motion: MotionPreview) -> None:
     np.testing.assert_allclose(motion.joints[[0, -1]], [SETTINGS.home, SETTINGS.home], atol=1e-9)
     assert np.all(np.abs(np.diff(motion.joints, axis=0)) <= SPEED * motion.times[1] * (1 + 1e-9))
     assert [s.name for s in motion.stretches][1:5] == [
@@ -54,7 +54,7 @@ def test_it_begins_and_ends_at_home_without_a_jump(motion: Rehearsal) -> None:
     assert motion.stretches[-1].end == motion.times[-1]
 
 
-def test_the_object_goes_along_the_learned_path_and_stays_where_it_is_put(middle: Plan, motion: Rehearsal) -> None:
+def test_the_object_goes_along_the_learned_path_and_stays_where_it_is_put(middle: Plan, motion: MotionPreview) -> None:
     carried = middle.scene.carried
     assert carried is not None
     path = way(MIDDLE).curve
@@ -73,14 +73,14 @@ def test_the_object_goes_along_the_learned_path_and_stays_where_it_is_put(middle
 
 
 def test_without_an_object_there_is_none_and_a_changed_plan_is_refused(middle: Plan) -> None:
-    bare = rehearse(plan(way(MIDDLE), empty_scene()), SETTINGS, dwell=DWELL)
+    bare = preview_motion(plan(way(MIDDLE), empty_scene()), SETTINGS, dwell=DWELL)
     assert bare.object_position.shape == (0, 3)
     assert all(bare.gripper_closed)
     with pytest.raises(PathRefused, match="has changed since it was certified"):
-        rehearse(replace(middle, joints=middle.joints + 0.01), SETTINGS, dwell=DWELL)
+        preview_motion(replace(middle, joints=middle.joints + 0.01), SETTINGS, dwell=DWELL)
 
 
 def test_a_long_plan_is_shown_with_fewer_instants_a_second(middle: Plan) -> None:
-    motion = rehearse(middle, SETTINGS, dwell=1000.0)
+    motion = preview_motion(middle, SETTINGS, dwell=1000.0)
     assert len(motion.times) == 6000
     assert motion.times[-1] > 2000.0

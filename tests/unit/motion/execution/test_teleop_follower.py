@@ -7,7 +7,7 @@ from teachpath.motion.arm.kinematics import tool_pose
 from teachpath.motion.arm.puma560 import ACCELERATION, JERK, LOWER, SPEED, UPPER
 from teachpath.motion.collision.builtin_scenes import empty_scene, paper_scene
 from teachpath.motion.collision.collision_model import CollisionModel
-from teachpath.motion.execution.teleop_follower import Mirror
+from teachpath.motion.execution.teleop_follower import TeleopFollower
 from teachpath.motion.settings import MotionSettings
 from teachpath.records import Scene
 
@@ -22,7 +22,7 @@ class Session:
 
     def __init__(self, scene: Scene | None = None, **given: float) -> None:
         self.model = CollisionModel(scene or empty_scene())
-        self.mirror = Mirror(self.model, HOME, SETTINGS, share=SHARE, **given)
+        self.mirror = TeleopFollower(self.model, HOME, SETTINGS, share=SHARE, **given)
         self.sent = [HOME] * 3
         self.reasons: set[str] = set()
 

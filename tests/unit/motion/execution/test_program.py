@@ -2,12 +2,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from teachpath.motion.certificate import digest, track
-from teachpath.motion.plan import plan
-from teachpath.motion.program import Program
-from teachpath.motion.rehearsal import rehearse
-from teachpath.motion.scenes import paper_scene
 
+from teachpath.motion.collision.builtin_scenes import paper_scene
+from teachpath.motion.execution.motion_preview import preview_motion
+from teachpath.motion.execution.program import PlanProgram
+from teachpath.motion.planning.certificate import digest, track
+from teachpath.motion.planning.plan import plan
 from teachpath.motion.settings import MotionSettings
 from teachpath.records import Plan
 from tests.unit.motion.ways import MIDDLE, way
@@ -26,7 +26,7 @@ def slower() -> list[Plan]:
 
 def test_whoever_has_done_all_has_done_exactly_one_whatever_the_last_bit_of_the_table(slower: list[Plan]) -> None:
     for made in slower:
-        program = Program(made, np.array(SETTINGS.home), SETTINGS)
+        program = PlanProgram(made, np.array(SETTINGS.home), SETTINGS)
         while not program.over:
             program.step()
         assert (program.progress, program.length) == (1.0, made.lengths[-1])
@@ -34,6 +34,6 @@ def test_whoever_has_done_all_has_done_exactly_one_whatever_the_last_bit_of_the_
 
 def test_what_is_rehearsed_goes_from_nothing_to_one_and_never_back(slower: list[Plan]) -> None:
     for made in slower:
-        progress = rehearse(made, SETTINGS, dwell=0.5).progress
+        progress = preview_motion(made, SETTINGS, dwell=0.5).progress
         assert (progress[0], progress[-1]) == (0.0, 1.0)
         assert np.all(np.diff(progress) >= 0.0)
