@@ -6,10 +6,10 @@ import time
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
-from teachpath_client.link import Link
+from teachpath_client.link import ClientError, Link
 from teachpath_client.reading import HandReading
 from teachpath_proto import tracker_pb2
-from teachpath_proto.keys import Keys
+from teachpath_proto.keys import Keys, is_name, name_refusal
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,6 +30,9 @@ class Tracker:
         name: of this tracker, unique at the station.
         prefix: of the station's keys.
         clock, sleep: seconds that never run back, and the wait; passed in so that tests need not wait.
+
+    Raises:
+        ClientError: the name cannot be one.
     """
 
     def __init__(
@@ -41,6 +44,8 @@ class Tracker:
         clock: Callable[[], float] = time.monotonic,
         sleep: Callable[[float], None] = time.sleep,
     ) -> None:
+        if not is_name(name):
+            raise ClientError(name_refusal("tracker", name))
         self.name = name
         self._link, self._keys = link, Keys(prefix)
         self._clock, self._sleep = clock, sleep

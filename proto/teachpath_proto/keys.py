@@ -2,16 +2,23 @@
 
 import re
 
-NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,63}")
+NAME = re.compile(r"(?!.*\.\.)[A-Za-z0-9][A-Za-z0-9._-]{0,63}")
 
 
 def is_name(text: str) -> bool:
-    """Tell whether `text` may name a task, tracker, robot or station.
+    """Tell whether `text` may name a task, tracker, calibration, scene or robot.
 
-    A name becomes a key segment, a folder and a piece of a URL: letters, digits, `.`, `_`, `-`, at most 64,
-    beginning with a letter or digit, and without `..`.
+    A name becomes a key segment, a folder and a piece of a URL; `name_refusal` tells the rule.
     """
-    return NAME.fullmatch(text) is not None and ".." not in text
+    return NAME.fullmatch(text) is not None
+
+
+def name_refusal(what: str, text: str) -> str:
+    """Return the sentence that refuses `text` as the name of a `what`, e.g. "task"; it tells the whole rule."""
+    return (
+        f"{text[:80]!r} cannot name a {what}: use 1 to 64 of the letters a to z and A to Z, digits, '.', '_' and '-'; "
+        "begin with a letter or digit, and never write '..'"
+    )
 
 
 class Keys:

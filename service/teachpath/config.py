@@ -30,7 +30,7 @@ from teachpath.motion.settings import MotionSettings
 from teachpath.recording.settings import RecordingSettings
 from teachpath.records import Calibration, Scene, Shape
 from teachpath.simulator.settings import SimulatorSettings
-from teachpath_proto.keys import is_name
+from teachpath_proto.keys import is_name, name_refusal
 
 PREFIX = "TEACHPATH_"
 SIZES = {"box": 3, "cylinder": 2, "sphere": 1, "mesh": 1}  # numbers in the size of a shape
@@ -239,7 +239,7 @@ def _check_names(what: str, names: Iterable[str]) -> None:
     known: set[str] = set()
     for name in names:
         if not is_name(name):
-            raise UnusableSettings(f"{name!r} cannot name a {what}: use letters, digits, '.', '_' or '-', at most 64")
+            raise UnusableSettings(name_refusal(what, name))
         if name in known:
             raise UnusableSettings(f"there are two settings of the {what} {name}; rename one of them")
         known.add(name)

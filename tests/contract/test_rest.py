@@ -76,7 +76,7 @@ def test_a_bad_task_name_makes_nothing(desk: Desk, name: str) -> None:
 
 def test_a_name_of_64_characters_is_one(desk: Desk) -> None:
     assert desk.put(f"/tasks/{'x' * 64}", {}).json()["scene"] == "paper"
-    refused(desk.put(f"/tasks/{'x' * 65}", {}), 422, "at most 64")
+    refused(desk.put(f"/tasks/{'x' * 65}", {}), 422, "1 to 64")
 
 
 def test_a_task_that_exists_stays_as_it_is(desk: Desk) -> None:

@@ -10,6 +10,7 @@ from teachpath.app import Station
 from teachpath.executor.lease import ControlLease
 from teachpath.io.wire import decode_lease_request, encode_lease
 from teachpath.records import Job, JobState, JournalEntry
+from teachpath_proto.keys import name_refusal
 from tests.contract.desk import API, Desk, csv, refused
 from tests.unit.io.test_documents import a_plan
 
@@ -208,6 +209,13 @@ def test_without_an_executor_an_execution_is_503_and_kept_with_its_reason(desk: 
         422,
         "path.verb: it should be 'hold', 'resume' or 'reverse'",
     )
+
+
+@pytest.mark.parametrize("field", ["tracker", "clutch"])
+@pytest.mark.parametrize("name", ["a..b", "-a", "a b", "{sentence}", "x" * 65])
+def test_the_name_of_a_tracker_is_refused_with_the_whole_rule(desk: Desk, field: str, name: str) -> None:
+    answer = desk.post("/teleoperation", {"tracker": "glove", field: name})
+    refused(answer, 422, f"body.{field}: {name_refusal('tracker', name)}")
 
 
 def test_a_plan_that_was_revoked_is_not_started_again(desk: Desk) -> None:

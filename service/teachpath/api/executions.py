@@ -9,13 +9,13 @@ from fastapi.responses import FileResponse
 from pydantic import Field
 
 from teachpath.api.closed import Body
+from teachpath.api.names import TrackerName, TrackerNameOrEmpty
 from teachpath.api.parts import Parts
 from teachpath.errors import UnusableInput
 from teachpath.io.documents import to_document
 from teachpath.io.store.store import ExecutionRow
 from teachpath.records import Command, ExecutorStatus, Mirroring
 from teachpath.robot.executions import Executions
-from teachpath_proto.keys import NAME
 
 Token = Annotated[
     str,
@@ -37,16 +37,13 @@ class NewExecution(Body):
 class NewTeleoperation(Body):
     """A live hand for the arm to mirror."""
 
-    tracker: str = Field(pattern=NAME.pattern, max_length=64, description="name of the tracker")
+    tracker: TrackerName = Field(description="name of the tracker")
     calibration: str = Field("identity", description="to the world from the tracker's frame")
     scene: str = Field("paper", description="what stands around the arm")
     scale: float = Field(1.0, ge=0.05, le=5.0, description="of the tool's way over the hand's")
     share: float = Field(0.5, ge=0.05, le=1.0, description="of the joints' speed, acceleration and jerk limits")
-    clutch: str = Field(
-        "",
-        pattern=f"^$|{NAME.pattern}",
-        max_length=64,
-        description="tracker whose button bit 2 is the clutch, e.g. that of a page; empty: the hand's own",
+    clutch: TrackerNameOrEmpty = Field(
+        "", description="tracker whose button bit 2 is the clutch, e.g. that of a page; empty: the hand's own"
     )
 
 

@@ -13,7 +13,7 @@ from teachpath.api.parts import Parts
 from teachpath.errors import UnusableInput
 from teachpath.offline.importing import Source, import_file
 from teachpath.records import Demonstration, Task
-from teachpath_proto.keys import is_name
+from teachpath_proto.keys import is_name, name_refusal
 
 FILE: Final = {
     "required": True,
@@ -42,7 +42,7 @@ def tasks_router(parts: Parts) -> APIRouter:
     def make_task(task: str, new: NewTask) -> Task:
         """Make a task; one that exists stays as it is."""
         if not is_name(task):
-            raise UnusableInput(f"{task!r} cannot name a task: use letters, digits, '.', '_' or '-', at most 64")
+            raise UnusableInput(name_refusal("task", task))
         scene, calibration = parts.settings.scene(new.scene), parts.calibrations.get(new.calibration)
         return store.ensure_task(task, scene=scene.name, calibration=calibration.name)
 

@@ -20,7 +20,7 @@ from teachpath.recording.phases import GRASP_BUTTON, Cut, Segmenter
 from teachpath.recording.settings import RecordingSettings
 from teachpath.recording.verdict import Verdict, judge_again
 from teachpath.records import Calibration, Demonstration, Sample, Scene, Trajectory
-from teachpath_proto.keys import is_name
+from teachpath_proto.keys import is_name, name_refusal
 
 MOST_REFUSED = 100_000  # of a file that says so
 
@@ -59,7 +59,7 @@ def import_file(
         UnusableInput: a bad task name, or a file that cannot be used (with its row and column).
     """
     if not is_name(task):
-        raise UnusableInput(f"{task!r} cannot name a task: use letters, digits, '.', '_' or '-', at most 64")
+        raise UnusableInput(name_refusal("task", task))
     read = _read(source, calibration)
     for number, samples in enumerate(read.motions, 1):
         where = source.name if len(read.motions) == 1 else f"{source.name}, motion {number} of {len(read.motions)}"

@@ -13,7 +13,7 @@ from teachpath.recorder.take_completion import reassess
 from teachpath.recording.frame_fit import fit_frame
 from teachpath.recording.settings import RecordingSettings
 from teachpath.records import Calibration, Demonstration, MeasuredCalibration, Scene, TaughtPoint
-from teachpath_proto.keys import is_name
+from teachpath_proto.keys import is_name, name_refusal
 
 VERSION_MARK = "@"  # lab@2 is the second version of lab; no name has this character
 
@@ -81,7 +81,7 @@ class Calibrations:
             Conflict: a calibration of this name is in the settings.
         """
         if not is_name(name):
-            raise UnusableInput(f"{name!r} cannot name a calibration: use letters, digits, '.', '_' or '-', at most 64")
+            raise UnusableInput(name_refusal("calibration", name))
         if any(calibration.name == name for calibration in self.fixed):
             raise Conflict(f"the calibration {name} is in the settings; choose another name, or take it out there")
         fitted = fit_frame(name, points, largest_residual=self.settings.largest_residual, fit_scale=fit_scale)

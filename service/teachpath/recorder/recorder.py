@@ -22,7 +22,7 @@ from teachpath.recording.settings import RecordingSettings
 from teachpath.recording.take_control import RecordingState, Routine
 from teachpath.records import Calibration, Demonstration, Scene, Trajectory
 from teachpath_proto import tracker_pb2
-from teachpath_proto.keys import Keys, is_name
+from teachpath_proto.keys import Keys, is_name, name_refusal
 
 MAX_SHOWN_HANDS = 32  # that are shown; more would hide each other
 
@@ -112,7 +112,7 @@ class Recorder:
         """
         for what, name in (("task", task), ("tracker", tracker)):
             if not is_name(name):
-                raise UnusableInput(f"{name!r} cannot name a {what}: use letters, digits, '.', '_' or '-', at most 64")
+                raise UnusableInput(name_refusal(what, name))
         if not 0.0 <= rate <= 10_000.0:
             raise UnusableInput(f"a rate of {rate:g} Hz is outside 0 (not said) to 10000")
         if scene:

@@ -14,7 +14,7 @@ from teachpath.io.wire import LARGEST_SAMPLE, parse, report_document, sample_fro
 from teachpath.recorder.presence import Tracker
 from teachpath.recorder.recorder import Recorder
 from teachpath_proto import tracker_pb2
-from teachpath_proto.keys import Keys, is_name
+from teachpath_proto.keys import Keys, is_name, name_refusal
 
 MAX_TRACKERS: Final = 32  # trackers that may be here at once
 RATE_LIMIT: Final = 1000.0  # samples a second in the long run
@@ -54,9 +54,7 @@ class WebSocketTrackers:
             Conflict: a tracker of that name is there without the gate, or too many are here.
         """
         if not is_name(name):
-            raise UnusableInput(
-                f"{name[:80]!r} cannot name a tracker: use letters, digits, '.', '_' or '-', at most 64"
-            )
+            raise UnusableInput(name_refusal("tracker", name))
         with self._lock:
             before = self._here.get(name)
             if before is None:

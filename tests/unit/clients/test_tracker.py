@@ -3,6 +3,7 @@ from typing import Any
 
 import pytest
 
+from teachpath_client.link import ClientError
 from teachpath_client.reading import HandReading
 from teachpath_client.tracker import Routine, Tracker
 from teachpath_proto import tracker_pb2
@@ -125,6 +126,13 @@ def test_a_tracker_hears_the_feedback_to_its_name(tracker: Tracker, link: Memory
 def test_a_tracker_shows_that_it_is_alive_and_publishes_under_its_name(tracker: Tracker, link: MemoryLink) -> None:
     assert link.alive == [KEYS.alive("tracker", tracker.name)]
     assert link.key == KEYS.samples(tracker.name)
+
+
+@pytest.mark.parametrize("name", ["", "a/b", "*", "a..b", "-a"])
+def test_a_name_that_cannot_be_one_is_refused_before_anything_is_sent(name: str, link: MemoryLink) -> None:
+    with pytest.raises(ClientError, match="cannot name a tracker"):
+        Tracker(link, name)  # type: ignore[arg-type]
+    assert not link.alive
 
 
 def test_a_reading_says_only_what_was_measured() -> None:

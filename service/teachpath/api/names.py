@@ -1,0 +1,28 @@
+"""Names in the body of a request, checked by the one rule (`teachpath_proto.keys`)."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from pydantic import AfterValidator, WithJsonSchema
+from pydantic_core import PydanticCustomError
+
+from teachpath_proto.keys import NAME, is_name, name_refusal
+
+
+def _checked(tracker: str) -> str:
+    if not is_name(tracker):
+        raise PydanticCustomError("name", "{sentence}", {"sentence": name_refusal("tracker", tracker)})
+    return tracker
+
+
+def _checked_if_given(tracker: str) -> str:
+    return tracker and _checked(tracker)
+
+
+TrackerName = Annotated[
+    str, AfterValidator(_checked), WithJsonSchema({"type": "string", "pattern": f"^{NAME.pattern}$"})
+]
+TrackerNameOrEmpty = Annotated[
+    str, AfterValidator(_checked_if_given), WithJsonSchema({"type": "string", "pattern": f"^({NAME.pattern})?$"})
+]
