@@ -15,11 +15,11 @@ from scipy.cluster.hierarchy import fcluster, linkage
 from scipy.interpolate import BSpline, make_lsq_spline, splev, splprep
 from scipy.spatial import cKDTree
 
-from teachpath.learning.clustering.distances import distances
-from teachpath.learning.fitting.nurbs_fit import approximate, distances_to
+from teachpath.learning.clustering.distances import pairwise_distances
+from teachpath.learning.fitting.nurbs_fit import approximate, distances_to_curve
 from teachpath.learning.learn import learn
 from teachpath.learning.resampling import arc_lengths, at_equal_arc_length, smoothed
-from teachpath.learning.selection.features import families
+from teachpath.learning.selection.features import extract_features
 from teachpath.learning.settings import LearningSettings
 from teachpath.records import Array, Trajectory
 
@@ -43,7 +43,11 @@ def fits(*, repeats: int) -> list[Figure]:
         against("fit of 300 noisy points within 5 mm", seconds, "s", name="limit", value=0.025),
         against("  its control points", [float(len(ours.curve.weights))], "", name="limit", value=13.0),
         against(
-            "  its largest distance", [float(distances_to(ours.curve, points).max())], "m", name="bound", value=BOUND
+            "  its largest distance",
+            [float(distances_to_curve(ours.curve, points).max())],
+            "m",
+            name="bound",
+            value=BOUND,
         ),
     ]
     for name, made in peers(points).items():
@@ -118,13 +122,13 @@ def usual(trajectories: dict[str, Trajectory]) -> tuple[int, int]:
         models trained, and how many of them hmmlearn could not train or score.
     """
     paths = [smoothed(trajectory) for trajectory in trajectories.values()]
-    condensed = distances(np.stack([at_equal_arc_length(path, 100) for path in paths]))
+    condensed = pairwise_distances(np.stack([at_equal_arc_length(path, 100) for path in paths]))
     labels = fcluster(linkage(condensed, "average"), 3, "maxclust")
     models = broken = 0
     for way in np.unique(labels):
         members = np.flatnonzero(labels == way)
         listed = list(trajectories.values())
-        kinds = families([listed[i] for i in members], 0.02, lambda: None)
+        kinds = extract_features([listed[i] for i in members], 0.02, lambda: None)
         for family in (kind for kind in kinds if kind.states):
             for left in range(len(members)):
                 models += 1

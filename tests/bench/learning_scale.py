@@ -11,9 +11,9 @@ import numba
 import numpy as np
 from report import Figure, against
 
-from teachpath.learning.clustering.distances import distances
+from teachpath.learning.clustering.distances import pairwise_distances
 from teachpath.learning.clustering.kernels import _mean_distance
-from teachpath.learning.clustering.subsampled_clustering import grouped
+from teachpath.learning.clustering.subsampled_clustering import cluster_paths
 from teachpath.learning.selection.default_mode import select
 from teachpath.learning.settings import LearningSettings
 from teachpath.records import Array, Trajectory
@@ -67,18 +67,18 @@ def paths(count: int) -> Array:
 def pairs(count: int) -> dict[str, float]:
     """Measure the distances of all pairs beside the same arithmetic within the cache, and the clustering."""
     shown = paths(count)
-    distances(shown[:300])  # compiles
-    grouped(shown[:300], LearningSettings(), length=1.0, metric="arc")
+    pairwise_distances(shown[:300])  # compiles
+    cluster_paths(shown[:300], LearningSettings(), length=1.0, metric="arc")
     few = np.ascontiguousarray(shown[:64].transpose(0, 2, 1), dtype=np.float32)
     ceiling(few, 1)
     began = time.perf_counter()
     ceiling(few, 400)
     best = 400 * numba.get_num_threads() * len(few) ** 2 * POINTS / (time.perf_counter() - began)
     began = time.perf_counter()
-    distances(shown)
+    pairwise_distances(shown)
     rate = count * (count - 1) / 2 * POINTS / (time.perf_counter() - began)
     began, waits = time.perf_counter(), Waits()
-    grouping = grouped(shown, LearningSettings(), length=1.0, metric="arc", progress=waits)
+    grouping = cluster_paths(shown, LearningSettings(), length=1.0, metric="arc", progress=waits)
     waits()
     seconds = time.perf_counter() - began
     assert grouping.labels.max() == 5
@@ -104,9 +104,9 @@ def ceiling(few: np.ndarray, rounds: int) -> float:
 def crowd(count: int) -> dict[str, float]:
     """Measure the clustering of more than are compared pair by pair."""
     shown = paths(count)
-    grouped(shown[:300], LearningSettings(), length=1.0, metric="arc")
+    cluster_paths(shown[:300], LearningSettings(), length=1.0, metric="arc")
     began = time.perf_counter()
-    grouping = grouped(shown, LearningSettings(), length=1.0, metric="arc")
+    grouping = cluster_paths(shown, LearningSettings(), length=1.0, metric="arc")
     seconds = time.perf_counter() - began
     assert grouping.labels.max() == 5
     return {"crowd": seconds, "crowd_memory": memory()}
@@ -124,7 +124,7 @@ def selection(count: int) -> dict[str, float]:
         for i in range(count)
     }
     began, waits = time.perf_counter(), Waits()
-    select(1, members, LearningSettings(), tick=waits)
+    select(1, members, LearningSettings(), on_step=waits)
     waits()
     return {"selection": time.perf_counter() - began, "selection_wait": waits.longest}
 

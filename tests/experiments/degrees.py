@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from teachpath.learning.fitting.nurbs_fit import approximate
-from teachpath.learning.fitting.synthesis import best_fit, consensus
+from teachpath.learning.fitting.synthesis import best_fit, mean_path
 from teachpath.learning.resampling import smoothed
 from teachpath.learning.settings import LearningSettings
 from teachpath.motion.arm.joint_path import ARM
@@ -43,7 +43,7 @@ def degrees_once(name: str, seed: int) -> dict[int, Row] | None:
     All degrees follow the same mean within the same bound.
     """
     shown = along(name, seed)[0] if name in SHAPES else synthetic.experiment_2(seed, wiggle=0.0)
-    course = consensus([smoothed(trajectory) for trajectory in shown.values()])
+    course = mean_path([smoothed(trajectory) for trajectory in shown.values()])
     course = course[:, [1, 0, 2]] if name in SHAPES else course  # their length across the arm
     course += CENTRE - course.mean(axis=0)
     settings = LearningSettings()

@@ -30,7 +30,7 @@ def scale_once(seed: int) -> dict[str, float]:
     found = {ONE: _by_one_gaussian(positions, ways, seed)}
     for frames, ends in FRAMES.items():
         padded = {name: np.pad(each, (ends, (0, 0))) for name, each in positions.items()}
-        clusters = select_as_paper(padded, ways, settings("paper", seed), tick=lambda: None)
+        clusters = select_as_paper(padded, ways, settings("paper", seed), on_step=lambda: None)
         found[str(frames)] = mean(score.log_likelihood for cluster in clusters for score in cluster.scores)
     return found
 

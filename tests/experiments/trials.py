@@ -9,7 +9,7 @@ from math import sqrt
 import numpy as np
 
 from teachpath.errors import LearningFailed
-from teachpath.learning.clustering.distances import frechet
+from teachpath.learning.clustering.distances import frechet_distance
 from teachpath.learning.learn import learn
 from teachpath.learning.resampling import at_equal_arc_length
 from teachpath.learning.settings import LearningSettings
@@ -106,7 +106,7 @@ def fit_once(shape: str, seed: int) -> dict[str, float | None]:
             apart[mode] = None
             continue
         path = max(learned.paths, key=lambda path: len(_of(learned, path.cluster).members))
-        apart[mode] = frechet(at_equal_arc_length(path.curve(np.linspace(0, 1, 1000)), len(mean)), mean)
+        apart[mode] = frechet_distance(at_equal_arc_length(path.curve(np.linspace(0, 1, 1000)), len(mean)), mean)
     return apart
 
 

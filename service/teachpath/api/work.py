@@ -13,7 +13,7 @@ from teachpath.api.parts import Parts
 from teachpath.errors import NotFound
 from teachpath.io.documents import to_document
 from teachpath.io.store.store import Store
-from teachpath.learning.clustering.cuts import dendrogram, recut
+from teachpath.learning.clustering.cuts import dendrogram, recut_members
 from teachpath.records import Job, LearnedPath
 
 # The fields that each kind of job takes.
@@ -81,7 +81,7 @@ def jobs_router(parts: Parts) -> APIRouter:
         elif new.kind == "recut":
             run = store.run(new.run)
             _of_task(stored.name, run.task, f"run {run.id!r}")
-            recut(run.learned, threshold=new.threshold, clusters=new.clusters)
+            recut_members(run.learned, threshold=new.threshold, clusters=new.clusters)
             request = {"run": run.id, "threshold": new.threshold, "clusters": new.clusters}
             job = jobs.submit(stored.name, "recut", request | {"calibrations": new.calibrations})
         else:

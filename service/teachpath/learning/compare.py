@@ -6,14 +6,14 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 
-from teachpath.learning.clustering.distances import frechet
+from teachpath.learning.clustering.distances import frechet_distance
 from teachpath.learning.resampling import at_equal_arc_length
 from teachpath.records import Array, Cluster, Fit, Learned, LearnedPath
 
-POINTS = 200  # of a path when two are compared
-DENSE = 1000
-SAME = 1e-6  # m, distance of paths that are the same but for rounding
-NAMED = 6  # demonstrations that a sentence names; more are counted
+PATH_POINTS = 200  # of a path when two are compared
+CURVE_SAMPLES = 1000
+SAME_PATH_TOLERANCE = 1e-6  # m, distance of paths that are the same but for rounding
+MAX_NAMES = 6  # demonstrations that a sentence names; more are counted
 
 
 def compare(a: Learned, b: Learned) -> tuple[str, ...]:
@@ -34,7 +34,7 @@ def compare(a: Learned, b: Learned) -> tuple[str, ...]:
     return (*causes, *effects)
 
 
-Pairs = list[tuple[Cluster, Cluster]]
+ClusterPairs = list[tuple[Cluster, Cluster]]
 
 
 def _inputs(a: Learned, b: Learned) -> Iterator[str]:
@@ -59,11 +59,11 @@ def _changes(what: str, a: Mapping[str, object], b: Mapping[str, object]) -> Ite
             yield f"{what} {name}: {_shown(a.get(name))} became {_shown(b.get(name))}"
 
 
-def _matched(a: Learned, b: Learned) -> Pairs:
+def _matched(a: Learned, b: Learned) -> ClusterPairs:
     """Return the clusters of both runs that belong together, those that share most demonstrations first."""
     candidates = [(one, other) for one in a.clusters for other in b.clusters]
     candidates.sort(key=lambda pair: -len(set(pair[0].members) & set(pair[1].members)))
-    pairs: Pairs = []
+    pairs: ClusterPairs = []
     for one, other in candidates:
         free = all(one is not taken and other is not given for taken, given in pairs)
         if free and set(one.members) & set(other.members):
@@ -71,7 +71,7 @@ def _matched(a: Learned, b: Learned) -> Pairs:
     return sorted(pairs, key=lambda pair: pair[0].index)
 
 
-def _ways(a: Learned, b: Learned, pairs: Pairs) -> Iterator[str]:
+def _ways(a: Learned, b: Learned, pairs: ClusterPairs) -> Iterator[str]:
     if len(a.clusters) != len(b.clusters):
         heights = f"{a.threshold * 100:.2f} and {b.threshold * 100:.2f} cm"
         yield f"{len(a.clusters)} ways became {len(b.clusters)}, cut at {heights}"
@@ -89,7 +89,7 @@ def _ways(a: Learned, b: Learned, pairs: Pairs) -> Iterator[str]:
                 yield f"way {cluster.index} of {len(cluster.members)} demonstrations {told}"
 
 
-def _selections(pairs: Pairs, a: Learned, b: Learned) -> Iterator[str]:
+def _selections(pairs: ClusterPairs, a: Learned, b: Learned) -> Iterator[str]:
     both = set(a.demonstrations) & set(b.demonstrations)
     for one, other in pairs:
         before, after = ({s.demonstration for s in cluster.scores if s.selected} for cluster in (one, other))
@@ -99,28 +99,28 @@ def _selections(pairs: Pairs, a: Learned, b: Learned) -> Iterator[str]:
             yield f"way {one.index}: {_named(added)} now selected"
 
 
-def _paths(pairs: Pairs, a: Learned, b: Learned) -> Iterator[str]:
+def _paths(pairs: ClusterPairs, a: Learned, b: Learned) -> Iterator[str]:
     for one, other in pairs:
         before, after = _path(a, one), _path(b, other)
         if before is None or after is None:
             continue
-        moved = frechet(_course(before), _course(after))
+        moved = frechet_distance(_course(before), _course(after))
         counts = [len(path.curve.control_points) for path in (before, after)]
         shapes = [(path.curve.degree, count) for path, count in zip((before, after), counts, strict=True)]
-        if moved <= SAME and shapes[0] == shapes[1]:
+        if moved <= SAME_PATH_TOLERANCE and shapes[0] == shapes[1]:
             continue
         bends = "" if shapes[0] == shapes[1] else f", degree and control points {shapes[0]} became {shapes[1]}"
         yield f"way {one.index}: the path moved by up to {moved * 1e3:.3g} mm{bends}{_fits(before.fit, after.fit)}"
 
 
 def _fits(before: Fit | None, after: Fit | None) -> str:
-    if before is None or after is None or abs(before.tube - after.tube) <= SAME:
+    if before is None or after is None or abs(before.tube - after.tube) <= SAME_PATH_TOLERANCE:
         return ""
     return f", tube {before.tube * 1e3:.3g} mm became {after.tube * 1e3:.3g} mm"
 
 
 def _course(path: LearnedPath) -> Array:
-    return at_equal_arc_length(path.curve(np.linspace(0.0, 1.0, DENSE)), POINTS)
+    return at_equal_arc_length(path.curve(np.linspace(0.0, 1.0, CURVE_SAMPLES)), PATH_POINTS)
 
 
 def _path(learned: Learned, cluster: Cluster) -> LearnedPath | None:
@@ -129,7 +129,7 @@ def _path(learned: Learned, cluster: Cluster) -> LearnedPath | None:
 
 def _named(names: list[str]) -> str:
     verb = "is" if len(names) == 1 else "are"
-    if len(names) > NAMED:
+    if len(names) > MAX_NAMES:
         return f"{len(names)} demonstrations are"
     return f"{'demonstration' if len(names) == 1 else 'demonstrations'} {', '.join(names)} {verb}"
 

@@ -9,11 +9,11 @@ import numpy as np
 from teachpath.errors import LearningFailed
 from teachpath.records import Trajectory
 
-FEWEST_POINTS = 5
-SHORTEST_WAY = 1e-3  # m, extent below which a hand has not moved
+MIN_DISTINCT_POINTS = 5
+MIN_EXTENT = 1e-3  # m, extent below which a hand has not moved
 
 
-def screen(demonstrations: Mapping[str, Trajectory]) -> None:
+def validate(demonstrations: Mapping[str, Trajectory]) -> None:
     """Refuse a set of demonstrations that no path can be learned from.
 
     Raises:
@@ -39,9 +39,9 @@ def _fault(trajectory: Trajectory) -> str:
     if backwards.any():
         return f"does not go forward in time at sample {int(np.argmax(backwards)) + 1}"
     distinct = len(np.unique(positions, axis=0))
-    if distinct < FEWEST_POINTS:
-        return f"has {distinct} distinct points, needs {FEWEST_POINTS}"
+    if distinct < MIN_DISTINCT_POINTS:
+        return f"has {distinct} distinct points, needs {MIN_DISTINCT_POINTS}"
     extent = float(np.linalg.norm(np.ptp(positions, axis=0)))
-    if extent < SHORTEST_WAY:
-        return f"moves only {extent * 1e3:.2f} mm, needs {SHORTEST_WAY * 1e3:.0f} mm"
+    if extent < MIN_EXTENT:
+        return f"moves only {extent * 1e3:.2f} mm, needs {MIN_EXTENT * 1e3:.0f} mm"
     return ""

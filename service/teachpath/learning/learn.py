@@ -9,26 +9,26 @@ from importlib.metadata import version
 
 import numpy as np
 
-from teachpath.learning.clustering.dendrogram import groups
-from teachpath.learning.clustering.partition import Grouping
-from teachpath.learning.clustering.subsampled_clustering import grouped
-from teachpath.learning.fitting.synthesis import synthesise, synthesise_as_paper
-from teachpath.learning.input_validation import screen
+from teachpath.learning.clustering.dendrogram import members_by_label
+from teachpath.learning.clustering.partition import Partition
+from teachpath.learning.clustering.subsampled_clustering import cluster_paths
+from teachpath.learning.fitting.synthesis import fit_mean_path, fit_pooled_points
+from teachpath.learning.input_validation import validate
 from teachpath.learning.resampling import arc_lengths, at_equal_arc_length, smoothed, undersampled
-from teachpath.learning.selection.default_mode import pieces_of_work, select
-from teachpath.learning.selection.paper_mode import models_of_paper, select_as_paper
-from teachpath.learning.settings import LearningSettings, Progress, ignore, part, ticker
-from teachpath.learning.summary import ambiguities, fingerprint, representatives, tube
+from teachpath.learning.selection.default_mode import select, step_count
+from teachpath.learning.selection.paper_mode import paper_step_count, select_as_paper
+from teachpath.learning.settings import LearningSettings, Progress, no_progress, step_counter, subprogress
+from teachpath.learning.summary import ambiguities, fingerprint, representatives, tube_radius
 from teachpath.records import Array, Cluster, Learned, LearnedPath, Trajectory
 
 PATH_POINTS = 100  # at equal arc length, for the distance of two paths
-CHOOSING = "looking for inconsistent demonstrations"
+SELECTION_MESSAGE = "looking for inconsistent demonstrations"
 LIBRARIES = ("teachpath", "numpy", "scipy", "hmmlearn", "numba")
 _version = cache(version)  # reads a file
 
 
 def learn(
-    demonstrations: Mapping[str, Trajectory], settings: LearningSettings, *, progress: Progress = ignore
+    demonstrations: Mapping[str, Trajectory], settings: LearningSettings, *, progress: Progress = no_progress
 ) -> Learned:
     """Learn a path for every way in which a task was demonstrated.
 
@@ -43,12 +43,12 @@ def learn(
     Raises:
         LearningFailed: a demonstration cannot be used, or a path cannot keep the error bound.
     """
-    screen(demonstrations)
+    validate(demonstrations)
     progress(0.0, f"comparing {len(demonstrations)} demonstrations")
     metric = metric_of(settings)
-    courses, length = courses_of(demonstrations, metric, settings.seed, part(progress, 0.0, 0.05))
-    grouping = grouped(courses, settings, length=length, metric=metric, progress=part(progress, 0.05, 0.2))
-    return from_ways(demonstrations, courses, grouping, settings, part(progress, 0.2, 1.0))
+    courses, length = comparable_paths(demonstrations, metric, settings.seed, subprogress(progress, 0.0, 0.05))
+    grouping = cluster_paths(courses, settings, length=length, metric=metric, progress=subprogress(progress, 0.05, 0.2))
+    return learn_partition(demonstrations, courses, grouping, settings, subprogress(progress, 0.2, 1.0))
 
 
 def metric_of(settings: LearningSettings) -> str:
@@ -56,25 +56,25 @@ def metric_of(settings: LearningSettings) -> str:
     return settings.metric if settings.mode == "default" else "undersampled"
 
 
-def courses_of(
-    demonstrations: Mapping[str, Trajectory], metric: str, seed: int, progress: Progress = ignore
+def comparable_paths(
+    demonstrations: Mapping[str, Trajectory], metric: str, seed: int, progress: Progress = no_progress
 ) -> tuple[Array, float]:
     """Return what the demonstrations are compared by, (m, n, 3) [m], and the length of a typical path [m]."""
-    tick = ticker(progress, len(demonstrations), "smoothing the demonstrations")
+    on_step = step_counter(progress, len(demonstrations), "smoothing the demonstrations")
     courses, lengths = [], []
     for trajectory in demonstrations.values():
         path = smoothed(trajectory)
         courses.append(at_equal_arc_length(path, PATH_POINTS))
         lengths.append(arc_lengths(courses[-1])[-1])
-        tick()
+        on_step()
     paired = _equalised(demonstrations, seed) if metric == "undersampled" else np.stack(courses)
     return paired, float(np.median(lengths))
 
 
-def from_ways(
+def learn_partition(
     demonstrations: Mapping[str, Trajectory],
     courses: Array,
-    grouping: Grouping,
+    grouping: Partition,
     settings: LearningSettings,
     progress: Progress,
 ) -> Learned:
@@ -82,7 +82,7 @@ def from_ways(
 
     Args:
         demonstrations: id -> trajectory, in listed order.
-        courses: what they were compared by, see `courses_of`.
+        courses: what they were compared by, see `comparable_paths`.
         grouping: of them.
         settings: see `LearningSettings`.
         progress: told the fraction done and a sentence.
@@ -91,19 +91,19 @@ def from_ways(
         LearningFailed: a path cannot keep the error bound.
     """
     names = tuple(demonstrations)
-    ways = groups(names, grouping.labels)
-    choosing = part(progress, 0.0, 0.75)
+    ways = members_by_label(names, grouping.labels)
+    choosing = subprogress(progress, 0.0, 0.75)
     if settings.mode == "default":
-        tick = ticker(choosing, pieces_of_work([len(way) for way in ways], settings.repeats), CHOOSING)
+        on_step = step_counter(choosing, step_count([len(way) for way in ways], settings.repeats), SELECTION_MESSAGE)
         clusters = tuple(
-            select(index + 1, {name: demonstrations[name] for name in way}, settings, tick=tick)
+            select(index + 1, {name: demonstrations[name] for name in way}, settings, on_step=on_step)
             for index, way in enumerate(ways)
         )
     else:
-        tick = ticker(choosing, models_of_paper(len(ways), settings.repeats), CHOOSING)
-        clusters = select_as_paper(dict(zip(names, courses, strict=True)), ways, settings, tick=tick)
+        on_step = step_counter(choosing, paper_step_count(len(ways), settings.repeats), SELECTION_MESSAGE)
+        clusters = select_as_paper(dict(zip(names, courses, strict=True)), ways, settings, on_step=on_step)
     central = representatives(courses, grouping.labels)
-    found = _fitted(clusters, demonstrations, settings, part(progress, 0.75, 1.0))
+    found = _fitted(clusters, demonstrations, settings, subprogress(progress, 0.75, 1.0))
     paths = tuple(path for path, _ in found)
     described = [
         replace(cluster, representative=names[member], spread=spread, ambiguous=doubt)
@@ -140,12 +140,12 @@ def _fitted(
     progress: Progress,
 ) -> list[tuple[LearnedPath, Array]]:
     """Return the path of every cluster, and the radius of the tube around it."""
-    fit = synthesise if settings.mode == "default" else synthesise_as_paper
+    fit = fit_mean_path if settings.mode == "default" else fit_pooled_points
     found = []
     for done, cluster in enumerate(clusters):
         selected = [demonstrations[score.demonstration] for score in cluster.scores if score.selected]
-        own = part(progress, done / len(clusters), (done + 1) / len(clusters))
-        tick = ticker(own, 3 * len(selected), f"fitting the path of way {cluster.index}")
-        path = fit(cluster.index, selected, settings, tick=tick)
-        found.append((path, tube(path.curve, selected, tick=tick)))
+        own = subprogress(progress, done / len(clusters), (done + 1) / len(clusters))
+        on_step = step_counter(own, 3 * len(selected), f"fitting the path of way {cluster.index}")
+        path = fit(cluster.index, selected, settings, on_step=on_step)
+        found.append((path, tube_radius(path.curve, selected, on_step=on_step)))
     return found

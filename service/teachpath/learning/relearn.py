@@ -7,10 +7,10 @@ from dataclasses import fields, replace
 from typing import Any
 
 from teachpath.errors import LearningFailed
-from teachpath.learning.clustering.cuts import moved
-from teachpath.learning.clustering.partition import Grouping
-from teachpath.learning.learn import courses_of, from_ways, metric_of
-from teachpath.learning.settings import LearningSettings, Progress, ignore
+from teachpath.learning.clustering.cuts import recut_partition
+from teachpath.learning.clustering.partition import Partition
+from teachpath.learning.learn import comparable_paths, learn_partition, metric_of
+from teachpath.learning.settings import LearningSettings, Progress, no_progress
 from teachpath.learning.summary import fingerprint
 from teachpath.records import Learned, Trajectory
 
@@ -21,7 +21,7 @@ def relearn(
     *,
     threshold: float | None = None,
     clusters: int | None = None,
-    progress: Progress = ignore,
+    progress: Progress = no_progress,
 ) -> Learned:
     """Cut the dendrogram of a run elsewhere, then select and fit anew with the run's own settings.
 
@@ -35,16 +35,16 @@ def relearn(
         progress: as in `learn`.
 
     Raises:
-        UnusableSettings: see `cuts.moved`.
+        UnusableSettings: see `cuts.recut_partition`.
         LearningFailed: a demonstration is missing or has changed since, or as in `learn`.
     """
-    grouping = moved(learned, threshold, clusters)
+    grouping = recut_partition(learned, threshold, clusters)
     _check_unchanged(learned, demonstrations)
     progress(0.0, f"cutting the dendrogram at {grouping.threshold * 100:.2f} cm")
     settings = _with_cut(_settings_of(learned), grouping, clusters)
     listed = {name: demonstrations[name] for name in learned.demonstrations}
-    courses, _ = courses_of(listed, metric_of(settings), settings.seed)
-    return from_ways(listed, courses, grouping, settings, progress)
+    courses, _ = comparable_paths(listed, metric_of(settings), settings.seed)
+    return learn_partition(listed, courses, grouping, settings, progress)
 
 
 def _settings_of(learned: Learned) -> LearningSettings:
@@ -53,7 +53,7 @@ def _settings_of(learned: Learned) -> LearningSettings:
     return LearningSettings(**kept)
 
 
-def _with_cut(settings: LearningSettings, grouping: Grouping, clusters: int | None) -> LearningSettings:
+def _with_cut(settings: LearningSettings, grouping: Partition, clusters: int | None) -> LearningSettings:
     if clusters is not None and settings.mode == "default":
         return replace(settings, threshold=None, clusters=clusters)
     return replace(settings, threshold=grouping.threshold, clusters=None)

@@ -7,7 +7,7 @@ from scipy.ndimage import uniform_filter1d
 
 from teachpath.records import Array, Trajectory
 
-SMOOTHING = 0.18  # s, width of the moving average: nine samples of a 50 Hz tracker
+SMOOTHING_WINDOW = 0.18  # s, width of the moving average: nine samples of a 50 Hz tracker
 
 
 def smoothed(trajectory: Trajectory) -> Array:
@@ -21,11 +21,11 @@ def smoothed(trajectory: Trajectory) -> Array:
 
 def smoothed_orientations(times: Array, orientations: Array) -> Array:
     """Average orientations over the same window, neighbours on one half of the sphere: (n, 4) unit quaternions."""
-    averaged = _averaged(continuous(orientations), times)
+    averaged = _averaged(sign_aligned(orientations), times)
     return np.asarray(averaged / np.linalg.norm(averaged, axis=1, keepdims=True))
 
 
-def continuous(orientations: Array) -> Array:
+def sign_aligned(orientations: Array) -> Array:
     """Return the same orientations with signs such that neighbours lie on one half of the sphere."""
     turns = np.where((orientations[1:] * orientations[:-1]).sum(axis=1) < 0, -1.0, 1.0)
     return np.asarray(orientations * np.concatenate([[1.0], np.cumprod(turns)])[:, None])
@@ -57,7 +57,7 @@ def undersampled(positions: Array, count: int, rng: np.random.Generator) -> Arra
 
 def _averaged(values: Array, times: Array) -> Array:
     # The quarter keeps whole rates away from the edge of two windows, between which rounding would choose.
-    half = int(SMOOTHING / float(np.median(np.diff(times))) / 2 + 0.25)
+    half = int(SMOOTHING_WINDOW / float(np.median(np.diff(times))) / 2 + 0.25)
     half = min(half, (len(values) - 1) // 2)
     if half == 0:
         return values

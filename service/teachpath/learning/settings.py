@@ -15,28 +15,30 @@ MODES = ("default", "paper", "repaired")
 METRICS = ("arc", "frechet", "dtw", "undersampled")
 
 Progress = Callable[[float, str], None]
-Tick = Callable[[], None]  # called after a piece of work; what it raises, as when the work is cancelled, passes through
+StepCallback = Callable[
+    [], None
+]  # called after a piece of work; what it raises, as when the work is cancelled, passes through
 
 
-def ignore(_fraction: float, _sentence: str) -> None:
+def no_progress(_fraction: float, _sentence: str) -> None:
     """Take no notice of progress."""
 
 
-def part(progress: Progress, begin: float, end: float) -> Progress:
+def subprogress(progress: Progress, begin: float, end: float) -> Progress:
     """Return the progress of a part of the work, from `begin` to `end` of the whole."""
     return lambda fraction, sentence: progress(begin + fraction * (end - begin), sentence)
 
 
-def ticker(progress: Progress, total: int, sentence: str) -> Tick:
+def step_counter(progress: Progress, total: int, sentence: str) -> StepCallback:
     """Return what tells the progress of work in `total` pieces."""
     done = 0
 
-    def tick() -> None:
+    def on_step() -> None:
         nonlocal done
         done += 1
         progress(min(done / max(total, 1), 1.0), sentence)
 
-    return tick
+    return on_step
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

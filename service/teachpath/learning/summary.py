@@ -7,24 +7,24 @@ from hashlib import sha256
 
 import numpy as np
 
-from teachpath.learning.clustering.dendrogram import Labels, labels_into
-from teachpath.learning.clustering.partition import Grouping
+from teachpath.learning.clustering.dendrogram import Labels, labels_for_count
+from teachpath.learning.clustering.partition import Partition
 from teachpath.learning.resampling import at_equal_arc_length, smoothed
-from teachpath.learning.settings import Tick
+from teachpath.learning.settings import StepCallback
 from teachpath.nurbs import Curve
 from teachpath.records import Array, Trajectory
 
 TUBE_POINTS = 50
-DENSE = 1000  # points of the polyline that stands for a curve
+CURVE_SAMPLES = 1000  # points of the polyline that stands for a curve
 
 
-def ambiguities(grouping: Grouping) -> list[str]:
+def ambiguities(grouping: Partition) -> list[str]:
     """Return for every cluster what the next best cut would do with it, empty where that is nothing."""
     labels = grouping.labels
     count = int(labels.max())
-    if grouping.rival is None:
+    if grouping.alternative is None:
         return [""] * count
-    other = labels_into(grouping.linkage, grouping.rival)
+    other = labels_for_count(grouping.linkage, grouping.alternative)
     sentences = []
     for label in range(1, count + 1):
         parts, sizes = np.unique(other[labels == label], return_counts=True)
@@ -57,18 +57,18 @@ def representatives(courses: Array, labels: Labels) -> Labels:
     return np.array(found)
 
 
-def tube(curve: Curve, selected: Sequence[Trajectory], *, tick: Tick) -> Array:
+def tube_radius(curve: Curve, selected: Sequence[Trajectory], *, on_step: StepCallback) -> Array:
     """Return how far the selected demonstrations are from the path across its direction, at equal arc length.
 
     Args:
         curve: the learned path.
         selected: what it was learned from.
-        tick: called once for each of them.
+        on_step: called once for each of them.
 
     Returns:
         (50,) [m], the largest distance at each place.
     """
-    course = at_equal_arc_length(curve(np.linspace(0.0, 1.0, DENSE)), TUBE_POINTS)
+    course = at_equal_arc_length(curve(np.linspace(0.0, 1.0, CURVE_SAMPLES)), TUBE_POINTS)
     along = np.gradient(course, axis=0)
     along /= np.maximum(np.linalg.norm(along, axis=1, keepdims=True), 1e-12)
     radius = np.zeros(TUBE_POINTS)
@@ -76,7 +76,7 @@ def tube(curve: Curve, selected: Sequence[Trajectory], *, tick: Tick) -> Array:
         apart = at_equal_arc_length(smoothed(trajectory), TUBE_POINTS) - course
         across = apart - (apart * along).sum(axis=1, keepdims=True) * along
         radius = np.maximum(radius, np.linalg.norm(across, axis=1))
-        tick()
+        on_step()
     return radius
 
 

@@ -9,8 +9,8 @@ from collections.abc import Callable
 import numpy as np
 
 from teachpath.errors import TeachpathError
-from teachpath.learning.clustering.distances import distances
-from teachpath.learning.clustering.partition import group
+from teachpath.learning.clustering.distances import pairwise_distances
+from teachpath.learning.clustering.partition import cluster_distances
 from teachpath.learning.resampling import arc_lengths, at_equal_arc_length, smoothed
 from teachpath.learning.settings import LearningSettings
 from teachpath.recording.guidance import ClusterSummary, advise
@@ -101,8 +101,8 @@ class GuidanceThread:
 def _ways(courses: Array, settings: LearningSettings, length: float) -> list[ClusterSummary]:
     if len(courses) < 2:
         return [ClusterSummary(len(courses), 0.0)]
-    condensed = distances(courses)
-    labels = group(condensed, len(courses), settings, length=length).labels
+    condensed = pairwise_distances(courses)
+    labels = cluster_distances(condensed, len(courses), settings, length=length).labels
     left, right = np.triu_indices(len(courses), 1)
     shown = []
     for way in range(1, int(labels.max()) + 1):

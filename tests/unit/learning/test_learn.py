@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from teachpath.errors import Cancelled, LearningFailed
-from teachpath.learning.clustering.cuts import recut
+from teachpath.learning.clustering.cuts import recut_members
 from teachpath.learning.learn import learn
 from teachpath.learning.settings import LearningSettings
 from teachpath.nurbs import unit
@@ -57,7 +57,7 @@ def test_every_metric_finds_the_ways(twelve: dict[str, Trajectory], metric: str)
 def test_a_known_number_of_ways_is_found(twelve: dict[str, Trajectory]) -> None:
     learned = learn(twelve, LearningSettings(clusters=3, repeats=0))
     assert [set(cluster.members) for cluster in learned.clusters] == WAYS
-    assert recut(learned, clusters=3) == recut(learned, threshold=learned.threshold)
+    assert recut_members(learned, clusters=3) == recut_members(learned, threshold=learned.threshold)
 
 
 def test_orientations_are_learned_where_all_carry_them(twelve: dict[str, Trajectory]) -> None:

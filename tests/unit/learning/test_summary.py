@@ -8,7 +8,7 @@ import numpy as np
 
 from teachpath.io.documents import from_document, to_document
 from teachpath.learning.fitting.nurbs_fit import approximate
-from teachpath.learning.summary import fingerprint, representatives, tube
+from teachpath.learning.summary import fingerprint, representatives, tube_radius
 from teachpath.records import Learned, Trajectory
 from tests.unit.learning import synthetic
 
@@ -19,14 +19,16 @@ def test_the_tube_is_as_wide_as_the_demonstrations_are_apart() -> None:
     bow = 0.05 * np.sin(np.pi * LINE[:, 0])
     beside = LINE + np.outer(bow, [0.0, 1.0, 0.0])
     curve = approximate(LINE, 0.001, degree=3, most=60).curve
-    radius = tube(curve, [Trajectory(np.arange(200) * 0.02, path) for path in (LINE, beside)], tick=lambda: None)
+    radius = tube_radius(
+        curve, [Trajectory(np.arange(200) * 0.02, path) for path in (LINE, beside)], on_step=lambda: None
+    )
     np.testing.assert_allclose(radius, 0.05 * np.sin(np.pi * np.linspace(0, 1, 50)), atol=0.002)
 
 
 def test_a_difference_along_the_path_does_not_widen_the_tube() -> None:
     curve = approximate(LINE, 0.001, degree=3, most=60).curve
     ahead = Trajectory(np.arange(200) * 0.02, LINE * np.array([1.1, 1, 1]))
-    np.testing.assert_allclose(tube(curve, [ahead], tick=lambda: None), 0.0, atol=1e-6)
+    np.testing.assert_allclose(tube_radius(curve, [ahead], on_step=lambda: None), 0.0, atol=1e-6)
 
 
 def test_the_representative_is_the_member_in_the_middle() -> None:

@@ -13,14 +13,14 @@ from tests.unit.learning import synthetic
 from teachpath.io.documents import encode
 from teachpath.learning.learn import learn
 from teachpath.learning.settings import LearningSettings
-from teachpath.learning.clustering.subsampled_clustering import grouped
+from teachpath.learning.clustering.subsampled_clustering import cluster_paths
 import numpy as np
 
 five = synthetic.turning(synthetic.experiment_2(3))
 for settings in (LearningSettings(repeats=1), LearningSettings(mode="paper", threshold=0.3, repeats=1)):
     print(sha256(encode(learn(five, settings))).hexdigest())
 many = synthetic.loop(20) + np.random.default_rng(1).normal(0, 0.05, (210, 1, 3))
-found = grouped(many, LearningSettings(), length=1.0, metric="arc")
+found = cluster_paths(many, LearningSettings(), length=1.0, metric="arc")
 print(sha256(found.linkage.tobytes() + found.labels.tobytes()).hexdigest())
 """
 

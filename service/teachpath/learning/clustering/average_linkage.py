@@ -5,16 +5,16 @@ from __future__ import annotations
 import numpy as np
 from scipy.cluster import hierarchy
 
-from teachpath.learning.clustering.dendrogram import named
+from teachpath.learning.clustering.dendrogram import scipy_linkage
 from teachpath.learning.clustering.distances import Distances
-from teachpath.learning.settings import Progress, ignore
+from teachpath.learning.settings import Progress, no_progress
 from teachpath.records import Array
 
-FEW = 200  # demonstrations up to which scipy is done before the compiled kernel is loaded
-STRIDE = 64  # merges between two looks at progress
+MAX_SCIPY_DEMONSTRATIONS = 200  # demonstrations up to which scipy is done before the compiled kernel is loaded
+MERGES_PER_UPDATE = 64  # merges between two looks at progress
 
 
-def average_linkage(condensed: Distances, count: int, progress: Progress = ignore) -> Array:
+def average_linkage(condensed: Distances, count: int, progress: Progress = no_progress) -> Array:
     """Merge the two closest clusters, by the mean distance of their members, until one is left.
 
     Args:
@@ -27,7 +27,7 @@ def average_linkage(condensed: Distances, count: int, progress: Progress = ignor
     """
     if count == 1:
         return np.empty((0, 4))
-    if count <= FEW:
+    if count <= MAX_SCIPY_DEMONSTRATIONS:
         return np.asarray(hierarchy.linkage(condensed, "average"))
     from teachpath.learning.clustering import kernels
 
@@ -36,6 +36,6 @@ def average_linkage(condensed: Distances, count: int, progress: Progress = ignor
     sizes, chain, state = np.ones(count, dtype=np.int64), np.zeros(count, dtype=np.int64), np.zeros(2, dtype=np.int64)
     while state[1] < count - 1:
         progress(float(state[1]) / count, "merging the closest demonstrations")
-        kernels.merge(apart, sizes, chain, state, merges, STRIDE)
+        kernels.merge(apart, sizes, chain, state, merges, MERGES_PER_UPDATE)
     order = np.argsort(merges[:, 2], kind="stable")
-    return named([(float(height), int(one), int(other)) for one, other, height, _ in merges[order]], count)
+    return scipy_linkage([(float(height), int(one), int(other)) for one, other, height, _ in merges[order]], count)

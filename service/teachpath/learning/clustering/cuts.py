@@ -7,11 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from teachpath.errors import UnusableSettings
-from teachpath.learning.clustering.dendrogram import groups, height_between, labels_into, leaves
-from teachpath.learning.clustering.partition import Grouping, cut_at, cut_into
+from teachpath.learning.clustering.dendrogram import height_for_count, labels_for_count, leaf_order, members_by_label
+from teachpath.learning.clustering.partition import Partition, cut_at, cut_into
 from teachpath.records import Learned
 
-LEAST_HEIGHT = 1e-9  # m, of a cut; 0 is none
+MIN_CUT_HEIGHT = 1e-9  # m, of a cut; 0 is none
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,12 +57,12 @@ class Dendrogram:
 def dendrogram(learned: Learned, most: int) -> Dendrogram:
     """Return the dendrogram of a run with its cuts into 1 to `most` clusters, or as many as there are."""
     linkage, names = learned.linkage, learned.demonstrations
-    order = leaves(linkage)
+    order = leaf_order(linkage)
     places = np.empty(len(names), dtype=int)
     places[order] = np.arange(len(names))
     cuts = []
     for count in range(1, min(most, len(names)) + 1):
-        labels = labels_into(linkage, count)
+        labels = labels_for_count(linkage, count)
         begins = np.full(count, len(names))
         np.minimum.at(begins, labels - 1, places)
         ends = begins + np.bincount(labels)[1:]
@@ -70,7 +70,7 @@ def dendrogram(learned: Learned, most: int) -> Dendrogram:
         merges = len(names) - count
         lowest = float(linkage[merges - 1, 2]) if merges else 0.0
         highest = float(linkage[merges, 2]) if count > 1 else None
-        cuts.append(Cut(count, lowest, highest, height_between(linkage, count), ways))
+        cuts.append(Cut(count, lowest, highest, height_for_count(linkage, count), ways))
     return Dendrogram(
         names,
         tuple(names[i] for i in order),
@@ -81,7 +81,7 @@ def dendrogram(learned: Learned, most: int) -> Dendrogram:
     )
 
 
-def recut(
+def recut_members(
     learned: Learned, *, threshold: float | None = None, clusters: int | None = None
 ) -> tuple[tuple[str, ...], ...]:
     """Return the members of every cluster when the dendrogram of a run is cut somewhere else.
@@ -95,12 +95,12 @@ def recut(
         for every cluster its demonstrations in listed order; clusters in the order of their first members.
 
     Raises:
-        UnusableSettings: see `moved`.
+        UnusableSettings: see `recut_partition`.
     """
-    return groups(learned.demonstrations, moved(learned, threshold, clusters).labels)
+    return members_by_label(learned.demonstrations, recut_partition(learned, threshold, clusters).labels)
 
 
-def moved(learned: Learned, threshold: float | None, clusters: int | None) -> Grouping:
+def recut_partition(learned: Learned, threshold: float | None, clusters: int | None) -> Partition:
     """Return the grouping of a run's demonstrations by another cut.
 
     Raises:
@@ -119,7 +119,7 @@ def moved(learned: Learned, threshold: float | None, clusters: int | None) -> Gr
         raise UnusableSettings(f"{count} demonstrations cannot be cut into {clusters} clusters; give 1 to {count}")
     if learned.mode == "default":
         return cut_into(learned.linkage, clusters)
-    grouping = cut_at(learned.linkage, max(height_between(learned.linkage, clusters), LEAST_HEIGHT))
+    grouping = cut_at(learned.linkage, max(height_for_count(learned.linkage, clusters), MIN_CUT_HEIGHT))
     if grouping.labels.max() != clusters:
         raise UnusableSettings(
             f"no height leaves {clusters} clusters, for merges of one height are made together; "

@@ -12,7 +12,7 @@ from teachpath.records import Array
 Labels = NDArray[np.int64]
 
 
-def groups(names: Sequence[str], labels: Labels) -> tuple[tuple[str, ...], ...]:
+def members_by_label(names: Sequence[str], labels: Labels) -> tuple[tuple[str, ...], ...]:
     """Return the names that carry label 1, those that carry label 2, and so on."""
     found: list[list[str]] = [[] for _ in range(int(labels.max()))]
     for name, label in zip(names, labels, strict=True):
@@ -20,17 +20,17 @@ def groups(names: Sequence[str], labels: Labels) -> tuple[tuple[str, ...], ...]:
     return tuple(tuple(group) for group in found)
 
 
-def labels_at(linkage: Array, threshold: float) -> Labels:
+def labels_at_height(linkage: Array, threshold: float) -> Labels:
     """Return the clusters (m,) of a cut at a height [m]: all merges up to it are made."""
     return _after(linkage, int(np.searchsorted(linkage[:, 2], threshold, side="right")))
 
 
-def labels_into(linkage: Array, count: int) -> Labels:
+def labels_for_count(linkage: Array, count: int) -> Labels:
     """Return the clusters (m,) of the cut that leaves `count` of them."""
     return _after(linkage, len(linkage) + 1 - count)
 
 
-def height_between(linkage: Array, count: int) -> float:
+def height_for_count(linkage: Array, count: int) -> float:
     """Return a height [m] at which a cut leaves `count` clusters: halfway between two merges."""
     merges = len(linkage) + 1 - count
     heights = linkage[:, 2]
@@ -40,7 +40,7 @@ def height_between(linkage: Array, count: int) -> float:
     return (below + float(heights[merges])) / 2
 
 
-def grafted(linkage: Array, sample: Labels, joins: Labels, heights: Array) -> Array:
+def extended_linkage(linkage: Array, sample: Labels, joins: Labels, heights: Array) -> Array:
     """Return the dendrogram of all demonstrations from that of a sample, the others joining one of the sample each.
 
     Args:
@@ -59,10 +59,10 @@ def grafted(linkage: Array, sample: Labels, joins: Labels, heights: Array) -> Ar
         member.append(member[int(left)])
     merges += [(float(heights[i]), i, int(joins[i])) for i in map(int, np.flatnonzero(joins != np.arange(len(joins))))]
     merges.sort()
-    return named(merges, len(joins))
+    return scipy_linkage(merges, len(joins))
 
 
-def named(merges: Sequence[tuple[float, int, int]], count: int) -> Array:
+def scipy_linkage(merges: Sequence[tuple[float, int, int]], count: int) -> Array:
     """Return merges of clusters, each named by any member, as scipy writes them.
 
     Args:
@@ -83,7 +83,7 @@ def named(merges: Sequence[tuple[float, int, int]], count: int) -> Array:
     return rows
 
 
-def leaves(linkage: Array) -> Labels:
+def leaf_order(linkage: Array) -> Labels:
     """Return the demonstrations (m,) in the order that draws the merges without a crossing, so that the members of
     every cluster of every cut are neighbours; of two merged clusters the one that has the first member comes first.
     """

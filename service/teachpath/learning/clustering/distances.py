@@ -6,19 +6,19 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.distance import cdist
 
-from teachpath.learning.settings import Progress, ignore
+from teachpath.learning.settings import Progress, no_progress
 from teachpath.records import Array
 
 Distances = NDArray[np.float64] | NDArray[np.float32]  # of all pairs [m], condensed in scipy's order
 
-KINDS = {"arc": 0, "undersampled": 0, "frechet": 1, "dtw": 2}
-FEW = (200, 24, 24)  # paths of each kind up to which numpy is done before the compiled kernels are loaded
-STRIP = 64  # rows that a kernel does between two looks at progress
-CHUNK = 128  # pairs that are warped at a time
-SENTENCE = "measuring the distances between demonstrations"
+METRIC_CODES = {"arc": 0, "undersampled": 0, "frechet": 1, "dtw": 2}
+MAX_NUMPY_PATHS = (200, 24, 24)  # paths of each kind up to which numpy is done before the compiled kernels are loaded
+ROWS_PER_UPDATE = 64  # rows that a kernel does between two looks at progress
+PAIRS_PER_BATCH = 128  # pairs that are warped at a time
+PROGRESS_MESSAGE = "measuring the distances between demonstrations"
 
 
-def distances(paths: Array, metric: str = "arc", progress: Progress = ignore) -> Distances:
+def pairwise_distances(paths: Array, metric: str = "arc", progress: Progress = no_progress) -> Distances:
     """Return the distance of every pair of paths.
 
     Metric `arc` or `undersampled` is the mean distance of corresponding points (Aleotti & Caselli, eq. (1)),
@@ -33,14 +33,14 @@ def distances(paths: Array, metric: str = "arc", progress: Progress = ignore) ->
     Returns:
         (m (m - 1) / 2,) [m], condensed in scipy's order, those of large sets in single precision.
     """
-    kind = KINDS[metric]
-    if len(paths) > FEW[kind]:
+    kind = METRIC_CODES[metric]
+    if len(paths) > MAX_NUMPY_PATHS[kind]:
         return _compiled(paths, kind, progress)
     return _mean(paths, progress) if kind == 0 else _warped(paths, kind, progress)
 
 
-def nearest_of(
-    paths: Array, chosen: Array, metric: str, progress: Progress = ignore
+def nearest_paths(
+    paths: Array, chosen: Array, metric: str, progress: Progress = no_progress
 ) -> tuple[NDArray[np.int64], Array]:
     """Return for every path the number of the nearest chosen one and its distance [m]."""
     from teachpath.learning.clustering import kernels
@@ -48,13 +48,13 @@ def nearest_of(
     centre = paths.mean(axis=(0, 1))
     ours, theirs = _single(paths, centre), _single(chosen, centre)
     found = []
-    for begin in range(0, len(paths), 16 * STRIP):
+    for begin in range(0, len(paths), 16 * ROWS_PER_UPDATE):
         progress(begin / len(paths), "assigning the others to the nearest of the sample")
-        found.append(kernels.nearest_of(ours[begin : begin + 16 * STRIP], theirs, KINDS[metric]))
+        found.append(kernels.nearest_paths(ours[begin : begin + 16 * ROWS_PER_UPDATE], theirs, METRIC_CODES[metric]))
     return np.concatenate([index for index, _ in found]), np.concatenate([apart for _, apart in found])
 
 
-def frechet(one: Array, other: Array) -> float:
+def frechet_distance(one: Array, other: Array) -> float:
     """Return the discrete Fréchet distance [m] of two polylines (n, 3) of as many points."""
     return float(_widest(cdist(one, other)[None])[0])
 
@@ -65,8 +65,8 @@ def _compiled(paths: Array, kind: int, progress: Progress) -> Distances:
     m = len(paths)
     single = _single(paths, paths.mean(axis=(0, 1)))
     out = np.empty(m * (m - 1) // 2, dtype=np.float32)
-    for begin in range(0, m, STRIP):
-        progress(1 - ((m - begin) / m) ** 2, SENTENCE)
+    for begin in range(0, m, ROWS_PER_UPDATE):
+        progress(1 - ((m - begin) / m) ** 2, PROGRESS_MESSAGE)
         kernels.fill_rows(single, out, begin, kind)
     return out
 
@@ -80,7 +80,7 @@ def _mean(paths: Array, progress: Progress) -> Array:
     m = len(paths)
     rows = [np.empty(0)]
     for i in range(m - 1):
-        progress(1 - ((m - i) / m) ** 2, SENTENCE)
+        progress(1 - ((m - i) / m) ** 2, PROGRESS_MESSAGE)
         rows.append(np.sqrt(np.square(paths[i + 1 :] - paths[i]).sum(axis=2)).mean(axis=1))
     return np.concatenate(rows)
 
@@ -88,9 +88,9 @@ def _mean(paths: Array, progress: Progress) -> Array:
 def _warped(paths: Array, kind: int, progress: Progress) -> Array:
     left, right = np.triu_indices(len(paths), 1)
     found = [np.empty(0)]
-    for begin in range(0, len(left), CHUNK):
-        progress(begin / len(left), SENTENCE)
-        pairs = slice(begin, begin + CHUNK)
+    for begin in range(0, len(left), PAIRS_PER_BATCH):
+        progress(begin / len(left), PROGRESS_MESSAGE)
+        pairs = slice(begin, begin + PAIRS_PER_BATCH)
         apart = np.stack([cdist(paths[i], paths[j]) for i, j in zip(left[pairs], right[pairs], strict=True)])
         found.append(_widest(apart) if kind == 1 else _cheapest(apart))
     return np.concatenate(found)

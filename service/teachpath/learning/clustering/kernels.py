@@ -19,7 +19,7 @@ F = TypeVar("F", bound=Callable[..., Any])
 Labels = NDArray[np.int64]
 Paths = NDArray[np.float32]  # (m, 3, n): one row a coordinate, so that the inner loops run along memory
 
-BLOCK = 64  # paths compared with as many: both sets stay in the cache
+PATHS_PER_BLOCK = 64  # paths compared with as many: both sets stay in the cache
 
 
 def compiled(**options: Any) -> Callable[[F], F]:
@@ -72,12 +72,12 @@ def _warped_distance(a: Paths, b: Paths, widest: bool) -> np.float32:
 @compiled(parallel=True)
 def _fill(paths: Paths, out: NDArray[np.float32], begin: int, kind: int) -> None:
     m = len(paths)
-    end = min(begin + BLOCK, m)
-    for block in numba.prange((m - begin + BLOCK - 1) // BLOCK):
-        first = begin + block * BLOCK
+    end = min(begin + PATHS_PER_BLOCK, m)
+    for block in numba.prange((m - begin + PATHS_PER_BLOCK - 1) // PATHS_PER_BLOCK):
+        first = begin + block * PATHS_PER_BLOCK
         for i in range(begin, end):
             row = i * (2 * m - i - 1) // 2 - i - 1
-            for j in range(max(first, i + 1), min(first + BLOCK, m)):
+            for j in range(max(first, i + 1), min(first + PATHS_PER_BLOCK, m)):
                 if kind == 0:
                     out[row + j] = _mean_distance(paths[i], paths[j])
                 else:
@@ -166,7 +166,7 @@ def fill_rows(paths: Paths, out: NDArray[np.float32], begin: int, kind: int) -> 
     _fill(paths, out, begin, kind)
 
 
-def nearest_of(paths: Paths, chosen: Paths, kind: int) -> tuple[NDArray[np.int64], Array]:
+def nearest_paths(paths: Paths, chosen: Paths, kind: int) -> tuple[NDArray[np.int64], Array]:
     """Return for every path the number of the nearest chosen one and its distance [m]; kinds as in `fill_rows`."""
     nearest = np.zeros(len(paths), dtype=np.int64)
     apart = np.empty(len(paths))

@@ -7,21 +7,21 @@ from dataclasses import dataclass
 import numpy as np
 
 from teachpath.learning.clustering.average_linkage import average_linkage
-from teachpath.learning.clustering.dendrogram import Labels, height_between, labels_at, labels_into
+from teachpath.learning.clustering.dendrogram import Labels, height_for_count, labels_at_height, labels_for_count
 from teachpath.learning.clustering.distances import Distances
 from teachpath.learning.clustering.silhouettes import Silhouettes
-from teachpath.learning.settings import LearningSettings, Progress, ignore, part
+from teachpath.learning.settings import LearningSettings, Progress, no_progress, subprogress
 from teachpath.records import Array
 
-MOST_CLUSTERS = 10  # that the silhouette chooses among
-APART = 0.1  # share of the path length: two demonstrations farther apart are two ways
-CAUTION = 0.5  # divided by its members, added to the guard of a cluster: few fall apart by chance
-CLOSE_CALL = 0.08  # of the silhouette
-CLOSE_MERGE = 1.1  # ratio of a merge's height to that of the cut
+MAX_CLUSTERS = 10  # that the silhouette chooses among
+MIN_PAIR_SEPARATION = 0.1  # share of the path length: two demonstrations farther apart are two ways
+SMALL_CLUSTER_PENALTY = 0.5  # divided by its members, added to the guard of a cluster: few fall apart by chance
+SILHOUETTE_MARGIN = 0.08  # of the silhouette
+AMBIGUOUS_HEIGHT_RATIO = 1.1  # ratio of a merge's height to that of the cut
 
 
 @dataclass(frozen=True, eq=False)
-class Grouping:
+class Partition:
     """Demonstrations in clusters.
 
     Attributes:
@@ -36,12 +36,12 @@ class Grouping:
     threshold: float
     labels: Labels
     note: str = ""
-    rival: int | None = None
+    alternative: int | None = None
 
 
-def group(
-    condensed: Distances, count: int, settings: LearningSettings, *, length: float, progress: Progress = ignore
-) -> Grouping:
+def cluster_distances(
+    condensed: Distances, count: int, settings: LearningSettings, *, length: float, progress: Progress = no_progress
+) -> Partition:
     """Merge by average link and cut as the settings say: at a height, into a number, or where the silhouette is best.
 
     Args:
@@ -58,32 +58,32 @@ def group(
     return cut_by_silhouette(condensed, count, guard=settings.guard, length=length, progress=progress)
 
 
-def cut_at(tree: Array, threshold: float) -> Grouping:
+def cut_at(tree: Array, threshold: float) -> Partition:
     """Make the merges up to `threshold` [m]: clusters farther apart stay apart."""
-    labels = labels_at(tree, threshold)
+    labels = labels_at_height(tree, threshold)
     rival = _next_merge(tree, int(labels.max()), threshold)
     if rival is None:
-        return Grouping(tree, threshold, labels)
+        return Partition(tree, threshold, labels)
     least = float(tree[1 - max(rival, int(labels.max())), 2])
     note = (
         f"{_ways(int(labels.max()))}, but ambiguous: two clusters {least * 100:.1f} cm apart are close to "
         f"learning.threshold {threshold * 100:.1f} cm, on its other side there are {rival}"
     )
-    return Grouping(tree, threshold, labels, note, rival)
+    return Partition(tree, threshold, labels, note, rival)
 
 
-def cut_into(tree: Array, clusters: int) -> Grouping:
+def cut_into(tree: Array, clusters: int) -> Partition:
     """Make merges until `clusters` are left, or none, every demonstration alone, when there are fewer."""
     count = len(tree) + 1
     left = min(clusters, count)
-    height = height_between(tree, left)
+    height = height_for_count(tree, left)
     note = f"{count} demonstrations cannot be {clusters} ways; every one is its own" if left < clusters else ""
-    return Grouping(tree, height, labels_into(tree, left), note, _next_merge(tree, left, height))
+    return Partition(tree, height, labels_for_count(tree, left), note, _next_merge(tree, left, height))
 
 
 def cut_by_silhouette(
-    condensed: Distances, count: int, *, guard: float, length: float, progress: Progress = ignore
-) -> Grouping:
+    condensed: Distances, count: int, *, guard: float, length: float, progress: Progress = no_progress
+) -> Partition:
     """Merge by average link and cut where the mean silhouette is best (Rousseeuw 1987).
 
     A silhouette is not defined for one single cluster, so below `guard` the demonstrations count as one way. The
@@ -100,27 +100,27 @@ def cut_by_silhouette(
     """
     if count == 1:
         return cut_into(np.empty((0, 4)), 1)
-    tree = average_linkage(condensed, count, part(progress, 0.0, 0.6))
+    tree = average_linkage(condensed, count, subprogress(progress, 0.0, 0.6))
     top = float(tree[-1, 2])
-    wide = top > APART * length
+    wide = top > MIN_PAIR_SEPARATION * length
     if count == 2:
         threshold = top / 2 if wide else top
-        return Grouping(tree, threshold, labels_at(tree, threshold), _pair_note(top, wide), 1 if wide else 2)
-    most = min(MOST_CLUSTERS, count - 1)
-    silhouettes = Silhouettes(condensed, tree, most, part(progress, 0.6, 1.0))
+        return Partition(tree, threshold, labels_at_height(tree, threshold), _pair_note(top, wide), 1 if wide else 2)
+    most = min(MAX_CLUSTERS, count - 1)
+    silhouettes = Silhouettes(condensed, tree, most, subprogress(progress, 0.6, 1.0))
     scores = {k: silhouettes.mean(k) for k in range(2, most + 1)}
     best = max(scores, key=lambda k: scores[k])
     if scores[best] < guard:
         doubt = _doubt_one(scores[best], guard, top, wide)
-        return Grouping(tree, top, labels_into(tree, 1), doubt, best if doubt else None)
+        return Partition(tree, top, labels_for_count(tree, 1), doubt, best if doubt else None)
     while best < most:
-        alone, members = silhouettes.of_split(best)
-        if alone < guard + CAUTION / members:
+        alone, members = silhouettes.mean_of_split(best)
+        if alone < guard + SMALL_CLUSTER_PENALTY / members:
             break
         best += 1
     rivals = _rivals(scores, best, guard)
     note, rival = _doubt_many(best, rivals), rivals[0] if rivals else None
-    return Grouping(tree, height_between(tree, best), labels_into(tree, best), note, rival)
+    return Partition(tree, height_for_count(tree, best), labels_for_count(tree, best), note, rival)
 
 
 def _next_merge(tree: Array, clusters: int, height: float) -> int | None:
@@ -133,14 +133,14 @@ def _next_merge(tree: Array, clusters: int, height: float) -> int | None:
     if clusters <= len(tree) and tree[-clusters, 2] > 0:
         near.append((height / float(tree[-clusters, 2]), clusters + 1))
     ratio, other = min(near, default=(np.inf, 0))
-    return other if ratio < CLOSE_MERGE else None
+    return other if ratio < AMBIGUOUS_HEIGHT_RATIO else None
 
 
 def _rivals(scores: dict[int, float], best: int, guard: float) -> list[int]:
     """Return the cuts that would do nearly as well, the best of them first."""
-    close = [k for k, score in scores.items() if k != best and score > scores[best] - CLOSE_CALL]
+    close = [k for k, score in scores.items() if k != best and score > scores[best] - SILHOUETTE_MARGIN]
     close.sort(key=lambda k: -scores[k])
-    return close + ([1] if scores[best] < guard + CLOSE_CALL else [])
+    return close + ([1] if scores[best] < guard + SILHOUETTE_MARGIN else [])
 
 
 def _ways(count: int) -> str:
@@ -153,7 +153,7 @@ def _pair_note(top: float, wide: bool) -> str:
 
 
 def _doubt_one(score: float, guard: float, top: float, wide: bool) -> str:
-    if wide or score > guard - CLOSE_CALL:
+    if wide or score > guard - SILHOUETTE_MARGIN:
         return (
             f"one way, but ambiguous: the demonstrations are up to {top * 100:.1f} cm apart and the best partition "
             f"has silhouette {score:.2f} (guard {guard:.2f}); set learning.threshold to decide it"

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from teachpath.learning.clustering.dendrogram import Labels, labels_into
+from teachpath.learning.clustering.dendrogram import Labels, labels_for_count
 from teachpath.learning.clustering.distances import Distances
-from teachpath.learning.settings import Progress, ignore
+from teachpath.learning.settings import Progress, no_progress
 from teachpath.records import Array
 
 
@@ -23,17 +23,17 @@ class Silhouettes:
         progress: is told how far the work has come.
     """
 
-    def __init__(self, condensed: Distances, linkage: Array, most: int, progress: Progress = ignore) -> None:
+    def __init__(self, condensed: Distances, linkage: Array, most: int, progress: Progress = no_progress) -> None:
         self._linkage = linkage
-        self._finest = labels_into(linkage, most) - 1
-        self._sums = sums_to(condensed, self._finest, most, progress)
+        self._finest = labels_for_count(linkage, most) - 1
+        self._sums = distance_sums(condensed, self._finest, most, progress)
 
     def mean(self, count: int) -> float:
         """Return the mean silhouette of the cut into `count` clusters, -1 to 1."""
         labels, sums = self._cut(count)
         return float(_values(sums, labels).mean())
 
-    def of_split(self, count: int) -> tuple[float, int]:
+    def mean_of_split(self, count: int) -> tuple[float, int]:
         """Return the mean silhouette of the one cluster that the cut into `count` + 1 splits, as if it were alone.
 
         Returns:
@@ -50,13 +50,13 @@ class Silhouettes:
         raise AssertionError(f"no cluster is split between {count} and {count + 1}")
 
     def _cut(self, count: int) -> tuple[Labels, Array]:
-        labels = labels_into(self._linkage, count) - 1
+        labels = labels_for_count(self._linkage, count) - 1
         membership = np.zeros((self._sums.shape[1], count))
         membership[self._finest, labels] = 1.0
         return labels, self._sums @ membership
 
 
-def sums_to(condensed: Distances, labels: Labels, count: int, progress: Progress = ignore) -> Array:
+def distance_sums(condensed: Distances, labels: Labels, count: int, progress: Progress = no_progress) -> Array:
     """Return the sums of the distances from every demonstration to the members of every cluster: (m, count) [m].
 
     Args:

@@ -10,19 +10,19 @@ from dataclasses import replace
 
 import numpy as np
 
-from teachpath.learning.clustering.dendrogram import grafted, labels_at
-from teachpath.learning.clustering.distances import distances, nearest_of
-from teachpath.learning.clustering.partition import Grouping, group
-from teachpath.learning.settings import LearningSettings, Progress, ignore, part
+from teachpath.learning.clustering.dendrogram import extended_linkage, labels_at_height
+from teachpath.learning.clustering.distances import nearest_paths, pairwise_distances
+from teachpath.learning.clustering.partition import Partition, cluster_distances
+from teachpath.learning.settings import LearningSettings, Progress, no_progress, subprogress
 from teachpath.records import Array
 
-MOST_PAIRED = 20_000  # demonstrations above which not every pair is measured
-SAMPLE = 2000
+MAX_EXACT_DEMONSTRATIONS = 20_000  # demonstrations above which not every pair is measured
+SAMPLE_SIZE = 2000
 
 
-def grouped(
-    paths: Array, settings: LearningSettings, *, length: float, metric: str, progress: Progress = ignore
-) -> Grouping:
+def cluster_paths(
+    paths: Array, settings: LearningSettings, *, length: float, metric: str, progress: Progress = no_progress
+) -> Partition:
     """Cluster paths, by all pairs or from 20,000 on by a sample of 2000.
 
     With a threshold set, those farther than it from all of the sample stay alone; else the cut is found on the
@@ -30,26 +30,26 @@ def grouped(
 
     Args:
         paths: (m, n, 3) [m].
-        settings: see `clustering.group`; `seed` draws the sample.
+        settings: see `clustering.cluster_distances`; `seed` draws the sample.
         length: of a typical path [m].
-        metric: see `distances.distances`.
+        metric: see `distances.pairwise_distances`.
         progress: is told how far the work has come.
     """
     m = len(paths)
-    measure, cut = part(progress, 0.0, 0.7), part(progress, 0.7, 1.0)
-    if m <= MOST_PAIRED:
-        condensed = distances(paths, metric, measure)
-        return group(condensed, m, settings, length=length, progress=cut)
-    sample = np.sort(np.random.default_rng(settings.seed).choice(m, SAMPLE, replace=False))
-    condensed = distances(paths[sample], metric)
-    of_sample = group(condensed, SAMPLE, settings, length=length)
-    joins, apart = nearest_of(paths, paths[sample], metric, progress)
+    measure, cut = subprogress(progress, 0.0, 0.7), subprogress(progress, 0.7, 1.0)
+    if m <= MAX_EXACT_DEMONSTRATIONS:
+        condensed = pairwise_distances(paths, metric, measure)
+        return cluster_distances(condensed, m, settings, length=length, progress=cut)
+    sample = np.sort(np.random.default_rng(settings.seed).choice(m, SAMPLE_SIZE, replace=False))
+    condensed = pairwise_distances(paths[sample], metric)
+    of_sample = cluster_distances(condensed, SAMPLE_SIZE, settings, length=length)
+    joins, apart = nearest_paths(paths, paths[sample], metric, progress)
     joins, apart = sample[joins], apart.copy()
     joins[sample] = sample
     if settings.threshold is None or settings.clusters is not None:
         apart = np.minimum(apart, of_sample.threshold)
-    linkage = grafted(of_sample.linkage, sample, joins, apart)
-    labels = labels_at(linkage, of_sample.threshold)
-    note = f"{m} demonstrations are grouped by a sample of {SAMPLE}"
-    notes = "; ".join(part for part in (note, of_sample.note) if part)
+    linkage = extended_linkage(of_sample.linkage, sample, joins, apart)
+    labels = labels_at_height(linkage, of_sample.threshold)
+    note = f"{m} demonstrations are grouped by a sample of {SAMPLE_SIZE}"
+    notes = "; ".join(sentence for sentence in (note, of_sample.note) if sentence)
     return replace(of_sample, linkage=linkage, labels=labels, note=notes)

@@ -17,10 +17,10 @@ from teachpath.learning.resampling import arc_lengths
 from teachpath.nurbs import Curve
 from teachpath.records import Array
 
-POINTS_PER_SPAN = 4  # least, so that the data decide every control point (Schoenberg & Whitney)
-JUST_HALF = 0.5 - 1e-6  # so that rounding does not decide where a symmetric span is halved
-MOST_PRUNED = 5000  # points above which knots are not tried for removal
-DENSE = 2000  # points of the polyline that stands for a curve when distances are measured
+MIN_POINTS_PER_SPAN = 4  # least, so that the data decide every control point (Schoenberg & Whitney)
+HALF_SHARE = 0.5 - 1e-6  # so that rounding does not decide where a symmetric span is halved
+MAX_POINTS_FOR_REMOVAL = 5000  # points above which knots are not tried for removal
+CURVE_SAMPLES = 2000  # points of the polyline that stands for a curve when distances are measured
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,7 +32,7 @@ class Approximation:
 
 
 def approximate(
-    points: Array, bound: float, *, degree: int, most: int, span: int = POINTS_PER_SPAN, at: Array | None = None
+    points: Array, bound: float, *, degree: int, most: int, span: int = MIN_POINTS_PER_SPAN, at: Array | None = None
 ) -> Approximation:
     """Fit a NURBS to ordered points, with as few knots as the bound allows.
 
@@ -64,24 +64,24 @@ def approximate(
             break
         interior = np.sort(np.concatenate([interior, added]))
         errors = problem.solve(interior)[1]
-    if errors.max() <= bound and len(points) <= MOST_PRUNED:
+    if errors.max() <= bound and len(points) <= MAX_POINTS_FOR_REMOVAL:
         interior = _pruned(problem, interior, bound)
     control, errors = problem.solve(interior)
     curve = Curve(degree, _clamped(interior, degree), control, np.ones(len(control)))
     return Approximation(curve, float(errors.max()))
 
 
-def distances_to(curve: Curve, points: Array) -> Array:
+def distances_to_curve(curve: Curve, points: Array) -> Array:
     """Return the true nearest distance of every point from the curve: (n,) [m]."""
-    return distances_from(curve)(points)
+    return distance_function(curve)(points)
 
 
-def distances_from(curve: Curve) -> Callable[[Array], Array]:
-    """Return what `distances_to` of this curve is, for many sets of points.
+def distance_function(curve: Curve) -> Callable[[Array], Array]:
+    """Return what `distances_to_curve` of this curve is, for many sets of points.
 
     The curve is sampled densely and taken for a polyline, whose segments beside the nearest sample are measured.
     """
-    samples = curve(np.linspace(0.0, 1.0, max(DENSE, 64 * len(curve.control_points)) + 1))
+    samples = curve(np.linspace(0.0, 1.0, max(CURVE_SAMPLES, 64 * len(curve.control_points)) + 1))
     tree = cKDTree(samples)
 
     def distances(points: Array) -> Array:
@@ -141,7 +141,7 @@ def _splits(u: Array, interior: Array, errors: Array, bound: float, span: int) -
         if worst <= bound or end - begin < 2 * span:
             continue
         weight = np.cumsum(np.square(errors[begin:end]))
-        middle = begin + int(np.searchsorted(weight, weight[-1] * JUST_HALF))
+        middle = begin + int(np.searchsorted(weight, weight[-1] * HALF_SHARE))
         middle = min(max(middle, begin + span), end - span)
         found.append((-float(worst), float(u[middle - 1] + u[middle]) / 2))
     return [knot for _, knot in sorted(found)]

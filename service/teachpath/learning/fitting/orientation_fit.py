@@ -8,7 +8,7 @@ import numpy as np
 
 from teachpath.errors import LearningFailed
 from teachpath.learning.fitting.nurbs_fit import approximate
-from teachpath.learning.resampling import arc_lengths, continuous, smoothed, smoothed_orientations
+from teachpath.learning.resampling import arc_lengths, sign_aligned, smoothed, smoothed_orientations
 from teachpath.learning.settings import LearningSettings
 from teachpath.nurbs import Curve, unit
 from teachpath.records import Array, Trajectory
@@ -36,10 +36,12 @@ def mean_orientations(selected: Sequence[Trajectory], count: int) -> Array | Non
     stacked = np.stack(courses)  # (m, count, 4)
     axes = np.linalg.eigh(np.einsum("mki,mkj->kij", stacked, stacked))[1]
     mean = axes[..., -1]
-    return continuous(mean if mean[0, 0] >= 0 else -mean)
+    return sign_aligned(mean if mean[0, 0] >= 0 else -mean)
 
 
-def orient(cluster: int, mean: Array, at: Array, degree: int, settings: LearningSettings) -> tuple[Curve, float]:
+def fit_orientations(
+    cluster: int, mean: Array, at: Array, degree: int, settings: LearningSettings
+) -> tuple[Curve, float]:
     """Fit a curve of quaternions within `turn_bound`.
 
     Args:
@@ -58,7 +60,7 @@ def orient(cluster: int, mean: Array, at: Array, degree: int, settings: Learning
     # A point within sin(a / 2) of a unit quaternion is within the angle a of it after normalisation.
     most = settings.most_control_points
     fit = approximate(mean, float(np.sin(settings.turn_bound / 2)), degree=degree, most=most, at=at)
-    largest = float(angles(unit(fit.curve, at), mean).max())
+    largest = float(rotation_angles(unit(fit.curve, at), mean).max())
     if largest > settings.turn_bound:
         raise LearningFailed(
             f"the orientations of way {cluster} cannot be followed within {np.degrees(settings.turn_bound):.3g}° by "
@@ -68,7 +70,7 @@ def orient(cluster: int, mean: Array, at: Array, degree: int, settings: Learning
     return fit.curve, largest
 
 
-def angles(one: Array, other: Array) -> Array:
+def rotation_angles(one: Array, other: Array) -> Array:
     """Return the angles between unit quaternions as rotations: (n,) [rad], whatever their signs."""
     signs = np.where((one * other).sum(axis=1) < 0, -1.0, 1.0)[:, None]
     return np.asarray(4 * np.arcsin(np.clip(np.linalg.norm(one - signs * other, axis=1) / 2, 0.0, 1.0)))

@@ -11,43 +11,43 @@ from scipy.signal import savgol_filter
 from teachpath.learning.resampling import arc_lengths, at_equal_arc_length, smoothed
 from teachpath.records import Array, Departure, Trajectory
 
-CLEARLY = 0.25  # share of the largest deficit that a frame must have to be odd too
-BRIDGED = 2  # frames between odd ones that count as odd
-POINTS = 100  # of the paths that are compared
-JUMP = 0.01  # m, of one sample from its neighbours
-REPEATED = 5  # equal readings in a row
-STILL = 0.15  # share of the mean speed
-LONGEST_STOP = 0.2  # s, that needs no mention
-WAVE = 0.8  # s, over which an intended motion is nearly a cubic
-SLOWEST = 1.0  # Hz, of shaking
-WAVY = 0.4  # share of the distance from the others that is shaking, not a detour
-TREMBLING = 8  # Hz
-MARGIN = 0.4  # s, around the span that is looked at
+MIN_DEFICIT_SHARE = 0.25  # share of the largest deficit that a frame must have to be odd too
+MAX_BRIDGED_FRAMES = 2  # frames between odd ones that count as odd
+PATH_POINTS = 100  # of the paths that are compared
+MIN_JUMP = 0.01  # m, of one sample from its neighbours
+MIN_REPEATED_READINGS = 5  # equal readings in a row
+REST_SPEED_SHARE = 0.15  # share of the mean speed
+MIN_STOP_DURATION = 0.2  # s, that needs no mention
+MOTION_WINDOW = 0.8  # s, over which an intended motion is nearly a cubic
+MIN_SHAKING_RATE = 1.0  # Hz, of shaking
+MIN_SHAKING_SHARE = 0.4  # share of the distance from the others that is shaking, not a detour
+MIN_TREMOR_RATE = 8  # Hz
+SPAN_MARGIN = 0.4  # s, around the span that is looked at
 
 
-def departure(
-    trajectory: Trajectory, others: Sequence[Trajectory], quality: str, *, profile: Array, times: Array, usual: float
+def describe_deviation(
+    trajectory: Trajectory, others: Sequence[Trajectory], kind: str, *, profile: Array, times: Array, usual: float
 ) -> Departure:
     """Return where a demonstration is unlikeliest and what is odd about it there.
 
     Args:
         trajectory: of the demonstration.
         others: of the other members of its cluster.
-        quality: in which it differs most: course, shape, bends or smoothness.
-        profile: (frames,) log-likelihoods of its frames in the features of that quality.
+        kind: in which it differs most: course, shape, bends or smoothness.
+        profile: (frames,) log-likelihoods of its frames in the features of that kind.
         times: (frames,) [s] of these frames, since the first sample.
         usual: log-likelihood of a frame of the others.
     """
     since = trajectory.times - trajectory.times[0]
     s = arc_lengths(smoothed(trajectory))
     away, within = _beside(trajectory, others)
-    if quality in ("shape", "bends") and np.any(away > within):
+    if kind in ("shape", "bends") and np.any(away > within):
         # A bow taken off a path with a detour is spread along all of it; the distance says where the detour is.
         profile, usual = within - away, 0.0
-        times = np.interp(np.linspace(0.0, s[-1], POINTS), s, since)
+        times = np.interp(np.linspace(0.0, s[-1], PATH_POINTS), s, since)
     begin, end = _span(profile, times, usual)
     share = (float(np.interp(begin, since, s) / s[-1]), float(np.interp(end, since, s) / s[-1]))
-    what = _told(trajectory, others, quality, (begin, end), _worst(away, within, share))
+    what = _told(trajectory, others, kind, (begin, end), _worst(away, within, share))
     sentence = f"{what}, {begin:.1f} to {end:.1f} s after the grasp, at {share[0]:.0%} to {share[1]:.0%} of its way"
     return Departure(share, (begin, end), sentence)
 
@@ -56,7 +56,9 @@ def _span(profile: Array, times: Array, usual: float) -> tuple[float, float]:
     """Return between which times [s] the frames are clearly less likely than usual, around the unlikeliest."""
     deficit = usual - profile
     worst = int(np.argmax(deficit))
-    odd = binary_closing(np.pad(deficit > CLEARLY * deficit[worst], BRIDGED), iterations=BRIDGED)[BRIDGED:-BRIDGED]
+    odd = binary_closing(
+        np.pad(deficit > MIN_DEFICIT_SHARE * deficit[worst], MAX_BRIDGED_FRAMES), iterations=MAX_BRIDGED_FRAMES
+    )[MAX_BRIDGED_FRAMES:-MAX_BRIDGED_FRAMES]
     usual_ones = np.append(np.flatnonzero(~odd), len(profile))
     first = int(np.max(usual_ones[usual_ones < worst], initial=-1)) + 1
     last = int(np.min(usual_ones[usual_ones > worst])) - 1
@@ -67,51 +69,59 @@ def _span(profile: Array, times: Array, usual: float) -> tuple[float, float]:
 def _told(
     trajectory: Trajectory,
     others: Sequence[Trajectory],
-    quality: str,
+    kind: str,
     seconds: tuple[float, float],
     beside: tuple[float, float],
 ) -> str:
     since = trajectory.times - trajectory.times[0]
     steps = np.diff(since)
-    margin, step = max(MARGIN, float(steps.max())), float(np.median(steps))
+    margin, step = max(SPAN_MARGIN, float(steps.max())), float(np.median(steps))
     inside = (since >= seconds[0] - margin) & (since <= seconds[1] + margin)
     positions = trajectory.positions[inside]
     repeated = _longest(np.all(np.diff(positions, axis=0) == 0, axis=1))
-    if repeated + 1 >= REPEATED:
+    if repeated + 1 >= MIN_REPEATED_READINGS:
         return f"the tracker repeats one reading for {repeated * step:.1f} s"
     jumps = np.linalg.norm(positions - median_filter(positions, size=(5, 1), mode="nearest"), axis=1)
     jitter = float(np.median(jumps))
-    if jumps.max() > JUMP + 5 * jitter:
+    if jumps.max() > MIN_JUMP + 5 * jitter:
         return f"jumps by {jumps.max() * 100:.0f} cm"
     away, usual = beside
     path = smoothed(trajectory)
     speed = np.linalg.norm(np.gradient(path, since, axis=0), axis=1)
-    still = _longest((speed < STILL * speed.mean()) & inside & (since > MARGIN) & (since < since[-1] - MARGIN)) * step
-    if still > LONGEST_STOP:
+    still = (
+        _longest(
+            (speed < REST_SPEED_SHARE * speed.mean())
+            & inside
+            & (since > SPAN_MARGIN)
+            & (since < since[-1] - SPAN_MARGIN)
+        )
+        * step
+    )
+    if still > MIN_STOP_DURATION:
         return f"stands still for {still:.1f} s"
     shake, rate = _shaking(trajectory.positions, since, inside)
     normal = float(np.median([_shaking(other.positions, other.times - other.times[0])[0] for other in others]))
-    trembles = shake > 1.1 * normal and quality == "smoothness"
-    if trembles or shake > max(2 * normal, WAVY * away):
-        word = "shakes" if rate < TREMBLING else "trembles"
+    trembles = shake > 1.1 * normal and kind == "smoothness"
+    if trembles or shake > max(2 * normal, MIN_SHAKING_SHARE * away):
+        word = "shakes" if rate < MIN_TREMOR_RATE else "trembles"
         return f"{word} by {shake * 100:.1f} cm about {rate:.0f} times a second"
     if away > 1.5 * usual:
         return f"runs up to {away * 100:.1f} cm beside the others, who stay within {usual * 100:.1f} cm"
-    if quality == "bends":
+    if kind == "bends":
         return "bends as none of the others does, though not far beside them"
     return "is in another place than the others at that time: quicker, slower or beside them"
 
 
 def _beside(trajectory: Trajectory, others: Sequence[Trajectory]) -> tuple[Array, Array]:
     """Return how far it is from the mean of the others, and the farthest of them, at equal arc length (100,) [m]."""
-    courses = np.stack([at_equal_arc_length(smoothed(other), POINTS) for other in others])
+    courses = np.stack([at_equal_arc_length(smoothed(other), PATH_POINTS) for other in others])
     mean = courses.mean(axis=0)
-    away = np.linalg.norm(at_equal_arc_length(smoothed(trajectory), POINTS) - mean, axis=1)
+    away = np.linalg.norm(at_equal_arc_length(smoothed(trajectory), PATH_POINTS) - mean, axis=1)
     return away, np.linalg.norm(courses - mean, axis=2).max(axis=0)
 
 
 def _worst(away: Array, within: Array, share: tuple[float, float]) -> tuple[float, float]:
-    begin, end = int(share[0] * (POINTS - 1)), int(np.ceil(share[1] * (POINTS - 1))) + 1
+    begin, end = int(share[0] * (PATH_POINTS - 1)), int(np.ceil(share[1] * (PATH_POINTS - 1))) + 1
     worst = begin + int(np.argmax(away[begin:end]))
     return float(away[worst]), float(within[worst])
 
@@ -119,12 +129,12 @@ def _worst(away: Array, within: Array, share: tuple[float, float]) -> tuple[floa
 def _shaking(positions: Array, since: Array, inside: Array | None = None) -> tuple[float, float]:
     """Return amplitude [m] and rate [Hz] of the quick part of a motion: what no cubic follows over 0.8 s."""
     step = float(np.median(np.diff(since)))
-    width = min(round(WAVE / step), len(positions) - 1) // 2 * 2 + 1
+    width = min(round(MOTION_WINDOW / step), len(positions) - 1) // 2 * 2 + 1
     quick = positions - savgol_filter(positions, max(width, 5), 3, axis=0)
     quick = quick if inside is None else quick[inside]
     power = np.square(np.abs(np.fft.rfft(quick, axis=0))).sum(axis=1)
     rates = np.fft.rfftfreq(len(quick), step)
-    power[rates < SLOWEST] = 0.0
+    power[rates < MIN_SHAKING_RATE] = 0.0
     return float(np.sqrt(2 * np.square(quick).sum(axis=1).mean())), float(rates[np.argmax(power)])
 
 

@@ -10,73 +10,72 @@ from numpy.lib.stride_tricks import sliding_window_view
 from scipy.signal.windows import hamming
 
 from teachpath.learning.resampling import arc_lengths, at_equal_arc_length, at_equal_times, smoothed
-from teachpath.learning.selection.shape_residuals import INSTANTS as BEND_INSTANTS
-from teachpath.learning.selection.shape_residuals import courses
-from teachpath.learning.settings import Tick
+from teachpath.learning.selection.shape_residuals import COURSE_POINTS, courses
+from teachpath.learning.settings import StepCallback
 from teachpath.records import Array, Trajectory
 
 WINDOW = 40  # samples of a stretch, or fewer when a demonstration is shorter
-LEAST_WINDOW = 20  # samples
-TREND = 3  # degree of the polynomial that stands for the intended motion within a stretch
-SPECTRUM = 64  # points of the zero-padded transform
-BANDS = ((1, 5), (5, 9), (9, 17), (17, 33))  # bins, first to one behind the last
-QUIET = 2e-4  # m, amplitude below which movement is not told from tracker noise
-INSTANTS = 40  # equal times, or equal shares of the path, at which positions are taken
-FINE = 200  # points of a path that its bow is taken off
-BOW = 5  # degree of the polynomial that stands for a path's large-scale form
-LEAD = 0.03  # s, weight of velocity beside position
+MIN_WINDOW = 20  # samples
+TREND_DEGREE = 3  # degree of the polynomial that stands for the intended motion within a stretch
+FFT_POINTS = 64  # points of the zero-padded transform
+FREQUENCY_BANDS = ((1, 5), (5, 9), (9, 17), (17, 33))  # bins, first to one behind the last
+NOISE_AMPLITUDE = 2e-4  # m, amplitude below which movement is not told from tracker noise
+FEATURE_POINTS = 40  # equal times, or equal shares of the path, at which positions are taken
+SHAPE_POINTS = 200  # points of a path that its bow is taken off
+SHAPE_TREND_DEGREE = 5  # degree of the polynomial that stands for a path's large-scale form
+VELOCITY_WEIGHT = 0.03  # s, weight of velocity beside position
 
 
 @dataclass(frozen=True, eq=False)
-class Family:
+class FeatureSet:
     """One kind of feature of every member of a cluster.
 
     Attributes:
-        quality: what it tells: course, shape, bends or smoothness.
+        kind: what it tells: course, shape, bends or smoothness.
         sequences: for each member (frames, features).
         times: for each member (frames,) [s], when the frames are, since the first sample.
         states: of the models of it; 0 where the demonstrations are compared with one another without a model.
-        alike: whether the consistent members of a cluster hardly differ in it.
+        core_scored: whether the consistent members of a cluster hardly differ in it.
     """
 
-    quality: str
+    kind: str
     sequences: list[Array]
     times: list[Array]
     states: int
-    alike: bool = False
+    core_scored: bool = False
 
 
-def families(trajectories: Sequence[Trajectory], period: float, tick: Tick) -> list[Family]:
+def extract_features(trajectories: Sequence[Trajectory], period: float, on_step: StepCallback) -> list[FeatureSet]:
     """Return the features of the members of a cluster; without smoothness when one is shorter than the window.
 
     Args:
         trajectories: of one cluster.
         period: sampling period [s] they are brought to for smoothness.
-        tick: called at most twice for each trajectory.
+        on_step: called at most twice for each trajectory.
     """
     durations = [float(trajectory.times[-1] - trajectory.times[0]) for trajectory in trajectories]
-    equal = [np.linspace(0.0, duration, INSTANTS) for duration in durations]
+    equal = [np.linspace(0.0, duration, FEATURE_POINTS) for duration in durations]
     paths = []
     for trajectory in trajectories:
         paths.append(smoothed(trajectory))
-        tick()
+        on_step()
     found = [
-        Family("course", positions_and_velocities(trajectories), equal, 10),
-        Family("shape", shapes(paths), [_when(t, path) for t, path in zip(trajectories, paths, strict=True)], 10),
+        FeatureSet("course", positions_and_velocities(trajectories), equal, 10),
+        FeatureSet("shape", shapes(paths), [_when(t, path) for t, path in zip(trajectories, paths, strict=True)], 10),
     ]
-    instants = [np.linspace(0.0, duration, BEND_INSTANTS) for duration in durations]
-    found.append(Family("bends", courses(trajectories, paths), instants, 0))
-    energies = band_energies(trajectories, period, tick)
+    instants = [np.linspace(0.0, duration, COURSE_POINTS) for duration in durations]
+    found.append(FeatureSet("bends", courses(trajectories, paths), instants, 0))
+    energies = band_energies(trajectories, period, on_step)
     if energies is not None:
         centres = [
             (np.arange(len(frames)) + 0.5) * duration / len(frames)
             for frames, duration in zip(energies, durations, strict=True)
         ]
-        found.append(Family("smoothness", energies, centres, 5, alike=True))
+        found.append(FeatureSet("smoothness", energies, centres, 5, core_scored=True))
     return found
 
 
-def band_energies(trajectories: Sequence[Trajectory], period: float, tick: Tick) -> list[Array] | None:
+def band_energies(trajectories: Sequence[Trajectory], period: float, on_step: StepCallback) -> list[Array] | None:
     """Return the log energy in four frequency bands of short stretches, freed of the intended motion.
 
     A cubic is taken off every stretch: the course of a hand over 0.8 s is nearly one, a wiggle of 1.5 Hz is not.
@@ -85,26 +84,26 @@ def band_energies(trajectories: Sequence[Trajectory], period: float, tick: Tick)
     Args:
         trajectories: of one cluster.
         period: sampling period [s] they are brought to.
-        tick: called once for each trajectory.
+        on_step: called once for each trajectory.
 
     Returns:
         for each trajectory (frames, 4), or None when one is shorter than 20 periods.
     """
     counts = [round(float(trajectory.times[-1] - trajectory.times[0]) / period) + 1 for trajectory in trajectories]
     width = min(WINDOW, *counts)
-    if width < LEAST_WINDOW:
+    if width < MIN_WINDOW:
         return None
     window = hamming(width)
-    trend = np.linalg.qr(np.polynomial.legendre.legvander(np.linspace(-1.0, 1.0, width), TREND))[0]
-    floor = np.square(QUIET * window.sum() / 2)
+    trend = np.linalg.qr(np.polynomial.legendre.legvander(np.linspace(-1.0, 1.0, width), TREND_DEGREE))[0]
+    floor = np.square(NOISE_AMPLITUDE * window.sum() / 2)
     features = []
     for trajectory, count in zip(trajectories, counts, strict=True):
         stretches = sliding_window_view(at_equal_times(trajectory, count), width, axis=0)[:: width // 5]
         residual = (stretches - (stretches @ trend) @ trend.T) * window  # (frames, 3, width)
-        power = np.square(np.abs(np.fft.rfft(residual, SPECTRUM, axis=2))).sum(axis=1)  # (frames, bins)
-        energies = np.column_stack([power[:, low:high].sum(axis=1) for low, high in BANDS])
+        power = np.square(np.abs(np.fft.rfft(residual, FFT_POINTS, axis=2))).sum(axis=1)  # (frames, bins)
+        energies = np.column_stack([power[:, low:high].sum(axis=1) for low, high in FREQUENCY_BANDS])
         features.append(np.log(energies + floor))
-        tick()
+        on_step()
     return features
 
 
@@ -116,15 +115,15 @@ def positions_and_velocities(trajectories: Sequence[Trajectory]) -> list[Array]:
     Returns:
         for each trajectory (40, 6) [m].
     """
-    courses = [at_equal_times(trajectory, INSTANTS, smoothed(trajectory)) for trajectory in trajectories]
+    courses = [at_equal_times(trajectory, FEATURE_POINTS, smoothed(trajectory)) for trajectory in trajectories]
     pooled = np.concatenate(courses)
     centre = pooled.mean(axis=0)
     axes = np.linalg.eigh(np.cov((pooled - centre).T))[1]
     features = []
     for trajectory, course in zip(trajectories, courses, strict=True):
         local = (course - centre) @ axes
-        step = float(trajectory.times[-1] - trajectory.times[0]) / (INSTANTS - 1)
-        features.append(np.column_stack([local, LEAD * np.gradient(local, step, axis=0)]))
+        step = float(trajectory.times[-1] - trajectory.times[0]) / (FEATURE_POINTS - 1)
+        features.append(np.column_stack([local, VELOCITY_WEIGHT * np.gradient(local, step, axis=0)]))
     return features
 
 
@@ -137,9 +136,9 @@ def shapes(paths: Sequence[Array]) -> list[Array]:
     Returns:
         for each path (40, 3) [m].
     """
-    bow = np.linalg.qr(np.polynomial.legendre.legvander(np.linspace(-1.0, 1.0, FINE), BOW))[0]
-    stations = np.linspace(0, FINE - 1, INSTANTS).round().astype(int)
-    courses = [at_equal_arc_length(path, FINE) for path in paths]
+    bow = np.linalg.qr(np.polynomial.legendre.legvander(np.linspace(-1.0, 1.0, SHAPE_POINTS), SHAPE_TREND_DEGREE))[0]
+    stations = np.linspace(0, SHAPE_POINTS - 1, FEATURE_POINTS).round().astype(int)
+    courses = [at_equal_arc_length(path, SHAPE_POINTS) for path in paths]
     residuals = [(course - bow @ (bow.T @ course))[stations] for course in courses]
     axes = np.linalg.eigh(np.cov(np.concatenate(residuals).T))[1]
     return [residual @ axes for residual in residuals]
@@ -148,4 +147,4 @@ def shapes(paths: Sequence[Array]) -> list[Array]:
 def _when(trajectory: Trajectory, path: Array) -> Array:
     """Return the times [s] at which equal shares of a path are reached."""
     s = arc_lengths(path)
-    return np.asarray(np.interp(np.linspace(0.0, s[-1], INSTANTS), s, trajectory.times - trajectory.times[0]))
+    return np.asarray(np.interp(np.linspace(0.0, s[-1], FEATURE_POINTS), s, trajectory.times - trajectory.times[0]))

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from teachpath.learning.selection.hmm import LOG_2PI, LeftRightHmm
 from teachpath.records import Array
 
-ONE_ONLY = 4.0  # factor on the variance of a model of one sequence
+SINGLE_SEQUENCE_FACTOR = 4.0  # factor on the variance of a model of one sequence
 
 
 class TiedGaussianHmm(LeftRightHmm):
@@ -31,7 +31,7 @@ class TiedGaussianHmm(LeftRightHmm):
         The variance about the estimated means is too small by (n - 1) / n, that of a new sequence larger than the true
         one by (n + 1) / n.
         """
-        self.variance_ *= (sequences + 1) / (sequences - 1) if sequences > 1 else ONE_ONLY
+        self.variance_ *= (sequences + 1) / (sequences - 1) if sequences > 1 else SINGLE_SEQUENCE_FACTOR
 
     def _begin(self, owners: NDArray[np.int64], frames: Array) -> None:
         self.means_ = np.zeros((self.n_components, self.n_features))

@@ -22,12 +22,12 @@ from teachpath.records import Array
 Statistics = dict[str, Any]
 # Of one sequence: its log-likelihood, how probable each state is in each frame (frames, Q) but for a factor a frame,
 # and how often each transition is expected (Q, Q).
-Passes = tuple[float, Array, Array]
+ForwardBackward = tuple[float, Array, Array]
 
 LOG_2PI = float(np.log(2 * np.pi))
 # Nats by which the best way through the chain may be behind the best state of every frame, for numbers instead of their
 # logarithms to do: what rounds to nought there is at least 45 nats less likely than that way.
-LINEAR = -700.0
+MIN_SCALED_LOG_LIKELIHOOD = -700.0
 
 
 class LeftRightHmm(BaseHMM):  # type: ignore[misc]
@@ -89,7 +89,7 @@ class LeftRightHmm(BaseHMM):  # type: ignore[misc]
             total, _, scales = _hmmc.forward_scaling(self.startprob_, self.transmat_, np.exp(lattice - best[:, None]))
         except ValueError:  # underflow
             total = -np.inf
-        if total > LINEAR:
+        if total > MIN_SCALED_LOG_LIKELIHOOD:
             return np.asarray(best - np.log(scales))
         forward = _hmmc.forward_log(self.startprob_, self.transmat_, lattice)[1]
         return np.diff(logsumexp(forward, axis=1), prepend=0.0)
@@ -126,19 +126,19 @@ class LeftRightHmm(BaseHMM):  # type: ignore[misc]
         gamma /= gamma.sum(axis=1, keepdims=True)
         return {"frames": X, "posteriors": gamma, "trans": often}, total
 
-    def _scaled_passes(self, densities: Array) -> Passes | None:
+    def _scaled_passes(self, densities: Array) -> ForwardBackward | None:
         """Run forward and backward over one sequence; None where numbers are too small for it."""
         start, moves = self.startprob_, self.transmat_
         try:
             total, forward, scales = _hmmc.forward_scaling(start, moves, densities)
         except ValueError:  # underflow
             return None
-        if total < LINEAR:
+        if total < MIN_SCALED_LOG_LIKELIHOOD:
             return None
         backward = _hmmc.backward_scaling(start, moves, densities, scales)
         return total, forward * backward, _hmmc.compute_scaling_xi_sum(forward, moves, backward, densities)
 
-    def _log_passes(self, lattice: Array) -> Passes:
+    def _log_passes(self, lattice: Array) -> ForwardBackward:
         start, moves = self.startprob_, self.transmat_
         total, forward = _hmmc.forward_log(start, moves, lattice)
         backward = _hmmc.backward_log(start, moves, lattice)

@@ -15,7 +15,7 @@ from scipy.special import logsumexp
 from teachpath.learning.selection.hmm import LOG_2PI, LeftRightHmm
 from teachpath.records import Array
 
-KMEANS_ROUNDS = 5
+KMEANS_ITERATIONS = 5
 
 
 class MixtureHmm(LeftRightHmm):
@@ -95,7 +95,7 @@ def _start(frames: Array, count: int, rng: np.random.Generator) -> tuple[Array, 
     """
     centres = frames[rng.choice(len(frames), count, replace=len(frames) < count)]
     cells = np.zeros(len(frames), dtype=int)
-    for _ in range(KMEANS_ROUNDS):
+    for _ in range(KMEANS_ITERATIONS):
         cells = np.square(frames[:, None] - centres).sum(axis=2).argmin(axis=1)
         for k in np.unique(cells):
             centres[k] = frames[cells == k].mean(axis=0)

@@ -14,7 +14,7 @@ import numpy as np
 from teachpath.learning.selection.mixture_hmm import MixtureHmm
 from teachpath.learning.selection.scoring import robust_z
 from teachpath.learning.selection.symbols import WINDOW, spectra, symbol_sequences
-from teachpath.learning.settings import LearningSettings, Tick
+from teachpath.learning.settings import LearningSettings, StepCallback
 from teachpath.records import Array, Cluster, Score
 
 RIDGE = 0.01  # squared codeword numbers, added to every covariance
@@ -24,7 +24,7 @@ REPAIRED_STATES, REPAIRED_MIXTURES = 5, 1
 
 
 def select_as_paper(
-    equalised: Mapping[str, Array], ways: Sequence[Sequence[str]], settings: LearningSettings, *, tick: Tick
+    equalised: Mapping[str, Array], ways: Sequence[Sequence[str]], settings: LearningSettings, *, on_step: StepCallback
 ) -> tuple[Cluster, ...]:
     """Score the members of every cluster by the cluster's own model and keep the n best.
 
@@ -35,7 +35,7 @@ def select_as_paper(
         equalised: id -> positions (n, 3) [m], all of one length.
         ways: the members of every cluster.
         settings: `keep` members are kept; with fewer members selection is skipped.
-        tick: called once per model trained.
+        on_step: called once per model trained.
     """
     shortest = min(len(positions) for positions in equalised.values())
     if shortest < WINDOW:
@@ -43,11 +43,11 @@ def select_as_paper(
         return tuple(unscored(index + 1, way, note) for index, way in enumerate(ways))
     names = sorted(equalised)
     heard = [spectra(equalised[name]) for name in names]
-    first = _once(names, heard, ways, settings, np.random.default_rng(settings.seed), tick)
+    first = _once(names, heard, ways, settings, np.random.default_rng(settings.seed), on_step)
     kept = dict.fromkeys(equalised, 0)
     for repeat in range(settings.repeats):
         rng = np.random.default_rng([settings.seed, repeat + 1])
-        for cluster in _once(names, heard, ways, settings, rng, tick):
+        for cluster in _once(names, heard, ways, settings, rng, on_step):
             for score in cluster.scores:
                 kept[score.demonstration] += score.selected
     if settings.repeats == 0:
@@ -64,7 +64,7 @@ def unscored(index: int, names: Sequence[str], note: str) -> Cluster:
     return Cluster(index, tuple(names), scores, (), note)
 
 
-def models_of_paper(ways: int, repeats: int) -> int:
+def paper_step_count(ways: int, repeats: int) -> int:
     """Return how often `select_as_paper` ticks."""
     return ways * (1 + repeats)
 
@@ -75,14 +75,14 @@ def _once(
     ways: Sequence[Sequence[str]],
     settings: LearningSettings,
     rng: np.random.Generator,
-    tick: Tick,
+    on_step: StepCallback,
 ) -> tuple[Cluster, ...]:
     words = symbol_sequences(heard, settings.codebook, rng, ordered=settings.mode == "repaired")
     symbols = dict(zip(names, words, strict=True))
     clusters = []
     for index, way in enumerate(ways):
         clusters.append(_selected(index + 1, {name: symbols[name] for name in sorted(way)}, settings, rng))
-        tick()
+        on_step()
     return tuple(clusters)
 
 

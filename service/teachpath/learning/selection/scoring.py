@@ -8,44 +8,46 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from teachpath.learning.selection.features import Family
+from teachpath.learning.selection.features import FeatureSet
 from teachpath.learning.selection.gaussian_hmm import TiedGaussianHmm
-from teachpath.learning.selection.shape_residuals import judge_bends
-from teachpath.learning.settings import Tick
+from teachpath.learning.selection.shape_residuals import score_bending
+from teachpath.learning.settings import StepCallback
 from teachpath.records import Array
 
-FLOOR = 0.02  # share of the overall variance that a state's variance keeps at least
-USUAL_SPREAD = 1.0  # nats a frame, of the scores of demonstrations that are alike
-FEWEST_WITH_CORE = 4  # members
-BELIEF = 4  # members that the usual spread counts for beside the measured one
+VARIANCE_FLOOR_SHARE = 0.02  # share of the overall variance that a state's variance keeps at least
+PRIOR_SPREAD = 1.0  # nats a frame, of the scores of demonstrations that are alike
+MIN_MEMBERS_FOR_CORE = 4  # members
+PRIOR_MEMBERS = 4  # members that the usual spread counts for beside the measured one
 
 
 @dataclass(frozen=True, eq=False)
-class Judgement:
+class ConsistencyScores:
     """What the members of a cluster score.
 
     Attributes:
         profiles: for each family and member the log-likelihoods of its frames.
         z: (families, m) robust z scores of their means.
-        measure: (m,) sum of the z scores, those above the median counting as the median: 0 or less.
+        total: (m,) sum of the z scores, those above the median counting as the median: 0 or less.
         order: (m,) members from the most to the least consistent.
     """
 
     profiles: list[list[Array]]
     z: Array
-    measure: Array
+    total: Array
     order: NDArray[np.int64]
 
 
 @dataclass(frozen=True)
-class Effort:
+class TrainingBudget:
     """What the training of one model may cost: iterations of Baum-Welch, and sequences; more do not make it better."""
 
     iterations: int = 8
     sequences: int = 30
 
 
-def judge(families: Sequence[Family], members: Sequence[int], folds: int, *, effort: Effort, tick: Tick) -> Judgement:
+def score_consistency(
+    families: Sequence[FeatureSet], members: Sequence[int], folds: int, *, effort: TrainingBudget, on_step: StepCallback
+) -> ConsistencyScores:
     """Score members by models that were trained on the others.
 
     In families in which all are alike, they are scored once more by models of the better half, and the worse of the two
@@ -56,29 +58,29 @@ def judge(families: Sequence[Family], members: Sequence[int], folds: int, *, eff
         members: which of them take part.
         folds: parts of which each is scored by models of the other parts; as many as members = leave one out.
         effort: for each model.
-        tick: called once per model trained, and once for the bends.
+        on_step: called once per model trained, and once for the bends.
     """
     profiles, rows = [], []
     for family in families:
         sequences = [family.sequences[i] for i in members]
         if family.states == 0:
-            row, profile = judge_bends(np.stack(sequences))
+            row, profile = score_bending(np.stack(sequences))
             profiles.append(list(profile))
-            tick()
+            on_step()
         else:
-            profiles.append(_left_out(sequences, range(len(members)), family.states, folds, effort, tick))
+            profiles.append(_left_out(sequences, range(len(members)), family.states, folds, effort, on_step))
             row = robust_z(_means(profiles[-1]))
         rows.append(row)
     z = np.stack(rows)
-    if len(members) >= FEWEST_WITH_CORE:
+    if len(members) >= MIN_MEMBERS_FOR_CORE:
         # Spoilt in the same way, two of five lend each other a model; those that agree best lend them none.
         core = np.sort(_order(z, profiles)[: len(members) // 2 + 1])
         for k, family in enumerate(families):
-            if family.alike:
+            if family.core_scored:
                 sequences = [family.sequences[i] for i in members]
-                profiles[k] = _left_out(sequences, core, family.states, folds, effort, tick)
+                profiles[k] = _left_out(sequences, core, family.states, folds, effort, on_step)
                 z[k] = np.minimum(z[k], robust_z(_means(profiles[k]), core))
-    return Judgement(profiles, z, np.minimum(z, 0.0).sum(axis=0), _order(z, profiles))
+    return ConsistencyScores(profiles, z, np.minimum(z, 0.0).sum(axis=0), _order(z, profiles))
 
 
 def _order(z: Array, profiles: list[list[Array]]) -> NDArray[np.int64]:
@@ -91,13 +93,13 @@ def _means(profiles: list[Array]) -> Array:
     return np.array([profile.mean() for profile in profiles])
 
 
-def fitted(sequences: Sequence[Array], states: int, effort: Effort) -> TiedGaussianHmm:
+def train_model(sequences: Sequence[Array], states: int, effort: TrainingBudget) -> TiedGaussianHmm:
     """Return a model of sequences (frames, features), of too many only some at equal steps."""
     if len(sequences) > effort.sequences:
         sequences = [sequences[i] for i in np.linspace(0, len(sequences) - 1, effort.sequences).astype(int)]
     variance = np.concatenate(sequences).var(axis=0)
     # A direction in which nothing moves must not weigh more than the others.
-    floor = np.maximum(FLOOR * variance, 1e-3 * FLOOR * variance.max() + 1e-12)
+    floor = np.maximum(VARIANCE_FLOOR_SHARE * variance, 1e-3 * VARIANCE_FLOOR_SHARE * variance.max() + 1e-12)
     model = TiedGaussianHmm(floor, states=states, iterations=effort.iterations)
     model.train(sequences)
     model.widen(len(sequences))
@@ -114,12 +116,17 @@ def robust_z(scores: Array, core: NDArray[np.int64] | None = None) -> Array:
     """
     known = scores if core is None else scores[core]
     measured = 1.4826 * float(np.median(np.abs(known - np.median(known))))
-    spread = np.sqrt((len(known) * measured**2 + BELIEF * USUAL_SPREAD**2) / (len(known) + BELIEF))
+    spread = np.sqrt((len(known) * measured**2 + PRIOR_MEMBERS * PRIOR_SPREAD**2) / (len(known) + PRIOR_MEMBERS))
     return np.asarray((scores - np.median(known)) / spread)
 
 
 def _left_out(
-    sequences: list[Array], core: Sequence[int] | NDArray[np.int64], states: int, folds: int, effort: Effort, tick: Tick
+    sequences: list[Array],
+    core: Sequence[int] | NDArray[np.int64],
+    states: int,
+    folds: int,
+    effort: TrainingBudget,
+    on_step: StepCallback,
 ) -> list[Array]:
     """Return the profile of each sequence under a model of the core, without itself where it belongs to the core."""
     folds = min(folds, len(core))
@@ -129,8 +136,8 @@ def _left_out(
     for fold in range(folds + 1):
         scored = np.flatnonzero(part == fold)
         if len(scored):
-            model = fitted([sequences[i] for i in core if part[i] != fold], states, effort)
+            model = train_model([sequences[i] for i in core if part[i] != fold], states, effort)
             for i in scored:
                 profiles[i] = model.log_likelihoods(sequences[i])
-            tick()
+            on_step()
     return profiles

@@ -13,9 +13,9 @@ from teachpath.records import Array
 
 WINDOW = 20  # samples, Hamming
 HOP = 10  # samples, half of the window
-SPECTRUM = 32  # points of the zero-padded transform
-BINS = 16  # of its magnitudes, without the last
-ROUNDS = 30  # of k-means at most
+FFT_POINTS = 32  # points of the zero-padded transform
+FFT_BINS = 16  # of its magnitudes, without the last
+KMEANS_ITERATIONS = 30  # of k-means at most
 
 
 def spectra(positions: Array) -> Array:
@@ -28,7 +28,7 @@ def spectra(positions: Array) -> Array:
         (frames, 3, 16): one 16-dimensional vector per window and axis.
     """
     stretches = sliding_window_view(positions, WINDOW, axis=0)[::HOP]
-    return np.abs(np.fft.rfft(stretches * hamming(WINDOW), SPECTRUM, axis=2))[..., :BINS]
+    return np.abs(np.fft.rfft(stretches * hamming(WINDOW), FFT_POINTS, axis=2))[..., :FFT_BINS]
 
 
 def symbol_sequences(
@@ -57,7 +57,7 @@ def symbol_sequences(
 def _quantised(vectors: Array, size: int, rng: np.random.Generator, ordered: bool) -> Array:
     codebook = vectors[rng.choice(len(vectors), min(size, len(vectors)), replace=False)]
     labels = vq(vectors, codebook)[0]
-    for _ in range(ROUNDS):
+    for _ in range(KMEANS_ITERATIONS):
         codebook = np.stack(
             [vectors[labels == k].mean(axis=0) if np.any(labels == k) else codebook[k] for k in range(len(codebook))]
         )

@@ -8,10 +8,10 @@ from scipy.cluster.hierarchy import cophenet, is_valid_linkage, linkage
 from scipy.spatial.distance import pdist
 
 from teachpath.errors import Cancelled
-from teachpath.learning.clustering.average_linkage import FEW, average_linkage
+from teachpath.learning.clustering.average_linkage import MAX_SCIPY_DEMONSTRATIONS, average_linkage
 
 
-@pytest.mark.parametrize("count", [FEW + 1, 517])
+@pytest.mark.parametrize("count", [MAX_SCIPY_DEMONSTRATIONS + 1, 517])
 def test_many_are_merged_as_scipy_merges_them(count: int) -> None:
     condensed = pdist(np.random.default_rng(count).normal(size=(count, 3))).astype(np.float32)
     ours, theirs = average_linkage(condensed, count), linkage(condensed.astype(np.float64), "average")
@@ -22,14 +22,14 @@ def test_many_are_merged_as_scipy_merges_them(count: int) -> None:
 
 
 def test_the_distances_stay_as_they_are() -> None:
-    condensed = pdist(np.random.default_rng(1).normal(size=(FEW + 1, 2))).astype(np.float32)
+    condensed = pdist(np.random.default_rng(1).normal(size=(MAX_SCIPY_DEMONSTRATIONS + 1, 2))).astype(np.float32)
     before = condensed.copy()
-    average_linkage(condensed, FEW + 1)
+    average_linkage(condensed, MAX_SCIPY_DEMONSTRATIONS + 1)
     np.testing.assert_array_equal(condensed, before)
 
 
 def test_demonstrations_that_are_all_alike_are_merged_at_nought() -> None:
-    count = FEW + 1
+    count = MAX_SCIPY_DEMONSTRATIONS + 1
     merges = average_linkage(np.zeros(count * (count - 1) // 2, dtype=np.float32), count)
     assert is_valid_linkage(merges)
     assert not merges[:, 2].any()

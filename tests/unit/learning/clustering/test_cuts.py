@@ -11,8 +11,8 @@ from scipy.spatial.distance import pdist
 
 from teachpath.errors import LearningFailed, UnusableSettings
 from teachpath.io.documents import to_document
-from teachpath.learning.clustering.cuts import dendrogram, recut
-from teachpath.learning.clustering.dendrogram import height_between
+from teachpath.learning.clustering.cuts import dendrogram, recut_members
+from teachpath.learning.clustering.dendrogram import height_for_count
 from teachpath.learning.compare import compare
 from teachpath.learning.learn import learn
 from teachpath.learning.relearn import relearn
@@ -27,21 +27,21 @@ def tree(seed: int, count: int) -> Array:
 
 def run(names: str = "abcdefgh") -> Learned:
     linked = tree(3, len(names))
-    return Learned("default", tuple(names), linked, height_between(linked, 3), (), ())
+    return Learned("default", tuple(names), linked, height_for_count(linked, 3), (), ())
 
 
 def test_a_run_is_cut_again_by_height_or_number() -> None:
     learned = run()
-    three = recut(learned, clusters=3)
-    assert recut(learned, threshold=learned.threshold) == three
+    three = recut_members(learned, clusters=3)
+    assert recut_members(learned, threshold=learned.threshold) == three
     assert sorted("".join("".join(group) for group in three)) == sorted(learned.demonstrations)
-    assert recut(learned, clusters=8) == tuple((name,) for name in learned.demonstrations)
-    assert recut(learned, threshold=1e3) == (learned.demonstrations,)
+    assert recut_members(learned, clusters=8) == tuple((name,) for name in learned.demonstrations)
+    assert recut_members(learned, threshold=1e3) == (learned.demonstrations,)
 
 
 def test_one_demonstration_can_only_be_one_way() -> None:
     one = Learned("default", ("a",), np.empty((0, 4)), 0.0, (), ())
-    assert recut(one, clusters=1) == recut(one, threshold=0.1) == (("a",),)
+    assert recut_members(one, clusters=1) == recut_members(one, threshold=0.1) == (("a",),)
 
 
 @pytest.mark.parametrize(
@@ -57,7 +57,7 @@ def test_one_demonstration_can_only_be_one_way() -> None:
 )
 def test_an_impossible_cut_is_refused_in_words(cut: dict[str, float], sentence: str) -> None:
     with pytest.raises(UnusableSettings, match=sentence):
-        recut(run(), **cut)  # type: ignore[arg-type]
+        recut_members(run(), **cut)  # type: ignore[arg-type]
 
 
 def test_every_listed_cut_is_the_one_that_is_made() -> None:
@@ -66,11 +66,11 @@ def test_every_listed_cut_is_the_one_that_is_made() -> None:
     assert [cut.clusters for cut in drawn.cuts] == list(range(1, 9))
     assert (drawn.threshold, drawn.demonstrations) == (learned.threshold, learned.demonstrations)
     for cut in drawn.cuts:
-        ways = recut(learned, clusters=cut.clusters)
+        ways = recut_members(learned, clusters=cut.clusters)
         assert [set(drawn.leaves[begin:end]) for begin, end in cut.ways] == [set(way) for way in ways]
-        assert recut(learned, threshold=cut.height) == ways
+        assert recut_members(learned, threshold=cut.height) == ways
         assert cut.lowest <= cut.height
-        assert cut.highest is None or recut(learned, threshold=cut.highest) != ways
+        assert cut.highest is None or recut_members(learned, threshold=cut.highest) != ways
     assert len(dendrogram(learned, 3).cuts) == 3
 
 
@@ -88,7 +88,7 @@ def test_learning_from_a_cut_is_learning_with_it_from_the_beginning(
     settings = LearningSettings(mode=mode, threshold=0.08, repeats=2, error_bound=0.02)
     first = learn(twelve, settings)
     again = relearn(first, dict(reversed(twelve.items())), **cut)  # type: ignore[arg-type]
-    assert len(again.clusters) == cut.get("clusters", len(recut(first, threshold=0.03)))
+    assert len(again.clusters) == cut.get("clusters", len(recut_members(first, threshold=0.03)))
     assert to_document(again) == to_document(learn(twelve, LearningSettings(**again.settings)))  # type: ignore[arg-type]
     assert any(sentence.startswith("setting") for sentence in compare(first, again))
 
@@ -123,5 +123,5 @@ def test_merges_of_one_height_cannot_be_told_apart_by_one() -> None:
     equal = np.array([[0, 1, 0.1, 2], [2, 3, 0.1, 3]], dtype=float)
     learned = Learned("paper", ("a", "b", "c"), equal, 0.2, (), ())
     with pytest.raises(UnusableSettings, match="no height leaves 2 clusters"):
-        recut(learned, clusters=2)
-    assert len(recut(replace(learned, mode="default"), clusters=2)) == 2
+        recut_members(learned, clusters=2)
+    assert len(recut_members(replace(learned, mode="default"), clusters=2)) == 2

@@ -11,7 +11,7 @@ from scipy.spatial.distance import cdist, squareform
 
 from teachpath.errors import Cancelled
 from teachpath.learning.clustering import kernels
-from teachpath.learning.clustering.distances import STRIP, distances, frechet, nearest_of
+from teachpath.learning.clustering.distances import ROWS_PER_UPDATE, frechet_distance, nearest_paths, pairwise_distances
 from teachpath.records import Array
 
 KINDS = {"arc": 0, "frechet": 1, "dtw": 2}
@@ -49,12 +49,12 @@ def matching(one: Array, other: Array) -> float:
 def test_the_distance_of_the_paper_is_the_mean_of_pointwise_distances() -> None:
     paths = walks(6)
     expected = [[np.mean([np.linalg.norm(p - q) for p, q in zip(a, b, strict=True)]) for b in paths] for a in paths]
-    np.testing.assert_allclose(squareform(distances(paths)), expected, atol=1e-12)
+    np.testing.assert_allclose(squareform(pairwise_distances(paths)), expected, atol=1e-12)
 
 
 @pytest.mark.parametrize("metric", ["arc", "frechet"])
 def test_the_distance_is_a_metric_of_paths(metric: str) -> None:
-    square = squareform(distances(walks(8), metric))
+    square = squareform(pairwise_distances(walks(8), metric))
     assert np.all(square[:, :, None] <= square[:, None, :] + square.T[None, :, :] + 1e-12)
 
 
@@ -62,7 +62,7 @@ def test_the_distance_is_a_metric_of_paths(metric: str) -> None:
 def test_warped_distances_follow_their_recursions(metric: str, reference: object) -> None:
     paths = walks(7)
     expected = [reference(a, b) for a, b in combinations(paths, 2)]  # type: ignore[operator]
-    np.testing.assert_allclose(distances(paths, metric), expected, atol=1e-12)
+    np.testing.assert_allclose(pairwise_distances(paths, metric), expected, atol=1e-12)
 
 
 def test_warped_distances_do_not_mind_a_pause() -> None:
@@ -70,19 +70,19 @@ def test_warped_distances_do_not_mind_a_pause() -> None:
     paused = np.concatenate([path[:10], np.repeat(path[10:11], 5, axis=0), path[10:]])
     other = np.concatenate([path, np.repeat(path[-1:], 5, axis=0)])
     for metric in ("frechet", "dtw"):
-        assert distances(np.stack([paused, other]), metric)[0] == pytest.approx(0.0, abs=1e-12)
-    assert distances(np.stack([paused, other]))[0] > 0.01
+        assert pairwise_distances(np.stack([paused, other]), metric)[0] == pytest.approx(0.0, abs=1e-12)
+    assert pairwise_distances(np.stack([paused, other]))[0] > 0.01
 
 
 def test_the_frechet_distance_of_two_paths_is_that_of_the_matrix() -> None:
     one, other = walks(2)
-    assert frechet(one, other) == distances(np.stack([one, other]), "frechet")[0]
+    assert frechet_distance(one, other) == pairwise_distances(np.stack([one, other]), "frechet")[0]
 
 
 def compiled(paths: Array, kind: int) -> Array:
     single = np.ascontiguousarray(paths.transpose(0, 2, 1), dtype=np.float32)
     out = np.empty(len(paths) * (len(paths) - 1) // 2)
-    for begin in range(0, len(paths), STRIP):
+    for begin in range(0, len(paths), ROWS_PER_UPDATE):
         kernels.fill_rows(single, out, begin, kind)
     return out
 
@@ -91,18 +91,18 @@ def compiled(paths: Array, kind: int) -> Array:
 @pytest.mark.parametrize("count", [2, 24])
 def test_the_kernels_agree_with_numpy(metric: str, count: int) -> None:
     paths = walks(count)
-    np.testing.assert_allclose(compiled(paths, KINDS[metric]), distances(paths, metric), rtol=1e-4, atol=1e-6)
+    np.testing.assert_allclose(compiled(paths, KINDS[metric]), pairwise_distances(paths, metric), rtol=1e-4, atol=1e-6)
 
 
 def test_many_paths_are_measured_as_few_are() -> None:
     paths = walks(210)
-    few = squareform(distances(paths[-150:]))
-    np.testing.assert_allclose(squareform(distances(paths))[-150:, -150:], few, rtol=1e-5, atol=1e-7)
+    few = squareform(pairwise_distances(paths[-150:]))
+    np.testing.assert_allclose(squareform(pairwise_distances(paths))[-150:, -150:], few, rtol=1e-5, atol=1e-7)
 
 
 def test_far_from_the_origin_single_precision_is_enough() -> None:
     paths = walks(210)
-    np.testing.assert_allclose(distances(paths + 1e3), distances(paths), rtol=1e-4, atol=1e-6)
+    np.testing.assert_allclose(pairwise_distances(paths + 1e3), pairwise_distances(paths), rtol=1e-4, atol=1e-6)
 
 
 @pytest.mark.parametrize("kind", [0, 1, 2])
@@ -119,8 +119,8 @@ def test_the_number_of_threads_changes_no_bit(kind: int) -> None:
 
 def test_the_nearest_of_a_sample_is_found() -> None:
     paths = walks(90)
-    index, apart = nearest_of(paths, paths[:7], "arc")
-    square = squareform(distances(paths))[:, :7]
+    index, apart = nearest_paths(paths, paths[:7], "arc")
+    square = squareform(pairwise_distances(paths))[:, :7]
     np.testing.assert_array_equal(index, square.argmin(axis=1))
     np.testing.assert_allclose(apart, square.min(axis=1), rtol=1e-4, atol=1e-6)
 
@@ -128,7 +128,7 @@ def test_the_nearest_of_a_sample_is_found() -> None:
 @pytest.mark.parametrize(("metric", "count"), [("arc", 30), ("arc", 250), ("dtw", 20)])
 def test_measuring_tells_its_progress_and_can_be_cancelled(metric: str, count: int) -> None:
     told: list[float] = []
-    distances(walks(count, 8), metric, lambda fraction, _: told.append(fraction))
+    pairwise_distances(walks(count, 8), metric, lambda fraction, _: told.append(fraction))
     assert told == sorted(told)
     assert told[0] == 0.0
 
@@ -136,4 +136,4 @@ def test_measuring_tells_its_progress_and_can_be_cancelled(metric: str, count: i
         raise Cancelled("enough")
 
     with pytest.raises(Cancelled):
-        distances(walks(count, 8), metric, cancel)
+        pairwise_distances(walks(count, 8), metric, cancel)

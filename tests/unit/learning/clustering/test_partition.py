@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from teachpath.learning.clustering.average_linkage import average_linkage
-from teachpath.learning.clustering.distances import distances
-from teachpath.learning.clustering.partition import Grouping, cut_at, cut_by_silhouette, cut_into
+from teachpath.learning.clustering.distances import pairwise_distances
+from teachpath.learning.clustering.partition import Partition, cut_at, cut_by_silhouette, cut_into
 from teachpath.learning.resampling import at_equal_arc_length, smoothed
 from teachpath.learning.summary import ambiguities
 from teachpath.records import Array, Trajectory
@@ -17,10 +17,10 @@ TRUTH = (1, 2, 3, 3, 2, 1, 3, 1, 3, 1, 2, 1)
 
 
 def condensed(demonstrations: dict[str, Trajectory]) -> Array:
-    return distances(np.stack([at_equal_arc_length(smoothed(d), 100) for d in demonstrations.values()]))
+    return pairwise_distances(np.stack([at_equal_arc_length(smoothed(d), 100) for d in demonstrations.values()]))
 
 
-def grouped(demonstrations: dict[str, Trajectory], guard: float = 0.5) -> Grouping:
+def grouped(demonstrations: dict[str, Trajectory], guard: float = 0.5) -> Partition:
     return cut_by_silhouette(condensed(demonstrations), len(demonstrations), guard=guard, length=0.8)
 
 
@@ -44,7 +44,7 @@ def test_close_ways_are_told_apart_though_others_are_far_away() -> None:
     rng = np.random.default_rng(3)
     shifts = np.repeat([0.0, 0.08, 1.0, 2.0], 5)
     paths = synthetic.loop(40) + shifts[:, None, None] + rng.normal(0, 0.01, (20, 1, 3))
-    grouping = cut_by_silhouette(distances(paths), 20, guard=0.5, length=1.0)
+    grouping = cut_by_silhouette(pairwise_distances(paths), 20, guard=0.5, length=1.0)
     np.testing.assert_array_equal(grouping.labels, np.repeat([1, 2, 3, 4], 5))
 
 
@@ -116,14 +116,14 @@ def places(*offsets: float, spread: float = 0.002) -> Array:
     """Distances of copies of one path at these places."""
     rng = np.random.default_rng(4)
     shifted = [synthetic.loop(30) + offset + rng.normal(0, spread, 3) for offset in offsets]
-    return distances(np.stack(shifted))
+    return pairwise_distances(np.stack(shifted))
 
 
 def test_a_close_choice_names_the_next_best_cut_and_the_clusters_it_touches() -> None:
     apart = places(0, 0, 0, 0, 0.6, 0.6, 0.6, 0.6, 0.66, 0.66, 0.66, 0.66, spread=0.012)
     grouping = cut_by_silhouette(apart, 12, guard=0.5, length=1.0)
-    assert grouping.rival is not None
-    assert grouping.rival != grouping.labels.max()
+    assert grouping.alternative is not None
+    assert grouping.alternative != grouping.labels.max()
     assert "ambiguous" in grouping.note
     doubts = ambiguities(grouping)
     assert doubts[0] == ""
@@ -132,7 +132,7 @@ def test_a_close_choice_names_the_next_best_cut_and_the_clusters_it_touches() ->
 
 def test_a_clear_choice_is_not_called_ambiguous() -> None:
     grouping = cut_by_silhouette(places(0, 0, 0, 0.5, 0.5, 0.5), 6, guard=0.5, length=1.0)
-    assert (grouping.note, grouping.rival) == ("", None)
+    assert (grouping.note, grouping.alternative) == ("", None)
     assert ambiguities(grouping) == ["", ""]
 
 
@@ -140,8 +140,8 @@ def test_a_threshold_close_to_a_merge_is_called_ambiguous() -> None:
     apart = places(0, 0.2, spread=0.0)
     tree, height = average_linkage(apart, 2), float(apart[0])
     near, far = cut_at(tree, height * 1.02), cut_at(tree, height * 2)
-    assert near.rival == 2
+    assert near.alternative == 2
     assert ambiguities(near) == ["ambiguous: could as well be 2 ways, of 1 and 1 demonstrations"]
     assert "close to learning.threshold" in near.note
-    assert far.rival is None
+    assert far.alternative is None
     assert "together with 2" in ambiguities(cut_at(tree, height * 0.98))[0]

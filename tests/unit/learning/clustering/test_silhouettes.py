@@ -7,7 +7,7 @@ import pytest
 from scipy.cluster.hierarchy import linkage
 from scipy.spatial.distance import pdist, squareform
 
-from teachpath.learning.clustering.dendrogram import labels_into
+from teachpath.learning.clustering.dendrogram import labels_for_count
 from teachpath.learning.clustering.silhouettes import Silhouettes
 from teachpath.records import Array
 
@@ -32,17 +32,17 @@ def test_every_cut_has_the_silhouette_of_the_definition(seed: int) -> None:
     tree = linkage(condensed, "average")
     silhouettes = Silhouettes(condensed, tree, 8)
     for count in range(2, 9):
-        expected = by_definition(squareform(condensed), labels_into(tree, count))
+        expected = by_definition(squareform(condensed), labels_for_count(tree, count))
         assert silhouettes.mean(count) == pytest.approx(expected, abs=1e-12)
 
 
 def test_a_split_is_judged_as_if_its_cluster_were_alone() -> None:
     condensed = scattered(7)
     tree = linkage(condensed, "average")
-    coarse, fine = labels_into(tree, 3), labels_into(tree, 4)
+    coarse, fine = labels_for_count(tree, 3), labels_for_count(tree, 4)
     split = next(label for label in (1, 2, 3) if len(set(fine[coarse == label])) > 1)
     inside = np.flatnonzero(coarse == split)
-    value, members = Silhouettes(condensed, tree, 6).of_split(3)
+    value, members = Silhouettes(condensed, tree, 6).mean_of_split(3)
     assert members == len(inside)
     expected = by_definition(squareform(condensed)[np.ix_(inside, inside)], fine[inside])
     assert value == pytest.approx(expected, abs=1e-12)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.optimize import minimize_scalar
 
-from teachpath.learning.fitting.nurbs_fit import approximate, distances_to
+from teachpath.learning.fitting.nurbs_fit import approximate, distances_to_curve
 from teachpath.nurbs import Curve
 from teachpath.records import Array
 from tests.unit.learning import synthetic
@@ -77,7 +77,7 @@ def test_repeated_points_are_passed_over() -> None:
     points = synthetic.loop(100)
     fit = approximate(np.repeat(points, 3, axis=0), 0.002, degree=3, most=60)
     assert fit.largest <= 0.002
-    assert distances_to(fit.curve, points).max() <= 0.002
+    assert distances_to_curve(fit.curve, points).max() <= 0.002
 
 
 def test_a_rigid_motion_moves_the_curve_with_the_points() -> None:
@@ -90,4 +90,4 @@ def test_a_rigid_motion_moves_the_curve_with_the_points() -> None:
 def test_measured_distances_agree_with_a_minimiser() -> None:
     curve = approximate(synthetic.loop(200), 0.005, degree=5, most=60).curve
     points = np.random.default_rng(2).uniform(-0.1, 0.6, (25, 3))
-    np.testing.assert_allclose(distances_to(curve, points), [nearest(curve, p) for p in points], atol=1e-6)
+    np.testing.assert_allclose(distances_to_curve(curve, points), [nearest(curve, p) for p in points], atol=1e-6)

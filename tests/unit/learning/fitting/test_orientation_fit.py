@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from teachpath.errors import LearningFailed
-from teachpath.learning.fitting.orientation_fit import angles, mean_orientations, orient
+from teachpath.learning.fitting.orientation_fit import fit_orientations, mean_orientations, rotation_angles
 from teachpath.learning.settings import LearningSettings
 from teachpath.nurbs import unit
 from teachpath.records import Array, Trajectory
@@ -24,7 +24,7 @@ def line(orientations: Array) -> Trajectory:
 
 def test_angles_are_those_of_rotations_whatever_the_signs() -> None:
     turns = np.linspace(0, np.pi, 20)
-    np.testing.assert_allclose(angles(about_z(turns), -about_z(0 * turns)), turns, atol=1e-9)
+    np.testing.assert_allclose(rotation_angles(about_z(turns), -about_z(0 * turns)), turns, atol=1e-9)
 
 
 def test_the_mean_of_two_turns_is_half_way_whatever_their_signs() -> None:
@@ -32,17 +32,17 @@ def test_the_mean_of_two_turns_is_half_way_whatever_their_signs() -> None:
     one, other = line(about_z(1.0 * share)), line(-about_z(1.6 * share))
     mean = mean_orientations([one, other], 50)
     assert mean is not None
-    np.testing.assert_allclose(angles(mean, about_z(1.3 * np.linspace(0, 1, 50))), 0.0, atol=1e-2)
+    np.testing.assert_allclose(rotation_angles(mean, about_z(1.3 * np.linspace(0, 1, 50))), 0.0, atol=1e-2)
     assert np.all((mean[1:] * mean[:-1]).sum(axis=1) > 0.9)
 
 
 def test_a_whole_turn_is_kept_though_both_ends_are_the_same_rotation() -> None:
     mean = mean_orientations([line(about_z(np.linspace(0, 2 * np.pi, 300)))], 200)
     assert mean is not None
-    curve, largest = orient(1, mean, np.linspace(0, 1, 200), 3, LearningSettings())
+    curve, largest = fit_orientations(1, mean, np.linspace(0, 1, 200), 3, LearningSettings())
     assert largest <= LearningSettings().turn_bound
     half = unit(curve, 0.5)
-    assert angles(half[None], about_z(np.array([np.pi])))[0] < 0.1
+    assert rotation_angles(half[None], about_z(np.array([np.pi])))[0] < 0.1
     assert unit(curve, 0.0) @ unit(curve, 1.0) == pytest.approx(-1.0, abs=1e-3)
 
 
@@ -52,9 +52,9 @@ def test_the_bound_holds_and_the_ends_are_exact(bound: float) -> None:
     mean = mean_orientations([d], 200)
     assert mean is not None
     at = np.linspace(0, 1, 200)
-    curve, largest = orient(1, mean, at, 5, LearningSettings(turn_bound=bound))
+    curve, largest = fit_orientations(1, mean, at, 5, LearningSettings(turn_bound=bound))
     assert largest <= bound
-    np.testing.assert_allclose(angles(unit(curve, at), mean).max(), largest)
+    np.testing.assert_allclose(rotation_angles(unit(curve, at), mean).max(), largest)
     np.testing.assert_allclose(unit(curve, np.array([0.0, 1.0])), mean[[0, -1]], atol=1e-12)
 
 
@@ -63,4 +63,4 @@ def test_a_bound_that_cannot_be_kept_is_refused_in_degrees() -> None:
     wild = rng.normal(size=(200, 4))
     wild /= np.linalg.norm(wild, axis=1, keepdims=True)
     with pytest.raises(LearningFailed, match=r"within 2\.01° .*raise learning\.turn_bound"):
-        orient(1, wild, np.linspace(0, 1, 200), 3, LearningSettings())
+        fit_orientations(1, wild, np.linspace(0, 1, 200), 3, LearningSettings())

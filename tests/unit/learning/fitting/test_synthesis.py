@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from teachpath.errors import LearningFailed
-from teachpath.learning.clustering.distances import frechet
+from teachpath.learning.clustering.distances import frechet_distance
 from teachpath.learning.fitting import synthesis
-from teachpath.learning.fitting.synthesis import noise_left
+from teachpath.learning.fitting.synthesis import residual_noise
 from teachpath.learning.resampling import at_equal_arc_length
 from teachpath.learning.settings import LearningSettings
 from teachpath.records import Array, LearnedPath, Trajectory
@@ -19,12 +19,12 @@ PAPER = LearningSettings(mode="paper", threshold=0.1)
 
 
 def synthesise(trajectories: list[Trajectory], **settings: float) -> LearnedPath:
-    return synthesis.synthesise(1, trajectories, LearningSettings(**settings), tick=lambda: None)  # type: ignore[arg-type]
+    return synthesis.fit_mean_path(1, trajectories, LearningSettings(**settings), on_step=lambda: None)  # type: ignore[arg-type]
 
 
 def off(path: LearnedPath, clean: Array) -> float:
     """Fréchet distance from the mean clean path, ends and order included."""
-    return frechet(at_equal_arc_length(path.curve(np.linspace(0, 1, 2000)), 300), clean)
+    return frechet_distance(at_equal_arc_length(path.curve(np.linspace(0, 1, 2000)), 300), clean)
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -43,7 +43,7 @@ def test_the_path_is_within_a_centimetre_of_the_mean_clean_path(kind: str, count
 @pytest.mark.parametrize("kind", KINDS)
 def test_mode_paper_scrambles_such_paths_and_says_so(kind: str) -> None:
     trajectories, clean = synthetic.shown(KINDS[kind], 2)
-    path = synthesis.synthesise_as_paper(1, trajectories, PAPER, tick=lambda: None)
+    path = synthesis.fit_pooled_points(1, trajectories, PAPER, on_step=lambda: None)
     assert "back towards the start" in path.note
     assert off(path, clean) > 0.02
     assert path.fit.frechet is not None
@@ -72,7 +72,7 @@ def test_a_wiggly_mean_is_followed_as_closely_as_can_be_and_the_note_says_how() 
 
 
 def test_noise_left_falls_with_the_number_of_demonstrations() -> None:
-    few, many = (noise_left(synthetic.shown(synthetic.loop(), count)[0]) for count in (2, 8))
+    few, many = (residual_noise(synthetic.shown(synthetic.loop(), count)[0]) for count in (2, 8))
     assert many == pytest.approx(few / 2, rel=0.3)
 
 

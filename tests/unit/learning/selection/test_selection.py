@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from teachpath.learning.selection.default_mode import pieces_of_work, select
+from teachpath.learning.selection.default_mode import select, step_count
 from teachpath.learning.selection.paper_mode import select_as_paper
 from teachpath.learning.settings import LearningSettings
 from teachpath.records import Array, Cluster, Trajectory
@@ -19,13 +19,13 @@ PAPER = LearningSettings(mode="paper", threshold=0.08, repeats=0)
 
 
 def selected(demonstrations: dict[str, Trajectory], settings: LearningSettings = SETTINGS) -> Cluster:
-    return select(1, demonstrations, settings, tick=lambda: None)
+    return select(1, demonstrations, settings, on_step=lambda: None)
 
 
 def selected_as_paper(demonstrations: dict[str, Trajectory], **changes: object) -> Cluster:
     positions = {name: d.positions for name, d in demonstrations.items()}
     settings = replace(PAPER, **changes)  # type: ignore[arg-type]
-    (cluster,) = select_as_paper(positions, [list(demonstrations)], settings, tick=lambda: None)
+    (cluster,) = select_as_paper(positions, [list(demonstrations)], settings, on_step=lambda: None)
     return cluster
 
 
@@ -215,9 +215,9 @@ def test_many_demonstrations_are_judged_in_folds() -> None:
     rng = np.random.default_rng(6)
     crowd = {f"{i:02}": synthetic.demonstration(rng, wiggle=0.025 * (i == 17)) for i in range(33)}
     ticks: list[int] = []
-    cluster = select(1, crowd, SETTINGS, tick=lambda: ticks.append(1))
+    cluster = select(1, crowd, SETTINGS, on_step=lambda: ticks.append(1))
     assert cluster.members[-1] == "17"
-    assert len(ticks) == pieces_of_work([33], 0) < pieces_of_work([30], 0)
+    assert len(ticks) == step_count([33], 0) < step_count([30], 0)
 
 
 def test_mode_paper_keeps_exactly_the_n_best_by_likelihood() -> None:

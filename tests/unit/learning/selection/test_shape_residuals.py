@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from teachpath.learning.resampling import smoothed
-from teachpath.learning.selection.shape_residuals import courses, judge_bends
+from teachpath.learning.selection.shape_residuals import courses, score_bending
 from teachpath.records import Array
 from tests.unit.learning import synthetic
 
@@ -27,8 +27,8 @@ def detoured(seed: int) -> Array:
 
 
 def test_a_detour_is_found_and_hardly_ever_where_there_is_none() -> None:
-    spoilt = np.stack([judge_bends(detoured(seed))[0] for seed in range(FAMILIES)])
-    clean = np.stack([judge_bends(five(seed))[0] for seed in range(FAMILIES)])
+    spoilt = np.stack([score_bending(detoured(seed))[0] for seed in range(FAMILIES)])
+    clean = np.stack([score_bending(five(seed))[0] for seed in range(FAMILIES)])
     assert np.mean(spoilt[:, 4] < -8) >= 0.9
     assert np.mean(spoilt[:, :4] < -8) <= 0.02
     assert np.mean(clean < -8) <= 0.06
@@ -43,27 +43,27 @@ def test_pace_and_slow_drift_say_nothing() -> None:
         walked = np.column_stack([np.interp(at, t, shown[0, :, k]) for k in range(3)])
         shown[i] = walked + np.polynomial.legendre.legvander(2 * t - 1, 2) @ rng.normal(0, 0.02, (3, 3))
     shown += rng.normal(0, 0.0002, shown.shape)
-    assert np.all(judge_bends(shown)[0] > -8)
+    assert np.all(score_bending(shown)[0] > -8)
 
 
 def test_frame_unit_order_and_direction_do_not_matter() -> None:
     shown = detoured(5)
-    z = judge_bends(shown)[0]
+    z = score_bending(shown)[0]
     rotation = np.linalg.qr(np.random.default_rng(1).normal(size=(3, 3)))[0]
-    np.testing.assert_allclose(judge_bends(shown @ rotation.T + 2.0)[0], z, atol=1e-6)
-    np.testing.assert_allclose(judge_bends(shown[::-1])[0][::-1], z, atol=1e-6)
-    np.testing.assert_allclose(judge_bends(shown[:, ::-1])[0], z, atol=1e-6)
-    np.testing.assert_allclose(judge_bends(1.7 * shown)[0], z, rtol=2e-3)
+    np.testing.assert_allclose(score_bending(shown @ rotation.T + 2.0)[0], z, atol=1e-6)
+    np.testing.assert_allclose(score_bending(shown[::-1])[0][::-1], z, atol=1e-6)
+    np.testing.assert_allclose(score_bending(shown[:, ::-1])[0], z, atol=1e-6)
+    np.testing.assert_allclose(score_bending(1.7 * shown)[0], z, rtol=2e-3)
 
 
 def test_fewer_than_four_are_not_compared() -> None:
-    z, profiles = judge_bends(detoured(6)[:3])
+    z, profiles = score_bending(detoured(6)[:3])
     assert not z.any()
     assert profiles.shape == (3, 100)
 
 
 def test_alike_and_standing_courses_give_finite_numbers() -> None:
     for shown in (np.repeat(five(7)[:1], 5, axis=0), np.zeros((5, 100, 3))):
-        z, profiles = judge_bends(shown)
+        z, profiles = score_bending(shown)
         assert np.all(z == 0)
         assert np.all(np.isfinite(profiles))
