@@ -70,8 +70,8 @@ class Station:
             self._lock.__exit__(None, None, None)
             raise
         self.keys = Keys(settings.bus.prefix)
-        self.news = EventHub()
-        self.store = Store(settings.store, changed=self.news.tell)
+        self.event_hub = EventHub()
+        self.store = Store(settings.store, changed=self.event_hub.publish_change)
         self.calibrations = Calibrations(self.store, settings.recording, settings.calibrations, settings.scene)
         self.recorder = Recorder(
             self.bus,
@@ -80,10 +80,10 @@ class Station:
             settings.recording,
             scene=settings.scene,
             calibration=self.calibrations.get,
-            recorded=lambda demonstration, trajectory: self._turn_to(demonstration.task),
-            changed=lambda demonstration: self._turn_to(demonstration.task),
+            on_demonstration=lambda demonstration, trajectory: self._turn_to(demonstration.task),
+            on_change=lambda demonstration: self._turn_to(demonstration.task),
         )
-        self.coach = GuidanceThread(self.store.demonstrations, self.trajectory, settings.learning)
+        self.guidance = GuidanceThread(self.store.demonstrations, self.trajectory, settings.learning)
         self.jobs = Jobs(self.bus, self.keys, self.store, settings.jobs, self._kinds())
         self.assessor = CurveAssessor()
         self.websocket_trackers = WebSocketTrackers(self.bus, self.keys, self.recorder)
@@ -99,8 +99,8 @@ class Station:
         )
         ours = ("simulator", "executor") if settings.simulator.start else ("executor",)
         self.processes = [WorkerProcess(name, settings.model_dump_json()) for name in ours]
-        self.web: FastAPI = build_api(self._parts(), view_router(self.preview), events_router(self.news))
-        self._lookout = StatePoller(self.news, self._looks())
+        self.web: FastAPI = build_api(self._parts(), view_router(self.preview), events_router(self.event_hub))
+        self._state_poller = StatePoller(self.event_hub, self._polls())
         self._shown = ""
         self._started = time.monotonic()
 
@@ -110,11 +110,11 @@ class Station:
             log.warning("%d recordings were cut off; look at them with: teachpath doctor", len(unfinished))
         try:
             self.preview.start()
-            self.coach.start()
+            self.guidance.start()
             self.recorder.start()
             self.executions.start()
             self.joints.start()
-            self._lookout.start()
+            self._state_poller.start()
             for process in self.processes:
                 process.start()
             self.jobs.start()
@@ -130,11 +130,11 @@ class Station:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        self._lookout.stop()
+        self._state_poller.stop()
         for process in self.processes:
             process.request_stop()
         self.recorder.stop()
-        self.coach.stop()
+        self.guidance.stop()
         self.jobs.stop()
         self.assessor.stop()
         self.executions.stop()
@@ -162,7 +162,7 @@ class Station:
             "backlog": self.recorder.backlog,
             "longest_backlog": self.settings.recording.longest_backlog,
             "trackers": [asdict(tracker) for tracker in self.recorder.trackers()],
-            "coach": {"task": self._shown, "sentence": self.coach.sentence(self._shown)},
+            "coach": {"task": self._shown, "sentence": self.guidance.advice(self._shown)},
             "executor": asdict(status) if status else None,
             "notes": self.notes(),
         }
@@ -176,14 +176,14 @@ class Station:
             notes.append(f"{len(unfinished)} recordings were cut off; stop the service and run: teachpath doctor")
         return notes
 
-    def _looks(self) -> dict[str, Poll]:
+    def _polls(self) -> dict[str, Poll]:
         """Return what pages are told of without asking, because no row of the store holds it."""
         return {
             "recordings": lambda: {r.tracker: report_document(r) for r in self.recorder.reports()},
             "trackers": lambda: {
                 t.name: {"announced": t.announced, "silent": t.is_silent} for t in self.recorder.trackers()
             },
-            "coach": lambda: {task: {"sentence": said} for task, said in self.coach.sentences().items()},
+            "coach": lambda: {task: {"sentence": said} for task, said in self.guidance.all_advice().items()},
             "station": lambda: {"": {"version": __version__, "notes": self.notes()}},
             "executor": lambda: {"": asdict(status)} if (status := self.executions.status) else {},
         }
@@ -216,7 +216,7 @@ class Station:
         if not demonstrations:
             raise NotFound(f"task {job.task} has no usable demonstrations yet; show it a few times first")
         if job.request.get("calibrations") != "recorded":
-            self.calibrations.check(demonstrations)
+            self.calibrations.require_current(demonstrations)
         wanted = job.request.get("settings")
         settings = self.settings.learning_with(wanted if isinstance(wanted, dict) else {})
         return {d.id: self.trajectory(d) for d in demonstrations}, settings
@@ -226,7 +226,7 @@ class Station:
         usable = {d.id: d for d in self.store.demonstrations(job.task) if d.is_usable}
         chosen = {key: usable[key] for key in learned.demonstrations if key in usable}
         if job.request.get("calibrations") != "recorded":
-            self.calibrations.check(list(chosen.values()), command="recut")
+            self.calibrations.require_current(list(chosen.values()), command="recut")
         kept = {key: self.trajectory(d) for key, d in chosen.items()}
         return learned, kept, job.request["threshold"], job.request["clusters"]
 
@@ -246,5 +246,5 @@ class Station:
     def _turn_to(self, task: str) -> None:
         """Let coach and preview turn to a task: its demonstrations have changed."""
         self._shown = task
-        self.coach.consider(task)
+        self.guidance.request(task)
         self.preview.show_object(self.settings.scene(self.store.task(task).scene).carried)

@@ -125,7 +125,7 @@ def _recorder(bus: Bus) -> Iterator[tuple[Recorder, dict[str, Trajectory]]]:
             RecordingSettings(handshake_timeout=60.0),
             scene=lambda _: paper_scene(),
             calibration=Calibration,
-            recorded=keep,
+            on_demonstration=keep,
         )
         recorder.start()
         try:

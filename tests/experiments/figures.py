@@ -17,13 +17,13 @@ from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 from matplotlib.ticker import PercentFormatter
 
-from teachpath.live.preview import WAYS
+from teachpath.live.preview import CLUSTER_COLORS
 from teachpath.records import Array, Learned, Trajectory
 from tests.experiments import quoted
 from tests.experiments.scenarios import GROUPINGS, SCENARIOS, SHAPES, along
 from tests.experiments.trials import MODES, Rate, course, learn, settings
 
-PALETTE = [f"#{colour:06x}" for colour in WAYS]
+PALETTE = [f"#{colour:06x}" for colour in CLUSTER_COLORS]
 WAY = dict(enumerate(PALETTE, 1))  # clusters, as in the 3-D view
 MODE = {"default": PALETTE[0], "repaired": PALETTE[4], "paper": PALETTE[3]}
 MARK = {1: "o", 2: "s", 3: "^"}

@@ -49,7 +49,7 @@ def calibrations_router(parts: Parts) -> APIRouter:
     @router.get("/calibrations")
     def list_calibrations() -> list[MeasuredCalibration]:
         """List the mappings to the world from the trackers' frames: of the settings, and the newest measured ones."""
-        return calibrations.known()
+        return calibrations.newest()
 
     @router.get("/calibrations/{name}")
     def list_versions(name: str) -> list[MeasuredCalibration]:
@@ -77,8 +77,8 @@ def calibrations_router(parts: Parts) -> APIRouter:
         stored = store.demonstrations(store.task(task).name)
         if not stored:
             raise NotFound(f"task {task} has no demonstrations yet")
-        changed = calibrations.convert(stored, converted.calibration)
-        parts.recorder.annotations.changed(changed[-1])
-        return changed
+        on_change = calibrations.convert(stored, converted.calibration)
+        parts.recorder.annotations.on_change(on_change[-1])
+        return on_change
 
     return router

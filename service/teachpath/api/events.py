@@ -17,20 +17,20 @@ from teachpath.api import sockets
 from teachpath.live.event_hub import Document, EventHub, Subscriber
 
 
-def events_router(news: EventHub) -> APIRouter:
+def events_router(hub: EventHub) -> APIRouter:
     """Return the route of the events: `/api/v1/events`."""
     router = APIRouter(include_in_schema=False)
 
     @router.websocket("/api/v1/events")
     async def events(socket: WebSocket) -> None:
-        async def send(piece: Document) -> None:
-            await socket.send_text(json.dumps(piece, separators=(",", ":"), allow_nan=False, default=str))
+        async def send(event: Document) -> None:
+            await socket.send_text(json.dumps(event, separators=(",", ":"), allow_nan=False, default=str))
 
         if await sockets.admit(socket):
-            await sockets.serve(socket, news.attach, news.detach, send, _refuse)
+            await sockets.serve(socket, hub.subscribe, hub.unsubscribe, send, _refuse)
 
     return router
 
 
-def _refuse(text: str, listener: Subscriber) -> str:
+def _refuse(text: str, subscriber: Subscriber) -> str:
     return "nothing is expected here; give orders over REST"

@@ -11,7 +11,7 @@ from teachpath.api.closed import Body
 from teachpath.api.parts import Parts
 from teachpath.errors import UnusableInput
 from teachpath.io.wire import report_document
-from teachpath.recording.take_control import Routine
+from teachpath.recording.state_machine import Routine
 from teachpath.records import Demonstration
 
 

@@ -23,7 +23,7 @@ Piece = TypeVar("Piece", covariant=True)
 class Reader(Protocol[Piece]):
     """Somebody for whom something may wait."""
 
-    def take(self) -> Piece | None:
+    def pop(self) -> Piece | None:
         """Return what comes next, or None."""
 
 
@@ -90,7 +90,7 @@ async def serve(
             while True:
                 await news.wait()
                 news.clear()
-                while (piece := reader.take()) is not None:
+                while (piece := reader.pop()) is not None:
                     await send(piece)
 
     reader = attach(wake)

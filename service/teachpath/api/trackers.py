@@ -90,19 +90,19 @@ async def _listen(socket: WebSocket, tracker: WebSocketTracker, silence: float) 
 def _answer(tracker: WebSocketTracker, content: bytes | str) -> Answer:
     """Do what a message asks for; raises UnusableInput when the tracker has to leave."""
     if isinstance(content, bytes):
-        return _refusal(tracker.take(content))
+        return _refusal(tracker.publish(content))
     order = _parse(content)
     if stray := _stray(order):
         return _refusal(tracker.refuse(stray))
     if isinstance(order.get("sample"), dict):
-        return _refusal(tracker.take(order["sample"]))
+        return _refusal(tracker.publish(order["sample"]))
     ping, end = order.get("ping"), order.get("end")
     if isinstance(ping, int | float) and abs(ping) < LARGEST_PING:
-        counts = {"passed": tracker.passed, "refused": tracker.refused}
+        counts = {"passed": tracker.accepted, "refused": tracker.refused}
         return {"pong": ping, "service_ns": time.time_ns(), "samples": counts}
     if isinstance(end, int) and 0 <= end < 2**64:
         try:
-            return {"report": tracker.end(end, discard=order.get("discard") is True)}
+            return {"report": tracker.end_recording(end, discard=order.get("discard") is True)}
         except TeachpathError as error:
             return {"refused": str(error)}
     return _refusal(tracker.refuse(f"{content[:80]!r} is no message of a tracker: send sample, ping or end"))

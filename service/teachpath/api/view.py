@@ -9,7 +9,7 @@ from fastapi import APIRouter, Response, WebSocket
 from fastapi.responses import FileResponse, PlainTextResponse
 
 from teachpath.api import sockets
-from teachpath.live.preview import Page, Preview, viewer_files, web_files
+from teachpath.live.preview import Preview, Viewer, viewer_files, web_files
 
 # The two hashes are the style elements that meshcat's bundle puts into the page: its own (empty) one and dat.gui's.
 STYLE_HASHES: Final = (
@@ -78,12 +78,12 @@ def view_router(preview: Preview) -> APIRouter:
     @router.websocket("/api/v1/view")
     async def view(socket: WebSocket) -> None:
         if await sockets.admit(socket):
-            await sockets.serve(socket, preview.attach, preview.detach, socket.send_bytes, _acknowledge)
+            await sockets.serve(socket, preview.connect, preview.disconnect, socket.send_bytes, _acknowledge)
 
     return router
 
 
-def _acknowledge(text: str, page: Page) -> str:
+def _acknowledge(text: str, page: Viewer) -> str:
     """Take how many batches a page has drawn."""
     if not (text.isascii() and text.isdigit() and len(text) < 9):
         return "only counts of drawn batches are expected here"

@@ -12,92 +12,94 @@ from typing import Any, Final
 
 Document = dict[str, Any]
 Key = tuple[str, str]
-ALL: Final = "all"  # the topic of the first piece, and of the one after an overflow: read everything anew
-LONGEST: Final = 256  # changed resources that wait for one listener
+RESYNC_TOPIC: Final = "all"  # the topic of the first piece, and of the one after an overflow: read everything anew
+MAX_PENDING_CHANGES: Final = 256  # changed resources that wait for one listener
 
 
 class Subscriber:
     """One who listens: what it has not been told yet, the newest piece of each topic and id."""
 
-    def __init__(self, wake: Callable[[], None], first: Document, standing: dict[Key, Document]) -> None:
+    def __init__(self, wake: Callable[[], None], first: Document, states: dict[Key, Document]) -> None:
         self.wake = wake
         self._lock = threading.Lock()
-        self._changes: dict[Key, Document] = {(ALL, ""): first}
-        self._standing = dict(standing)
+        self._changes: dict[Key, Document] = {(RESYNC_TOPIC, ""): first}
+        self._states = dict(states)
 
-    def take(self) -> Document | None:
+    def pop(self) -> Document | None:
         """Return the oldest piece that waits, changes of resources first, or None."""
         with self._lock:
-            for waiting in (self._changes, self._standing):
-                for key in waiting:
-                    return waiting.pop(key)
+            for pending in (self._changes, self._states):
+                for key in pending:
+                    return pending.pop(key)
         return None
 
     @property
-    def waiting(self) -> int:
+    def pending(self) -> int:
         """Number of pieces that wait."""
         with self._lock:
-            return len(self._changes) + len(self._standing)
+            return len(self._changes) + len(self._states)
 
-    def _add(self, key: Key, piece: Document, longest: int) -> None:
+    def _add(self, key: Key, event: Document, max_pending: int) -> None:
         with self._lock:
-            waiting = self._standing if "now" in piece else self._changes
-            waiting.pop(key, None)
-            if (ALL, "") in self._changes and waiting is self._changes:
+            pending = self._states if "now" in event else self._changes
+            pending.pop(key, None)
+            if (RESYNC_TOPIC, "") in self._changes and pending is self._changes:
                 return  # it will read everything after this change
-            waiting[key] = piece
-            if len(self._changes) > longest:
-                self._changes = {(ALL, ""): _anew(piece["sequence"], "too much has changed to tell it one by one")}
+            pending[key] = event
+            if len(self._changes) > max_pending:
+                self._changes = {
+                    (RESYNC_TOPIC, ""): _resync(event["sequence"], "too much has changed to tell it one by one")
+                }
 
 
 class EventHub:
     """Tells every listener; safe to use from several threads, and never waits for anybody."""
 
-    def __init__(self, *, longest: int = LONGEST) -> None:
+    def __init__(self, *, max_pending: int = MAX_PENDING_CHANGES) -> None:
         """Begin with nothing told; at most `longest` changed resources wait for one listener."""
         self._lock = threading.Lock()
-        self._longest = longest
+        self._max_pending = max_pending
         self._sequence = 0
-        self._listeners: set[Subscriber] = set()
-        self._standing: dict[Key, Document] = {}
+        self._subscribers: set[Subscriber] = set()
+        self._states: dict[Key, Document] = {}
 
-    def attach(self, wake: Callable[[], None]) -> Subscriber:
+    def subscribe(self, wake: Callable[[], None]) -> Subscriber:
         """Add a listener; `wake()` is called, from any thread, when there is news for it.
 
         It is told first to read everything, then how all that stands which no resource holds.
         """
         with self._lock:
-            listener = Subscriber(wake, _anew(self._sequence, "connected"), self._standing)
-            self._listeners.add(listener)
-        return listener
+            subscriber = Subscriber(wake, _resync(self._sequence, "connected"), self._states)
+            self._subscribers.add(subscriber)
+        return subscriber
 
-    def detach(self, listener: Subscriber) -> None:
+    def unsubscribe(self, subscriber: Subscriber) -> None:
         """Forget a listener."""
         with self._lock:
-            self._listeners.discard(listener)
+            self._subscribers.discard(subscriber)
 
-    def tell(self, topic: str, key: str) -> None:
+    def publish_change(self, topic: str, key: str) -> None:
         """Say that a resource has changed."""
-        self._pass_on((topic, key), {})
+        self._publish((topic, key), {})
 
-    def stand(self, topic: str, key: str, now: Document | None) -> None:
+    def publish_state(self, topic: str, key: str, now: Document | None) -> None:
         """Say how something stands now; None: it is gone. Whoever comes later is told as well."""
-        self._pass_on((topic, key), {"now": now})
+        self._publish((topic, key), {"now": now})
 
-    def _pass_on(self, key: Key, content: Document) -> None:
+    def _publish(self, key: Key, content: Document) -> None:
         with self._lock:
             self._sequence += 1
-            piece = {"sequence": self._sequence, "topic": key[0], "id": key[1], **content}
+            event = {"sequence": self._sequence, "topic": key[0], "id": key[1], **content}
             if content.get("now") is not None:
-                self._standing[key] = piece
+                self._states[key] = event
             elif "now" in content:
-                self._standing.pop(key, None)
-            listeners = list(self._listeners)
-            for listener in listeners:
-                listener._add(key, piece, self._longest)
-        for listener in listeners:
-            listener.wake()
+                self._states.pop(key, None)
+            subscribers = list(self._subscribers)
+            for subscriber in subscribers:
+                subscriber._add(key, event, self._max_pending)
+        for subscriber in subscribers:
+            subscriber.wake()
 
 
-def _anew(sequence: int, reason: str) -> Document:
-    return {"sequence": sequence, "topic": ALL, "id": "", "reason": reason}
+def _resync(sequence: int, reason: str) -> Document:
+    return {"sequence": sequence, "topic": RESYNC_TOPIC, "id": "", "reason": reason}

@@ -8,7 +8,7 @@ from collections.abc import Callable, Mapping
 
 from teachpath.live.event_hub import Document, EventHub
 
-PERIOD = 0.2  # [s] a person sees no delay, and a moving arm no more than five documents a second
+POLL_INTERVAL = 0.2  # [s] a person sees no delay, and a moving arm no more than five documents a second
 
 # How all things of one topic stand now, by id.
 Poll = Callable[[], Mapping[str, Document]]
@@ -23,9 +23,9 @@ class StatePoller:
         looks: for every topic, what gives its documents.
     """
 
-    def __init__(self, news: EventHub, looks: Mapping[str, Poll], *, period: float = PERIOD) -> None:
-        self._news, self._looks, self._period = news, dict(looks), period
-        self._seen: dict[str, dict[str, Document]] = {topic: {} for topic in looks}
+    def __init__(self, hub: EventHub, polls: Mapping[str, Poll], *, interval: float = POLL_INTERVAL) -> None:
+        self._hub, self._polls, self._interval = hub, dict(polls), interval
+        self._last: dict[str, dict[str, Document]] = {topic: {} for topic in polls}
         self._stopped = threading.Event()
         self._thread: threading.Thread | None = None
 
@@ -41,18 +41,18 @@ class StatePoller:
             self._thread.join()
             self._thread = None
 
-    def look(self) -> None:
+    def poll(self) -> None:
         """Look once, and tell what is different from the last time."""
-        for topic, look in self._looks.items():
-            now, before = dict(look()), self._seen[topic]
-            self._seen[topic] = now
+        for topic, poll in self._polls.items():
+            now, before = dict(poll()), self._last[topic]
+            self._last[topic] = now
             for key in [*now, *(k for k in before if k not in now)]:
                 if now.get(key) != before.get(key):
-                    self._news.stand(topic, key, now.get(key))
+                    self._hub.publish_state(topic, key, now.get(key))
 
     def _run(self) -> None:
-        while not self._stopped.wait(self._period):
+        while not self._stopped.wait(self._interval):
             try:
-                self.look()
+                self.poll()
             except Exception:  # whatever cannot be looked at now must not blind the page to the rest
                 log.exception("the page is not told how the station stands")

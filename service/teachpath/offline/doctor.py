@@ -74,7 +74,7 @@ def _repair(part: Path, store: Store, settings: RecordingSettings, scenes: dict[
         calibration=header.calibration,
         scene=scenes[task.scene],
     )
-    session.remark("repaired after the service was cut off; what came after the last flush is missing")
+    session.note("repaired after the service was cut off; what came after the last flush is missing")
     finished = [session.add(sample) for sample in samples]
     made = [d.id for d, _ in [f for f in finished if f is not None] + session.finish(torn=True)]
     part.rename(part.with_name(part.name + SALVAGED))

@@ -16,7 +16,7 @@ from teachpath.recorder.annotations import MARKS, Amendment, Annotations
 from teachpath.recorder.session import RecordingSession
 from teachpath.recording.demonstration import point_to_world
 from teachpath.recording.phase_statistics import PhaseStatistics, phase_statistics
-from teachpath.recording.phases import GRASP_BUTTON, Cut, Segmenter
+from teachpath.recording.phases import GRASP_BUTTON, Segmenter, TransportSpan
 from teachpath.recording.settings import RecordingSettings
 from teachpath.recording.verdict import Verdict, judge_again
 from teachpath.records import Calibration, Demonstration, Sample, Scene, Trajectory
@@ -161,7 +161,7 @@ def _curated(
 
 
 def _parts(row: Demonstration, samples: list[Sample], settings: RecordingSettings) -> PhaseStatistics:
-    return phase_statistics(samples, Cut(*row.transport), row.account, settings)
+    return phase_statistics(samples, TransportSpan(*row.transport), row.account, settings)
 
 
 def _check(

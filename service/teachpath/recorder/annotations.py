@@ -11,7 +11,7 @@ from teachpath.errors import NotFound, UnusableInput
 from teachpath.io.store.store import Store
 from teachpath.recorder.take_completion import reassess
 from teachpath.recording.demonstration import object_trajectory
-from teachpath.recording.phases import Cut
+from teachpath.recording.phases import TransportSpan
 from teachpath.recording.settings import RecordingSettings
 from teachpath.records import Demonstration, Scene, Trajectory
 
@@ -39,14 +39,14 @@ class Annotations:
     store: Store
     settings: RecordingSettings
     scene: Callable[[str], Scene]
-    changed: Callable[[Demonstration], None] = field(default=lambda demonstration: None)
+    on_change: Callable[[Demonstration], None] = field(default=lambda demonstration: None)
 
     def trajectory(self, demonstration: Demonstration) -> Trajectory:
         """Return the object's trajectory of a stored demonstration, from its recording."""
         carried = self.scene(self.store.task(demonstration.task).scene).carried
         return object_trajectory(
             self.store.recordings.samples(demonstration.recording),
-            Cut(*demonstration.transport),
+            TransportSpan(*demonstration.transport),
             demonstration.calibration,
             carried.position if carried else None,
             left_out=demonstration.left_out,
@@ -83,9 +83,9 @@ class Annotations:
             changes["discarded_ns"] = time.time_ns() if amendment.discarded else 0
         if amendment.trim is not None:
             changes |= self._trimmed(stored, amendment.trim)
-        changed = self.store.change_demonstration(key, **changes)
-        self.changed(changed)
-        return changed
+        on_change = self.store.change_demonstration(key, **changes)
+        self.on_change(on_change)
+        return on_change
 
     def _trimmed(self, stored: Demonstration, trim: tuple[int, int]) -> dict[str, Any]:
         begin, end = trim
@@ -97,7 +97,7 @@ class Annotations:
                 f"least {least} of them"
             )
         samples = self.store.recordings.samples(stored.recording)
-        changed = replace(stored, trim=chosen)
-        changes = reassess(stored, changed, samples, self.settings)
-        times = self.trajectory(replace(changed, **changes)).times
+        on_change = replace(stored, trim=chosen)
+        changes = reassess(stored, on_change, samples, self.settings)
+        times = self.trajectory(replace(on_change, **changes)).times
         return {"trim": chosen, **changes, "duration": float(times[-1])}

@@ -15,7 +15,7 @@ from teachpath.recording.settings import RecordingSettings
 from teachpath.records import Calibration, Demonstration, MeasuredCalibration, Scene, TaughtPoint
 from teachpath_proto.keys import is_name, name_refusal
 
-VERSION_MARK = "@"  # lab@2 is the second version of lab; no name has this character
+VERSION_SEPARATOR = "@"  # lab@2 is the second version of lab; no name has this character
 
 
 @dataclass(frozen=True)
@@ -29,11 +29,11 @@ class Calibrations:
 
     store: Store
     settings: RecordingSettings
-    fixed: Sequence[Calibration]
+    configured: Sequence[Calibration]
     scene: Callable[[str], Scene]
 
     def __post_init__(self) -> None:
-        for calibration in self.fixed:
+        for calibration in self.configured:
             if self.store.calibrations.versions(calibration.name):
                 raise Conflict(
                     f"the calibration {calibration.name} was measured here and is in the settings too; rename it in "
@@ -46,23 +46,23 @@ class Calibrations:
         Raises:
             NotFound: there is none of that name; names the known ones.
         """
-        for calibration in self.fixed:
+        for calibration in self.configured:
             if calibration.name == name:
                 return calibration
-        base, mark, version = name.partition(VERSION_MARK)
+        base, mark, version = name.partition(VERSION_SEPARATOR)
         if mark:
             if not version.isdecimal():
-                raise NotFound(f"{name!r} names no version of a calibration; write e.g. {base}{VERSION_MARK}1")
+                raise NotFound(f"{name!r} names no version of a calibration; write e.g. {base}{VERSION_SEPARATOR}1")
             return self.store.calibrations.version(base, int(version)).calibration
         versions = self.store.calibrations.versions(name)
         if not versions:
-            known = ", ".join(measured.calibration.name for measured in self.known())
-            raise NotFound(f"there is no calibration {name!r}; known: {known}")
+            newest = ", ".join(measured.calibration.name for measured in self.newest())
+            raise NotFound(f"there is no calibration {name!r}; known: {newest}")
         return versions[0].calibration
 
-    def known(self) -> list[MeasuredCalibration]:
+    def newest(self) -> list[MeasuredCalibration]:
         """List those of the settings, then the newest version of each measured one."""
-        return [MeasuredCalibration(calibration) for calibration in self.fixed] + self.store.calibrations.newest()
+        return [MeasuredCalibration(calibration) for calibration in self.configured] + self.store.calibrations.newest()
 
     def measure(
         self, name: str, points: Sequence[TaughtPoint], *, source: str = "", fit_scale: bool = False, keep: bool = True
@@ -82,13 +82,13 @@ class Calibrations:
         """
         if not is_name(name):
             raise UnusableInput(name_refusal("calibration", name))
-        if any(calibration.name == name for calibration in self.fixed):
+        if any(calibration.name == name for calibration in self.configured):
             raise Conflict(f"the calibration {name} is in the settings; choose another name, or take it out there")
         fitted = fit_frame(name, points, largest_residual=self.settings.largest_residual, fit_scale=fit_scale)
         measured = replace(fitted, source=source)
         return self.store.calibrations.add(measured) if keep else measured
 
-    def check(self, demonstrations: Sequence[Demonstration], *, command: str = "learn") -> None:
+    def require_current(self, demonstrations: Sequence[Demonstration], *, command: str = "learn") -> None:
         """Refuse demonstrations whose calibration has been measured or set anew since they were recorded.
 
         Each is in the world by its own calibration, so those of different names agree. Whether an older mapping of

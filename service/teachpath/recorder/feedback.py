@@ -17,8 +17,8 @@ from teachpath.io.wire import encode_feedback
 from teachpath.records import Demonstration, Phase
 from teachpath_proto.keys import Keys
 
-LOOK = 0.03  # [s] between looks: what a hand feels it should feel at once
-AGAIN = 1.0  # [s] after which the same is said again: a hand that hears nothing knows that nobody records it
+POLL_INTERVAL = 0.03  # [s] between looks: what a hand feels it should feel at once
+REPEAT_INTERVAL = 1.0  # [s] after which the same is said again: a hand that hears nothing knows that nobody records it
 HOLDING = (Phase.GRASP, Phase.TRANSPORT)
 
 
@@ -42,7 +42,7 @@ class Standing:
         return (self.phase, self.state, math.ceil(self.countdown_left), self.takes_left, self.newest, self.sign)
 
 
-class Feedback:
+class FeedbackPublisher:
     """Publishes how each recording stands, whenever that changes and once a second.
 
     Args:
@@ -78,9 +78,9 @@ class Feedback:
         if self._thread is not None:
             self._thread.join()
             self._thread = None
-            self.look()
+            self.publish_changes()
 
-    def look(self) -> None:
+    def publish_changes(self) -> None:
         """Publish what has changed since the last look, and what was not said for a second."""
         now, standings = self._clock(), {standing.tracker: standing for standing in self._standings()}
         for tracker, (before, _, _) in list(self._told.items()):
@@ -91,14 +91,14 @@ class Feedback:
         for tracker, standing in standings.items():
             last, at, said = self._told.get(tracker, (None, now, b""))
             changed = last is None or last.told_as != standing.told_as
-            if changed or now - at >= AGAIN:
+            if changed or now - at >= REPEAT_INTERVAL:
                 said = self._said(standing) if changed else said
                 self._told[tracker] = (standing, now, said)
                 self._tell(tracker, said)
 
     def _run(self) -> None:
-        while not self._stopped.wait(LOOK):
-            self.look()
+        while not self._stopped.wait(POLL_INTERVAL):
+            self.publish_changes()
 
     def _tell(self, tracker: str, said: bytes) -> None:
         self._bus.publish(self._keys.feedback(tracker), said)

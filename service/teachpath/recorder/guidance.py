@@ -16,9 +16,9 @@ from teachpath.learning.settings import LearningSettings
 from teachpath.recording.guidance import ClusterSummary, advise
 from teachpath.records import Array, Demonstration, Trajectory
 
-MOST = 60  # newest demonstrations that are compared
-POINTS = 50  # of each, at equal arc length
-STOP = ""  # asked for at the end; no task has this name
+MAX_DEMONSTRATIONS = 60  # newest demonstrations that are compared
+RESAMPLED_POINTS = 50  # of each, at equal arc length
+STOP_REQUEST = ""  # asked for at the end; no task has this name
 
 
 class GuidanceThread:
@@ -37,9 +37,9 @@ class GuidanceThread:
         settings: LearningSettings,
     ) -> None:
         self._demonstrations, self._trajectory, self._settings = demonstrations, trajectory, settings
-        self._asked: queue.SimpleQueue[str] = queue.SimpleQueue()
+        self._requests: queue.SimpleQueue[str] = queue.SimpleQueue()
         self._courses: dict[tuple[str, tuple[int, int]], Array] = {}
-        self._sentences: dict[str, str] = {}
+        self._advice: dict[str, str] = {}
         self._thread: threading.Thread | None = None
 
     def start(self) -> None:
@@ -50,62 +50,62 @@ class GuidanceThread:
     def stop(self) -> None:
         """Compare no more; a second call does nothing."""
         if self._thread is not None:
-            self._asked.put(STOP)
+            self._requests.put(STOP_REQUEST)
             self._thread.join()
             self._thread = None
 
-    def consider(self, task: str) -> None:
+    def request(self, task: str) -> None:
         """Compare a task's demonstrations anew, soon."""
-        self._asked.put(task)
+        self._requests.put(task)
 
-    def sentence(self, task: str) -> str:
+    def advice(self, task: str) -> str:
         """Return what was found last for a task, or nothing."""
-        return self._sentences.get(task, "")
+        return self._advice.get(task, "")
 
-    def sentences(self) -> dict[str, str]:
+    def all_advice(self) -> dict[str, str]:
         """Return what was found last, by task."""
-        return dict(self._sentences)
+        return dict(self._advice)
 
-    def look_at(self, task: str) -> str:
+    def compare(self, task: str) -> str:
         """Compare a task's demonstrations now and return the sentence."""
-        usable = [d for d in self._demonstrations(task) if d.is_usable][-MOST:]
+        usable = [d for d in self._demonstrations(task) if d.is_usable][-MAX_DEMONSTRATIONS:]
         courses = [self._course(d) for d in usable]
         self._courses = {(d.id, d.transport): c for d, c in zip(usable, courses, strict=True)}
         if not courses:
             return ""
         length = float(np.median([arc_lengths(course)[-1] for course in courses]))
-        return advise(_ways(np.array(courses), self._settings, length), length)
+        return advise(_clusters(np.array(courses), self._settings, length), length)
 
     def _run(self) -> None:
-        while STOP not in (burst := self._burst()):
-            for task in burst:
+        while STOP_REQUEST not in (requests := self._pop_requests()):
+            for task in requests:
                 try:
-                    self._sentences[task] = self.look_at(task)
+                    self._advice[task] = self.compare(task)
                 except TeachpathError as error:
-                    self._sentences[task] = f"the demonstrations cannot be compared: {error}"
+                    self._advice[task] = f"the demonstrations cannot be compared: {error}"
 
-    def _burst(self) -> dict[str, None]:
+    def _pop_requests(self) -> dict[str, None]:
         """Return what was asked for meanwhile, each once."""
-        asked = {self._asked.get(): None}
-        while not self._asked.empty():
-            asked[self._asked.get()] = None
-        return asked
+        requests = {self._requests.get(): None}
+        while not self._requests.empty():
+            requests[self._requests.get()] = None
+        return requests
 
     def _course(self, demonstration: Demonstration) -> Array:
         known = self._courses.get((demonstration.id, demonstration.transport))
         if known is not None:
             return known
-        return at_equal_arc_length(smoothed(self._trajectory(demonstration)), POINTS)
+        return at_equal_arc_length(smoothed(self._trajectory(demonstration)), RESAMPLED_POINTS)
 
 
-def _ways(courses: Array, settings: LearningSettings, length: float) -> list[ClusterSummary]:
+def _clusters(courses: Array, settings: LearningSettings, length: float) -> list[ClusterSummary]:
     if len(courses) < 2:
         return [ClusterSummary(len(courses), 0.0)]
     condensed = pairwise_distances(courses)
     labels = cluster_distances(condensed, len(courses), settings, length=length).labels
     left, right = np.triu_indices(len(courses), 1)
     shown = []
-    for way in range(1, int(labels.max()) + 1):
-        within = condensed[(labels[left] == way) & (labels[right] == way)]
-        shown.append(ClusterSummary(int(np.count_nonzero(labels == way)), float(within.max(initial=0.0))))
+    for cluster in range(1, int(labels.max()) + 1):
+        within = condensed[(labels[left] == cluster) & (labels[right] == cluster)]
+        shown.append(ClusterSummary(int(np.count_nonzero(labels == cluster)), float(within.max(initial=0.0))))
     return shown

@@ -6,9 +6,9 @@ import threading
 from collections.abc import Callable
 from dataclasses import dataclass
 
-SILENCE_TIMEOUT = (
-    0.8  # [s] after a sample a tracker is silent, and one without a token has gone; a page shows it within 1 s
-)
+# [s] after its last sample a tracker counts as silent, and one without a liveliness token as gone. A page shows it
+# within 1 s.
+SILENCE_TIMEOUT = 0.8
 MAX_TRACKERS = 1000  # trackers that are remembered; a flood of names must not fill the memory
 
 
@@ -32,40 +32,40 @@ class Presence:
     def __init__(self, clock: Callable[[], float]) -> None:
         self._clock, self._lock = clock, threading.Lock()
         self._announced: set[str] = set()
-        self._heard: dict[str, float] = {}
+        self._last_sample: dict[str, float] = {}
 
-    def announce(self, tracker: str, alive: bool) -> None:
+    def on_liveliness(self, tracker: str, alive: bool) -> None:
         """Take note that a tracker came or went."""
         with self._lock:
             if alive and len(self._announced) < MAX_TRACKERS:
                 self._announced.add(tracker)
             elif not alive:
                 self._announced.discard(tracker)
-                self._heard.pop(tracker, None)
+                self._last_sample.pop(tracker, None)
 
-    def hear(self, tracker: str) -> None:
+    def on_sample(self, tracker: str) -> None:
         """Take note of a sample."""
-        if tracker in self._heard:
-            self._heard[tracker] = self._clock()
+        if tracker in self._last_sample:
+            self._last_sample[tracker] = self._clock()
             return
         with self._lock:
-            if len(self._heard) < MAX_TRACKERS:
-                self._heard[tracker] = self._clock()
+            if len(self._last_sample) < MAX_TRACKERS:
+                self._last_sample[tracker] = self._clock()
             else:
                 limit = self._clock() - SILENCE_TIMEOUT
-                self._heard = {name: at for name, at in self._heard.items() if at > limit}
+                self._last_sample = {name: at for name, at in self._last_sample.items() if at > limit}
 
     def silence_of(self, tracker: str) -> float:
         """Return how long nothing came from a tracker [s]; 0 when it is not known."""
         with self._lock:
-            return self._clock() - self._heard.get(tracker, self._clock())
+            return self._clock() - self._last_sample.get(tracker, self._clock())
 
     def trackers(self) -> list[Tracker]:
         """Return who is there, by name."""
         now = self._clock()
         with self._lock:
-            sending = {name for name, at in self._heard.items() if now - at <= SILENCE_TIMEOUT}
+            sending = {name for name, at in self._last_sample.items() if now - at <= SILENCE_TIMEOUT}
             return [
-                Tracker(name, name in self._announced, round(now - self._heard.get(name, now + 1.0), 1))
+                Tracker(name, name in self._announced, round(now - self._last_sample.get(name, now + 1.0), 1))
                 for name in sorted(self._announced | sending)
             ]

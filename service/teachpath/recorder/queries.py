@@ -8,7 +8,7 @@ from teachpath.errors import UnusableInput
 from teachpath.io.bus import Bus, Handle
 from teachpath.io.wire import encode_demonstration, parse
 from teachpath.recorder.annotations import Amendment
-from teachpath.recording.take_control import Routine
+from teachpath.recording.state_machine import Routine
 from teachpath_proto import tracker_pb2
 from teachpath_proto.keys import Keys
 

@@ -10,7 +10,7 @@ from teachpath.errors import Conflict, UnusableInput
 from teachpath.io.bus import Bus, Handle
 from teachpath.io.store.store import Store
 from teachpath.recorder.annotations import Amendment, Annotations
-from teachpath.recorder.feedback import Feedback, Standing
+from teachpath.recorder.feedback import FeedbackPublisher, Standing
 from teachpath.recorder.presence import Presence, Tracker
 from teachpath.recorder.queries import RecorderQueries
 from teachpath.recorder.recording_thread import RecordingThread
@@ -19,7 +19,7 @@ from teachpath.recorder.session import RecordingSession
 from teachpath.recorder.take import FinishedTake
 from teachpath.recording.live_hand import Hand
 from teachpath.recording.settings import RecordingSettings
-from teachpath.recording.take_control import RecordingState, Routine
+from teachpath.recording.state_machine import RecordingState, Routine
 from teachpath.records import Calibration, Demonstration, Scene, Trajectory
 from teachpath_proto import tracker_pb2
 from teachpath_proto.keys import Keys, is_name, name_refusal
@@ -27,7 +27,7 @@ from teachpath_proto.keys import Keys, is_name, name_refusal
 MAX_SHOWN_HANDS = 32  # that are shown; more would hide each other
 
 log = logging.getLogger("teachpath")
-Recorded = Callable[[Demonstration, Trajectory], None]
+OnDemonstration = Callable[[Demonstration, Trajectory], None]
 Report = tracker_pb2.RecordingReport
 
 
@@ -37,9 +37,9 @@ class Recorder:
     Args:
         scene: gives the scene of a name; raises NotFound.
         calibration: gives the calibration of a name; raises NotFound.
-        changed: called with each demonstration that an operator has discarded, restored, marked or trimmed.
-        recorded: called with each new demonstration, on the recorder's thread or that of the caller of `end`, which
-            wait for it: it must not wait for anybody.
+        on_change: called with each demonstration that an operator has discarded, restored, marked or trimmed.
+        on_demonstration: called with each new demonstration, synchronously on the recorder thread or on the thread that
+            called `begin` or `end`; it must not block.
         clock: [s] monotonic.
     """
 
@@ -52,30 +52,40 @@ class Recorder:
         *,
         scene: Callable[[str], Scene],
         calibration: Callable[[str], Calibration],
-        recorded: Recorded = lambda demonstration, trajectory: None,
-        changed: Callable[[Demonstration], None] = lambda demonstration: None,
+        on_demonstration: OnDemonstration = lambda demonstration, trajectory: None,
+        on_change: Callable[[Demonstration], None] = lambda demonstration: None,
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
         self._bus, self._keys, self._store, self._settings = bus, keys, store, settings
-        self._scene, self._calibration, self._recorded, self._clock = scene, calibration, recorded, clock
-        self.annotations = Annotations(store, settings, scene, changed)
+        self._scene, self._calibration, self._on_demonstration, self._clock = (
+            scene,
+            calibration,
+            on_demonstration,
+            clock,
+        )
+        self.annotations = Annotations(store, settings, scene, on_change)
         self._queries = RecorderQueries(bus, keys, self)
         self._presence = Presence(clock)
-        self._intake = SampleQueues(keys, self._presence, settings.longest_backlog)
-        self._scribe = RecordingThread(
-            self._intake, self._presence, settings, made=self._hand_out, unwanted=self._discard_last_of, clock=clock
+        self._queues = SampleQueues(keys, self._presence, settings.longest_backlog)
+        self._recording_thread = RecordingThread(
+            self._queues,
+            self._presence,
+            settings,
+            on_finished=self._publish_finished,
+            on_discard_request=self._discard_last_of,
+            clock=clock,
         )
-        self._feedback = Feedback(bus, keys, self.standings, store.demonstration, clock=clock)
+        self._feedback = FeedbackPublisher(bus, keys, self.standings, store.demonstration, clock=clock)
         self._missed = 0
         self._handles: list[Handle] = []
 
     def start(self) -> None:
         """Begin to listen."""
-        self._scribe.start()
+        self._recording_thread.start()
         self._feedback.start()
         self._handles = [
-            self._bus.subscribe(self._keys.all_samples, self._intake.receive, missed=self._miss),
-            self._bus.watch(self._keys.all_trackers_alive, self._intake.on_liveliness),
+            self._bus.subscribe(self._keys.all_samples, self._queues.on_sample, missed=self._count_missed),
+            self._bus.watch(self._keys.all_trackers_alive, self._queues.on_liveliness),
         ]
         self._queries.start()
 
@@ -84,7 +94,7 @@ class Recorder:
         self._queries.stop()
         for handle in self._handles:
             handle.close()
-        self._scribe.stop()
+        self._recording_thread.stop()
         self._feedback.stop()
 
     def begin(
@@ -119,9 +129,9 @@ class Recorder:
             self._scene(scene)
             self._store.ensure_task(task, scene=scene, calibration=self._calibration(calibration or "identity").name)
         stored = self._store.task(task)
-        with self._scribe.changed:
-            before = self._scribe.sessions.get(tracker)
-            finished = self._scribe.drain(before) if before is not None else []
+        with self._recording_thread.condition:
+            before = self._recording_thread.sessions.get(tracker)
+            finished = self._recording_thread.drain(before) if before is not None else []
             if before is not None and before.state is not RecordingState.LOST:
                 raise Conflict(f"{tracker} is already recording {before.task}; stop that first")
             session = RecordingSession(
@@ -136,10 +146,10 @@ class Recorder:
                 clock=self._clock,
             )
             finished += before.finish() if before is not None else []
-            self._scribe.sessions[tracker] = session
-            self._intake.open(tracker)
+            self._recording_thread.sessions[tracker] = session
+            self._queues.open(tracker)
             report = session.report()
-        self._hand_out(finished)
+        self._publish_finished(finished)
         return report
 
     def end(self, tracker: str, *, last_sequence: int | None = None, discard: bool = False) -> Report:
@@ -148,44 +158,44 @@ class Recorder:
         Waits up to `handshake_timeout` for samples up to `last_sequence` that are still under way; those that do not
         come are lost. A demonstration whose object was released is kept; one still open is thrown away on `discard`.
         """
-        with self._scribe.changed:
-            session = self._scribe.session(tracker)
+        with self._recording_thread.condition:
+            session = self._recording_thread.session(tracker)
             if last_sequence is not None:
                 arrived = lambda: session.account.highest >= last_sequence  # noqa: E731
-                self._scribe.changed.wait_for(arrived, timeout=self._settings.handshake_timeout)
-            finished = self._scribe.drain(session)
+                self._recording_thread.condition.wait_for(arrived, timeout=self._settings.handshake_timeout)
+            finished = self._recording_thread.drain(session)
             if last_sequence is not None:
                 session.expect(last_sequence)
-            if self._scribe.sessions.get(tracker) is session:
-                del self._scribe.sessions[tracker]
-                self._intake.close(tracker)
+            if self._recording_thread.sessions.get(tracker) is session:
+                del self._recording_thread.sessions[tracker]
+                self._queues.close(tracker)
             finished += session.finish(discard=discard)
-        self._hand_out(finished)
+        self._publish_finished(finished)
         return session.report(ended=True)
 
     def pause(self, tracker: str) -> Report:
         """Record nothing from `tracker` until `resume`; what is carried now is recorded to its end first."""
-        with self._scribe.changed:
-            session = self._scribe.session(tracker)
+        with self._recording_thread.condition:
+            session = self._recording_thread.session(tracker)
             session.pause()
             return session.report()
 
     def resume(self, tracker: str) -> Report:
         """Record from `tracker` again."""
-        with self._scribe.changed:
-            session = self._scribe.session(tracker)
+        with self._recording_thread.condition:
+            session = self._recording_thread.session(tracker)
             session.resume()
             return session.report()
 
     def reports(self) -> list[Report]:
         """Return the accounts of all running recordings."""
-        with self._scribe.changed:
-            return [session.report() for session in self._scribe.sessions.values()]
+        with self._recording_thread.condition:
+            return [session.report() for session in self._recording_thread.sessions.values()]
 
     def standings(self) -> list[Standing]:
         """Return how each running recording stands, for its hand."""
-        with self._scribe.changed:
-            return [session.standing() for session in self._scribe.sessions.values()]
+        with self._recording_thread.condition:
+            return [session.standing() for session in self._recording_thread.sessions.values()]
 
     def trackers(self) -> list[Tracker]:
         """Return the trackers that are there: those that say so, and those that send."""
@@ -194,35 +204,37 @@ class Recorder:
     @property
     def backlog(self) -> int:
         """How many samples have been received and not yet recorded; of each tracker at most `longest_backlog`."""
-        return self._intake.backlog
+        return self._queues.backlog
 
     def faults(self) -> list[str]:
         """Say what keeps samples from being recorded now, for the operator."""
-        with self._scribe.changed:
+        with self._recording_thread.condition:
             found = [
-                f"{session.tracker}: {session.fault}" for session in self._scribe.sessions.values() if session.fault
+                f"{session.tracker}: {session.fault}"
+                for session in self._recording_thread.sessions.values()
+                if session.fault
             ]
         if self._missed:
             found.append(f"Zenoh reports {self._missed} samples that never came")
-        return found + [said for said in [self._intake.invalid_names()] if said]
+        return found + [said for said in [self._queues.invalid_names()] if said]
 
     def hands(self) -> list[Hand]:
         """Return the hands that are recorded, as they are seen now; at most `MAX_SHOWN_HANDS`."""
-        with self._scribe.changed:
-            seen = [session.hand() for session in list(self._scribe.sessions.values())[:MAX_SHOWN_HANDS]]
+        with self._recording_thread.condition:
+            seen = [session.hand() for session in list(self._recording_thread.sessions.values())[:MAX_SHOWN_HANDS]]
         return [hand for hand in seen if hand is not None]
 
     def task_of(self, tracker: str) -> str:
         """Return the task that `tracker` is recording; raises NotFound."""
-        return self._scribe.session(tracker).task
+        return self._recording_thread.session(tracker).task
 
-    def _miss(self, count: int) -> None:  # on the transport's thread
+    def _count_missed(self, count: int) -> None:  # on the transport's thread
         self._missed += count
 
-    def _hand_out(self, finished: list[FinishedTake]) -> None:
+    def _publish_finished(self, finished: list[FinishedTake]) -> None:
         for demonstration, trajectory in finished:
             try:
-                self._recorded(demonstration, trajectory)
+                self._on_demonstration(demonstration, trajectory)
             except Exception:  # whoever shows it may fail; the demonstration is stored, and recording goes on
                 log.exception("demonstration %s is stored, but could not be shown", demonstration.id)
 

@@ -33,18 +33,18 @@ class RecordingThread:
 
     def __init__(
         self,
-        intake: SampleQueues,
+        queues: SampleQueues,
         presence: Presence,
         settings: RecordingSettings,
         *,
-        made: Callable[[list[FinishedTake]], None],
-        unwanted: Callable[[RecordingSession], None],
+        on_finished: Callable[[list[FinishedTake]], None],
+        on_discard_request: Callable[[RecordingSession], None],
         clock: Callable[[], float],
     ) -> None:
-        self._intake, self._presence, self._settings, self._clock = intake, presence, settings, clock
-        self._made, self._unwanted = made, unwanted
+        self._queues, self._presence, self._settings, self._clock = queues, presence, settings, clock
+        self._on_finished, self._on_discard_request = on_finished, on_discard_request
         self.sessions: dict[str, RecordingSession] = {}
-        self.changed = threading.Condition()
+        self.condition = threading.Condition()
         self._stopped = threading.Event()
         self._thread: threading.Thread | None = None
 
@@ -60,7 +60,7 @@ class RecordingThread:
         if self._thread is not None:
             self._thread.join()
             self._thread = None
-        with self.changed:
+        with self.condition:
             for session in self.sessions.values():
                 self.drain(session)
                 session.finish()
@@ -76,7 +76,7 @@ class RecordingThread:
     def drain(self, session: RecordingSession) -> list[FinishedTake]:
         """Record all that waits of one tracker; call it while `changed` is held."""
         finished = []
-        while batch := self._intake.take(session.tracker, BATCH_SIZE):
+        while batch := self._queues.pop(session.tracker, BATCH_SIZE):
             finished += self._record(session, batch)
         return finished
 
@@ -87,14 +87,14 @@ class RecordingThread:
             Whether a batch was full: more waits, and the next round should begin at once. What trickles in meanwhile
             does not count, or rounds of hundreds of trackers would follow each other for a sample each.
         """
-        with self.changed:
+        with self.condition:
             sessions = list(self.sessions.values())
         now, more = self._clock(), False
         for session in sessions:
-            if not self._intake.is_empty(session.tracker) or now - session.flushed >= FLUSH_INTERVAL:
-                more |= self._visit(session, now) == BATCH_SIZE
+            if not self._queues.is_empty(session.tracker) or now - session.last_flush >= FLUSH_INTERVAL:
+                more |= self._process(session, now) == BATCH_SIZE
             elif session.is_carrying:
-                self._look_for_silence(session)
+                self._check_silence(session)
         return more
 
     def _run(self) -> None:
@@ -102,31 +102,31 @@ class RecordingThread:
         while not self._stopped.wait(0.0 if more else ROUND_INTERVAL):
             more = self.process_round()
 
-    def _visit(self, session: RecordingSession, now: float) -> int:
-        with self.changed:
-            batch = self._intake.take(session.tracker, BATCH_SIZE)
+    def _process(self, session: RecordingSession, now: float) -> int:
+        with self.condition:
+            batch = self._queues.pop(session.tracker, BATCH_SIZE)
             finished = self._record(session, batch)
-            if now - session.flushed >= FLUSH_INTERVAL:
+            if now - session.last_flush >= FLUSH_INTERVAL:
                 session.flush(now)
-            unwanted = session.asks_to_discard()
-            self.changed.notify_all()
-        self._made(finished)
-        if unwanted:
-            self._unwanted(session)
+            on_discard_request = session.pop_discard_request()
+            self.condition.notify_all()
+        self._on_finished(finished)
+        if on_discard_request:
+            self._on_discard_request(session)
         return len(batch)
 
     def _record(self, session: RecordingSession, batch: list[QueueItem]) -> list[FinishedTake]:
         if batch and batch[-1].payload is not None:
-            self._presence.hear(session.tracker)
-        if dropped := self._intake.dropped(session.tracker):
-            session.remark(f"{dropped} samples came faster than they can be recorded, and were turned away")
-        return [made for received in batch if (made := self._take_in(session, received)) is not None]
+            self._presence.on_sample(session.tracker)
+        if dropped := self._queues.dropped(session.tracker):
+            session.note(f"{dropped} samples came faster than they can be recorded, and were turned away")
+        return [on_finished for received in batch if (on_finished := self._record_one(session, received)) is not None]
 
-    def _take_in(self, session: RecordingSession, received: QueueItem) -> FinishedTake | None:
+    def _record_one(self, session: RecordingSession, received: QueueItem) -> FinishedTake | None:
         payload, receive_ns = received
         try:
             if payload is None:
-                return session.lose("the tracker has gone" + " in mid-take" * session.is_carrying)
+                return session.on_tracker_lost("the tracker has gone" + " in mid-take" * session.is_carrying)
             return session.add(decode_sample(session.tracker, payload, receive_ns), payload)
         except UnusableSample as error:
             session.refuse(str(error))
@@ -134,18 +134,18 @@ class RecordingThread:
             session.fail(f"recording failed: {error!r}")
         return None
 
-    def _look_for_silence(self, session: RecordingSession) -> None:
+    def _check_silence(self, session: RecordingSession) -> None:
         limit = self._settings.longest_silence
         if self._presence.silence_of(session.tracker) <= limit:
             return
-        with self.changed:
+        with self.condition:
             # Samples that wait are no silence.
-            if not (self._intake.is_empty(session.tracker) and session.is_carrying):
+            if not (self._queues.is_empty(session.tracker) and session.is_carrying):
                 return
             try:
-                finished = session.lose(f"no sample came for {limit:g} s in mid-take")
+                finished = session.on_tracker_lost(f"no sample came for {limit:g} s in mid-take")
             except Exception as error:  # one take's fault must not end the others
                 finished = None
                 session.fail(f"recording failed: {error!r}")
         if finished is not None:
-            self._made([finished])
+            self._on_finished([finished])

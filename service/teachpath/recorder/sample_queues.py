@@ -36,23 +36,23 @@ class SampleQueues:
         longest: samples that may wait in one line; what comes on top of that is turned away, and counted.
     """
 
-    def __init__(self, keys: Keys, presence: Presence, longest: int) -> None:
-        self._keys, self._presence, self.longest = keys, presence, longest
-        self._lines: dict[str, _Queue] = {}  # by the key of the samples
+    def __init__(self, keys: Keys, presence: Presence, max_length: int) -> None:
+        self._keys, self._presence, self.max_length = keys, presence, max_length
+        self._queues: dict[str, _Queue] = {}  # by the key of the samples
         self._invalid_name_count = 0
         self._last_invalid_name = ""
 
     # on the transport's threads: append only
 
-    def receive(self, key: str, payload: bytes) -> None:
+    def on_sample(self, key: str, payload: bytes) -> None:
         """Take a payload from the bus."""
-        line = self._lines.get(key)
-        if line is None:
-            self._hear(self._keys.tracker_of(key))
-        elif len(line.waiting) < self.longest:
-            line.waiting.append(QueueItem(payload, time.time_ns()))
+        queue = self._queues.get(key)
+        if queue is None:
+            self._on_unrecorded_sample(self._keys.tracker_of(key))
+        elif len(queue.waiting) < self.max_length:
+            queue.waiting.append(QueueItem(payload, time.time_ns()))
         else:
-            line.dropped += 1
+            queue.dropped += 1
 
     def on_liveliness(self, key: str, alive: bool) -> None:
         """Take from the bus that a tracker came or went; what it sent before is recorded before."""
@@ -60,14 +60,14 @@ class SampleQueues:
         if not is_name(tracker):
             self._invalid_name_count, self._last_invalid_name = self._invalid_name_count + 1, tracker
             return
-        self._presence.announce(tracker, alive)
-        line = self._lines.get(self._keys.samples(tracker))
-        if line is not None and not alive:
-            line.waiting.append(QueueItem(None, 0))
+        self._presence.on_liveliness(tracker, alive)
+        queue = self._queues.get(self._keys.samples(tracker))
+        if queue is not None and not alive:
+            queue.waiting.append(QueueItem(None, 0))
 
-    def _hear(self, tracker: str) -> None:
+    def _on_unrecorded_sample(self, tracker: str) -> None:
         if is_name(tracker):
-            self._presence.hear(tracker)
+            self._presence.on_sample(tracker)
         else:
             self._invalid_name_count, self._last_invalid_name = self._invalid_name_count + 1, tracker
 
@@ -75,31 +75,31 @@ class SampleQueues:
 
     def open(self, tracker: str) -> None:
         """Let the samples of `tracker` wait from now on."""
-        self._lines[self._keys.samples(tracker)] = _Queue()
+        self._queues[self._keys.samples(tracker)] = _Queue()
 
     def close(self, tracker: str) -> None:
         """Only hear `tracker` from now on."""
-        self._lines.pop(self._keys.samples(tracker), None)
+        self._queues.pop(self._keys.samples(tracker), None)
 
-    def take(self, tracker: str, most: int) -> list[QueueItem]:
+    def pop(self, tracker: str, limit: int) -> list[QueueItem]:
         """Take up to `most` from the line of `tracker`, in the order they came."""
-        line = self._lines.get(self._keys.samples(tracker))
-        if line is None:
+        queue = self._queues.get(self._keys.samples(tracker))
+        if queue is None:
             return []
-        return [line.waiting.popleft() for _ in range(min(most, len(line.waiting)))]
+        return [queue.waiting.popleft() for _ in range(min(limit, len(queue.waiting)))]
 
     def dropped(self, tracker: str) -> int:
         """Return how many samples of `tracker` were turned away since this was last asked."""
-        line = self._lines.get(self._keys.samples(tracker))
-        if line is None or not line.dropped:
+        queue = self._queues.get(self._keys.samples(tracker))
+        if queue is None or not queue.dropped:
             return 0
-        count, line.dropped = line.dropped, 0
+        count, queue.dropped = queue.dropped, 0
         return count
 
     def is_empty(self, tracker: str) -> bool:
         """Tell whether nothing of `tracker` waits."""
-        line = self._lines.get(self._keys.samples(tracker))
-        return line is None or not line.waiting
+        queue = self._queues.get(self._keys.samples(tracker))
+        return queue is None or not queue.waiting
 
     def invalid_names(self) -> str:
         """Say who came under a name that cannot be recorded, or nothing."""
@@ -113,4 +113,4 @@ class SampleQueues:
     @property
     def backlog(self) -> int:
         """How many samples wait in all lines."""
-        return sum(len(line.waiting) for line in list(self._lines.values()))
+        return sum(len(queue.waiting) for queue in list(self._queues.values()))

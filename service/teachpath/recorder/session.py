@@ -13,10 +13,10 @@ from teachpath.recorder.take import FinishedTake, Take
 from teachpath.recording.demonstration import object_pose, point_to_world
 from teachpath.recording.fist_gesture import FistCommand, FistGesture
 from teachpath.recording.live_hand import Hand
-from teachpath.recording.phases import TOGGLE_BUTTON, Cut, Segmenter, hand_closure
+from teachpath.recording.phases import TOGGLE_BUTTON, Segmenter, TransportSpan, hand_closure
 from teachpath.recording.settings import RecordingSettings
+from teachpath.recording.state_machine import RecordingState, RecordingStateMachine, Routine
 from teachpath.recording.stream_statistics import StreamCounter
-from teachpath.recording.take_control import RecordingState, RecordingStateMachine, Routine
 from teachpath.records import Calibration, Phase, Sample, Scene, Vector
 from teachpath_proto import tracker_pb2
 
@@ -52,12 +52,12 @@ class RecordingSession:
         self._store, self._settings, self._clock = store, settings, clock
         # of the whole recording; its open part is that of the open take
         self.account = StreamCounter(declared_rate=rate, largest_clock_step=settings.largest_clock_step)
-        self._control = RecordingStateMachine(routine or Routine(), clock(), countdown=settings.countdown)
+        self._state_machine = RecordingStateMachine(routine or Routine(), clock(), countdown=settings.countdown)
         self._thing = scene.carried
         self._carried = scene.carried.position if scene.carried else None
         self._to_world = point_to_world(calibration)
         self.demonstrations: list[str] = []
-        self.flushed = clock()
+        self.last_flush = clock()
         self._idle = 0
         self._torn = self._pedal_was_used = self._unwanted = False
         self._buttons = self._takes = 0
@@ -69,7 +69,7 @@ class RecordingSession:
     @property
     def state(self) -> RecordingState:
         """What is done with the samples that come."""
-        return self._control.state
+        return self._state_machine.state
 
     @property
     def is_carrying(self) -> bool:
@@ -84,37 +84,37 @@ class RecordingSession:
     def add(self, sample: Sample, payload: bytes = b"") -> FinishedTake | None:
         """Write one sample, `payload` as it came; return the demonstration that it completes."""
         fresh = self.account.observe(sample)
-        if self.account.restarted:
+        if self.account.has_restarted:
             self._idle += 1
             return self.interrupt("the device began to count anew in mid-take")
-        self._control.hear()
+        self._state_machine.on_sample()
         if fresh:
             self._newest = sample
         position = self._to_world(sample.position)
         if fresh:
             self._follow_signs(sample, position)
-        if self.state is RecordingState.COUNTDOWN and self._control.count_down(self._clock()):
+        if self.state is RecordingState.COUNTDOWN and self._state_machine.poll_countdown(self._clock()):
             self._drop()
         if self.state in (RecordingState.PAUSED, RecordingState.COUNTDOWN):
             self._idle += 1
             return None
         if not fresh:
-            self._segmenter.pass_over()
+            self._segmenter.skip()
             self._take.write(sample, payload)
             return None
         return self._follow_phases(sample, payload, position)
 
     def pause(self) -> None:
         """Record nothing until `resume`; what is carried now is recorded to its end first."""
-        self._control.pause(carrying=self.is_carrying)
+        self._state_machine.pause(carrying=self.is_carrying)
         if self.state is RecordingState.PAUSED:
             self._drop()
 
     def resume(self) -> None:
         """Record again, after the countdown if there is one."""
         if self.state is RecordingState.PAUSED:
-            self.account.begin_part()
-        self._control.resume(self._clock())
+            self.account.begin_interval()
+        self._state_machine.resume(self._clock())
 
     def interrupt(self, reason: str) -> FinishedTake | None:
         """End the open take because its samples ended, never as a silent short one; return what it makes.
@@ -130,10 +130,10 @@ class RecordingSession:
         self._segmenter = Segmenter(self._settings, self._carried, closed=True)
         return finished
 
-    def lose(self, reason: str) -> FinishedTake | None:
+    def on_tracker_lost(self, reason: str) -> FinishedTake | None:
         """Take note that the tracker has gone; as `interrupt`."""
         finished = self.interrupt(reason)
-        self._control.lose()
+        self._state_machine.on_tracker_lost()
         return finished
 
     def refuse(self, reason: str) -> None:
@@ -144,13 +144,13 @@ class RecordingSession:
         """Count as lost what was sent up to `last_sequence` and did not come."""
         self.account.expect(last_sequence)
 
-    def remark(self, sentence: str) -> None:
+    def note(self, sentence: str) -> None:
         """Keep a sentence with the recording and its open demonstration."""
         self.account.note(sentence)
 
     def flush(self, now: float) -> None:
         """Hand what was written to the operating system; when nothing could be written, try again."""
-        self.flushed = now
+        self.last_flush = now
         if self._take.fault and not self.is_carrying:
             self._drop()
         self._take.flush()
@@ -172,7 +172,7 @@ class RecordingSession:
         self._drop()
         return [finished] if finished else []
 
-    def asks_to_discard(self) -> bool:
+    def pop_discard_request(self) -> bool:
         """Return, once, whether a fist has asked for the last demonstration to be discarded."""
         asked, self._unwanted = self._unwanted, False
         return asked
@@ -203,14 +203,14 @@ class RecordingSession:
             self.task,
             self.tracker,
             self.demonstrations,
-            self.account.account(),
+            self.account.statistics(),
             idle=self._idle,
             phase="" if ended else self._segmenter.phase.value,
             state="" if ended else self.state.value,
             pedal=self._pedal_was_used,
-            countdown_left=self._control.seconds_left(self._clock()),
-            takes_left=self._control.takes_left,
-            sign=self._gesture.offered or "",
+            countdown_left=self._state_machine.countdown_left(self._clock()),
+            takes_left=self._state_machine.takes_left,
+            sign=self._gesture.pending_command or "",
         )
 
     def standing(self) -> Standing:
@@ -220,11 +220,11 @@ class RecordingSession:
             self.task,
             self._segmenter.phase.value,
             self.state.value,
-            self._control.seconds_left(self._clock()),
-            self._control.takes_left,
+            self._state_machine.countdown_left(self._clock()),
+            self._state_machine.takes_left,
             len(self.demonstrations),
             self.demonstrations[-1] if self.demonstrations else "",
-            self._gesture.offered or "",
+            self._gesture.pending_command or "",
         )
 
     def _follow_signs(self, sample: Sample, position: Vector) -> None:
@@ -257,28 +257,28 @@ class RecordingSession:
                 self._drop()
         return None
 
-    def _close(self, cut: Cut, *, fault: str = "", following: Sample | None = None) -> FinishedTake | None:
+    def _close(self, cut: TransportSpan, *, fault: str = "", following: Sample | None = None) -> FinishedTake | None:
         # A device without a glove lets go by ending its recording; a glove would have shown the release.
         if cut.open_ended and not fault and (self._torn or self._take.samples[-1].flexions):
             fault = "the recording ended before the hand let go"
-        finished = self._take.close(cut, self.account.part(but=following), self._carried, fault)
+        finished = self._take.finalize(cut, self.account.interval(excluding=following), self._carried, fault)
         if finished is None:
             self._idle += len(self._take.samples)
         else:
             self.demonstrations.append(finished[0].id)
-        self._control.end_one(self._clock(), made=finished is not None)
+        self._state_machine.end_take(self._clock(), made=finished is not None)
         self._open_next(following)
         return finished
 
     def _drop(self) -> None:
-        self._take.drop()
+        self._take.discard()
         self._idle += len(self._take.samples)
         self._open_next()
         self._segmenter = Segmenter(self._settings, self._carried)
 
     def _open_next(self, first: Sample | None = None) -> None:
         self._take = self._new_take()
-        self.account.begin_part(newest=first)
+        self.account.begin_interval(newest=first)
 
     def _new_take(self) -> Take:
         self._takes += 1

@@ -8,8 +8,8 @@ from collections.abc import Callable
 from teachpath.errors import UnusableRecording
 from teachpath.io.store.recordings import RecordingFile, RecordingHeader
 from teachpath.io.store.store import Store
-from teachpath.recorder.take_completion import TakenSamples, close_take
-from teachpath.recording.phases import Cut
+from teachpath.recorder.take_completion import SegmentedTake, complete_take
+from teachpath.recording.phases import TransportSpan
 from teachpath.recording.settings import RecordingSettings
 from teachpath.records import Demonstration, Sample, StreamStatistics, Trajectory, Vector
 
@@ -67,7 +67,9 @@ class Take:
             self._file.leave()
             self._file = None
 
-    def close(self, cut: Cut, account: StreamStatistics, carried: Vector | None, fault: str) -> FinishedTake | None:
+    def finalize(
+        self, cut: TransportSpan, account: StreamStatistics, carried: Vector | None, fault: str
+    ) -> FinishedTake | None:
         """Make a demonstration of it; one that cannot be made leaves a note that says why, and no file.
 
         Args:
@@ -79,16 +81,16 @@ class Take:
             if self._file is None:
                 raise UnusableRecording(f"a demonstration was lost: {self.fault}")
             facts = {"id": self._id, "task": self._header.task, "source": self._header.tracker}
-            taken = TakenSamples(self.samples, cut, account, self._header.calibration, carried, fault)
-            return close_take(self._store, self._settings, self._file, taken, facts)
+            taken = SegmentedTake(self.samples, cut, account, self._header.calibration, carried, fault)
+            return complete_take(self._store, self._settings, self._file, taken, facts)
         except UnusableRecording as error:
             self._note(str(error))
-            self.drop()
+            self.discard()
         except OSError as error:
             self.fail(_cannot("finished", error))
         return None
 
-    def drop(self) -> None:
+    def discard(self) -> None:
         """Throw it away."""
         if self._file is not None:
             self._file.discard()

@@ -12,9 +12,9 @@ import numpy as np
 from teachpath.errors import UnusableRecording
 from teachpath.io.store.recordings import RecordingFile, facts_of
 from teachpath.io.store.store import Store
-from teachpath.recording.demonstration import object_trajectory, to_world, usable
+from teachpath.recording.demonstration import object_trajectory, to_world, usable_samples
 from teachpath.recording.phase_statistics import PhaseStatistics, phase_statistics
-from teachpath.recording.phases import Cut
+from teachpath.recording.phases import TransportSpan
 from teachpath.recording.position_outliers import find_outliers
 from teachpath.recording.settings import RecordingSettings
 from teachpath.recording.verdict import Verdict, judge, judge_again
@@ -22,7 +22,7 @@ from teachpath.records import Calibration, Demonstration, Sample, StreamStatisti
 
 
 @dataclass(frozen=True, eq=False)
-class TakenSamples:
+class SegmentedTake:
     """A take whose phases are known.
 
     Attributes:
@@ -32,15 +32,15 @@ class TakenSamples:
     """
 
     samples: Sequence[Sample]
-    cut: Cut
+    cut: TransportSpan
     account: StreamStatistics
     calibration: Calibration
     carried: Vector | None
     fault: str = ""
 
 
-def close_take(
-    store: Store, settings: RecordingSettings, take: RecordingFile, taken: TakenSamples, facts: Mapping[str, str]
+def complete_take(
+    store: Store, settings: RecordingSettings, take: RecordingFile, taken: SegmentedTake, facts: Mapping[str, str]
 ) -> tuple[Demonstration, Trajectory]:
     """Finish a take's file and store its demonstration; `facts` are its id, task and source.
 
@@ -54,7 +54,7 @@ def close_take(
             f"a transport phase of {cut.release - cut.grasp} samples is under the least of "
             f"{settings.shortest_transport}: the object was let go at once"
         )
-    account, left_out = with_positions(taken, settings)
+    account, left_out = add_position_outliers(taken, settings)
     trajectory = object_trajectory(taken.samples, cut, taken.calibration, taken.carried, left_out=left_out)
     verdict = _judge(phase_statistics(taken.samples, cut, account, settings), taken, settings)
     demonstration = Demonstration(
@@ -79,15 +79,19 @@ def close_take(
     return stored, trajectory
 
 
-def with_positions(taken: TakenSamples, settings: RecordingSettings) -> tuple[StreamStatistics, tuple[int, ...]]:
+def add_position_outliers(
+    taken: SegmentedTake, settings: RecordingSettings
+) -> tuple[StreamStatistics, tuple[int, ...]]:
     """Return a take's account with the faults of its positions, and the numbers of the samples that jumped."""
-    ordered = usable(taken.samples[taken.cut.grasp : taken.cut.release])
+    ordered = usable_samples(taken.samples[taken.cut.grasp : taken.cut.release])
     if not ordered:
         return taken.account, ()
     positions = to_world(taken.calibration, np.array([s.position for s in ordered]))
     faults = find_outliers(ordered, positions, settings)
-    account = replace(taken.account, jumps=len(faults.jumped), leaps=faults.leaps, out_of_workspace=faults.outside)
-    return account, faults.jumped
+    account = replace(
+        taken.account, jumps=len(faults.outliers), leaps=faults.level_shifts, out_of_workspace=faults.out_of_workspace
+    )
+    return account, faults.outliers
 
 
 def reassess(
@@ -100,18 +104,20 @@ def reassess(
         after: as it will be.
         samples: of its recording.
     """
-    cut = Cut(*after.transport)
-    account, left_out = with_positions(TakenSamples(samples, cut, before.account, after.calibration, None), settings)
+    cut = TransportSpan(*after.transport)
+    account, left_out = add_position_outliers(
+        SegmentedTake(samples, cut, before.account, after.calibration, None), settings
+    )
     verdict = judge_again(
         Verdict(before.verdict, before.reasons),
-        phase_statistics(samples, Cut(*before.transport), before.account, settings),
+        phase_statistics(samples, TransportSpan(*before.transport), before.account, settings),
         phase_statistics(samples, cut, account, settings),
         settings,
     )
     return {"account": account, "left_out": left_out, "verdict": verdict.word, "reasons": verdict.reasons}
 
 
-def _judge(parts: PhaseStatistics, taken: TakenSamples, settings: RecordingSettings) -> Verdict:
+def _judge(parts: PhaseStatistics, taken: SegmentedTake, settings: RecordingSettings) -> Verdict:
     verdict = judge(parts, settings)
     if not taken.fault:
         return verdict

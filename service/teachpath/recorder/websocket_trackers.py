@@ -39,8 +39,8 @@ class WebSocketTrackers:
     ) -> None:
         self._bus, self._keys, self._recorder, self._clock = bus, keys, recorder, clock
         self._lock = threading.Lock()
-        self._here: dict[str, WebSocketTracker] = {}
-        self._left: dict[str, float] = {}  # when
+        self._trackers: dict[str, WebSocketTracker] = {}
+        self._unregistered: dict[str, float] = {}  # when
 
     def register(self, name: str, on_disconnect: OnDisconnect) -> WebSocketTracker:
         """Let a tracker in; one of the same name that came through the gate before has to leave.
@@ -56,11 +56,11 @@ class WebSocketTrackers:
         if not is_name(name):
             raise UnusableInput(name_refusal("tracker", name))
         with self._lock:
-            before = self._here.get(name)
+            before = self._trackers.get(name)
             if before is None:
                 self._check_free(name, self._recorder.trackers())
             tracker = WebSocketTracker(self._bus, self._keys, self._recorder, name, on_disconnect, self._clock)
-            self._here[name] = tracker
+            self._trackers[name] = tracker
         if before is not None:
             before.disconnect(f"another page came as {name}")
         tracker.announce()
@@ -69,18 +69,20 @@ class WebSocketTrackers:
     def unregister(self, tracker: WebSocketTracker) -> None:
         """Forget a tracker that has gone; a second call does nothing."""
         with self._lock:
-            if self._here.get(tracker.name) is tracker:
-                del self._here[tracker.name]
-                recent = {name: at for name, at in self._left.items() if self._clock() - at < REANNOUNCE_GRACE}
-                self._left = recent | {tracker.name: self._clock()}
+            if self._trackers.get(tracker.name) is tracker:
+                del self._trackers[tracker.name]
+                recent = {name: at for name, at in self._unregistered.items() if self._clock() - at < REANNOUNCE_GRACE}
+                self._unregistered = recent | {tracker.name: self._clock()}
         tracker.withdraw()
 
     def _check_free(self, name: str, trackers: Sequence[Tracker]) -> None:
-        just_left = self._clock() - self._left.get(name, -REANNOUNCE_GRACE) < REANNOUNCE_GRACE
+        just_left = self._clock() - self._unregistered.get(name, -REANNOUNCE_GRACE) < REANNOUNCE_GRACE
         if not just_left and any(tracker.name == name and tracker.announced for tracker in trackers):
             raise Conflict(f"a tracker {name} is there already, not from a page; choose another name")
-        if len(self._here) >= MAX_TRACKERS:
-            raise Conflict(f"{len(self._here)} trackers are connected from pages, the most there may be; close some")
+        if len(self._trackers) >= MAX_TRACKERS:
+            raise Conflict(
+                f"{len(self._trackers)} trackers are connected from pages, the most there may be; close some"
+            )
 
 
 class WebSocketTracker:
@@ -102,13 +104,13 @@ class WebSocketTracker:
         clock: Callable[[], float],
     ) -> None:
         self.name = name
-        self.passed = self.refused = 0
+        self.accepted = self.refused = 0
         self._bus, self._recorder, self._clock = bus, recorder, clock
         self._key, self._alive = keys.samples(name), keys.alive("tracker", name)
         self._on_disconnect = on_disconnect
         self._token: Handle | None = None
-        self._in_a_row = 0
-        self._room, self._counted = RATE_BURST, clock()
+        self._consecutive_rejects = 0
+        self._tokens, self._refilled = RATE_BURST, clock()
 
     def announce(self) -> None:
         """Show that the tracker is there."""
@@ -125,7 +127,7 @@ class WebSocketTracker:
         self.withdraw()
         self._on_disconnect(sentence)
 
-    def take(self, content: bytes | dict[str, Any]) -> str:
+    def publish(self, content: bytes | dict[str, Any]) -> str:
         """Put a sample on the bus and return an empty text, or why it was refused.
 
         What is a `HandSample` with unsound values goes on the bus all the same, as from any other tracker, so that
@@ -144,19 +146,19 @@ class WebSocketTracker:
             sample_from(message, self.name, 0)
         except UnusableSample as error:
             return self.refuse(str(error))
-        self.passed += 1
-        self._in_a_row = 0
+        self.accepted += 1
+        self._consecutive_rejects = 0
         return ""
 
     def refuse(self, sentence: str) -> str:
         """Count something that cannot be used and return the sentence; raises UnusableInput as `take` does."""
         self.refused += 1
-        self._in_a_row += 1
-        if self._in_a_row > MAX_CONSECUTIVE_REJECTS:
-            raise UnusableInput(f"{self._in_a_row} messages in a row were refused; the last one: {sentence}")
+        self._consecutive_rejects += 1
+        if self._consecutive_rejects > MAX_CONSECUTIVE_REJECTS:
+            raise UnusableInput(f"{self._consecutive_rejects} messages in a row were refused; the last one: {sentence}")
         return sentence
 
-    def end(self, last_sequence: int, *, discard: bool) -> dict[str, Any]:
+    def end_recording(self, last_sequence: int, *, discard: bool) -> dict[str, Any]:
         """End the recording of this tracker with the handshake and return its account.
 
         Raises:
@@ -166,9 +168,9 @@ class WebSocketTracker:
 
     def _count_rate(self) -> None:
         now = self._clock()
-        self._room = min(RATE_BURST, self._room + RATE_LIMIT * (now - self._counted)) - 1.0
-        self._counted = now
-        if self._room < 0.0:
+        self._tokens = min(RATE_BURST, self._tokens + RATE_LIMIT * (now - self._refilled)) - 1.0
+        self._refilled = now
+        if self._tokens < 0.0:
             raise UnusableInput(f"samples come faster than {RATE_LIMIT:g} a second; slow down")
 
 

@@ -6,9 +6,9 @@ import numpy as np
 
 from teachpath.records import Clock, Sample
 
-WINDOW = 500  # newest samples that are looked at: 10 s of a 50 Hz tracker
-FEWEST = 10
-REAL_TIME = 0.02  # a rate nearer to 1 is a clock that runs with ours, seen through jitter
+WINDOW_SIZE = 500  # newest samples that are looked at: 10 s of a 50 Hz tracker
+MIN_SAMPLES = 10
+REAL_TIME_TOLERANCE = 0.02  # a rate nearer to 1 is a clock that runs with ours, seen through jitter
 
 
 class DeviceClock:
@@ -16,13 +16,13 @@ class DeviceClock:
 
     def __init__(self) -> None:
         # a ring of arrays: hundreds of trackers are asked several times a second
-        self._device = np.zeros(WINDOW, dtype=np.int64)
-        self._receive = np.zeros(WINDOW, dtype=np.int64)
+        self._device = np.zeros(WINDOW_SIZE, dtype=np.int64)
+        self._receive = np.zeros(WINDOW_SIZE, dtype=np.int64)
         self._observed = 0
 
     def observe(self, sample: Sample) -> None:
         """Take the times of the next sample."""
-        place = self._observed % WINDOW
+        place = self._observed % WINDOW_SIZE
         self._device[place], self._receive[place] = sample.device_ns, sample.receive_ns
         self._observed += 1
 
@@ -36,9 +36,9 @@ class DeviceClock:
         Receive times are device times divided by the rate, plus an offset, plus a transit that is never negative: the
         rate is that of the line of least squares, the offset that of the fastest sample.
         """
-        if self._observed < FEWEST:
+        if self._observed < MIN_SAMPLES:
             return None
-        filled, newest = min(self._observed, WINDOW), (self._observed - 1) % WINDOW
+        filled, newest = min(self._observed, WINDOW_SIZE), (self._observed - 1) % WINDOW_SIZE
         first_device, first_receive = int(self._device[0]), int(self._receive[0])
         device = (self._device[:filled] - first_device) * 1e-9
         receive = (self._receive[:filled] - first_receive) * 1e-9
@@ -48,7 +48,7 @@ class DeviceClock:
         if slope <= 0.0:
             return None  # received all at once: nothing can be said
         rate = 1.0 / slope
-        if abs(rate - 1.0) <= REAL_TIME:
+        if abs(rate - 1.0) <= REAL_TIME_TOLERANCE:
             slope = 1.0
         transit = receive - slope * device  # plus a constant
         least = float(transit.min())

@@ -8,7 +8,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from teachpath.errors import UnusableRecording
-from teachpath.recording.phases import Cut
+from teachpath.recording.phases import TransportSpan
 from teachpath.records import Array, Calibration, Quaternion, Sample, Trajectory, Vector
 
 Pose = tuple[Vector, Quaternion]
@@ -34,7 +34,7 @@ def point_to_world(calibration: Calibration) -> Callable[[Vector], Vector]:
     return mapped
 
 
-def usable(samples: Sequence[Sample]) -> list[Sample]:
+def usable_samples(samples: Sequence[Sample]) -> list[Sample]:
     """Return the samples in the order of their numbers, without duplicates and untracked ones."""
     used: dict[int, Sample] = {}
     for sample in samples:
@@ -45,7 +45,7 @@ def usable(samples: Sequence[Sample]) -> list[Sample]:
 
 def object_trajectory(
     samples: Sequence[Sample],
-    cut: Cut,
+    cut: TransportSpan,
     calibration: Calibration,
     carried: Vector | None,
     *,
@@ -67,7 +67,9 @@ def object_trajectory(
     Raises:
         UnusableRecording: fewer than 2 usable samples.
     """
-    ordered = _forward_in_time([s for s in usable(samples[cut.grasp : cut.release]) if s.sequence not in left_out])
+    ordered = _forward_in_time(
+        [s for s in usable_samples(samples[cut.grasp : cut.release]) if s.sequence not in left_out]
+    )
     if len(ordered) < 2:
         raise UnusableRecording(
             f"only {len(ordered)} usable samples between grasp and release; is the tracker in view of its source?"
@@ -97,7 +99,7 @@ def object_pose(grasped: Sample, now: Sample, calibration: Calibration, carried:
         return None
     if now.device_ns <= grasped.device_ns:
         return carried, (1.0, 0.0, 0.0, 0.0)
-    trajectory = object_trajectory((grasped, now), Cut(0, 2), calibration, carried)
+    trajectory = object_trajectory((grasped, now), TransportSpan(0, 2), calibration, carried)
     x, y, z = trajectory.positions[-1].tolist()
     w, i, j, k = (1.0, 0.0, 0.0, 0.0) if trajectory.orientations is None else trajectory.orientations[-1].tolist()
     return (x, y, z), (w, i, j, k)

@@ -13,7 +13,7 @@ from teachpath.recording.phases import hand_closure
 from teachpath.recording.settings import RecordingSettings
 from teachpath.records import Sample, Vector
 
-DISCARD, REST = 3, 6  # times `fist_time`
+DISCARD_FACTOR, REST_FACTOR = 3, 6  # times `fist_time`
 
 
 class FistCommand(StrEnum):
@@ -39,14 +39,14 @@ class FistGesture:
         self._held_ns = 0
 
     @property
-    def offered(self) -> FistCommand | None:
+    def pending_command(self) -> FistCommand | None:
         """What the fist would ask for if it opened now."""
         if self._began is None or self._spoilt or not self._settings.fist_time:
             return None
         turns = self._held_ns * 1e-9 / self._settings.fist_time
-        if turns < 1 or turns > REST:
+        if turns < 1 or turns > REST_FACTOR:
             return None
-        return FistCommand.DISCARD if turns >= DISCARD else FistCommand.TOGGLE
+        return FistCommand.DISCARD if turns >= DISCARD_FACTOR else FistCommand.TOGGLE
 
     def push(self, sample: Sample, position: Vector, *, carrying: bool) -> FistCommand | None:
         """Take the next sample, newer than all before, and its hand position [m, world]; return the sign it ends."""
@@ -76,6 +76,6 @@ class FistGesture:
             self._opened = sample.device_ns
         if sample.device_ns - self._opened < self._settings.release_time * 1e9:
             return None
-        sign = self.offered
+        sign = self.pending_command
         self._began = None
         return sign

@@ -15,11 +15,11 @@ from scipy.spatial.transform import Rotation
 from teachpath.errors import UnusableInput
 from teachpath.records import Array, Calibration, MeasuredCalibration, TaughtPoint
 
-FEWEST = 3  # points that fix a frame
-FARTHEST = 100.0  # [m] of a taught point; farther is a wrong unit
-LEAST_SPREAD = 0.02  # [m] rms of the points across the line that runs best through them
-LEAST_SHARE = 0.05  # of that along the line
-LARGEST_STRETCH = 0.05  # share by which the scale may differ from 1 before the units are doubted
+MIN_POINTS = 3  # points that fix a frame
+MAX_COORDINATE = 100.0  # [m] of a taught point; farther is a wrong unit
+MIN_SPREAD = 0.02  # [m] rms of the points across the line that runs best through them
+MIN_SPREAD_RATIO = 0.05  # of that along the line
+MAX_SCALE_DEVIATION = 0.05  # share by which the scale may differ from 1 before the units are doubted
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,8 +46,8 @@ def fit_frame(
     Raises:
         UnusableInput: too few points, points on one line, wrong units, or points that contradict one another.
     """
-    if len(points) < FEWEST:
-        raise UnusableInput(f"{len(points)} points do not fix a frame; teach {FEWEST} or more, not on one line")
+    if len(points) < MIN_POINTS:
+        raise UnusableInput(f"{len(points)} points do not fix a frame; teach {MIN_POINTS} or more, not on one line")
     tracker, world = np.array([p.tracker for p in points]), np.array([p.world for p in points])
     _check(world, "in the world")
     _check(tracker, "for the tracker")
@@ -64,11 +64,11 @@ def fit_frame(
 
 
 def _check(places: Array, where: str) -> None:
-    if not np.all(np.isfinite(places)) or np.max(np.abs(places)) > FARTHEST:
-        number = int(np.argmax(~np.isfinite(places).all(axis=1) | (np.abs(places) > FARTHEST).any(axis=1)))
-        raise UnusableInput(f"point {number + 1} lies at {places[number].tolist()} m {where}, limit {FARTHEST:g}")
+    if not np.all(np.isfinite(places)) or np.max(np.abs(places)) > MAX_COORDINATE:
+        number = int(np.argmax(~np.isfinite(places).all(axis=1) | (np.abs(places) > MAX_COORDINATE).any(axis=1)))
+        raise UnusableInput(f"point {number + 1} lies at {places[number].tolist()} m {where}, limit {MAX_COORDINATE:g}")
     _, spreads, _ = np.linalg.svd((places - places.mean(axis=0)) / np.sqrt(len(places)))
-    least = max(LEAST_SPREAD, LEAST_SHARE * spreads[0]) if where == "in the world" else LEAST_SHARE * spreads[0]
+    least = max(MIN_SPREAD, MIN_SPREAD_RATIO * spreads[0]) if where == "in the world" else MIN_SPREAD_RATIO * spreads[0]
     if spreads[1] <= least:
         raise UnusableInput(
             f"the points lie on one line {where}: they spread {100 * spreads[0]:.3g} cm along it and "
@@ -78,7 +78,7 @@ def _check(places: Array, where: str) -> None:
 
 def _check_units(tracker: Array, world: Array, largest_residual: float) -> None:
     scaled = _fit(tracker, world, fit_scale=True)
-    if abs(scaled.scale - 1.0) > LARGEST_STRETCH and scaled.residuals.max() <= largest_residual:
+    if abs(scaled.scale - 1.0) > MAX_SCALE_DEVIATION and scaled.residuals.max() <= largest_residual:
         raise UnusableInput(
             f"the points lie {scaled.scale:.3g} times as far apart in the world as for the tracker; does it measure in "
             "another unit? A device with a scale of its own needs fit_scale"
@@ -106,7 +106,7 @@ def _contradiction(tracker: Array, world: Array, fit: _Fit, limit: float, fit_sc
     )
     if _fit(tracker, world, fit_scale=fit_scale, mirrored=True).residuals.max() <= limit:
         return f"{said}; mirrored they agree: is one axis of the tracker reversed, or its frame left-handed?"
-    for k in range(len(tracker)) if len(tracker) > FEWEST else ():
+    for k in range(len(tracker)) if len(tracker) > MIN_POINTS else ():
         kept = np.arange(len(tracker)) != k
         if _fit(tracker[kept], world[kept], fit_scale=fit_scale).residuals.max() <= limit:
             return f"{said}; without point {k + 1} they agree: teach that one again"

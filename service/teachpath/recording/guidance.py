@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-ENOUGH = 3  # demonstrations of a way
-APART = 0.2  # of the length of a path: those of one way were at most 0.11 from each other in recordings of real arms
-COUNTS = ("no", "one", "two")
-PLACES = ("first", "second", "third", "fourth", "fifth", "sixth", "seventh", "eighth", "ninth", "tenth")
+MIN_DEMONSTRATIONS = 3  # demonstrations of a way
+# Largest spread of a cluster over the length of its path; clusters in recordings of real arms had at most 0.11.
+MAX_SPREAD_RATIO = 0.2
+COUNT_WORDS = ("no", "one", "two")
+ORDINALS = ("first", "second", "third", "fourth", "fifth", "sixth", "seventh", "eighth", "ninth", "tenth")
 
 
 @dataclass(frozen=True, slots=True)
@@ -19,35 +20,35 @@ class ClusterSummary:
     spread: float  # [m] largest distance of two of them
 
 
-def advise(ways: Sequence[ClusterSummary], length: float) -> str:
+def advise(clusters: Sequence[ClusterSummary], length: float) -> str:
     """Return the sentence for the operator, or nothing before the first demonstration.
 
     Args:
         ways: in their order.
         length: of a typical path [m].
     """
-    total = sum(way.count for way in ways)
+    total = sum(cluster.count for cluster in clusters)
     if total == 0:
         return ""
     if total == 1:
         return "one demonstration so far; show it again"
-    agree = _agreement(total, len(ways), max(way.spread for way in ways), length)
-    thin = [(index, way) for index, way in enumerate(ways) if way.count < ENOUGH]
+    agree = _agreement(total, len(clusters), max(cluster.spread for cluster in clusters), length)
+    thin = [(index, cluster) for index, cluster in enumerate(clusters) if cluster.count < MIN_DEMONSTRATIONS]
     if not thin:
         return agree
     index, least = min(thin, key=lambda each: each[1].count)
-    which = f"the {PLACES[index]} way has" if index < len(PLACES) else f"way {index + 1} has"
-    who = which if len(ways) > 1 else "there are"
-    return f"{agree}; {who} only {COUNTS[least.count]}, show it again"
+    which = f"the {ORDINALS[index]} way has" if index < len(ORDINALS) else f"way {index + 1} has"
+    who = which if len(clusters) > 1 else "there are"
+    return f"{agree}; {who} only {COUNT_WORDS[least.count]}, show it again"
 
 
-def _agreement(total: int, ways: int, spread: float, length: float) -> str:
+def _agreement(total: int, clusters: int, spread: float, length: float) -> str:
     shown = f"{total} demonstrations"
-    if ways > 1:
-        shown += f" show {ways} ways"
+    if clusters > 1:
+        shown += f" show {clusters} ways"
         if spread == 0.0:
             return shown
-    if spread <= APART * length:
-        return f"{shown} {'and ' if ways > 1 else ''}agree within {100 * spread:.1f} cm"
-    some = "; some of one way" if ways > 1 else ""
+    if spread <= MAX_SPREAD_RATIO * length:
+        return f"{shown} {'and ' if clusters > 1 else ''}agree within {100 * spread:.1f} cm"
+    some = "; some of one way" if clusters > 1 else ""
     return f"{shown}{some} are up to {100 * spread:.1f} cm apart, discard what you did not mean"

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import re
 
-KINDS = 20  # that are told apart; the rest are only counted
-NUMBER = re.compile(r"[-+]?(\d[\w.+-]*|nan|inf)\b")
+MAX_KINDS = 20  # that are told apart; the rest are only counted
+NUMBER_PATTERN = re.compile(r"[-+]?(\d[\w.+-]*|nan|inf)\b")
 
 
 class MessageCounter:
@@ -21,13 +21,13 @@ class MessageCounter:
 
     def add(self, sentence: str) -> None:
         """Count one."""
-        kind = NUMBER.sub("#", sentence)
-        if kind not in self._kinds and len(self._kinds) >= KINDS:
+        kind = NUMBER_PATTERN.sub("#", sentence)
+        if kind not in self._kinds and len(self._kinds) >= MAX_KINDS:
             kind, sentence = "", self._rest
         first, count = self._kinds.get(kind, (sentence, 0))
         self._kinds[kind] = (first, count + 1)
 
-    def sentences(self) -> list[str]:
+    def messages(self) -> list[str]:
         """Return one sentence a kind."""
         return [
             first if count == 1 else f"{first} (and {count - 1} more like it)" for first, count in self._kinds.values()

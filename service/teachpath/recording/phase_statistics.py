@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from teachpath.recording.phases import Cut
+from teachpath.recording.phases import TransportSpan
 from teachpath.recording.settings import RecordingSettings
 from teachpath.recording.stream_statistics import StreamCounter
 from teachpath.records import Sample, StreamStatistics
@@ -24,12 +24,12 @@ class PhaseStatistics:
 
     whole: StreamStatistics
     reach: StreamStatistics
-    carried: StreamStatistics
-    back: StreamStatistics
+    transport: StreamStatistics
+    return_: StreamStatistics
 
 
 def phase_statistics(
-    samples: Sequence[Sample], cut: Cut, whole: StreamStatistics, settings: RecordingSettings
+    samples: Sequence[Sample], cut: TransportSpan, whole: StreamStatistics, settings: RecordingSettings
 ) -> PhaseStatistics:
     """Return the parts of a take.
 
@@ -45,10 +45,10 @@ def phase_statistics(
     borders, parts = (cut.grasp, cut.release + 1), []
     for index, sample in enumerate(samples):
         if index in borders:
-            parts.append(stream.part())
-            stream.begin_part(joined=True)
+            parts.append(stream.interval())
+            stream.begin_interval(joined=True)
         stream.observe(sample)
-    unseen = max(whole.lost - stream.account().lost, 0)
-    last = stream.part()
-    reach, carried, back = [*parts, replace(last, lost=last.lost + unseen), StreamStatistics()][:3]
-    return PhaseStatistics(whole, reach, carried, back)
+    unseen = max(whole.lost - stream.statistics().lost, 0)
+    last = stream.interval()
+    reach, transport, return_ = [*parts, replace(last, lost=last.lost + unseen), StreamStatistics()][:3]
+    return PhaseStatistics(whole, reach, transport, return_)

@@ -14,7 +14,7 @@ TOGGLE_BUTTON = 2  # pressed: pause or resume
 
 
 @dataclass(frozen=True, slots=True)
-class Cut:
+class TransportSpan:
     """Where a demonstration lies in its stream, as indices into the samples since the last cut."""
 
     grasp: int  # first sample with the object in the hand
@@ -69,7 +69,7 @@ class Segmenter:
         """Where the hand took the object, as an index into the samples since the last cut; 0 while it reaches."""
         return self._grasp
 
-    def push(self, sample: Sample, position: Vector) -> Cut | None:
+    def push(self, sample: Sample, position: Vector) -> TransportSpan | None:
         """Take the next sample and its hand position [m, world]; return the cut that it completes.
 
         The sample that completes a cut is the last one of it, but a grasp that completes one is the first of the next.
@@ -94,11 +94,11 @@ class Segmenter:
             return self._follow_return(sample, position, grasps)
         return None
 
-    def pass_over(self) -> None:
+    def skip(self) -> None:
         """Count a sample that says nothing about the phase: a late one or a duplicate."""
         self._count += 1
 
-    def finish(self) -> Cut | None:
+    def finish(self) -> TransportSpan | None:
         """Return the cut that the end of the stream completes, or None when nothing was grasped."""
         if self.phase is Phase.REACH:
             return None
@@ -116,7 +116,7 @@ class Segmenter:
         elif math.dist(position, self._place) > self._settings.lift:
             self.phase = Phase.TRANSPORT
 
-    def _follow_return(self, sample: Sample, position: Vector, grasps: bool) -> Cut | None:
+    def _follow_return(self, sample: Sample, position: Vector, grasps: bool) -> TransportSpan | None:
         self._recent.append((sample.device_ns, position))
         since = sample.device_ns - self._opened_ns
         if self.phase is Phase.RELEASE:
@@ -131,8 +131,8 @@ class Segmenter:
         rests = since >= self._rest_ns and self._rests(sample.device_ns)
         return self._complete() if rests or since > self._settings.longest_return * 1e9 else None
 
-    def _complete(self, *, open_ended: bool = False) -> Cut:
-        cut = Cut(self._grasp, self._release, open_ended)
+    def _complete(self, *, open_ended: bool = False) -> TransportSpan:
+        cut = TransportSpan(self._grasp, self._release, open_ended)
         self._restart()
         return cut
 

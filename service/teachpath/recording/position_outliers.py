@@ -11,18 +11,18 @@ from numpy.typing import NDArray
 from teachpath.recording.settings import RecordingSettings
 from teachpath.records import Array, Sample
 
-REACH = 3  # neighbours on each side
-SIGMAS = 4.0  # of the neighbours' scatter
-GAUSSIAN = 1.4826  # standard deviation over median absolute deviation
+HALF_WINDOW = 3  # neighbours on each side
+OUTLIER_THRESHOLD = 4.0  # of the neighbours' scatter
+MAD_TO_SIGMA = 1.4826  # standard deviation over median absolute deviation
 
 
 @dataclass(frozen=True, slots=True)
 class PositionOutliers:
     """Faults of the positions of a transport phase."""
 
-    jumped: tuple[int, ...]  # numbers of the samples that their neighbours contradict
-    leaps: int  # places where the position jumps and stays
-    outside: int  # samples out of the workspace
+    outliers: tuple[int, ...]  # numbers of the samples that their neighbours contradict
+    level_shifts: int  # places where the position jumps and stays
+    out_of_workspace: int  # samples out of the workspace
 
 
 def find_outliers(samples: Sequence[Sample], positions: Array, settings: RecordingSettings) -> PositionOutliers:
@@ -37,32 +37,32 @@ def find_outliers(samples: Sequence[Sample], positions: Array, settings: Recordi
         positions: of the hand (n, 3) [m, world].
     """
     low, high = np.array(settings.workspace_low), np.array(settings.workspace_high)
-    outside = int(np.count_nonzero(np.any((positions < low) | (positions > high), axis=1)))
-    if len(positions) <= 2 * REACH:
-        return PositionOutliers((), 0, outside)
+    out_of_workspace = int(np.count_nonzero(np.any((positions < low) | (positions > high), axis=1)))
+    if len(positions) <= 2 * HALF_WINDOW:
+        return PositionOutliers((), 0, out_of_workspace)
     away = np.linalg.norm(positions - _medians(positions), axis=1)
-    jumped = _gated(away, settings.largest_jump)
-    stayed = positions[~jumped]
-    times = np.array([s.device_ns - samples[0].device_ns for s in samples])[~jumped] * 1e-9
+    outliers = _gated(away, settings.largest_jump)
+    stayed = positions[~outliers]
+    times = np.array([s.device_ns - samples[0].device_ns for s in samples])[~outliers] * 1e-9
     steps = np.linalg.norm(np.diff(stayed, axis=0), axis=1)
     dt = np.diff(times)
-    if len(steps) <= 2 * REACH or np.any(dt <= 0):
-        leaps = 0
+    if len(steps) <= 2 * HALF_WINDOW or np.any(dt <= 0):
+        level_shifts = 0
     else:
         speed = _medians((steps / dt)[:, None])[:, 0]
-        leaps = int(np.count_nonzero(_gated(steps - speed * dt, settings.largest_jump)))
-    numbers = tuple(s.sequence for s, bad in zip(samples, jumped, strict=True) if bad)
-    return PositionOutliers(numbers, leaps, outside)
+        level_shifts = int(np.count_nonzero(_gated(steps - speed * dt, settings.largest_jump)))
+    numbers = tuple(s.sequence for s, bad in zip(samples, outliers, strict=True) if bad)
+    return PositionOutliers(numbers, level_shifts, out_of_workspace)
 
 
 def _medians(values: Array) -> Array:
     """Return the median of each value and its neighbours, axis by axis: (n, d)."""
     # An odd reflection keeps a hand that moves evenly where it is, at the ends too.
-    padded = np.pad(values, ((REACH, REACH), (0, 0)), mode="reflect", reflect_type="odd")
-    return np.asarray(np.median(np.lib.stride_tricks.sliding_window_view(padded, 2 * REACH + 1, axis=0), axis=-1))
+    padded = np.pad(values, ((HALF_WINDOW, HALF_WINDOW), (0, 0)), mode="reflect", reflect_type="odd")
+    return np.asarray(np.median(np.lib.stride_tricks.sliding_window_view(padded, 2 * HALF_WINDOW + 1, axis=0), axis=-1))
 
 
 def _gated(away: Array, floor: float) -> NDArray[np.bool_]:
     """Tell which distances are over `floor` and over the scatter of their neighbours."""
-    scatter = GAUSSIAN * _medians(np.abs(away)[:, None])[:, 0]
-    return np.asarray(away > np.maximum(floor, SIGMAS * scatter))
+    scatter = MAD_TO_SIGMA * _medians(np.abs(away)[:, None])[:, 0]
+    return np.asarray(away > np.maximum(floor, OUTLIER_THRESHOLD * scatter))

@@ -5,15 +5,15 @@ from __future__ import annotations
 from bisect import bisect_right
 from collections.abc import Iterable
 
-from teachpath.recording.clock import REAL_TIME, DeviceClock
+from teachpath.recording.clock import REAL_TIME_TOLERANCE, DeviceClock
 from teachpath.recording.message_counter import MessageCounter
 from teachpath.records import Sample, StreamStatistics
 
-LARGEST_JUMP = 100_000  # sequence numbers; a larger gap is a restarted device, not loss
-NAMED_GAPS = 20
-REMEMBERED_SAMPLES = 512
-FASTEST = 100.0  # device seconds in one of ours; beyond it the receive times come from a burst
-RESTARTED = 10  # older numbers in a row, each with a newer time: the device counts anew
+MAX_SEQUENCE_JUMP = 100_000  # sequence numbers; a larger gap is a restarted device, not loss
+MAX_LISTED_GAPS = 20
+HISTORY_SIZE = 512
+MAX_CLOCK_RATE = 100.0  # device seconds in one of ours; beyond it the receive times come from a burst
+RESTART_THRESHOLD = 10  # older numbers in a row, each with a newer time: the device counts anew
 
 
 class StreamCounter:
@@ -37,7 +37,7 @@ class StreamCounter:
         self._lost = 0
         self._received = self._duplicated = self._reordered = self._refused = self._untracked = 0
         self._conflicts = self._clock_jumps = self._late_in_a_row = 0
-        self._recent: list[tuple[int, int]] = [(-1, 0)] * REMEMBERED_SAMPLES
+        self._recent: list[tuple[int, int]] = [(-1, 0)] * HISTORY_SIZE
         self._last_device_ns = self._last_receive_ns = 0
         self._steps = self._device_ns = self._receive_ns = 0  # sums over the steps of the clock that were no jumps
         self._longest_gap_ns = self._longest_gap_of_part_ns = 0
@@ -59,14 +59,14 @@ class StreamCounter:
         if step <= 0:
             self._observe_late(sample)
             return False
-        if step > LARGEST_JUMP:
+        if step > MAX_SEQUENCE_JUMP:
             self.note(f"the sequence jumps from {self.highest} to {sample.sequence}: was the device restarted?")
         elif step > 1:
             self._miss(self.highest + 1, sample.sequence - 1)
         self.highest = sample.sequence
         self._late_in_a_row = 0
         self._untracked += not sample.tracked
-        self._recent[sample.sequence % REMEMBERED_SAMPLES] = (sample.sequence, sample.device_ns)
+        self._recent[sample.sequence % HISTORY_SIZE] = (sample.sequence, sample.device_ns)
         if self._last_device_ns:
             self._observe_clock(sample, step)
         self._last_device_ns, self._last_receive_ns = sample.device_ns, sample.receive_ns
@@ -81,9 +81,9 @@ class StreamCounter:
         return self._received
 
     @property
-    def restarted(self) -> bool:
+    def has_restarted(self) -> bool:
         """Whether the device seems to count anew: only older numbers come, with newer times."""
-        return self._late_in_a_row >= RESTARTED
+        return self._late_in_a_row >= RESTART_THRESHOLD
 
     def interrupt(self) -> None:
         """Expect that the device may count anew: it was away."""
@@ -95,7 +95,7 @@ class StreamCounter:
         self._refusals.add(reason)
         self._refusals_of_part.add(reason)
 
-    def begin_part(self, *, joined: bool = False, newest: Sample | None = None) -> None:
+    def begin_interval(self, *, joined: bool = False, newest: Sample | None = None) -> None:
         """Begin another part.
 
         Args:
@@ -116,7 +116,7 @@ class StreamCounter:
         if self.first is None:
             self.first = last_sequence  # nothing came at all; how many were sent is not known
             self.note(f"no sample came, though the client says it sent up to number {last_sequence}")
-        if 0 < last_sequence - self.highest <= LARGEST_JUMP:
+        if 0 < last_sequence - self.highest <= MAX_SEQUENCE_JUMP:
             self._miss(self.highest + 1, last_sequence)
             self.highest = last_sequence
 
@@ -125,20 +125,20 @@ class StreamCounter:
         self._notes.add(sentence)
         self._notes_of_part.add(sentence)
 
-    def account(self) -> StreamStatistics:
+    def statistics(self) -> StreamStatistics:
         """Return the counts so far."""
-        notes = self._refusals.sentences() + self._notes.sentences()
+        notes = self._refusals.messages() + self._notes.messages()
         return self._stated(self._counts(), self._longest_gap_ns, notes, first=0)
 
-    def part(self, *, but: Sample | None = None) -> StreamStatistics:
+    def interval(self, *, excluding: Sample | None = None) -> StreamStatistics:
         """Return the counts of the part that is open, but for one sample: the newest, when it is of the next part."""
         counts = {name: max(count - self._before_part[name], 0) for name, count in self._counts().items()}
-        if but is not None:
+        if excluding is not None:
             counts["received"] -= 1
-            counts["untracked"] -= not but.tracked
+            counts["untracked"] -= not excluding.tracked
         # A late sample of a former part fills a gap there and none here.
         counts |= self._missing_since(self._first_of_part)
-        notes = self._refusals_of_part.sentences() + self._notes_of_part.sentences()
+        notes = self._refusals_of_part.messages() + self._notes_of_part.messages()
         return self._stated(counts, self._longest_gap_of_part_ns, notes, first=self._first_of_part)
 
     def _counts(self) -> dict[str, int]:
@@ -165,13 +165,13 @@ class StreamCounter:
         self, counts: dict[str, int], longest_gap_ns: int, kept: Iterable[str], *, first: int
     ) -> StreamStatistics:
         clock, notes = self._clock.estimate(), tuple(kept)
-        if clock is not None and abs(clock.rate - 1.0) > REAL_TIME:
+        if clock is not None and abs(clock.rate - 1.0) > REAL_TIME_TOLERANCE:
             notes = (*notes, f"the device's clock runs {clock.rate:.3g} x ours")
         steps, device_ns = counts.pop("steps"), counts.pop("device_ns")
         missing = self._missing if first else self._settled + self._missing
         return StreamStatistics(
             **counts,
-            missing=tuple(stretch for stretch in missing if stretch[1] >= first)[:NAMED_GAPS],
+            missing=tuple(stretch for stretch in missing if stretch[1] >= first)[:MAX_LISTED_GAPS],
             longest_gap_ns=longest_gap_ns,
             declared_rate=self._declared_rate,
             seen_rate=1e9 * steps / device_ns if device_ns else 0.0,
@@ -192,7 +192,7 @@ class StreamCounter:
         self.first, self.highest = sequence, sequence - 1
         self._settled += self._missing
         self._missing.clear()
-        self._recent = [(-1, 0)] * REMEMBERED_SAMPLES
+        self._recent = [(-1, 0)] * HISTORY_SIZE
         self._last_device_ns = self._late_in_a_row = 0
         self._clock.restart()
 
@@ -200,11 +200,11 @@ class StreamCounter:
         if self._fills_gap(sample.sequence):
             self._reordered += 1
             self._untracked += not sample.tracked
-            self._recent[sample.sequence % REMEMBERED_SAMPLES] = (sample.sequence, sample.device_ns)
+            self._recent[sample.sequence % HISTORY_SIZE] = (sample.sequence, sample.device_ns)
             return
         self._duplicated += 1
         self._late_in_a_row = self._late_in_a_row + 1 if sample.device_ns > self._last_device_ns else 0
-        number, device_ns = self._recent[sample.sequence % REMEMBERED_SAMPLES]
+        number, device_ns = self._recent[sample.sequence % HISTORY_SIZE]
         if number == sample.sequence and device_ns != sample.device_ns:
             self._conflicts += 1
             self.note(f"two different samples have the number {number}: do two trackers share this name?")
@@ -229,7 +229,7 @@ class StreamCounter:
     def _is_explained(self, device: int, step: int, receive: int) -> bool:
         """Tell whether the numbers explain a step of the device's clock (loss), or our clock does (a pause)."""
         period = 1e9 / self._declared_rate if self._declared_rate else self._device_ns / max(self._steps, 1)
-        rate = min(max(self._device_ns / max(self._receive_ns, 1), 1.0), FASTEST)
+        rate = min(max(self._device_ns / max(self._receive_ns, 1), 1.0), MAX_CLOCK_RATE)
         return device <= max(step * period, receive * rate)
 
     def _miss(self, first: int, last: int) -> None:
@@ -237,7 +237,7 @@ class StreamCounter:
         self._lost += last - first + 1
 
     def _fills_gap(self, sequence: int) -> bool:
-        i = bisect_right(self._missing, (sequence, LARGEST_JUMP + sequence)) - 1
+        i = bisect_right(self._missing, (sequence, MAX_SEQUENCE_JUMP + sequence)) - 1
         if i < 0 or sequence > self._missing[i][1]:
             return False
         first, last = self._missing[i]

@@ -64,12 +64,12 @@ def judge_again(former: Verdict, before: PhaseStatistics, now: PhaseStatistics, 
 
 def _learned(parts: PhaseStatistics) -> StreamStatistics:
     """Return the account of what is learned, with all that has no place within the take."""
-    return replace(parts.whole, **{name: getattr(parts.carried, name) for name in PLACED})
+    return replace(parts.whole, **{name: getattr(parts.transport, name) for name in PLACED})
 
 
 def _too_many(parts: PhaseStatistics, learned: StreamStatistics, settings: RecordingSettings) -> list[str]:
     limit, found = settings.largest_loss, []
-    total = parts.carried.received + parts.carried.lost
+    total = parts.transport.received + parts.transport.lost
     faults = sum(getattr(learned, name) for name in FAULTS if name != "refused")
     if faults > limit * total:
         found.append(f"{faults} of {_samples(total)} are faulty, {faults / total:.1%}, limit {limit:.1%}")
@@ -107,7 +107,7 @@ def _repairs(account: StreamStatistics) -> list[str]:
 
 def _elsewhere(parts: PhaseStatistics, settings: RecordingSettings) -> list[str]:
     """Say what happened where nothing is learned."""
-    ways = {"reaching": parts.reach, "returning": parts.back}
+    ways = {"reaching": parts.reach, "returning": parts.return_}
     said = {way: [*_breaks(account, settings), *_repairs(account)] for way, account in ways.items()}
     return [f"while {way}, outside what is learned: {', '.join(faults)}" for way, faults in said.items() if faults]
 

@@ -5,7 +5,7 @@ from typing import Any
 
 import umsgpack
 
-from teachpath.live.preview import Page
+from teachpath.live.preview import Viewer
 
 
 def ignore() -> None:
@@ -25,7 +25,7 @@ def decoded(batch: bytes | None) -> list[dict[str, Any]]:
     return [umsgpack.unpackb(command) for command in split(batch)]
 
 
-def take(page: Page) -> list[dict[str, Any]]:
-    batch = page.take()
-    page.acknowledge()
+def take(viewer: Viewer) -> list[dict[str, Any]]:
+    batch = viewer.pop()
+    viewer.acknowledge()
     return decoded(batch)

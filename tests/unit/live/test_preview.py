@@ -7,7 +7,7 @@ import numpy as np
 
 from teachpath.io import wire
 from teachpath.io.bus import MemoryBus
-from teachpath.live.preview import WAYS, Page, Preview, PreviewSettings
+from teachpath.live.preview import CLUSTER_COLORS, Preview, PreviewSettings, Viewer
 from teachpath.motion.arm.geometry import drawing
 from teachpath.motion.arm.kinematics import link_frames
 from teachpath.motion.collision.builtin_scenes import empty_scene, paper_scene
@@ -60,7 +60,7 @@ class Station:
 def test_a_new_page_gets_arm_and_object() -> None:
     preview = Station().preview
     preview.show_object(paper_scene().carried)
-    sent = take(preview.attach(ignore))
+    sent = take(preview.connect(ignore))
     objects = {c["path"] for c in sent if c["type"] == "set_object"}
     assert "/object" in objects
     assert len([path for path in objects if path.startswith("/robot/link")]) == len(drawing())
@@ -70,29 +70,29 @@ def test_a_new_page_gets_arm_and_object() -> None:
 def test_the_arm_follows_the_newest_joint_state() -> None:
     station = Station()
     with station.preview as preview:
-        page = preview.attach(ignore)
-        take(page)
+        viewer = preview.connect(ignore)
+        take(viewer)
         for q1 in (0.1, 0.2, 0.3):
             station.publish_state(HOME + np.array([q1, 0, 0, 0, 0, 0]))
         preview.update()
-        sent = {c["path"]: np.reshape(c["matrix"], (4, 4)).T for c in take(page)}
+        sent = {c["path"]: np.reshape(c["matrix"], (4, 4)).T for c in take(viewer)}
         frames = link_frames(HOME + np.array([0.3, 0, 0, 0, 0, 0]))
         for i in range(1, 7):
             assert np.allclose(sent[f"/robot/link{i}"], frames[i], atol=1e-5)
         station.publish_state(HOME + np.array([0.3, 0, 0, 0, 0, 1e-9]))
         preview.update()
-        assert take(page) == []  # at rest nothing is sent
+        assert take(viewer) == []  # at rest nothing is sent
 
 
 def test_the_object_follows_and_the_fingers_close() -> None:
     station = Station()
     with station.preview as preview:
         preview.show_object(paper_scene().carried)
-        page = preview.attach(ignore)
-        take(page)
+        viewer = preview.connect(ignore)
+        take(viewer)
         station.publish_state(HOME, closed=True, at=(0.1, 0.2, 0.7))
         preview.update()
-        sent = {c["path"]: np.reshape(c["matrix"], (4, 4)).T for c in take(page)}
+        sent = {c["path"]: np.reshape(c["matrix"], (4, 4)).T for c in take(viewer)}
         assert np.allclose(sent["/object"][:3, 3], (0.1, 0.2, 0.7))
         assert {"/robot/link6/left-finger", "/robot/link6/right-finger"} <= set(sent)
 
@@ -101,13 +101,13 @@ def test_the_object_stays_when_the_arm_knows_of_none() -> None:
     station = Station()
     with station.preview as preview:
         preview.show_object(paper_scene().carried)
-        page = preview.attach(ignore)
-        take(page)
+        viewer = preview.connect(ignore)
+        take(viewer)
         zero = np.zeros(6)
         state = JointState(1, 1, HOME + 0.1, zero, zero, 0.0, 0, False, False, (0, 0, 0), (0, 0, 0, 0))
         station.bus.publish(KEYS.state("puma560"), wire.encode_state(state))
         preview.update()
-        assert "/object" not in {c["path"] for c in take(page)}
+        assert "/object" not in {c["path"] for c in take(viewer)}
 
 
 def test_a_scene_without_an_object_shows_none() -> None:
@@ -123,27 +123,27 @@ def test_a_scene_without_an_object_shows_none() -> None:
 def test_malformed_states_are_left_out() -> None:
     station = Station()
     with station.preview as preview:
-        page = preview.attach(ignore)
-        take(page)
+        viewer = preview.connect(ignore)
+        take(viewer)
         station.bus.publish(KEYS.state("puma560"), b"\xff\xff")
         preview.update()
-        assert take(page) == []
+        assert take(viewer) == []
 
 
-def placed(page: Page, path: str) -> list[tuple[float, ...]]:
+def placed(viewer: Viewer, path: str) -> list[tuple[float, ...]]:
     """Return where the page is told to put what is at `path`, in order."""
-    told = [c for c in take(page) if c["path"] == path and c["type"] == "set_transform"]
+    told = [c for c in take(viewer) if c["path"] == path and c["type"] == "set_transform"]
     return [tuple(round(v, 4) for v in c["matrix"][12:15]) for c in told]
 
 
 def test_a_hand_is_drawn_with_its_trail_until_it_falls_silent() -> None:
     station = Station()
     with station.preview as preview:
-        page = preview.attach(ignore)
-        take(page)
+        viewer = preview.connect(ignore)
+        take(viewer)
         for i in range(10):
             station.see(0.01 * i)
-        assert placed(page, "/hand/glove/marker")[-1] == (0.09, 0.0, 0.6)
+        assert placed(viewer, "/hand/glove/marker")[-1] == (0.09, 0.0, 0.6)
         assert preview.paths("/hand") == ["/hand/glove/marker", "/hand/glove/trail"]
         station.now += PreviewSettings().hand_silence + 0.1
         preview.update()
@@ -165,21 +165,21 @@ def test_the_object_goes_with_the_hand_lies_where_it_was_let_go_and_goes_back() 
     turned = (0.0, 1.0, 0.0, 0.0)
     with station.preview as preview:
         preview.show_object(thing)
-        page = preview.attach(ignore)
-        take(page)
+        viewer = preview.connect(ignore)
+        take(viewer)
         station.see(0.1)
-        assert placed(page, "/object") == []
+        assert placed(viewer, "/object") == []
         station.see(0.2, Phase.TRANSPORT, carried=((0.3, 0.1, 0.7), turned))
-        assert placed(page, "/object") == [(0.3, 0.1, 0.7)]
+        assert placed(viewer, "/object") == [(0.3, 0.1, 0.7)]
         station.publish_state(HOME, at=(9.0, 9.0, 9.0))  # the arm does not take it out of the hand
         station.see(0.2, Phase.TRANSPORT)  # not tracked for a moment
         station.see(0.3, Phase.RETURN)
-        assert placed(page, "/object") == []
+        assert placed(viewer, "/object") == []
         station.see(0.3, Phase.REACH, take=2)
-        assert placed(page, "/object") == [tuple(round(v, 4) for v in thing.position)]
+        assert placed(viewer, "/object") == [tuple(round(v, 4) for v in thing.position)]
         station.publish_state(HOME, at=(0.4, 0.4, 0.4))
         preview.update()
-        assert placed(page, "/object") == [(0.4, 0.4, 0.4)]
+        assert placed(viewer, "/object") == [(0.4, 0.4, 0.4)]
 
 
 def test_an_object_in_a_hand_that_vanishes_goes_back() -> None:
@@ -187,27 +187,27 @@ def test_an_object_in_a_hand_that_vanishes_goes_back() -> None:
     assert thing is not None
     with station.preview as preview:
         preview.show_object(thing)
-        page = preview.attach(ignore)
+        viewer = preview.connect(ignore)
         station.see(0.2, Phase.TRANSPORT, carried=((0.3, 0.1, 0.7), (1.0, 0.0, 0.0, 0.0)))
-        take(page)
+        take(viewer)
         station.now += PreviewSettings().hand_silence + 0.1
         preview.update()
-        assert placed(page, "/object") == [tuple(round(v, 4) for v in thing.position)]
+        assert placed(viewer, "/object") == [tuple(round(v, 4) for v in thing.position)]
 
 
 def test_stops_listening_when_stopped() -> None:
     station = Station()
     with station.preview as preview:
-        page = preview.attach(ignore)
-        take(page)
+        viewer = preview.connect(ignore)
+        take(viewer)
     station.publish_state(HOME + 0.1)
     station.preview.update()
-    assert take(page) == []
+    assert take(viewer) == []
 
 
 def test_the_page_uses_the_same_colours_everywhere() -> None:
     web = Path(__file__).parents[3] / "clients" / "web"
     style = dict(re.findall(r"--way-(\d): #([0-9a-f]{6});", (web / "style.css").read_text()))
     (drawn,) = re.findall(r"WAYS = \[(.*?)\]", (web / "meshes.js").read_text())
-    assert [int(style[str(i)], 16) for i in range(len(WAYS))] == list(WAYS)
-    assert [int(colour, 16) for colour in drawn.split(",")] == list(WAYS)
+    assert [int(style[str(i)], 16) for i in range(len(CLUSTER_COLORS))] == list(CLUSTER_COLORS)
+    assert [int(colour, 16) for colour in drawn.split(",")] == list(CLUSTER_COLORS)

@@ -62,7 +62,7 @@ def record(store: Store, samples: Sequence[Sample], *, gone: bool = False, rate:
     session = RecordingSession(store, SETTINGS, task="lift", tracker="glove", calibration=LAB, scene=EMPTY, rate=rate)
     session.refuse("a payload was no sample")
     finished = [session.add(sample) for sample in (samples[:-20] if gone else samples)]
-    finished += [session.lose("the tracker has gone in mid-take")] if gone else session.finish()
+    finished += [session.on_tracker_lost("the tracker has gone in mid-take")] if gone else session.finish()
     ((row, _),) = [f for f in finished if f is not None]
     return row
 

@@ -32,8 +32,8 @@ class Bench:
             RecordingSettings(handshake_timeout=1.0),
             scene=lambda name: {"paper": SCENE}[name],
             calibration=Calibration,
-            recorded=recorded or (lambda *made: self.recorded.append(made)),
-            changed=self.changed.append,
+            on_demonstration=recorded or (lambda *made: self.recorded.append(made)),
+            on_change=self.changed.append,
             clock=lambda: self.now,
         )
         self.recorder.start()

@@ -30,8 +30,8 @@ def shifted(offset: Vector) -> list[TaughtPoint]:
     return [TaughtPoint(tuple(np.subtract(place, offset).tolist()), place) for place in SQUARE]
 
 
-def calibrations(store: Store, *fixed: Calibration) -> Calibrations:
-    return Calibrations(store, RecordingSettings(), fixed or (IDENTITY,), scene)
+def calibrations(store: Store, *configured: Calibration) -> Calibrations:
+    return Calibrations(store, RecordingSettings(), configured or (IDENTITY,), scene)
 
 
 @pytest.fixture
@@ -56,17 +56,17 @@ def positions(store: Store, row: Demonstration) -> np.ndarray:
 
 
 def test_every_version_outlives_the_service_and_the_newest_counts(store: Store, tmp_path: Path) -> None:
-    known = calibrations(store)
+    newest = calibrations(store)
     for x in (1.0, 2.0):
-        made = known.measure("lab", shifted((x, 0.0, 0.0)), source="fastrak")
+        made = newest.measure("lab", shifted((x, 0.0, 0.0)), source="fastrak")
     assert (made.version, made.source, made.calibration.offset[0]) == (2, "fastrak", pytest.approx(2.0))
     store.close()
     again = Store(StoreSettings(data_dir=str(tmp_path)))
-    known = calibrations(again)
+    newest = calibrations(again)
     assert again.calibrations.versions("lab")[0] == made
-    assert known.get("lab") == made.calibration
-    assert known.get("lab@1").offset[0] == pytest.approx(1.0)
-    assert [m.calibration.name for m in known.known()] == ["identity", "lab"]
+    assert newest.get("lab") == made.calibration
+    assert newest.get("lab@1").offset[0] == pytest.approx(1.0)
+    assert [m.calibration.name for m in newest.newest()] == ["identity", "lab"]
     again.close()
 
 
@@ -76,61 +76,61 @@ def test_only_looking_keeps_nothing(store: Store) -> None:
 
 
 def test_a_name_of_the_settings_or_no_name_is_refused(store: Store) -> None:
-    known = calibrations(store)
+    newest = calibrations(store)
     with pytest.raises(Conflict, match="identity is in the settings"):
-        known.measure("identity", shifted((1.0, 0.0, 0.0)))
+        newest.measure("identity", shifted((1.0, 0.0, 0.0)))
     for name in ("lab@1", "", "../lab"):
         with pytest.raises(UnusableInput, match="cannot name a calibration"):
-            known.measure(name, shifted((1.0, 0.0, 0.0)))
-    known.measure("lab", shifted((1.0, 0.0, 0.0)))
+            newest.measure(name, shifted((1.0, 0.0, 0.0)))
+    newest.measure("lab", shifted((1.0, 0.0, 0.0)))
     with pytest.raises(Conflict, match="lab was measured here and is in the settings too"):
         calibrations(store, Calibration("lab"))
     for name, sentence in (("moon", "known: identity, lab"), ("lab@3", "no version 3"), ("lab@x", "write e.g. lab@1")):
         with pytest.raises(NotFound, match=sentence):
-            known.get(name)
+            newest.get(name)
 
 
 def test_demonstrations_under_a_former_version_are_refused_until_they_are_converted(store: Store) -> None:
-    known = calibrations(store)
-    before = recorded(store, known.measure("lab", shifted((0.1, 0.0, 0.0))).calibration)
-    known.check([before])
-    now = known.measure("lab", shifted((0.3, 0.0, 0.0))).calibration
+    newest = calibrations(store)
+    before = recorded(store, newest.measure("lab", shifted((0.1, 0.0, 0.0))).calibration)
+    newest.require_current([before])
+    now = newest.measure("lab", shifted((0.3, 0.0, 0.0))).calibration
     after = recorded(store, now)
     with pytest.raises(
         Conflict, match=r"demonstrations 1 were .* teachpath recalibrate lift; .* learn --as-recorded lift"
     ):
-        known.check([before, after])
+        newest.require_current([before, after])
 
-    (changed, same) = known.convert([before, after])
-    known.check([changed, same])
+    (changed, same) = newest.convert([before, after])
+    newest.require_current([changed, same])
     assert (changed.calibration, same) == (now, after)
     assert np.allclose(positions(store, changed) - positions(store, before), [0.2, 0.0, 0.0])
     assert store.demonstration(before.id) == changed
-    assert known.convert([changed], "lab@1") == [before]
+    assert newest.convert([changed], "lab@1") == [before]
 
 
 def test_a_conversion_judges_again_and_forgives_no_other_fault(store: Store) -> None:
-    known = calibrations(store)
-    before = recorded(store, known.measure("lab", shifted((0.0, 0.0, 0.0))).calibration)
+    newest = calibrations(store)
+    before = recorded(store, newest.measure("lab", shifted((0.0, 0.0, 0.0))).calibration)
     torn = store.change_demonstration(before.id, verdict="repaired", reasons=("the tracker has gone in mid-take",))
-    known.measure("lab", [replace(p, world=(p.world[0] + 5.0, *p.world[1:])) for p in shifted((0.0, 0.0, 0.0))])
-    (outside,) = known.convert([torn])
+    newest.measure("lab", [replace(p, world=(p.world[0] + 5.0, *p.world[1:])) for p in shifted((0.0, 0.0, 0.0))])
+    (outside,) = newest.convert([torn])
     assert outside.verdict == "reject"
     assert outside.account.out_of_workspace == 50
     assert outside.reasons[0] == "the tracker has gone in mid-take"
-    assert known.convert([outside], "lab@1") == [torn]
+    assert newest.convert([outside], "lab@1") == [torn]
 
 
 def test_either_all_are_converted_or_none(store: Store) -> None:
-    known = calibrations(store)
-    first = known.measure("lab", shifted((0.1, 0.0, 0.0))).calibration
+    newest = calibrations(store)
+    first = newest.measure("lab", shifted((0.1, 0.0, 0.0))).calibration
     rows = [recorded(store, first) for _ in range(2)]
-    known.measure("lab", shifted((0.3, 0.0, 0.0)))
+    newest.measure("lab", shifted((0.3, 0.0, 0.0)))
     store.recordings.path(rows[1].recording).unlink()
     with pytest.raises(NotFound, match="is missing"):
-        known.convert(rows)
+        newest.convert(rows)
     assert store.demonstration(rows[0].id) == rows[0]
 
 
 def test_a_calibration_of_another_station_contradicts_nothing(store: Store) -> None:
-    calibrations(store).check([recorded(store, Calibration("theirs", offset=(1.0, 0.0, 0.0)))])
+    calibrations(store).require_current([recorded(store, Calibration("theirs", offset=(1.0, 0.0, 0.0)))])

@@ -1,7 +1,7 @@
 """What a hand is told: at once, once, and never on the recorder's thread."""
 
 from teachpath.io.bus import MemoryBus
-from teachpath.recorder.feedback import AGAIN, Feedback, Standing
+from teachpath.recorder.feedback import REPEAT_INTERVAL, FeedbackPublisher, Standing
 from teachpath_proto import tracker_pb2
 from tests.contract.rows import demonstration as row
 from tests.unit.recorder.recorders import KEYS, Bench
@@ -18,12 +18,14 @@ class Told:
         self.bus.subscribe(
             KEYS.feedback("glove"), lambda _, p: self.heard.append(tracker_pb2.HandFeedback.FromString(p))
         )
-        self.feedback = Feedback(self.bus, KEYS, lambda: self.standings, lambda key: row(key), clock=lambda: self.now)
+        self.feedback = FeedbackPublisher(
+            self.bus, KEYS, lambda: self.standings, lambda key: row(key), clock=lambda: self.now
+        )
 
     def look(self, *standings: Standing) -> list[tracker_pb2.HandFeedback]:
         """Return what is said anew when the recordings stand like this."""
         self.standings, before = list(standings), len(self.heard)
-        self.feedback.look()
+        self.feedback.publish_changes()
         return self.heard[before:]
 
 
@@ -36,15 +38,15 @@ def test_a_change_is_told_once_and_all_again_each_second() -> None:
     assert [f.holding for f in told.look(standing())] == [False]
     assert told.look(standing()) == []
     assert [(f.holding, f.phase) for f in told.look(standing("grasp"))] == [(True, "grasp")]
-    told.now += 0.5 * AGAIN
+    told.now += 0.5 * REPEAT_INTERVAL
     assert [f.holding for f in told.look(standing("transport"))] == [True]
-    told.now += 0.5 * AGAIN
+    told.now += 0.5 * REPEAT_INTERVAL
     assert told.look(standing("transport")) == []
-    told.now += 0.5 * AGAIN
+    told.now += 0.5 * REPEAT_INTERVAL
     assert [f.holding for f in told.look(standing("transport"))] == [True]
     assert [f.holding for f in told.look(standing("release"))] == [False]
     for _ in range(3):
-        told.now += AGAIN
+        told.now += REPEAT_INTERVAL
         assert [(f.holding, f.phase) for f in told.look(standing("release"))] == [(False, "release")]
 
 

@@ -23,19 +23,19 @@ def trajectory(shown: Demonstration) -> Trajectory:
 
 
 def test_it_tells_the_ways_apart_and_asks_for_the_one_that_is_thin() -> None:
-    coach = GuidanceThread(lambda _: stored(), trajectory, LearningSettings())
-    sentence = coach.look_at("t")
-    assert sentence.startswith("6 demonstrations show 2 ways and agree within 0.")
-    assert sentence.endswith("; the second way has only two, show it again")
+    guidance = GuidanceThread(lambda _: stored(), trajectory, LearningSettings())
+    advice = guidance.compare("t")
+    assert advice.startswith("6 demonstrations show 2 ways and agree within 0.")
+    assert advice.endswith("; the second way has only two, show it again")
 
 
 def test_discarded_marked_and_rejected_ones_do_not_count() -> None:
     changes = ({"discarded_ns": 5}, {"mark": "bad"}, {"verdict": "reject"})
     kept = [replace(d, **change) for d, change in zip(stored(3), changes, strict=True)]  # type: ignore[arg-type]
-    assert GuidanceThread(lambda _: kept, trajectory, LearningSettings()).look_at("t") == ""
+    assert GuidanceThread(lambda _: kept, trajectory, LearningSettings()).compare("t") == ""
     assert "one demonstration" in GuidanceThread(
         lambda _: [*kept, stored()[3]], trajectory, LearningSettings()
-    ).look_at("t")
+    ).compare("t")
 
 
 def test_each_demonstration_is_read_once_and_again_when_it_was_trimmed() -> None:
@@ -46,12 +46,12 @@ def test_each_demonstration_is_read_once_and_again_when_it_was_trimmed() -> None
         read.append((shown.id, shown.transport))
         return trajectory(shown)
 
-    coach = GuidanceThread(lambda _: rows, reading, LearningSettings())
-    coach.look_at("t")
-    coach.look_at("t")
+    guidance = GuidanceThread(lambda _: rows, reading, LearningSettings())
+    guidance.compare("t")
+    guidance.compare("t")
     assert len(read) == len(rows)
     rows[2] = replace(rows[2], trim=(2, 3))
-    coach.look_at("t")
+    guidance.compare("t")
     assert read[len(rows) :] == [(rows[2].id, (2, 3))]
 
 
@@ -65,17 +65,17 @@ def test_it_answers_from_its_own_thread_and_outlives_what_cannot_be_read() -> No
         answered.release()
         return stored(1)
 
-    coach = GuidanceThread(rows, trajectory, LearningSettings())
-    coach.start()
-    assert coach.sentence("t") == ""
-    coach.consider("broken")
+    guidance = GuidanceThread(rows, trajectory, LearningSettings())
+    guidance.start()
+    assert guidance.advice("t") == ""
+    guidance.request("broken")
     assert asked.acquire(timeout=5)
-    coach.consider("t")
+    guidance.request("t")
     assert answered.acquire(timeout=5)
-    coach.stop()
-    assert coach.sentence("t") == "one demonstration so far; show it again"
-    assert "damaged" in coach.sentence("broken")
-    coach.stop()
+    guidance.stop()
+    assert guidance.advice("t") == "one demonstration so far; show it again"
+    assert "damaged" in guidance.advice("broken")
+    guidance.stop()
 
 
 def test_of_a_burst_every_task_is_compared() -> None:
@@ -87,11 +87,11 @@ def test_of_a_burst_every_task_is_compared() -> None:
             done.set()
         return stored(1)
 
-    coach = GuidanceThread(rows, trajectory, LearningSettings())
+    guidance = GuidanceThread(rows, trajectory, LearningSettings())
     for task in ("a", "b", "a"):
-        coach.consider(task)
-    coach.start()
+        guidance.request(task)
+    guidance.start()
     assert done.wait(timeout=30)
-    coach.stop()
+    guidance.stop()
     assert asked == ["a", "b"]
-    assert set(coach.sentences()) == {"a", "b"}
+    assert set(guidance.all_advice()) == {"a", "b"}

@@ -24,17 +24,17 @@ class Desk:
     def __init__(self, store: Store, trackers: tuple[str, ...]) -> None:
         self.now = 0.0
         presence = Presence(lambda: self.now)
-        self.intake = SampleQueues(KEYS, presence, SETTINGS.longest_backlog)
-        self.scribe = RecordingThread(
-            self.intake,
+        self.queues = SampleQueues(KEYS, presence, SETTINGS.longest_backlog)
+        self.thread = RecordingThread(
+            self.queues,
             presence,
             SETTINGS,
-            made=lambda made: None,
-            unwanted=lambda session: None,
+            on_finished=lambda finished: None,
+            on_discard_request=lambda session: None,
             clock=lambda: self.now,
         )
         for tracker in trackers:
-            self.scribe.sessions[tracker] = RecordingSession(
+            self.thread.sessions[tracker] = RecordingSession(
                 store,
                 SETTINGS,
                 task="lift",
@@ -43,44 +43,44 @@ class Desk:
                 scene=Scene("empty"),
                 clock=lambda: self.now,
             )
-            self.intake.open(tracker)
+            self.queues.open(tracker)
 
     def send(self, tracker: str, count: int, first: int = 1) -> None:
         for n in range(first, first + count):
-            self.intake.receive(KEYS.samples(tracker), sample_message(sample(n, (0.0, 0.0, 0.0))).SerializeToString())
+            self.queues.on_sample(KEYS.samples(tracker), sample_message(sample(n, (0.0, 0.0, 0.0))).SerializeToString())
 
     def recorded(self, tracker: str) -> int:
-        return self.scribe.sessions[tracker].account.received
+        return self.thread.sessions[tracker].account.received
 
 
 @pytest.fixture
 def desk(store: Store) -> Iterator[Desk]:
     desk = Desk(store, ("left", "right"))
     yield desk
-    desk.scribe.stop()
+    desk.thread.stop()
 
 
 def test_it_rests_only_when_no_batch_was_full(desk: Desk) -> None:
     desk.send("left", 2 * BATCH_SIZE + 50)
-    assert [desk.scribe.process_round() for _ in range(4)] == [True, True, False, False]
+    assert [desk.thread.process_round() for _ in range(4)] == [True, True, False, False]
     assert desk.recorded("left") == 2 * BATCH_SIZE + 50
-    assert desk.intake.backlog == 0
+    assert desk.queues.backlog == 0
 
 
 def test_samples_that_trickle_in_from_many_hurry_nobody(desk: Desk) -> None:
     for tracker in ("left", "right"):
         desk.send(tracker, BATCH_SIZE - 1)
-    assert not desk.scribe.process_round()
+    assert not desk.thread.process_round()
 
 
 def test_a_flood_keeps_no_other_waiting_for_more_than_one_batch(desk: Desk) -> None:
     desk.send("left", 10 * BATCH_SIZE)
     desk.send("right", 1)
-    assert desk.scribe.process_round()
+    assert desk.thread.process_round()
     assert (desk.recorded("left"), desk.recorded("right")) == (BATCH_SIZE, 1)
 
 
 def test_a_flush_that_is_due_is_no_reason_to_hurry(desk: Desk) -> None:
     desk.now = 2 * FLUSH_INTERVAL
-    assert not desk.scribe.process_round()
-    assert desk.scribe.sessions["left"].flushed == desk.now
+    assert not desk.thread.process_round()
+    assert desk.thread.sessions["left"].last_flush == desk.now

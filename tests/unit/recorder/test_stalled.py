@@ -20,8 +20,8 @@ TAKES = 8
 
 def record(bench: Bench) -> None:
     bench.begin()
-    for take in range(TAKES):
-        bench.send(demonstration(1 + take * SHOWN))
+    for pop in range(TAKES):
+        bench.send(demonstration(1 + pop * SHOWN))
     began = time.monotonic()
     report = bench.end(TAKES * SHOWN)
     assert time.monotonic() - began < 10.0
@@ -31,10 +31,10 @@ def record(bench: Bench) -> None:
 def test_a_page_that_takes_nothing_keeps_the_recorder_from_nothing(bench: Bench) -> None:
     view = Preview(bench.bus, KEYS, drawing(), robot="puma", home=np.zeros(6), hands=bench.recorder.hands)
     with view:
-        page = view.attach(lambda: None)
-        assert page.take()  # the first batch, which it never acknowledges
+        viewer = view.connect(lambda: None)
+        assert viewer.pop()  # the first batch, which it never acknowledges
         record(bench)
-        assert page.pending < 100
+        assert viewer.pending < 100
 
 
 def test_a_coach_that_ponders_keeps_the_recorder_from_nothing(store: object) -> None:
@@ -45,13 +45,13 @@ def test_a_coach_that_ponders_keeps_the_recorder_from_nothing(store: object) -> 
         ponders.wait(30.0)
         raise UnusableRecording("nobody needs it any more")
 
-    bench = Bench(store, recorded=lambda made, _: coach.consider(made.task))  # type: ignore[arg-type]
-    coach = GuidanceThread(bench.store.demonstrations, ponder, LearningSettings())
-    coach.start()
+    bench = Bench(store, recorded=lambda made, _: guidance.request(made.task))  # type: ignore[arg-type]
+    guidance = GuidanceThread(bench.store.demonstrations, ponder, LearningSettings())
+    guidance.start()
     try:
         record(bench)
         assert asked.wait(5.0)
     finally:
         ponders.set()
-        coach.stop()
+        guidance.stop()
         bench.recorder.stop()

@@ -39,14 +39,14 @@ def test_a_demonstration_over_the_gate_gets_the_verdict_and_the_account_of_any_o
     bench.begin("page")
     page = door.register()
     for s in stream[:55]:
-        assert page.take(as_json(s)) == ""
+        assert page.publish(as_json(s)) == ""
     for s in stream[55:]:
-        assert page.take(sample_message(s).SerializeToString()) == ""
-    report = page.end(len(stream), discard=False)
+        assert page.publish(sample_message(s).SerializeToString()) == ""
+    report = page.end_recording(len(stream), discard=False)
     bench.begin("glove", "other")
     bench.send(stream)
     other = bench.end(len(stream))
-    assert (page.passed, page.refused) == (len(stream), 0)
+    assert (page.accepted, page.refused) == (len(stream), 0)
     ours, theirs = bench.store.demonstrations("lift"), bench.store.demonstrations("other")
     assert [(d.verdict, d.samples, d.grasp, d.release) for d in ours] == [
         ("clean", len(stream) - report["idle"], 20, 70)
@@ -56,7 +56,7 @@ def test_a_demonstration_over_the_gate_gets_the_verdict_and_the_account_of_any_o
     ]
     assert (report["received"], report["lost"]) == (other.received, other.lost)
     with pytest.raises(NotFound, match="not being recorded"):
-        page.end(1, discard=False)
+        page.end_recording(1, discard=False)
 
 
 @pytest.mark.parametrize(
@@ -76,10 +76,10 @@ def test_unsound_values_are_refused_with_a_sentence_and_counted_by_the_recorder_
 ) -> None:
     door.bench.begin("page")
     page = door.register()
-    assert sentence in page.take(as_json(sample(1, (0.5, 0.0, 0.5))) | changes)
-    assert page.take(as_json(sample(2, (0.5, 0.0, 0.5)))) == ""
-    report = page.end(2, discard=True)
-    assert (page.passed, page.refused, report["received"], report["refused"]) == (1, 1, 1, 1)
+    assert sentence in page.publish(as_json(sample(1, (0.5, 0.0, 0.5))) | changes)
+    assert page.publish(as_json(sample(2, (0.5, 0.0, 0.5)))) == ""
+    report = page.end_recording(2, discard=True)
+    assert (page.accepted, page.refused, report["received"], report["refused"]) == (1, 1, 1, 1)
 
 
 @pytest.mark.parametrize(
@@ -102,7 +102,7 @@ def test_what_is_no_sample_is_refused_and_does_not_reach_the_bus(door: Door, con
     seen: list[bytes] = []
     door.bench.bus.subscribe(KEYS.all_samples, lambda _, payload: seen.append(payload))
     page = door.register()
-    assert len(page.take(content)) > 15
+    assert len(page.publish(content)) > 15
     assert (seen, page.refused) == ([], 1)
 
 
@@ -110,12 +110,12 @@ def test_a_flood_has_to_leave_and_a_burst_after_a_pause_may_stay(door: Door) -> 
     page = door.register()
     one = as_json(sample(1, (0.5, 0.0, 0.5)))
     for _ in range(int(websocket_trackers.RATE_BURST)):
-        page.take(one)
+        page.publish(one)
     with pytest.raises(UnusableInput, match="faster than 1000 a second"):
-        page.take(one)
+        page.publish(one)
     door.now += 1.0
     for _ in range(int(websocket_trackers.RATE_LIMIT) - 1):
-        page.take(one)
+        page.publish(one)
 
 
 def test_one_that_never_makes_sense_has_to_leave(door: Door) -> None:

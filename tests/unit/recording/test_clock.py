@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from teachpath.recording.clock import FEWEST, DeviceClock
+from teachpath.recording.clock import MIN_SAMPLES, DeviceClock
 from teachpath.records import Clock
 from tests.unit.recording.hands import PERIOD_NS, START_NS, sample
 
@@ -42,7 +42,7 @@ def test_a_clock_that_runs_at_another_rate_is_measured(rate: float) -> None:
 
 def test_few_samples_say_nothing_and_a_restart_forgets() -> None:
     clock = DeviceClock()
-    for n in range(FEWEST):
+    for n in range(MIN_SAMPLES):
         assert clock.estimate() is None
         clock.observe(sample(n, (0.0, 0.0, 0.0)))
     assert clock.estimate() is not None

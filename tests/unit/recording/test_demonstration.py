@@ -6,11 +6,11 @@ from scipy.spatial.transform import Rotation
 
 from teachpath.errors import UnusableRecording
 from teachpath.recording.demonstration import object_trajectory, point_to_world, to_world
-from teachpath.recording.phases import Cut
+from teachpath.recording.phases import TransportSpan
 from teachpath.records import Calibration
 from tests.unit.recording.hands import demonstration
 
-CUT = Cut(20, 70)
+CUT = TransportSpan(20, 70)
 IDENTITY = Calibration("identity")
 CARRIED = (0.5, 0.0, 0.48)
 
@@ -39,7 +39,7 @@ def test_late_samples_are_put_back_and_duplicates_left_out() -> None:
     samples = demonstration()
     shuffled = [*samples[:30], samples[31], samples[30], samples[31], *samples[32:]]
     straight = object_trajectory(samples, CUT, IDENTITY, CARRIED)
-    again = object_trajectory(shuffled, Cut(20, 71), IDENTITY, CARRIED)
+    again = object_trajectory(shuffled, TransportSpan(20, 71), IDENTITY, CARRIED)
     assert np.array_equal(straight.positions, again.positions)
     assert np.array_equal(straight.times, again.times)
 

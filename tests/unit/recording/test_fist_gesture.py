@@ -88,9 +88,9 @@ def test_without_a_glove_or_an_object_there_are_no_signs() -> None:
 
 def test_what_opening_would_ask_for_is_offered_while_the_fist_is_held() -> None:
     gesture = FistGesture(RecordingSettings(), OBJECT)
-    offered: Signs = []
+    pending_command: Signs = []
     for s in fist(7.0):
         gesture.push(s, AWAY, carrying=False)
-        if not offered or offered[-1] is not gesture.offered:
-            offered.append(gesture.offered)
-    assert offered == [None, FistCommand.TOGGLE, FistCommand.DISCARD, None]
+        if not pending_command or pending_command[-1] is not gesture.pending_command:
+            pending_command.append(gesture.pending_command)
+    assert pending_command == [None, FistCommand.TOGGLE, FistCommand.DISCARD, None]

@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from teachpath.recording.phase_statistics import PhaseStatistics, phase_statistics
-from teachpath.recording.phases import Cut
+from teachpath.recording.phases import TransportSpan
 from teachpath.recording.settings import RecordingSettings
 from teachpath.recording.stream_statistics import StreamCounter
 from teachpath.recording.verdict import Verdict, judge
@@ -32,7 +32,7 @@ def parts(samples: list[Sample], *, until: int = SENT, opened: bool = True) -> P
     stream.expect(until - 1)
     grasp = next(i for i, s in enumerate(samples) if s.sequence >= REACH)
     release = next((i for i, s in enumerate(samples) if s.sequence >= REACH + CARRY), len(samples))
-    return phase_statistics(samples, Cut(grasp, release, not opened), stream.account(), SETTINGS)
+    return phase_statistics(samples, TransportSpan(grasp, release, not opened), stream.statistics(), SETTINGS)
 
 
 def verdict(samples: list[Sample]) -> Verdict:
@@ -47,8 +47,10 @@ def test_every_sample_is_in_one_part(lost: set[int], twice: set[int]) -> None:
     except StopIteration:  # nothing came after the reach
         return
     for name in ("received", "lost", "duplicated"):
-        assert sum(getattr(part, name) for part in (made.reach, made.carried, made.back)) == getattr(made.whole, name)
-    gap = max(part.longest_gap_ns for part in (made.reach, made.carried, made.back))
+        assert sum(getattr(part, name) for part in (made.reach, made.transport, made.return_)) == getattr(
+            made.whole, name
+        )
+    gap = max(part.longest_gap_ns for part in (made.reach, made.transport, made.return_))
     assert gap == made.whole.longest_gap_ns
 
 
@@ -78,7 +80,7 @@ def test_a_long_reach_does_not_make_light_of_what_is_lost_of_the_carried() -> No
     for each in kept:
         stream.observe(each)
     release = next(i for i, s in enumerate(kept) if s.sequence >= count + CARRY)
-    judged = judge(phase_statistics(kept, Cut(count, release), stream.account(), SETTINGS), SETTINGS)
+    judged = judge(phase_statistics(kept, TransportSpan(count, release), stream.statistics(), SETTINGS), SETTINGS)
     assert judged.word == "reject"
     assert "of 61 samples are faulty" in judged.reasons[0]
 
@@ -88,21 +90,21 @@ def test_a_late_sample_of_the_reach_hides_no_loss_of_the_carried() -> None:
     samples = [s for s in sent() if s.sequence not in (late, lost)]
     samples.insert(REACH + 20, sample(late, (0.0, 0.0, 0.0)))
     made = parts(samples)
-    assert (made.whole.lost, made.carried.lost, made.carried.reordered) == (1, 1, 1)
+    assert (made.whole.lost, made.transport.lost, made.transport.reordered) == (1, 1, 1)
 
 
 def test_a_sample_that_comes_after_the_release_is_missing_from_what_is_learned() -> None:
     late = REACH + 10
     samples = [s for s in sent() if s.sequence != late] + [sample(late, (0.0, 0.0, 0.0))]
     made = parts(samples)
-    assert (made.whole.lost, made.carried.lost, made.back.reordered) == (0, 1, 1)
+    assert (made.whole.lost, made.transport.lost, made.return_.reordered) == (0, 1, 1)
 
 
 @pytest.mark.parametrize("opened", [True, False])
 def test_what_only_the_handshake_told_was_sent_after_all_that_came(opened: bool) -> None:
     samples = sent() if opened else sent(REACH + CARRY)
     made = parts(samples, until=len(samples) + 7, opened=opened)
-    assert (made.whole.lost, made.back.lost, made.carried.lost) == (7, 7 * opened, 7 * (not opened))
+    assert (made.whole.lost, made.return_.lost, made.transport.lost) == (7, 7 * opened, 7 * (not opened))
 
 
 def test_a_clock_that_jumps_while_the_hand_returns_is_said_and_rejects_nothing() -> None:

@@ -3,7 +3,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from teachpath.recording.phases import GRASP_BUTTON, Cut, Segmenter
+from teachpath.recording.phases import GRASP_BUTTON, Segmenter, TransportSpan
 from teachpath.recording.settings import RecordingSettings
 from teachpath.records import Phase, Sample
 from tests.unit.recording.hands import CLOSED, OPEN, demonstration, sample
@@ -11,7 +11,7 @@ from tests.unit.recording.hands import CLOSED, OPEN, demonstration, sample
 OBJECT = (0.5, 0.0, 0.5)
 
 
-def cuts_of(samples: list[Sample], carried: tuple[float, float, float] | None = OBJECT) -> list[Cut]:
+def cuts_of(samples: list[Sample], carried: tuple[float, float, float] | None = OBJECT) -> list[TransportSpan]:
     segmenter = Segmenter(RecordingSettings(), carried)
     cuts = [segmenter.push(s, np.array(s.position)) for s in samples]
     return [cut for cut in [*cuts, segmenter.finish()] if cut is not None]

@@ -12,7 +12,7 @@ SETTINGS = RecordingSettings()
 CLEAN = StreamStatistics(received=100, declared_rate=50.0, seen_rate=50.0)
 
 
-def carried(account: StreamStatistics) -> PhaseStatistics:
+def transport(account: StreamStatistics) -> PhaseStatistics:
     """Return a take of which everything is learned."""
     return PhaseStatistics(account, StreamStatistics(), account, StreamStatistics())
 
@@ -41,7 +41,7 @@ def carried(account: StreamStatistics) -> PhaseStatistics:
     ],
 )
 def test_the_verdict_follows_the_numbers_and_says_them(changes: dict[str, int], word: str, reason: str) -> None:
-    verdict = judge(carried(replace(CLEAN, **changes)), SETTINGS)  # type: ignore[arg-type]
+    verdict = judge(transport(replace(CLEAN, **changes)), SETTINGS)  # type: ignore[arg-type]
     assert verdict.word == word
     assert reason in (verdict.reasons[0] if verdict.reasons else "")
     assert bool(verdict.reasons) == (word != "clean")
@@ -49,8 +49,8 @@ def test_the_verdict_follows_the_numbers_and_says_them(changes: dict[str, int], 
 
 def test_the_limits_are_those_of_the_settings() -> None:
     lost = StreamStatistics(received=90, lost=10)
-    assert judge(carried(lost), replace(SETTINGS, largest_loss=0.1)).word == "repaired"
-    gap = carried(replace(CLEAN, longest_gap_ns=300_000_000))
+    assert judge(transport(lost), replace(SETTINGS, largest_loss=0.1)).word == "repaired"
+    gap = transport(replace(CLEAN, longest_gap_ns=300_000_000))
     assert judge(gap, replace(SETTINGS, longest_gap=0.3)).word == "clean"
 
 

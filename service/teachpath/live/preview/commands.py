@@ -22,7 +22,7 @@ with without_init("meshcat"):  # which imports the server, and with it tornado, 
 Outline = Sequence[tuple[float, float]]
 
 # One colour per cluster, the same as --way-0 ... in the page's style sheet (Okabe & Ito's palette for all eyes).
-WAYS = (0x0072B2, 0xD55E00, 0x009E73, 0xCC79A7, 0xE69F00, 0x56B4E9)
+CLUSTER_COLORS = (0x0072B2, 0xD55E00, 0x009E73, 0xCC79A7, 0xE69F00, 0x56B4E9)
 
 BEVEL = 0.006  # m, of the edges of prisms as they are drawn
 

@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 
 from teachpath.io.bus import MemoryBus
-from teachpath.live.preview import WAYS, Preview, commands
-from teachpath.live.preview.tree import pack
+from teachpath.live.preview import CLUSTER_COLORS, Preview, commands
+from teachpath.live.preview.scene_tree import pack
 from teachpath.motion.arm.geometry import drawing
 from teachpath.motion.arm.kinematics import link_frames
 from teachpath.motion.execution.motion_preview import MotionPreview
@@ -23,14 +23,14 @@ FRAMES = 240  # of a motion; the viewer goes evenly from one to the next
 
 def way_color(cluster: int) -> int:
     """Return the colour of a way, 0xRRGGBB."""
-    return WAYS[(cluster - 1) % len(WAYS)]
+    return CLUSTER_COLORS[(cluster - 1) % len(CLUSTER_COLORS)]
 
 
 def scene_batch(review: Review, home: Array) -> bytes:
     """Return the commands that draw all that stands: arm, scene, demonstrations and paths."""
     preview = Preview(MemoryBus(), Keys(), drawing(), robot="", home=home, hands=list)
     preview.show_object(review.scene.carried)
-    arm = preview.attach(lambda: None).take() or b""
+    arm = preview.connect(lambda: None).pop() or b""
     drawn = [
         commands.solid(
             f"/scene/{s.name}",

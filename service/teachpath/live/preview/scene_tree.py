@@ -11,7 +11,7 @@ import threading
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
 
-CREDIT = 2  # batches sent ahead of their acknowledgement
+MAX_UNACKNOWLEDGED = 2  # batches sent ahead of their acknowledgement
 
 
 def pack(commands: Iterable[bytes]) -> bytes:
@@ -28,7 +28,7 @@ class Node:
     properties: dict[str, bytes] = field(default_factory=dict)
 
 
-class Page:
+class Viewer:
     """One connected page: the changes it has not been sent, one per path and kind."""
 
     def __init__(self, lock: threading.RLock, wake: Callable[[], None]) -> None:
@@ -36,23 +36,23 @@ class Page:
         self.wake = wake
         self._ordered: dict[tuple[str, str], bytes] = {}  # objects, properties, deletes: in order of their last change
         self._transforms: dict[str, bytes] = {}
-        self._owed = 0
+        self._unacknowledged = 0
 
-    def take(self) -> bytes | None:
+    def pop(self) -> bytes | None:
         """Return the next batch, `[u32 little-endian length][command]...`, or None while there is none to send."""
         with self._lock:
-            if self._owed >= CREDIT or not (self._ordered or self._transforms):
+            if self._unacknowledged >= MAX_UNACKNOWLEDGED or not (self._ordered or self._transforms):
                 return None
             commands = [*self._ordered.values(), *self._transforms.values()]
             self._ordered.clear()
             self._transforms.clear()
-            self._owed += 1
+            self._unacknowledged += 1
         return pack(commands)
 
     def acknowledge(self, batches: int = 1) -> None:
         """Give credit back: the page has drawn `batches` more batches."""
         with self._lock:
-            self._owed = max(0, self._owed - max(0, batches))
+            self._unacknowledged = max(0, self._unacknowledged - max(0, batches))
         self.wake()
 
     @property
@@ -79,21 +79,21 @@ class SceneTree:
     def __init__(self) -> None:
         self._lock = threading.RLock()
         self._nodes: dict[str, Node] = {}
-        self._pages: set[Page] = set()
+        self._viewers: set[Viewer] = set()
 
-    def attach(self, wake: Callable[[], None]) -> Page:
+    def connect(self, wake: Callable[[], None]) -> Viewer:
         """Add a page; its first batch is the whole tree. `wake()` is called, from any thread, when there is more."""
         with self._lock:
-            page = Page(self._lock, wake)
+            viewer = Viewer(self._lock, wake)
             for kind, path, command in self._replay():
-                page._add(kind, path, command)
-            self._pages.add(page)
-        return page
+                viewer._add(kind, path, command)
+            self._viewers.add(viewer)
+        return viewer
 
-    def detach(self, page: Page) -> None:
+    def disconnect(self, viewer: Viewer) -> None:
         """Forget a page."""
         with self._lock:
-            self._pages.discard(page)
+            self._viewers.discard(viewer)
 
     def __len__(self) -> int:
         return len(self._nodes)
@@ -103,26 +103,26 @@ class SceneTree:
         with self._lock:
             return [p for p, node in self._nodes.items() if node.content is not None and _within(p, prefix)]
 
-    def put_object(self, path: str, command: bytes) -> None:
+    def set_object(self, path: str, command: bytes) -> None:
         """Show an object at `path` instead of the one there."""
         with self._lock:
             self._node(path).content = command
-            self._tell("object", path, command)
+            self._queue("object", path, command)
         self._wake()
 
-    def put_transform(self, path: str, command: bytes) -> None:
+    def set_transform(self, path: str, command: bytes) -> None:
         """Move what is at and below `path`; only the newest transform of a path is sent."""
         with self._lock:
             node = self._node(path)
             if node.transform != command:
                 node.transform = command
-                self._tell("transform", path, command)
+                self._queue("transform", path, command)
 
-    def put_property(self, path: str, name: str, command: bytes) -> None:
+    def set_property(self, path: str, name: str, command: bytes) -> None:
         """Set a property of `path`; one value is kept per property."""
         with self._lock:
             self._node(path).properties[name] = command
-            self._tell("property " + name, path, command)
+            self._queue("property " + name, path, command)
         self._wake()
 
     def delete(self, path: str, command: bytes) -> None:
@@ -133,9 +133,9 @@ class SceneTree:
                 return
             for p in gone:
                 del self._nodes[p]
-            for page in self._pages:
-                page._forget(path)
-            self._tell("delete", path, command)
+            for viewer in self._viewers:
+                viewer._forget(path)
+            self._queue("delete", path, command)
         self._wake()
 
     def flush(self) -> None:
@@ -145,15 +145,15 @@ class SceneTree:
     def _node(self, path: str) -> Node:
         return self._nodes.setdefault(path, Node())
 
-    def _tell(self, kind: str, path: str, command: bytes) -> None:
-        for page in self._pages:
-            page._add(kind, path, command)
+    def _queue(self, kind: str, path: str, command: bytes) -> None:
+        for viewer in self._viewers:
+            viewer._add(kind, path, command)
 
     def _wake(self) -> None:
         with self._lock:
-            pages = list(self._pages)
-        for page in pages:
-            page.wake()
+            viewers = list(self._viewers)
+        for viewer in viewers:
+            viewer.wake()
 
     def _replay(self) -> Iterator[tuple[str, str, bytes]]:
         for path in sorted(self._nodes, key=lambda p: (p.count("/"), p)):  # parents first

@@ -7,7 +7,7 @@ from enum import StrEnum
 
 from teachpath.errors import UnusableInput
 
-LONGEST_COUNTDOWN = 60.0  # [s]
+MAX_COUNTDOWN = 60.0  # [s]
 
 
 class RecordingState(StrEnum):
@@ -30,8 +30,8 @@ class Routine:
     one_by_one: bool = False  # pause after each take
 
     def __post_init__(self) -> None:
-        if self.countdown is not None and not 0.0 <= self.countdown <= LONGEST_COUNTDOWN:
-            raise UnusableInput(f"a countdown of {self.countdown:g} s is outside 0 to {LONGEST_COUNTDOWN:g}")
+        if self.countdown is not None and not 0.0 <= self.countdown <= MAX_COUNTDOWN:
+            raise UnusableInput(f"a countdown of {self.countdown:g} s is outside 0 to {MAX_COUNTDOWN:g}")
 
 
 class RecordingStateMachine:
@@ -55,7 +55,7 @@ class RecordingStateMachine:
         """How many takes are still wanted; 0 when nobody has said how many."""
         return max(self._routine.takes - self._made, 0)
 
-    def seconds_left(self, now: float) -> float:
+    def countdown_left(self, now: float) -> float:
         """Return what is left of the countdown [s]."""
         return max(0.0, self._begins_at - now) if self.state is RecordingState.COUNTDOWN else 0.0
 
@@ -75,24 +75,24 @@ class RecordingStateMachine:
                 self._made = 0  # another series
             self._arm(now)
 
-    def count_down(self, now: float) -> bool:
+    def poll_countdown(self, now: float) -> bool:
         """Return whether this moment ends the countdown."""
         if self.state is not RecordingState.COUNTDOWN or now < self._begins_at:
             return False
         self.state = RecordingState.RECORDING
         return True
 
-    def lose(self) -> None:
+    def on_tracker_lost(self) -> None:
         """Take note that the tracker has gone."""
         if self.state in (RecordingState.RECORDING, RecordingState.PAUSING):
             self.state = RecordingState.LOST
 
-    def hear(self) -> None:
+    def on_sample(self) -> None:
         """Take note that the tracker sends."""
         if self.state is RecordingState.LOST:
             self.state = RecordingState.RECORDING
 
-    def end_one(self, now: float, *, made: bool) -> None:
+    def end_take(self, now: float, *, made: bool) -> None:
         """Take note that a take has ended, as a demonstration or as nothing, and make ready for the next."""
         self._made += made
         enough = self._routine.takes and not self.takes_left

@@ -17,14 +17,14 @@ from teachpath.errors import UnusableInput
 from teachpath.io.bus import Bus, Handle
 from teachpath.io.wire import decode_state
 from teachpath.live.preview import commands
-from teachpath.live.preview.tree import Page, SceneTree
+from teachpath.live.preview.scene_tree import SceneTree, Viewer
 from teachpath.motion.arm.geometry import Part
 from teachpath.motion.arm.kinematics import link_frames
 from teachpath.recording.live_hand import Hand
 from teachpath.records import Array, Phase, Shape, Vector
 from teachpath_proto.keys import Keys
 
-HAND_OPEN, HAND_CLOSED = 0x3F7FBF, 0xE08A00
+OPEN_HAND_COLOR, CLOSED_HAND_COLOR = 0x3F7FBF, 0xE08A00
 
 Hands = Callable[[], Iterable[Hand]]
 
@@ -44,7 +44,7 @@ class PreviewSettings:
 
 
 @dataclass
-class _Drawn:
+class _HandDrawing:
     """A hand as drawn now."""
 
     trail: deque[Vector]
@@ -85,8 +85,8 @@ class Preview:
         self._settings = settings or PreviewSettings()
         self._tree = SceneTree()
         self._state: bytes | None = None
-        self._hands: dict[str, _Drawn] = {}
-        self._thing: Shape | None = None
+        self._hands: dict[str, _HandDrawing] = {}
+        self._carried: Shape | None = None
         self._handles: list[Handle] = []
         self._stopped = threading.Event()
         self._thread: threading.Thread | None = None
@@ -123,13 +123,13 @@ class Preview:
     ) -> None:
         self.stop()
 
-    def attach(self, wake: Callable[[], None]) -> Page:
+    def connect(self, wake: Callable[[], None]) -> Viewer:
         """Add a page; its `take()` says what to tell it, and `wake()` is called, from any thread, on news."""
-        return self._tree.attach(wake)
+        return self._tree.connect(wake)
 
-    def detach(self, page: Page) -> None:
+    def disconnect(self, viewer: Viewer) -> None:
         """Forget a page that has gone."""
-        self._tree.detach(page)
+        self._tree.disconnect(viewer)
 
     def paths(self, prefix: str = "/") -> list[str]:
         """Return the names in the tree, at and below `prefix`, that hold an object."""
@@ -138,10 +138,10 @@ class Preview:
     def show_object(self, carried: Shape | None) -> None:
         """Show this object at its start instead of the one shown before; None: there is none."""
         self.clear("/object")
-        self._thing = carried
+        self._carried = carried
         if carried is not None:
             body = commands.solid("/object", carried.kind, carried.size, color=carried.color, vertices=carried.vertices)
-            self._tree.put_object("/object", body)
+            self._tree.set_object("/object", body)
             self._place("/object", commands.pose_of(carried.position, carried.orientation))
             self._tree.flush()
 
@@ -180,7 +180,7 @@ class Preview:
         path = f"/robot/link{part.link}/{part.name.replace(' ', '-')}"
         pose = commands.pose_of(part.position, part.orientation)
         body = commands.solid(path, part.kind, part.size, pose=pose, color=part.color, outline=part.outline)
-        self._tree.put_object(path, body)
+        self._tree.set_object(path, body)
         if any(part.opens):
             self._fingers.append((path, commands.pose_of(part.opens)))
 
@@ -192,14 +192,14 @@ class Preview:
 
     def _place(self, path: str, pose: Array) -> None:
         # A hundredth of a millimetre is less than a pixel: an arm at rest sends nothing.
-        self._tree.put_transform(path, commands.transform(path, np.round(pose, 5) + 0.0))
+        self._tree.set_transform(path, commands.transform(path, np.round(pose, 5) + 0.0))
 
     def _follow_hands(self) -> None:
         now = self._clock()
         for hand in self._look_at_hands():
             drawn = self._hands.get(hand.tracker)
             if drawn is None:
-                drawn = self._hands[hand.tracker] = _Drawn(deque(maxlen=self._settings.trail_points), now)
+                drawn = self._hands[hand.tracker] = _HandDrawing(deque(maxlen=self._settings.trail_points), now)
             if hand.received != drawn.received:
                 drawn.seen, drawn.received = now, hand.received
                 self._draw_hand(hand, drawn, now)
@@ -208,7 +208,7 @@ class Preview:
             self._put_back(self._hands.pop(tracker))
             self.clear(f"/hand/{tracker}")
 
-    def _draw_hand(self, hand: Hand, drawn: _Drawn, now: float) -> None:
+    def _draw_hand(self, hand: Hand, drawn: _HandDrawing, now: float) -> None:
         marker, trail = f"/hand/{hand.tracker}/marker", f"/hand/{hand.tracker}/trail"
         if drawn.take != hand.take:
             drawn.take = hand.take
@@ -217,16 +217,16 @@ class Preview:
         drawn.trail.append(hand.position)
         if drawn.closed != hand.closed:
             drawn.closed = hand.closed
-            color = HAND_CLOSED if hand.closed else HAND_OPEN
-            self._tree.put_object(marker, commands.solid(marker, "sphere", (0.016,), color=color))
+            color = CLOSED_HAND_COLOR if hand.closed else OPEN_HAND_COLOR
+            self._tree.set_object(marker, commands.solid(marker, "sphere", (0.016,), color=color))
         self._place(marker, commands.pose_of(hand.position))
         if len(drawn.trail) >= 2 and now - drawn.trail_drawn >= 1.0 / self._settings.trail_rate:
             drawn.trail_drawn = now
-            self._tree.put_object(trail, commands.line(trail, np.array(drawn.trail), color=HAND_OPEN))
+            self._tree.set_object(trail, commands.line(trail, np.array(drawn.trail), color=OPEN_HAND_COLOR))
 
-    def _draw_object(self, hand: Hand, drawn: _Drawn) -> None:
+    def _draw_object(self, hand: Hand, drawn: _HandDrawing) -> None:
         """Let the object go with the hand that took it; it lies where it was let go until the next reach begins."""
-        if hand.thing is None or hand.thing != self._thing:
+        if hand.thing is None or hand.thing != self._carried:
             return
         if hand.holds:
             drawn.holds = True
@@ -235,7 +235,7 @@ class Preview:
         elif hand.phase is Phase.REACH:
             self._put_back(drawn)
 
-    def _put_back(self, drawn: _Drawn) -> None:
-        if drawn.holds and self._thing is not None:
-            self._place("/object", commands.pose_of(self._thing.position))
+    def _put_back(self, drawn: _HandDrawing) -> None:
+        if drawn.holds and self._carried is not None:
+            self._place("/object", commands.pose_of(self._carried.position))
         drawn.holds = False
