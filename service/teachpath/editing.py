@@ -11,23 +11,24 @@ from typing import Final
 import numpy as np
 import scipy
 
+from teachpath import exchange
 from teachpath.errors import UnusableInput
-from teachpath.exchange import UNCHANGED, insert_knot, remove_knot
+from teachpath.exchange import SAME_SHAPE_TOLERANCE
 from teachpath.nurbs import Array, Curve
-from teachpath.records import Difference, Moved
+from teachpath.records import ControlPointChange, Difference
 
-FARTHEST: Final = 10.0  # m, of a control point from the robot's base
-WEIGHTS: Final = (1e-3, 1e3)
-MOST_POINTS: Final = 500
-HIGHEST_DEGREE: Final = 7
-LOOSEST: Final = 0.1  # m, that a removed knot may be allowed to move the curve
-APART: Final = 1e-6  # two knots are at least; a new one nearer to another is that one again
-STILL: Final = 1e-9  # m, by which a control point counts as moved
-PIECES: Final = 400  # of a curve when it is measured
+MAX_COORDINATE: Final = 10.0  # m, of a control point from the robot's base
+WEIGHT_LIMITS: Final = (1e-3, 1e3)
+MAX_CONTROL_POINTS: Final = 500
+MAX_DEGREE: Final = 7
+MAX_REMOVAL_TOLERANCE: Final = 0.1  # m, that a removed knot may be allowed to move the curve
+MIN_KNOT_SPACING: Final = 1e-6  # two knots are at least; a new one nearer to another is that one again
+MIN_CHANGE: Final = 1e-9  # m, by which a control point counts as moved
+MEASURED_INTERVALS: Final = 400  # of a curve when it is measured
 
 
 @dataclass(frozen=True, eq=False)
-class Operated:
+class EditResult:
     """A curve after an operation, and how far it lies from the one before [m], measured at 401 parameters."""
 
     curve: Curve
@@ -43,18 +44,19 @@ def check_editable(curve: Curve) -> Curve:
     points, weights = curve.control_points, curve.weights
     if points.shape[1] != 3:
         raise UnusableInput(f"control points have {points.shape[1]} coordinates; a path has 3 (x, y, z)")
-    if len(points) > MOST_POINTS:
-        raise UnusableInput(f"{len(points)} control points are over the limit of {MOST_POINTS}; remove knots")
+    if len(points) > MAX_CONTROL_POINTS:
+        raise UnusableInput(f"{len(points)} control points are over the limit of {MAX_CONTROL_POINTS}; remove knots")
     worst = int(np.argmax(np.abs(points).max(axis=1)))
-    if np.abs(points[worst]).max() > FARTHEST:
+    if np.abs(points[worst]).max() > MAX_COORDINATE:
         raise UnusableInput(
-            f"control point {worst + 1} is {np.abs(points[worst]).max():.4g} m away, limit {FARTHEST:g}; use metres"
+            f"control point {worst + 1} is {np.abs(points[worst]).max():.4g} m away, limit {MAX_COORDINATE:g}; "
+            "use metres"
         )
-    wrong = np.flatnonzero((weights < WEIGHTS[0]) | (weights > WEIGHTS[1]))
+    wrong = np.flatnonzero((weights < WEIGHT_LIMITS[0]) | (weights > WEIGHT_LIMITS[1]))
     if len(wrong):
         raise UnusableInput(
-            f"the weight of control point {wrong[0] + 1} is {weights[wrong[0]]:.4g}, limits {WEIGHTS[0]:g} to "
-            f"{WEIGHTS[1]:g}; move the control point instead"
+            f"the weight of control point {wrong[0] + 1} is {weights[wrong[0]]:.4g}, limits {WEIGHT_LIMITS[0]:g} to "
+            f"{WEIGHT_LIMITS[1]:g}; move the control point instead"
         )
     inner, counts = np.unique(curve.knots[curve.degree + 1 : -curve.degree - 1], return_counts=True)
     if np.any(counts > curve.degree):
@@ -62,27 +64,29 @@ def check_editable(curve: Curve) -> Curve:
         raise UnusableInput(
             f"u = {u:g} is a knot {counts.max()} times; more than degree {curve.degree} tears the curve apart"
         )
-    if np.ptp(points, axis=0).max() < UNCHANGED:
+    if np.ptp(points, axis=0).max() < SAME_SHAPE_TOLERANCE:
         raise UnusableInput("all control points lie in one place; a path leads from one place to another")
     return curve
 
 
-def insert(curve: Curve, u: float) -> Operated:
+def insert_knot(curve: Curve, u: float) -> EditResult:
     """Add a knot at `u`, and with it a control point; the shape stays. Raises UnusableInput."""
-    if len(curve.control_points) >= MOST_POINTS:
-        raise UnusableInput(f"the curve has {MOST_POINTS} control points, which is the limit")
+    if len(curve.control_points) >= MAX_CONTROL_POINTS:
+        raise UnusableInput(f"the curve has {MAX_CONTROL_POINTS} control points, which is the limit")
     nearest = float(curve.knots[np.argmin(np.abs(curve.knots - u))])
-    return _measured(curve, insert_knot(curve, nearest if abs(nearest - u) < APART else u), UNCHANGED)
+    return _measured(
+        curve, exchange.insert_knot(curve, nearest if abs(nearest - u) < MIN_KNOT_SPACING else u), SAME_SHAPE_TOLERANCE
+    )
 
 
-def remove(curve: Curve, u: float, *, tolerance: float = UNCHANGED) -> Operated:
+def remove_knot(curve: Curve, u: float, *, tolerance: float = SAME_SHAPE_TOLERANCE) -> EditResult:
     """Take out one knot at `u` when that moves the curve by at most `tolerance` [m]. Raises UnusableInput."""
-    if not 0 < tolerance <= LOOSEST:
-        raise UnusableInput(f"a tolerance of {tolerance:g} m is outside 0 to {LOOSEST:g}")
-    return _measured(curve, check_editable(remove_knot(curve, u, tolerance=tolerance)), tolerance)
+    if not 0 < tolerance <= MAX_REMOVAL_TOLERANCE:
+        raise UnusableInput(f"a tolerance of {tolerance:g} m is outside 0 to {MAX_REMOVAL_TOLERANCE:g}")
+    return _measured(curve, check_editable(exchange.remove_knot(curve, u, tolerance=tolerance)), tolerance)
 
 
-def elevate(curve: Curve) -> Operated:
+def elevate_degree(curve: Curve) -> EditResult:
     """Raise the degree by one; the shape stays.
 
     In degree p + 1 with every knot once more, the curve is still a spline: it is found by interpolation at the
@@ -91,14 +95,16 @@ def elevate(curve: Curve) -> Operated:
     Raises:
         UnusableInput: the degree is the highest, or there would be too many control points.
     """
-    if curve.degree >= HIGHEST_DEGREE:
+    if curve.degree >= MAX_DEGREE:
         raise UnusableInput(f"degree {curve.degree} is the highest; insert knots for more control points")
     degree = curve.degree + 1
     distinct, counts = np.unique(curve.knots, return_counts=True)
     knots = np.repeat(distinct, counts + 1)
     count = len(knots) - degree - 1
-    if count > MOST_POINTS:
-        raise UnusableInput(f"degree {degree} would need {count} control points, limit {MOST_POINTS}; remove knots")
+    if count > MAX_CONTROL_POINTS:
+        raise UnusableInput(
+            f"degree {degree} would need {count} control points, limit {MAX_CONTROL_POINTS}; remove knots"
+        )
     greville = np.array([knots[i + 1 : i + degree + 1].mean() for i in range(count)])
     greville[[0, -1]] = 0.0, 1.0
     points, weights = curve.derivatives(greville, 0)[0], _weight(curve, greville)
@@ -106,7 +112,7 @@ def elevate(curve: Curve) -> Operated:
         greville, np.column_stack([points * weights[:, None], weights]), k=degree, t=knots
     ).c
     raised = Curve(degree, knots, full[:, :-1] / full[:, -1:], full[:, -1])
-    return _measured(curve, check_editable(raised), UNCHANGED)
+    return _measured(curve, check_editable(raised), SAME_SHAPE_TOLERANCE)
 
 
 def difference(first: Curve, second: Curve) -> Difference:
@@ -127,22 +133,22 @@ def _weight(curve: Curve, u: Array) -> Array:
     return np.asarray(plain(u)[:, 0])
 
 
-def _measured(before: Curve, after: Curve, tolerance: float) -> Operated:
-    at = np.linspace(0.0, 1.0, PIECES + 1)
+def _measured(before: Curve, after: Curve, tolerance: float) -> EditResult:
+    at = np.linspace(0.0, 1.0, MEASURED_INTERVALS + 1)
     deviation = float(np.linalg.norm(after(at) - before(at), axis=1).max())
     if not deviation <= tolerance:
         raise UnusableInput(
             f"this would move the curve by {1000 * deviation:.3g} mm, more than {1000 * tolerance:.3g} mm, because its "
             "knots or weights are too uneven; even them out first"
         )
-    return Operated(after, deviation)
+    return EditResult(after, deviation)
 
 
 def _evenly(curve: Curve) -> tuple[Array, Array]:
     """Return points at even arc lengths, and the arc lengths [m]."""
-    fine = curve(np.linspace(0.0, 1.0, 10 * PIECES + 1))
+    fine = curve(np.linspace(0.0, 1.0, 10 * MEASURED_INTERVALS + 1))
     along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(fine, axis=0), axis=1))])
-    s = np.linspace(0.0, along[-1], PIECES + 1)
+    s = np.linspace(0.0, along[-1], MEASURED_INTERVALS + 1)
     return np.column_stack([np.interp(s, along, fine[:, axis]) for axis in range(3)]), s
 
 
@@ -160,25 +166,27 @@ def _nearest(points: Array, point: Array) -> int:
     return int(np.argmin(((points - point) ** 2).sum(axis=1)))
 
 
-def _moved(first: Curve, second: Curve) -> tuple[Moved, ...] | None:
+def _moved(first: Curve, second: Curve) -> tuple[ControlPointChange, ...] | None:
     """Bring the first curve onto the second's knots, and compare control point by control point."""
     while first.degree < second.degree:
-        first = elevate(first).curve
+        first = elevate_degree(first).curve
     if first.degree > second.degree:
         return None
     for u in np.unique(second.knots)[1:-1]:
         while np.sum(first.knots == u) < np.sum(second.knots == u):
-            first = insert_knot(first, float(u))
+            first = exchange.insert_knot(first, float(u))
     if not np.array_equal(first.knots, second.knots):
         return None
     off = np.linalg.norm(second.control_points - first.control_points, axis=1)
     pairs = np.column_stack([first.weights, second.weights])
-    changed = np.flatnonzero((off > STILL) | (np.abs(np.diff(pairs, axis=1)[:, 0]) > STILL))
-    return tuple(Moved(int(i) + 1, float(off[i]), (float(pairs[i, 0]), float(pairs[i, 1]))) for i in changed)
+    changed = np.flatnonzero((off > MIN_CHANGE) | (np.abs(np.diff(pairs, axis=1)[:, 0]) > MIN_CHANGE))
+    return tuple(
+        ControlPointChange(int(i) + 1, float(off[i]), (float(pairs[i, 0]), float(pairs[i, 1]))) for i in changed
+    )
 
 
-def _in_words(largest: float, mean: float, s: float, moved: tuple[Moved, ...] | None) -> str:
-    if largest < UNCHANGED:
+def _in_words(largest: float, mean: float, s: float, moved: tuple[ControlPointChange, ...] | None) -> str:
+    if largest < SAME_SHAPE_TOLERANCE:
         shape = "the shape is the same"
     else:
         shape = f"they lie up to {1000 * largest:.1f} mm apart (at s = {s:.3f} m) and {1000 * mean:.1f} mm on average"

@@ -15,7 +15,7 @@ from geomdl import NURBS, operations
 from teachpath.errors import UnusableInput
 from teachpath.nurbs import Array, Curve
 
-UNCHANGED = 1e-6  # m, distance that a removed knot may move the curve
+SAME_SHAPE_TOLERANCE = 1e-6  # m, distance that a removed knot may move the curve
 
 
 def to_geomdl(curve: Curve) -> NURBS.Curve:
@@ -51,7 +51,7 @@ def insert_knot(curve: Curve, u: float) -> Curve:
     return from_geomdl(operations.insert_knot(to_geomdl(curve), [float(u)], [1]))
 
 
-def remove_knot(curve: Curve, u: float, *, tolerance: float = UNCHANGED) -> Curve:
+def remove_knot(curve: Curve, u: float, *, tolerance: float = SAME_SHAPE_TOLERANCE) -> Curve:
     """Take out one knot at parameter `u`, and with it a control point.
 
     Args:

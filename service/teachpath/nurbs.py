@@ -78,7 +78,7 @@ class Curve:
         return float(np.sum(half * (speed @ weights)))
 
 
-def unit(curve: Curve, u: Array | float) -> Array:
+def unit_quaternions(curve: Curve, u: Array | float) -> Array:
     """Evaluate a curve of quaternions: (m, 4) or (4,) of unit length, neighbours on one half of the sphere.
 
     Args:

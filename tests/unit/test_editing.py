@@ -8,9 +8,19 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from teachpath.editing import APART, FARTHEST, MOST_POINTS, WEIGHTS, check_editable, difference, elevate, insert, remove
+from teachpath.editing import (
+    MAX_CONTROL_POINTS,
+    MAX_COORDINATE,
+    MIN_KNOT_SPACING,
+    WEIGHT_LIMITS,
+    check_editable,
+    difference,
+    elevate_degree,
+    insert_knot,
+    remove_knot,
+)
 from teachpath.errors import UnusableInput
-from teachpath.exchange import UNCHANGED, from_json, to_json
+from teachpath.exchange import SAME_SHAPE_TOLERANCE, from_json, to_json
 from teachpath.nurbs import Curve
 
 U = np.linspace(0.0, 1.0, 401)
@@ -36,11 +46,11 @@ PARAMETERS = st.floats(0.0, 1.0, exclude_min=True, exclude_max=True).filter(lamb
 
 def inserted(curve: Curve, u: float) -> Curve | None:
     nearest = float(curve.knots[np.argmin(np.abs(curve.knots - u))])
-    if abs(nearest - u) < APART and np.sum(curve.knots == nearest) >= curve.degree:
+    if abs(nearest - u) < MIN_KNOT_SPACING and np.sum(curve.knots == nearest) >= curve.degree:
         with pytest.raises(UnusableInput, match="times already"):
-            insert(curve, u)
+            insert_knot(curve, u)
         return None
-    return insert(curve, u).curve
+    return insert_knot(curve, u).curve
 
 
 @settings(max_examples=60, deadline=None)
@@ -58,10 +68,10 @@ def test_an_inserted_knot_can_be_removed_again(curve: Curve, u: float) -> None:
     more = inserted(curve, u)
     if more is not None:
         knot = float(more.knots[np.argmin(np.abs(more.knots - u))])
-        back = remove(more, knot)
-        assert back.deviation <= UNCHANGED
+        back = remove_knot(more, knot)
+        assert back.deviation <= SAME_SHAPE_TOLERANCE
         assert np.array_equal(back.curve.knots, curve.knots)
-        assert np.abs(back.curve(U) - curve(U)).max() <= UNCHANGED
+        assert np.abs(back.curve(U) - curve(U)).max() <= SAME_SHAPE_TOLERANCE
 
 
 @settings(max_examples=60, deadline=None)
@@ -71,7 +81,7 @@ def test_a_removed_knot_moves_the_curve_by_its_tolerance_at_most(curve: Curve, p
     if len(inner):
         u = float(inner[pick % len(inner)])
         try:
-            fewer = remove(curve, u, tolerance=millimetres / 1000)
+            fewer = remove_knot(curve, u, tolerance=millimetres / 1000)
         except UnusableInput:
             return
         assert len(fewer.curve.control_points) == len(curve.control_points) - 1
@@ -81,7 +91,7 @@ def test_a_removed_knot_moves_the_curve_by_its_tolerance_at_most(curve: Curve, p
 @settings(max_examples=60, deadline=None)
 @given(curve=curves())
 def test_a_raised_degree_leaves_the_shape_and_every_corner(curve: Curve) -> None:
-    raised = elevate(curve)
+    raised = elevate_degree(curve)
     assert raised.curve.degree == curve.degree + 1
     assert raised.deviation <= TIGHT
     before = dict(zip(*np.unique(curve.knots, return_counts=True), strict=True))
@@ -94,7 +104,7 @@ def test_a_raised_degree_leaves_the_shape_and_every_corner(curve: Curve) -> None
 def test_operations_on_different_knots_can_be_exchanged(curve: Curve, u: float) -> None:
     more = inserted(curve, u)
     if more is not None:
-        assert np.abs(elevate(more).curve(U) - elevate(curve).curve(U)).max() <= TIGHT
+        assert np.abs(elevate_degree(more).curve(U) - elevate_degree(curve).curve(U)).max() <= TIGHT
 
 
 @settings(max_examples=40, deadline=None)
@@ -117,9 +127,9 @@ def straight(height: float = 0.5, count: int = 6) -> Curve:
 @settings(max_examples=10, deadline=None)
 @given(curve=curves(), u=PARAMETERS)
 def test_what_leaves_the_shape_is_no_difference(curve: Curve, u: float) -> None:
-    for same in (curve, elevate(curve).curve, inserted(curve, u) or curve):
+    for same in (curve, elevate_degree(curve).curve, inserted(curve, u) or curve):
         found = difference(curve, same)
-        assert found.largest < UNCHANGED
+        assert found.largest < SAME_SHAPE_TOLERANCE
         assert (found.moved, found.sentence) == ((), "the shape is the same; no control point was moved")
 
 
@@ -155,16 +165,18 @@ def test_one_moved_control_point_and_one_weight_are_named_even_behind_a_new_knot
     ]
     assert 0 < found.largest < 0.04
     assert found.sentence.endswith("changed: control points 3, 5 of the second")
-    assert {m.number for m in difference(insert(curve, 0.9).curve, insert(edited, 0.9).curve).moved or ()} >= {3, 5}
+    assert {
+        m.number for m in difference(insert_knot(curve, 0.9).curve, insert_knot(edited, 0.9).curve).moved or ()
+    } >= {3, 5}
 
 
 def test_where_a_knot_was_removed_there_are_no_counterparts() -> None:
     curve = straight()
-    fewer = remove(curve, float(curve.knots[4]), tolerance=0.02).curve
+    fewer = remove_knot(curve, float(curve.knots[4]), tolerance=0.02).curve
     found = difference(curve, fewer)
     assert found.moved is None
     assert "no counterparts" in found.sentence
-    assert difference(fewer, insert(fewer, 0.5).curve).moved == ()
+    assert difference(fewer, insert_knot(fewer, 0.5).curve).moved == ()
 
 
 # what cannot be edited
@@ -184,8 +196,8 @@ BAD = {
     "must not decrease": {"knots": [0, 0, 0, 0, 0.7, 0.4, 1, 1, 1, 1]},
     "begins with 4 knots 0": {"knots": np.linspace(0, 1, 10)},
     "weights are positive": {"weights": [1, 1, 0, 1, 1, 1]},
-    f"limits {WEIGHTS[0]:g} to {WEIGHTS[1]:g}; move": {"weights": [1, 1, 1e4, 1, 1, 1]},
-    f"control point 1 is 1e+300 m away, limit {FARTHEST:g}; use metres": {"control_points": POINTS + FAR},
+    f"limits {WEIGHT_LIMITS[0]:g} to {WEIGHT_LIMITS[1]:g}; move": {"weights": [1, 1, 1e4, 1, 1, 1]},
+    f"control point 1 is 1e+300 m away, limit {MAX_COORDINATE:g}; use metres": {"control_points": POINTS + FAR},
     "a path has 3 (x, y, z)": {"control_points": POINTS[:, :2]},
     "all control points lie in one place": {"control_points": np.zeros((6, 3))},
     "outside 1 to 7": {"degree": 9},
@@ -203,20 +215,20 @@ def test_a_torn_curve_and_a_huge_one_are_refused() -> None:
     torn = np.r_[np.zeros(2), 0.5, 0.5, np.ones(2)]
     with pytest.raises(UnusableInput, match=r"u = 0\.5 is a knot 2 times; more than degree 1 tears"):
         check_editable(Curve(1, torn, POINTS[:4], np.ones(4)))
-    with pytest.raises(UnusableInput, match=f"501 control points are over the limit of {MOST_POINTS}"):
-        check_editable(straight(count=MOST_POINTS + 1))
+    with pytest.raises(UnusableInput, match=f"501 control points are over the limit of {MAX_CONTROL_POINTS}"):
+        check_editable(straight(count=MAX_CONTROL_POINTS + 1))
     with pytest.raises(UnusableInput, match="which is the limit"):
-        insert(straight(count=MOST_POINTS), 0.5)
+        insert_knot(straight(count=MAX_CONTROL_POINTS), 0.5)
     with pytest.raises(UnusableInput, match="remove knots"):
-        elevate(straight(count=400))
+        elevate_degree(straight(count=400))
 
 
 @pytest.mark.parametrize("tolerance", [0.0, -1.0, NAN, 1.0])
 def test_a_tolerance_that_is_none_is_refused(tolerance: float) -> None:
     with pytest.raises(UnusableInput, match=r"outside 0 to 0\.1"):
-        remove(straight(), 0.5, tolerance=tolerance)
+        remove_knot(straight(), 0.5, tolerance=tolerance)
 
 
 def test_the_highest_degree_is_not_raised() -> None:
     with pytest.raises(UnusableInput, match="degree 7 is the highest"):
-        elevate(Curve(7, np.r_[np.zeros(8), np.ones(8)], straight(count=8).control_points, np.ones(8)))
+        elevate_degree(Curve(7, np.r_[np.zeros(8), np.ones(8)], straight(count=8).control_points, np.ones(8)))

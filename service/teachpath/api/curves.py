@@ -9,9 +9,9 @@ from pydantic import Field
 
 from teachpath.api.closed import Body
 from teachpath.api.parts import Parts
-from teachpath.editing import MOST_POINTS, Operated, check_editable, elevate, insert, remove
+from teachpath.editing import MAX_CONTROL_POINTS, EditResult, check_editable, elevate_degree, insert_knot, remove_knot
 from teachpath.errors import UnusableInput
-from teachpath.exchange import UNCHANGED
+from teachpath.exchange import SAME_SHAPE_TOLERANCE
 from teachpath.io.documents import to_document
 from teachpath.nurbs import Curve
 
@@ -23,9 +23,11 @@ class CurveBody(Body):
     """A clamped NURBS on [0, 1]."""
 
     degree: int = Field(ge=1, le=7)
-    knots: list[float] = Field(max_length=MOST_POINTS + 8, description="non-decreasing, degree + 1 times 0 and 1")
-    control_points: list[Point] = Field(max_length=MOST_POINTS, description="x, y, z in the world [m]")
-    weights: list[float] = Field(max_length=MOST_POINTS, description="positive")
+    knots: list[float] = Field(
+        max_length=MAX_CONTROL_POINTS + 8, description="non-decreasing, degree + 1 times 0 and 1"
+    )
+    control_points: list[Point] = Field(max_length=MAX_CONTROL_POINTS, description="x, y, z in the world [m]")
+    weights: list[float] = Field(max_length=MAX_CONTROL_POINTS, description="positive")
 
     def curve(self) -> Curve:
         """Return the curve; raises UnusableInput when it is none that can be edited."""
@@ -45,7 +47,7 @@ class Operation(Body):
 
     curve: CurveBody
     u: float | None = Field(None, description="insert-knot, remove-knot: the parameter of the knot, in (0, 1)")
-    tolerance: float = Field(UNCHANGED, description="remove-knot: distance by which the curve may move [m]")
+    tolerance: float = Field(SAME_SHAPE_TOLERANCE, description="remove-knot: distance by which the curve may move [m]")
 
 
 def curves_router(parts: Parts) -> APIRouter:
@@ -66,12 +68,12 @@ def curves_router(parts: Parts) -> APIRouter:
     return router
 
 
-def _operated(operation: str, wanted: Operation) -> Operated:
+def _operated(operation: str, wanted: Operation) -> EditResult:
     curve = wanted.curve.curve()
     if operation == "elevate":
-        return elevate(curve)
+        return elevate_degree(curve)
     if wanted.u is None:
         raise UnusableInput(f"{operation} needs the parameter u of the knot, between 0 and 1")
     if operation == "insert-knot":
-        return insert(curve, wanted.u)
-    return remove(curve, wanted.u, tolerance=wanted.tolerance)
+        return insert_knot(curve, wanted.u)
+    return remove_knot(curve, wanted.u, tolerance=wanted.tolerance)

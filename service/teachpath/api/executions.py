@@ -14,7 +14,7 @@ from teachpath.api.parts import Parts
 from teachpath.errors import UnusableInput
 from teachpath.io.documents import to_document
 from teachpath.io.store.store import ExecutionRow
-from teachpath.records import Command, ExecutorStatus, Mirroring
+from teachpath.records import Command, ExecutorStatus, TeleopRequest
 from teachpath.robot.executions import Executions
 
 Token = Annotated[
@@ -93,7 +93,7 @@ def _add_beginnings(router: APIRouter, parts: Parts) -> None:
         """
         calibration = parts.calibrations.get(new.calibration)
         scene = parts.settings.scene(new.scene)
-        order = Mirroring(new.tracker, calibration, scene, new.scale, new.share, new.clutch)
+        order = TeleopRequest(new.tracker, calibration, scene, new.scale, new.share, new.clutch)
         row = executions.mirror(order, lease=lease, who=who)
         response.headers["Location"] = f"/api/v1/executions/{row.id}"
         return row

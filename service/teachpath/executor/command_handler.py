@@ -23,7 +23,7 @@ from teachpath.io import documents, wire
 from teachpath.io.bus import Bus, Handle
 from teachpath.motion.execution.program import PlanProgram
 from teachpath.motion.settings import MotionSettings
-from teachpath.records import Array, Command, ExecutorStatus, JournalEntry, Mirroring, Plan, Scene
+from teachpath.records import Array, Command, ExecutorStatus, JournalEntry, Plan, Scene, TeleopRequest
 from teachpath_proto.keys import Keys
 
 UNNAMED = "somebody"  # who commands without a lease and without a name
@@ -211,7 +211,7 @@ class CommandHandler:
         return program, plan.id, plan.scene
 
     def _hand(self, command: Command) -> tuple[TeleopProgram, str, Scene]:
-        order = documents.decode(Mirroring, command.mirror)
+        order = documents.decode(TeleopRequest, command.mirror)
         if not (0.05 <= order.scale <= 5.0 and 0.05 <= order.share <= 1.0):
             raise UnusableInput(
                 f"scale {order.scale:g} is outside 0.05 to 5, or share {order.share:g} outside 0.05 to 1"

@@ -5,11 +5,11 @@ Conventions (ARCHITECTURE.md): metres, radians, seconds inside; integer nanoseco
 """
 
 from teachpath.records.arrays import Array, Quaternion, Vector
-from teachpath.records.assessments import Assessment, Failure, Remedy
+from teachpath.records.assessments import Assessment, Failure, Suggestion
 from teachpath.records.calibrations import Calibration, MeasuredCalibration, TaughtPoint
-from teachpath.records.control import Command, JournalEntry, Lease, LeaseRequest, Mirroring
+from teachpath.records.control import Command, JournalEntry, Lease, LeaseRequest, TeleopRequest
 from teachpath.records.demonstrations import Clock, Demonstration, Phase, Sample, StreamStatistics, Task, Trajectory
-from teachpath.records.learned import Cluster, Departure, Fit, Learned, LearnedPath, Score
+from teachpath.records.learned import Cluster, Deviation, Fit, Learned, LearnedPath, Score
 from teachpath.records.motion import (
     Certificate,
     ExecutorStatus,
@@ -20,11 +20,11 @@ from teachpath.records.motion import (
     Setpoint,
     Shape,
 )
-from teachpath.records.versions import MAIN, Difference, Moved, Version
+from teachpath.records.versions import MAIN_BRANCH, ControlPointChange, Difference, Version
 from teachpath.records.work import Job, JobState
 
 __all__ = [
-    "MAIN",
+    "MAIN_BRANCH",
     "Array",
     "Assessment",
     "Calibration",
@@ -32,8 +32,9 @@ __all__ = [
     "Clock",
     "Cluster",
     "Command",
+    "ControlPointChange",
     "Demonstration",
-    "Departure",
+    "Deviation",
     "Difference",
     "ExecutorStatus",
     "Extreme",
@@ -48,20 +49,19 @@ __all__ = [
     "Lease",
     "LeaseRequest",
     "MeasuredCalibration",
-    "Mirroring",
-    "Moved",
     "Phase",
     "Plan",
     "Quaternion",
-    "Remedy",
     "Sample",
     "Scene",
     "Score",
     "Setpoint",
     "Shape",
     "StreamStatistics",
+    "Suggestion",
     "Task",
     "TaughtPoint",
+    "TeleopRequest",
     "Trajectory",
     "Vector",
     "Version",

@@ -8,7 +8,7 @@ from teachpath.records.arrays import Array, Vector
 
 
 @dataclass(frozen=True, slots=True)
-class Remedy:
+class Suggestion:
     """What to change on a path: a control point (from 0), the move proposed for it [m], and both in a sentence."""
 
     control_point: int
@@ -25,7 +25,7 @@ class Failure:
     stretch: tuple[float, float]
     position: Vector
     reason: str
-    remedy: Remedy
+    remedy: Suggestion
 
 
 @dataclass(frozen=True, eq=False)

@@ -26,7 +26,7 @@ class Command:
 
 
 @dataclass(frozen=True, slots=True)
-class Mirroring:
+class TeleopRequest:
     """A live hand that the arm should mirror.
 
     Attributes:

@@ -9,7 +9,7 @@ from teachpath.records.arrays import Array
 
 
 @dataclass(frozen=True, slots=True)
-class Departure:
+class Deviation:
     """Where and how a demonstration differs most from the others of its cluster."""
 
     share: tuple[float, float]  # of the length of its path, from and to
@@ -40,7 +40,7 @@ class Score:
     margin: float | None = None
     z: float | None = None
     stability: float | None = None
-    departure: Departure | None = None
+    departure: Deviation | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,8 +88,8 @@ class LearnedPath:
         version: see `Version`; what was learned is version 1.
         curve: positions [m].
         fit: None for an edited version: it follows an operator's wish, no demonstrations.
-        orientation: quaternions at the same parameter, to be brought to unit length (`nurbs.unit`); None when not all
-            selected demonstrations carry orientations.
+        orientation: quaternions at the same parameter, which `nurbs.unit_quaternions` brings to unit length; None when
+            not all selected demonstrations carry orientations.
     """
 
     id: str

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-MAIN = "main"  # the branch that a learned path begins on
+MAIN_BRANCH = "main"  # the branch that a learned path begins on
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,7 +29,7 @@ class Version:
 
 
 @dataclass(frozen=True, slots=True)
-class Moved:
+class ControlPointChange:
     """One control point that differs.
 
     Attributes:
@@ -58,5 +58,5 @@ class Difference:
     largest: float
     mean: float
     s: float
-    moved: tuple[Moved, ...] | None
+    moved: tuple[ControlPointChange, ...] | None
     sentence: str

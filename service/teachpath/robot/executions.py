@@ -29,9 +29,9 @@ from teachpath.records import (
     JournalEntry,
     Lease,
     LeaseRequest,
-    Mirroring,
     Plan,
     Scene,
+    TeleopRequest,
 )
 from teachpath.robot.motion_recorder import MotionRecorder
 from teachpath_proto.keys import Keys
@@ -127,7 +127,7 @@ class Executions:
             path = self._store.versions.get(stored.path, stored.path_version)[1]
         return self._begin(command, MotionHeader(key, self._robot, stored, path))
 
-    def mirror(self, order: Mirroring, *, lease: str = "", who: str = "") -> ExecutionRow:
+    def mirror(self, order: TeleopRequest, *, lease: str = "", who: str = "") -> ExecutionRow:
         """Let the robot mirror a live hand; steer and stop it as any execution.
 
         Raises:

@@ -9,7 +9,7 @@ from teachpath.errors import Cancelled, LearningFailed
 from teachpath.learning.clustering.cuts import recut_members
 from teachpath.learning.learn import learn
 from teachpath.learning.settings import LearningSettings
-from teachpath.nurbs import unit
+from teachpath.nurbs import unit_quaternions
 from teachpath.records import Learned, Trajectory
 from tests.unit.learning import synthetic
 from tests.unit.learning.usable import BOTH, PAPER, WAYS, assert_usable
@@ -69,7 +69,7 @@ def test_orientations_are_learned_where_all_carry_them(twelve: dict[str, Traject
         assert path.orientation is not None
         assert path.fit.turn is not None
         assert path.fit.turn <= settings.turn_bound
-        turn = unit(path.orientation, np.linspace(0, 1, 200))
+        turn = unit_quaternions(path.orientation, np.linspace(0, 1, 200))
         assert np.all((turn[1:] * turn[:-1]).sum(axis=1) > 0.99)
         angle = 2 * np.arccos(np.abs(turn[[0, -1], 0]))
         np.testing.assert_allclose(angle, [0.0, 2.5], atol=0.03)

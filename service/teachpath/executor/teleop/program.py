@@ -17,7 +17,7 @@ from teachpath.motion.execution.segments import MotionState
 from teachpath.motion.execution.teleop_follower import TeleopFollower
 from teachpath.motion.settings import MotionSettings
 from teachpath.recording.demonstration import to_world
-from teachpath.records import Array, Mirroring, Sample
+from teachpath.records import Array, Sample, TeleopRequest
 from teachpath_proto.keys import Keys
 
 KEPT: Final = 5000  # latencies
@@ -43,7 +43,7 @@ class TeleopProgram:
         self,
         bus: Bus,
         keys: Keys,
-        order: Mirroring,
+        order: TeleopRequest,
         here: Array,
         settings: MotionSettings,
         *,

@@ -15,7 +15,7 @@ from teachpath.io.documents import from_document, to_document
 from teachpath.io.store.changes import Changed, telling, unheard
 from teachpath.io.store.tables import PathRow
 from teachpath.nurbs import Curve
-from teachpath.records import MAIN, LearnedPath, Version
+from teachpath.records import MAIN_BRANCH, LearnedPath, Version
 
 MOST: Final = 10_000  # versions of one path
 
@@ -51,12 +51,14 @@ class Versions:
             raise NotFound(f"there is no path {path!r}")
         return [_version(row) for row in rows]
 
-    def newest(self, path: str, branch: str = MAIN) -> LearnedPath:
+    def newest(self, path: str, branch: str = MAIN_BRANCH) -> LearnedPath:
         """Return the newest version of a branch; raises NotFound."""
         with Session(self._engine) as session:
             row = _head(session, path, branch)
         if row is None:
-            raise NotFound(f"there is no path {path!r}" + (f" with a branch {branch!r}" if branch != MAIN else ""))
+            raise NotFound(
+                f"there is no path {path!r}" + (f" with a branch {branch!r}" if branch != MAIN_BRANCH else "")
+            )
         return from_document(LearnedPath, row.document)
 
     def get(self, path: str, number: int) -> tuple[Version, LearnedPath]:
@@ -114,7 +116,7 @@ def learned_row(path: LearnedPath, created_ns: int) -> PathRow:
         version=path.version,
         run=path.run,
         parent=None,
-        branch=MAIN,
+        branch=MAIN_BRANCH,
         name="learned",
         author="",
         note="",

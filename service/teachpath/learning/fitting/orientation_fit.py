@@ -10,7 +10,7 @@ from teachpath.errors import LearningFailed
 from teachpath.learning.fitting.nurbs_fit import approximate
 from teachpath.learning.resampling import arc_lengths, sign_aligned, smoothed, smoothed_orientations
 from teachpath.learning.settings import LearningSettings
-from teachpath.nurbs import Curve, unit
+from teachpath.nurbs import Curve, unit_quaternions
 from teachpath.records import Array, Trajectory
 
 
@@ -60,7 +60,7 @@ def fit_orientations(
     # A point within sin(a / 2) of a unit quaternion is within the angle a of it after normalisation.
     most = settings.most_control_points
     fit = approximate(mean, float(np.sin(settings.turn_bound / 2)), degree=degree, most=most, at=at)
-    largest = float(rotation_angles(unit(fit.curve, at), mean).max())
+    largest = float(rotation_angles(unit_quaternions(fit.curve, at), mean).max())
     if largest > settings.turn_bound:
         raise LearningFailed(
             f"the orientations of way {cluster} cannot be followed within {np.degrees(settings.turn_bound):.3g}° by "

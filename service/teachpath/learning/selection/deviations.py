@@ -9,7 +9,7 @@ from scipy.ndimage import binary_closing, median_filter
 from scipy.signal import savgol_filter
 
 from teachpath.learning.resampling import arc_lengths, at_equal_arc_length, smoothed
-from teachpath.records import Array, Departure, Trajectory
+from teachpath.records import Array, Deviation, Trajectory
 
 MIN_DEFICIT_SHARE = 0.25  # share of the largest deficit that a frame must have to be odd too
 MAX_BRIDGED_FRAMES = 2  # frames between odd ones that count as odd
@@ -27,7 +27,7 @@ SPAN_MARGIN = 0.4  # s, around the span that is looked at
 
 def describe_deviation(
     trajectory: Trajectory, others: Sequence[Trajectory], kind: str, *, profile: Array, times: Array, usual: float
-) -> Departure:
+) -> Deviation:
     """Return where a demonstration is unlikeliest and what is odd about it there.
 
     Args:
@@ -49,7 +49,7 @@ def describe_deviation(
     share = (float(np.interp(begin, since, s) / s[-1]), float(np.interp(end, since, s) / s[-1]))
     what = _told(trajectory, others, kind, (begin, end), _worst(away, within, share))
     sentence = f"{what}, {begin:.1f} to {end:.1f} s after the grasp, at {share[0]:.0%} to {share[1]:.0%} of its way"
-    return Departure(share, (begin, end), sentence)
+    return Deviation(share, (begin, end), sentence)
 
 
 def _span(profile: Array, times: Array, usual: float) -> tuple[float, float]:

@@ -14,7 +14,7 @@ from teachpath.errors import PathRefused
 from teachpath.motion.arm.kinematics import downward, rotations
 from teachpath.motion.arm.puma560 import Array
 from teachpath.motion.settings import MotionSettings
-from teachpath.nurbs import Curve, unit
+from teachpath.nurbs import Curve, unit_quaternions
 
 SHORTEST: Final = 0.01  # m, of a path that is worth following
 FEWEST_NODES: Final = 60
@@ -91,8 +91,8 @@ class Route:
         """
         poses = downward(self.curve(u), 0.0)
         if self.turn is not None:
-            turned = rotations(unit(self.turn, u))
-            start = rotations(unit(self.turn, np.zeros(1)))[0]
+            turned = rotations(unit_quaternions(self.turn, u))
+            start = rotations(unit_quaternions(self.turn, np.zeros(1)))[0]
             poses[:, :3, :3] = turned @ start.T @ poses[:, :3, :3]
         return poses
 

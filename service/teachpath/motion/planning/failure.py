@@ -14,7 +14,7 @@ from teachpath.motion.paths.ik_branches import Candidate, explain, faults
 from teachpath.motion.paths.tool_path import Route
 from teachpath.motion.planning.suggestion import lacking_of, margin_of, remedy
 from teachpath.motion.settings import MotionSettings
-from teachpath.records import Failure, Remedy, Scene, Vector
+from teachpath.records import Failure, Scene, Suggestion, Vector
 
 # An arm that comes to the end of its reach is singular first; what is told is why it cannot go on.
 GRAVEST: Final = ("reach", "limit", "turn", "singular")
@@ -88,7 +88,7 @@ def start_failure(way: Route, scene: Scene, settings: MotionSettings) -> Failure
         f"the path starts {100 * np.linalg.norm(off):.1f} cm from where {scene.carried.name} stands, at most "
         f"{100 * settings.grasp_tolerance:.1f} cm"
     )
-    return _failure(way, "start", (0, 0), reason, Remedy(0, (x, y, z), sentence))
+    return _failure(way, "start", (0, 0), reason, Suggestion(0, (x, y, z), sentence))
 
 
 def in_words(failure: Failure) -> str:
@@ -98,7 +98,7 @@ def in_words(failure: Failure) -> str:
     return f"{failure.reason}{over}; {failure.remedy.sentence}"
 
 
-def _failure(way: Route, fault: str, stretch: tuple[int, int], reason: str, change: Remedy) -> Failure:
+def _failure(way: Route, fault: str, stretch: tuple[int, int], reason: str, change: Suggestion) -> Failure:
     first, last = stretch
     x, y, z = (float(v) for v in way.positions[first])
     position: Vector = (x, y, z)

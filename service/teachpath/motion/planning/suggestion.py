@@ -15,7 +15,7 @@ from teachpath.motion.paths.ik_branches import Candidate, rolled
 from teachpath.motion.paths.tool_path import Route
 from teachpath.motion.settings import MotionSettings
 from teachpath.nurbs import Curve
-from teachpath.records import Remedy, Vector
+from teachpath.records import Suggestion, Vector
 
 NUDGE: Final = 0.004  # m, by which the tool is moved to see what becomes better
 FLAT: Final = 1e-9  # slope of a margin that shows no way
@@ -55,7 +55,7 @@ def margin_of(fault: str, candidate: Candidate, node: int) -> Margin:
     return lambda q, outside: least_singular_value(q)
 
 
-def remedy(way: Route, candidate: Candidate, node: int, margin: Margin, lacking: float) -> Remedy:
+def remedy(way: Route, candidate: Candidate, node: int, margin: Margin, lacking: float) -> Suggestion:
     """Propose a move of one control point after which a margin at a node suffices: the shortest of those tried.
 
     Args:
@@ -77,7 +77,7 @@ def remedy(way: Route, candidate: Candidate, node: int, margin: Margin, lacking:
     about = max(5 * round(200 * float(np.linalg.norm(move))), 5)
     far = f"by about {about} mm" if len(enough) else f"by more than {about} mm"
     sentence = f"move control point {point + 1} of {len(shares)} {far} {_direction((x, y, z))}"
-    return Remedy(point, (x, y, z), sentence)
+    return Suggestion(point, (x, y, z), sentence)
 
 
 def _moves(measure: _Nearby) -> Array:

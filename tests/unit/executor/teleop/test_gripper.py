@@ -9,7 +9,7 @@ from teachpath.executor.teleop.gripper import GripperFollower
 from teachpath.motion.arm.kinematics import downward, inverse, tool_pose
 from teachpath.motion.arm.puma560 import LOWER, UPPER
 from teachpath.motion.collision.builtin_scenes import paper_scene
-from teachpath.records import Calibration, JointState, Mirroring
+from teachpath.records import Calibration, JointState, TeleopRequest
 from tests.unit.executor.executors import within_limits
 from tests.unit.executor.teleop.test_program import CLUTCH, Held
 from tests.unit.recording.hands import CLOSED, OPEN, sample
@@ -61,7 +61,7 @@ def test_the_block_is_taken_carried_through_the_clutch_and_put_down() -> None:
     def see(name: str) -> None:
         bench.when(lambda: True, lambda: seen.update({name: bench.block.copy()}))
 
-    bench.mirror(Mirroring("glove", Calibration("identity"), SCENE))
+    bench.mirror(TeleopRequest("glove", Calibration("identity"), SCENE))
     bench.when(lambda: bench.state == "following", lambda: None)
     bench.go(0.0, 0.0, -0.06)
     bench.go(0.0, 0.0, 0.0, buttons=CLUTCH | 1, seconds=0.3)

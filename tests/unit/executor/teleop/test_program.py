@@ -10,12 +10,12 @@ from teachpath.io.documents import encode
 from teachpath.io.wire import sample_message
 from teachpath.motion.arm.kinematics import tool_pose
 from teachpath.motion.collision.builtin_scenes import empty_scene
-from teachpath.records import Calibration, Mirroring
+from teachpath.records import Calibration, TeleopRequest
 from tests.unit.executor.executors import HOME, KEYS, PERIOD_NS, Bench, standing, within_limits
 from tests.unit.recording.hands import sample
 
 CLUTCH = 4
-ORDER = Mirroring("glove", Calibration("identity"), empty_scene())
+ORDER = TeleopRequest("glove", Calibration("identity"), empty_scene())
 
 
 class Held(Bench):
@@ -42,7 +42,7 @@ class Held(Bench):
     def press(self) -> None:
         self.buttons = CLUTCH
 
-    def mirror(self, order: Mirroring = ORDER) -> None:
+    def mirror(self, order: TeleopRequest = ORDER) -> None:
         self.when(lambda: self.now > PERIOD_NS, lambda: self.command("mirror", mirror=encode(order)))
         self.when(lambda: "press the clutch" in self.statuses[-1].reason, lambda: None)
         self.after(0.1)
@@ -95,7 +95,7 @@ def test_what_does_not_fit_a_live_hand_is_refused() -> None:
 
     def too_large() -> None:
         with pytest.raises(UnusableInput, match="scale 90"):
-            bench.command("mirror", mirror=encode(Mirroring("glove", Calibration("identity"), empty_scene(), 90.0)))
+            bench.command("mirror", mirror=encode(TeleopRequest("glove", Calibration("identity"), empty_scene(), 90.0)))
 
     bench.when(lambda: bench.now > PERIOD_NS, too_large)
     bench.mirror()

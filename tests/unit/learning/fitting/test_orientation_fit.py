@@ -8,7 +8,7 @@ import pytest
 from teachpath.errors import LearningFailed
 from teachpath.learning.fitting.orientation_fit import fit_orientations, mean_orientations, rotation_angles
 from teachpath.learning.settings import LearningSettings
-from teachpath.nurbs import unit
+from teachpath.nurbs import unit_quaternions
 from teachpath.records import Array, Trajectory
 from tests.unit.learning import synthetic
 
@@ -41,9 +41,9 @@ def test_a_whole_turn_is_kept_though_both_ends_are_the_same_rotation() -> None:
     assert mean is not None
     curve, largest = fit_orientations(1, mean, np.linspace(0, 1, 200), 3, LearningSettings())
     assert largest <= LearningSettings().turn_bound
-    half = unit(curve, 0.5)
+    half = unit_quaternions(curve, 0.5)
     assert rotation_angles(half[None], about_z(np.array([np.pi])))[0] < 0.1
-    assert unit(curve, 0.0) @ unit(curve, 1.0) == pytest.approx(-1.0, abs=1e-3)
+    assert unit_quaternions(curve, 0.0) @ unit_quaternions(curve, 1.0) == pytest.approx(-1.0, abs=1e-3)
 
 
 @pytest.mark.parametrize("bound", [0.1, 0.02, 0.005])
@@ -54,8 +54,8 @@ def test_the_bound_holds_and_the_ends_are_exact(bound: float) -> None:
     at = np.linspace(0, 1, 200)
     curve, largest = fit_orientations(1, mean, at, 5, LearningSettings(turn_bound=bound))
     assert largest <= bound
-    np.testing.assert_allclose(rotation_angles(unit(curve, at), mean).max(), largest)
-    np.testing.assert_allclose(unit(curve, np.array([0.0, 1.0])), mean[[0, -1]], atol=1e-12)
+    np.testing.assert_allclose(rotation_angles(unit_quaternions(curve, at), mean).max(), largest)
+    np.testing.assert_allclose(unit_quaternions(curve, np.array([0.0, 1.0])), mean[[0, -1]], atol=1e-12)
 
 
 def test_a_bound_that_cannot_be_kept_is_refused_in_degrees() -> None:
