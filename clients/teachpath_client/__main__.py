@@ -14,7 +14,7 @@ from typing import cast
 from teachpath_client.devices import TouchSource, configure, describe_sources, open_source
 from teachpath_client.devices.cyberglove import GloveSettings
 from teachpath_client.link import ClientError, Link
-from teachpath_client.live import Feeling, calibrate_glove, ended_by_signals, record_live
+from teachpath_client.live import HapticFeedback, calibrate_glove, ended_by_signals, record_live
 from teachpath_client.pedal import pedal_or_none
 from teachpath_client.reading import HandReading, Vector
 from teachpath_client.replay import read_mcap
@@ -26,7 +26,7 @@ from teachpath_client.tracker_calibration import COLUMNS, calibrate_tracker, lin
 from teachpath_proto import tracker_pb2
 from teachpath_proto.reports import report_document
 
-Passed = Callable[[Iterator[HandReading]], Iterator[HandReading]]
+ReadingFilter = Callable[[Iterator[HandReading]], Iterator[HandReading]]
 ABOUT = {
     "tracker": "Publish from a device until Ctrl-C; the station cuts what comes into demonstrations. For example: "
     "teachpath-client tracker --source hand --option fastrak.port=/dev/ttyUSB0 --option glove.port=/dev/ttyUSB1 "
@@ -153,15 +153,20 @@ def _tracker(options: argparse.Namespace) -> None:
         raise ClientError(f"{options.source} measures in real time; leave out --speed {options.speed:g}")
     routine = Routine(options.armed, options.countdown, options.takes, options.one_by_one)
     status = Status(sys.stderr)
-    with ended_by_signals(source), source, Link(options.endpoint) as link, pedal_or_none(options.pedal) as pedalled:
+    with (
+        ended_by_signals(source),
+        source,
+        Link(options.endpoint) as link,
+        pedal_or_none(options.pedal) as reading_filter,
+    ):
         tracker = Tracker(link, options.tracker, prefix=options.prefix)
         print(f"recording {options.task} from {options.source}; Ctrl-C ends it", file=sys.stderr)
-        tracker.hear(status.take)
-        pedalled = _one_after_the_other(status.readings, pedalled)
+        tracker.subscribe_feedback(status.on_feedback)
+        reading_filter = _chained(status.readings, reading_filter)
         if source.capabilities.touch:
-            feeling = Feeling(cast("TouchSource", source))
-            tracker.hear(feeling.take)
-            pedalled = _one_after_the_other(feeling.readings, pedalled)
+            haptic = HapticFeedback(cast("TouchSource", source))
+            tracker.subscribe_feedback(haptic.on_feedback)
+            reading_filter = _chained(haptic.readings, reading_filter)
         report = record_live(
             tracker,
             source,
@@ -171,13 +176,13 @@ def _tracker(options: argparse.Namespace) -> None:
             speed=options.speed,
             rate=options.rate,
             routine=routine,
-            pedalled=pedalled,
+            reading_filter=reading_filter,
         )
         status.end()
         _print(report)
 
 
-def _one_after_the_other(first: Passed, second: Passed) -> Passed:
+def _chained(first: ReadingFilter, second: ReadingFilter) -> ReadingFilter:
     return lambda readings: second(first(readings))
 
 

@@ -9,7 +9,7 @@ from typing import Any
 import zenoh
 import zenoh.ext
 
-KEPT = 1024  # samples that a subscriber which missed some can still ask for
+CACHE_SIZE = 1024  # samples that a subscriber which missed some can still ask for
 HEARTBEAT = 0.2  # [s] after a put until a subscriber is told its number, so that a lost last one is missed too
 
 
@@ -57,7 +57,7 @@ class Link:
             self._session,
             key,
             congestion_control=zenoh.CongestionControl.BLOCK,
-            cache=zenoh.ext.CacheConfig(KEPT),
+            cache=zenoh.ext.CacheConfig(CACHE_SIZE),
             sample_miss_detection=zenoh.ext.MissDetectionConfig(heartbeat=None, sporadic_heartbeat=HEARTBEAT),
         )
         self._publishers.append(publisher)

@@ -8,16 +8,18 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from types import FrameType
 
-from teachpath_client.devices.cyberglove import GloveDialogue, GloveSettings, Raw, connect
+from teachpath_client.devices.cyberglove import GloveProtocol, GloveSettings, Raw, connect
 from teachpath_client.devices.glove_calibration import GloveCalibration
 from teachpath_client.devices.source import Source, TouchSource
 from teachpath_client.reading import HandReading
 from teachpath_client.tracker import Routine, Tracker
 from teachpath_proto import tracker_pb2
 
-FORGOTTEN = 3.0  # [s] after which a station that said the hand holds something counts as gone; it says so each second
-MEASURED = 100  # samples of a hand that is held still
-PATIENCE = 5.0  # [s] without a sample
+HOLDING_TIMEOUT = (
+    3.0  # [s] after which a station that said the hand holds something counts as gone; it says so each second
+)
+CALIBRATION_SAMPLES = 100  # samples of a hand that is held still
+SAMPLE_TIMEOUT = 5.0  # [s] without a sample
 
 
 @contextmanager
@@ -48,22 +50,22 @@ def record_live(
     speed: float = 1.0,
     rate: float = 0.0,
     routine: Routine | None = None,
-    pedalled: Callable[[Iterator[HandReading]], Iterator[HandReading]] = lambda readings: readings,
+    reading_filter: Callable[[Iterator[HandReading]], Iterator[HandReading]] = lambda readings: readings,
 ) -> tracker_pb2.RecordingReport:
     """Record `task` from a source until it ends, and return the station's account, whatever ended it.
 
-    `rate` [Hz] is declared to the station, which judges the takes by it (0: it is not); `pedalled` puts a pedal into
+    `rate` [Hz] is declared to the station, which judges the takes by it (0: it is not); `reading_filter` may change
     the readings.
     """
     tracker.start(task, scene=scene, calibration=calibration, rate=rate, routine=routine)
     try:
-        tracker.publish(pedalled(iter(source)), speed=speed)
+        tracker.publish(reading_filter(iter(source)), speed=speed)
     finally:
         report = tracker.stop()
     return report
 
 
-class Feeling:
+class HapticFeedback:
     """Lets the hand feel that it holds the object, as the station says; never longer than the station lives.
 
     Args:
@@ -75,14 +77,14 @@ class Feeling:
         self._source, self._clock = source, clock
         self._until = float("inf")
 
-    def take(self, payload: bytes) -> None:
+    def on_feedback(self, payload: bytes) -> None:
         """Follow a `HandFeedback`."""
         holding = tracker_pb2.HandFeedback.FromString(payload).holding
-        self._until = self._clock() + FORGOTTEN if holding else float("inf")
+        self._until = self._clock() + HOLDING_TIMEOUT if holding else float("inf")
         self._source.touch(holding)
 
     def readings(self, readings: Iterator[HandReading]) -> Iterator[HandReading]:
-        """Pass readings on, and end the feeling when the station has not spoken of it for long, or with the last."""
+        """Pass readings on, and let go when the station has said nothing of it for long, or with the last."""
         try:
             for reading in readings:
                 if self._clock() > self._until:
@@ -93,7 +95,7 @@ class Feeling:
             self._source.touch(False)
 
 
-def calibrate_glove(settings: GloveSettings, tell: Callable[[str], object]) -> GloveCalibration:
+def calibrate_glove(settings: GloveSettings, prompt: Callable[[str], object]) -> GloveCalibration:
     """Measure the open hand and the fist with a glove; `tell` shows a sentence and returns when it was done.
 
     The glove is connected anew for each, so that no sample of before is taken for one of now.
@@ -102,12 +104,12 @@ def calibrate_glove(settings: GloveSettings, tell: Callable[[str], object]) -> G
         ClientError: the glove does not answer, falls silent, or cannot tell the two hands apart.
     """
     measured = []
-    with connect(settings, GloveDialogue(settings, 0)):
+    with connect(settings, GloveProtocol(settings, 0)):
         pass  # a glove that does not answer is said before anything is asked for
     for sentence in ("Open the hand, fingers straight", "Make a fist"):
-        tell(sentence)
-        with connect(settings, GloveDialogue(settings, 0)) as connection:
-            taken = [connection.take(PATIENCE) for _ in range(MEASURED)]
+        prompt(sentence)
+        with connect(settings, GloveProtocol(settings, 0)) as connection:
+            taken = [connection.take(SAMPLE_TIMEOUT) for _ in range(CALIBRATION_SAMPLES)]
         measured.append([sample for sample in map(_raw, taken) if sample is not None])
     return GloveCalibration.between(*measured)
 

@@ -14,11 +14,14 @@ from teachpath_client.reading import HandReading
 from teachpath_proto import tracker_pb2
 
 BELL = "\a"
-CLEARED = "\r\x1b[K"
-MARKS = {"clean": "+", "repaired": "~", "reject": "x"}
-SILENT = 3.0  # [s] after which a station that says nothing records nothing; it speaks each second
-GONE = f"the station has said nothing for {SILENT:g} s; what is shown now may not be recorded: is it still recording?"
-WORDS = {
+CLEAR_LINE = "\r\x1b[K"
+VERDICT_MARKS = {"clean": "+", "repaired": "~", "reject": "x"}
+SILENCE_TIMEOUT = 3.0  # [s] after which a station that says nothing records nothing; it speaks each second
+SILENCE_WARNING = (
+    f"the station has said nothing for {SILENCE_TIMEOUT:g} s; what is shown now may not be recorded: "
+    "is it still recording?"
+)
+STATE_TEXTS = {
     "recording": "recording",
     "pausing": "pauses after this take",
     "paused": "paused: pedal, fist or `resume` to go on",
@@ -43,7 +46,7 @@ class Status:
         self._clock, self._heard = clock, clock()
         self._shown = self._newest = ""
 
-    def take(self, payload: bytes) -> None:
+    def on_feedback(self, payload: bytes) -> None:
         """Show a `HandFeedback` as it came."""
         feedback = tracker_pb2.HandFeedback.FromString(payload)
         with self._lock:
@@ -52,7 +55,7 @@ class Status:
             if newest.demonstration != self._newest:
                 self._newest = newest.demonstration
                 self._line(verdict_line(newest))
-            self._show(standing_line(feedback), bell=feedback.state == "countdown")
+            self._show(status_line(feedback), bell=feedback.state == "countdown")
 
     def readings(self, readings: Iterator[HandReading]) -> Iterator[HandReading]:
         """Pass readings on, and say so when the station no longer speaks of them."""
@@ -60,8 +63,8 @@ class Status:
             self._heard = self._clock()
         for reading in readings:
             with self._lock:
-                if self._clock() - self._heard > SILENT:
-                    self._show(GONE, bell=True)
+                if self._clock() - self._heard > SILENCE_TIMEOUT:
+                    self._show(SILENCE_WARNING, bell=True)
             yield reading
 
     def end(self) -> None:
@@ -75,28 +78,28 @@ class Status:
         if shown == self._shown:
             return
         self._shown = shown
-        self._out.write(f"{CLEARED}{shown}{BELL * bell}" if self._live else f"{shown}\n")
+        self._out.write(f"{CLEAR_LINE}{shown}{BELL * bell}" if self._live else f"{shown}\n")
         self._out.flush()
 
     def _line(self, text: str) -> None:
-        self._out.write(f"{CLEARED if self._live else ''}{text}\n")
+        self._out.write(f"{CLEAR_LINE if self._live else ''}{text}\n")
         self._shown = ""
 
 
 def verdict_line(newest: tracker_pb2.DemonstrationReport) -> str:
     """Return a line on a take that was made."""
     reasons = f": {'; '.join(newest.reasons)}" if newest.reasons else ""
-    return f"  {MARKS.get(newest.verdict, '?')} take {newest.number} {newest.verdict}{reasons}"
+    return f"  {VERDICT_MARKS.get(newest.verdict, '?')} take {newest.number} {newest.verdict}{reasons}"
 
 
-def standing_line(feedback: tracker_pb2.HandFeedback) -> str:
+def status_line(feedback: tracker_pb2.HandFeedback) -> str:
     """Return the line on what is going on."""
     if feedback.state == "countdown":
         doing = f"begins in {feedback.countdown_left:.0f} s"
     elif feedback.state in ("recording", "pausing") and feedback.phase != "reach":
-        doing = f"{WORDS[feedback.state]}: {feedback.phase}"
+        doing = f"{STATE_TEXTS[feedback.state]}: {feedback.phase}"
     else:
-        doing = WORDS.get(feedback.state, feedback.state)
+        doing = STATE_TEXTS.get(feedback.state, feedback.state)
     takes = f"{feedback.takes} take{'s' if feedback.takes != 1 else ''}"
     left = f", {feedback.takes_left} to go" if feedback.takes_left else ""
     sign = f"; open the fist now to {feedback.sign}" if feedback.sign else ""

@@ -52,7 +52,7 @@ class Tracker:
         self._publisher = link.publisher(self._keys.samples(name))
         self._token = link.announce(self._keys.alive("tracker", name))
         self._next = 1
-        self._heard: list[object] = []
+        self._subscriptions: list[object] = []
 
     def start(
         self, task: str, *, scene: str = "", calibration: str = "", rate: float = 0.0, routine: Routine | None = None
@@ -76,10 +76,10 @@ class Tracker:
         answer = self._link.ask(self._keys.recorder_start, request.SerializeToString())
         return tracker_pb2.RecordingReport.FromString(answer)
 
-    def hear(self, receive: Callable[[bytes], object]) -> None:
+    def subscribe_feedback(self, receive: Callable[[bytes], object]) -> None:
         """Call `receive` with each `HandFeedback` that the station sends to this tracker."""
-        # A subscriber that nobody keeps hears no more.
-        self._heard.append(self._link.subscribe(self._keys.feedback(self.name), receive))
+        # Zenoh drops a subscriber that nobody keeps.
+        self._subscriptions.append(self._link.subscribe(self._keys.feedback(self.name), receive))
 
     def publish(self, readings: Iterable[HandReading], *, speed: float = 1.0) -> int:
         """Publish readings when they are due, `speed` times as fast as they were taken; return how many.

@@ -16,10 +16,10 @@ from teachpath_client.link import ClientError
 from teachpath_client.reading import HandReading, Vector
 from teachpath_client.rest import Station
 
-HELD = 1.0  # [s] the tracker is held still at a point
-FEWEST = 10  # readings in that time
-STILLEST = 0.005  # [m] from their mean that a reading may lie while it is held still
-PATIENCE = 10.0  # [s] for the readings to come
+HOLD_TIME = 1.0  # [s] the tracker is held still at a point
+MIN_READINGS = 10  # readings in that time
+MAX_DEVIATION = 0.005  # [m] from their mean that a reading may lie while it is held still
+READING_TIMEOUT = 10.0  # [s] for the readings to come
 COLUMNS = ["tracker_x", "tracker_y", "tracker_z", "x", "y", "z"]
 
 
@@ -32,7 +32,7 @@ class Pair:
 
 
 def measure_points(
-    make: Callable[[], Source], places: Sequence[Vector], tell: Callable[[str], object], *, held: float = HELD
+    make: Callable[[], Source], places: Sequence[Vector], prompt: Callable[[str], object], *, held: float = HOLD_TIME
 ) -> list[Pair]:
     """Measure where the tracker sees each place; `tell` shows a sentence and returns when the tracker is held there.
 
@@ -54,7 +54,7 @@ def measure_points(
         where = f"point {number} of {len(places)}: hold the tracker still at {x:g}, {y:g}, {z:g} m"
         fault = ""
         while True:
-            tell(f"{fault}{where}")
+            prompt(f"{fault}{where}")
             readings, fault = _hold(make(), held)
             if not fault:
                 break
@@ -118,13 +118,13 @@ def lines(measured: dict[str, Any]) -> Iterator[str]:
 def _hold(source: Source, seconds: float) -> tuple[list[HandReading], str]:
     """Return the readings of the device's next `seconds`, and what is wrong with them."""
     held: list[HandReading] = []
-    over = threading.Timer(PATIENCE, source.close)
+    over = threading.Timer(READING_TIMEOUT, source.close)
     try:
         with source:
             over.start()
             for reading in source:
                 held.append(reading)
-                if len(held) >= FEWEST and reading.time - held[0].time >= seconds:
+                if len(held) >= MIN_READINGS and reading.time - held[0].time >= seconds:
                     return held, _fault(held)
     except ClientError as error:
         return held, f"{error}; again, "
@@ -144,6 +144,6 @@ def _fault(held: Sequence[HandReading]) -> str:
         return f"{lost} of {len(held)} readings were not tracked; again, "
     mean = _mean(held)
     farthest = max(math.dist(reading.position, mean) for reading in held)
-    if farthest > STILLEST:
-        return f"it moved by {1000 * farthest:.0f} mm, {1000 * STILLEST:.0f} mm are allowed; again, "
+    if farthest > MAX_DEVIATION:
+        return f"it moved by {1000 * farthest:.0f} mm, {1000 * MAX_DEVIATION:.0f} mm are allowed; again, "
     return ""

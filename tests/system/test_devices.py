@@ -16,7 +16,7 @@ import pytest
 from teachpath_client import HandReading, Link
 from teachpath_client.devices.emulators import Emulator
 from teachpath_client.devices.glove_calibration import GloveCalibration
-from teachpath_client.devices.twins import FastrakTwin, GloveTwin
+from teachpath_client.devices.protocol_simulators import FastrakSimulator, GloveSimulator
 from teachpath_client.synthetic import GOAL, RATE, START, experiment_1
 from teachpath_proto import tracker_pb2
 from teachpath_proto.keys import Keys
@@ -42,8 +42,8 @@ def devices(tmp_path: Path) -> Iterator[tuple[Emulator, Emulator]]:
     """A tracker and a glove that show the first reading until they are told to go on."""
     GLOVE.save(tmp_path / "glove.toml")
     with ExitStack() as stack:
-        tracker = stack.enter_context(Emulator(FastrakTwin(), tmp_path / "fastrak", rate=RATE, hold=True))
-        glove = stack.enter_context(Emulator(GloveTwin(GLOVE), tmp_path / "glove", rate=RATE, moving=True))
+        tracker = stack.enter_context(Emulator(FastrakSimulator(), tmp_path / "fastrak", rate=RATE, hold=True))
+        glove = stack.enter_context(Emulator(GloveSimulator(GLOVE), tmp_path / "glove", rate=RATE, moving=True))
         yield tracker, glove
 
 
@@ -93,9 +93,11 @@ def test_the_first_demonstration_of_the_paper_through_fastrak_and_cyberglove(
     assert "Traceback" not in err
     assert "devices: recording: transport; 0 takes\n" in err
     assert "  + take 1 clean\n" in err
-    felt = devices[1].twin.felt
-    assert [amplitude for amplitude in felt if amplitude] == [128], felt  # once, while the object was in the hand
-    assert felt[-1] == 0
+    amplitudes = devices[1].simulator.amplitudes
+    assert [amplitude for amplitude in amplitudes if amplitude] == [128], (
+        amplitudes
+    )  # once, while the object was in the hand
+    assert amplitudes[-1] == 0
     report = json.loads(out)
     assert (report["lost"], report["refused"], len(report["demonstrations"])) == (0, 0, 1), report
     assert report["received"] > SHOWN

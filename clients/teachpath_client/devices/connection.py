@@ -20,10 +20,10 @@ LOG = logging.getLogger(__name__)
 
 Record = TypeVar("Record")
 
-BITS = 10  # on the line for a byte: start, 8 of data, stop
-FIRST_RETRY, LONGEST_RETRY = 0.05, 2.0  # [s]
-STEP = 1e-6  # [s] between dates, at least
-ENDED = 5.0  # [s] for the thread to leave
+BITS_PER_BYTE = 10  # on the line for a byte: start, 8 of data, stop
+FIRST_RETRY_WAIT, MAX_RETRY_WAIT = 0.05, 2.0  # [s]
+MIN_DATE_STEP = 1e-6  # [s] between dates, at least
+JOIN_TIMEOUT = 5.0  # [s] for the thread to leave
 
 
 class Parser(Protocol[Record]):
@@ -33,16 +33,16 @@ class Parser(Protocol[Record]):
         """Take bytes; return the records that they complete, each with the number of bytes that came after it."""
 
 
-class Dialogue(Protocol[Record]):
+class DeviceProtocol(Protocol[Record]):
     """What is said to a device."""
 
-    def greet(self, line: SerialLine) -> Parser[Record]:
+    def set_up(self, line: SerialLine) -> Parser[Record]:
         """Set the device up and return the parser of what it will send; raises ClientError when it does not answer."""
 
-    def tick(self, line: SerialLine) -> float:
+    def poll(self, line: SerialLine) -> float:
         """Say what is due; return the seconds until the next time."""
 
-    def leave(self, line: SerialLine) -> None:
+    def shut_down(self, line: SerialLine) -> None:
         """Quiet the device."""
 
 
@@ -54,7 +54,7 @@ class Connection(Generic[Record]):
 
     Args:
         line: where the device is.
-        dialogue: what is said to it.
+        protocol: what is said to it.
         silence: [s] without a record after which it is set up again, as after a power cycle behind an adapter.
         clock: [s] that never runs back.
     """
@@ -62,12 +62,12 @@ class Connection(Generic[Record]):
     def __init__(
         self,
         line: SerialLine,
-        dialogue: Dialogue[Record],
+        protocol: DeviceProtocol[Record],
         *,
         silence: float,
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
-        self._line, self._dialogue, self._silence, self._clock = line, dialogue, silence, clock
+        self._line, self._protocol, self._silence, self._clock = line, protocol, silence, clock
         self._records: queue.SimpleQueue[tuple[float, Record]] = queue.SimpleQueue()
         self._first: queue.SimpleQueue[ClientError | None] = queue.SimpleQueue()
         self._over = threading.Event()
@@ -77,13 +77,13 @@ class Connection(Generic[Record]):
     def __enter__(self) -> Self:
         self._thread.start()
         if (error := self._first.get()) is not None:
-            self._thread.join(ENDED)
+            self._thread.join(JOIN_TIMEOUT)
             raise error
         return self
 
     def __exit__(self, *_: object) -> None:
         self._over.set()
-        self._thread.join(ENDED)
+        self._thread.join(JOIN_TIMEOUT)
 
     def take(self, timeout: float) -> tuple[float, Record] | None:
         """Return the next record and its date [s] on `clock`; None after `timeout` [s]."""
@@ -93,21 +93,21 @@ class Connection(Generic[Record]):
             return None
 
     def _run(self) -> None:
-        wait, answered = FIRST_RETRY, False
+        wait, answered = FIRST_RETRY_WAIT, False
         while not self._over.is_set():
             try:
                 self._line.open()
-                parser = self._dialogue.greet(self._line)
-                wait = FIRST_RETRY
+                parser = self._protocol.set_up(self._line)
+                wait = FIRST_RETRY_WAIT
                 if answered:
                     LOG.warning("the device at %s answers again", self._line.path)
                 else:
                     self._first.put(None)
                 answered = True
                 self._read(parser)
-                self._dialogue.leave(self._line)
+                self._protocol.shut_down(self._line)
             except ClientError as error:
-                if wait == FIRST_RETRY and answered:
+                if wait == FIRST_RETRY_WAIT and answered:
                     LOG.warning("%s; trying again until it is back", error)
                 if not answered:
                     self._first.put(error)
@@ -115,16 +115,16 @@ class Connection(Generic[Record]):
             finally:
                 self._line.close()
             self._over.wait(wait)
-            wait = min(2 * wait, LONGEST_RETRY)
+            wait = min(2 * wait, MAX_RETRY_WAIT)
 
     def _read(self, parser: Parser[Record]) -> None:
         heard = self._clock()
         while not self._over.is_set():
             if self._clock() - heard > self._silence:
                 raise ClientError(f"the device at {self._line.path} was silent for {self._silence:g} s")
-            content = self._line.read(self._dialogue.tick(self._line))
+            content = self._line.read(self._protocol.poll(self._line))
             now = self._clock()
             for record, after in parser.feed(content):
                 heard = now
-                self._last = max(now - after * BITS / self._line.baud, self._last + STEP)
+                self._last = max(now - after * BITS_PER_BYTE / self._line.baud, self._last + MIN_DATE_STEP)
                 self._records.put((self._last, record))

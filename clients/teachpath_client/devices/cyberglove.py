@@ -12,7 +12,7 @@ from typing import Literal
 from teachpath_client.devices.connection import Connection
 from teachpath_client.devices.cyberglove_wire import CYBERTOUCH, READY, SENSORS, STOP, GloveParser, period, vibration
 from teachpath_client.devices.glove_calibration import GloveCalibration
-from teachpath_client.devices.live_device import PATIENCE, LiveDevice, Polling
+from teachpath_client.devices.live_device import READ_TIMEOUT, LiveDevice, Polling
 from teachpath_client.devices.serial_line import SerialLine
 from teachpath_client.devices.source import Capabilities, configure
 from teachpath_client.link import ClientError
@@ -21,9 +21,9 @@ from teachpath_client.reading import HandReading
 Raw = tuple[int, ...]
 
 ATTEMPTS = 3
-ANSWER = 0.5  # [s] the glove may take to answer
-QUIET = 0.05  # [s] without a byte after which a stream counts as ended
-HOLDS, LETS_GO = 0.6, 0.4  # mean flexion over and under which the hand counts as closed and open
+ANSWER_TIMEOUT = 0.5  # [s] the glove may take to answer
+QUIET_TIME = 0.05  # [s] without a byte after which a stream counts as ended
+CLOSED_ABOVE, OPEN_BELOW = 0.6, 0.4  # mean flexion over and under which the hand counts as closed and open
 
 
 @dataclass(frozen=True)
@@ -58,7 +58,7 @@ class GloveSettings:
             raise ClientError(f"silence={self.silence:g} is outside 0.1 to 60 s")
 
 
-class GloveDialogue:
+class GloveProtocol:
     """Sets a glove up, asks it for samples when polled, and makes it vibrate.
 
     Args:
@@ -71,14 +71,14 @@ class GloveDialogue:
         self._settings, self._sensors, self._clock = settings, sensors, clock
         self._polled = settings.mode == "polled" or settings.touch != "off"
         self._polling = Polling(settings.rate, clock)
-        self._felt = 0
+        self._sent_amplitude = 0
         self.amplitude = 0  # what the hand should feel now
 
-    def greet(self, line: SerialLine) -> GloveParser:
+    def set_up(self, line: SerialLine) -> GloveParser:
         """Set the glove up; raises ClientError when it does not answer or is not the glove it should be."""
         line.write(STOP)
-        end = self._clock() + ANSWER
-        while self._clock() < end and line.read(QUIET):
+        end = self._clock() + ANSWER_TIMEOUT
+        while self._clock() < end and line.read(QUIET_TIME):
             pass
         if self._ask(line, b"?G", 1)[0] & READY != READY:
             raise ClientError(f"the glove at {line.path} is not plugged into its box, or not initialised")
@@ -94,21 +94,21 @@ class GloveDialogue:
         if not self._polled:
             line.write(period(self._settings.rate))
             line.write(b"S" if self._settings.format == "binary" else b"s")
-        self._felt = 0
+        self._sent_amplitude = 0
         return GloveParser(sensors)
 
-    def tick(self, line: SerialLine) -> float:
+    def poll(self, line: SerialLine) -> float:
         """Ask for a sample and change the vibration when it is time to; return the seconds until the next time."""
-        if self._settings.touch != "off" and self.amplitude != self._felt:
-            self._felt = self.amplitude
-            line.write(vibration(self._felt))
+        if self._settings.touch != "off" and self.amplitude != self._sent_amplitude:
+            self._sent_amplitude = self.amplitude
+            line.write(vibration(self._sent_amplitude))
         if not self._polled:
-            return PATIENCE
+            return READ_TIMEOUT
         if self._polling.is_due:
             line.write(b"G" if self._settings.format == "binary" else b"g")
         return self._polling.wait
 
-    def leave(self, line: SerialLine) -> None:
+    def shut_down(self, line: SerialLine) -> None:
         """End the stream and the vibration."""
         line.write(STOP)
         if self._settings.touch != "off":
@@ -124,7 +124,7 @@ class GloveDialogue:
         """Say something until the answer comes: the echo, `size` bytes, a zero; return the bytes."""
         for _ in range(ATTEMPTS):
             line.write(said)
-            heard, end = b"", self._clock() + ANSWER
+            heard, end = b"", self._clock() + ANSWER_TIMEOUT
             while (left := end - self._clock()) > 0:
                 heard += line.read(left)
                 start = heard.find(echo) + len(echo)
@@ -151,8 +151,8 @@ class GloveSource(LiveDevice[Raw]):
             )
         self.settings = settings
         self.calibration = GloveCalibration.load(Path(settings.calibration))
-        self._dialogue = GloveDialogue(settings, len(self.calibration.offset), clock)
-        super().__init__(connect(settings, self._dialogue, clock))
+        self._protocol = GloveProtocol(settings, len(self.calibration.offset), clock)
+        super().__init__(connect(settings, self._protocol, clock))
 
     @property
     def capabilities(self) -> Capabilities:
@@ -167,19 +167,19 @@ class GloveSource(LiveDevice[Raw]):
 
     def touch(self, holding: bool) -> None:
         """Let the hand feel that it holds the object, or no longer."""
-        self._dialogue.amplitude = self.settings.amplitude if holding else 0
+        self._protocol.amplitude = self.settings.amplitude if holding else 0
 
     def _reading(self, record: Raw) -> HandReading:
         flexions = self.calibration.flexions(record)
         if self.settings.touch == "closure":
             closure = fmean(flexions)
-            if closure > HOLDS or closure < LETS_GO:
-                self.touch(closure > HOLDS)
+            if closure > CLOSED_ABOVE or closure < OPEN_BELOW:
+                self.touch(closure > CLOSED_ABOVE)
         return HandReading(0.0, (0.0, 0.0, 0.0), None, flexions, tracked=False)
 
 
 def connect(
-    settings: GloveSettings, dialogue: GloveDialogue, clock: Callable[[], float] = time.monotonic
+    settings: GloveSettings, protocol: GloveProtocol, clock: Callable[[], float] = time.monotonic
 ) -> Connection[Raw]:
     """Return the connection with a glove, not yet made; it gives raw samples."""
-    return Connection[Raw](SerialLine(settings.port, settings.baud), dialogue, silence=settings.silence, clock=clock)
+    return Connection[Raw](SerialLine(settings.port, settings.baud), protocol, silence=settings.silence, clock=clock)

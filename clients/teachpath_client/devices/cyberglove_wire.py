@@ -34,7 +34,7 @@ errors), intellsensing (`cyberglove`: 20 and 24 bytes of a sample).
 feed was seen, in a transcript; both may be missing), and whether a streaming glove takes another command (libglove
 says no, ViSTA sends none because the answers would be mixed up; so a glove that vibrates is asked for each sample).
 The places of `A` and the flag of the CyberTouch rest on one driver. No glove was at hand: all was tested against the
-twin in `twins.py`.
+simulator in `protocol_simulators.py`.
 """
 
 from __future__ import annotations
@@ -44,8 +44,8 @@ from collections.abc import Sequence
 
 SENSORS = (18, 22)
 ACTUATORS = 6
-ENOUGH = 4 * 22 + 16  # bytes of the longest sample, ASCII
-TICKS = 115200  # a second, of the stream's period
+LONGEST_SAMPLE = 4 * 22 + 16  # bytes of the longest sample, ASCII
+TICK_RATE = 115200  # a second, of the stream's period
 READY = 3  # answer to ?G of a glove that is plugged in and initialised
 CYBERTOUCH = 0x02  # in the third byte of the answer to ?P
 STOP = b"\x03"
@@ -69,7 +69,7 @@ class GloveParser:
             at = end + 1
             if sample is not None:
                 found.append((sample, len(self._buffer) - at))
-        del self._buffer[: max(at, len(self._buffer) - ENOUGH)]
+        del self._buffer[: max(at, len(self._buffer) - LONGEST_SAMPLE)]
         return found
 
     def _read(self, answer: bytes) -> tuple[int, ...] | None:
@@ -98,4 +98,4 @@ def vibration(amplitude: int) -> bytes:
 
 def period(rate: float) -> bytes:
     """Return the command that sets the stream to `rate` [Hz]."""
-    return f"t {round(TICKS / rate)} 1\r".encode()
+    return f"t {round(TICK_RATE / rate)} 1\r".encode()

@@ -1,7 +1,7 @@
-"""Devices without hardware: a twin behind a pty that misbehaves when it is told to.
+"""Devices without hardware: a protocol simulator behind a pty that misbehaves when it is told to.
 
 Torn records, noise, pauses, unplugged and plugged in again, at a path like a real port's and a rate of its own. What
-the twins do in memory, the emulator does to a driver that believes in a serial line.
+the simulators do in memory, the emulator does to a driver that believes in a serial line.
 """
 
 from __future__ import annotations
@@ -18,49 +18,49 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Self
 
-from teachpath_client.devices.twins import Twin
+from teachpath_client.devices.protocol_simulators import ProtocolSimulator
 from teachpath_client.reading import HandReading
 
-Mischief = Callable[[bytes], bytes]
+Corruption = Callable[[bytes], bytes]
 
-ENDED = 5.0  # [s] for the emulator's thread to leave
-IDLE = 0.02  # [s] between looks at an idle line
+JOIN_TIMEOUT = 5.0  # [s] for the emulator's thread to leave
+IDLE_WAIT = 0.02  # [s] between looks at an idle line
 
 
 class Emulator:
-    """A twin on a pty; use it as a context manager.
+    """A simulator on a pty; use it as a context manager.
 
     Args:
-        twin: the device.
+        simulator: the device.
         link: path of the port: a link to the pty, which comes and goes as a real device node does.
         rate: [Hz] of its stream.
         moving: what is to be played goes on whether the device streams or not, for one that is polled.
         hold: when nothing is left to play, send the last reading again and again; otherwise be silent.
-        mischief: what becomes of a record on the wire.
+        corrupt: what becomes of a record on the wire.
         clock: [s] that never runs back.
     """
 
     def __init__(
         self,
-        twin: Twin,
+        simulator: ProtocolSimulator,
         link: Path,
         *,
         rate: float,
         moving: bool = False,
         hold: bool = False,
-        mischief: Mischief | None = None,
+        corrupt: Corruption | None = None,
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
-        self.twin, self._link, self._rate, self._hold = twin, link, rate, hold
+        self.simulator, self._link, self._rate, self._hold = simulator, link, rate, hold
         self._moving = moving
-        self.mischief, self._clock = mischief, clock
+        self.corrupt, self._clock = corrupt, clock
         self._script: deque[HandReading] = deque()
         self._now = HandReading(0.0, (0.0, 0.0, 0.0), None, (0.0,) * 22)
         self._master = self._slave = -1
         self._over = threading.Event()
         self._thread: threading.Thread | None = None
-        self.whole: list[tuple[float, HandReading]] = []  # what went out undamaged, and when
-        self.spoiled = 0  # records that did not
+        self.intact: list[tuple[float, HandReading]] = []  # what went out undamaged, and when
+        self.corrupted = 0  # records that did not
         self.played = threading.Event()  # all that was to be played went out
 
     def __enter__(self) -> Self:
@@ -81,7 +81,7 @@ class Emulator:
 
     def plug(self) -> None:
         """Plug the device in: its path appears, and it has forgotten its settings."""
-        self.twin.power_up()
+        self.simulator.power_up()
         self._master, self._slave = pty.openpty()
         tty.setraw(self._slave)
         os.set_blocking(self._master, False)
@@ -97,21 +97,21 @@ class Emulator:
             return
         self._link.unlink()
         self._over.set()
-        thread.join(ENDED)
+        thread.join(JOIN_TIMEOUT)
         os.close(self._master)
         os.close(self._slave)
 
     def _run(self) -> None:
         due = self._clock()
         while not self._over.is_set():
-            wait = min(IDLE, max(0.0, due - self._clock()))
+            wait = min(IDLE_WAIT, max(0.0, due - self._clock()))
             if select.select([self._master], [], [], wait)[0]:
-                self._send(self.twin.receive(os.read(self._master, 4096), self._now))
+                self._send(self.simulator.receive(os.read(self._master, 4096), self._now))
             now = self._clock()
             if now < due:
                 continue
             due = due + 1.0 / self._rate if now - due < 1.0 / self._rate else now + 1.0 / self._rate
-            if self.twin.streaming:
+            if self.simulator.streaming:
                 self._stream(now)
             elif self._moving and self._script:
                 self._now = self._script.popleft()
@@ -124,18 +124,18 @@ class Emulator:
             self._now = self._script.popleft()
         elif not self._hold:
             return
-        record = self.twin.record(self._now)
-        wire = self.mischief(record) if self.mischief else record
+        record = self.simulator.record(self._now)
+        wire = self.corrupt(record) if self.corrupt else record
         # The books are kept before the bytes go out, so that whoever reads the last record finds it in them.
         intact = record in wire
         if intact:
-            self.whole.append((now, self._now))
+            self.intact.append((now, self._now))
         if fresh and not self._script:
             self.played.set()
         if not self._send(wire) and intact:
-            self.whole.remove((now, self._now))
+            self.intact.remove((now, self._now))
             intact = False
-        self.spoiled += not intact
+        self.corrupted += not intact
 
     def _send(self, content: bytes) -> bool:
         try:
@@ -144,11 +144,11 @@ class Emulator:
             return False
 
 
-class Spoiler:
-    """Mischief by chance: tears records and puts noise between them.
+class RecordCorrupter:
+    """Corruption by chance: tears records and puts noise between them.
 
     Args:
-        seed: same seed, same mischief.
+        seed: same seed, same corruption.
         torn: share of the records of which only a beginning, an end, or neither is sent.
         noise: share of the records with random bytes before them.
     """

@@ -17,14 +17,14 @@ from teachpath_client.devices.fastrak_wire import (
     Pose,
     read_status,
 )
-from teachpath_client.devices.live_device import PATIENCE, LiveDevice, Polling
+from teachpath_client.devices.live_device import READ_TIMEOUT, LiveDevice, Polling
 from teachpath_client.devices.serial_line import SerialLine
 from teachpath_client.devices.source import Capabilities, configure
 from teachpath_client.link import ClientError
 from teachpath_client.reading import HandReading
 
 METRES = {"cm": 0.01, "in": 0.0254}
-SAMPLES_A_SECOND = 120.0  # all stations together
+MAX_RECORD_RATE = 120.0  # all stations together
 ATTEMPTS = 3
 
 
@@ -56,22 +56,22 @@ class FastrakSettings:
     def __post_init__(self) -> None:
         if not self.stations or not set(self.stations) <= set(STATIONS):
             raise ClientError(f"stations={','.join(map(str, self.stations))}: a FASTRAK has the stations 1 to 4")
-        if not 1.0 <= self.rate <= SAMPLES_A_SECOND:
-            raise ClientError(f"rate={self.rate:g} is outside 1 to {SAMPLES_A_SECOND:g} Hz")
+        if not 1.0 <= self.rate <= MAX_RECORD_RATE:
+            raise ClientError(f"rate={self.rate:g} is outside 1 to {MAX_RECORD_RATE:g} Hz")
         if not 0.1 <= self.silence <= 60.0:
             raise ClientError(f"silence={self.silence:g} is outside 0.1 to 60 s")
         if not 0.0 <= self.pause <= 1.0:
             raise ClientError(f"pause={self.pause:g} is outside 0 to 1 s")
 
 
-class FastrakDialogue:
+class FastrakProtocol:
     """Sets a FASTRAK up, checks that it took unit and format, and asks it for records when polled."""
 
     def __init__(self, settings: FastrakSettings, clock: Callable[[], float] = time.monotonic) -> None:
         self._settings, self._clock = settings, clock
         self._polling = Polling(settings.rate, clock)
 
-    def greet(self, line: SerialLine) -> BinaryParser | AsciiParser:
+    def set_up(self, line: SerialLine) -> BinaryParser | AsciiParser:
         """Set the device up; raises ClientError when it does not answer or does not take the unit or the format."""
         wanted = (self._settings.format == "binary", self._settings.unit == "cm")
         said = None
@@ -96,15 +96,15 @@ class FastrakDialogue:
             f"says that it sends {'cm' if said[1] else 'in'} in {'binary' if said[0] else 'ascii'}; power-cycle it"
         )
 
-    def tick(self, line: SerialLine) -> float:
+    def poll(self, line: SerialLine) -> float:
         """Ask for a record when it is time to; return the seconds until the next time."""
         if self._settings.mode == "continuous":
-            return PATIENCE
+            return READ_TIMEOUT
         if self._polling.is_due:
             line.write(b"P")
         return self._polling.wait
 
-    def leave(self, line: SerialLine) -> None:
+    def shut_down(self, line: SerialLine) -> None:
         """End the continuous output."""
         line.write(b"c")
 
@@ -147,14 +147,14 @@ class FastrakSource(LiveDevice[Pose]):
     """One receiver of a FASTRAK, live; a reading is not tracked when the device reports an error with it."""
 
     def __init__(self, settings: FastrakSettings, *, clock: Callable[[], float] = time.monotonic) -> None:
-        line, dialogue = SerialLine(settings.port, settings.baud), FastrakDialogue(settings, clock)
-        super().__init__(Connection(line, dialogue, silence=settings.silence, clock=clock))
+        line, protocol = SerialLine(settings.port, settings.baud), FastrakProtocol(settings, clock)
+        super().__init__(Connection(line, protocol, silence=settings.silence, clock=clock))
         self.settings = settings
 
     @property
     def capabilities(self) -> Capabilities:
         """Position and orientation, live."""
-        streams = SAMPLES_A_SECOND / len(self.settings.stations)
+        streams = MAX_RECORD_RATE / len(self.settings.stations)
         rate = streams if self.settings.mode == "continuous" else self.settings.rate
         return Capabilities(rate=rate, sensors=0, orientation=True, live=True)
 

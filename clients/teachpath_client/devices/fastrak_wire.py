@@ -48,8 +48,8 @@ ASCII_SIZE = 3 + 7 * 7 + len(END)
 ASCII = re.compile(rb"0([1-4])([ A-Za-z])((?s:.{21}))((?s:.{28}))")
 STATUS = re.compile(rb"2[ 0-9]S([0-9A-Fa-f]{3})[ -~]{47}\r\n")
 STATUS_SIZE = 55
-FARTHEST = 1000.0  # inch or cm: what the ASCII record cannot show, no device measures
-UNIT_LENGTH = 0.01  # by how much the length of a quaternion may differ from 1
+MAX_POSITION = 1000.0  # inch or cm: what the ASCII record cannot show, no device measures
+LENGTH_TOLERANCE = 0.01  # by how much the length of a quaternion may differ from 1
 
 
 @dataclass(frozen=True, slots=True)
@@ -129,7 +129,7 @@ def _pose(station: bytes, error: bytes, values: list[float]) -> Pose | None:
         return None
     x, y, z, *quaternion = values
     length = math.hypot(*quaternion)
-    if max(abs(x), abs(y), abs(z)) > FARTHEST or abs(length - 1.0) > UNIT_LENGTH:
+    if max(abs(x), abs(y), abs(z)) > MAX_POSITION or abs(length - 1.0) > LENGTH_TOLERANCE:
         return None
     a, b, c, d = (value / length for value in quaternion)
     return Pose(int(station), error.decode(), (x, y, z), (a, b, c, d))

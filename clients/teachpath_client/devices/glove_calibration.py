@@ -12,8 +12,8 @@ from typing import Self
 from teachpath_client.devices.cyberglove_wire import SENSORS
 from teachpath_client.link import ClientError
 
-LEAST_RANGE = 12  # raw steps between open hand and fist; less is noise and creep of the glove
-LEAST_SHARE = 0.5  # of the sensors that must tell an open hand from a fist
+MIN_RANGE = 12  # raw steps between open hand and fist; less is noise and creep of the glove
+MIN_SENSOR_SHARE = 0.5  # of the sensors that must tell an open hand from a fist
 
 
 @dataclass(frozen=True)
@@ -36,7 +36,7 @@ class GloveCalibration:
             raise ClientError(
                 f"a glove has 18 or 22 sensors, not {len(self.offset)} offsets and {len(self.gain)} gains"
             )
-        if sum(gain != 0.0 for gain in self.gain) < LEAST_SHARE * len(self.gain):
+        if sum(gain != 0.0 for gain in self.gain) < MIN_SENSOR_SHARE * len(self.gain):
             raise ClientError(
                 f"only {sum(gain != 0.0 for gain in self.gain)} of {len(self.gain)} sensors tell the open hand from "
                 "the fist; was the hand once quite open and once quite closed?"
@@ -50,7 +50,7 @@ class GloveCalibration:
         low = [median(values) for values in zip(*opened, strict=True)]
         high = [median(values) for values in zip(*closed, strict=True)]
         ranges = [b - a for a, b in zip(low, high, strict=True)]
-        gains = [1.0 / step if abs(step) >= LEAST_RANGE else 0.0 for step in ranges]
+        gains = [1.0 / step if abs(step) >= MIN_RANGE else 0.0 for step in ranges]
         return cls(tuple(map(float, low)), tuple(gains))
 
     @classmethod

@@ -14,8 +14,11 @@ from teachpath_client.devices.source import Capabilities, configure
 from teachpath_client.link import ClientError
 from teachpath_client.reading import HandReading
 
-PATIENCE = 0.1  # [s] a read waits
-OLDEST, PERIODS = 0.1, 3.0  # [s], periods of the glove: how old the flexions of a pose may be at most
+READ_TIMEOUT = 0.1  # [s] a read waits
+MAX_FLEXION_AGE, MAX_FLEXION_PERIODS = (
+    0.1,
+    3.0,
+)  # [s], periods of the glove: how old the flexions of a pose may be at most
 
 
 def hand(**options: str) -> HandSource:
@@ -41,7 +44,7 @@ class HandSource:
     ) -> None:
         self._fastrak = FastrakSource(fastrak, clock=clock)
         self._glove = GloveSource(glove, clock=clock)
-        self._oldest = max(OLDEST, PERIODS / glove.rate)
+        self._oldest = max(MAX_FLEXION_AGE, MAX_FLEXION_PERIODS / glove.rate)
         self._clock = clock
         self._stack = ExitStack()
         self._over = False
@@ -74,7 +77,7 @@ class HandSource:
     def __iter__(self) -> Iterator[HandReading]:
         pairing, start = Pairing(lambda: self._glove.take(0.0), self._oldest), None
         while not self._over:
-            taken = self._fastrak.take(PATIENCE)
+            taken = self._fastrak.take(READ_TIMEOUT)
             # While no pose comes, flexions that are too old for the next one are thrown away.
             date = taken[0] if taken else self._clock() - self._oldest
             flexions = pairing.before(date)

@@ -13,7 +13,7 @@ from teachpath_client.reading import HandReading
 
 Record = TypeVar("Record")
 
-PATIENCE = 0.1  # [s] a read waits
+READ_TIMEOUT = 0.1  # [s] a read waits
 
 
 class Polling:
@@ -74,7 +74,7 @@ class LiveDevice(ABC, Generic[Record]):
     def __iter__(self) -> Iterator[HandReading]:
         start: float | None = None
         while not self._over:
-            if (taken := self.take(PATIENCE)) is not None:
+            if (taken := self.take(READ_TIMEOUT)) is not None:
                 date, reading = taken
                 start = date if start is None else start
                 yield replace(reading, time=date - start)

@@ -11,14 +11,14 @@ from teachpath_client.devices.cyberglove import GloveSettings
 from teachpath_client.devices.emulators import Emulator
 from teachpath_client.devices.glove_calibration import GloveCalibration
 from teachpath_client.devices.playback import PlaybackSource
+from teachpath_client.devices.protocol_simulators import GloveSimulator
 from teachpath_client.devices.source import Capabilities
-from teachpath_client.devices.twins import GloveTwin
 from teachpath_client.link import ClientError
-from teachpath_client.live import Feeling, calibrate_glove, ended_by_signals, record_live
+from teachpath_client.live import HapticFeedback, calibrate_glove, ended_by_signals, record_live
 from teachpath_client.reading import HandReading
 from teachpath_client.tracker import Tracker
 from teachpath_proto import tracker_pb2
-from tests.unit.clients.devices.hands import calibration, readings
+from tests.unit.clients.devices.readings import calibration, readings
 from tests.unit.clients.test_tracker import MemoryLink
 
 OPENED = HandReading(0.0, (0.0, 0.0, 0.0), None, (0.0,) * 22)
@@ -47,7 +47,7 @@ def tracker(link: MemoryLink) -> Tracker:
 
 @contextmanager
 def glove(folder: Path) -> Iterator[Emulator]:
-    with Emulator(GloveTwin(calibration()), folder / "glove", rate=400.0, hold=True) as emulator:
+    with Emulator(GloveSimulator(calibration()), folder / "glove", rate=400.0, hold=True) as emulator:
         yield emulator
 
 
@@ -87,22 +87,22 @@ def told(holding: bool) -> bytes:
 
 def test_the_hand_feels_what_the_station_says_and_nothing_after_the_last_reading() -> None:
     source, now = Touched(), [0.0]
-    feeling = Feeling(source, clock=lambda: now[0])
-    stream = feeling.readings(iter(readings(5)))
+    haptic = HapticFeedback(source, clock=lambda: now[0])
+    stream = haptic.readings(iter(readings(5)))
     next(stream)
     for holding in (True, True, False, True):
-        feeling.take(told(holding))
+        haptic.on_feedback(told(holding))
         next(stream, None)
     assert source.felt == [True, False, True]
     assert list(stream) == []
     assert source.felt == [True, False, True, False]
 
 
-def test_the_feeling_ends_when_the_station_is_gone() -> None:
+def test_the_vibration_ends_when_the_station_is_gone() -> None:
     source, now = Touched(), [0.0]
-    feeling = Feeling(source, clock=lambda: now[0])
-    stream = feeling.readings(iter(readings(4)))
-    feeling.take(told(True))
+    haptic = HapticFeedback(source, clock=lambda: now[0])
+    stream = haptic.readings(iter(readings(4)))
+    haptic.on_feedback(told(True))
     for seconds, felt in ((0.9, [True]), (2.9, [True]), (3.1, [True, False])):
         now[0] = seconds
         next(stream)

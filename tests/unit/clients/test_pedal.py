@@ -12,7 +12,7 @@ from teachpath_client.__main__ import main
 from teachpath_client.link import ClientError
 from teachpath_client.pedal import EVENT, KEY_EVENT, PEDAL_BIT, EventPedal, TerminalPedal, open_pedal, with_pedal
 from teachpath_client.reading import HandReading
-from tests.unit.clients.devices.hands import readings, until
+from tests.unit.clients.devices.readings import readings, until
 
 
 @pytest.fixture

@@ -5,7 +5,7 @@ import io
 import pytest
 
 from teachpath_client.reading import HandReading
-from teachpath_client.status import CLEARED, GONE, Status
+from teachpath_client.status import CLEAR_LINE, SILENCE_WARNING, Status
 from teachpath_proto import tracker_pb2
 
 
@@ -27,7 +27,7 @@ def shown(payloads: list[bytes], *, live: bool) -> str:
     out = io.StringIO()
     status = Status(out, live=live)
     for payload in payloads:
-        status.take(payload)
+        status.on_feedback(payload)
     status.end()
     return out.getvalue()
 
@@ -60,7 +60,7 @@ def test_on_a_terminal_the_line_is_written_over_and_a_countdown_sounds() -> None
     text = shown(
         [feedback("countdown", countdown_left=1.0), feedback("recording"), feedback("recording", newest=1)], live=True
     )
-    assert text.split(CLEARED) == [
+    assert text.split(CLEAR_LINE) == [
         "",
         "lift: begins in 1 s; 0 takes\a",
         "lift: recording; 0 takes",
@@ -81,10 +81,10 @@ def test_a_station_that_says_nothing_is_said_once_until_it_speaks_again() -> Non
     for _ in range(12):
         now[0] += 0.5
         if now[0] <= 2.0:
-            status.take(feedback("recording"))
+            status.on_feedback(feedback("recording"))
         next(stream)
-    assert out.getvalue().splitlines() == ["lift: recording; 0 takes", GONE]
-    status.take(feedback("recording"))
+    assert out.getvalue().splitlines() == ["lift: recording; 0 takes", SILENCE_WARNING]
+    status.on_feedback(feedback("recording"))
     next(stream)
     assert out.getvalue().splitlines()[2:] == ["lift: recording; 0 takes"]
 
@@ -94,5 +94,5 @@ def test_a_station_that_speaks_each_second_is_not_missed() -> None:
     status = Status(out, live=True, clock=lambda: now[0])
     for _ in status.readings(iter([HandReading(0.0, (0.0, 0.0, 0.0))] * 60)):
         now[0] += 1.0
-        status.take(feedback("recording"))
-    assert GONE not in out.getvalue()
+        status.on_feedback(feedback("recording"))
+    assert SILENCE_WARNING not in out.getvalue()

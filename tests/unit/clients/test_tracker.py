@@ -119,7 +119,7 @@ def test_a_routine_is_told_and_a_countdown_that_is_not_said_is_not_sent(
 
 
 def test_a_tracker_hears_the_feedback_to_its_name(tracker: Tracker, link: MemoryLink) -> None:
-    tracker.hear(print)
+    tracker.subscribe_feedback(print)
     assert link.heard == [(KEYS.feedback("glove"), print)]
 
 

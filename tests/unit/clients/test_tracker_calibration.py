@@ -11,7 +11,7 @@ from teachpath_client.__main__ import main
 from teachpath_client.devices.emulators import Emulator
 from teachpath_client.devices.fastrak import FastrakSettings, FastrakSource
 from teachpath_client.devices.playback import PlaybackSource
-from teachpath_client.devices.twins import FastrakTwin
+from teachpath_client.devices.protocol_simulators import FastrakSimulator
 from teachpath_client.link import ClientError
 from teachpath_client.reading import HandReading, Vector
 from teachpath_client.tracker_calibration import Pair, calibrate_tracker, lines, measure_points, read_points
@@ -26,7 +26,7 @@ def at(place: Vector, *, tracked: bool = True) -> HandReading:
 
 def test_each_point_is_where_the_tracker_was_held_still_after_it_was_told(tmp_path: Path) -> None:
     told: list[str] = []
-    with Emulator(FastrakTwin(), tmp_path / "port", rate=100.0, hold=True) as device:
+    with Emulator(FastrakSimulator(), tmp_path / "port", rate=100.0, hold=True) as device:
         held = iter([(0.1, 0.0, 0.0), (0.2, 0.1, 0.0), (0.3, 0.0, 0.2)])
 
         def tell(sentence: str) -> None:

@@ -4,7 +4,7 @@ from types import FrameType
 
 import pytest
 
-from tests.unit.clients.devices.hands import DEADLINE
+from tests.unit.clients.devices.readings import DEADLINE
 
 
 @pytest.fixture(autouse=True)

@@ -8,12 +8,12 @@ from typing import Any
 import pytest
 
 from teachpath_client.devices.cyberglove import GloveSource
-from teachpath_client.devices.emulators import Emulator, Spoiler
+from teachpath_client.devices.emulators import Emulator, RecordCorrupter
 from teachpath_client.devices.fastrak import FastrakSource
-from teachpath_client.devices.twins import FastrakTwin, GloveTwin
+from teachpath_client.devices.protocol_simulators import FastrakSimulator, GloveSimulator
 from teachpath_client.link import ClientError
 from teachpath_client.reading import HandReading
-from tests.unit.clients.devices.benches import (
+from tests.unit.clients.devices.emulated_devices import (
     GLOVE,
     RATE,
     ends_with,
@@ -24,7 +24,7 @@ from tests.unit.clients.devices.benches import (
     place,
     whole,
 )
-from tests.unit.clients.devices.hands import gather, readings, until
+from tests.unit.clients.devices.readings import gather, readings, until
 
 FORMATS = pytest.mark.parametrize("form", ["binary", "ascii"])
 
@@ -33,20 +33,20 @@ FORMATS = pytest.mark.parametrize("form", ["binary", "ascii"])
 def test_every_whole_record_comes_out_once_and_right_among_torn_ones_and_noise(tmp_path: Path, form: Any) -> None:
     shown = readings(300)
     with (
-        fastrak(tmp_path, mischief=Spoiler(1, torn=0.2, noise=0.2)) as device,
+        fastrak(tmp_path, corrupt=RecordCorrupter(1, torn=0.2, noise=0.2)) as device,
         FastrakSource(fastrak_settings(tmp_path, format=form)) as source,
     ):
         device.play(shown[:-1])
         until(device.played.is_set, "all but the last was played")
-        device.mischief = None
+        device.corrupt = None
         device.play(shown[-1:])
         got = gather(iter(source), ends_with(device))
-    assert device.spoiled > 30
+    assert device.corrupted > 30
     sent = whole(device)
     spots = [place(reading) for reading in got]
     assert [spot for spot in spots if spot in set(sent)] == sent
     assert len(spots) == len(sent)
-    by_place = {place(reading): reading for _, reading in device.whole}
+    by_place = {place(reading): reading for _, reading in device.intact}
     for reading in got:
         true = by_place[place(reading)]
         assert reading.position == pytest.approx(true.position, abs=1e-4)
@@ -60,7 +60,7 @@ def test_times_begin_at_0_and_never_run_back(tmp_path: Path) -> None:
         got = gather(iter(source), ends_with(device))
     assert got[0].time == 0.0
     assert all(b.time > a.time for a, b in pairwise(got))
-    assert got[-1].time == pytest.approx(device.whole[-1][0] - device.whole[0][0], abs=0.5)
+    assert got[-1].time == pytest.approx(device.intact[-1][0] - device.intact[0][0], abs=0.5)
 
 
 @FORMATS
@@ -85,7 +85,7 @@ def test_a_device_that_was_unplugged_goes_on_with_the_right_times_and_the_gap_is
         device.play(second)
         after = gather(stream, ends_with(device))
     assert [place(r) for r in before + after] == [place(r) for r in first + second]
-    gap = device.whole[30][0] - device.whole[29][0]
+    gap = device.intact[30][0] - device.intact[29][0]
     assert after[0].time - before[-1].time == pytest.approx(100.0 + gap, abs=0.5)
     for reading, true in zip(after, second, strict=True):  # in metres still: the device woke up in inches
         assert reading.position == pytest.approx(true.position, abs=1e-4)
@@ -97,7 +97,7 @@ def test_a_device_that_was_switched_off_behind_its_adapter_is_set_up_again(tmp_p
         stream = iter(source)
         device.play(shown[:20])
         gather(stream, ends_with(device))
-        device.twin.power_up()
+        device.simulator.power_up()
         device.play(shown[20:])
         again = gather(stream, ends_with(device))
     assert [place(r) for r in again] == [place(r) for r in shown[20:]]
@@ -126,14 +126,14 @@ def test_a_device_that_paused_for_long_goes_on(tmp_path: Path, form: Any, caplog
 def test_positions_are_in_metres_in_either_unit(tmp_path: Path, unit: Any, form: Any) -> None:
     with fastrak(tmp_path) as device, FastrakSource(fastrak_settings(tmp_path, unit=unit, format=form)) as source:
         device.play(shown := readings(5))
-        got = gather(iter(source), lambda _: device.played.is_set() and len(device.whole) == 5)
+        got = gather(iter(source), lambda _: device.played.is_set() and len(device.intact) == 5)
     for reading, true in zip(got, shown, strict=False):
         assert reading.position == pytest.approx(true.position, abs=0.0254 * 0.006)
 
 
 def test_a_device_that_keeps_to_its_own_unit_is_refused(tmp_path: Path) -> None:
     with (
-        fastrak(tmp_path, FastrakTwin(stubborn=True)),
+        fastrak(tmp_path, FastrakSimulator(fixed_unit=True)),
         pytest.raises(ClientError, match="asked for cm in binary records, but says that it sends in in binary"),
         FastrakSource(fastrak_settings(tmp_path)),
     ):
@@ -141,13 +141,13 @@ def test_a_device_that_keeps_to_its_own_unit_is_refused(tmp_path: Path) -> None:
 
 
 def test_the_hand_is_the_first_of_the_stations_and_the_others_are_off(tmp_path: Path) -> None:
-    twin = FastrakTwin((1, 2, 3))
+    simulator = FastrakSimulator((1, 2, 3))
     settings = fastrak_settings(tmp_path, stations=(2, 1), hemisphere="-z")
-    with fastrak(tmp_path, twin) as device, FastrakSource(settings) as source:
+    with fastrak(tmp_path, simulator) as device, FastrakSource(settings) as source:
         device.play(shown := readings(20))
         got = gather(iter(source), lambda reading: round(reading.position[1], 4) == round(shown[-1].position[1], 4))
-        assert twin.active == {1, 2}
-        assert twin.hemispheres == {1: "0,0,-1", 2: "0,0,-1", 3: "1,0,0"}
+        assert simulator.active == {1, 2}
+        assert simulator.hemispheres == {1: "0,0,-1", 2: "0,0,-1", 3: "1,0,0"}
         assert source.capabilities.rate == 60.0
     assert len(got) == 20
     for reading, true in zip(got, shown, strict=True):
@@ -158,7 +158,7 @@ def test_a_polled_device_is_asked_at_its_rate(tmp_path: Path) -> None:
     with fastrak(tmp_path, hold=True) as device, FastrakSource(fastrak_settings(tmp_path, mode="polled")) as source:
         stream = iter(source)
         got = [next(stream) for _ in range(11)]
-        assert not device.twin.streaming
+        assert not device.simulator.streaming
     assert got[-1].time == pytest.approx(10 / 50.0, abs=0.15)
 
 
@@ -178,14 +178,14 @@ def test_closing_ends_the_iteration_and_quiets_the_device(tmp_path: Path) -> Non
         source.close()
         assert len(list(stream)) <= 1
         source.__exit__()
-        until(lambda: not device.twin.streaming, "the device is quiet")
+        until(lambda: not device.simulator.streaming, "the device is quiet")
 
 
 def test_a_silent_or_missing_or_taken_device_is_said(tmp_path: Path) -> None:
     settings = fastrak_settings(tmp_path)
     with pytest.raises(ClientError, match="is the device plugged in"), FastrakSource(settings):
         pass
-    with glove(tmp_path), Emulator(GloveTwin(GLOVE), tmp_path / "fastrak", rate=RATE):
+    with glove(tmp_path), Emulator(GloveSimulator(GLOVE), tmp_path / "fastrak", rate=RATE):
         with pytest.raises(ClientError, match="no FASTRAK answers"), FastrakSource(settings):
             pass
         with GloveSource(glove_settings(tmp_path)), pytest.raises(ClientError, match="another program is using"):

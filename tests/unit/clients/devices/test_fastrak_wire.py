@@ -16,7 +16,7 @@ from teachpath_client.devices.fastrak_wire import (
     write_record,
     write_status,
 )
-from tests.unit.clients.devices.hands import pose
+from tests.unit.clients.devices.readings import pose
 
 POSES = [pose(i, 1 + i % 4) for i in range(200)]
 FORMATS = pytest.mark.parametrize("binary", [True, False], ids=["binary", "ascii"])

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from teachpath_client.devices.glove_calibration import GloveCalibration
 from teachpath_client.link import ClientError
-from tests.unit.clients.devices.hands import calibration
+from tests.unit.clients.devices.readings import calibration
 
 OPENED = [[60 + i, *[100] * 3, *[50] * 14] for i in (-1, 0, 1)]
 CLOSED = [[160 + i, *[40] * 3, *[200] * 11, 51, 50, 49] for i in (-1, 0, 1)]

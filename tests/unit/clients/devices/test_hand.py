@@ -12,7 +12,7 @@ from teachpath_client.devices.fastrak import FastrakSource
 from teachpath_client.devices.hand import HandSource, Pairing
 from teachpath_client.link import ClientError
 from teachpath_client.reading import HandReading
-from tests.unit.clients.devices.benches import (
+from tests.unit.clients.devices.emulated_devices import (
     GLOVE,
     RATE,
     fastrak,
@@ -22,7 +22,7 @@ from tests.unit.clients.devices.benches import (
     place,
     seen,
 )
-from tests.unit.clients.devices.hands import gather, readings, until
+from tests.unit.clients.devices.readings import gather, readings, until
 
 
 def test_a_hand_has_every_pose_once_with_the_whole_flexions_of_one_moment(tmp_path: Path) -> None:
@@ -60,8 +60,8 @@ def test_half_a_hand_gives_no_reading(tmp_path: Path) -> None:
         next(stream)
         gloved.unplug()
         tracker.show(shown[1])
-        gone = len(tracker.whole)
-        until(lambda: len(tracker.whole) > gone + RATE / 4, "the tracker goes on alone")
+        gone = len(tracker.intact)
+        until(lambda: len(tracker.intact) > gone + RATE / 4, "the tracker goes on alone")
         gloved.plug()
         gloved.show(shown[1])
         got = gather(stream, lambda reading: reading.flexions == pytest.approx(seen(shown[1].flexions)))
@@ -74,7 +74,7 @@ def test_a_hand_opens_both_devices_or_none(tmp_path: Path) -> None:
         GLOVE.save(tmp_path / "glove.toml")
         with pytest.raises(ClientError, match="glove as a serial line"):
             HandSource(fastrak_settings(tmp_path), glove_settings(tmp_path)).__enter__()
-        until(lambda: not device.twin.streaming, "the tracker is quiet")
+        until(lambda: not device.simulator.streaming, "the tracker is quiet")
         with FastrakSource(fastrak_settings(tmp_path)) as source:
             assert next(iter(source)).time == 0.0
 

@@ -1,4 +1,4 @@
-"""FASTRAK and CyberGlove in memory: twins that speak their protocols, bytes in and bytes out."""
+"""FASTRAK and CyberGlove in memory: simulators that speak their protocols, bytes in and bytes out."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from teachpath_client.reading import HandReading
 LONGEST_COMMAND = 16  # bytes
 
 
-class Twin(Protocol):
+class ProtocolSimulator(Protocol):
     """A device: what it answers, and what it sends of a reading."""
 
     streaming: bool
@@ -29,13 +29,13 @@ class Twin(Protocol):
         """Return the record of a reading in the stream."""
 
 
-class FastrakTwin:
-    """A FASTRAK with receivers at `stations`; deaf to `u` and `U` when it is stubborn about its unit."""
+class FastrakSimulator:
+    """A FASTRAK with receivers at `stations`; it ignores `u` and `U` when `fixed_unit`."""
 
     COMMAND = re.compile(rb"([cCPfFuUS])|([lHO])(\d)(?:,([^\r]*))?\r")
 
-    def __init__(self, stations: tuple[int, ...] = (1,), *, stubborn: bool = False) -> None:
-        self._present, self._stubborn = stations, stubborn
+    def __init__(self, stations: tuple[int, ...] = (1,), *, fixed_unit: bool = False) -> None:
+        self._present, self._fixed_unit = stations, fixed_unit
         self.power_up()
 
     def power_up(self) -> None:
@@ -81,7 +81,7 @@ class FastrakTwin:
             self.streaming = letter == "C"
         elif letter in "fF":
             self.binary = letter == "f"
-        elif letter in "uU" and not self._stubborn:
+        elif letter in "uU" and not self._fixed_unit:
             self.unit = "cm" if letter == "u" else "in"
         elif letter == "P":
             return self.record(reading)
@@ -103,7 +103,7 @@ class FastrakTwin:
             self.items[station] = value
 
 
-class GloveTwin:
+class GloveSimulator:
     """A CyberGlove whose raw values follow the inverse of `calibration`; a CyberTouch when `cybertouch`."""
 
     COMMAND = re.compile(rb"(?s)\x03|\?[GSP]|[GgSs]|[NUD].|A\xff.{6}|t \d+ \d+\r")
@@ -111,7 +111,7 @@ class GloveTwin:
     def __init__(self, calibration: GloveCalibration, *, cybertouch: bool = True) -> None:
         self._calibration, self._cybertouch = calibration, cybertouch
         self.sensors = len(calibration.offset)
-        self.felt: list[int] = []  # amplitudes of the first actuator, in the order they were set
+        self.amplitudes: list[int] = []  # amplitudes of the first actuator, in the order they were set
         self.power_up()
 
     def power_up(self) -> None:
@@ -150,5 +150,5 @@ class GloveTwin:
         if command in (b"G", b"g"):
             return write_sample(command, self._calibration.raw(reading.flexions))
         if letter == b"A":
-            self.felt.append(command[2])
+            self.amplitudes.append(command[2])
         return letter + b"\0"

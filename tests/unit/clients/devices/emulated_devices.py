@@ -8,24 +8,24 @@ from typing import Any
 from teachpath_client.devices.cyberglove import GloveSettings
 from teachpath_client.devices.emulators import Emulator
 from teachpath_client.devices.fastrak import FastrakSettings
-from teachpath_client.devices.twins import FastrakTwin, GloveTwin
+from teachpath_client.devices.protocol_simulators import FastrakSimulator, GloveSimulator
 from teachpath_client.reading import HandReading
-from tests.unit.clients.devices.hands import calibration
+from tests.unit.clients.devices.readings import calibration
 
 RATE = 400.0  # [Hz] of the emulators
 GLOVE = calibration()
 
 
 @contextmanager
-def fastrak(folder: Path, twin: FastrakTwin | None = None, **emulated: Any) -> Iterator[Emulator]:
-    with Emulator(twin or FastrakTwin(), folder / "fastrak", rate=RATE, **emulated) as emulator:
+def fastrak(folder: Path, simulator: FastrakSimulator | None = None, **emulated: Any) -> Iterator[Emulator]:
+    with Emulator(simulator or FastrakSimulator(), folder / "fastrak", rate=RATE, **emulated) as emulator:
         yield emulator
 
 
 @contextmanager
-def glove(folder: Path, twin: GloveTwin | None = None, **emulated: Any) -> Iterator[Emulator]:
+def glove(folder: Path, simulator: GloveSimulator | None = None, **emulated: Any) -> Iterator[Emulator]:
     GLOVE.save(folder / "glove.toml")
-    with Emulator(twin or GloveTwin(GLOVE), folder / "glove", rate=RATE, **emulated) as emulator:
+    with Emulator(simulator or GloveSimulator(GLOVE), folder / "glove", rate=RATE, **emulated) as emulator:
         yield emulator
 
 
@@ -48,9 +48,9 @@ def seen(flexions: tuple[float, ...]) -> tuple[float, ...]:
 
 
 def whole(emulator: Emulator) -> list[tuple[float, ...]]:
-    return [place(reading) for _, reading in emulator.whole]
+    return [place(reading) for _, reading in emulator.intact]
 
 
 def ends_with(emulator: Emulator) -> Any:
     """Tell when the last whole record of an emulator that has played all was read."""
-    return lambda reading: emulator.played.is_set() and place(reading) == place(emulator.whole[-1][1])
+    return lambda reading: emulator.played.is_set() and place(reading) == place(emulator.intact[-1][1])
