@@ -13,7 +13,7 @@ SERVICE = ROOT / "service" / "teachpath"
 
 # A room may import rooms of lower floors, and itself. Rooms of one floor are strangers.
 FLOORS = [
-    ["errors"],
+    ["errors", "periodic_thread"],
     ["nurbs"],
     ["exchange", "records"],
     ["editing"],

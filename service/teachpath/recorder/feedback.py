@@ -6,7 +6,6 @@ Whoever listens may be slow or stuck; the recorder's thread never waits for it.
 from __future__ import annotations
 
 import math
-import threading
 import time
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
@@ -14,6 +13,7 @@ from dataclasses import dataclass
 from teachpath.errors import TeachpathError
 from teachpath.io.bus import Bus
 from teachpath.io.wire import encode_feedback
+from teachpath.periodic_thread import PeriodicThread
 from teachpath.records import Demonstration, Phase
 from teachpath_proto.keys import Keys
 
@@ -63,21 +63,16 @@ class FeedbackPublisher:
         self._bus, self._keys, self._clock = bus, keys, clock
         self._standings, self._demonstration = standings, demonstration
         self._told: dict[str, tuple[Standing, float, bytes]] = {}  # by tracker, what was said when
-        self._stopped = threading.Event()
-        self._thread: threading.Thread | None = None
+        self._thread = PeriodicThread("feedback", POLL_INTERVAL, self.publish_changes)
 
     def start(self) -> None:
-        """Tell from now on."""
-        self._stopped.clear()
-        self._thread = threading.Thread(target=self._run, name="feedback", daemon=True)
+        """Publish from now on."""
         self._thread.start()
 
     def stop(self) -> None:
-        """Tell no more, after a last look; a second call does nothing."""
-        self._stopped.set()
-        if self._thread is not None:
-            self._thread.join()
-            self._thread = None
+        """Publish what has changed last, and stop; a second call does nothing."""
+        if self._thread.is_running:
+            self._thread.stop()
             self.publish_changes()
 
     def publish_changes(self) -> None:
@@ -95,10 +90,6 @@ class FeedbackPublisher:
                 said = self._said(standing) if changed else said
                 self._told[tracker] = (standing, now, said)
                 self._tell(tracker, said)
-
-    def _run(self) -> None:
-        while not self._stopped.wait(POLL_INTERVAL):
-            self.publish_changes()
 
     def _tell(self, tracker: str, said: bytes) -> None:
         self._bus.publish(self._keys.feedback(tracker), said)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import queue
-import threading
 from collections.abc import Callable
 
 import numpy as np
@@ -13,12 +12,13 @@ from teachpath.learning.clustering.distances import pairwise_distances
 from teachpath.learning.clustering.partition import cluster_distances
 from teachpath.learning.resampling import arc_lengths, at_equal_arc_length, smoothed
 from teachpath.learning.settings import LearningSettings
+from teachpath.periodic_thread import PeriodicThread
 from teachpath.recording.guidance import ClusterSummary, advise
 from teachpath.records import Array, Demonstration, Trajectory
 
 MAX_DEMONSTRATIONS = 60  # newest demonstrations that are compared
 RESAMPLED_POINTS = 50  # of each, at equal arc length
-STOP_REQUEST = ""  # asked for at the end; no task has this name
+POLL_INTERVAL = 0.05  # [s] between two looks for requests
 
 
 class GuidanceThread:
@@ -40,19 +40,15 @@ class GuidanceThread:
         self._requests: queue.SimpleQueue[str] = queue.SimpleQueue()
         self._courses: dict[tuple[str, tuple[int, int]], Array] = {}
         self._advice: dict[str, str] = {}
-        self._thread: threading.Thread | None = None
+        self._thread = PeriodicThread("guidance", POLL_INTERVAL, self._serve_requests)
 
     def start(self) -> None:
         """Compare from now on."""
-        self._thread = threading.Thread(target=self._run, name="coach", daemon=True)
         self._thread.start()
 
     def stop(self) -> None:
         """Compare no more; a second call does nothing."""
-        if self._thread is not None:
-            self._requests.put(STOP_REQUEST)
-            self._thread.join()
-            self._thread = None
+        self._thread.stop()
 
     def request(self, task: str) -> None:
         """Compare a task's demonstrations anew, soon."""
@@ -76,20 +72,16 @@ class GuidanceThread:
         length = float(np.median([arc_lengths(course)[-1] for course in courses]))
         return advise(_clusters(np.array(courses), self._settings, length), length)
 
-    def _run(self) -> None:
-        while STOP_REQUEST not in (requests := self._pop_requests()):
-            for task in requests:
-                try:
-                    self._advice[task] = self.compare(task)
-                except TeachpathError as error:
-                    self._advice[task] = f"the demonstrations cannot be compared: {error}"
-
-    def _pop_requests(self) -> dict[str, None]:
-        """Return what was asked for meanwhile, each once."""
-        requests = {self._requests.get(): None}
+    def _serve_requests(self) -> None:
+        """Compare every task that was requested meanwhile, once."""
+        requests: dict[str, None] = {}
         while not self._requests.empty():
             requests[self._requests.get()] = None
-        return requests
+        for task in requests:
+            try:
+                self._advice[task] = self.compare(task)
+            except TeachpathError as error:
+                self._advice[task] = f"the demonstrations cannot be compared: {error}"
 
     def _course(self, demonstration: Demonstration) -> Array:
         known = self._courses.get((demonstration.id, demonstration.transport))

@@ -7,6 +7,7 @@ from collections.abc import Callable
 
 from teachpath.errors import NotFound, UnusableSample
 from teachpath.io.wire import decode_sample
+from teachpath.periodic_thread import PeriodicThread
 from teachpath.recorder.presence import Presence
 from teachpath.recorder.sample_queues import QueueItem, SampleQueues
 from teachpath.recorder.session import RecordingSession
@@ -45,21 +46,15 @@ class RecordingThread:
         self._on_finished, self._on_discard_request = on_finished, on_discard_request
         self.sessions: dict[str, RecordingSession] = {}
         self.condition = threading.Condition()
-        self._stopped = threading.Event()
-        self._thread: threading.Thread | None = None
+        self._thread = PeriodicThread("recorder", ROUND_INTERVAL, self.process_round)
 
     def start(self) -> None:
         """Record from now on."""
-        self._stopped.clear()
-        self._thread = threading.Thread(target=self._run, name="recorder", daemon=True)
         self._thread.start()
 
     def stop(self) -> None:
         """Record what still waits, end every recording, and stop; a second call does nothing."""
-        self._stopped.set()
-        if self._thread is not None:
-            self._thread.join()
-            self._thread = None
+        self._thread.stop()
         with self.condition:
             for session in self.sessions.values():
                 self.drain(session)
@@ -96,11 +91,6 @@ class RecordingThread:
             elif session.is_carrying:
                 self._check_silence(session)
         return more
-
-    def _run(self) -> None:
-        more = False
-        while not self._stopped.wait(0.0 if more else ROUND_INTERVAL):
-            more = self.process_round()
 
     def _process(self, session: RecordingSession, now: float) -> int:
         with self.condition:

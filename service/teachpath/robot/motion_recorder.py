@@ -14,6 +14,7 @@ from teachpath.errors import TeachpathError, UnusableInput
 from teachpath.io.bus import Bus, Handle
 from teachpath.io.store.motions import MotionHeader, Motions, MotionTake
 from teachpath.io.wire import decode_setpoint, decode_status
+from teachpath.periodic_thread import PeriodicThread
 from teachpath_proto.keys import Keys
 
 log = logging.getLogger(__name__)
@@ -47,8 +48,7 @@ class MotionRecorder:
         self._flushed = 0
         self._until = 0  # [ns] when the file is ended; 0: not known yet
         self._handles: list[Handle] = []
-        self._stop = threading.Event()
-        self._thread: threading.Thread | None = None
+        self._thread = PeriodicThread("motion recorder", ROUND, self.work)
         self.fault = ""  # why nothing is recorded now, for the operator
 
     def start(self) -> None:
@@ -65,7 +65,6 @@ class MotionRecorder:
             "journal": self._keys.executor_journal,
         }
         self._handles = [self._bus.subscribe(key, self._receiver(topic)) for topic, key in topics.items()]
-        self._thread = threading.Thread(target=self._run, name="motion recorder", daemon=True)
         self._thread.start()
 
     def stop(self) -> None:
@@ -73,10 +72,9 @@ class MotionRecorder:
         for handle in self._handles:
             handle.close()
         self._handles.clear()
-        if self._thread is not None:
-            self._stop.set()
-            self._thread.join()
-            self._thread = None
+        if self._thread.is_running:
+            self._thread.stop()
+            self.work()
         with self._lock:
             self._finish()
 
@@ -98,7 +96,7 @@ class MotionRecorder:
 
     def wait_for(self, execution: str) -> None:
         """Wait until the file of an execution that is over has its end."""
-        if self._thread is not None:
+        if self._thread.is_running:
             with self._left:
                 self._left.wait_for(lambda: self._take is None or self._execution != execution, PATIENCE)
 
@@ -123,11 +121,6 @@ class MotionRecorder:
 
     def _receiver(self, topic: str) -> Callable[[str, bytes], None]:
         return lambda _, payload: self._came.append((topic, self._clock(), payload))
-
-    def _run(self) -> None:
-        while not self._stop.wait(ROUND):
-            self.work()
-        self.work()
 
     def _keep(self, topic: str, at_ns: int, payload: bytes) -> None:
         assert self._take is not None

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import threading
 import time
 from collections import deque
 from collections.abc import Callable, Iterable, Sequence
@@ -20,6 +19,7 @@ from teachpath.live.preview import commands
 from teachpath.live.preview.scene_tree import SceneTree, Viewer
 from teachpath.motion.arm.geometry import Part
 from teachpath.motion.arm.kinematics import link_frames
+from teachpath.periodic_thread import PeriodicThread
 from teachpath.recording.live_hand import Hand
 from teachpath.records import Array, Phase, Shape, Vector
 from teachpath_proto.keys import Keys
@@ -88,8 +88,7 @@ class Preview:
         self._hands: dict[str, _HandDrawing] = {}
         self._carried: Shape | None = None
         self._handles: list[Handle] = []
-        self._stopped = threading.Event()
-        self._thread: threading.Thread | None = None
+        self._thread = PeriodicThread("preview", 1.0 / self._settings.rate, self.update)
         self._fingers: list[tuple[str, Array]] = []
         for part in drawing:
             self._put_part(part)
@@ -97,11 +96,9 @@ class Preview:
 
     def start(self) -> None:
         """Follow the bus from now on."""
-        self._stopped.clear()
         self._handles = [
             self._bus.subscribe(self._keys.state(self._robot), self._receive_state),
         ]
-        self._thread = threading.Thread(target=self._run, name="preview", daemon=True)
         self._thread.start()
 
     def stop(self) -> None:
@@ -109,10 +106,7 @@ class Preview:
         for handle in self._handles:
             handle.close()
         self._handles.clear()
-        self._stopped.set()
-        if self._thread is not None:
-            self._thread.join()
-            self._thread = None
+        self._thread.stop()
 
     def __enter__(self) -> Preview:
         self.start()
@@ -159,10 +153,6 @@ class Preview:
 
     def _receive_state(self, key: str, payload: bytes) -> None:
         self._state = payload
-
-    def _run(self) -> None:
-        while not self._stopped.wait(1.0 / self._settings.rate):
-            self.update()
 
     def _follow_arm(self, payload: bytes) -> None:
         try:
