@@ -13,7 +13,7 @@ from teachpath.api.names import TrackerName, TrackerNameOrEmpty
 from teachpath.api.parts import Parts
 from teachpath.errors import UnusableInput
 from teachpath.io.documents import to_document
-from teachpath.io.store.store import ExecutionRow
+from teachpath.io.store.store import Execution
 from teachpath.records import Command, ExecutorStatus, TeleopRequest
 from teachpath.robot.executions import Executions
 
@@ -73,16 +73,14 @@ def _add_beginnings(router: APIRouter, parts: Parts) -> None:
     executions = parts.executions
 
     @router.post("/executions", status_code=202)
-    def begin_execution(new: NewExecution, response: Response, lease: Token = "", who: Who = "") -> ExecutionRow:
+    def begin_execution(new: NewExecution, response: Response, lease: Token = "", who: Who = "") -> Execution:
         """Move the arm: approach, grasp, follow the path, release, retreat."""
         row = executions.begin(new.plan, override=new.override, lease=lease, who=who)
         response.headers["Location"] = f"/api/v1/executions/{row.id}"
         return row
 
     @router.post("/teleoperation", status_code=202)
-    def begin_teleoperation(
-        new: NewTeleoperation, response: Response, lease: Token = "", who: Who = ""
-    ) -> ExecutionRow:
+    def begin_teleoperation(new: NewTeleoperation, response: Response, lease: Token = "", who: Who = "") -> Execution:
         """Let the arm mirror a live hand while its clutch (button bit 2) is pressed; steer and stop it as an execution.
 
         The clutch may be another tracker's: whoever looks on presses it then, and lets go to hold the arm.
@@ -103,12 +101,12 @@ def _add_looks(router: APIRouter, parts: Parts) -> None:
     executions, store = parts.executions, parts.store
 
     @router.get("/executions")
-    def list_executions() -> list[ExecutionRow]:
+    def list_executions() -> list[Execution]:
         """List the newest executions, newest first."""
         return [executions.get(row.id) for row in store.executions()]
 
     @router.get("/executions/{execution}")
-    def get_execution(execution: str) -> ExecutionRow:
+    def get_execution(execution: str) -> Execution:
         """Return how an execution stands."""
         return executions.get(execution)
 
@@ -134,14 +132,14 @@ def _add_looks(router: APIRouter, parts: Parts) -> None:
 
 def _add_steering(router: APIRouter, executions: Executions) -> None:
     @router.post("/executions/{execution}/override")
-    def set_override(execution: str, speed: Speed, lease: Token = "", who: Who = "") -> ExecutionRow:
+    def set_override(execution: str, speed: Speed, lease: Token = "", who: Who = "") -> Execution:
         """Change the speed while the arm moves; 0 is a hold on the path."""
         return executions.command(
             execution, Command("override", execution, override=speed.override, lease=lease, who=who)
         )
 
     @router.post("/executions/{execution}/step")
-    def step(execution: str, wanted: Step, lease: Token = "", who: Who = "") -> ExecutionRow:
+    def step(execution: str, wanted: Step, lease: Token = "", who: Who = "") -> Execution:
         """Go a length or a number of nodes along the path from where the arm is held, and hold there."""
         if (wanted.length is None) == (wanted.nodes is None):
             raise UnusableInput("a step has a length in metres or a number of nodes: one of the two")
@@ -151,7 +149,7 @@ def _add_steering(router: APIRouter, executions: Executions) -> None:
     @router.post("/executions/{execution}/{verb}")
     def steer(
         execution: str, verb: Literal["hold", "resume", "reverse"], lease: Token = "", who: Who = ""
-    ) -> ExecutionRow:
+    ) -> Execution:
         """Hold on the path, resume, or go back along it.
 
         Resume brings an arm that was pushed away while it was held back to the path first.
@@ -164,7 +162,7 @@ def stops_router(parts: Parts) -> APIRouter:
     router, executions = APIRouter(tags=["executions"]), parts.executions
 
     @router.post("/executions/{execution}/stop")
-    def stop(execution: str, lease: Token = "", who: Who = "") -> ExecutionRow:
+    def stop(execution: str, lease: Token = "", who: Who = "") -> Execution:
         """Stop and end an execution; open to everybody, and may be said twice.
 
         A stop brings the arm to rest on its path: it is not an emergency stop. It is never refused for a field or

@@ -14,7 +14,7 @@ from teachpath.errors import Conflict, NotFound, PathRefused, TeachpathError, Un
 from teachpath.io.bus import Bus, Handle
 from teachpath.io.documents import encode
 from teachpath.io.store.motions import MotionHeader, read_motion
-from teachpath.io.store.store import ExecutionRow, Store
+from teachpath.io.store.store import Execution, Store
 from teachpath.io.wire import (
     decode_entry,
     decode_lease,
@@ -100,7 +100,7 @@ class Executions:
         """What the executor said last, or None when it has been silent for over a second."""
         return self._status if time.monotonic() - self._heard < 1.0 else None
 
-    def begin(self, plan: str, *, override: float = 1.0, lease: str = "", who: str = "") -> ExecutionRow:
+    def begin(self, plan: str, *, override: float = 1.0, lease: str = "", who: str = "") -> Execution:
         """Move the robot along a plan.
 
         Args:
@@ -127,7 +127,7 @@ class Executions:
             path = self._store.versions.get(stored.path, stored.path_version)[1]
         return self._begin(command, MotionHeader(key, self._robot, stored, path))
 
-    def mirror(self, order: TeleopRequest, *, lease: str = "", who: str = "") -> ExecutionRow:
+    def mirror(self, order: TeleopRequest, *, lease: str = "", who: str = "") -> Execution:
         """Let the robot mirror a live hand; steer and stop it as any execution.
 
         Raises:
@@ -140,7 +140,7 @@ class Executions:
         command = Command("mirror", key, mirror=encode(order), lease=lease, who=who)
         return self._begin(command, MotionHeader(key, self._robot))
 
-    def command(self, execution: str, command: Command) -> ExecutionRow:
+    def command(self, execution: str, command: Command) -> Execution:
         """Steer an execution: override (speed, 0 to 1), hold, resume, step, reverse or stop.
 
         A stop is always answered: an execution that has ended is stopped.
@@ -190,12 +190,12 @@ class Executions:
             command = Command("revoke", plan_id=stored.id, reason=reason, who=who)
             self._bus.ask(self._keys.executor_command, encode_command(command))
 
-    def get(self, execution: str) -> ExecutionRow:
+    def get(self, execution: str) -> Execution:
         """Return an execution as it stands now; raises NotFound."""
         row = self._store.execution(execution)
         status = self._status
         if status is not None and status.execution == execution:
-            return ExecutionRow(row.id, row.plan, row.created_ns, status)
+            return Execution(row.id, row.plan, row.created_ns, status)
         return row
 
     def wait(self, execution: str, *, timeout: float) -> ExecutorStatus:
@@ -215,7 +215,7 @@ class Executions:
             assert self._status is not None
             return self._status
 
-    def _begin(self, command: Command, header: MotionHeader) -> ExecutionRow:
+    def _begin(self, command: Command, header: MotionHeader) -> Execution:
         key, plan = command.execution, header.plan.id if header.plan else None
         self._store.put_execution(key, plan, ExecutorStatus(execution=key, state="starting", override=command.override))
         self._plans[key] = plan

@@ -37,7 +37,7 @@ Row = TypeVar("Row", bound=Base)
 
 
 @dataclass(frozen=True, eq=False)
-class RunRow:
+class Run:
     """A learning run as stored."""
 
     id: str
@@ -47,7 +47,7 @@ class RunRow:
 
 
 @dataclass(frozen=True, slots=True)
-class ExecutionRow:
+class Execution:
     """An execution as stored; `plan` is None when the arm followed a live hand."""
 
     id: str
@@ -155,12 +155,12 @@ class Store:
 
     # runs, paths and plans
 
-    def runs(self, task: str) -> list[RunRow]:
+    def runs(self, task: str) -> list[Run]:
         """List the learning runs of a task, newest first."""
         question = select(RunTable).where(RunTable.task == task).order_by(RunTable.created_ns.desc())
         return [_run(row) for row in self._all(question)]
 
-    def run(self, key: str) -> RunRow:
+    def run(self, key: str) -> Run:
         """Return one learning run; raises NotFound."""
         return _run(self._one(RunTable, key, "run"))
 
@@ -188,11 +188,11 @@ class Store:
                 session.add(row)
             row.document = to_document(status)
 
-    def execution(self, key: str) -> ExecutionRow:
+    def execution(self, key: str) -> Execution:
         """Return one execution; raises NotFound."""
         return _execution(self._one(ExecutionTable, key, "execution"))
 
-    def executions(self, limit: int = 50) -> list[ExecutionRow]:
+    def executions(self, limit: int = 50) -> list[Execution]:
         """List the newest executions, newest first."""
         question = select(ExecutionTable).order_by(ExecutionTable.created_ns.desc()).limit(limit)
         return [_execution(row) for row in self._all(question)]
@@ -270,12 +270,12 @@ def _task(row: TaskRow) -> Task:
     return Task(row.name, row.scene, row.calibration, row.created_ns)
 
 
-def _run(row: RunTable) -> RunRow:
-    return RunRow(row.id, row.task, row.created_ns, from_document(Learned, row.document))
+def _run(row: RunTable) -> Run:
+    return Run(row.id, row.task, row.created_ns, from_document(Learned, row.document))
 
 
-def _execution(row: ExecutionTable) -> ExecutionRow:
-    return ExecutionRow(row.id, row.plan, row.created_ns, from_document(ExecutorStatus, row.document))
+def _execution(row: ExecutionTable) -> Execution:
+    return Execution(row.id, row.plan, row.created_ns, from_document(ExecutorStatus, row.document))
 
 
 def _job(row: JobRow) -> Job:

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from teachpath.errors import NotFound, PathRefused
-from teachpath.io.store.store import RunRow, Store
+from teachpath.io.store.store import Run, Store
 from teachpath.motion.execution.motion_preview import MotionPreview, preview_motion
 from teachpath.motion.settings import MotionSettings
 from teachpath.records import Demonstration, LearnedPath, Plan, Scene, Trajectory
@@ -24,7 +24,7 @@ class Review:
         motions: what the arm would do, by path.
     """
 
-    run: RunRow
+    run: Run
     scene: Scene
     demonstrations: tuple[Demonstration, ...]
     trajectories: dict[str, Trajectory]
@@ -80,7 +80,7 @@ def review_of(
     )
 
 
-def _run(store: Store, what: str) -> RunRow:
+def _run(store: Store, what: str) -> Run:
     if what not in {task.name for task in store.tasks()}:
         return store.run(what)
     runs = store.runs(what)
