@@ -59,8 +59,8 @@ export class Gallery {
     const ways = new Map((run?.clusters ?? []).flatMap((cluster) => cluster.members.map((id) => [id, cluster.index])));
     const courses = kept.filter((d) => this.course(d.id)?.length > 1);
     this.#keep("demonstrations", new Map(courses.map((d) => [d.id, [`${cut(d)} ${ways.get(d.id)}`, () => line(this.course(d.id), ways.get(d.id))]])));
-    const departed = (run?.clusters ?? []).flatMap((cluster) => cluster.scores).filter((score) => score.departure && courses.some((d) => d.id === score.demonstration));
-    this.#keep("departures", new Map(departed.map((score) => [score.demonstration, [JSON.stringify(score.departure.share), () => departure(this.course(score.demonstration), score.departure.share)]])));
+    const departed = (run?.clusters ?? []).flatMap((cluster) => cluster.scores).filter((score) => score.deviation && courses.some((d) => d.id === score.demonstration));
+    this.#keep("departures", new Map(departed.map((score) => [score.demonstration, [JSON.stringify(score.deviation.share), () => departure(this.course(score.demonstration), score.deviation.share)]])));
     const paths = pathsOf(state);
     this.#keep("paths", new Map(paths.map((path) => [path.id, [`${path.version}`, () => way(path)]])));
     const spread = new Map((run?.clusters ?? []).map((cluster) => [cluster.index, cluster.spread]));

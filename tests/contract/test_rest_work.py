@@ -99,7 +99,7 @@ def assess_while_editing(desk: Desk, path: dict[str, Any]) -> None:
     away = path["curve"] | {"control_points": [[x + 3.0, y, z] for x, y, z in path["curve"]["control_points"]]}
     failed = desk.post(place, {"curve": away}).json()
     assert (failed["failure"]["fault"], failed["duration"]) == ("reach", None)
-    assert failed["failure"]["remedy"]["sentence"] in failed["sentence"]
+    assert failed["failure"]["suggestion"]["sentence"] in failed["sentence"]
     assert desk.get(f"/paths/{path['id']}").json() == path
     refused(desk.post(place, {"version": 99}), 404, "99")
     refused(desk.post(place, {"curve": away | {"weights": [-1.0]}}), 422, "weights")
@@ -127,11 +127,11 @@ def test_the_cut_of_a_run_is_moved_by_a_job(desk: Desk) -> None:
     run = first["outcome"]
     drawn = desk.get(f"/tasks/recut/runs/{run}/dendrogram").json()
     assert [cut["clusters"] for cut in drawn["cuts"]] == [1, 2, 3, 4]
-    assert [len(cut["ways"]) for cut in drawn["cuts"]] == [1, 2, 3, 4]
+    assert [len(cut["leaf_ranges"]) for cut in drawn["cuts"]] == [1, 2, 3, 4]
     assert drawn["cuts"][0]["highest"] is None
     assert len(desk.get(f"/tasks/recut/runs/{run}/dendrogram?most=2").json()["cuts"]) == 2
     numbers = {d["id"]: d["number"] for d in desk.get("/tasks/recut/demonstrations").json()}
-    halves = [[numbers[key] for key in drawn["leaves"][begin:end]] for begin, end in drawn["cuts"][1]["ways"]]
+    halves = [[numbers[key] for key in drawn["leaves"][begin:end]] for begin, end in drawn["cuts"][1]["leaf_ranges"]]
     assert halves == [[1, 2], [3, 4]]
 
     for cut, ways in (({"clusters": 3}, 3), ({"threshold": drawn["cuts"][0]["height"]}, 1)):

@@ -3,6 +3,7 @@
 import threading
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 
@@ -19,9 +20,10 @@ from teachpath.errors import Conflict, NotFound
 from teachpath.io.documents import encode
 from teachpath.io.store.settings import StoreSettings
 from teachpath.io.store.store import Store
-from teachpath.io.store.tables import Base
+from teachpath.io.store.tables import Base, JobRow, RunTable
 from teachpath.records import (
     Calibration,
+    Deviation,
     ExecutorStatus,
     JobState,
     StreamStatistics,
@@ -63,6 +65,19 @@ def store(open_: Open) -> Store:
 # the tables
 
 
+@contextmanager
+def migrating(url: str, move: Callable[[Config, str], None], revision: str) -> Iterator[sa.Connection]:
+    """Move the tables of a database to a revision; the connection sees them there."""
+    engine = sa.create_engine(url)
+    config = Config()
+    config.set_main_option("script_location", "teachpath.io.store:migrations")
+    with engine.begin() as connection:
+        config.attributes["connection"] = connection
+        move(config, revision)
+        yield connection
+    engine.dispose()
+
+
 def test_the_migrations_make_the_tables(store: Store, url: str) -> None:
     engine = sa.create_engine(url)
     with engine.connect() as connection:
@@ -72,19 +87,29 @@ def test_the_migrations_make_the_tables(store: Store, url: str) -> None:
 
 
 def test_the_migrations_go_down_and_up_again(store: Store, url: str) -> None:
-    engine = sa.create_engine(url)
-    config = Config()
-    config.set_main_option("script_location", "teachpath.io.store:migrations")
-    with engine.begin() as connection:
-        config.attributes["connection"] = connection
-        command.downgrade(config, "base")
+    with migrating(url, command.downgrade, "base") as connection:
         assert set(sa.inspect(connection).get_table_names()) == {"alembic_version"}
-    with engine.begin() as connection:
-        config.attributes["connection"] = connection
-        command.upgrade(config, "head")
+    with migrating(url, command.upgrade, "head") as connection:
         assert set(sa.inspect(connection).get_table_names()) == {"alembic_version", *Base.metadata.tables}
-    engine.dispose()
     assert store.tasks() == []
+
+
+def test_a_migration_renames_what_runs_and_jobs_say_of_learning(store: Store, url: str) -> None:
+    store.add_job(a_job(request={"settings": {"keep": 3, "min_silhouette": 0.4}, "calibrations": {}}))
+    found = replace(learned(), settings={"keep": 3, "min_silhouette": 0.4, "seed": 1})
+    score = replace(found.clusters[0].scores[0], deviation=Deviation((0.2, 0.4), (1.0, 2.0), "stands still"))
+    run = store.finish_learning("learn-1", replace(found, clusters=(replace(found.clusters[0], scores=(score,)),)))
+    now = store.run(run).learned
+    with migrating(url, command.downgrade, "0004") as connection:
+        (before,) = connection.scalars(sa.select(RunTable.document))
+        (request,) = connection.scalars(sa.select(JobRow.request))
+    assert list(before["settings"].items()) == [("keep", 3), ("guard", 0.4), ("seed", 1)]
+    assert before["clusters"][0]["scores"][0]["departure"]["sentence"] == "stands still"
+    assert request == {"settings": {"keep": 3, "guard": 0.4}, "calibrations": {}}
+    with migrating(url, command.upgrade, "head"):
+        pass
+    assert encode(store.run(run).learned) == encode(now)
+    assert store.job("learn-1").request["settings"] == {"keep": 3, "min_silhouette": 0.4}
 
 
 # tasks and demonstrations

@@ -16,10 +16,10 @@ export function verdict(place, editor) {
   };
   measure.addEventListener("change", paint);
   told.addEventListener("click", (event) => {
-    const remedy = event.target.closest("button") && editor.verdict?.assessment?.failure?.remedy;
-    if (!remedy) return;
-    editor.choose([remedy.control_point]);
-    editor.change(movedBy(editor.draft.curve, [remedy.control_point], remedy.move), `moving control point ${remedy.control_point + 1} as proposed`);
+    const suggestion = event.target.closest("button") && editor.verdict?.assessment?.failure?.suggestion;
+    if (!suggestion) return;
+    editor.choose([suggestion.control_point]);
+    editor.change(movedBy(editor.draft.curve, [suggestion.control_point], suggestion.move), `moving control point ${suggestion.control_point + 1} as proposed`);
   });
 
   return {
@@ -39,14 +39,14 @@ function content({ draft, verdict }) {
     const facts = `${number(lengths.at(-1), 3, "m")}, about ${number(duration, 2, "s")}, least clearance ${number(1000 * Math.min(...clearance), 0, "mm")}`;
     return [element("p", { class: "good" }, `${sentence(outlook)}.`), element("p", { class: "note" }, facts)];
   }
-  const { stretch, reason, remedy } = failure;
-  const pinned = draft.isPinned(remedy.control_point);
-  const size = Math.hypot(...remedy.move);
+  const { stretch, reason, suggestion } = failure;
+  const pinned = draft.isPinned(suggestion.control_point);
+  const size = Math.hypot(...suggestion.move);
   return [
     element("p", { class: "failed" }, `From ${number(stretch[0], 3)} to ${number(stretch[1], 3, "m")} the arm cannot follow: ${reason}.`),
-    element("p", {}, `${sentence(remedy.sentence)}.`),
+    element("p", {}, `${sentence(suggestion.sentence)}.`),
     size > 0 &&
-      element("p", { class: "orders" }, element("button", { type: "button", id: "edit-remedy", "data-key": "remedy", ...(pinned && { disabled: "" }) }, `Move control point ${remedy.control_point + 1} by ${number(1000 * size, 0, "mm")}`)),
+      element("p", { class: "orders" }, element("button", { type: "button", id: "edit-remedy", "data-key": "remedy", ...(pinned && { disabled: "" }) }, `Move control point ${suggestion.control_point + 1} by ${number(1000 * size, 0, "mm")}`)),
     size > 0 && pinned && element("p", { class: "note" }, "It is pinned; unlock start and goal first."),
   ];
 }

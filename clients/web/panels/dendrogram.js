@@ -41,7 +41,7 @@ export class Tree {
   color(cut, height) {
     const x = this.#at(height);
     for (const line of [this.line, this.handle]) for (const end of ["x1", "x2"]) line.setAttribute(end, x);
-    const way = (leaf) => (cut ? cut.ways.findIndex(([begin, end]) => leaf >= begin && leaf < end) + 1 : 0);
+    const way = (leaf) => (cut ? cut.leaf_ranges.findIndex(([begin, end]) => leaf >= begin && leaf < end) + 1 : 0);
     for (const link of this.links) {
       const parted = link.height > height;
       link.drawn.setAttribute("class", parted || !cut ? "link parted" : `link ${wayClass(way(link.first))}`);

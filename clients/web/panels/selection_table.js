@@ -45,7 +45,7 @@ function table(run, numbers) {
 }
 
 function rows(cluster, numbers, columns) {
-  const why = (score) => score.note || score.departure?.sentence;
+  const why = (score) => score.note || score.deviation?.sentence;
   const height = cluster.scores.length + cluster.scores.filter(why).length;
   const way = element("th", { scope: "rowgroup", rowspan: String(height) }, element("span", { class: `swatch ${wayClass(cluster.index)}` }), String(cluster.index));
   const reason = (score) => element("tr", { class: "why", "data-focus": `demonstrations ${score.demonstration}` }, element("td", { colspan: String(columns.length + 2) }, sentence(why(score))));

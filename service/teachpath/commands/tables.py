@@ -64,7 +64,7 @@ def cuts_table(dendrogram: dict[str, Any]) -> Table:
     for cut in dendrogram["cuts"]:
         upper = "" if cut["highest"] is None else f" to {100 * cut['highest']:.2f}"
         heights = f"{100 * cut['lowest']:.2f}{upper} cm{'' if upper else ' and above'}"
-        sizes = ", ".join(str(end - begin) for begin, end in cut["ways"])
+        sizes = ", ".join(str(end - begin) for begin, end in cut["leaf_ranges"])
         now = "*" if cut["clusters"] == dendrogram["clusters"] else ""
         table.add_row(str(cut["clusters"]), heights, sizes, now)
     return table

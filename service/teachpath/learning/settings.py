@@ -62,7 +62,7 @@ class LearningSettings:
     # number of clusters where it is known, goes before `threshold`; None = found (mode default only)
     clusters: Annotated[int, Ge(1)] | None = None
     # mean silhouette below which the demonstrations are taken for one single way
-    guard: Annotated[float, Ge(0), Le(1)] = 0.5
+    min_silhouette: Annotated[float, Ge(0), Le(1)] = 0.5
     # robust z below which a demonstration is inconsistent with its cluster (mode default)
     inconsistent: Annotated[float, Le(0)] = -8.0
     # repetitions that a demonstration's stability is counted in: other seeds, in mode default others left out

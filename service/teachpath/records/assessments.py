@@ -25,7 +25,7 @@ class Failure:
     stretch: tuple[float, float]
     position: Vector
     reason: str
-    remedy: Suggestion
+    suggestion: Suggestion
 
 
 @dataclass(frozen=True, eq=False)

@@ -29,7 +29,7 @@ class Score:
             the last.
         z: robust z score of its consistency, 0 = like the others or better; None when not scored.
         stability: share of repetitions in which it was selected; None when there were none.
-        departure: where it differs most; None when it is consistent.
+        deviation: where it differs most; None when it is consistent.
     """
 
     demonstration: str
@@ -40,7 +40,7 @@ class Score:
     margin: float | None = None
     z: float | None = None
     stability: float | None = None
-    departure: Deviation | None = None
+    deviation: Deviation | None = None
 
 
 @dataclass(frozen=True, eq=False)

@@ -73,7 +73,7 @@ def test_the_scene_is_drawn_as_it_stands_and_departures_where_they_are(store: St
     corners = ((0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0))
     wedge = Shape("wedge", "mesh", (0.1,), (0.3, 0.2, 0.4), orientation=(0.6, 0.0, 0.8, 0.0), vertices=corners)
     cluster = found.run.learned.clusters[0]
-    departed = replace(cluster.scores[0], departure=Deviation((0.25, 0.5), (0.0, 1.0), ""))
+    departed = replace(cluster.scores[0], deviation=Deviation((0.25, 0.5), (0.0, 1.0), ""))
     clusters = (replace(cluster, scores=(departed,)),)
     run = replace(found.run, learned=replace(found.run.learned, clusters=clusters))
     found = replace(found, scene=Scene("turned", (wedge,)), run=run)

@@ -22,7 +22,7 @@ class Cut:
         clusters: their number.
         lowest, highest: heights [m] between which a cut leaves so many; None = without end.
         height: one of them, halfway.
-        ways: of each cluster the first and the one behind the last of its members in the dendrogram's `leaves`;
+        leaf_ranges: of each cluster the first and the one behind the last of its members in the dendrogram's `leaves`;
             clusters in the order in which a run numbers them.
     """
 
@@ -30,7 +30,7 @@ class Cut:
     lowest: float
     highest: float | None
     height: float
-    ways: tuple[tuple[int, int], ...]
+    leaf_ranges: tuple[tuple[int, int], ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,11 +66,11 @@ def dendrogram(learned: Learned, most: int) -> Dendrogram:
         begins = np.full(count, len(names))
         np.minimum.at(begins, labels - 1, places)
         ends = begins + np.bincount(labels)[1:]
-        ways = tuple((int(begin), int(end)) for begin, end in zip(begins, ends, strict=True))
+        leaf_ranges = tuple((int(begin), int(end)) for begin, end in zip(begins, ends, strict=True))
         merges = len(names) - count
         lowest = float(linkage[merges - 1, 2]) if merges else 0.0
         highest = float(linkage[merges, 2]) if count > 1 else None
-        cuts.append(Cut(count, lowest, highest, height_for_count(linkage, count), ways))
+        cuts.append(Cut(count, lowest, highest, height_for_count(linkage, count), leaf_ranges))
     return Dendrogram(
         names,
         tuple(names[i] for i in order),

@@ -15,7 +15,9 @@ from teachpath.records import Array
 
 MAX_CLUSTERS = 10  # that the silhouette chooses among
 MIN_PAIR_SEPARATION = 0.1  # share of the path length: two demonstrations farther apart are two ways
-SMALL_CLUSTER_PENALTY = 0.5  # divided by its members, added to the guard of a cluster: few fall apart by chance
+SMALL_CLUSTER_PENALTY = (
+    0.5  # divided by its members, added to the least silhouette of a cluster: few fall apart by chance
+)
 SILHOUETTE_MARGIN = 0.08  # of the silhouette
 AMBIGUOUS_HEIGHT_RATIO = 1.1  # ratio of a merge's height to that of the cut
 
@@ -47,7 +49,7 @@ def cluster_distances(
     Args:
         condensed: distances of all pairs [m], in scipy's order.
         count: number m of demonstrations.
-        settings: `clusters`, else `threshold`, else `guard` decide.
+        settings: `clusters`, else `threshold`, else `min_silhouette` decide.
         length: of a typical path [m].
         progress: is told how far the work has come.
     """
@@ -55,7 +57,7 @@ def cluster_distances(
         return cut_into(average_linkage(condensed, count, progress), settings.clusters)
     if settings.threshold is not None:
         return cut_at(average_linkage(condensed, count, progress), settings.threshold)
-    return cut_by_silhouette(condensed, count, guard=settings.guard, length=length, progress=progress)
+    return cut_by_silhouette(condensed, count, min_silhouette=settings.min_silhouette, length=length, progress=progress)
 
 
 def cut_at(tree: Array, threshold: float) -> Partition:
@@ -82,19 +84,19 @@ def cut_into(tree: Array, clusters: int) -> Partition:
 
 
 def cut_by_silhouette(
-    condensed: Distances, count: int, *, guard: float, length: float, progress: Progress = no_progress
+    condensed: Distances, count: int, *, min_silhouette: float, length: float, progress: Progress = no_progress
 ) -> Partition:
     """Merge by average link and cut where the mean silhouette is best (Rousseeuw 1987).
 
-    A silhouette is not defined for one single cluster, so below `guard` the demonstrations count as one way. The
-    best cut of all favours coarse ones when some ways are far apart; it is lowered while the cluster that splits
+    A silhouette is not defined for one single cluster, so below `min_silhouette` the demonstrations count as one way.
+    The best cut of all favours coarse ones when some ways are far apart; it is lowered while the cluster that splits
     next, taken alone, would be more than one way too. One demonstration is one way; two are one way when their
     distance is at most a tenth of the path length.
 
     Args:
         condensed: distances of all pairs [m].
         count: number m of demonstrations.
-        guard: least mean silhouette for more than one cluster.
+        min_silhouette: least mean silhouette for more than one cluster.
         length: of a typical path [m], the yardstick for two demonstrations and for doubts.
         progress: is told how far the work has come.
     """
@@ -110,15 +112,15 @@ def cut_by_silhouette(
     silhouettes = Silhouettes(condensed, tree, most, subprogress(progress, 0.6, 1.0))
     scores = {k: silhouettes.mean(k) for k in range(2, most + 1)}
     best = max(scores, key=lambda k: scores[k])
-    if scores[best] < guard:
-        doubt = _doubt_one(scores[best], guard, top, wide)
+    if scores[best] < min_silhouette:
+        doubt = _doubt_one(scores[best], min_silhouette, top, wide)
         return Partition(tree, top, labels_for_count(tree, 1), doubt, best if doubt else None)
     while best < most:
         alone, members = silhouettes.mean_of_split(best)
-        if alone < guard + SMALL_CLUSTER_PENALTY / members:
+        if alone < min_silhouette + SMALL_CLUSTER_PENALTY / members:
             break
         best += 1
-    rivals = _rivals(scores, best, guard)
+    rivals = _rivals(scores, best, min_silhouette)
     note, rival = _doubt_many(best, rivals), rivals[0] if rivals else None
     return Partition(tree, height_for_count(tree, best), labels_for_count(tree, best), note, rival)
 
@@ -136,11 +138,11 @@ def _next_merge(tree: Array, clusters: int, height: float) -> int | None:
     return other if ratio < AMBIGUOUS_HEIGHT_RATIO else None
 
 
-def _rivals(scores: dict[int, float], best: int, guard: float) -> list[int]:
+def _rivals(scores: dict[int, float], best: int, min_silhouette: float) -> list[int]:
     """Return the cuts that would do nearly as well, the best of them first."""
     close = [k for k, score in scores.items() if k != best and score > scores[best] - SILHOUETTE_MARGIN]
     close.sort(key=lambda k: -scores[k])
-    return close + ([1] if scores[best] < guard + SILHOUETTE_MARGIN else [])
+    return close + ([1] if scores[best] < min_silhouette + SILHOUETTE_MARGIN else [])
 
 
 def _ways(count: int) -> str:
@@ -152,11 +154,12 @@ def _pair_note(top: float, wide: bool) -> str:
     return f"two demonstrations, {top * 100:.1f} cm apart, are taken for {ways}; set learning.threshold to decide it"
 
 
-def _doubt_one(score: float, guard: float, top: float, wide: bool) -> str:
-    if wide or score > guard - SILHOUETTE_MARGIN:
+def _doubt_one(score: float, min_silhouette: float, top: float, wide: bool) -> str:
+    if wide or score > min_silhouette - SILHOUETTE_MARGIN:
         return (
             f"one way, but ambiguous: the demonstrations are up to {top * 100:.1f} cm apart and the best partition "
-            f"has silhouette {score:.2f} (guard {guard:.2f}); set learning.threshold to decide it"
+            f"has silhouette {score:.2f} (learning.min_silhouette {min_silhouette:.2f}); set learning.threshold to "
+            "decide it"
         )
     return ""
 

@@ -95,7 +95,7 @@ def in_words(failure: Failure) -> str:
     """Say why and what to change, in one sentence."""
     begin, end = failure.stretch
     over = f" (it fails from s = {begin:.3f} to {end:.3f} m)" if end > begin else ""
-    return f"{failure.reason}{over}; {failure.remedy.sentence}"
+    return f"{failure.reason}{over}; {failure.suggestion.sentence}"
 
 
 def _failure(way: Route, fault: str, stretch: tuple[int, int], reason: str, change: Suggestion) -> Failure:

@@ -60,10 +60,10 @@ def _departures(review: Review) -> list[bytes]:
     drawn = []
     for score in (score for cluster in review.run.learned.clusters for score in cluster.scores):
         shown = review.trajectories.get(score.demonstration)
-        if score.departure is None or shown is None:
+        if score.deviation is None or shown is None:
             continue
         along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(shown.positions, axis=0), axis=1))])
-        begin, end = along[-1] * np.array(score.departure.share)
+        begin, end = along[-1] * np.array(score.deviation.share)
         if end > begin:
             at = np.linspace(begin, end, POINTS // 2)
             points = np.column_stack([np.interp(at, along, column) for column in shown.positions.T])

@@ -37,7 +37,7 @@ def selection(review: Review) -> str:
     rows = []
     for cluster in review.run.learned.clusters:
         for score in cluster.scores:
-            why = score.note or (score.departure.sentence if score.departure else "")
+            why = score.note or (score.deviation.sentence if score.deviation else "")
             margin = "" if score.margin is None else f"{score.margin:.1f}"
             z = "" if score.z is None else f"{score.z:z.1f}"
             likely = "" if score.z is None else f"{score.log_likelihood:,.1f}"

@@ -67,7 +67,7 @@ def test_every_listed_cut_is_the_one_that_is_made() -> None:
     assert (drawn.threshold, drawn.demonstrations) == (learned.threshold, learned.demonstrations)
     for cut in drawn.cuts:
         ways = recut_members(learned, clusters=cut.clusters)
-        assert [set(drawn.leaves[begin:end]) for begin, end in cut.ways] == [set(way) for way in ways]
+        assert [set(drawn.leaves[begin:end]) for begin, end in cut.leaf_ranges] == [set(way) for way in ways]
         assert recut_members(learned, threshold=cut.height) == ways
         assert cut.lowest <= cut.height
         assert cut.highest is None or recut_members(learned, threshold=cut.highest) != ways
@@ -77,7 +77,7 @@ def test_every_listed_cut_is_the_one_that_is_made() -> None:
 def test_a_single_demonstration_has_one_cut() -> None:
     drawn = dendrogram(Learned("default", ("a",), np.empty((0, 4)), 0.0, (), ()), 30)
     assert (drawn.leaves, drawn.merges) == (("a",), ())
-    assert [cut.ways for cut in drawn.cuts] == [((0, 1),)]
+    assert [cut.leaf_ranges for cut in drawn.cuts] == [((0, 1),)]
 
 
 @pytest.mark.parametrize("mode", ["default", "paper"])

@@ -20,8 +20,8 @@ def condensed(demonstrations: dict[str, Trajectory]) -> Array:
     return pairwise_distances(np.stack([at_equal_arc_length(smoothed(d), 100) for d in demonstrations.values()]))
 
 
-def grouped(demonstrations: dict[str, Trajectory], guard: float = 0.5) -> Partition:
-    return cut_by_silhouette(condensed(demonstrations), len(demonstrations), guard=guard, length=0.8)
+def grouped(demonstrations: dict[str, Trajectory], min_silhouette: float = 0.5) -> Partition:
+    return cut_by_silhouette(condensed(demonstrations), len(demonstrations), min_silhouette=min_silhouette, length=0.8)
 
 
 @pytest.mark.parametrize("seed", range(8))
@@ -37,20 +37,20 @@ def test_a_single_way_stays_whole(seed: int, wiggle: float) -> None:
 
 
 def test_without_the_guard_a_single_way_is_split() -> None:
-    assert grouped(synthetic.experiment_2(1, wiggle=0.0), guard=0.0).labels.max() > 1
+    assert grouped(synthetic.experiment_2(1, wiggle=0.0), min_silhouette=0.0).labels.max() > 1
 
 
 def test_close_ways_are_told_apart_though_others_are_far_away() -> None:
     rng = np.random.default_rng(3)
     shifts = np.repeat([0.0, 0.08, 1.0, 2.0], 5)
     paths = synthetic.loop(40) + shifts[:, None, None] + rng.normal(0, 0.01, (20, 1, 3))
-    grouping = cut_by_silhouette(pairwise_distances(paths), 20, guard=0.5, length=1.0)
+    grouping = cut_by_silhouette(pairwise_distances(paths), 20, min_silhouette=0.5, length=1.0)
     np.testing.assert_array_equal(grouping.labels, np.repeat([1, 2, 3, 4], 5))
 
 
 def test_the_cut_reproduces_the_labels_at_its_threshold() -> None:
     distance = condensed(synthetic.experiment_1(4))
-    grouping = cut_by_silhouette(distance, 12, guard=0.5, length=0.8)
+    grouping = cut_by_silhouette(distance, 12, min_silhouette=0.5, length=0.8)
     again = cut_at(average_linkage(distance, 12), grouping.threshold)
     np.testing.assert_array_equal(grouping.labels, again.labels)
     np.testing.assert_array_equal(grouping.linkage, again.linkage)
@@ -79,20 +79,20 @@ def test_the_extremes_of_the_threshold_give_single_demonstrations_and_one_cluste
 
 @pytest.mark.parametrize(("apart", "ways"), [(0.02, 1), (0.3, 2)])
 def test_two_demonstrations_are_answered_with_a_note(apart: float, ways: int) -> None:
-    grouping = cut_by_silhouette(np.array([apart]), 2, guard=0.5, length=1.0)
+    grouping = cut_by_silhouette(np.array([apart]), 2, min_silhouette=0.5, length=1.0)
     assert grouping.labels.max() == ways
     assert "learning.threshold" in grouping.note
 
 
 def test_identical_demonstrations_are_one_way() -> None:
     for count in (2, 3, 5):
-        grouping = cut_by_silhouette(np.zeros(count * (count - 1) // 2), count, guard=0.5, length=1.0)
+        grouping = cut_by_silhouette(np.zeros(count * (count - 1) // 2), count, min_silhouette=0.5, length=1.0)
         assert set(grouping.labels) == {1}
         assert np.isfinite(grouping.threshold)
 
 
 def test_one_demonstration_is_one_way() -> None:
-    grouping = cut_by_silhouette(np.empty(0), 1, guard=0.5, length=1.0)
+    grouping = cut_by_silhouette(np.empty(0), 1, min_silhouette=0.5, length=1.0)
     assert grouping.labels.tolist() == [1]
     assert grouping.linkage.shape == (0, 4)
 
@@ -121,7 +121,7 @@ def places(*offsets: float, spread: float = 0.002) -> Array:
 
 def test_a_close_choice_names_the_next_best_cut_and_the_clusters_it_touches() -> None:
     apart = places(0, 0, 0, 0, 0.6, 0.6, 0.6, 0.6, 0.66, 0.66, 0.66, 0.66, spread=0.012)
-    grouping = cut_by_silhouette(apart, 12, guard=0.5, length=1.0)
+    grouping = cut_by_silhouette(apart, 12, min_silhouette=0.5, length=1.0)
     assert grouping.alternative is not None
     assert grouping.alternative != grouping.labels.max()
     assert "ambiguous" in grouping.note
@@ -131,7 +131,7 @@ def test_a_close_choice_names_the_next_best_cut_and_the_clusters_it_touches() ->
 
 
 def test_a_clear_choice_is_not_called_ambiguous() -> None:
-    grouping = cut_by_silhouette(places(0, 0, 0, 0.5, 0.5, 0.5), 6, guard=0.5, length=1.0)
+    grouping = cut_by_silhouette(places(0, 0, 0, 0.5, 0.5, 0.5), 6, min_silhouette=0.5, length=1.0)
     assert (grouping.note, grouping.alternative) == ("", None)
     assert ambiguities(grouping) == ["", ""]
 

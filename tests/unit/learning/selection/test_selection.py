@@ -100,7 +100,7 @@ def test_every_fault_is_outside_the_best_two_and_told_with_its_place(
     assert all("3" in cluster.members[2:] for cluster in clusters)
     last = [cluster.scores[-1] for cluster in clusters if cluster.members[-1] == "3"]
     assert sum(not score.selected for score in last) >= least
-    told = [score.departure for score in last if score.departure is not None]
+    told = [score.deviation for score in last if score.deviation is not None]
     assert told
     for departure in told:
         assert words in departure.sentence
@@ -111,7 +111,7 @@ def test_every_fault_is_outside_the_best_two_and_told_with_its_place(
 
 
 def test_the_span_lies_around_the_fault() -> None:
-    departure = selected(spoilt(7, frozen)).scores[-1].departure  # frozen from 2.0 to 2.3 s
+    departure = selected(spoilt(7, frozen)).scores[-1].deviation  # frozen from 2.0 to 2.3 s
     assert departure is not None
     begin, end = departure.seconds
     assert 1.4 < begin <= 2.1
@@ -122,7 +122,7 @@ def test_the_span_lies_around_the_fault() -> None:
 def test_consistent_demonstrations_have_no_departure_and_a_score_of_nearly_nought() -> None:
     cluster = selected(synthetic.experiment_2(11))
     for score in cluster.scores[:2]:
-        assert score.departure is None
+        assert score.deviation is None
         assert score.z is not None
         assert -1.0 < score.z <= 0.0
     margins = [score.margin for score in cluster.scores]

@@ -46,12 +46,12 @@ def test_a_path_that_is_refused_is_found_wrong_where_the_plan_says(curve: Curve,
     failure = looked.failure
     assert (failure.fault, looked.duration) == (fault, None)
     assert failure.stretch[0] == failure.s <= failure.stretch[1]
-    assert f"control point {failure.remedy.control_point + 1} of 9" in looked.sentence
+    assert f"control point {failure.suggestion.control_point + 1} of 9" in looked.sentence
     inside = (looked.lengths >= failure.stretch[0] - 1e-9) & (looked.lengths <= failure.stretch[1] + 1e-9)
     assert all(word for word, here in zip(looked.faults, inside, strict=True) if here)
     with pytest.raises(PathRefused) as refused:
         plan(learned(curve), paper_scene())
-    assert failure.remedy.sentence.split(" by ")[0] in str(refused.value)
+    assert failure.suggestion.sentence.split(" by ")[0] in str(refused.value)
 
 
 def test_what_fails_at_a_look_is_refused_and_what_passes_is_planned_but_for_the_moves_there_and_away() -> None:
@@ -78,7 +78,7 @@ def improved(curve: Curve, looked: Assessment) -> Curve:
     """Do what was proposed."""
     assert looked.failure is not None
     points = curve.control_points.copy()
-    points[looked.failure.remedy.control_point] += looked.failure.remedy.move
+    points[looked.failure.suggestion.control_point] += looked.failure.suggestion.move
     return clamped(points, degree=curve.degree)
 
 
