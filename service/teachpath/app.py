@@ -29,7 +29,7 @@ from teachpath.learning.settings import LearningSettings
 from teachpath.live.event_hub import EventHub
 from teachpath.live.preview import Preview
 from teachpath.live.state_poller import Poll, StatePoller
-from teachpath.motion.arm.geometry import drawing
+from teachpath.motion.arm.geometry import visual_solids
 from teachpath.offline.lock import StationLock
 from teachpath.recorder.annotations import Annotations
 from teachpath.recorder.calibrations import Calibrations
@@ -92,7 +92,7 @@ class Station:
         self.preview = Preview(
             self.bus,
             self.keys,
-            drawing(),
+            visual_solids(),
             robot=settings.bus.robot,
             home=np.array(settings.motion.home),
             hands=self.recorder.hands,

@@ -12,7 +12,7 @@ from report import Figure, against
 
 from teachpath.motion.execution.governor import Governor
 from teachpath.motion.timing import kernels
-from teachpath.motion.timing.timed_trajectory import Track
+from teachpath.motion.timing.timed_trajectory import TimedTrajectory
 
 ALLOWED = 0.1  # s
 EXACT = 1e-9  # s
@@ -37,7 +37,7 @@ class Answers:
         return sum(wait > ALLOWED + EXACT for wait in self.waits)
 
 
-def measure(tracks: list[Track], dt: float, *, runs: int) -> list[Figure]:
+def measure(tracks: list[TimedTrajectory], dt: float, *, runs: int) -> list[Figure]:
     """Return the figures over all tracks; commands come every 40 to 640 ms, most of them amid the turn before."""
     figures = []
     for what, command in (("override changes", _override), ("holds, reverses, resumes, override changes", _any)):
@@ -55,7 +55,7 @@ def measure(tracks: list[Track], dt: float, *, runs: int) -> list[Figure]:
     return figures
 
 
-def _run(track: Track, dt: float, command: Commands, rng: np.random.Generator, found: Answers) -> None:
+def _run(track: TimedTrajectory, dt: float, command: Commands, rng: np.random.Generator, found: Answers) -> None:
     """Add the answers to random commands; whatever comes to rest before its answer needs none."""
     governor = Governor(track, dt, override=rng.uniform(0.05, 1.0))
     sent = [governor.motion[0, :6].copy()] * 3
@@ -79,7 +79,7 @@ def _run(track: Track, dt: float, command: Commands, rng: np.random.Generator, f
             waiting = None
 
 
-def _account(track: Track, dt: float, wish: float, waiting: list[State] | None, found: Answers) -> None:
+def _account(track: TimedTrajectory, dt: float, wish: float, waiting: list[State] | None, found: Answers) -> None:
     """Add a wait for a rate, period by period, and whether a late answer could be had in time."""
     if not waiting:
         return
@@ -89,14 +89,14 @@ def _account(track: Track, dt: float, wish: float, waiting: list[State] | None, 
         found.missed += any(_possible(track, dt, wish, *state) for state in in_time)
 
 
-def _possible(track: Track, dt: float, wish: float, state: np.ndarray, sent: np.ndarray) -> bool:
+def _possible(track: TimedTrajectory, dt: float, wish: float, state: np.ndarray, sent: np.ndarray) -> bool:
     """Tell whether any ramp on the grid leads from a state to a rate within all limits."""
     limits = np.stack([track.limits.speed * dt, track.limits.acceleration * dt**2, track.limits.jerk * dt**3])
     ramp = np.empty(8)
     for slope in SLOPES:
         for jerk in JERKS:
-            drawn = kernels.draw(ramp, state, wish, max(slope, abs(state[2])), jerk) >= 0.0
-            if drawn and kernels.judge(track.table, track.step, ramp, sent, limits, dt)[0] == kernels.KEPT:
+            drawn = kernels.shortest_ramp(ramp, state, wish, max(slope, abs(state[2])), jerk) >= 0.0
+            if drawn and kernels.check_ramp(track.table, track.step, ramp, sent, limits, dt)[0] == kernels.KEPT:
                 return True
     return False
 

@@ -10,7 +10,7 @@ from itertools import pairwise
 import numpy as np
 
 from teachpath.exchange import to_geomdl
-from teachpath.motion.arm.geometry import solids
+from teachpath.motion.arm.geometry import collision_solids
 from teachpath.nurbs import Curve
 from teachpath.records import Scene, Shape
 
@@ -71,7 +71,7 @@ class Solids:
 
     def __init__(self, scene: Scene, start: np.ndarray | None = None) -> None:
         self._scene = scene
-        arm = [part for part in solids() if part.link]
+        arm = [part for part in collision_solids() if part.link]
         self._links = np.array([part.link for part in arm])
         self._poses = np.array([_shift(*part.position) @ _rotation(part.orientation) for part in arm])
         self._points = [_surface(part.kind, part.size, part.outline) for part in arm]

@@ -9,7 +9,7 @@ few percent, so a plan that is no slower than this has missed no better basin.
 import numba
 import numpy as np
 
-from teachpath.motion.arm.joint_path import JointPath, Limits
+from teachpath.motion.arm.joint_path import JointPath, MotionLimits
 
 PIECES = 120
 LEVELS = 1000  # of x
@@ -17,7 +17,7 @@ LOW, HIGH = 0.4, 1.75  # range of x, times the duration squared
 STEEPEST = 22.0  # largest |x'|, likewise
 
 
-def best_duration(path: JointPath, limits: Limits, duration: float) -> float:
+def best_duration(path: JointPath, limits: MotionLimits, duration: float) -> float:
     """Return the shortest duration [s] on the grid.
 
     Args:

@@ -8,20 +8,20 @@ import time
 import numpy as np
 from report import Figure, against
 
-from teachpath.motion.arm.kinematics import inverse, tool_pose
-from teachpath.motion.arm.puma560 import DEFAULT, LOWER, TOOL_LENGTH, UPPER, VARIANTS
+from teachpath.motion.arm.kinematics import inverse_kinematics, tool_pose
+from teachpath.motion.arm.puma560 import DEFAULT_VARIANT, LOWER, TOOL_LENGTH, UPPER, VARIANTS
 
 POSES = 1000
 
 
 def measure(*, repeats: int) -> list[Figure]:
     """Return how far the answers are apart, whether any is missing, and how long a pose takes."""
-    table = VARIANTS[DEFAULT]
+    table = VARIANTS[DEFAULT_VARIANT]
     poses = tool_pose(np.random.default_rng(2).uniform(LOWER, UPPER, (POSES, 6)), table)
     ours, seconds = [], []
     for _ in range(repeats):
         began = time.process_time()
-        ours = inverse(poses, variant=table).joints
+        ours = inverse_kinematics(poses, variant=table).joints
         seconds.append(1e6 * (time.process_time() - began) / POSES)
     back = np.abs(tool_pose(ours, table) - poses[:, None]).max()
     figures = [Figure(f"8 branches of {POSES} poses put through forward kinematics, farthest", (float(back),), "m, 1")]

@@ -8,7 +8,7 @@ none. It is a local optimum of a finite number of pieces: an estimate of the bes
 import numpy as np
 from scipy.optimize import linprog
 
-from teachpath.motion.timing.timed_trajectory import Track
+from teachpath.motion.timing.timed_trajectory import TimedTrajectory
 
 PIECES = 30
 PROGRAMS = 10  # per duration
@@ -17,7 +17,7 @@ KEPT = 5e-3  # violation that counts as none
 FURTHEST = 0.01  # s, that tau may move in one program
 
 
-def shortest_stop(track: Track, tau: float, rates: list[float], dt: float) -> float:
+def shortest_stop(track: TimedTrajectory, tau: float, rates: list[float], dt: float) -> float:
     """Return the duration [s] of the best stop from full speed.
 
     Args:
@@ -36,7 +36,7 @@ def shortest_stop(track: Track, tau: float, rates: list[float], dt: float) -> fl
     return duration
 
 
-def _stop(track: Track, tau: float, duration: float, start: np.ndarray) -> np.ndarray | None:
+def _stop(track: TimedTrajectory, tau: float, duration: float, start: np.ndarray) -> np.ndarray | None:
     """Return the pieces of a stop within the limits, times its duration squared, or None; `start`: of another stop."""
     step = duration / PIECES
     final, gains = _responses(step)
@@ -78,7 +78,12 @@ def _responses(step: float) -> tuple[np.ndarray, list[np.ndarray]]:
 
 
 def _linearised(
-    track: Track, tau: np.ndarray, rate: np.ndarray, slope: np.ndarray, jerk: np.ndarray, gains: list[np.ndarray]
+    track: TimedTrajectory,
+    tau: np.ndarray,
+    rate: np.ndarray,
+    slope: np.ndarray,
+    jerk: np.ndarray,
+    gains: list[np.ndarray],
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return how the uses of the limits at the ends of the pieces change with the pieces, and these uses."""
     row = np.clip(np.rint(tau / track.step), 0, len(track.table) - 1).astype(int)

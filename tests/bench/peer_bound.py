@@ -6,14 +6,14 @@ toppra has wheels for Linux on x86-64 only, and is left out elsewhere.
 import numpy as np
 from report import Figure, against
 
-from teachpath.motion.arm.joint_path import Limits
+from teachpath.motion.arm.joint_path import MotionLimits
 from teachpath.motion.paths.ik_branches import Candidate, configurations
-from teachpath.motion.paths.tool_path import Route
+from teachpath.motion.paths.tool_path import ToolPath
 
 POINTS = 1600  # of the curve, even in its parameter
 
 
-def measure(label: str, way: Route, candidate: Candidate, limits: Limits, bound: float) -> list[Figure]:
+def measure(label: str, way: ToolPath, candidate: Candidate, limits: MotionLimits, bound: float) -> list[Figure]:
     """Return our bound [s] beside toppra's on as many points, or nothing where it is not installed."""
     try:
         from toppra import SplineInterpolator

@@ -4,7 +4,7 @@ import numpy as np
 
 from teachpath.motion.collision.builtin_scenes import empty_scene
 from teachpath.motion.execution.governor import Governor
-from teachpath.motion.planning.certificate import track
+from teachpath.motion.planning.certificate import plan_trajectory
 from teachpath.nurbs import Curve
 from teachpath.records import Plan, Scene, Shape
 
@@ -30,7 +30,7 @@ def random_case(seed: int) -> tuple[Curve, Scene]:
 
 def streamed(made: Plan) -> np.ndarray:
     """Return the setpoints (n, 6) that the executor streams at full speed, at rest before and behind."""
-    governor = Governor(track(made), DT)
+    governor = Governor(plan_trajectory(made), DT)
     sent = [governor.motion[0, :6].copy()] * 4
     while not governor.progress.finished:
         governor.step()

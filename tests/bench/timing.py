@@ -10,14 +10,14 @@ from global_optimum import best_duration
 from optimum import shortest_stop
 from report import Figure, against
 
-from teachpath.motion.arm.joint_path import ARM, JointPath
+from teachpath.motion.arm.joint_path import ARM_LIMITS, JointPath
 from teachpath.motion.execution.governor import Governor, warm_up
-from teachpath.motion.paths.ik_branches import Candidate, candidates, usable
-from teachpath.motion.paths.tool_path import Route, route
+from teachpath.motion.paths.ik_branches import Candidate, enumerate_candidates, is_usable
+from teachpath.motion.paths.tool_path import ToolPath, sample_tool_path
 from teachpath.motion.settings import MotionSettings
-from teachpath.motion.timing.limit_margins import NOTHING_LEFT, uses
-from teachpath.motion.timing.timed_trajectory import Track, paced
-from teachpath.motion.timing.timing import lower_bound, timed
+from teachpath.motion.timing.limit_margins import NO_MARGINS, limit_uses
+from teachpath.motion.timing.timed_trajectory import TimedTrajectory, time_joint_path
+from teachpath.motion.timing.timing import duration_lower_bound, time_tool_path
 from teachpath.nurbs import Curve
 
 RATE = 250.0
@@ -34,8 +34,8 @@ def measure(*, repeats: int) -> list[Figure]:
     figures: list[Figure] = []
     stops: list[float] = []
     ratios: list[float] = []
-    tracks: list[Track] = []
-    timed(*_branch(curves()["bow"]), ARM, rate=RATE)  # loads what the first path would wait for
+    tracks: list[TimedTrajectory] = []
+    time_tool_path(*_branch(curves()["bow"]), ARM_LIMITS, rate=RATE)  # loads what the first path would wait for
     for name, curve in curves().items():
         found = _path(name, curve, repeats)
         figures += found.figures
@@ -50,7 +50,7 @@ def measure(*, repeats: int) -> list[Figure]:
 @dataclass(frozen=True, eq=False)
 class _Found:
     figures: list[Figure]
-    track: Track
+    track: TimedTrajectory
     stops: list[float]
     ratios: list[float]
 
@@ -83,10 +83,12 @@ def _clamped(points: np.ndarray, degree: int) -> Curve:
     return Curve(degree, np.r_[np.zeros(degree), inner, np.ones(degree)], points, np.ones(len(points)))
 
 
-def _branch(curve: Curve) -> tuple[Route, Candidate]:
+def _branch(curve: Curve) -> tuple[ToolPath, Candidate]:
     settings = MotionSettings()
-    found = route(curve, settings)
-    return found, max((c for c in candidates(found, settings) if usable(c, settings)), key=lambda c: c.conditioned)
+    found = sample_tool_path(curve, settings)
+    return found, max(
+        (c for c in enumerate_candidates(found, settings) if is_usable(c, settings)), key=lambda c: c.min_singular_value
+    )
 
 
 def _path(name: str, curve: Curve, repeats: int) -> _Found:
@@ -94,11 +96,11 @@ def _path(name: str, curve: Curve, repeats: int) -> _Found:
     seconds = []
     for _ in range(repeats):
         began = time.perf_counter()
-        path, pace = timed(found, candidate, ARM, rate=RATE)
+        path, pace = time_tool_path(found, candidate, ARM_LIMITS, rate=RATE)
         seconds.append(time.perf_counter() - began)
-    track = paced(path, pace, ARM)
+    track = time_joint_path(path, pace, ARM_LIMITS)
     label = f"{name}, {found.lengths[-1]:.2f} m"
-    bound = lower_bound(found, candidate, ARM)
+    bound = duration_lower_bound(found, candidate, ARM_LIMITS)
     stopped = _stops(track)
     stops = [DT * len(rates) for _, rates in stopped]
     apart = max(1, len(stopped) // (OPTIMA * repeats))
@@ -107,7 +109,7 @@ def _path(name: str, curve: Curve, repeats: int) -> _Found:
     cycles, used = _random_commands(track, runs=4 * repeats)
     figures = [
         against(f"{label}: duration", [track.duration], "s", name=LEAST, value=bound),
-        *peer_bound.measure(label, found, candidate, ARM, bound),
+        *peer_bound.measure(label, found, candidate, ARM_LIMITS, bound),
         *_bounds(label, found, candidate, bound),
         against(f"{label}: timing it", seconds, "s", name="asked", value=0.5),
         against(f"{label}: stops from full speed", stops, "s", name="worst allowed", value=LONGEST_STOP),
@@ -119,15 +121,15 @@ def _path(name: str, curve: Curve, repeats: int) -> _Found:
     return _Found(figures, track, stops, ratios)
 
 
-def _bounds(label: str, found: Route, candidate: Candidate, bound: float) -> list[Figure]:
+def _bounds(label: str, found: ToolPath, candidate: Candidate, bound: float) -> list[Figure]:
     """Return what the jerk limit and the reserve cost, and what a scheme with one box of limits takes."""
-    path, pace = timed(found, candidate, ARM, rate=RATE, reserve=NOTHING_LEFT)
-    whole = paced(path, pace, ARM).duration
-    free = ARM.scaled(1.0, 1.0, 20.0)
-    easy = paced(*timed(found, candidate, free, rate=RATE, reserve=NOTHING_LEFT), free)
+    path, pace = time_tool_path(found, candidate, ARM_LIMITS, rate=RATE, margins=NO_MARGINS)
+    whole = time_joint_path(path, pace, ARM_LIMITS).duration
+    free = ARM_LIMITS.scaled(1.0, 1.0, 20.0)
+    easy = time_joint_path(*time_tool_path(found, candidate, free, rate=RATE, margins=NO_MARGINS), free)
     figures = (
         ("without any reserve", whole),
-        ("without any reserve, best on a grid of everything", best_duration(path, ARM, whole)),
+        ("without any reserve, best on a grid of everything", best_duration(path, ARM_LIMITS, whole)),
         ("without any reserve, 20 times the jerk", easy.duration),
         ("constant box", _box(found, candidate)),
     )
@@ -136,20 +138,24 @@ def _bounds(label: str, found: Route, candidate: Candidate, bound: float) -> lis
     ]
 
 
-def _box(found: Route, candidate: Candidate) -> float:
+def _box(found: ToolPath, candidate: Candidate) -> float:
     """Return the shortest duration under constant limits of the length's speed, acceleration and jerk.
 
     Each term of the joints' acceleration and jerk is bounded by its largest anywhere, as a scheme must that knows one
     box of limits for the whole path.
     """
     path = JointPath(found.lengths, found.lengths, candidate.joints)
-    first, second, third = (np.abs(path(path.dense(), k)[:, :6]).max(axis=0) + 1e-9 for k in (1, 2, 3))
-    fastest = min((ARM.speed / first).min(), np.sqrt(ARM.acceleration / second).min(), np.cbrt(ARM.jerk / third).min())
+    first, second, third = (np.abs(path(path.dense_parameters(), k)[:, :6]).max(axis=0) + 1e-9 for k in (1, 2, 3))
+    fastest = min(
+        (ARM_LIMITS.speed / first).min(),
+        np.sqrt(ARM_LIMITS.acceleration / second).min(),
+        np.cbrt(ARM_LIMITS.jerk / third).min(),
+    )
     durations = []
     for v in fastest * np.linspace(0.02, 0.999, 60):
-        most = ((ARM.acceleration - second * v**2) / first).min()
+        most = ((ARM_LIMITS.acceleration - second * v**2) / first).min()
         for a in most * np.linspace(0.05, 0.999, 20):
-            j = ((ARM.jerk - third * v**3 - 3 * second * v * a) / first).min()
+            j = ((ARM_LIMITS.jerk - third * v**3 - 3 * second * v * a) / first).min()
             if j > 0.0:
                 durations.append(_rest_to_rest(found.lengths[-1], v, a, j))
     return float(min(durations))
@@ -165,7 +171,7 @@ def _rest_to_rest(length: float, v: float, a: float, j: float) -> float:
     return 4 * np.cbrt(length / (2 * j))
 
 
-def _stops(track: Track) -> list[tuple[float, list[float]]]:
+def _stops(track: TimedTrajectory) -> list[tuple[float, list[float]]]:
     """Stop from full speed at many places; return plan times, and the rates after each period until it stands."""
     stopped = []
     for place in range(3, int(track.duration * RATE), 5):
@@ -180,7 +186,7 @@ def _stops(track: Track) -> list[tuple[float, list[float]]]:
     return stopped
 
 
-def _random_commands(track: Track, *, runs: int) -> tuple[np.ndarray, float]:
+def _random_commands(track: TimedTrajectory, *, runs: int) -> tuple[np.ndarray, float]:
     """Return what moving cycles took [us] and the largest use of a limit, over random commands."""
     took, used = [], 0.0
     for seed in range(runs):
@@ -203,5 +209,5 @@ def _random_commands(track: Track, *, runs: int) -> tuple[np.ndarray, float]:
             if moving:
                 took.append(1e6 * (time.perf_counter() - began))
             sent.append(governor.motion[0].copy())
-        used = max(used, *(float(use.max()) for use in uses(np.array(sent), ARM, RATE)))
+        used = max(used, *(float(use.max()) for use in limit_uses(np.array(sent), ARM_LIMITS, RATE)))
     return np.array(took), used

@@ -12,12 +12,12 @@ from teachpath.learning.fitting.nurbs_fit import approximate
 from teachpath.learning.fitting.synthesis import best_fit, mean_path
 from teachpath.learning.resampling import smoothed
 from teachpath.learning.settings import LearningSettings
-from teachpath.motion.arm.joint_path import ARM
-from teachpath.motion.paths.ik_branches import candidates, usable
-from teachpath.motion.paths.tool_path import route
+from teachpath.motion.arm.joint_path import ARM_LIMITS
+from teachpath.motion.paths.ik_branches import enumerate_candidates, is_usable
+from teachpath.motion.paths.tool_path import sample_tool_path
 from teachpath.motion.settings import MotionSettings
-from teachpath.motion.timing.timed_trajectory import paced
-from teachpath.motion.timing.timing import timed
+from teachpath.motion.timing.timed_trajectory import time_joint_path
+from teachpath.motion.timing.timing import time_tool_path
 from teachpath.nurbs import Curve
 from tests.experiments.scenarios import SHAPES, along
 from tests.unit.learning import synthetic
@@ -73,12 +73,12 @@ def _bends(curve: Curve) -> Row:
 
 def _duration(curve: Curve) -> float | None:
     settings = MotionSettings()
-    way = route(curve, settings)
-    able = [candidate for candidate in candidates(way, settings) if usable(candidate, settings)]
+    way = sample_tool_path(curve, settings)
+    able = [candidate for candidate in enumerate_candidates(way, settings) if is_usable(candidate, settings)]
     if not able:
         return None
-    path, pace = timed(way, max(able, key=lambda c: c.conditioned), ARM, rate=RATE)
-    return float(paced(path, pace, ARM).duration)
+    path, pace = time_tool_path(way, max(able, key=lambda c: c.min_singular_value), ARM_LIMITS, rate=RATE)
+    return float(time_joint_path(path, pace, ARM_LIMITS).duration)
 
 
 def summary(outcomes: Sequence[tuple[str, dict[int, Row] | None]]) -> dict[str, Any]:

@@ -25,7 +25,7 @@ from teachpath.io.documents import to_document
 from teachpath.learning.clustering.cuts import dendrogram
 from teachpath.live.event_hub import EventHub
 from teachpath.live.preview import Preview
-from teachpath.motion.arm.geometry import drawing
+from teachpath.motion.arm.geometry import visual_solids
 from teachpath.motion.arm.kinematics import link_frames
 from teachpath.motion.collision.builtin_scenes import paper_scene
 from teachpath.motion.planning.assessment import assess
@@ -53,7 +53,7 @@ class Server:
         self.bus = MemoryBus()
 
     def start(self, demonstrations: int) -> None:
-        self.preview = Preview(self.bus, KEYS, drawing(), robot=ROBOT, home=HOME, hands=list)
+        self.preview = Preview(self.bus, KEYS, visual_solids(), robot=ROBOT, home=HOME, hands=list)
         self.preview.show_object(paper_scene().carried)
         self.preview.start()
         app = FastAPI()
@@ -177,7 +177,7 @@ def test_shows_arm_obstacles_paths_and_demonstrations_with_a_clean_console(visit
     assert {"/scene/table", "/scene/box", "/scene/cylinder", "/object"} <= set(paths)
     assert [p for p in paths if p.startswith("/paths/")] == ["/paths/p1", "/paths/p2", "/paths/p3"]
     assert len([p for p in paths if p.startswith("/demonstrations/")]) == 12
-    assert len([p for p in paths if p.startswith("/robot/link")]) == len(drawing())
+    assert len([p for p in paths if p.startswith("/robot/link")]) == len(visual_solids())
     picture = np.asarray(Image.open(io.BytesIO(visit.page.screenshot())).convert("L"), dtype=float)
     assert picture[100:700, 50:850].std() > 10  # a blank canvas has 0
     visit.page.wait_for_timeout(500)  # the panels have asked
@@ -214,7 +214,7 @@ def test_comes_back_after_a_restart_and_shows_the_truth(visit: Visit, server: Se
     server.start(demonstrations=3)
     visit.page.wait_for_selector("html[data-connection=live][data-events=live]", state="attached", timeout=30_000)
     visit.wait(lambda: len([p for p in visit.paths() if p.startswith("/demonstrations/")]) == 3)
-    assert len([p for p in visit.paths() if p.startswith("/robot/link")]) == len(drawing())
+    assert len([p for p in visit.paths() if p.startswith("/robot/link")]) == len(visual_solids())
 
 
 def test_what_is_cleared_disappears_and_layers_can_be_hidden(visit: Visit, server: Server) -> None:

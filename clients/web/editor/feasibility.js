@@ -39,14 +39,14 @@ function content({ draft, verdict }) {
     const facts = `${number(lengths.at(-1), 3, "m")}, about ${number(duration, 2, "s")}, least clearance ${number(1000 * Math.min(...clearance), 0, "mm")}`;
     return [element("p", { class: "good" }, `${sentence(outlook)}.`), element("p", { class: "note" }, facts)];
   }
-  const { stretch, reason, suggestion } = failure;
+  const { interval, reason, suggestion } = failure;
   const pinned = draft.isPinned(suggestion.control_point);
   const size = Math.hypot(...suggestion.move);
   return [
-    element("p", { class: "failed" }, `From ${number(stretch[0], 3)} to ${number(stretch[1], 3, "m")} the arm cannot follow: ${reason}.`),
+    element("p", { class: "failed" }, `From ${number(interval[0], 3)} to ${number(interval[1], 3, "m")} the arm cannot follow: ${reason}.`),
     element("p", {}, `${sentence(suggestion.sentence)}.`),
     size > 0 &&
-      element("p", { class: "orders" }, element("button", { type: "button", id: "edit-remedy", "data-key": "remedy", ...(pinned && { disabled: "" }) }, `Move control point ${suggestion.control_point + 1} by ${number(1000 * size, 0, "mm")}`)),
+      element("p", { class: "orders" }, element("button", { type: "button", id: "edit-suggestion", "data-key": "suggestion", ...(pinned && { disabled: "" }) }, `Move control point ${suggestion.control_point + 1} by ${number(1000 * size, 0, "mm")}`)),
     size > 0 && pinned && element("p", { class: "note" }, "It is pinned; unlock start and goal first."),
   ];
 }

@@ -12,7 +12,7 @@ from teachpath.errors import UnusableRecording
 from teachpath.io.documents import from_document
 from teachpath.io.setpoints import read_setpoints
 from teachpath.io.store.motions import read_motion
-from teachpath.motion.analysis.log_check import SetpointLog, judge
+from teachpath.motion.analysis.log_check import SetpointLog, check_log
 from teachpath.nurbs import Curve
 from teachpath.records import LearnedPath
 
@@ -32,7 +32,7 @@ def judge_file(file: Path, plan: str | None, url: str) -> None:
     log, path = _read_motion(file) if content[1:5] == b"MCAP" else (_read_csv(content, file.name), None)
     if plan is not None:
         path = _path_of(plan, url)
-    judgement = judge(log, path)
+    judgement = check_log(log, path)
     for sentence in judgement.measured:
         print(sentence)
     if judgement.faults:

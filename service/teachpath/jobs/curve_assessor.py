@@ -74,4 +74,4 @@ def _assess(curve: Curve, scene: Scene, settings: MotionSettings, turn: Curve | 
     from teachpath.motion.planning.assessment import assess  # loaded in the process that needs it, not in the service
 
     choose(settings.variant)
-    return assess(curve, scene, settings, turn=turn)
+    return assess(curve, scene, settings, orientation=turn)

@@ -22,7 +22,7 @@ class Failure:
 
     fault: str  # reach, limit, turn, singular, collision, start or end
     s: float
-    stretch: tuple[float, float]
+    interval: tuple[float, float]
     position: Vector
     reason: str
     suggestion: Suggestion

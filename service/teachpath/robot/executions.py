@@ -22,7 +22,7 @@ from teachpath.io.wire import (
     encode_command,
     encode_lease_request,
 )
-from teachpath.motion.analysis.time_series import Series, series
+from teachpath.motion.analysis.time_series import TimeSeries, time_series
 from teachpath.records import (
     Command,
     ExecutorStatus,
@@ -90,10 +90,10 @@ class Executions:
             self._recorder.wait_for(row.id)
         return self._store.motions.path(row.id)
 
-    def series(self, execution: str, points: int) -> Series:
+    def series(self, execution: str, points: int) -> TimeSeries:
         """Return what the arm did over time in an execution; raises NotFound."""
         motion = read_motion(self.recording(execution))
-        return series(motion.setpoints, motion.states, points)
+        return time_series(motion.setpoints, motion.states, points)
 
     @property
     def status(self) -> ExecutorStatus | None:

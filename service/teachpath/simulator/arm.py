@@ -9,7 +9,7 @@ import mujoco
 import numpy as np
 
 from teachpath.errors import UnusableInput
-from teachpath.motion.arm.mjcf import CARRIED, GRASP, TOOL, mjcf
+from teachpath.motion.arm.mjcf import CARRIED_BODY, GRASP_WELD, TOOL_SITE, write_mjcf
 from teachpath.motion.arm.puma560 import TORQUE
 from teachpath.records import Array, Quaternion, Scene, Vector
 from teachpath.simulator.settings import SimulatorSettings
@@ -24,7 +24,7 @@ class SimulatedArm:
     def __init__(self, scene: Scene, settings: SimulatorSettings, position: Sequence[float]) -> None:
         """Build the model of `scene`; raises UnusableInput when MuJoCo cannot."""
         try:
-            self._model = mujoco.MjModel.from_xml_string(mjcf(scene, timestep=STEP_NS / 1e9))
+            self._model = mujoco.MjModel.from_xml_string(write_mjcf(scene, timestep=STEP_NS / 1e9))
         except ValueError as error:
             raise UnusableInput(f"scene {scene.name!r} cannot be simulated: {error}") from None
         self._settings, self._start = settings, np.array(position)
@@ -89,15 +89,15 @@ class SimulatedArm:
         """Take the object as it lies between the fingers; False when it is out of reach and the gripper is empty."""
         if not self._carries:
             return False
-        tool = self.data.site(TOOL).xpos
-        if np.linalg.norm(tool - self.data.body(CARRIED).xpos) > self._settings.reach:
+        tool = self.data.site(TOOL_SITE).xpos
+        if np.linalg.norm(tool - self.data.body(CARRIED_BODY).xpos) > self._settings.reach:
             return False
-        hand, carried = self.data.body("link6"), self.data.body(CARRIED)
+        hand, carried = self.data.body("link6"), self.data.body(CARRIED_BODY)
         rotation = hand.xmat.reshape(3, 3)
         back, turn = np.empty(4), np.empty(4)
         mujoco.mju_negQuat(back, hand.xquat)
         mujoco.mju_mulQuat(turn, back, carried.xquat)
-        weld = self._model.equality(GRASP)
+        weld = self._model.equality(GRASP_WELD)
         weld.data[:3] = 0.0  # anchor, in the object
         weld.data[3:6] = rotation.T @ (carried.xpos - hand.xpos)
         weld.data[6:10] = turn
@@ -107,4 +107,4 @@ class SimulatedArm:
     def release(self) -> None:
         """Let the object go."""
         if self._carries:
-            self.data.eq_active[self._model.equality(GRASP).id] = False
+            self.data.eq_active[self._model.equality(GRASP_WELD).id] = False

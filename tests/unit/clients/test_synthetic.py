@@ -4,7 +4,7 @@ import math
 import numpy as np
 import pytest
 
-from teachpath.motion.collision.builtin_scenes import TABLE_TOP, paper_scene
+from teachpath.motion.collision.builtin_scenes import TABLE_HEIGHT, paper_scene
 from teachpath_client import synthetic
 from teachpath_client.reading import HandReading
 from teachpath_client.synthetic import GOAL, HAND_ABOVE, RATE, START, WAYS, experiment_1, experiment_2
@@ -74,7 +74,7 @@ def test_the_hand_moves_as_a_hand_does() -> None:
     positions = np.array([r.position for r in experiment_1(1)])
     speeds = np.linalg.norm(np.diff(positions, axis=0), axis=1) * RATE
     assert speeds.max() < 2.0  # m/s
-    assert positions[:, 2].min() > TABLE_TOP
+    assert positions[:, 2].min() > TABLE_HEIGHT
 
 
 def gap(points: np.ndarray, name: str) -> float:

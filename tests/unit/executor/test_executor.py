@@ -7,7 +7,7 @@ import pytest
 from teachpath.errors import Conflict, PathRefused, TeachpathError, Unreachable, UnusableInput
 from teachpath.executor.settings import ExecutorSettings
 from teachpath.io.documents import encode
-from teachpath.motion.analysis.log_check import SetpointLog, judge
+from teachpath.motion.analysis.log_check import SetpointLog, check_log
 from teachpath.motion.arm.kinematics import tool_pose
 from teachpath.motion.arm.puma560 import ACCELERATION, JERK, SPEED
 from teachpath.motion.collision.builtin_scenes import empty_scene
@@ -186,7 +186,7 @@ def test_whenever_the_loop_oversleeps_what_was_sent_can_be_judged(bench: Bench, 
     times = np.array([s.nominal_ns - EPOCH for s in bench.setpoints]) / 1e9
     on_path = np.array([s.on_path for s in bench.setpoints])
     log = SetpointLog(times, np.array([s.position for s in bench.setpoints]), on_path)
-    assert judge(log, way(MIDDLE).curve).faults == ()
+    assert check_log(log, way(MIDDLE).curve).faults == ()
 
 
 def refusal(bench: Bench, kind: type[TeachpathError], **given: object) -> str:

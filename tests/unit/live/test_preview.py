@@ -8,7 +8,7 @@ import numpy as np
 from teachpath.io import wire
 from teachpath.io.bus import MemoryBus
 from teachpath.live.preview import CLUSTER_COLORS, Preview, PreviewSettings, Viewer
-from teachpath.motion.arm.geometry import drawing
+from teachpath.motion.arm.geometry import visual_solids
 from teachpath.motion.arm.kinematics import link_frames
 from teachpath.motion.collision.builtin_scenes import empty_scene, paper_scene
 from teachpath.motion.settings import MotionSettings
@@ -32,7 +32,7 @@ class Station:
         self.preview = Preview(
             self.bus,
             KEYS,
-            drawing(),
+            visual_solids(),
             robot="puma560",
             home=HOME,
             hands=lambda: self.hands,
@@ -63,7 +63,7 @@ def test_a_new_page_gets_arm_and_object() -> None:
     sent = take(preview.connect(ignore))
     objects = {c["path"] for c in sent if c["type"] == "set_object"}
     assert "/object" in objects
-    assert len([path for path in objects if path.startswith("/robot/link")]) == len(drawing())
+    assert len([path for path in objects if path.startswith("/robot/link")]) == len(visual_solids())
     assert objects == set(preview.paths())
 
 

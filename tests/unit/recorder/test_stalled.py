@@ -8,7 +8,7 @@ import numpy as np
 from teachpath.errors import UnusableRecording
 from teachpath.learning.settings import LearningSettings
 from teachpath.live.preview import Preview
-from teachpath.motion.arm.geometry import drawing
+from teachpath.motion.arm.geometry import visual_solids
 from teachpath.recorder.guidance import GuidanceThread
 from teachpath.records import Demonstration, Trajectory
 from tests.unit.recorder.recorders import KEYS, Bench
@@ -29,7 +29,7 @@ def record(bench: Bench) -> None:
 
 
 def test_a_page_that_takes_nothing_keeps_the_recorder_from_nothing(bench: Bench) -> None:
-    view = Preview(bench.bus, KEYS, drawing(), robot="puma", home=np.zeros(6), hands=bench.recorder.hands)
+    view = Preview(bench.bus, KEYS, visual_solids(), robot="puma", home=np.zeros(6), hands=bench.recorder.hands)
     with view:
         viewer = view.connect(lambda: None)
         assert viewer.pop()  # the first batch, which it never acknowledges

@@ -10,7 +10,7 @@ import pytest
 from teachpath.errors import Conflict, UnusableInput
 from teachpath.io import documents, wire
 from teachpath.io.bus import MemoryBus
-from teachpath.motion.arm.kinematics import downward, inverse, link_frames, tool_pose
+from teachpath.motion.arm.kinematics import downward_poses, inverse_kinematics, link_frames, tool_pose
 from teachpath.motion.arm.puma560 import LOWER, TORQUE, UPPER
 from teachpath.motion.collision.builtin_scenes import empty_scene, paper_scene
 from teachpath.motion.settings import MotionSettings
@@ -100,7 +100,7 @@ class Bench:
 
 def above(position: tuple[float, float, float]) -> np.ndarray:
     """A configuration within the limits, of the branch of the home position, with the tool straight down."""
-    q = inverse(downward(np.array([position]), np.pi)).joints[0, 1]
+    q = inverse_kinematics(downward_poses(np.array([position]), np.pi)).joints[0, 1]
     for turn in (-2 * np.pi, 2 * np.pi):
         q = np.where((q < LOWER) & (turn > 0) | (q > UPPER) & (turn < 0), q + turn, q)
     assert np.all((q >= LOWER) & (q <= UPPER))

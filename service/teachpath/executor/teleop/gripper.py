@@ -6,7 +6,7 @@ from typing import Final
 
 import numpy as np
 
-from teachpath.motion.arm.kinematics import rotations, tool_pose
+from teachpath.motion.arm.kinematics import rotation_matrices, tool_pose
 from teachpath.motion.collision.collision_model import Load
 from teachpath.recording.phases import hand_closure
 from teachpath.records import JointState, Sample
@@ -49,9 +49,9 @@ def observed_load(arm: JointState, before: Load | None) -> Load | None:
     if not any(arm.object_orientation):
         return before
     pose = np.eye(4)
-    pose[:3, :3] = rotations(np.array([arm.object_orientation]))[0]
+    pose[:3, :3] = rotation_matrices(np.array([arm.object_orientation]))[0]
     pose[:3, 3] = arm.object_position
     tool = tool_pose(arm.position)
     if arm.gripper_closed and np.linalg.norm(pose[:3, 3] - tool[:3, 3]) <= HELD:
-        return Load(grasp=np.linalg.inv(tool) @ pose)
-    return Load(placed=arm.object_position, turned=pose[:3, :3])
+        return Load(grasp_pose=np.linalg.inv(tool) @ pose)
+    return Load(position=arm.object_position, rotation=pose[:3, :3])

@@ -58,7 +58,7 @@ class TeleopProgram:
         model = CollisionModel(order.scene)
         self._mirror = TeleopFollower(model, here, settings, scale=order.scale, share=order.share, period=period)
         if order.scene.carried is not None:
-            self._mirror.load = Load(placed=order.scene.carried.position)
+            self._mirror.load = Load(position=order.scene.carried.position)
         still = np.zeros(6)
         self._moment = MotionState(np.array(here), still, still, self._grip.closed)
         self._came: deque[tuple[int, bytes]] = deque(maxlen=1)

@@ -17,7 +17,7 @@ from teachpath.io.bus import Bus, Handle
 from teachpath.io.wire import decode_state
 from teachpath.live.preview import commands
 from teachpath.live.preview.scene_tree import SceneTree, Viewer
-from teachpath.motion.arm.geometry import Part
+from teachpath.motion.arm.geometry import LinkSolid
 from teachpath.motion.arm.kinematics import link_frames
 from teachpath.periodic_thread import PeriodicThread
 from teachpath.recording.live_hand import Hand
@@ -63,7 +63,7 @@ class Preview:
         self,
         bus: Bus,
         keys: Keys,
-        drawing: Sequence[Part],
+        drawing: Sequence[LinkSolid],
         *,
         robot: str,
         home: Array,
@@ -166,13 +166,13 @@ class Preview:
         if any(state.object_orientation) and self._tree.paths("/object"):
             self._place("/object", commands.pose_of(state.object_position, state.object_orientation))
 
-    def _put_part(self, part: Part) -> None:
+    def _put_part(self, part: LinkSolid) -> None:
         path = f"/robot/link{part.link}/{part.name.replace(' ', '-')}"
         pose = commands.pose_of(part.position, part.orientation)
         body = commands.solid(path, part.kind, part.size, pose=pose, color=part.color, outline=part.outline)
         self._tree.set_object(path, body)
-        if any(part.opens):
-            self._fingers.append((path, commands.pose_of(part.opens)))
+        if any(part.opening_offset):
+            self._fingers.append((path, commands.pose_of(part.opening_offset)))
 
     def _pose_arm(self, q: Array, *, gripper_closed: bool) -> None:
         for i, frame in enumerate(link_frames(q)):

@@ -17,11 +17,11 @@ from teachpath.motion.arm.puma560 import ACCELERATION, JERK, LOWER, SPEED, TOOL_
 from teachpath.motion.arm.variants import arm
 from teachpath.nurbs import Curve
 
-OFF: Final = 1e-4  # m, that the tool may be off the path
-SLACK: Final = 1e-6  # relative, for the rounding of differences
-UNEVEN: Final = 0.01  # of the period, by which setpoints may be off their even times
-CHORDS: Final = 20_000  # of which the path is made to measure the distance to it
-NAMES: Final = ("speed", "acceleration", "jerk")
+PATH_TOLERANCE: Final = 1e-4  # m, that the tool may be off the path
+LIMIT_TOLERANCE: Final = 1e-6  # relative, for the rounding of differences
+PERIOD_TOLERANCE: Final = 0.01  # of the period, by which setpoints may be off their even times
+PATH_CHORDS: Final = 20_000  # of which the path is made to measure the distance to it
+QUANTITIES: Final = ("speed", "acceleration", "jerk")
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,7 +42,7 @@ class SetpointLog:
 
 
 @dataclass(frozen=True)
-class Judgement:
+class LogCheck:
     """What was found.
 
     Attributes:
@@ -54,7 +54,7 @@ class Judgement:
     measured: tuple[str, ...]
 
 
-def judge(log: SetpointLog, path: Curve | None) -> Judgement:
+def check_log(log: SetpointLog, path: Curve | None) -> LogCheck:
     """Judge a log.
 
     Args:
@@ -70,7 +70,7 @@ def judge(log: SetpointLog, path: Curve | None) -> Judgement:
         (measured if judged[0] else faults).append(judged[1])
     if path is None:
         measured.append("without a path: only the limits were judged")
-    return Judgement(tuple(faults), tuple(measured))
+    return LogCheck(tuple(faults), tuple(measured))
 
 
 def _positions(log: SetpointLog) -> tuple[bool, str]:
@@ -86,7 +86,7 @@ def _positions(log: SetpointLog) -> tuple[bool, str]:
 def _differences(log: SetpointLog, period: float) -> list[tuple[bool, str]]:
     """Judge speed, acceleration and jerk; the arm is taken to rest before the log and wherever nothing was sent."""
     steps, moves = np.diff(log.times), np.any(np.diff(log.positions, axis=0) != 0.0, axis=1)
-    uneven = np.abs(steps - period) > UNEVEN * period
+    uneven = np.abs(steps - period) > PERIOD_TOLERANCE * period
     rested = np.concatenate([[True], ~moves[:-1]])  # before each step
     broken = np.flatnonzero(uneven & ~(rested & (steps > period)))
     found = []
@@ -96,12 +96,12 @@ def _differences(log: SetpointLog, period: float) -> list[tuple[bool, str]]:
         sentence = f"{len(broken)} setpoints of a moving arm are not one period apart, the first at {when:.3f} s"
         found.append((False, f"{sentence} ({gap:.1f} ms)"))
     runs = np.split(np.arange(len(log.times)), np.flatnonzero(uneven & rested & (steps > period)) + 1)
-    for order, (name, limit) in enumerate(zip(NAMES, (SPEED, ACCELERATION, JERK), strict=True), 1):
+    for order, (name, limit) in enumerate(zip(QUANTITIES, (SPEED, ACCELERATION, JERK), strict=True), 1):
         uses = np.concatenate([_use(log.positions[run], order) / period**order / limit for run in runs])
         row, joint = np.unravel_index(int(np.argmax(uses)), uses.shape)
         where = f"joint {joint + 1} at {log.times[row] - log.times[0]:.3f} s"
         largest = float(uses[row, joint])
-        found.append((largest <= 1.0 + SLACK, f"{name} limit used to {100 * largest:.2f} % by {where}"))
+        found.append((largest <= 1.0 + LIMIT_TOLERANCE, f"{name} limit used to {100 * largest:.2f} % by {where}"))
     return found
 
 
@@ -111,7 +111,7 @@ def _use(positions: Array, order: int) -> Array:
 
 
 def _path(log: SetpointLog, path: Curve) -> list[tuple[bool, str]]:
-    points = path(np.linspace(0.0, 1.0, CHORDS + 1))
+    points = path(np.linspace(0.0, 1.0, PATH_CHORDS + 1))
     tool = _tool(log.positions)
     said = log.on_path if log.on_path is not None else _guessed(tool, points)
     if not said.any():
@@ -120,10 +120,10 @@ def _path(log: SetpointLog, path: Curve) -> list[tuple[bool, str]]:
     worst = int(np.argmax(off))
     when = log.times[said][worst] - log.times[0]
     nearest = cKDTree(points).query(tool[said])[1]
-    share = float(nearest.max() - nearest.min()) / CHORDS
+    share = float(nearest.max() - nearest.min()) / PATH_CHORDS
     return [
         (
-            float(off[worst]) <= OFF,
+            float(off[worst]) <= PATH_TOLERANCE,
             f"tool up to {1e3 * off[worst]:.4f} mm off the path at {when:.3f} s, allowed 0.1 mm",
         ),
         (True, f"{int(said.sum())} setpoints on the path, over {100 * share:.1f} % of its parameter"),
@@ -132,8 +132,8 @@ def _path(log: SetpointLog, path: Curve) -> list[tuple[bool, str]]:
 
 def _guessed(tool: Array, points: Array) -> NDArray[np.bool_]:
     """Say which setpoints should be on the path: from the first at its start to the last at its end, or to the last."""
-    starts = np.flatnonzero(np.linalg.norm(tool - points[0], axis=1) <= OFF)
-    ends = np.flatnonzero(np.linalg.norm(tool - points[-1], axis=1) <= OFF)
+    starts = np.flatnonzero(np.linalg.norm(tool - points[0], axis=1) <= PATH_TOLERANCE)
+    ends = np.flatnonzero(np.linalg.norm(tool - points[-1], axis=1) <= PATH_TOLERANCE)
     said = np.zeros(len(tool), dtype=np.bool_)
     if len(starts):
         later = ends[ends > starts[0]]

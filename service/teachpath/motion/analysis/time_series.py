@@ -14,7 +14,7 @@ from teachpath.records import JointState, Setpoint
 
 
 @dataclass(frozen=True, eq=False)
-class Series:
+class TimeSeries:
     """What the arm did over time.
 
     Attributes:
@@ -40,7 +40,7 @@ class Series:
     lateness: Array
 
 
-def series(setpoints: Sequence[Setpoint], states: Sequence[JointState], points: int) -> Series:
+def time_series(setpoints: Sequence[Setpoint], states: Sequence[JointState], points: int) -> TimeSeries:
     """Draw a recorded motion with at most `points` points.
 
     Args:
@@ -62,7 +62,7 @@ def series(setpoints: Sequence[Setpoint], states: Sequence[JointState], points: 
         sent = np.array([s.sent_ns - begin for s in setpoints], dtype=np.float64) / 1e9
         behind = np.array([s.sent_ns - s.nominal_ns for s in setpoints], dtype=np.float64) / 1e9
         np.maximum.at(late, np.minimum(np.searchsorted(stamps[ends], sent), len(groups) - 1), behind)
-    return Series(
+    return TimeSeries(
         times=stamps[ends],
         positions=positions,
         velocities=_largest(np.array([s.velocity for s in states]), groups),
@@ -81,6 +81,6 @@ def _largest(values: Array, groups: NDArray[np.int64]) -> Array:
     return np.where(high > -low, high, low)
 
 
-def _nothing() -> Series:
+def _nothing() -> TimeSeries:
     joints, place, value = np.empty((0, 6)), np.empty((0, 3)), np.empty(0)
-    return Series(value, joints, joints, joints, place, place, (), value, value)
+    return TimeSeries(value, joints, joints, joints, place, place, (), value, value)

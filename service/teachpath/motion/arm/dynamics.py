@@ -10,20 +10,20 @@ import numpy as np
 from scipy.spatial import ConvexHull
 
 from teachpath.motion.arm.kinematics import jacobian, tool_pose
-from teachpath.motion.arm.mjcf import OBJECT_DENSITY, mjcf
+from teachpath.motion.arm.mjcf import OBJECT_DENSITY, write_mjcf
 from teachpath.motion.arm.puma560 import TORQUE, Array
 from teachpath.motion.arm.variants import arm
 from teachpath.records import Scene, Shape
 
 GRAVITY: Final = np.array([0.0, 0.0, -9.81])  # m/s^2
-SLOW: Final = 0.02  # rad/s, below which Coulomb friction fades out
+COULOMB_FADE_SPEED: Final = 0.02  # rad/s, below which Coulomb friction fades out
 
 
 class Dynamics:
     """The arm without surroundings; what it carries is a mass at the grasp point."""
 
     def __init__(self, carried: Shape | None = None) -> None:
-        self._model = mujoco.MjModel.from_xml_string(mjcf(Scene("nothing")))
+        self._model = mujoco.MjModel.from_xml_string(write_mjcf(Scene("nothing")))
         self._data = mujoco.MjData(self._model)
         # Coulomb friction at the joint is the mean of both directions, as the simulated arm has it.
         self._coulomb = np.array([abs(link.gear) * sum(link.coulomb) / 2 for link in arm().links])
@@ -36,10 +36,10 @@ class Dynamics:
         Siciliano et al., Robotics, Springer 2009, eq. (7.42), with the motors' inertia, viscous and Coulomb friction.
         """
         inertia, gravity, coriolis = self._terms(q, velocity)
-        friction = self._viscous * velocity + self._coulomb * np.tanh(velocity / SLOW)
+        friction = self._viscous * velocity + self._coulomb * np.tanh(velocity / COULOMB_FADE_SPEED)
         return np.asarray(np.einsum("nij,nj->ni", inertia, acceleration) + gravity + coriolis + friction)
 
-    def largest(self, q: Array, velocity: Array, acceleration: Array) -> Array:
+    def torque_bounds(self, q: Array, velocity: Array, acceleration: Array) -> Array:
         """Bound the torques (n, 6) [N m] of everything that may happen on a way.
 
         Args:
@@ -52,13 +52,13 @@ class Dynamics:
         steady = np.maximum(np.abs(gravity), np.abs(gravity + coriolis))
         return np.asarray(np.abs(inertia) @ acceleration + steady + np.abs(self._viscous * velocity) + self._coulomb)
 
-    def share_left(self, q: Array, velocity: Array, acceleration: Array) -> float:
+    def acceleration_share(self, q: Array, velocity: Array, acceleration: Array) -> float:
         """Return the largest share of the acceleration limits (6,) with which `largest` keeps the motors' torques.
 
         Zero or less means that the motors cannot even hold this.
         """
-        steady = self.largest(q, velocity, 0.0 * acceleration)
-        moving = self.largest(q, velocity, acceleration) - steady
+        steady = self.torque_bounds(q, velocity, 0.0 * acceleration)
+        moving = self.torque_bounds(q, velocity, acceleration) - steady
         return float(np.min((TORQUE - steady) / moving))
 
     def _terms(self, q: Array, velocity: Array) -> tuple[Array, Array, Array]:

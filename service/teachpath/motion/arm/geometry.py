@@ -15,17 +15,22 @@ from teachpath.motion.arm.puma560 import FINGER_TRAVEL
 Vector = tuple[float, float, float]
 Quaternion = tuple[float, float, float, float]
 
-CREAM: Final = 0xF7F2E6  # the shell
-DARK: Final = 0x2F343B  # joints, foot and gripper
-STEEL: Final = 0xA3ABB4
-BLUE: Final = 0x1F4E87
+SHELL_COLOR: Final = 0xF7F2E6  # the shell
+JOINT_COLOR: Final = 0x2F343B  # joints, foot and gripper
+STEEL_COLOR: Final = 0xA3ABB4
+PLATE_COLOR: Final = 0x1F4E87
 
-UPRIGHT: Final[Quaternion] = (1.0, 0.0, 0.0, 0.0)
-Z_ALONG_Y: Final[Quaternion] = (cos(radians(45)), sin(radians(-45)), 0.0, 0.0)  # the solid's z along y of the link
+IDENTITY_ROTATION: Final[Quaternion] = (1.0, 0.0, 0.0, 0.0)
+Z_TO_Y_ROTATION: Final[Quaternion] = (
+    cos(radians(45)),
+    sin(radians(-45)),
+    0.0,
+    0.0,
+)  # the solid's z along y of the link
 
 
 @dataclass(frozen=True, slots=True)
-class Part:
+class LinkSolid:
     """One solid, fixed to a link.
 
     Attributes:
@@ -44,21 +49,21 @@ class Part:
     kind: str
     size: tuple[float, ...]
     position: Vector
-    orientation: Quaternion = UPRIGHT
-    color: int = CREAM
+    orientation: Quaternion = IDENTITY_ROTATION
+    color: int = SHELL_COLOR
     outline: tuple[tuple[float, float], ...] = ()
-    opens: Vector = (0.0, 0.0, 0.0)
-    trim: bool = False
+    opening_offset: Vector = (0.0, 0.0, 0.0)
+    visual_only: bool = False
 
 
-def solids() -> tuple[Part, ...]:
+def collision_solids() -> tuple[LinkSolid, ...]:
     """Return every part that is simulated and kept clear of all others."""
-    return tuple(part for part in _PARTS if not part.trim)
+    return tuple(part for part in _SOLIDS if not part.visual_only)
 
 
-def drawing() -> tuple[Part, ...]:
+def visual_solids() -> tuple[LinkSolid, ...]:
     """Return every part of the Puma 560 and its gripper; proportions are our own after photographs of the arm."""
-    return _PARTS
+    return _SOLIDS
 
 
 def _tapered(x0: float, r0: float, x1: float, r1: float, corners: int = 12) -> tuple[tuple[float, float], ...]:
@@ -70,29 +75,29 @@ def _tapered(x0: float, r0: float, x1: float, r1: float, corners: int = 12) -> t
     return tuple([(x1 + r1 * cos(t), r1 * sin(t)) for t in right] + [(x0 + r0 * cos(t), r0 * sin(t)) for t in left])
 
 
-_PARTS: Final = (
-    Part("foot", 0, "cylinder", (0.16, 0.03), (0.0, 0.0, 0.015), color=DARK),
-    Part("pedestal", 0, "cylinder", (0.085, 0.47), (0.0, 0.0, 0.265)),
-    Part("collar", 0, "cylinder", (0.088, 0.016), (0.0, 0.0, 0.494), color=DARK, trim=True),
-    Part("trunk", 1, "cylinder", (0.09, 0.27), (0.0, -0.035, 0.0), Z_ALONG_Y),
-    Part("shoulder", 1, "cylinder", (0.1, 0.285), (0.0, 0.0, 0.0425)),
-    Part("shoulder cap", 1, "cylinder", (0.075, 0.03), (0.0, 0.0, -0.115), color=DARK),
-    Part("shoulder ring", 1, "cylinder", (0.1015, 0.014), (0.0, 0.0, 0.183), color=DARK, trim=True),
-    Part("upper arm", 2, "prism", (0.085,), (0.0, 0.0, 0.2325), outline=_tapered(-0.4318, 0.125, 0.0, 0.075)),
-    Part("shoulder cover", 2, "cylinder", (0.08, 0.02), (-0.4318, 0.0, 0.285), color=DARK),
-    Part("elbow cover", 2, "cylinder", (0.05, 0.02), (0.0, 0.0, 0.285), color=DARK),
-    Part("name plate", 2, "box", (0.16, 0.022, 0.004), (-0.2, 0.0, 0.275), color=BLUE, trim=True),
-    Part("elbow ring", 2, "cylinder", (0.06, 0.008), (0.0, 0.0, 0.1885), color=DARK, trim=True),
+_SOLIDS: Final = (
+    LinkSolid("foot", 0, "cylinder", (0.16, 0.03), (0.0, 0.0, 0.015), color=JOINT_COLOR),
+    LinkSolid("pedestal", 0, "cylinder", (0.085, 0.47), (0.0, 0.0, 0.265)),
+    LinkSolid("collar", 0, "cylinder", (0.088, 0.016), (0.0, 0.0, 0.494), color=JOINT_COLOR, visual_only=True),
+    LinkSolid("trunk", 1, "cylinder", (0.09, 0.27), (0.0, -0.035, 0.0), Z_TO_Y_ROTATION),
+    LinkSolid("shoulder", 1, "cylinder", (0.1, 0.285), (0.0, 0.0, 0.0425)),
+    LinkSolid("shoulder cap", 1, "cylinder", (0.075, 0.03), (0.0, 0.0, -0.115), color=JOINT_COLOR),
+    LinkSolid("shoulder ring", 1, "cylinder", (0.1015, 0.014), (0.0, 0.0, 0.183), color=JOINT_COLOR, visual_only=True),
+    LinkSolid("upper arm", 2, "prism", (0.085,), (0.0, 0.0, 0.2325), outline=_tapered(-0.4318, 0.125, 0.0, 0.075)),
+    LinkSolid("shoulder cover", 2, "cylinder", (0.08, 0.02), (-0.4318, 0.0, 0.285), color=JOINT_COLOR),
+    LinkSolid("elbow cover", 2, "cylinder", (0.05, 0.02), (0.0, 0.0, 0.285), color=JOINT_COLOR),
+    LinkSolid("name plate", 2, "box", (0.16, 0.022, 0.004), (-0.2, 0.0, 0.275), color=PLATE_COLOR, visual_only=True),
+    LinkSolid("elbow ring", 2, "cylinder", (0.06, 0.008), (0.0, 0.0, 0.1885), color=JOINT_COLOR, visual_only=True),
     # The prism's x runs along z of frame 3 (the forearm), its z along -y, its y along -x.
-    Part("forearm", 3, "prism", (0.07,), (0.0, 0.0, 0.0), (0.5, 0.5, -0.5, 0.5),
+    LinkSolid("forearm", 3, "prism", (0.07,), (0.0, 0.0, 0.0), (0.5, 0.5, -0.5, 0.5),
          outline=_tapered(-0.02, 0.08, 0.31, 0.05)),
-    Part("wrist roll", 4, "cylinder", (0.038, 0.075), (0.0, -0.075, 0.0), Z_ALONG_Y, DARK),
-    Part("wrist yoke", 4, "cylinder", (0.034, 0.09), (0.0, 0.0, 0.0)),
-    Part("wrist", 5, "sphere", (0.037,), (0.0, 0.0, 0.0), color=DARK),
-    Part("flange", 6, "cylinder", (0.028, 0.025), (0.0, 0.0, -0.0125), color=STEEL),
-    Part("palm", 6, "box", (0.044, 0.11, 0.035), (0.0, 0.0, 0.0175), color=DARK),
-    Part("left finger", 6, "box", (0.022, 0.012, 0.1), (0.0, 0.026, 0.085), color=STEEL,
-         opens=(0.0, FINGER_TRAVEL, 0.0)),
-    Part("right finger", 6, "box", (0.022, 0.012, 0.1), (0.0, -0.026, 0.085), color=STEEL,
-         opens=(0.0, -FINGER_TRAVEL, 0.0)),
+    LinkSolid("wrist roll", 4, "cylinder", (0.038, 0.075), (0.0, -0.075, 0.0), Z_TO_Y_ROTATION, JOINT_COLOR),
+    LinkSolid("wrist yoke", 4, "cylinder", (0.034, 0.09), (0.0, 0.0, 0.0)),
+    LinkSolid("wrist", 5, "sphere", (0.037,), (0.0, 0.0, 0.0), color=JOINT_COLOR),
+    LinkSolid("flange", 6, "cylinder", (0.028, 0.025), (0.0, 0.0, -0.0125), color=STEEL_COLOR),
+    LinkSolid("palm", 6, "box", (0.044, 0.11, 0.035), (0.0, 0.0, 0.0175), color=JOINT_COLOR),
+    LinkSolid("left finger", 6, "box", (0.022, 0.012, 0.1), (0.0, 0.026, 0.085), color=STEEL_COLOR,
+         opening_offset=(0.0, FINGER_TRAVEL, 0.0)),
+    LinkSolid("right finger", 6, "box", (0.022, 0.012, 0.1), (0.0, -0.026, 0.085), color=STEEL_COLOR,
+         opening_offset=(0.0, -FINGER_TRAVEL, 0.0)),
 )  # fmt: skip

@@ -11,24 +11,24 @@ from scipy.interpolate import BSpline, make_interp_spline
 
 from teachpath.motion.arm.puma560 import ACCELERATION, JERK, SPEED, Array
 
-DEGREE: Final = 5
-DENSITY: Final = 4  # samples per node that show what lies between the nodes
+SPLINE_DEGREE: Final = 5
+SAMPLES_PER_NODE: Final = 4  # samples per node that show what lies between the nodes
 
 
 @dataclass(frozen=True, eq=False)
-class Limits:
+class MotionLimits:
     """What the joints may do: (6,) each, in rad/s, rad/s^2, rad/s^3."""
 
     speed: Array
     acceleration: Array
     jerk: Array
 
-    def scaled(self, speed: float, acceleration: float, jerk: float) -> Limits:
+    def scaled(self, speed: float, acceleration: float, jerk: float) -> MotionLimits:
         """Return these limits times one factor each."""
-        return Limits(speed * self.speed, acceleration * self.acceleration, jerk * self.jerk)
+        return MotionLimits(speed * self.speed, acceleration * self.acceleration, jerk * self.jerk)
 
 
-ARM: Final = Limits(SPEED, ACCELERATION, JERK)
+ARM_LIMITS: Final = MotionLimits(SPEED, ACCELERATION, JERK)
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,14 +46,14 @@ class JointPath:
     joints: Array
 
     @property
-    def end(self) -> float:
+    def length(self) -> float:
         """Length of the whole way [m]."""
         return float(self.lengths[-1])
 
     @cached_property
     def spline(self) -> BSpline[np.float64]:
         """The six joints and the length by the parameter."""
-        return make_interp_spline(self.nodes, np.column_stack([self.joints, self.lengths]), k=DEGREE)
+        return make_interp_spline(self.nodes, np.column_stack([self.joints, self.lengths]), k=SPLINE_DEGREE)
 
     @cached_property
     def _derivatives(self) -> tuple[BSpline[np.float64], ...]:
@@ -64,7 +64,7 @@ class JointPath:
         at = np.clip(parameter, self.nodes[0], self.nodes[-1])
         return np.asarray(self._derivatives[order](at), dtype=np.float64)
 
-    def dense(self) -> Array:
+    def dense_parameters(self) -> Array:
         """Return parameters several times denser than the nodes."""
-        grid = np.arange((len(self.nodes) - 1) * DENSITY + 1) / DENSITY
+        grid = np.arange((len(self.nodes) - 1) * SAMPLES_PER_NODE + 1) / SAMPLES_PER_NODE
         return np.interp(grid, np.arange(len(self.nodes)), self.nodes)

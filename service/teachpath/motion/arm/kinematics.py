@@ -15,9 +15,9 @@ from teachpath.motion.arm.variants import arm
 Array = NDArray[np.float64]
 
 # Below this sine of joint 5 the axes of joints 4 and 6 coincide and only the sum of their angles is determined.
-WRIST_SINGULAR: Final = 1e-9
+SINGULAR_WRIST_SINE: Final = 1e-9
 
-BRANCHES: Final = tuple(
+BRANCH_NAMES: Final = tuple(
     f"{shoulder} {elbow} {wrist}"
     for shoulder in ("righty", "lefty")
     for elbow in ("up", "down")
@@ -26,18 +26,18 @@ BRANCHES: Final = tuple(
 
 
 @dataclass(frozen=True)
-class Lengths:
+class LinkLengths:
     """What the inverse kinematics uses of an arm [m]; `bend` is the angle between forearm and link 3 [rad]."""
 
-    shoulder: float  # of joint 2 above the floor
+    shoulder_height: float  # of joint 2 above the floor
     upper_arm: float
-    offset: float  # of the arm beside the axis of joint 1
+    shoulder_offset: float  # of the arm beside the axis of joint 1
     forearm: float  # from elbow to wrist
-    bend: float
-    hand: float  # from wrist to grasp point
+    forearm_angle: float
+    wrist_to_grasp: float  # from wrist to grasp point
 
     @classmethod
-    def of(cls, variant: Variant) -> Lengths:
+    def of_variant(cls, variant: Variant) -> LinkLengths:
         """Return the lengths of a variant."""
         rows = variant.links
         forearm, bend = hypot(rows[2].a, rows[3].d), atan2(rows[3].d, rows[2].a)
@@ -85,7 +85,7 @@ def jacobian(q: Array, variant: Variant | None = None) -> Array:
     return np.concatenate([np.swapaxes(np.cross(axes, arms), -1, -2), np.swapaxes(axes, -1, -2)], axis=-2)
 
 
-def downward(positions: Array, roll: float) -> Array:
+def downward_poses(positions: Array, roll: float) -> Array:
     """Build tool poses that point straight down.
 
     Args:
@@ -104,7 +104,7 @@ def downward(positions: Array, roll: float) -> Array:
 
 
 @dataclass(frozen=True, eq=False)
-class Solutions:
+class IkSolutions:
     """All inverse kinematics of n poses.
 
     Attributes:
@@ -115,11 +115,11 @@ class Solutions:
     """
 
     joints: Array
-    excess: Array
-    beyond: NDArray[np.bool_]
+    reach_excess: Array
+    beyond_outer_reach: NDArray[np.bool_]
 
 
-def inverse(poses: Array, *, q4_before: float = 0.0, variant: Variant | None = None) -> Solutions:
+def inverse_kinematics(poses: Array, *, previous_q4: float = 0.0, variant: Variant | None = None) -> IkSolutions:
     """Solve the inverse kinematics in closed form, all 8 branches (after Paul 1981, ch. 3, and Lee & Ziegler 1984).
 
     At a singular wrist (joint 5 zero) joint 4 keeps the value of the pose before it.
@@ -129,30 +129,30 @@ def inverse(poses: Array, *, q4_before: float = 0.0, variant: Variant | None = N
         q4_before: joint 4 before the first pose [rad], for a path that begins at a singular wrist.
     """
     of = variant or arm()
-    lengths = Lengths.of(of)
+    lengths = LinkLengths.of_variant(of)
     joints = np.zeros((len(poses), 8, 6))
     reach = _Reach.of(poses, lengths)
     for branch in range(8):
         side = 1.0 if branch < 4 else -1.0
         up = (branch // 2) % 2 == 0
         joints[:, branch, :3] = reach.shoulder_and_elbow(side, (-1.0 if up else 1.0) * side)
-        joints[:, branch, 3:] = _wrist(joints[:, branch, :3], poses, of, flip=branch % 2 == 1, before=q4_before)
+        joints[:, branch, 3:] = _wrist(joints[:, branch, :3], poses, of, flip=branch % 2 == 1, before=previous_q4)
     joints = np.pi - np.mod(np.pi - joints, 2 * np.pi)
-    return Solutions(joints, np.repeat(reach.excess[:, None], 8, axis=1), reach.beyond)
+    return IkSolutions(joints, np.repeat(reach.excess[:, None], 8, axis=1), reach.beyond)
 
 
-def least_singular_value(q: Array) -> Array:
+def min_singular_value(q: Array) -> Array:
     """Compute the least singular value (...,) of the Jacobian at configurations (..., 6)."""
     return np.asarray(np.linalg.svd(jacobian(q), compute_uv=False)[..., -1], dtype=np.float64)
 
 
-def explain_reach(excess: float, beyond: bool, s: float) -> str:
+def describe_reach(excess: float, beyond: bool, s: float) -> str:
     """Say why a pose at arc length `s` [m] has no configuration."""
     where = "outside the reach" if beyond else "too near to the arm's own axis"
     return f"wrist centre {100 * excess:.1f} cm {where} at s = {s:.3f} m"
 
 
-def rotations(quaternions: Array) -> Array:
+def rotation_matrices(quaternions: Array) -> Array:
     """Return the rotation matrices (m, 3, 3) of unit quaternions (m, 4), w first."""
     w, x, y, z = quaternions.T
     rows = [
@@ -167,17 +167,17 @@ def rotations(quaternions: Array) -> Array:
 class _Reach:
     """Where n wrist centres lie, seen from the shoulder [m]."""
 
-    lengths: Lengths
+    lengths: LinkLengths
     wrist: Array  # (n, 3)
     along: Array  # (n,) level distance in the plane of the arm
     height: Array
     far: Array  # distance
 
     @classmethod
-    def of(cls, poses: Array, lengths: Lengths) -> _Reach:
-        wrist = poses[:, :3, 3] - lengths.hand * poses[:, :3, 2]
-        along = np.sqrt(np.maximum(wrist[:, 0] ** 2 + wrist[:, 1] ** 2 - lengths.offset**2, 0.0))
-        height = wrist[:, 2] - lengths.shoulder
+    def of(cls, poses: Array, lengths: LinkLengths) -> _Reach:
+        wrist = poses[:, :3, 3] - lengths.wrist_to_grasp * poses[:, :3, 2]
+        along = np.sqrt(np.maximum(wrist[:, 0] ** 2 + wrist[:, 1] ** 2 - lengths.shoulder_offset**2, 0.0))
+        height = wrist[:, 2] - lengths.shoulder_height
         return cls(lengths, wrist, along, height, np.hypot(along, height))
 
     @property
@@ -188,7 +188,7 @@ class _Reach:
     def excess(self) -> Array:
         """How far each lies outside the reach; at most 0 inside."""
         long, short = self.lengths.upper_arm, self.lengths.forearm
-        inner = self.lengths.offset - np.hypot(self.wrist[:, 0], self.wrist[:, 1])
+        inner = self.lengths.shoulder_offset - np.hypot(self.wrist[:, 0], self.wrist[:, 1])
         return np.maximum(np.maximum(inner, self.far - (long + short)), abs(long - short) - self.far)
 
     def shoulder_and_elbow(self, side: float, knee: float) -> Array:
@@ -196,11 +196,11 @@ class _Reach:
         of = self.lengths
         bend = np.clip((self.far**2 - of.upper_arm**2 - of.forearm**2) / (2 * of.upper_arm * of.forearm), -1.0, 1.0)
         # Seen along joint 2 the wrist lies ahead for righty, behind for lefty; z of frame 1 points to the arm's side.
-        q1 = np.arctan2(self.wrist[:, 1], self.wrist[:, 0]) + np.arctan2(of.offset, side * self.along)
+        q1 = np.arctan2(self.wrist[:, 1], self.wrist[:, 0]) + np.arctan2(of.shoulder_offset, side * self.along)
         inside = knee * np.arccos(bend)
         across, onward = of.forearm * np.sin(inside), of.upper_arm + of.forearm * np.cos(inside)
         q2 = np.arctan2(self.height, side * self.along) - np.arctan2(across, onward)
-        return np.column_stack([q1, q2, inside - of.bend])
+        return np.column_stack([q1, q2, inside - of.forearm_angle])
 
 
 def _wrist(arm_joints: Array, poses: Array, variant: Variant, *, flip: bool, before: float) -> Array:
@@ -212,7 +212,7 @@ def _wrist(arm_joints: Array, poses: Array, variant: Variant, *, flip: bool, bef
     sine = np.hypot(turn[:, 0, 2], turn[:, 1, 2])
     q5 = np.arctan2(sign * sine, turn[:, 2, 2])
     q4 = np.arctan2(-sign * turn[:, 1, 2], -sign * turn[:, 0, 2])
-    for k in np.flatnonzero(sine < WRIST_SINGULAR):
+    for k in np.flatnonzero(sine < SINGULAR_WRIST_SINE):
         q4[k] = q4[k - 1] if k else before
         q5[k] = 0.0 if turn[k, 2, 2] > 0 else np.pi
     # With joint 4 known, the rest of the turn is Ry(-q5) Rz(q6), whose middle row is that of Rz(q6).

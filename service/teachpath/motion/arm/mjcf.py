@@ -8,24 +8,24 @@ from xml.sax.saxutils import quoteattr
 import numpy as np
 
 from teachpath.errors import UnusableInput
-from teachpath.motion.arm.geometry import Part, solids
+from teachpath.motion.arm.geometry import LinkSolid, collision_solids
 from teachpath.motion.arm.kinematics import link_frames
 from teachpath.motion.arm.puma560 import GRIPPER_COM, GRIPPER_INERTIA, GRIPPER_MASS, TOOL_LENGTH, Array, Link, Variant
 from teachpath.motion.arm.variants import arm
 from teachpath.records import Scene, Shape
 
-CARRIED: Final = "carried"  # body and geom of the carried object
-GRASP: Final = "grasp"  # the weld that holds it: set its relative pose, then eq_active
-TOOL: Final = "tool"  # site at the grasp point
+CARRIED_BODY: Final = "carried"  # body and geom of the carried object
+GRASP_WELD: Final = "grasp"  # the weld that holds it: set its relative pose, then eq_active
+TOOL_SITE: Final = "tool"  # site at the grasp point
 OBJECT_DENSITY: Final = 300.0  # kg/m^3, of the carried object: a light wooden block
 
 # Contacts: the arm touches obstacles, not itself nor what it carries (the certificate keeps it clear of itself).
-_OBSTACLE: Final = 'contype="1" conaffinity="1"'
-_ARM: Final = 'contype="0" conaffinity="1"'
-_OBJECT: Final = 'contype="2" conaffinity="1"'
+_OBSTACLE_CONTACTS: Final = 'contype="1" conaffinity="1"'
+_ARM_CONTACTS: Final = 'contype="0" conaffinity="1"'
+_OBJECT_CONTACTS: Final = 'contype="2" conaffinity="1"'
 
 
-def mjcf(scene: Scene, *, timestep: float = 0.001, variant: Variant | None = None) -> str:
+def write_mjcf(scene: Scene, *, timestep: float = 0.001, variant: Variant | None = None) -> str:
     """Write the MJCF of arm and scene.
 
     Bodies `link1` to `link6` lie in the Denavit-Hartenberg frames, so that a body's pose is that of `link_frames`;
@@ -47,11 +47,11 @@ def mjcf(scene: Scene, *, timestep: float = 0.001, variant: Variant | None = Non
             '<compiler angle="radian" autolimits="true"/>',
             f'<option timestep="{timestep}" gravity="0 0 -9.81" integrator="implicitfast"/>',
             "<asset>",
-            *[_mesh(part) for part in solids() if part.kind == "prism"],
+            *[_mesh(part) for part in collision_solids() if part.kind == "prism"],
             *[_hull(shape, name) for name, shape in _bodies(scene) if shape.kind == "mesh"],
             "</asset>",
             "<worldbody>",
-            *_parts_of(0),
+            *_solids_of(0),
             *[_obstacle(shape) for shape in scene.obstacles],
             *_arm(of),
             *([_carried(scene.carried)] if scene.carried else []),
@@ -93,10 +93,10 @@ def _arm(variant: Variant) -> list[str]:
             f'frictionloss="{abs(link.gear) * sum(link.coulomb) / 2!r}"/>',
             f'<inertial pos="{_text(link.com)}" mass="{max(link.mass, 1e-3)!r}" '
             f'diaginertia="{_text(physical_inertia(link))}"/>',
-            *_parts_of(i),
+            *_solids_of(i),
         ]
     lines += [
-        f'<site name="{TOOL}" pos="0 0 {TOOL_LENGTH}" size="0.004"/>',
+        f'<site name="{TOOL_SITE}" pos="0 0 {TOOL_LENGTH}" size="0.004"/>',
         '<body name="gripper">',
         f'<inertial pos="{_text(GRIPPER_COM)}" mass="{GRIPPER_MASS}" diaginertia="{_text(GRIPPER_INERTIA)}"/>',
         "</body>",
@@ -104,31 +104,31 @@ def _arm(variant: Variant) -> list[str]:
     return lines + ["</body>"] * len(variant.links)
 
 
-def _parts_of(link: int) -> list[str]:
-    return [_part(part) for part in solids() if part.link == link]
+def _solids_of(link: int) -> list[str]:
+    return [_link_solid(part) for part in collision_solids() if part.link == link]
 
 
-def _part(part: Part) -> str:
+def _link_solid(solid: LinkSolid) -> str:
     sizes = {
-        "box": f'type="box" size="{_text(np.array(part.size) / 2)}"',
-        "sphere": f'type="sphere" size="{_text(part.size)}"',
-        "prism": f'type="mesh" mesh={quoteattr(part.name)}',
+        "box": f'type="box" size="{_text(np.array(solid.size) / 2)}"',
+        "sphere": f'type="sphere" size="{_text(solid.size)}"',
+        "prism": f'type="mesh" mesh={quoteattr(solid.name)}',
     }
-    size = sizes.get(part.kind) or f'type="cylinder" size="{part.size[0]!r} {part.size[1] / 2!r}"'
+    size = sizes.get(solid.kind) or f'type="cylinder" size="{solid.size[0]!r} {solid.size[1] / 2!r}"'
     return (
-        f'<geom name={quoteattr(part.name)} {size} pos="{_text(part.position)}" quat="{_text(part.orientation)}" '
-        f'rgba="{_color(part.color)}" mass="0" {_ARM}/>'
+        f'<geom name={quoteattr(solid.name)} {size} pos="{_text(solid.position)}" quat="{_text(solid.orientation)}" '
+        f'rgba="{_color(solid.color)}" mass="0" {_ARM_CONTACTS}/>'
     )
 
 
-def _mesh(part: Part) -> str:
-    half = part.size[0] / 2
-    corners = [[x, y, z] for x, y in part.outline for z in (-half, half)]
-    return f'<mesh name={quoteattr(part.name)} vertex="{_text(np.ravel(corners))}"/>'
+def _mesh(solid: LinkSolid) -> str:
+    half = solid.size[0] / 2
+    corners = [[x, y, z] for x, y in solid.outline for z in (-half, half)]
+    return f'<mesh name={quoteattr(solid.name)} vertex="{_text(np.ravel(corners))}"/>'
 
 
 def _bodies(scene: Scene) -> list[tuple[str, Shape]]:
-    carried = [(CARRIED, scene.carried)] if scene.carried else []
+    carried = [(CARRIED_BODY, scene.carried)] if scene.carried else []
     return [(f"obstacle:{shape.name}", shape) for shape in scene.obstacles] + carried
 
 
@@ -140,20 +140,20 @@ def _obstacle(shape: Shape) -> str:
     name = f"obstacle:{shape.name}"
     return (
         f'<geom name={quoteattr(name)} {_solid(shape, name)} pos="{_text(shape.position)}" '
-        f'quat="{_text(shape.orientation)}" rgba="{_color(shape.color)}" {_OBSTACLE}/>'
+        f'quat="{_text(shape.orientation)}" rgba="{_color(shape.color)}" {_OBSTACLE_CONTACTS}/>'
     )
 
 
 def _carried(shape: Shape) -> str:
     return (
-        f'<body name="{CARRIED}" pos="{_text(shape.position)}" quat="{_text(shape.orientation)}">'
-        f'<freejoint name="{CARRIED}"/><geom name="{CARRIED}" {_solid(shape, CARRIED)} density="{OBJECT_DENSITY}" '
-        f'rgba="{_color(shape.color)}" {_OBJECT}/></body>'
+        f'<body name="{CARRIED_BODY}" pos="{_text(shape.position)}" quat="{_text(shape.orientation)}">'
+        f'<freejoint name="{CARRIED_BODY}"/><geom name="{CARRIED_BODY}" {_solid(shape, CARRIED_BODY)} '
+        f'density="{OBJECT_DENSITY}" rgba="{_color(shape.color)}" {_OBJECT_CONTACTS}/></body>'
     )
 
 
 def _grasp() -> str:
-    return f'<equality><weld name="{GRASP}" body1="link6" body2="{CARRIED}" active="false"/></equality>'
+    return f'<equality><weld name="{GRASP_WELD}" body1="link6" body2="{CARRIED_BODY}" active="false"/></equality>'
 
 
 def _motor(number: int, link: Link) -> str:

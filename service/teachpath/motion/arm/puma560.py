@@ -71,7 +71,7 @@ TOOLBOX_AKB: Final = (
     f"{ARMSTRONG}; as in P. Corke's Robotics Toolbox for MATLAB, mdl_puma560akb, converted from its modified frames"
 )
 
-DEFAULT: Final = "corke-armstrong"
+DEFAULT_VARIANT: Final = "corke-armstrong"
 _SOURCES: Final[dict[str, str]] = {
     "d": f"{CORKE_ARMSTRONG}; d of joint 1 (26.45 in, floor to shoulder) and of joint 6 (flange): {CORKE}, ch. 2",
     "a": CORKE_ARMSTRONG,
@@ -118,7 +118,9 @@ class Variant:
 def _variant(name: str, columns: Mapping[str, tuple[str, tuple[Any, ...]]]) -> Variant:
     """Return the variant with these columns, each a source and six values; the others are those of the default."""
     links = tuple(replace(link, **{c: v[i] for c, (_, v) in columns.items()}) for i, link in enumerate(_LINKS))
-    borrowed = {column: f"not given there, so that of {DEFAULT}: {source}" for column, source in _SOURCES.items()}
+    borrowed = {
+        column: f"not given there, so that of {DEFAULT_VARIANT}: {source}" for column, source in _SOURCES.items()
+    }
     return Variant(name, links, borrowed | {column: source for column, (source, _) in columns.items()})
 
 
@@ -126,7 +128,7 @@ _RANGES = f"{FU_GONZALEZ_LEE}: the same ranges, with his zero half a turn off in
 VARIANTS: Final[Mapping[str, Variant]] = {
     variant.name: variant
     for variant in (
-        Variant(DEFAULT, _LINKS, _SOURCES),
+        Variant(DEFAULT_VARIANT, _LINKS, _SOURCES),
         _variant("armstrong-khatib-burdick", {
             "d": (TOOLBOX_AKB, (0.67183, 0.0, 0.2435 - 0.0934, 0.4331, 0.0, 0.05625)),
             "a": (TOOLBOX_AKB, (0.0, 0.4318, 0.0203, 0.0, 0.0, 0.0)),

@@ -5,14 +5,14 @@ from __future__ import annotations
 from typing import Final
 
 from teachpath.errors import UnusableSettings
-from teachpath.motion.arm.puma560 import DEFAULT, VARIANTS, Variant
+from teachpath.motion.arm.puma560 import DEFAULT_VARIANT, VARIANTS, Variant
 
 
 class _Choice:
     """A variant that can be chosen until it is used."""
 
     def __init__(self) -> None:
-        self._name, self._used = DEFAULT, False
+        self._name, self._used = DEFAULT_VARIANT, False
 
     def choose(self, name: str) -> None:
         if name not in VARIANTS:

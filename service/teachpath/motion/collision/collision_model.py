@@ -12,17 +12,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from teachpath.errors import UnusableInput
-from teachpath.motion.arm.geometry import Part, solids
-from teachpath.motion.arm.kinematics import link_frames, rotations, tool_pose
-from teachpath.motion.arm.mjcf import CARRIED, mjcf
+from teachpath.motion.arm.geometry import LinkSolid, collision_solids
+from teachpath.motion.arm.kinematics import link_frames, rotation_matrices, tool_pose
+from teachpath.motion.arm.mjcf import CARRIED_BODY, write_mjcf
 from teachpath.motion.arm.puma560 import TOOL_LENGTH, Array
 from teachpath.motion.arm.variants import arm
 from teachpath.records import Scene, Shape, Vector
 
-FAR: Final = 0.3  # m, distances are not looked at beyond this
+MAX_DISTANCE: Final = 0.3  # m, distances are not looked at beyond this
 # Neighbours touch by design, and of these pairs of links the distance hardly changes: their joints' limits keep them.
-_NEVER_MEET: Final = {(0, 1), (0, 2), (1, 2), (2, 3), (3, 4), (3, 5), (4, 5), (4, 6), (5, 6)}
-_TURNS_IN_PLACE: Final = "trunk"
+_IGNORED_LINK_PAIRS: Final = {(0, 1), (0, 2), (1, 2), (2, 3), (3, 4), (3, 5), (4, 5), (4, 6), (5, 6)}
+_ROTATING_COLUMN: Final = "trunk"
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,18 +30,18 @@ class Clearance:
     """A least distance [m] (negative: how deep they overlap), and between whom; without names it is at least that."""
 
     distance: float
-    part: str
-    other: str
+    body: str
+    other_body: str
 
-    def too_near(self, distance: float, least: float) -> str:
+    def describe_violation(self, distance: float, required: float) -> str:
         """Return the words for a distance [m] below the least one; that is negative where they may overlap so deep."""
         if distance >= 0.0:
-            near = f"{self.part} comes within {1000 * distance:.1f} mm of {self.other}"
-            return f"{near}, least allowed {1000 * least:.1f} mm"
-        deep = f"{self.part} goes {-1000 * distance:.1f} mm into {self.other}"
-        if least < 0.0:
-            return f"{deep}, at most {-1000 * least:.1f} mm are allowed"
-        return f"{deep}, has to stay {1000 * least:.1f} mm away"
+            near = f"{self.body} comes within {1000 * distance:.1f} mm of {self.other_body}"
+            return f"{near}, least allowed {1000 * required:.1f} mm"
+        deep = f"{self.body} goes {-1000 * distance:.1f} mm into {self.other_body}"
+        if required < 0.0:
+            return f"{deep}, at most {-1000 * required:.1f} mm are allowed"
+        return f"{deep}, has to stay {1000 * required:.1f} mm away"
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,9 +54,9 @@ class Load:
         turned: (3, 3) its orientation there; None as it stands at its start.
     """
 
-    grasp: Array | None = None
-    placed: Vector | None = None
-    turned: Array | None = None
+    grasp_pose: Array | None = None
+    position: Vector | None = None
+    rotation: Array | None = None
 
 
 class CollisionModel:
@@ -66,17 +66,17 @@ class CollisionModel:
         """Build the model; raises UnusableInput when the scene has a shape without size, or two of one name."""
         self.scene = scene
         try:
-            self._model = mujoco.MjModel.from_xml_string(mjcf(scene))
+            self._model = mujoco.MjModel.from_xml_string(write_mjcf(scene))
         except ValueError as error:
             raise UnusableInput(f"scene {scene.name!r} cannot be built: {error}") from None
         self._data = mujoco.MjData(self._model)
-        self._parts = {self._id(part.name): part for part in solids()}
-        self._names = {geom: part.name for geom, part in self._parts.items()}
+        self._solids = {self._id(part.name): part for part in collision_solids()}
+        self._names = {geom: part.name for geom, part in self._solids.items()}
         self._obstacles = []
         for shape in scene.obstacles:
             self._obstacles.append(self._id(f"obstacle:{shape.name}"))
             self._names[self._obstacles[-1]] = shape.name
-        self._object = self._id(CARRIED) if scene.carried else -1
+        self._object = self._id(CARRIED_BODY) if scene.carried else -1
         if scene.carried:
             self._names[self._object] = scene.carried.name
         self._closed = self._model.geom_pos.copy()
@@ -92,27 +92,27 @@ class CollisionModel:
             load: where the carried object is; None when there is none.
             gripper_open: whether the fingers are apart.
         """
-        return self._rows(q, self._pairs(load), load, gripper_open)
+        return self._clearances(q, self._pairs(load), load, gripper_open)
 
-    def supports(self, q: Array, load: Load) -> list[Clearance]:
+    def support_distances(self, q: Array, load: Load) -> list[Clearance]:
         """Measure the distance of the carried object to what it stands on at its start (0: they touch)."""
-        return self._rows(q, [(self._object, other) for other in self._standing_on()], load, False)
+        return self._clearances(q, [(self._object, other) for other in self._supports()], load, False)
 
-    def straddles(self, q: Array, load: Load) -> list[Clearance]:
+    def finger_distances(self, q: Array, load: Load) -> list[Clearance]:
         """Measure the distance of the open fingers to the object that stands between them."""
-        fingers = [geom for geom, part in self._parts.items() if part.opens[1]]
-        return self._rows(q, [(finger, self._object) for finger in fingers], load, True)
+        fingers = [geom for geom, part in self._solids.items() if part.opening_offset[1]]
+        return self._clearances(q, [(finger, self._object) for finger in fingers], load, True)
 
-    def levers(self, load: Load | None = None) -> Array:
+    def lever_arms(self, load: Load | None = None) -> Array:
         """Bound how far from each joint's axis any moving point can be (6,) [m], whatever the configuration."""
         self._place(np.zeros(6), None)
         origins = link_frames(np.zeros(6))[:, :3, 3]
         radius = np.zeros(7)
-        for geom, part in self._parts.items():
-            off = np.linalg.norm(self._data.geom_xpos[geom] - origins[part.link]) + np.linalg.norm(part.opens)
+        for geom, part in self._solids.items():
+            off = np.linalg.norm(self._data.geom_xpos[geom] - origins[part.link]) + np.linalg.norm(part.opening_offset)
             radius[part.link] = max(radius[part.link], off + self._model.geom_rbound[geom])
-        if load is not None and load.grasp is not None:
-            off = np.linalg.norm(load.grasp[:3, 3] + np.array([0.0, 0.0, TOOL_LENGTH]))
+        if load is not None and load.grasp_pose is not None:
+            off = np.linalg.norm(load.grasp_pose[:3, 3] + np.array([0.0, 0.0, TOOL_LENGTH]))
             radius[6] = max(radius[6], off + self._model.geom_rbound[self._object])
         levers, far = np.zeros(6), 0.0  # far: from the frame behind a joint to any point that it moves
         for joint in range(5, -1, -1):
@@ -126,40 +126,42 @@ class CollisionModel:
         return int(self._model.geom(name).id)
 
     def _pairs(self, load: Load | None) -> list[tuple[int, int]]:
-        supports, pairs = self._standing_on(), self._arm_pairs()
-        if load is not None and load.grasp is not None:
+        supports, pairs = self._supports(), self._arm_pairs()
+        if load is not None and load.grasp_pose is not None:
             pairs += [(self._object, other) for other in self._obstacles if other not in supports]
-            pairs += [(self._object, geom) for geom, part in self._parts.items() if part.link <= 4]
+            pairs += [(self._object, geom) for geom, part in self._solids.items() if part.link <= 4]
         elif load is not None:
             pairs += [
-                (geom, self._object) for geom, part in self._parts.items() if part.link >= 2 and not part.opens[1]
+                (geom, self._object)
+                for geom, part in self._solids.items()
+                if part.link >= 2 and not part.opening_offset[1]
             ]
         return pairs
 
     def _arm_pairs(self) -> list[tuple[int, int]]:
-        moving = [geom for geom, part in self._parts.items() if part.link >= 1 and part.name != _TURNS_IN_PLACE]
+        moving = [geom for geom, part in self._solids.items() if part.link >= 1 and part.name != _ROTATING_COLUMN]
         pairs = [(geom, obstacle) for geom in moving for obstacle in self._obstacles]
-        for (one, a), (two, b) in combinations(self._parts.items(), 2):
+        for (one, a), (two, b) in combinations(self._solids.items(), 2):
             if _may_meet(a, b):
                 pairs.append((one, two))
         return pairs
 
-    def _standing_on(self, touching: float = 0.003) -> set[int]:
+    def _supports(self, touching: float = 0.003) -> set[int]:
         carried = self.scene.carried
         if carried is None:
             return set()
-        self._place(np.zeros(6), standing(carried))
-        return {other for other in self._obstacles if self._distance(self._object, other, FAR) <= touching}
+        self._place(np.zeros(6), shape_pose(carried))
+        return {other for other in self._obstacles if self._distance(self._object, other, MAX_DISTANCE) <= touching}
 
-    def _standing(self, load: Load | None) -> Array | None:
+    def _placed_pose(self, load: Load | None) -> Array | None:
         """Return the pose (4, 4) of the object where it stands in the world, or None."""
         carried = self.scene.carried
-        if load is None or load.placed is None or carried is None:
+        if load is None or load.position is None or carried is None:
             return None
-        pose = standing(carried)
-        pose[:3, 3] = load.placed
-        if load.turned is not None:
-            pose[:3, :3] = load.turned
+        pose = shape_pose(carried)
+        pose[:3, 3] = load.position
+        if load.rotation is not None:
+            pose[:3, :3] = load.rotation
         return pose
 
     def _place(self, q: Array, pose: Array | None) -> None:
@@ -173,26 +175,26 @@ class CollisionModel:
     def _distance(self, one: int | np.int64, two: int | np.int64, furthest: float) -> float:
         return float(mujoco.mj_geomDistance(self._model, self._data, int(one), int(two), furthest, None))
 
-    def _rows(
+    def _clearances(
         self, q: Array, pairs: Iterable[tuple[int, int]], load: Load | None, gripper_open: bool
     ) -> list[Clearance]:
         self._model.geom_pos[:] = self._closed
         if gripper_open:
-            for geom, part in self._parts.items():
-                self._model.geom_pos[geom] += part.opens
+            for geom, part in self._solids.items():
+                self._model.geom_pos[geom] += part.opening_offset
         q = np.atleast_2d(q)
-        held = tool_pose(q) @ load.grasp if load is not None and load.grasp is not None else None
+        held = tool_pose(q) @ load.grasp_pose if load is not None and load.grasp_pose is not None else None
         pair = np.array(list(pairs), dtype=np.int64).reshape(-1, 2)
         radii = self._model.geom_rbound[pair]  # (pairs, 2) of the two bounding spheres
         boxes = np.flatnonzero(self._model.geom_type[pair[:, 1]] == mujoco.mjtGeom.mjGEOM_BOX)
-        standing = self._standing(load)
+        standing = self._placed_pose(load)
         objects = [standing if held is None else held[index] for index in range(len(q))]
-        places, turns = self._geoms(q, objects)
+        places, turns = self._geom_poses(q, objects)
         rows, nearest = [], 0
-        for gap, row, pose in zip(self._gaps(pair, radii, boxes, places, turns), q, objects, strict=True):
+        for gap, row, pose in zip(self._distance_bounds(pair, radii, boxes, places, turns), q, objects, strict=True):
             self._place(row, pose)
             # Who was nearest in the row before is so again mostly, and then few others have to be measured.
-            best = self._distance(pair[nearest, 0], pair[nearest, 1], FAR) if len(pair) else FAR
+            best = self._distance(pair[nearest, 0], pair[nearest, 1], MAX_DISTANCE) if len(pair) else MAX_DISTANCE
             close = np.flatnonzero(gap < best)
             for k in close[np.argsort(gap[close])].tolist():
                 if gap[k] >= best:
@@ -200,11 +202,11 @@ class CollisionModel:
                 distance = self._distance(pair[k, 0], pair[k, 1], max(best, 0.001))
                 if distance < best:
                     best, nearest = distance, k
-            one, other = (self._names[int(geom)] for geom in pair[nearest]) if best < FAR else ("", "")
+            one, other = (self._names[int(geom)] for geom in pair[nearest]) if best < MAX_DISTANCE else ("", "")
             rows.append(Clearance(best, one, other))
         return rows
 
-    def _geoms(self, q: Array, objects: Sequence[Array | None]) -> tuple[Array, Array]:
+    def _geom_poses(self, q: Array, objects: Sequence[Array | None]) -> tuple[Array, Array]:
         """Return where all solids are (n, geoms, 3) and how they are turned (n, geoms, 3, 3)."""
         places = np.empty((len(q), self._model.ngeom, 3))
         turns = np.empty((len(q), self._model.ngeom, 9))
@@ -213,7 +215,7 @@ class CollisionModel:
             places[index], turns[index] = self._data.geom_xpos, self._data.geom_xmat
         return places, turns.reshape(len(q), -1, 3, 3)
 
-    def _gaps(
+    def _distance_bounds(
         self, pair: NDArray[np.int64], radii: Array, boxes: NDArray[np.int64], places: Array, turns: Array
     ) -> Array:
         """Return distances (n, pairs) that are quick and never too large: of bounding spheres, or of one and a box.
@@ -233,21 +235,21 @@ class CollisionModel:
         return np.asarray(gaps, dtype=np.float64)
 
 
-def grasp_of(scene: Scene, start: Array) -> Load | None:
+def grasped_load(scene: Scene, start: Array) -> Load | None:
     """Return how the scene's object is held once it was grasped at configuration `start` (6,); None without one."""
     if scene.carried is None:
         return None
-    return Load(grasp=np.linalg.inv(tool_pose(start)) @ standing(scene.carried))
+    return Load(grasp_pose=np.linalg.inv(tool_pose(start)) @ shape_pose(scene.carried))
 
 
-def standing(shape: Shape) -> Array:
+def shape_pose(shape: Shape) -> Array:
     """Return the pose (4, 4) to world of a shape where its scene has it."""
     pose = np.eye(4)
-    pose[:3, :3] = rotations(np.array([shape.orientation]))[0]
+    pose[:3, :3] = rotation_matrices(np.array([shape.orientation]))[0]
     pose[:3, 3] = shape.position
     return pose
 
 
-def _may_meet(a: Part, b: Part) -> bool:
+def _may_meet(a: LinkSolid, b: LinkSolid) -> bool:
     low, high = sorted((a.link, b.link))
-    return low != high and (low, high) not in _NEVER_MEET
+    return low != high and (low, high) not in _IGNORED_LINK_PAIRS

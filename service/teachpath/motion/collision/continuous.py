@@ -18,17 +18,17 @@ from teachpath.motion.arm.joint_path import JointPath
 from teachpath.motion.arm.puma560 import Array
 from teachpath.motion.collision.collision_model import Clearance
 
-COARSEST: Final = 0.04  # m, way of a piece to begin with
-FINEST: Final = 0.0001  # m, way of a piece that is not halved any more
-NEAR_ENOUGH: Final = 0.0005  # m, between what is proved and what was measured; or a share of it
-SHARE: Final = 0.1
-ROUNDS: Final = 14
+INITIAL_STEP: Final = 0.04  # m, way of a piece to begin with
+MIN_STEP: Final = 0.0001  # m, way of a piece that is not halved any more
+ABSOLUTE_TOLERANCE: Final = 0.0005  # m, between what is proved and what was measured; or a share of it
+RELATIVE_TOLERANCE: Final = 0.1
+MAX_BISECTIONS: Final = 14
 
 Measure = Callable[[Array], list[Clearance]]
 
 
 @dataclass(frozen=True, eq=False)
-class Sweep:
+class ContinuousCheck:
     """A motion of the joints by one parameter.
 
     Attributes:
@@ -37,12 +37,12 @@ class Sweep:
         at: returns configurations (m, 6) at parameters (m,).
     """
 
-    places: Array
-    ways: Array
-    at: Callable[[Array], Array]
+    parameters: Array
+    motion_bounds: Array
+    configurations: Callable[[Array], Array]
 
     @staticmethod
-    def along(path: JointPath, levers: Array) -> Sweep:
+    def along_spline(path: JointPath, lever_arms: Array) -> ContinuousCheck:
         """Sweep a spline; a B-spline's derivative lies within its coefficients.
 
         Args:
@@ -53,27 +53,29 @@ class Sweep:
         knots = np.unique(slope.t)
         last = np.searchsorted(slope.t, knots[:-1], side="right") - 1  # newest coefficient of each span
         active = np.abs(slope.c[last[:, None] - np.arange(slope.k + 1), :6]).max(axis=1)
-        ways = np.concatenate([[0.0], np.cumsum(np.diff(knots) * (active @ levers))])
-        return Sweep(knots, ways, lambda places: path(places)[:, :6])
+        ways = np.concatenate([[0.0], np.cumsum(np.diff(knots) * (active @ lever_arms))])
+        return ContinuousCheck(knots, ways, lambda places: path(places)[:, :6])
 
     @staticmethod
-    def through(stops: Array, levers: Array) -> Sweep:
+    def along_lines(waypoints: Array, lever_arms: Array) -> ContinuousCheck:
         """Sweep straight lines of the joints between configurations (k, 6)."""
-        ways = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(stops, axis=0)) @ levers)])
-        index = np.arange(len(stops), dtype=np.float64)
-        return Sweep(index, ways, lambda at: np.stack([np.interp(at, index, joint) for joint in stops.T], axis=1))
+        ways = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(waypoints, axis=0)) @ lever_arms)])
+        index = np.arange(len(waypoints), dtype=np.float64)
+        return ContinuousCheck(
+            index, ways, lambda at: np.stack([np.interp(at, index, joint) for joint in waypoints.T], axis=1)
+        )
 
 
 @dataclass(frozen=True, eq=False)
-class Proved:
+class ProvedDistance:
     """A distance [m] that is kept on a whole motion, and the place and pair at which the least was measured."""
 
     distance: float
-    place: float
-    measured: Clearance
+    parameter: float
+    nearest: Clearance
 
 
-def least(sweep: Sweep, measure: Measure, asked: float) -> Proved:
+def prove_distance(check: ContinuousCheck, measure: Measure, required: float) -> ProvedDistance:
     """Prove a least distance on a motion.
 
     Args:
@@ -82,32 +84,32 @@ def least(sweep: Sweep, measure: Measure, asked: float) -> Proved:
         asked: distance [m] that should be kept; when less was measured, nothing more is proved, and when less is
             proved than was measured, pieces are halved as long as it helps.
     """
-    count = max(1, int(np.ceil(sweep.ways[-1] / COARSEST)))
-    ways = np.linspace(0.0, sweep.ways[-1], count + 1)
-    rows = measure(sweep.at(_places(sweep, ways)))
-    for _ in range(ROUNDS):
+    count = max(1, int(np.ceil(check.motion_bounds[-1] / INITIAL_STEP)))
+    ways = np.linspace(0.0, check.motion_bounds[-1], count + 1)
+    rows = measure(check.configurations(_parameters_at(check, ways)))
+    for _ in range(MAX_BISECTIONS):
         distances, steps = np.array([row.distance for row in rows]), np.diff(ways)
         between = (distances[1:] + distances[:-1] - steps) / 2
         lowest = float(distances.min())
-        if lowest < asked:
+        if lowest < required:
             break
-        wanted = max(lowest - max(NEAR_ENOUGH, SHARE * lowest), asked)
-        coarse = np.flatnonzero((between < wanted) & (steps > FINEST))
+        wanted = max(lowest - max(ABSOLUTE_TOLERANCE, RELATIVE_TOLERANCE * lowest), required)
+        coarse = np.flatnonzero((between < wanted) & (steps > MIN_STEP))
         if not len(coarse):
             break
         middles = (ways[coarse] + ways[coarse + 1]) / 2
-        rows = _merged(rows, coarse, measure(sweep.at(_places(sweep, middles))))
+        rows = _merged(rows, coarse, measure(check.configurations(_parameters_at(check, middles))))
         ways = np.insert(ways, coarse + 1, middles)
     distances = np.array([row.distance for row in rows])
     between = (distances[1:] + distances[:-1] - np.diff(ways)) / 2
     worst = int(np.argmin(distances))
-    place = float(_places(sweep, ways[worst : worst + 1])[0])
-    return Proved(float(min(between.min(), distances[worst])), place, rows[worst])
+    place = float(_parameters_at(check, ways[worst : worst + 1])[0])
+    return ProvedDistance(float(min(between.min(), distances[worst])), place, rows[worst])
 
 
-def _places(sweep: Sweep, ways: Array) -> Array:
+def _parameters_at(check: ContinuousCheck, bounds: Array) -> Array:
     # Where nothing moves the ways do not grow; any place there will do.
-    return np.interp(ways, sweep.ways, sweep.places)
+    return np.interp(bounds, check.motion_bounds, check.parameters)
 
 
 def _merged(rows: list[Clearance], behind: NDArray[np.int64], new: list[Clearance]) -> list[Clearance]:

@@ -13,11 +13,11 @@ from typing import Final
 import numpy as np
 from ruckig import ControlInterface, InputParameter, Result, Ruckig, RuckigError, Trajectory
 
-from teachpath.motion.arm.joint_path import ARM
+from teachpath.motion.arm.joint_path import ARM_LIMITS
 from teachpath.motion.arm.puma560 import Array
 from teachpath.motion.timing import kernels
-from teachpath.motion.timing.joint_moves import straight
-from teachpath.motion.timing.timed_trajectory import Track
+from teachpath.motion.timing.joint_moves import straight_move
+from teachpath.motion.timing.timed_trajectory import TimedTrajectory
 
 SLOWEST: Final = 0.01  # an override below this holds
 TRIES: Final = 20  # ramps judged in one period at most
@@ -45,7 +45,7 @@ class Governor:
         override: share of the full speed, 0 to 1.
     """
 
-    def __init__(self, track: Track, dt: float, *, override: float = 1.0) -> None:
+    def __init__(self, track: TimedTrajectory, dt: float, *, override: float = 1.0) -> None:
         self._table, self._step, self._end, self._dt = track.table, track.step, track.duration, dt
         limits = track.limits
         self._limits = np.stack([limits.speed * dt, limits.acceleration * dt**2, limits.jerk * dt**3])
@@ -55,7 +55,7 @@ class Governor:
         self._trial = np.zeros(8)
         self._elapsed = 0.0
         self._motion = np.zeros((3, 7))
-        kernels.motion(self._table, self._step, self._state, self._motion)
+        kernels.evaluate_motion(self._table, self._step, self._state, self._motion)
         self._sent = np.repeat(self._motion[:1, :6], 3, axis=0)  # newest last
         self._ruckig, self._inputs, self._answer = Ruckig(1), _inputs(), Trajectory(1)
 
@@ -109,7 +109,7 @@ class Governor:
     def place(self, tau: float) -> None:
         """Stand at plan time `tau` [s], held; only for an arm that rests there already."""
         self._rest(min(max(tau, 0.0), self._end))
-        kernels.motion(self._table, self._step, self._state, self._motion)
+        kernels.evaluate_motion(self._table, self._step, self._state, self._motion)
         self._sent[:] = self._motion[0, :6]
         self._held, self._back = True, False
 
@@ -141,11 +141,11 @@ class Governor:
             self._turn_to(wish, left if self._ramp[7] == wish else np.inf)
         self._elapsed += self._dt
         state = self._state
-        state[:] = kernels.along(self._ramp, self._elapsed)
+        state[:] = kernels.evaluate_ramp(self._ramp, self._elapsed)
         if (state[0] >= self._end and state[1] >= 0.0) or (state[0] <= 0.0 and state[1] <= 0.0):
             # The track begins and ends at rest, whatever the rate.
             self._rest(0.0 if state[0] <= 0.0 else self._end)
-        kernels.motion(self._table, self._step, state, self._motion)
+        kernels.evaluate_motion(self._table, self._step, state, self._motion)
         self._sent[:2] = self._sent[1:]
         self._sent[2] = self._motion[0, :6]
         return self.progress
@@ -154,11 +154,11 @@ class Governor:
         trial, state = self._trial, self._state
         if (state[0] <= 0.0 and wish >= 0.0) or (state[0] >= self._end and wish <= 0.0):
             trial[:] = (state[0], wish, 0.0, 0.0, 0.0, 0.0, 0.0, wish)
-            kept = kernels.judge(self._table, self._step, trial, self._sent, self._limits, self._dt)
+            kept = kernels.check_ramp(self._table, self._step, trial, self._sent, self._limits, self._dt)
             if kept[0] == kernels.KEPT:
                 self._follow()
             return
-        peak = kernels.seek(
+        peak = kernels.find_ramp(
             self._table, self._step, state, wish, self._sent, self._limits, self._dt, within, TRIES, trial
         )
         if peak >= 0.0 and self._confirmed(peak):
@@ -196,7 +196,7 @@ class Governor:
 def warm_up(dt: float) -> None:
     """Compile the kernels, or load them from disk, so that the first motion does not wait for them."""
     turn = np.array([0.01, 0.0, 0.0, 0.0, 0.0, 0.0])
-    governor = Governor(straight(np.zeros(6), turn, ARM, reserve=(0.5, 0.5, 0.5)), dt)
+    governor = Governor(straight_move(np.zeros(6), turn, ARM_LIMITS, margins=(0.5, 0.5, 0.5)), dt)
     for act in (governor.step, governor.hold, governor.step, governor.reverse, governor.step):
         act()
 

@@ -14,8 +14,8 @@ from teachpath.motion.execution.governor import SLOWEST, Governor
 from teachpath.motion.execution.segments import Detour, MotionState, Segment, plan_return_path, stretches
 from teachpath.motion.planning.certificate import verify
 from teachpath.motion.settings import MotionSettings
-from teachpath.motion.timing.jog import place_of, stepped
-from teachpath.motion.timing.timed_trajectory import Track
+from teachpath.motion.timing.jog import jog_trajectory, time_at_length
+from teachpath.motion.timing.timed_trajectory import TimedTrajectory
 from teachpath.records import Plan
 
 REACHED: Final = 1e-5  # m, a node as near as this is where the arm is
@@ -192,9 +192,9 @@ class PlanProgram:
         if not (self.held and self.standing):
             raise Conflict("the arm still moves; hold it first, then step")
         goal = self._node(nodes) if nodes else self._done + length
-        landing = place_of(stretch.track, min(max(goal, 0.0), self._length))
-        begin = governor.tau if self._aside is None else place_of(stretch.track, self._done)
-        return Detour("", (stepped(stretch.track, begin, landing, 1.0 / self._period),), landing)
+        landing = time_at_length(stretch.track, min(max(goal, 0.0), self._length))
+        begin = governor.tau if self._aside is None else time_at_length(stretch.track, self._done)
+        return Detour("", (jog_trajectory(stretch.track, begin, landing, 1.0 / self._period),), landing)
 
     def _node(self, count: int) -> float:
         """Return the length [m] of the node that is `count` nodes away; one that is reached already does not count."""
@@ -248,7 +248,7 @@ class PlanProgram:
     def _governors(self) -> list[Governor]:
         return [*self._aside_governors, *([self._governor] if self._governor is not None else [])]
 
-    def _governor_of(self, track: Track) -> Governor:
+    def _governor_of(self, track: TimedTrajectory) -> Governor:
         governor = Governor(track, self._period, override=self._override)
         governor.wait(self._waits)
         return governor

@@ -8,14 +8,14 @@ from typing import Final
 
 import numpy as np
 
-from teachpath.motion.arm.joint_path import ARM
+from teachpath.motion.arm.joint_path import ARM_LIMITS
 from teachpath.motion.arm.puma560 import Array
-from teachpath.motion.collision.collision_model import CollisionModel, Load, grasp_of
-from teachpath.motion.planning.certificate import track
+from teachpath.motion.collision.collision_model import CollisionModel, Load, grasped_load
+from teachpath.motion.planning.certificate import plan_trajectory
 from teachpath.motion.settings import MotionSettings
-from teachpath.motion.timing.joint_moves import approach, left_behind, retreat, straight
-from teachpath.motion.timing.limit_margins import RESERVE
-from teachpath.motion.timing.timed_trajectory import Track
+from teachpath.motion.timing.joint_moves import joint_waypoints, placed_load, straight_move, waypoints_home
+from teachpath.motion.timing.limit_margins import SYMMETRIC_MARGINS
+from teachpath.motion.timing.timed_trajectory import TimedTrajectory
 from teachpath.records import Plan
 
 NOWHERE: Final = 1e-9  # rad, a move shorter than this is none
@@ -43,7 +43,7 @@ class Detour:
     """
 
     name: str
-    tracks: tuple[Track, ...]
+    tracks: tuple[TimedTrajectory, ...]
     landing: float | None = None
 
 
@@ -62,7 +62,7 @@ class Segment:
     name: str
     before: bool
     gripper_closed: bool
-    track: Track | None = None
+    track: TimedTrajectory | None = None
     rest: float = 0.0
     taught: bool = False
 
@@ -74,24 +74,26 @@ def stretches(plan: Plan, here: Array, settings: MotionSettings, dwell: float) -
         PathRefused: the way from here to the start of the path, or home from its goal, is not free.
     """
     carries = plan.scene.carried is not None
-    load = Load(placed=plan.scene.carried.position) if plan.scene.carried else None
+    load = Load(position=plan.scene.carried.position) if plan.scene.carried else None
     model = CollisionModel(plan.scene)
-    stops = approach(model, here, plan.above_start, settings, load=load, gripper_open=carries)
+    stops = joint_waypoints(model, here, plan.above_start, settings, load=load, gripper_open=carries)
     start, goal = plan.joints[0], plan.joints[-1]
-    leave = retreat(model, start, goal, plan.above_goal, settings)
+    leave = waypoints_home(model, start, goal, plan.above_goal, settings)
     closed = not carries
     return [
         *[piece for a, b in pairwise(stops) for piece in _move("on the approach", a, b, True, closed, settings)],
         *_move("on the way down", plan.above_start, start, True, closed, settings),
         Segment("closing the gripper", True, True, rest=dwell if carries else 0.0),
-        Segment("on the path", False, True, track(plan), taught=True),
+        Segment("on the path", False, True, plan_trajectory(plan), taught=True),
         Segment("opening the gripper", False, closed, rest=dwell if carries else 0.0),
         *_move("on the way up", goal, plan.above_goal, False, closed, settings),
         *_move("on the way home", *leave, False, closed, settings),
     ]
 
 
-def plan_return_path(plan: Plan, stretch: Segment, here: Array, there: Array, settings: MotionSettings) -> list[Track]:
+def plan_return_path(
+    plan: Plan, stretch: Segment, here: Array, there: Array, settings: MotionSettings
+) -> list[TimedTrajectory]:
     """Lead the arm from `here` (6,) back to the point `there` of a stretch at which it was held, slowly.
 
     Raises:
@@ -100,21 +102,23 @@ def plan_return_path(plan: Plan, stretch: Segment, here: Array, there: Array, se
     carried = plan.scene.carried
     load = None
     if carried is not None and stretch.gripper_closed:
-        load = grasp_of(plan.scene, plan.joints[0])
+        load = grasped_load(plan.scene, plan.joints[0])
     elif carried is not None and stretch.before:
-        load = Load(placed=carried.position)
+        load = Load(position=carried.position)
     elif carried is not None:
-        load = left_behind(plan.scene, plan.joints[0], plan.joints[-1])
+        load = placed_load(plan.scene, plan.joints[0], plan.joints[-1])
     opened = carried is not None and not stretch.gripper_closed
     what = "on the way back to the path"
-    stops = approach(CollisionModel(plan.scene), here, there, settings, load=load, gripper_open=opened, what=what)
-    limits = ARM.scaled(*[settings.move_share] * 3)
+    stops = joint_waypoints(
+        CollisionModel(plan.scene), here, there, settings, load=load, gripper_open=opened, move_name=what
+    )
+    limits = ARM_LIMITS.scaled(*[settings.move_share] * 3)
     legs = [(a, b) for a, b in pairwise(stops) if np.abs(b - a).max() >= NOWHERE]
-    return [straight(a, b, limits, reserve=RESERVE) for a, b in legs]
+    return [straight_move(a, b, limits, margins=SYMMETRIC_MARGINS) for a, b in legs]
 
 
 def _move(name: str, start: Array, goal: Array, before: bool, closed: bool, settings: MotionSettings) -> list[Segment]:
     if np.abs(goal - start).max() < NOWHERE:
         return []
-    limits = ARM.scaled(*[settings.move_share] * 3)
-    return [Segment(name, before, closed, straight(start, goal, limits, reserve=RESERVE))]
+    limits = ARM_LIMITS.scaled(*[settings.move_share] * 3)
+    return [Segment(name, before, closed, straight_move(start, goal, limits, margins=SYMMETRIC_MARGINS))]

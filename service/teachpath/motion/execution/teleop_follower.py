@@ -16,8 +16,8 @@ import numpy as np
 from ruckig import InputParameter, Result, Ruckig, RuckigError, Trajectory
 
 from teachpath.errors import PathRefused
-from teachpath.motion.arm.joint_path import ARM, Limits
-from teachpath.motion.arm.kinematics import BRANCHES, inverse, least_singular_value, tool_pose
+from teachpath.motion.arm.joint_path import ARM_LIMITS, MotionLimits
+from teachpath.motion.arm.kinematics import BRANCH_NAMES, inverse_kinematics, min_singular_value, tool_pose
 from teachpath.motion.arm.puma560 import LOWER, UPPER, Array
 from teachpath.motion.collision.collision_model import CollisionModel, Load
 from teachpath.motion.settings import MotionSettings
@@ -71,7 +71,7 @@ class TeleopFollower:
         period: float = 0.004,
     ) -> None:
         self._model, self._settings, self._scale, self._period = model, settings, scale, period
-        self._limits: Limits = ARM.scaled(share, share, share)
+        self._limits: MotionLimits = ARM_LIMITS.scaled(share, share, share)
         pose = tool_pose(here)
         self._turn = pose[:3, :3]
         self._branch = _branch(here, pose)
@@ -171,15 +171,15 @@ class TeleopFollower:
         poses = np.tile(np.eye(4), (WAY, 1, 1))
         poses[:, :3, :3] = self._turn
         poses[:, :3, 3] = begin + shares[:, None] * (wanted - begin)
-        solved = inverse(poses, q4_before=float(here[3]))
+        solved = inverse_kinematics(poses, previous_q4=float(here[3]))
         joints = np.unwrap(np.concatenate([here[None], solved.joints[:, self._branch]]), axis=0)
         turns = np.abs(np.diff(joints, axis=0)).max(axis=1)
         joints = joints[1:]
         low, high = joints - LOWER, UPPER - joints
         checks = (
-            (solved.excess[:, self._branch] > 0, "the arm does not reach that far"),
+            (solved.reach_excess[:, self._branch] > 0, "the arm does not reach that far"),
             (np.minimum(low, high).min(axis=1) < 0, "a joint is at its limit"),
-            (least_singular_value(joints) < self._settings.least_singular, "the arm is stretched out: a singular pose"),
+            (min_singular_value(joints) < self._settings.least_singular, "the arm is stretched out: a singular pose"),
             (turns > JUMP, "the arm would have to turn over"),
         )
         good, reason = WAY, ""
@@ -200,9 +200,10 @@ class TeleopFollower:
         rows = self._model.clearances(samples, load=self.load, gripper_open=True)  # the wider of both
         least = min(rows, key=lambda row: row.distance)
         if least.distance < self._settings.clearance_min + GUARD:
-            return f"{least.part} would come within {1000 * least.distance:.0f} mm of {least.other}; move the hand back"
-        if self.load is not None and self.load.grasp is not None:
-            deep = min(row.distance for row in self._model.supports(samples, self.load))
+            near = f"{least.body} would come within {1000 * least.distance:.0f} mm of {least.other_body}"
+            return f"{near}; move the hand back"
+        if self.load is not None and self.load.grasp_pose is not None:
+            deep = min(row.distance for row in self._model.support_distances(samples, self.load))
             if deep < -self._settings.contact_tolerance:
                 return f"the object would be pressed {-1000 * deep:.0f} mm into what it stood on; move the hand back"
         return ""
@@ -251,8 +252,10 @@ def _samples(run: Trajectory) -> Array:
 
 
 def _branch(here: Array, pose: Array) -> int:
-    solved = inverse(pose[None], q4_before=float(here[3])).joints[0]
+    solved = inverse_kinematics(pose[None], previous_q4=float(here[3])).joints[0]
     off = np.abs(np.angle(np.exp(1j * (solved - here)))).max(axis=1)
     if off.min() > 1e-3:
-        raise PathRefused(f"the arm stands on none of its {len(BRANCHES)} branches; bring it nearer to its home first")
+        raise PathRefused(
+            f"the arm stands on none of its {len(BRANCH_NAMES)} branches; bring it nearer to its home first"
+        )
     return int(np.argmin(off))

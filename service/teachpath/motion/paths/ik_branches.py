@@ -12,17 +12,17 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import BSpline
 
-from teachpath.motion.arm.kinematics import BRANCHES, explain_reach, inverse, least_singular_value
+from teachpath.motion.arm.kinematics import BRANCH_NAMES, describe_reach, inverse_kinematics, min_singular_value
 from teachpath.motion.arm.puma560 import LOWER, SPEED, UPPER, Array
-from teachpath.motion.paths.tool_path import Route
+from teachpath.motion.paths.tool_path import ToolPath
 from teachpath.motion.settings import MotionSettings
 
 # A joint that turns more than this between two nodes has jumped: the branch ends there.
-LARGEST_STEP: Final = 0.35  # rad
+MAX_JOINT_STEP: Final = 0.35  # rad
 
 
 @dataclass(frozen=True, eq=False)
-class Arm:
+class IkBranch:
     """What the rolls of one branch share.
 
     Attributes:
@@ -35,19 +35,19 @@ class Arm:
     """
 
     index: int
-    unrolled: Array
-    outside: Array
-    beyond: NDArray[np.bool_]
+    unrolled_joints: Array
+    reach_excess: Array
+    beyond_outer_reach: NDArray[np.bool_]
     jumps: NDArray[np.bool_]
 
     @cached_property
-    def singular(self) -> Array:
+    def singular_values(self) -> Array:
         """Least singular value of the Jacobian (n,); joint 6 does not change it."""
-        return least_singular_value(self.unrolled)
+        return min_singular_value(self.unrolled_joints)
 
 
 @dataclass(frozen=True, eq=False)
-class Roll:
+class ToolRoll:
     """How the tool is rolled about its own axis: by one angle, or from place to place.
 
     Attributes:
@@ -80,119 +80,121 @@ class Candidate:
         over: (n, 6) by how much each joint is beyond its limit [rad]; negative within.
     """
 
-    branch: str
-    arm: Arm
-    roll: Roll
+    description: str
+    branch: IkBranch
+    roll: ToolRoll
     joints: Array
-    over: Array
+    limit_excess: Array
 
     @property
-    def singular(self) -> Array:
+    def singular_values(self) -> Array:
         """Least singular value of the Jacobian (n,)."""
-        return self.arm.singular
+        return self.branch.singular_values
 
     @property
-    def conditioned(self) -> float:
+    def min_singular_value(self) -> float:
         """Least singular value on the whole route."""
-        return float(self.singular.min())
+        return float(self.singular_values.min())
 
     @property
-    def continuous(self) -> bool:
+    def feasible(self) -> bool:
         """Whether everything is reached within the joint limits and without a jump."""
-        arm = self.arm
-        return bool(arm.outside.max() <= 0 and self.over.max() <= 0 and not arm.jumps.any())
+        arm = self.branch
+        return bool(arm.reach_excess.max() <= 0 and self.limit_excess.max() <= 0 and not arm.jumps.any())
 
 
-def candidates(way: Route, settings: MotionSettings) -> list[Candidate]:
+def enumerate_candidates(path: ToolPath, settings: MotionSettings) -> list[Candidate]:
     """Find every branch and tool roll along a route, with how well each does."""
-    solutions = inverse(way.poses(way.parameters))
-    outside = solutions.excess[:, 0]
+    solutions = inverse_kinematics(path.poses(path.parameters))
+    outside = solutions.reach_excess[:, 0]
     found = []
-    for index, branch in enumerate(BRANCHES):
+    for index, branch in enumerate(BRANCH_NAMES):
         unrolled = np.unwrap(solutions.joints[:, index], axis=0)
-        jumps = np.append(np.abs(np.diff(unrolled, axis=0)).max(axis=1) > LARGEST_STEP, False)
-        arm = Arm(index, unrolled, outside, solutions.beyond, jumps)
-        found += [held(way, branch, arm, Roll(angle)) for angle in settings.rolls]
+        jumps = np.append(np.abs(np.diff(unrolled, axis=0)).max(axis=1) > MAX_JOINT_STEP, False)
+        arm = IkBranch(index, unrolled, outside, solutions.beyond_outer_reach, jumps)
+        found += [rolled_candidate(path, branch, arm, ToolRoll(angle)) for angle in settings.rolls]
     return found
 
 
-def held(way: Route, branch: str, arm: Arm, roll: Roll) -> Candidate:
+def rolled_candidate(path: ToolPath, name: str, branch: IkBranch, roll: ToolRoll) -> Candidate:
     """Return what becomes of an arm's branch along a route when the tool is rolled."""
-    joints = within_limits(rolled(arm.unrolled, roll(way.parameters)))
-    return Candidate(f"{branch}, {roll}", arm, roll, joints, np.maximum(joints - UPPER, LOWER - joints))
+    joints = shift_within_limits(roll_tool(branch.unrolled_joints, roll(path.parameters)))
+    return Candidate(f"{name}, {roll}", branch, roll, joints, np.maximum(joints - UPPER, LOWER - joints))
 
 
-def configurations(way: Route, candidate: Candidate, u: Array) -> Array:
+def configurations(path: ToolPath, candidate: Candidate, u: Array) -> Array:
     """Return the configurations (m, 6) of a candidate at increasing parameters (m,) of its curve, from its start."""
-    unrolled = np.unwrap(inverse(way.poses(u)).joints[:, candidate.arm.index], axis=0)
-    return near(rolled(unrolled, candidate.roll(u)), candidate.joints[0])
+    unrolled = np.unwrap(inverse_kinematics(path.poses(u)).joints[:, candidate.branch.index], axis=0)
+    return shift_near(roll_tool(unrolled, candidate.roll(u)), candidate.joints[0])
 
 
-def rolled(joints: Array, roll: Array) -> Array:
+def roll_tool(joints: Array, roll: Array) -> Array:
     """Turn the tool about its own axis by `roll` (...,) [rad]: joint 6 alone, the other way round."""
     turned = joints.copy()
     turned[..., 5] -= roll
     return turned
 
 
-def near(joints: Array, first: Array) -> Array:
+def shift_near(joints: Array, first: Array) -> Array:
     """Shift each joint of continuous configurations (m, 6) by whole turns, so that they begin near to `first` (6,)."""
     return np.asarray(joints + 2 * np.pi * np.round((first - joints[0]) / (2 * np.pi)), dtype=np.float64)
 
 
-def within_limits(joints: Array) -> Array:
+def shift_within_limits(joints: Array) -> Array:
     """Shift each joint of continuous configurations (n, 6) by whole turns, nearest to the middle of its range."""
     middle = (joints.max(axis=0) + joints.min(axis=0)) / 2
     turns = np.round(((LOWER + UPPER) / 2 - middle) / (2 * np.pi))
     return np.asarray(joints + 2 * np.pi * turns, dtype=np.float64)
 
 
-def faults(candidate: Candidate, settings: MotionSettings) -> NDArray[np.str_]:
+def node_faults(candidate: Candidate, settings: MotionSettings) -> NDArray[np.str_]:
     """Name what is wrong at each node (n,): `reach`, `limit`, `turn` of the wrist, `singular`; empty when nothing."""
     named = np.full(len(candidate.joints), "", dtype="<U9")
-    named[candidate.singular < settings.least_singular] = "singular"
-    named[candidate.arm.jumps] = "turn"
-    named[candidate.over.max(axis=1) > 0] = "limit"
-    named[candidate.arm.outside > 0] = "reach"
+    named[candidate.singular_values < settings.least_singular] = "singular"
+    named[candidate.branch.jumps] = "turn"
+    named[candidate.limit_excess.max(axis=1) > 0] = "limit"
+    named[candidate.branch.reach_excess > 0] = "reach"
     return named
 
 
-def usable(candidate: Candidate, settings: MotionSettings) -> bool:
+def is_usable(candidate: Candidate, settings: MotionSettings) -> bool:
     """Tell whether a candidate reaches everything, keeps the joint limits, has no jump and no singular pose."""
-    return candidate.continuous and candidate.conditioned >= settings.least_singular
+    return candidate.feasible and candidate.min_singular_value >= settings.least_singular
 
 
 def cost(candidate: Candidate, settings: MotionSettings) -> float:
     """Prefer branches far from singular poses and joint limits, and near to the arm's home (a second counts 0.2)."""
     use = np.abs(candidate.joints - (LOWER + UPPER) / 2).max(axis=0) / ((UPPER - LOWER) / 2)
     travel = np.abs(candidate.joints[0] - np.array(settings.home)) / SPEED
-    return float(0.1 / candidate.conditioned + use.max() + 0.2 * travel.max())
+    return float(0.1 / candidate.min_singular_value + use.max() + 0.2 * travel.max())
 
 
-def least_wrong(every: Sequence[Candidate]) -> Candidate:
+def nearest_to_usable(every: Sequence[Candidate]) -> Candidate:
     """Choose the candidate with the fewest nodes beyond limits or before a jump; among equals the best conditioned."""
-    wrong = [np.count_nonzero((c.over.max(axis=1) > 0) | c.arm.jumps) for c in every]
+    wrong = [np.count_nonzero((c.limit_excess.max(axis=1) > 0) | c.branch.jumps) for c in every]
     fewest = [c for c, count in zip(every, wrong, strict=True) if count == min(wrong)]
-    return max(fewest, key=lambda c: c.conditioned)
+    return max(fewest, key=lambda c: c.min_singular_value)
 
 
-def explain(candidate: Candidate, way: Route, node: int, fault: str, settings: MotionSettings) -> str:
+def describe_fault(candidate: Candidate, path: ToolPath, node: int, fault: str, settings: MotionSettings) -> str:
     """Say what is wrong at a node, and where."""
-    where = way.place(node)
+    where = path.describe_node(node)
     if fault == "reach":
-        s = float(way.lengths[node])
-        return explain_reach(float(candidate.arm.outside[node]), bool(candidate.arm.beyond[node]), s)
+        s = float(path.lengths[node])
+        return describe_reach(
+            float(candidate.branch.reach_excess[node]), bool(candidate.branch.beyond_outer_reach[node]), s
+        )
     if fault == "limit":
-        joint = int(np.argmax(candidate.over[node]))
+        joint = int(np.argmax(candidate.limit_excess[node]))
         angle = candidate.joints[node, joint]
         limit = UPPER[joint] if angle > UPPER[joint] else LOWER[joint]
         return (
             f"joint {joint + 1} needs {degrees(angle):.1f} deg, limit {degrees(limit):.1f}, {where} "
-            f"({candidate.branch} comes nearest)"
+            f"({candidate.description} comes nearest)"
         )
     if fault == "turn":
-        return f"the wrist would have to turn over {where} ({candidate.branch})"
+        return f"the wrist would have to turn over {where} ({candidate.description})"
     return (
-        f"the arm is nearly singular (least singular value {candidate.singular[node]:.3f}, limit "
-        f"{settings.least_singular:g}) {where} ({candidate.branch})"
+        f"the arm is nearly singular (least singular value {candidate.singular_values[node]:.3f}, limit "
+        f"{settings.least_singular:g}) {where} ({candidate.description})"
     )

@@ -11,15 +11,15 @@ from numpy.polynomial.legendre import leggauss
 from scipy.interpolate import CubicHermiteSpline, make_interp_spline
 
 from teachpath.errors import PathRefused
-from teachpath.motion.arm.kinematics import downward, rotations
+from teachpath.motion.arm.kinematics import downward_poses, rotation_matrices
 from teachpath.motion.arm.puma560 import Array
 from teachpath.motion.settings import MotionSettings
 from teachpath.nurbs import Curve, unit_quaternions
 
-SHORTEST: Final = 0.01  # m, of a path that is worth following
-FEWEST_NODES: Final = 60
-FINEST: Final = 3  # times that the nodes are doubled where the curve bends sharply
-STANDSTILL: Final = 1e-4  # share of the mean speed |dc/du| below which a curve has a cusp
+MIN_PATH_LENGTH: Final = 0.01  # m, of a path that is worth following
+MIN_NODES: Final = 60
+MAX_REFINEMENTS: Final = 3  # times that the nodes are doubled where the curve bends sharply
+CUSP_SPEED_SHARE: Final = 1e-4  # share of the mean speed |dc/du| below which a curve has a cusp
 
 
 class ArcLength:
@@ -37,10 +37,10 @@ class ArcLength:
         self._arc = CubicHermiteSpline(grid, self._lengths, self._speeds)
         self.total = float(self._lengths[-1])
 
-    def standstill(self) -> float | None:
+    def cusp(self) -> float | None:
         """Return the arc length [m] where the curve has a cusp, or None."""
         still = int(np.argmin(self._speeds))
-        return float(self._lengths[still]) if self._speeds[still] < STANDSTILL * self.total else None
+        return float(self._lengths[still]) if self._speeds[still] < CUSP_SPEED_SHARE * self.total else None
 
     def lengths(self, u: Array) -> Array:
         """Return the arc lengths (m,) [m] at the curve's parameters (m,)."""
@@ -57,7 +57,7 @@ class ArcLength:
 
 
 @dataclass(frozen=True, eq=False)
-class Route:
+class ToolPath:
     """A curve sampled at even arc lengths.
 
     Attributes:
@@ -70,18 +70,18 @@ class Route:
     """
 
     curve: Curve
-    turn: Curve | None
+    orientation: Curve | None
     arc: ArcLength
     lengths: Array
     parameters: Array
     positions: Array
 
     @staticmethod
-    def sampled(curve: Curve, turn: Curve | None, arc: ArcLength, count: int) -> Route:
+    def at_even_lengths(curve: Curve, orientation: Curve | None, arc: ArcLength, count: int) -> ToolPath:
         """Sample a curve at `count` + 1 nodes."""
         lengths = np.linspace(0.0, arc.total, count + 1)
         parameters = arc.parameters(lengths)
-        return Route(curve, turn, arc, lengths, parameters, curve(parameters))
+        return ToolPath(curve, orientation, arc, lengths, parameters, curve(parameters))
 
     def poses(self, u: Array) -> Array:
         """Return the tool's poses (m, 4, 4) to world at parameters (m,), before any roll about its own axis.
@@ -89,20 +89,20 @@ class Route:
         The tool points down with its fingers closing along y, and from there turns as what is carried turns from its
         own orientation at the start.
         """
-        poses = downward(self.curve(u), 0.0)
-        if self.turn is not None:
-            turned = rotations(unit_quaternions(self.turn, u))
-            start = rotations(unit_quaternions(self.turn, np.zeros(1)))[0]
+        poses = downward_poses(self.curve(u), 0.0)
+        if self.orientation is not None:
+            turned = rotation_matrices(unit_quaternions(self.orientation, u))
+            start = rotation_matrices(unit_quaternions(self.orientation, np.zeros(1)))[0]
             poses[:, :3, :3] = turned @ start.T @ poses[:, :3, :3]
         return poses
 
-    def place(self, index: int) -> str:
+    def describe_node(self, index: int) -> str:
         """Name a node."""
         x, y, z = self.positions[index]
         return f"at s = {self.lengths[index]:.3f} m ({x:.3f}, {y:.3f}, {z:.3f})"
 
 
-def route(curve: Curve, settings: MotionSettings, *, turn: Curve | None = None) -> Route:
+def sample_tool_path(curve: Curve, settings: MotionSettings, *, orientation: Curve | None = None) -> ToolPath:
     """Sample a curve at even arc lengths, as densely as its sharpest bend needs.
 
     Args:
@@ -113,18 +113,18 @@ def route(curve: Curve, settings: MotionSettings, *, turn: Curve | None = None) 
     Raises:
         PathRefused: it has no 3 dimensions, is too short or stands still on its way.
     """
-    arc = measured(curve)
-    count = max(FEWEST_NODES, int(np.ceil(arc.total / settings.node_spacing)))
-    found = Route.sampled(curve, turn, arc, count)
-    for _ in range(FINEST):
+    arc = arc_length(curve)
+    count = max(MIN_NODES, int(np.ceil(arc.total / settings.node_spacing)))
+    found = ToolPath.at_even_lengths(curve, orientation, arc, count)
+    for _ in range(MAX_REFINEMENTS):
         if _spline_error(found) <= settings.path_tolerance / 10:
             break
         count *= 2
-        found = Route.sampled(curve, turn, arc, count)
+        found = ToolPath.at_even_lengths(curve, orientation, arc, count)
     return found
 
 
-def measured(curve: Curve) -> ArcLength:
+def arc_length(curve: Curve) -> ArcLength:
     """Return the arc length of a curve that an arm can follow.
 
     Raises:
@@ -133,11 +133,11 @@ def measured(curve: Curve) -> ArcLength:
     if curve.control_points.shape[1] != 3:
         raise PathRefused(f"a path in the world has 3 dimensions, this one has {curve.control_points.shape[1]}")
     arc = ArcLength(curve)
-    if arc.total < SHORTEST:
+    if arc.total < MIN_PATH_LENGTH:
         raise PathRefused(
-            f"the path is {1000 * arc.total:.1f} mm long, the shortest followed is {1000 * SHORTEST:.0f} mm"
+            f"the path is {1000 * arc.total:.1f} mm long, the shortest followed is {1000 * MIN_PATH_LENGTH:.0f} mm"
         )
-    still = arc.standstill()
+    still = arc.cusp()
     if still is not None:
         raise PathRefused(
             f"the curve stands still at s = {still:.3f} m: control points coincide there, move them apart"
@@ -145,7 +145,7 @@ def measured(curve: Curve) -> ArcLength:
     return arc
 
 
-def _spline_error(found: Route) -> float:
+def _spline_error(found: ToolPath) -> float:
     """Return how far [m] the spline through the nodes leaves the curve half way between them."""
     middle = (found.lengths[1:] + found.lengths[:-1]) / 2
     spline = make_interp_spline(found.lengths, found.positions, k=5)

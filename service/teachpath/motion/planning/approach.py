@@ -8,20 +8,20 @@ from typing import Final
 import numpy as np
 
 from teachpath.errors import PathRefused
-from teachpath.motion.arm.kinematics import inverse, tool_pose
+from teachpath.motion.arm.kinematics import inverse_kinematics, tool_pose
 from teachpath.motion.arm.puma560 import LOWER, UPPER, Array
 from teachpath.motion.collision.collision_model import CollisionModel, Load
 from teachpath.motion.settings import MotionSettings
-from teachpath.motion.timing.joint_moves import check_free, left_behind, retreat
+from teachpath.motion.timing.joint_moves import placed_load, prove_move_clear, waypoints_home
 
-SHARES: Final = (1.0, 0.5, 0.25)  # of `motion.lift`
+LIFT_SHARES: Final = (1.0, 0.5, 0.25)  # of `motion.lift`
 # Seen from the arm: away from it, to its left, up.
-WAYS: Final = np.array(
+LIFT_DIRECTIONS: Final = np.array(
     [[0, 0, 1], [-1, 0, 1], [0, 1, 1], [0, -1, 1], [1, 0, 1], [-1, 0, 0], [0, 1, 0], [0, -1, 0]], dtype=np.float64
 )
 
 
-def standoffs(q: Array, settings: MotionSettings) -> list[Array]:
+def approach_configurations(q: Array, settings: MotionSettings) -> list[Array]:
     """Return configurations (6,) from which the tool comes to configuration `q` (6,), turned as there, the best first.
 
     They are `motion.lift` above it, then less, then tilted and beside; last `q` itself. Those out of reach or beyond a
@@ -30,12 +30,12 @@ def standoffs(q: Array, settings: MotionSettings) -> list[Array]:
     pose = tool_pose(q)
     ahead = pose[:2, 3] / max(float(np.hypot(*pose[:2, 3])), 1e-9)
     seen = np.array([[ahead[0], ahead[1], 0.0], [-ahead[1], ahead[0], 0.0], [0.0, 0.0, 1.0]])
-    ways = WAYS / np.linalg.norm(WAYS, axis=1)[:, None] @ seen
-    poses = np.repeat(pose[None], len(ways) * len(SHARES), axis=0)
-    poses[:, :3, 3] += (np.array(SHARES)[None, :, None] * settings.lift * ways[:, None]).reshape(-1, 3)
-    solutions = inverse(poses, q4_before=float(q[3]))
+    ways = LIFT_DIRECTIONS / np.linalg.norm(LIFT_DIRECTIONS, axis=1)[:, None] @ seen
+    poses = np.repeat(pose[None], len(ways) * len(LIFT_SHARES), axis=0)
+    poses[:, :3, 3] += (np.array(LIFT_SHARES)[None, :, None] * settings.lift * ways[:, None]).reshape(-1, 3)
+    solutions = inverse_kinematics(poses, previous_q4=float(q[3]))
     found = []
-    for joints, excess in zip(solutions.joints, solutions.excess[:, 0], strict=True):
+    for joints, excess in zip(solutions.joints, solutions.reach_excess[:, 0], strict=True):
         turned = joints + 2 * np.pi * np.round((q - joints) / (2 * np.pi))
         nearest = turned[int(np.argmin(np.abs(turned - q).max(axis=1)))]
         if excess <= 0 and np.all(nearest >= LOWER) and np.all(nearest <= UPPER):
@@ -43,47 +43,51 @@ def standoffs(q: Array, settings: MotionSettings) -> list[Array]:
     return [*found, q.copy()]
 
 
-def entry(model: CollisionModel, start: Array, settings: MotionSettings) -> Array:
+def find_approach(model: CollisionModel, start: Array, settings: MotionSettings) -> Array:
     """Find the configuration (6,) from which the arm, come from its home, goes straight to the start of a path.
 
     Raises:
         PathRefused: none of those tried is free; says what is in the way of the first.
     """
     carried = model.scene.carried
-    load, home = Load(placed=carried.position) if carried else None, np.array(settings.home)
+    load, home = Load(position=carried.position) if carried else None, np.array(settings.home)
 
     def free(stop: Array) -> None:
         for a, b, what in ((home, stop, "on the way to the path's start"), (stop, start, "above the start")):
-            check_free(model, np.stack([a, b]), settings, load=load, gripper_open=carried is not None, what=what)
+            prove_move_clear(
+                model, np.stack([a, b]), settings, load=load, gripper_open=carried is not None, move_name=what
+            )
 
-    return _first_free(standoffs(start, settings), free, "start")
+    return _first_free(approach_configurations(start, settings), free, "start")
 
 
-def leaving(model: CollisionModel, start: Array, goal: Array, settings: MotionSettings) -> Array:
+def find_retreat(model: CollisionModel, start: Array, goal: Array, settings: MotionSettings) -> Array:
     """Find the configuration (6,) to which the arm goes straight from the goal of a path, and on to its home.
 
     Raises:
         PathRefused: none of those tried is free; says what is in the way of the first.
     """
-    behind = left_behind(model.scene, start, goal)
+    behind = placed_load(model.scene, start, goal)
 
     def free(stop: Array) -> None:
         stops = np.stack([goal, stop])
-        check_free(model, stops, settings, load=behind, gripper_open=behind is not None, what="above the goal")
-        retreat(model, start, goal, stop, settings)
+        prove_move_clear(
+            model, stops, settings, load=behind, gripper_open=behind is not None, move_name="above the goal"
+        )
+        waypoints_home(model, start, goal, stop, settings)
 
-    return _first_free(standoffs(goal, settings), free, "goal")
+    return _first_free(approach_configurations(goal, settings), free, "goal")
 
 
-def _first_free(stops: list[Array], free: Callable[[Array], None], end: str) -> Array:
+def _first_free(configurations: list[Array], free: Callable[[Array], None], end: str) -> Array:
     refused: PathRefused | None = None
-    for stop in stops:
+    for stop in configurations:
         try:
             free(stop)
             return stop
         except PathRefused as error:
             refused = refused or error
     raise PathRefused(
-        f"{refused}; none of {len(stops)} ways to the {end} of the path is free, from above, nearer or its side: move "
-        f"the {end}, or what stands around it"
+        f"{refused}; none of {len(configurations)} ways to the {end} of the path is free, "
+        f"from above, nearer or its side: move the {end}, or what stands around it"
     )

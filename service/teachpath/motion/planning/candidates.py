@@ -6,24 +6,26 @@ from collections.abc import Sequence
 from typing import Final
 
 from teachpath.motion.collision.collision_model import CollisionModel
-from teachpath.motion.paths.ik_branches import Candidate, cost, usable
-from teachpath.motion.paths.tool_path import Route
+from teachpath.motion.paths.ik_branches import Candidate, cost, is_usable
+from teachpath.motion.paths.tool_path import ToolPath
 from teachpath.motion.planning.clearance import rough_clearance
-from teachpath.motion.planning.tool_roll import rolling
+from teachpath.motion.planning.tool_roll import rolling_candidates
 from teachpath.motion.settings import MotionSettings
 
 # A branch and roll that keeps more clearance is worth so much per metre, up to what is enough.
-GAIN: Final = 20.0
-ENOUGH: Final = 0.02  # m
+CLEARANCE_GAIN: Final = 20.0
+SUFFICIENT_CLEARANCE: Final = 0.02  # m
 
 
-def fitting(every: Sequence[Candidate], settings: MotionSettings) -> list[Candidate]:
+def usable_candidates(every: Sequence[Candidate], settings: MotionSettings) -> list[Candidate]:
     """Return the candidates that reach everything, keep the joint limits and are never singular, the best first."""
-    fit = [candidate for candidate in every if usable(candidate, settings)]
+    fit = [candidate for candidate in every if is_usable(candidate, settings)]
     return sorted(fit, key=lambda candidate: cost(candidate, settings))
 
 
-def clear(way: Route, fit: list[Candidate], model: CollisionModel, settings: MotionSettings) -> list[Candidate]:
+def clear_candidates(
+    tool_path: ToolPath, usable: list[Candidate], model: CollisionModel, settings: MotionSettings
+) -> list[Candidate]:
     """Return the candidates that keep clear of everything, best by cost and clearance first.
 
     Where none with one roll of the tool does, those whose tool rolls along the path. What is far costlier than one with
@@ -35,19 +37,21 @@ def clear(way: Route, fit: list[Candidate], model: CollisionModel, settings: Mot
         model: of the scene.
         settings: clearance to keep.
     """
-    free = _free(way, fit, model, settings) or _free(way, rolling(way, fit, model, settings), model, settings)
+    free = _with_clearance(tool_path, usable, model, settings) or _with_clearance(
+        tool_path, rolling_candidates(tool_path, usable, model, settings), model, settings
+    )
     return [candidate for _, candidate in sorted(free, key=lambda trial: trial[0])]
 
 
-def _free(
-    way: Route, fit: list[Candidate], model: CollisionModel, settings: MotionSettings
+def _with_clearance(
+    tool_path: ToolPath, usable: list[Candidate], model: CollisionModel, settings: MotionSettings
 ) -> list[tuple[float, Candidate]]:
     """Return the candidates that keep clear, with what they cost less what their clearance is worth."""
     free: list[tuple[float, Candidate]] = []
-    for candidate in fit:
-        clearance = rough_clearance(way, candidate, model, settings).value
+    for candidate in usable:
+        clearance = rough_clearance(tool_path, candidate, model, settings).value
         if clearance >= settings.clearance_min:
-            free.append((cost(candidate, settings) - GAIN * min(clearance, ENOUGH), candidate))
-        if clearance >= ENOUGH:
+            free.append((cost(candidate, settings) - CLEARANCE_GAIN * min(clearance, SUFFICIENT_CLEARANCE), candidate))
+        if clearance >= SUFFICIENT_CLEARANCE:
             break  # all that follow cost more
     return free

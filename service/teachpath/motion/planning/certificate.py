@@ -9,11 +9,11 @@ from dataclasses import asdict
 import numpy as np
 
 from teachpath.errors import PathRefused
-from teachpath.motion.arm.joint_path import ARM, JointPath, Limits
+from teachpath.motion.arm.joint_path import ARM_LIMITS, JointPath, MotionLimits
 from teachpath.motion.arm.puma560 import ACCELERATION, JERK, LOWER, SPEED, TORQUE, UPPER, Array
 from teachpath.motion.arm.variants import arm
-from teachpath.motion.timing.limit_margins import uses
-from teachpath.motion.timing.timed_trajectory import Track, paced
+from teachpath.motion.timing.limit_margins import limit_uses
+from teachpath.motion.timing.timed_trajectory import TimedTrajectory, time_joint_path
 from teachpath.records import Extreme, Plan, Scene
 
 
@@ -43,13 +43,13 @@ def verify(plan: Plan) -> None:
         )
 
 
-def track(plan: Plan) -> Track:
+def plan_trajectory(plan: Plan) -> TimedTrajectory:
     """Make the motion of a plan against time, the same wherever it is made."""
     path = JointPath(np.linspace(0.0, 1.0, len(plan.lengths)), plan.lengths, plan.joints)
-    return paced(path, plan.pace, Limits(*plan.limits))
+    return time_joint_path(path, plan.pace, MotionLimits(*plan.limits))
 
 
-def limit_uses(setpoints: Array, rate: float) -> tuple[Extreme, Extreme, Extreme, Extreme]:
+def largest_limit_uses(setpoints: Array, rate: float) -> tuple[Extreme, Extreme, Extreme, Extreme]:
     """Measure how much of the joints' position, speed, acceleration and jerk limits setpoints use.
 
     Args:
@@ -57,7 +57,7 @@ def limit_uses(setpoints: Array, rate: float) -> tuple[Extreme, Extreme, Extreme
         rate: setpoints a second [Hz].
     """
     middle, half = (LOWER + UPPER) / 2, (UPPER - LOWER) / 2
-    shares = [np.abs(setpoints[:, :6] - middle) / half, *uses(setpoints, ARM, rate)]
+    shares = [np.abs(setpoints[:, :6] - middle) / half, *limit_uses(setpoints, ARM_LIMITS, rate)]
     position, velocity, acceleration, jerk = (largest_use(share, setpoints[:, 6]) for share in shares)
     return position, velocity, acceleration, jerk
 

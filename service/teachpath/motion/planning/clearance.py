@@ -9,26 +9,28 @@ import numpy as np
 from teachpath.errors import PathRefused
 from teachpath.motion.arm.joint_path import JointPath
 from teachpath.motion.arm.puma560 import Array
-from teachpath.motion.collision.collision_model import Clearance, CollisionModel, Load, grasp_of
-from teachpath.motion.collision.continuous import FINEST, Proved, Sweep, least
+from teachpath.motion.collision.collision_model import Clearance, CollisionModel, Load, grasped_load
+from teachpath.motion.collision.continuous import MIN_STEP, ContinuousCheck, ProvedDistance, prove_distance
 from teachpath.motion.paths.ik_branches import Candidate
-from teachpath.motion.paths.tool_path import Route
-from teachpath.motion.planning.failure import collision_failure, in_words
+from teachpath.motion.paths.tool_path import ToolPath
+from teachpath.motion.planning.failure import collision_failure, describe
 from teachpath.motion.settings import MotionSettings
 from teachpath.records import Extreme, Failure
 
 
-def rough_clearance(way: Route, candidate: Candidate, model: CollisionModel, settings: MotionSettings) -> Extreme:
+def rough_clearance(
+    tool_path: ToolPath, candidate: Candidate, model: CollisionModel, settings: MotionSettings
+) -> Extreme:
     """Find the clearance along straight lines between a candidate's nodes; when it is too small, not yet why."""
-    load = grasp_of(model.scene, candidate.joints[0])
-    sweep = Sweep.through(candidate.joints, model.levers(load))
-    proved = least(sweep, lambda q: model.clearances(q, load=load), settings.clearance_min)
-    share = (proved.place - sweep.places[0]) / (sweep.places[-1] - sweep.places[0])
-    return _extreme(proved, float(way.lengths[round(share * (len(way.lengths) - 1))]))
+    load = grasped_load(model.scene, candidate.joints[0])
+    sweep = ContinuousCheck.along_lines(candidate.joints, model.lever_arms(load))
+    proved = prove_distance(sweep, lambda q: model.clearances(q, load=load), settings.clearance_min)
+    share = (proved.parameter - sweep.parameters[0]) / (sweep.parameters[-1] - sweep.parameters[0])
+    return _extreme(proved, float(tool_path.lengths[round(share * (len(tool_path.lengths) - 1))]))
 
 
 def path_clearance(
-    way: Route, candidate: Candidate, model: CollisionModel, settings: MotionSettings, joints: JointPath
+    tool_path: ToolPath, candidate: Candidate, model: CollisionModel, settings: MotionSettings, joints: JointPath
 ) -> Extreme:
     """Prove the least clearance along a path, and that a carried object stays above what it stands on.
 
@@ -42,45 +44,58 @@ def path_clearance(
     Raises:
         PathRefused: something comes too near; says where and which control point to move.
     """
-    load = grasp_of(model.scene, candidate.joints[0])
-    sweep = Sweep.along(joints, model.levers(load))
-    proved = least(sweep, lambda q: model.clearances(q, load=load), settings.clearance_min)
+    load = grasped_load(model.scene, candidate.joints[0])
+    sweep = ContinuousCheck.along_spline(joints, model.lever_arms(load))
+    proved = prove_distance(sweep, lambda q: model.clearances(q, load=load), settings.clearance_min)
     if proved.distance < settings.clearance_min:
-        raise too_near(way, candidate, model, settings)
+        raise clearance_refusal(tool_path, candidate, model, settings)
     if load is not None:
         lowest = -settings.contact_tolerance
-        if least(sweep, lambda q: model.supports(q, load), lowest).distance < lowest:
-            raise PathRefused(in_words(dipping(way, candidate, model, load, settings)))
-    return _extreme(proved, float(joints(proved.place)[6]))
+        if prove_distance(sweep, lambda q: model.support_distances(q, load), lowest).distance < lowest:
+            raise PathRefused(describe(support_failure(tool_path, candidate, model, load, settings)))
+    return _extreme(proved, float(joints(proved.parameter)[6]))
 
 
-def too_near(way: Route, candidate: Candidate, model: CollisionModel, settings: MotionSettings) -> PathRefused:
+def clearance_refusal(
+    tool_path: ToolPath, candidate: Candidate, model: CollisionModel, settings: MotionSettings
+) -> PathRefused:
     """Explain where something comes too near on a candidate, and which control point to move."""
-    return PathRefused(in_words(nearing(way, candidate, model, settings)))
+    return PathRefused(describe(clearance_failure(tool_path, candidate, model, settings)))
 
 
-def nearing(way: Route, candidate: Candidate, model: CollisionModel, settings: MotionSettings) -> Failure:
+def clearance_failure(
+    tool_path: ToolPath, candidate: Candidate, model: CollisionModel, settings: MotionSettings
+) -> Failure:
     """Find where something comes too near first, on a candidate that does not keep clear."""
-    load = grasp_of(model.scene, candidate.joints[0])
-    return _found(way, candidate, settings.clearance_min, lambda q: model.clearances(q, load=load))
+    load = grasped_load(model.scene, candidate.joints[0])
+    return _failure(tool_path, candidate, settings.clearance_min, lambda q: model.clearances(q, load=load))
 
 
-def dipping(way: Route, candidate: Candidate, model: CollisionModel, load: Load, settings: MotionSettings) -> Failure:
+def support_failure(
+    tool_path: ToolPath, candidate: Candidate, model: CollisionModel, load: Load, settings: MotionSettings
+) -> Failure:
     """Find where a carried object dips into what it stands on at its start, on a candidate on which it does."""
-    return _found(way, candidate, -settings.contact_tolerance, lambda q: model.supports(q, load))
+    return _failure(tool_path, candidate, -settings.contact_tolerance, lambda q: model.support_distances(q, load))
 
 
-def _extreme(proved: Proved, s: float) -> Extreme:
-    near = proved.measured
-    return Extreme(proved.distance, f"{near.part} to {near.other} at s = {s:.3f} m" if near.part else "far", s)
+def _extreme(proved: ProvedDistance, s: float) -> Extreme:
+    near = proved.nearest
+    return Extreme(proved.distance, f"{near.body} to {near.other_body} at s = {s:.3f} m" if near.body else "far", s)
 
 
-def _found(way: Route, candidate: Candidate, asked: float, measure: Callable[[Array], list[Clearance]]) -> Failure:
+def _failure(
+    tool_path: ToolPath, candidate: Candidate, required: float, measure: Callable[[Array], list[Clearance]]
+) -> Failure:
     rows = measure(candidate.joints)
     # What was proved may be less than what is measured at the nodes: then the least of them is the place to tell.
-    asked = max(asked, min(row.distance for row in rows) + FINEST)
+    required = max(required, min(row.distance for row in rows) + MIN_STEP)
     failure = collision_failure(
-        way, candidate, np.arange(len(rows)), rows, asked, lambda q: np.array([row.distance for row in measure(q)])
+        tool_path,
+        candidate,
+        np.arange(len(rows)),
+        rows,
+        required,
+        lambda q: np.array([row.distance for row in measure(q)]),
     )
     assert failure is not None
     return failure

@@ -13,29 +13,29 @@ from teachpath.motion.arm.joint_path import JointPath
 from teachpath.motion.arm.kinematics import tool_pose
 from teachpath.motion.arm.puma560 import LOWER, UPPER
 from teachpath.motion.collision.collision_model import CollisionModel
-from teachpath.motion.paths.ik_branches import Candidate, candidates, least_wrong
-from teachpath.motion.paths.tool_path import Route, route
-from teachpath.motion.planning.approach import entry, leaving
-from teachpath.motion.planning.candidates import clear, fitting
-from teachpath.motion.planning.certificate import digest, limit_uses
-from teachpath.motion.planning.clearance import path_clearance, too_near
-from teachpath.motion.planning.failure import in_words, kinematic_failure, start_failure
-from teachpath.motion.planning.suggestion import nearest_point
-from teachpath.motion.planning.torque_limited import within_torques
+from teachpath.motion.paths.ik_branches import Candidate, enumerate_candidates, nearest_to_usable
+from teachpath.motion.paths.tool_path import ToolPath, sample_tool_path
+from teachpath.motion.planning.approach import find_approach, find_retreat
+from teachpath.motion.planning.candidates import clear_candidates, usable_candidates
+from teachpath.motion.planning.certificate import digest, largest_limit_uses
+from teachpath.motion.planning.clearance import clearance_refusal, path_clearance
+from teachpath.motion.planning.failure import describe, kinematic_failure, start_failure
+from teachpath.motion.planning.suggestion import name_control_point
+from teachpath.motion.planning.torque_limited import time_within_torques
 from teachpath.motion.settings import MotionSettings
-from teachpath.motion.timing.timed_trajectory import Track, paced
+from teachpath.motion.timing.timed_trajectory import TimedTrajectory, time_joint_path
 from teachpath.nurbs import Curve
 from teachpath.records import Certificate, Extreme, Failure, LearnedPath, Plan, Scene
 
 
 @dataclass(frozen=True, eq=False)
-class _Job:
+class _PlanningJob:
     """What stays the same while branches are tried."""
 
     path: LearnedPath
     scene: Scene
     settings: MotionSettings
-    way: Route
+    tool_path: ToolPath
     model: CollisionModel
 
 
@@ -59,21 +59,21 @@ def plan(path: LearnedPath, scene: Scene, settings: MotionSettings | None = None
     """
     settings = settings or MotionSettings()
     _home_within_limits(settings)
-    way = route(path.curve, settings, turn=_turn(path, settings))
+    way = sample_tool_path(path.curve, settings, orientation=_turn(path, settings))
     _refuse(start_failure(way, scene, settings))
-    every = candidates(way, settings)
-    fit = fitting(every, settings)
+    every = enumerate_candidates(way, settings)
+    fit = usable_candidates(every, settings)
     if not fit:
-        _refuse(kinematic_failure(way, least_wrong(every), settings))
-    job = _Job(path, scene, settings, way, CollisionModel(scene))
+        _refuse(kinematic_failure(way, nearest_to_usable(every), settings))
+    job = _PlanningJob(path, scene, settings, way, CollisionModel(scene))
     return _first_certified(job, fit)
 
 
-def _first_certified(job: _Job, fit: list[Candidate]) -> Plan:
+def _first_certified(job: _PlanningJob, fit: list[Candidate]) -> Plan:
     """Certify the first of the candidates that keep clear with which everything else can be done too."""
-    free = clear(job.way, fit, job.model, job.settings)
+    free = clear_candidates(job.tool_path, fit, job.model, job.settings)
     if not free:
-        raise too_near(job.way, fit[0], job.model, job.settings)
+        raise clearance_refusal(job.tool_path, fit[0], job.model, job.settings)
     refused: PathRefused | None = None
     for candidate in free:
         try:
@@ -91,15 +91,15 @@ def _home_within_limits(settings: MotionSettings) -> None:
             raise UnusableSettings(f"motion.home puts joint {joint + 1} to {angle:.3f} rad, limits {limits}")
 
 
-def _certified(job: _Job, candidate: Candidate) -> Plan:
-    settings, way = job.settings, job.way
-    joints, pace, limits, torque = within_torques(way, candidate, Dynamics(job.scene.carried), settings)
+def _certified(job: _PlanningJob, candidate: Candidate) -> Plan:
+    settings, way = job.settings, job.tool_path
+    joints, pace, limits, torque = time_within_torques(way, candidate, Dynamics(job.scene.carried), settings)
     _tool_on_path(way, joints, settings)
     clearance = path_clearance(way, candidate, job.model, settings, joints)
     start, goal = joints.joints[0], joints.joints[-1]
-    above_start = entry(job.model, start, settings)
-    above_goal = leaving(job.model, start, goal, settings)
-    track = paced(joints, pace, limits)
+    above_start = find_approach(job.model, start, settings)
+    above_goal = find_retreat(job.model, start, goal, settings)
+    track = time_joint_path(joints, pace, limits)
     drawn = Plan(
         id=f"plan-{uuid.uuid4().hex[:12]}",
         path=job.path.id,
@@ -118,45 +118,51 @@ def _certified(job: _Job, candidate: Candidate) -> Plan:
 
 
 def _certificate(
-    way: Route, candidate: Candidate, track: Track, settings: MotionSettings, torque: Extreme, clearance: Extreme
+    tool_path: ToolPath,
+    candidate: Candidate,
+    trajectory: TimedTrajectory,
+    settings: MotionSettings,
+    torque: Extreme,
+    clearance: Extreme,
 ) -> Certificate:
     """Measure what the setpoints use of the limits; the digest is left out.
 
     Raises:
         PathRefused: it is more than what may be used.
     """
-    position, velocity, acceleration, jerk = limit_uses(track.setpoints(settings.rate), settings.rate)
+    position, velocity, acceleration, jerk = largest_limit_uses(trajectory.setpoints(settings.rate), settings.rate)
     worst = max((velocity, acceleration, jerk), key=lambda extreme: extreme.value)
     if worst.value > settings.path_share:
         raise PathRefused(
             f"a limit is used to {100 * worst.value:.1f} % by {worst.place}, at most "
-            f"{100 * settings.path_share:.1f} %; smooth the path there: move {nearest_point(way, worst.s)}"
+            f"{100 * settings.path_share:.1f} %; smooth the path there: move {name_control_point(tool_path, worst.s)}"
         )
-    singular_s = float(way.lengths[int(np.argmin(candidate.singular))])
+    singular_s = float(tool_path.lengths[int(np.argmin(candidate.singular_values))])
     return Certificate(
         digest="",
-        branch=candidate.branch,
+        branch=candidate.description,
         position_use=position,
         velocity_use=velocity,
         acceleration_use=acceleration,
         jerk_use=jerk,
         torque_use=torque,
-        least_singular=Extreme(candidate.conditioned, f"s = {singular_s:.3f} m", singular_s),
+        least_singular=Extreme(candidate.min_singular_value, f"s = {singular_s:.3f} m", singular_s),
         clearance=clearance,
     )
 
 
-def _tool_on_path(way: Route, joints: JointPath, settings: MotionSettings) -> None:
-    samples = joints.dense()
+def _tool_on_path(tool_path: ToolPath, joints: JointPath, settings: MotionSettings) -> None:
+    samples = joints.dense_parameters()
     reached = joints(samples)
-    wanted = way.curve(way.arc.parameters(reached[:, 6]))
+    wanted = tool_path.curve(tool_path.arc.parameters(reached[:, 6]))
     off = np.linalg.norm(tool_pose(reached[:, :6])[:, :3, 3] - wanted, axis=1)
     worst = int(np.argmax(off))
     if off[worst] > settings.path_tolerance:
         s = float(reached[worst, 6])
         raise PathRefused(
             f"the path bends too sharply to be followed within its tolerance "
-            f"{way.place(int(np.argmin(np.abs(way.lengths - s))))}; move {nearest_point(way, s)}"
+            f"{tool_path.describe_node(int(np.argmin(np.abs(tool_path.lengths - s))))}; "
+            f"move {name_control_point(tool_path, s)}"
         )
 
 
@@ -166,4 +172,4 @@ def _turn(path: LearnedPath, settings: MotionSettings) -> Curve | None:
 
 def _refuse(failure: Failure | None) -> None:
     if failure is not None:
-        raise PathRefused(in_words(failure))
+        raise PathRefused(describe(failure))

@@ -9,26 +9,26 @@ from typing import Final
 import numpy as np
 from scipy.interpolate import BSpline
 
-from teachpath.motion.arm.kinematics import inverse, least_singular_value
+from teachpath.motion.arm.kinematics import inverse_kinematics, min_singular_value
 from teachpath.motion.arm.puma560 import LOWER, UPPER, Array
-from teachpath.motion.paths.ik_branches import Candidate, rolled
-from teachpath.motion.paths.tool_path import Route
+from teachpath.motion.paths.ik_branches import Candidate, roll_tool
+from teachpath.motion.paths.tool_path import ToolPath
 from teachpath.motion.settings import MotionSettings
 from teachpath.nurbs import Curve
 from teachpath.records import Suggestion, Vector
 
-NUDGE: Final = 0.004  # m, by which the tool is moved to see what becomes better
-FLAT: Final = 1e-9  # slope of a margin that shows no way
-TRIED: Final = (0.005, 0.01, 0.015, 0.02, 0.03, 0.04, 0.06, 0.08, 0.12, 0.16, 0.24)  # m
+PROBE_DISTANCE: Final = 0.004  # m, by which the tool is moved to see what becomes better
+MIN_SLOPE: Final = 1e-9  # slope of a margin that shows no way
+TRIED_DISTANCES: Final = (0.005, 0.01, 0.015, 0.02, 0.03, 0.04, 0.06, 0.08, 0.12, 0.16, 0.24)  # m
 # Seen from the robot: x ahead, y to its left, z up.
-WAYS: Final = (("away from the robot", "towards the robot"), ("to the left", "to the right"), ("up", "down"))
-WORTH: Final = 0.45  # share of the largest component from which on another is named as well
+DIRECTION_WORDS: Final = (("away from the robot", "towards the robot"), ("to the left", "to the right"), ("up", "down"))
+NAMED_COMPONENT_SHARE: Final = 0.45  # share of the largest component from which on another is named as well
 
 # How good some configurations (m, 6) are, reached from poses whose wrist lies (m,) [m] out of reach: (m,), growing.
-Margin = Callable[[Array, Array], Array]
+FaultMargin = Callable[[Array, Array], Array]
 
 
-def influences(curve: Curve, u: float) -> Array:
+def control_point_weights(curve: Curve, u: float) -> Array:
     """Return how far each control point (n,) takes the curve's point at `u` along when it is moved.
 
     Piegl & Tiller, The NURBS Book, eq. (4.2).
@@ -37,25 +37,27 @@ def influences(curve: Curve, u: float) -> Array:
     return np.asarray(row * curve.weights / (row @ curve.weights), dtype=np.float64)
 
 
-def nearest_point(way: Route, s: float) -> str:
+def name_control_point(tool_path: ToolPath, s: float) -> str:
     """Name the control point that takes the path along most at arc length `s` [m]."""
-    shares = influences(way.curve, float(way.arc.parameters(np.array([s]))[0]))
+    shares = control_point_weights(tool_path.curve, float(tool_path.arc.parameters(np.array([s]))[0]))
     return f"control point {int(np.argmax(shares)) + 1} of {len(shares)}"
 
 
-def margin_of(fault: str, candidate: Candidate, node: int) -> Margin:
+def fault_margin(fault: str, candidate: Candidate, node: int) -> FaultMargin:
     """Return what to raise so that a fault of a branch (see `branches.faults`) goes away."""
     if fault == "reach":
         return lambda q, outside: -outside
     if fault == "limit":
-        joint = int(np.argmax(candidate.over[node]))
+        joint = int(np.argmax(candidate.limit_excess[node]))
         return lambda q, outside: np.minimum(UPPER - q, q - LOWER)[:, joint]
     if fault == "turn":
         return lambda q, outside: np.abs(np.sin(q[:, 4]))
-    return lambda q, outside: least_singular_value(q)
+    return lambda q, outside: min_singular_value(q)
 
 
-def remedy(way: Route, candidate: Candidate, node: int, margin: Margin, lacking: float) -> Suggestion:
+def suggest_move(
+    tool_path: ToolPath, candidate: Candidate, node: int, margin: FaultMargin, shortfall: float
+) -> Suggestion:
     """Propose a move of one control point after which a margin at a node suffices: the shortest of those tried.
 
     Args:
@@ -65,12 +67,12 @@ def remedy(way: Route, candidate: Candidate, node: int, margin: Margin, lacking:
         margin: what to raise.
         lacking: how much of it is missing.
     """
-    shares = influences(way.curve, float(way.parameters[node]))
+    shares = control_point_weights(tool_path.curve, float(tool_path.parameters[node]))
     point = int(np.argmax(shares))
-    measure = _Nearby(way, candidate, node, margin)
+    measure = _MarginNearNode(tool_path, candidate, node, margin)
     moves = _moves(measure)
     values = measure(moves) - measure(np.zeros((1, 3)))[0]
-    enough = np.flatnonzero(values >= lacking)
+    enough = np.flatnonzero(values >= shortfall)
     best = min(enough, key=lambda k: float(np.linalg.norm(moves[k])), default=int(np.argmax(values)))
     move = moves[best] / shares[point]
     x, y, z = (float(v) for v in move)
@@ -80,56 +82,58 @@ def remedy(way: Route, candidate: Candidate, node: int, margin: Margin, lacking:
     return Suggestion(point, (x, y, z), sentence)
 
 
-def _moves(measure: _Nearby) -> Array:
+def _moves(measure: _MarginNearNode) -> Array:
     """Return what to try (m, 3): up the margin's slope, and along the axes."""
     slope = measure.slope()
     ways = [*np.eye(3), *-np.eye(3)]
-    if (steepness := float(np.linalg.norm(slope))) > FLAT:
+    if (steepness := float(np.linalg.norm(slope))) > MIN_SLOPE:
         ways.append(slope / steepness)
-    return np.concatenate([far * np.array(ways) for far in TRIED])
+    return np.concatenate([far * np.array(ways) for far in TRIED_DISTANCES])
 
 
 @dataclass(frozen=True, eq=False)
-class _Nearby:
+class _MarginNearNode:
     """The margin with the tool moved from a node, turned neither way, on the same branch."""
 
-    way: Route
+    tool_path: ToolPath
     candidate: Candidate
     node: int
-    margin: Margin
+    margin: FaultMargin
 
     def __call__(self, moves: Array) -> Array:
         """Return the margin (m,) after moves (m, 3) [m]."""
-        poses = np.repeat(self.way.poses(self.way.parameters[self.node : self.node + 1]), len(moves), axis=0)
+        poses = np.repeat(
+            self.tool_path.poses(self.tool_path.parameters[self.node : self.node + 1]), len(moves), axis=0
+        )
         poses[:, :3, 3] += moves
         here = self.candidate.joints[self.node]
-        solutions = inverse(poses, q4_before=float(here[3]))
-        roll = self.candidate.roll(self.way.parameters[self.node : self.node + 1])
-        q = rolled(solutions.joints[:, self.candidate.arm.index], roll)
-        return self.margin(q + 2 * np.pi * np.round((here - q) / (2 * np.pi)), solutions.excess[:, 0])
+        solutions = inverse_kinematics(poses, previous_q4=float(here[3]))
+        roll = self.candidate.roll(self.tool_path.parameters[self.node : self.node + 1])
+        q = roll_tool(solutions.joints[:, self.candidate.branch.index], roll)
+        return self.margin(q + 2 * np.pi * np.round((here - q) / (2 * np.pi)), solutions.reach_excess[:, 0])
 
     def slope(self) -> Array:
         """Return the slope (3,) of the margin."""
-        values = self(NUDGE * np.concatenate([np.eye(3), -np.eye(3)]))
-        return np.asarray((values[:3] - values[3:]) / (2 * NUDGE), dtype=np.float64)
+        values = self(PROBE_DISTANCE * np.concatenate([np.eye(3), -np.eye(3)]))
+        return np.asarray((values[:3] - values[3:]) / (2 * PROBE_DISTANCE), dtype=np.float64)
 
 
-def lacking_of(fault: str, candidate: Candidate, node: int, settings: MotionSettings) -> float:
+def margin_shortfall(fault: str, candidate: Candidate, node: int, settings: MotionSettings) -> float:
     """Return by how much the margin of a fault falls short at a node."""
     if fault == "reach":
-        return float(candidate.arm.outside[node])
+        return float(candidate.branch.reach_excess[node])
     if fault == "limit":
-        return float(candidate.over[node].max())
+        return float(candidate.limit_excess[node].max())
     if fault == "turn":
         return 0.1
-    return settings.least_singular - float(candidate.singular[node])
+    return settings.least_singular - float(candidate.singular_values[node])
 
 
 def _direction(move: Vector) -> str:
     largest = max(abs(v) for v in move)
     named = sorted(
         (-abs(value), ways[0] if value > 0 else ways[1])
-        for value, ways in zip(move, WAYS, strict=True)
-        if abs(value) >= WORTH * largest
+        for value, ways in zip(move, DIRECTION_WORDS, strict=True)
+        if abs(value) >= NAMED_COMPONENT_SHARE * largest
     )
     return " and ".join(words for _, words in named)

@@ -13,26 +13,28 @@ from numpy.typing import NDArray
 from scipy.interpolate import BSpline
 from scipy.ndimage import gaussian_filter1d
 
-from teachpath.motion.arm.kinematics import BRANCHES
+from teachpath.motion.arm.kinematics import BRANCH_NAMES
 from teachpath.motion.arm.puma560 import LOWER, UPPER, Array
-from teachpath.motion.collision.collision_model import CollisionModel, grasp_of
-from teachpath.motion.paths.ik_branches import Candidate, Roll, held
-from teachpath.motion.paths.tool_path import Route
+from teachpath.motion.collision.collision_model import CollisionModel, grasped_load
+from teachpath.motion.paths.ik_branches import Candidate, ToolRoll, rolled_candidate
+from teachpath.motion.paths.tool_path import ToolPath
 from teachpath.motion.settings import MotionSettings
 
-ANGLES: Final = 24  # of a full turn
-TURN: Final = 2 * np.pi / ANGLES  # rad, from one to the next
-PLACES: Final = 60  # along the path, about
-COARSE: Final = 3  # every such place is looked at before the others
-STEPS: Final = 2  # of an angle that the tool may turn from a place to the next
-ROOM: Final = 0.001  # m of clearance above what is asked, for what the smoothing takes
-ENOUGH: Final = 0.02  # m of clearance beyond which more is not sought
-WORTH: Final = 300.0  # of a missing metre of clearance, beside the square of a turn by one angle
-SMOOTH: Final = 2.0  # places, of the filter that takes the steps out of the angles
-DEGREE: Final = 5  # of the angles by the curve's parameter
+ROLL_COUNT: Final = 24  # of a full turn
+ROLL_STEP: Final = 2 * np.pi / ROLL_COUNT  # rad, from one to the next
+SEARCH_NODES: Final = 60  # along the path, about
+COARSE_STRIDE: Final = 3  # every such place is looked at before the others
+MAX_ROLL_STEPS: Final = 2  # of an angle that the tool may turn from a place to the next
+SMOOTHING_CLEARANCE: Final = 0.001  # m of clearance above what is asked, for what the smoothing takes
+SUFFICIENT_CLEARANCE: Final = 0.02  # m of clearance beyond which more is not sought
+CLEARANCE_WEIGHT: Final = 300.0  # of a missing metre of clearance, beside the square of a turn by one angle
+FILTER_WIDTH: Final = 2.0  # places, of the filter that takes the steps out of the angles
+SPLINE_DEGREE: Final = 5  # of the angles by the curve's parameter
 
 
-def rolling(way: Route, fit: list[Candidate], model: CollisionModel, settings: MotionSettings) -> list[Candidate]:
+def rolling_candidates(
+    tool_path: ToolPath, usable: list[Candidate], model: CollisionModel, settings: MotionSettings
+) -> list[Candidate]:
     """Return candidates whose tool rolls along the path: one a branch, or a first roll of it when it carries something.
 
     Args:
@@ -42,54 +44,56 @@ def rolling(way: Route, fit: list[Candidate], model: CollisionModel, settings: M
         settings: clearance to keep.
     """
     found, carries = [], model.scene.carried is not None
-    first = {(candidate.arm.index, str(candidate.roll) if carries else ""): candidate for candidate in reversed(fit)}
+    first = {
+        (candidate.branch.index, str(candidate.roll) if carries else ""): candidate for candidate in reversed(usable)
+    }
     for candidate in first.values():
-        if angles := _angles(way, candidate, model, settings):
-            roll = Roll(spline=_smoothed(*angles))
-            found.append(held(way, BRANCHES[candidate.arm.index], candidate.arm, roll))
-    return [candidate for candidate in found if candidate.continuous]
+        if angles := _search_rolls(tool_path, candidate, model, settings):
+            roll = ToolRoll(spline=_smoothed(*angles))
+            found.append(rolled_candidate(tool_path, BRANCH_NAMES[candidate.branch.index], candidate.branch, roll))
+    return [candidate for candidate in found if candidate.feasible]
 
 
-def _angles(
-    way: Route, candidate: Candidate, model: CollisionModel, settings: MotionSettings
+def _search_rolls(
+    tool_path: ToolPath, candidate: Candidate, model: CollisionModel, settings: MotionSettings
 ) -> tuple[Array, Array] | None:
     """Return places (k,) by the curve's parameter and the angles (k,) [rad] there, or None when nothing leads through.
 
     What is carried is held as the candidate's own roll takes it at the start.
     """
-    nodes = np.unique(np.linspace(0, len(way.lengths) - 1, PLACES).round().astype(np.int64))
-    more = _turns(candidate.joints[nodes])
-    few = _costs(model, candidate, nodes[::COARSE], more, settings)
+    nodes = np.unique(np.linspace(0, len(tool_path.lengths) - 1, SEARCH_NODES).round().astype(np.int64))
+    more = _roll_steps(candidate.joints[nodes])
+    few = _roll_costs(model, candidate, nodes[::COARSE_STRIDE], more, settings)
     # What leads through leads through some of the places too: mostly that is enough to see that nothing does.
-    if _least_turned(few, COARSE * STEPS) is None:
+    if _cheapest_sequence(few, COARSE_STRIDE * MAX_ROLL_STEPS) is None:
         return None
     costs = np.empty((len(nodes), len(more)))
-    rest = np.arange(len(nodes)) % COARSE != 0
-    costs[~rest], costs[rest] = few, _costs(model, candidate, nodes[rest], more, settings)
-    way_through = _least_turned(costs, STEPS)
+    rest = np.arange(len(nodes)) % COARSE_STRIDE != 0
+    costs[~rest], costs[rest] = few, _roll_costs(model, candidate, nodes[rest], more, settings)
+    way_through = _cheapest_sequence(costs, MAX_ROLL_STEPS)
     if way_through is None:
         return None
-    u = way.parameters[nodes]
-    return u, candidate.roll(u) + TURN * more[way_through]
+    u = tool_path.parameters[nodes]
+    return u, candidate.roll(u) + ROLL_STEP * more[way_through]
 
 
-def _turns(joints: Array) -> NDArray[np.int64]:
+def _roll_steps(joints: Array) -> NDArray[np.int64]:
     """Return by how many turns (m,) the tool could be rolled further at some of the configurations (k, 6)."""
-    first = int(np.floor((joints[:, 5].min() - UPPER[5]) / TURN))
-    last = int(np.ceil((joints[:, 5].max() - LOWER[5]) / TURN))
+    first = int(np.floor((joints[:, 5].min() - UPPER[5]) / ROLL_STEP))
+    last = int(np.ceil((joints[:, 5].max() - LOWER[5]) / ROLL_STEP))
     return np.arange(first, last + 1)
 
 
-def _costs(
+def _roll_costs(
     model: CollisionModel, candidate: Candidate, nodes: NDArray[np.int64], more: NDArray[np.int64],
     settings: MotionSettings,
 ) -> Array:  # fmt: skip
     """Return what each of `more` turns (m,) costs at nodes (k,) of the route: (k, m), infinite where it cannot be."""
     joints = candidate.joints[nodes]
-    clear = _clearances(model, candidate, joints)[:, more % ANGLES]
-    rolled = joints[:, 5, None] - TURN * more
-    free = (rolled >= LOWER[5]) & (rolled <= UPPER[5]) & (clear >= settings.clearance_min + ROOM)
-    costs = np.where(free, WORTH * np.maximum(ENOUGH - clear, 0.0), np.inf)
+    clear = _clearances(model, candidate, joints)[:, more % ROLL_COUNT]
+    rolled = joints[:, 5, None] - ROLL_STEP * more
+    free = (rolled >= LOWER[5]) & (rolled <= UPPER[5]) & (clear >= settings.clearance_min + SMOOTHING_CLEARANCE)
+    costs = np.where(free, CLEARANCE_WEIGHT * np.maximum(SUFFICIENT_CLEARANCE - clear, 0.0), np.inf)
     if model.scene.carried is not None:
         costs[np.ix_(nodes == 0, more != 0)] = np.inf  # it is held as the candidate's own roll takes it
     return costs
@@ -97,14 +101,14 @@ def _costs(
 
 def _clearances(model: CollisionModel, candidate: Candidate, joints: Array) -> Array:
     """Measure the clearance (k, ANGLES) [m] at configurations (k, 6) with the tool rolled further."""
-    load = grasp_of(model.scene, candidate.joints[0])
-    every = np.repeat(joints[:, None], ANGLES, axis=1)
-    every[:, :, 5] -= TURN * np.arange(ANGLES)
+    load = grasped_load(model.scene, candidate.joints[0])
+    every = np.repeat(joints[:, None], ROLL_COUNT, axis=1)
+    every[:, :, 5] -= ROLL_STEP * np.arange(ROLL_COUNT)
     rows = model.clearances(every.reshape(-1, 6), load=load)
-    return np.array([row.distance for row in rows]).reshape(len(joints), ANGLES)
+    return np.array([row.distance for row in rows]).reshape(len(joints), ROLL_COUNT)
 
 
-def _least_turned(costs: Array, steps: int) -> NDArray[np.int64] | None:
+def _cheapest_sequence(costs: Array, steps: int) -> NDArray[np.int64] | None:
     """Return the column at each row (k,) of the cheapest way through a grid of costs (k, m), or None without one."""
     count = costs.shape[1]
     total, came = costs[0], []
@@ -123,9 +127,9 @@ def _least_turned(costs: Array, steps: int) -> NDArray[np.int64] | None:
 
 def _smoothed(u: Array, angles: Array) -> BSpline[np.float64]:
     """Draw a smooth curve near angles (k,); a spline with these for coefficients does not overshoot."""
-    smooth = gaussian_filter1d(angles, SMOOTH, mode="nearest")
+    smooth = gaussian_filter1d(angles, FILTER_WIDTH, mode="nearest")
     inner = np.interp(np.linspace(0, len(u) - 1, max(len(u) // 3, 2)), np.arange(len(u)), u)
-    knots = np.concatenate([np.zeros(DEGREE), inner, np.ones(DEGREE)])
-    knots[DEGREE], knots[-DEGREE - 1] = 0.0, 1.0
-    greville = np.convolve(knots[1:-1], np.full(DEGREE, 1 / DEGREE), mode="valid")
-    return BSpline(knots, np.interp(greville, u, smooth), DEGREE)
+    knots = np.concatenate([np.zeros(SPLINE_DEGREE), inner, np.ones(SPLINE_DEGREE)])
+    knots[SPLINE_DEGREE], knots[-SPLINE_DEGREE - 1] = 0.0, 1.0
+    greville = np.convolve(knots[1:-1], np.full(SPLINE_DEGREE, 1 / SPLINE_DEGREE), mode="valid")
+    return BSpline(knots, np.interp(greville, u, smooth), SPLINE_DEGREE)

@@ -6,26 +6,28 @@ from typing import Final
 
 from teachpath.errors import PathRefused
 from teachpath.motion.arm.dynamics import Dynamics
-from teachpath.motion.arm.joint_path import ARM, JointPath, Limits
+from teachpath.motion.arm.joint_path import ARM_LIMITS, JointPath, MotionLimits
 from teachpath.motion.arm.puma560 import TORQUE, Array
 from teachpath.motion.paths.ik_branches import Candidate
-from teachpath.motion.paths.tool_path import Route
+from teachpath.motion.paths.tool_path import ToolPath
 from teachpath.motion.planning.certificate import largest_use
-from teachpath.motion.planning.suggestion import nearest_point
+from teachpath.motion.planning.suggestion import name_control_point
 from teachpath.motion.settings import MotionSettings
-from teachpath.motion.timing.timed_trajectory import paced
-from teachpath.motion.timing.timing import timed
+from teachpath.motion.timing.timed_trajectory import time_joint_path
+from teachpath.motion.timing.timing import time_tool_path
 from teachpath.records import Extreme
 
-EVERY: Final = 8  # instant of a track is looked at for its torques
-SLOWER: Final = 4  # times that a path is timed at most, each time with lower limits of acceleration
-LESS: Final = 0.97  # of the acceleration that the torques leave, because a slower path has other torques
-LEAST_LEFT: Final = 0.05  # of the limits of acceleration with which a path is still worth following
+TORQUE_STRIDE: Final = 8  # instant of a track is looked at for its torques
+MAX_RETIMINGS: Final = 4  # times that a path is timed at most, each time with lower limits of acceleration
+ACCELERATION_SAFETY_SHARE: Final = (
+    0.97  # of the acceleration that the torques leave, because a slower path has other torques
+)
+MIN_ACCELERATION_SHARE: Final = 0.05  # of the limits of acceleration with which a path is still worth following
 
 
-def within_torques(
-    way: Route, candidate: Candidate, dynamics: Dynamics, settings: MotionSettings
-) -> tuple[JointPath, Array, Limits, Extreme]:
+def time_within_torques(
+    tool_path: ToolPath, candidate: Candidate, dynamics: Dynamics, settings: MotionSettings
+) -> tuple[JointPath, Array, MotionLimits, Extreme]:
     """Time a route; where the limits of acceleration would ask too much of a motor, with lower ones.
 
     Returns:
@@ -34,19 +36,19 @@ def within_torques(
     Raises:
         PathRefused: the motors are too weak however slow it goes, or no motion keeps the limits.
     """
-    limits = ARM.scaled(*[settings.path_share] * 3)
-    for _ in range(SLOWER):
-        joints, pace = timed(way, candidate, limits, rate=settings.rate)
-        rows = paced(joints, pace, limits).table[::EVERY]
+    limits = ARM_LIMITS.scaled(*[settings.path_share] * 3)
+    for _ in range(MAX_RETIMINGS):
+        joints, pace = time_tool_path(tool_path, candidate, limits, rate=settings.rate)
+        rows = time_joint_path(joints, pace, limits).table[::TORQUE_STRIDE]
         q, velocity = rows[:, 0, :6], rows[:, 1, :6]
-        worst = largest_use(dynamics.largest(q, velocity, limits.acceleration), rows[:, 0, 6], TORQUE)
+        worst = largest_use(dynamics.torque_bounds(q, velocity, limits.acceleration), rows[:, 0, 6], TORQUE)
         if worst.value <= 1.0:
             return joints, pace, limits, worst
-        left = dynamics.share_left(q, velocity, limits.acceleration)
-        if left < LEAST_LEFT:
+        left = dynamics.acceleration_share(q, velocity, limits.acceleration)
+        if left < MIN_ACCELERATION_SHARE:
             break
-        limits = limits.scaled(1.0, LESS * left, 1.0)
+        limits = limits.scaled(1.0, ACCELERATION_SAFETY_SHARE * left, 1.0)
     raise PathRefused(
         f"the motors would have to give {100 * worst.value:.0f} % of their torque at {worst.place}; carry less, or "
-        f"bring the path nearer to the robot there, by {nearest_point(way, worst.s)}"
+        f"bring the path nearer to the robot there, by {name_control_point(tool_path, worst.s)}"
     )

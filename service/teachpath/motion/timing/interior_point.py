@@ -15,18 +15,18 @@ from scipy.linalg import LinAlgError, cho_solve_banded, cholesky_banded
 
 from teachpath.motion.arm.puma560 import Array
 
-STEPS: Final = 60
-CENTRED: Final = 0.15  # each step aims at this share of the present gap
-GAP: Final = 5e-4  # between the objective and its dual at which it is solved, relative
-BOUNDARY: Final = 0.99  # of the way to the nearest constraint that a step goes at most
-HALVINGS: Final = 14
-DESCENT: Final = 1e-4
-CONVEX: Final = 0.02  # share of the objective's curvature that is kept when constraints take it away
-BALANCE: Final = 1e6  # by which duals may be off the central path
+MAX_ITERATIONS: Final = 60
+CENTERING: Final = 0.15  # each step aims at this share of the present gap
+RELATIVE_GAP: Final = 5e-4  # between the objective and its dual at which it is solved, relative
+BOUNDARY_FRACTION: Final = 0.99  # of the way to the nearest constraint that a step goes at most
+MAX_BACKTRACKS: Final = 14
+ARMIJO_SLOPE: Final = 1e-4
+MIN_CURVATURE_SHARE: Final = 0.02  # share of the objective's curvature that is kept when constraints take it away
+MAX_DUAL_RATIO: Final = 1e6  # by which duals may be off the central path
 
 
 @dataclass(frozen=True, eq=False)
-class Slopes:
+class Derivatives:
     """Derivatives at n samples.
 
     Attributes:
@@ -35,12 +35,12 @@ class Slopes:
         slack: (n, k, 3) of the constraints' slacks by the three coefficients.
     """
 
-    objective: Array
-    bend: Array
-    slack: Array
+    objective_gradient: Array
+    hessian_diagonal: Array
+    constraint_jacobian: Array
 
 
-class Problem(Protocol):
+class SampledProblem(Protocol):
     """What can be minimised."""
 
     @property
@@ -48,62 +48,71 @@ class Problem(Protocol):
         """Intervals in which the samples lie, as many in each; interval i reads coefficients i to i + 2."""
 
     @property
-    def value(self) -> Array:
+    def basis(self) -> Array:
         """Shares (n, 3) of the coefficients in the value at each sample."""
 
     @property
-    def weights(self) -> Array:
+    def quadrature_weights(self) -> Array:
         """Weights (n,) of the samples in the objective."""
 
     @property
-    def curving(self) -> Array:
+    def constraint_curvature(self) -> Array:
         """How much of what the objective sums each constraint (k,) has in its slack."""
 
-    def begin(self) -> Array:
+    def initial_coefficients(self) -> Array:
         """Return feasible coefficients (intervals + 2,)."""
 
-    def slack(self, near: Array) -> tuple[float, Array] | None:
+    def constraint_values(self, coefficients: Array) -> tuple[float, Array] | None:
         """Return the objective and the slacks (n, k) at coefficients near each sample (n, 3), None outside."""
 
-    def slopes(self, near: Array) -> Slopes:
+    def derivatives(self, coefficients: Array) -> Derivatives:
         """Differentiate there."""
 
 
-def minimised(problem: Problem) -> Array:
+def minimize(problem: SampledProblem) -> Array:
     """Return coefficients (intervals + 2,) at which a problem's objective is least, nearly, and all slacks positive."""
-    found = problem.begin()
-    near = _near(found, problem)
-    here = problem.slack(near)
+    found = problem.initial_coefficients()
+    near = _coefficient_windows(found, problem)
+    here = problem.constraint_values(near)
     assert here is not None
     assert here[1].min() > 0.0
     objective, slack = here
     duals = objective / (slack.size * slack)
-    for _ in range(STEPS):
+    for _ in range(MAX_ITERATIONS):
         gap = float((slack * duals).sum())
-        if gap < GAP * objective:
+        if gap < RELATIVE_GAP * objective:
             break
-        aim = CENTRED * gap / slack.size
-        slopes = problem.slopes(near)
+        aim = CENTERING * gap / slack.size
+        slopes = problem.derivatives(near)
         step, gradient = _newton(problem, slopes, slack, duals, aim)
-        change = np.matmul(slopes.slack, _near(step, problem)[:, :, None])[:, :, 0]
+        change = np.matmul(slopes.constraint_jacobian, _coefficient_windows(step, problem)[:, :, None])[:, :, 0]
         turn = aim / slack - duals - duals / slack * change
         trial = _line_search(problem, found, step, (objective, slack), aim, _longest(slack, change), gradient)
         if trial is None:
             break
         found, objective, slack = trial
-        near = _near(found, problem)
+        near = _coefficient_windows(found, problem)
         central = aim / slack
-        duals = np.clip(duals + _longest(duals, turn) * turn, central / BALANCE, central * BALANCE)
+        duals = np.clip(duals + _longest(duals, turn) * turn, central / MAX_DUAL_RATIO, central * MAX_DUAL_RATIO)
     return found
 
 
-def _newton(problem: Problem, slopes: Slopes, slack: Array, duals: Array, aim: float) -> tuple[Array, float]:
+def _newton(
+    problem: SampledProblem, derivatives: Derivatives, slack: Array, duals: Array, aim: float
+) -> tuple[Array, float]:
     """Return the step (intervals + 2,) and the slope of the barrier along it."""
-    value, weights, bands = problem.value, problem.weights, duals / slack
-    pull = slopes.objective[:, None] * value - aim * np.matmul((1.0 / slack)[:, None], slopes.slack)[:, 0]
-    curvature = slopes.bend * np.maximum(weights - duals @ problem.curving, CONVEX * weights)
+    value, weights, bands = problem.basis, problem.quadrature_weights, duals / slack
+    pull = (
+        derivatives.objective_gradient[:, None] * value
+        - aim * np.matmul((1.0 / slack)[:, None], derivatives.constraint_jacobian)[:, 0]
+    )
+    curvature = derivatives.hessian_diagonal * np.maximum(
+        weights - duals @ problem.constraint_curvature, MIN_CURVATURE_SHARE * weights
+    )
     local = curvature[:, None, None] * value[:, :, None] * value[:, None]
-    local += np.matmul((slopes.slack * bands[:, :, None]).transpose(0, 2, 1), slopes.slack)
+    local += np.matmul(
+        (derivatives.constraint_jacobian * bands[:, :, None]).transpose(0, 2, 1), derivatives.constraint_jacobian
+    )
     gradient, band = _assembled(pull, local, problem.intervals)
     try:
         factor = cholesky_banded(band, check_finite=False)
@@ -127,27 +136,33 @@ def _assembled(pull: Array, local: Array, intervals: int) -> tuple[Array, Array]
 
 
 def _line_search(
-    problem: Problem, begin: Array, step: Array, here: tuple[float, Array], aim: float, longest: float, slope: float
+    problem: SampledProblem,
+    begin: Array,
+    step: Array,
+    here: tuple[float, Array],
+    aim: float,
+    longest: float,
+    slope: float,
 ) -> tuple[Array, float, Array] | None:
     """Return the coefficients, objective and slacks after a part of a step that lowers the barrier, or None."""
     before = here[0] - aim * float(np.log(here[1]).sum())
-    for halving in range(HALVINGS):
+    for halving in range(MAX_BACKTRACKS):
         length = longest / 2**halving
         found = begin + length * step
-        there = problem.slack(_near(found, problem))
+        there = problem.constraint_values(_coefficient_windows(found, problem))
         if there is None or there[1].min() <= 0.0:
             continue
-        if there[0] - aim * float(np.log(there[1]).sum()) <= before + DESCENT * length * slope:
+        if there[0] - aim * float(np.log(there[1]).sum()) <= before + ARMIJO_SLOPE * length * slope:
             return found, *there
     return None
 
 
 def _longest(values: Array, changes: Array) -> float:
     """Return the share of changes, at most 1, after which positive values are still positive."""
-    return min(1.0, BOUNDARY / max(float((-changes / values).max()), 1e-12))
+    return min(1.0, BOUNDARY_FRACTION / max(float((-changes / values).max()), 1e-12))
 
 
-def _near(coefficients: Array, problem: Problem) -> Array:
+def _coefficient_windows(coefficients: Array, problem: SampledProblem) -> Array:
     """Return the three coefficients (n, 3) that each sample reads."""
     windows = np.lib.stride_tricks.sliding_window_view(coefficients, 3)
-    return np.repeat(windows, len(problem.weights) // problem.intervals, axis=0)
+    return np.repeat(windows, len(problem.quadrature_weights) // problem.intervals, axis=0)

@@ -15,33 +15,33 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from teachpath.motion.arm.joint_path import JointPath, Limits
+from teachpath.motion.arm.joint_path import JointPath, MotionLimits
 from teachpath.motion.arm.puma560 import Array
-from teachpath.motion.timing.interior_point import Slopes, minimised
-from teachpath.motion.timing.limit_margins import Reserve
+from teachpath.motion.timing.interior_point import Derivatives, minimize
+from teachpath.motion.timing.limit_margins import Margins
 
-PLACES: Final = np.array([0.02, 0.34, 0.66, 0.98])  # within an interval, where the limits are imposed
-STILL: Final = 1e-6  # share of its speed limit that a joint uses when it stands still
-BEGIN: Final = 0.5  # of the fastest constant x the search begins with
+SAMPLE_POINTS: Final = np.array([0.02, 0.34, 0.66, 0.98])  # within an interval, where the limits are imposed
+STILL_SPEED_SHARE: Final = 1e-6  # share of its speed limit that a joint uses when it stands still
+INITIAL_RATE_SHARE: Final = 0.5  # of the fastest constant x the search begins with
 
 Rows = tuple[NDArray[np.int64], Array, Array, Array]
 
 
-def spline_rows(places: Array, intervals: int) -> Rows:
+def quadratic_basis(parameters: Array, intervals: int) -> Rows:
     """Evaluate the quadratic B-splines on even intervals of [0, 1].
 
     Returns:
         (n,) index of the first of three coefficients, and (n, 3) their shares in value, first and second derivative.
     """
-    first = np.clip((places * intervals).astype(np.int64), 0, intervals - 1)
-    t = places * intervals - first
+    first = np.clip((parameters * intervals).astype(np.int64), 0, intervals - 1)
+    t = parameters * intervals - first
     value = np.stack([(1 - t) ** 2 / 2, t * (1 - t) + 0.5, t**2 / 2], axis=1)
     slope = intervals * np.stack([t - 1, 1 - 2 * t, t], axis=1)
     curvature = intervals**2 * np.tile([1.0, -2.0, 1.0], (len(t), 1))
     return first, value, slope, curvature
 
 
-def fastest_pace(path: JointPath, limits: Limits, intervals: int, reserve: Reserve) -> Array:
+def minimize_duration(path: JointPath, limits: MotionLimits, intervals: int, margins: Margins) -> Array:
     """Find x(sigma) that brings the arm from end to end soonest, as coefficients (intervals + 2,) [1/s^2].
 
     Args:
@@ -50,11 +50,11 @@ def fastest_pace(path: JointPath, limits: Limits, intervals: int, reserve: Reser
         intervals: of the spline.
         reserve: shares of the limits that may be used.
     """
-    return minimised(_Timing.of(path, limits, intervals, reserve))
+    return minimize(_DurationProblem.of(path, limits, intervals, margins))
 
 
 @dataclass(frozen=True, eq=False)
-class _Timing:
+class _DurationProblem:
     """Duration and limits as `interior.minimised` wants them, at n samples, for the m joints that move.
 
     The constraints of a sample are, in this order: speed, acceleration along and against the way each joint turns, jerk
@@ -62,60 +62,60 @@ class _Timing:
     """
 
     intervals: int
-    value: Array  # (n, 3) shares of three coefficients in x
-    weights: Array  # (n,) of the samples in an integral over sigma
+    basis: Array  # (n, 3) shares of three coefficients in x
+    quadrature_weights: Array  # (n,) of the samples in an integral over sigma
     ceiling: Array  # (n,) largest x for the speed limits
     accelerations: Array  # (n, m, 3) shares of the coefficients in acceleration over its limit
     jerks: Array  # (n, m, 3) the same in jerk over its limit and over sqrt(x)
-    reserve: Reserve
+    margins: Margins
 
     @staticmethod
-    def of(path: JointPath, limits: Limits, intervals: int, reserve: Reserve) -> _Timing:
+    def of(path: JointPath, limits: MotionLimits, intervals: int, margins: Margins) -> _DurationProblem:
         """Return the coefficients of a joint path, for joints that move on it, where limits are imposed."""
-        places = ((np.arange(intervals)[:, None] + PLACES) / intervals).ravel()
+        places = ((np.arange(intervals)[:, None] + SAMPLE_POINTS) / intervals).ravel()
         one, two, three = (path(places, k)[:, :6] for k in (1, 2, 3))
-        moves = np.abs(one).max(axis=0) > STILL * limits.speed
+        moves = np.abs(one).max(axis=0) > STILL_SPEED_SHARE * limits.speed
         forward = np.where(one >= 0.0, 1.0, -1.0)
         one, two, three = ((forward * part)[:, moves] for part in (one, two, three))
-        _, *rows = spline_rows(places, intervals)
+        _, *rows = quadratic_basis(places, intervals)
         value, slope, curvature = (row[:, None] for row in rows)
         edges = np.concatenate([[0.0], (places[1:] + places[:-1]) / 2, [1.0]])
         speed, acceleration, jerk = limits.speed[moves], limits.acceleration[moves], limits.jerk[moves]
         a, b = ((part / acceleration)[:, :, None] for part in (one, two))
         i, j, k = ((part / jerk)[:, :, None] for part in (one, two, three))
-        return _Timing(
+        return _DurationProblem(
             intervals,
             rows[0],
             np.diff(edges),
-            np.min((reserve.speed * speed / np.maximum(one, 1e-12)) ** 2, axis=1),
+            np.min((margins.speed * speed / np.maximum(one, 1e-12)) ** 2, axis=1),
             b * value + 0.5 * a * slope,
             k * value + 1.5 * j * slope + 0.5 * i * curvature,
-            reserve,
+            margins,
         )
 
-    def begin(self) -> Array:
+    def initial_coefficients(self) -> Array:
         """Return a constant x that keeps all limits: (intervals + 2,)."""
         ones = np.ones(3)
         a, j = np.abs(self.accelerations @ ones).max(), np.abs(self.jerks @ ones).max()
-        least = min(*self.reserve.against, *self.reserve.fast)
+        least = min(*self.margins.against, *self.margins.against_at_speed)
         slowest = min(self.ceiling.min(), least / a, (least / j) ** (2 / 3))
-        return np.full(self.intervals + 2, BEGIN * slowest)
+        return np.full(self.intervals + 2, INITIAL_RATE_SHARE * slowest)
 
     @property
-    def curving(self) -> Array:
+    def constraint_curvature(self) -> Array:
         """How much of x^-1/2, which the objective is made of, each constraint has in it: (1 + 4 m,)."""
         m = self.jerks.shape[1]
-        return np.repeat([0.0, self.reserve.along[1], self.reserve.against[1]], [1 + 2 * m, m, m])
+        return np.repeat([0.0, self.margins.along[1], self.margins.against[1]], [1 + 2 * m, m, m])
 
-    def slack(self, near: Array) -> tuple[float, Array] | None:
+    def constraint_values(self, coefficients: Array) -> tuple[float, Array] | None:
         """Return the duration [s] and the slack (n, 1 + 4 m) of all constraints; None where x is not positive."""
-        x = self._value(near)
+        x = self._value(coefficients)
         if x.min() <= 0.0:
             return None
-        a, j = ((part @ near[:, :, None])[:, :, 0] for part in (self.accelerations, self.jerks))
+        a, j = ((part @ coefficients[:, :, None])[:, :, 0] for part in (self.accelerations, self.jerks))
         root, fast = x**-0.5, x / self.ceiling
-        (along_a, along_j), (against_a, against_j) = self.reserve.along, self.reserve.against
-        fall_a, fall_j = self.reserve.falls
+        (along_a, along_j), (against_a, against_j) = self.margins.along, self.margins.against
+        fall_a, fall_j = self.margins.against_decrease
         parts = [
             1.0 - fast[:, None],
             along_a - a,
@@ -123,20 +123,24 @@ class _Timing:
             along_j * root[:, None] - j,
             (root * (against_j - fall_j * fast))[:, None] + j,
         ]
-        return float(self.weights @ root), np.concatenate(parts, axis=1)
+        return float(self.quadrature_weights @ root), np.concatenate(parts, axis=1)
 
-    def slopes(self, near: Array) -> Slopes:
+    def derivatives(self, coefficients: Array) -> Derivatives:
         """Differentiate: the objective by x, the slacks by the coefficients."""
-        x = self._value(near)
+        x = self._value(coefficients)
         steep = 0.5 * x**-1.5
-        (_, along_j), (_, against_j), (fall_a, fall_j) = self.reserve.along, self.reserve.against, self.reserve.falls
+        (_, along_j), (_, against_j), (fall_a, fall_j) = (
+            self.margins.along,
+            self.margins.against,
+            self.margins.against_decrease,
+        )
         level, along, against = (
-            share[:, None, None] * self.value[:, None]
+            share[:, None, None] * self.basis[:, None]
             for share in (1.0 / self.ceiling, along_j * steep, against_j * steep + fall_j * x * steep / self.ceiling)
         )
         a, j = self.accelerations, self.jerks
         slack = np.concatenate([-level, -a, a - fall_a * level, -along - j, j - against], axis=1)
-        return Slopes(-self.weights * steep, 1.5 * steep / x, slack)
+        return Derivatives(-self.quadrature_weights * steep, 1.5 * steep / x, slack)
 
     def _value(self, near: Array) -> Array:
-        return np.asarray(np.einsum("ij,ij->i", near, self.value))
+        return np.asarray(np.einsum("ij,ij->i", near, self.basis))

@@ -9,22 +9,26 @@ import numpy as np
 from teachpath.errors import Conflict
 from teachpath.motion.arm.puma560 import Array
 from teachpath.motion.timing.joint_moves import rest_to_rest
-from teachpath.motion.timing.limit_margins import RESERVE, uses
-from teachpath.motion.timing.timed_trajectory import STEP, Track, composed
+from teachpath.motion.timing.limit_margins import SYMMETRIC_MARGINS, limit_uses
+from teachpath.motion.timing.timed_trajectory import MAX_TABLE_STEP, TimedTrajectory, apply_chain_rule
 
-LEAST: Final = 1e-6  # s of plan time or m of path, a step shorter than this is none
-ROUNDS: Final = 4  # times that a step is slowed down at most
-STEEPEST: Final = 1e3  # 1/s, second derivative of plan time where the joints hardly move
-HARDEST: Final = 1e5  # 1/s^2, third one
-PHASES: Final = (0.0, 0.25, 0.5, 0.75)  # of the first setpoint, in control periods
+MIN_JOG: Final = 1e-6  # s of plan time or m of path, a step shorter than this is none
+MAX_SLOWDOWNS: Final = 4  # times that a step is slowed down at most
+MAX_TIME_ACCELERATION: Final = 1e3  # 1/s, second derivative of plan time where the joints hardly move
+MAX_TIME_JERK: Final = 1e5  # 1/s^2, third one
+SETPOINT_PHASES: Final = (0.0, 0.25, 0.5, 0.75)  # of the first setpoint, in control periods
 
 
-def place_of(track: Track, s: float) -> float:
+def time_at_length(trajectory: TimedTrajectory, s: float) -> float:
     """Return the plan time [s] at which a track is at length `s` [m]."""
-    return float(np.interp(s, np.maximum.accumulate(track.table[:, 0, 6]), np.arange(len(track.table)) * track.step))
+    return float(
+        np.interp(
+            s, np.maximum.accumulate(trajectory.table[:, 0, 6]), np.arange(len(trajectory.table)) * trajectory.step
+        )
+    )
 
 
-def stepped(track: Track, begin: float, end: float, rate: float) -> Track:
+def jog_trajectory(trajectory: TimedTrajectory, begin: float, end: float, rate: float) -> TimedTrajectory:
     """Make the track of a step: the same way, from rest at plan time `begin` to rest at `end` [s], either direction.
 
     The joints do q(tau(t)); tau(t) is one call of Ruckig, slowed down until the setpoints keep the limits. Like every
@@ -37,21 +41,23 @@ def stepped(track: Track, begin: float, end: float, rate: float) -> Track:
         Conflict: there is nothing left to go in that direction.
     """
     distance = abs(end - begin)
-    if distance < LEAST:
+    if distance < MIN_JOG:
         raise Conflict("the path ends here; there is nothing left to go in that direction")
     low, high = sorted((begin, end))
-    rows = track.table[int(low / track.step) : int(np.ceil(high / track.step)) + 1]
+    rows = trajectory.table[int(low / trajectory.step) : int(np.ceil(high / trajectory.step)) + 1]
     steepest = np.maximum(np.abs(rows[:, 1, :6]).max(axis=0), 1e-9)  # of the joints by plan time
-    acceleration = min(float(np.min(track.limits.acceleration / steepest)), STEEPEST)
-    jerk = min(float(np.min(track.limits.jerk / steepest)), HARDEST)
+    acceleration = min(float(np.min(trajectory.limits.acceleration / steepest)), MAX_TIME_ACCELERATION)
+    jerk = min(float(np.min(trajectory.limits.jerk / steepest)), MAX_TIME_JERK)
     slower = 1.0
-    for _ in range(ROUNDS):
+    for _ in range(MAX_SLOWDOWNS):
         tau, one, two, three, step = rest_to_rest(
-            distance, 1.0 / slower, acceleration / slower**2, jerk / slower**3, STEP
+            distance, 1.0 / slower, acceleration / slower**2, jerk / slower**3, MAX_TABLE_STEP
         )
         ahead = np.sign(end - begin)
-        made = Track(
-            composed(_along(track, begin + ahead * tau), ahead * one, ahead * two, ahead * three), step, track.limits
+        made = TimedTrajectory(
+            apply_chain_rule(_along(trajectory, begin + ahead * tau), ahead * one, ahead * two, ahead * three),
+            step,
+            trajectory.limits,
         )
         factor = _too_fast(made, rate)
         if factor <= 1.0:
@@ -60,11 +66,11 @@ def stepped(track: Track, begin: float, end: float, rate: float) -> Track:
     return made
 
 
-def _along(track: Track, tau: Array) -> list[Array]:
+def _along(trajectory: TimedTrajectory, tau: Array) -> list[Array]:
     """Return joints and length (n, 7) at plan times and their three derivatives by plan time."""
-    row = np.clip(np.rint(tau / track.step).astype(np.int64), 0, len(track.table) - 1)
-    ahead = (tau - row * track.step)[:, None]
-    value, first, second, third = (track.table[row, k] for k in range(4))
+    row = np.clip(np.rint(tau / trajectory.step).astype(np.int64), 0, len(trajectory.table) - 1)
+    ahead = (tau - row * trajectory.step)[:, None]
+    value, first, second, third = (trajectory.table[row, k] for k in range(4))
     return [
         value + ahead * (first + ahead / 2 * (second + ahead / 3 * third)),
         first + ahead * (second + ahead / 2 * third),
@@ -73,10 +79,12 @@ def _along(track: Track, tau: Array) -> list[Array]:
     ]
 
 
-def _too_fast(track: Track, rate: float) -> float:
-    speed, acceleration, jerk = RESERVE
+def _too_fast(trajectory: TimedTrajectory, rate: float) -> float:
+    speed, acceleration, jerk = SYMMETRIC_MARGINS
     factor = 0.0
-    for phase in PHASES:
-        v, a, j = (float(use.max()) for use in uses(track.setpoints(rate, phase=phase), track.limits, rate))
+    for phase in SETPOINT_PHASES:
+        v, a, j = (
+            float(use.max()) for use in limit_uses(trajectory.setpoints(rate, phase=phase), trajectory.limits, rate)
+        )
         factor = max(factor, v / speed, np.sqrt(a / acceleration), np.cbrt(j / jerk))
     return factor

@@ -10,19 +10,21 @@ import numpy as np
 from ruckig import InputParameter, Ruckig, Trajectory
 
 from teachpath.errors import PathRefused
-from teachpath.motion.arm.joint_path import Limits
+from teachpath.motion.arm.joint_path import MotionLimits
 from teachpath.motion.arm.kinematics import tool_pose
 from teachpath.motion.arm.puma560 import Array
-from teachpath.motion.collision.collision_model import Clearance, CollisionModel, Load, standing
-from teachpath.motion.collision.continuous import Sweep, least
+from teachpath.motion.collision.collision_model import Clearance, CollisionModel, Load, shape_pose
+from teachpath.motion.collision.continuous import ContinuousCheck, prove_distance
 from teachpath.motion.settings import MotionSettings
-from teachpath.motion.timing.timed_trajectory import STEP, Track, composed
+from teachpath.motion.timing.timed_trajectory import MAX_TABLE_STEP, TimedTrajectory, apply_chain_rule
 from teachpath.records import Scene
 
-NEAR_FINGERS: Final = 0.001  # m, that open fingers stay away from the object between them
+MIN_FINGER_DISTANCE: Final = 0.001  # m, that open fingers stay away from the object between them
 
 
-def straight(start: Array, goal: Array, limits: Limits, *, reserve: tuple[float, float, float]) -> Track:
+def straight_move(
+    start: Array, goal: Array, limits: MotionLimits, *, margins: tuple[float, float, float]
+) -> TimedTrajectory:
     """Run from rest to rest on the straight line between two configurations, as fast as Ruckig finds.
 
     Args:
@@ -34,19 +36,19 @@ def straight(start: Array, goal: Array, limits: Limits, *, reserve: tuple[float,
     turn = float(np.abs(goal - start).max())
     direction = (goal - start) / turn
     slowest = np.maximum(np.abs(direction), 1e-12)
-    shared = limits.scaled(*reserve)
+    shared = limits.scaled(*margins)
     run = rest_to_rest(
         turn,
         float(np.min(shared.speed / slowest)),
         float(np.min(shared.acceleration / slowest)),
         float(np.min(shared.jerk / slowest)),
-        STEP,
+        MAX_TABLE_STEP,
     )
     place, speed, acceleration, jerk, step = run
     count = len(place) - 1
     ahead, still = np.append(direction, 1.0), np.zeros((count + 1, 7))
     line = [np.append(start, 0.0) + place[:, None] * ahead, np.tile(ahead, (count + 1, 1)), still, still]
-    return Track(composed(line, speed, acceleration, jerk), step, limits)
+    return TimedTrajectory(apply_chain_rule(line, speed, acceleration, jerk), step, limits)
 
 
 def rest_to_rest(
@@ -83,8 +85,14 @@ def _phases(run: Trajectory, instants: Array) -> tuple[Array, Array, Array, Arra
     return p + t * (v + t * (a / 2 + t * j / 6)), v + t * (a + t * j / 2), a + t * j, j
 
 
-def check_free(
-    model: CollisionModel, stops: Array, settings: MotionSettings, *, load: Load | None, gripper_open: bool, what: str
+def prove_move_clear(
+    model: CollisionModel,
+    waypoints: Array,
+    settings: MotionSettings,
+    *,
+    load: Load | None,
+    gripper_open: bool,
+    move_name: str,
 ) -> float:
     """Return the clearance [m] that is proved for straight lines of the joints between configurations (n, 6).
 
@@ -97,18 +105,24 @@ def check_free(
     def measure(q: Array) -> list[Clearance]:
         return model.clearances(q, load=load, gripper_open=gripper_open)
 
-    proved = least(Sweep.through(stops, model.levers(load)), measure, settings.clearance_min)
+    proved = prove_distance(
+        ContinuousCheck.along_lines(waypoints, model.lever_arms(load)), measure, settings.clearance_min
+    )
     if proved.distance < settings.clearance_min:
-        near = proved.measured
-        raise PathRefused(f"{what}: {near.too_near(proved.distance, settings.clearance_min)}")
-    if load is not None and load.placed is not None and gripper_open:
-        fingers = least(Sweep.through(stops, model.levers()), partial(model.straddles, load=load), NEAR_FINGERS)
-        if fingers.distance < NEAR_FINGERS:
-            raise PathRefused(f"{what}: the open fingers would hit the object; is the path centred on it?")
+        near = proved.nearest
+        raise PathRefused(f"{move_name}: {near.describe_violation(proved.distance, settings.clearance_min)}")
+    if load is not None and load.position is not None and gripper_open:
+        fingers = prove_distance(
+            ContinuousCheck.along_lines(waypoints, model.lever_arms()),
+            partial(model.finger_distances, load=load),
+            MIN_FINGER_DISTANCE,
+        )
+        if fingers.distance < MIN_FINGER_DISTANCE:
+            raise PathRefused(f"{move_name}: the open fingers would hit the object; is the path centred on it?")
     return proved.distance
 
 
-def approach(
+def joint_waypoints(
     model: CollisionModel,
     here: Array,
     goal: Array,
@@ -116,7 +130,7 @@ def approach(
     *,
     load: Load | None = None,
     gripper_open: bool = False,
-    what: str = "on the way to the path's start",
+    move_name: str = "on the way to the path's start",
 ) -> Sequence[Array]:
     """Find the stops on the way from one configuration to another: straight, or over the arm's home.
 
@@ -130,7 +144,9 @@ def approach(
     refused: PathRefused | None = None
     for stops in ((here, goal), (here, home, goal)):
         try:
-            check_free(model, np.array(stops), settings, load=load, gripper_open=gripper_open, what=what)
+            prove_move_clear(
+                model, np.array(stops), settings, load=load, gripper_open=gripper_open, move_name=move_name
+            )
             return stops
         except PathRefused as error:
             refused = refused or error
@@ -138,7 +154,7 @@ def approach(
     raise PathRefused(f"{refused}; bring the arm nearer to its home first")
 
 
-def retreat(
+def waypoints_home(
     model: CollisionModel, start: Array, goal: Array, above_goal: Array, settings: MotionSettings
 ) -> tuple[Array, Array]:
     """Find the stops on the way home behind a path, with the carried object left at its goal.
@@ -154,16 +170,18 @@ def retreat(
         PathRefused: the way is not free.
     """
     home = np.array(settings.home)
-    load = left_behind(model.scene, start, goal)
+    load = placed_load(model.scene, start, goal)
     what = "on the way home from the goal"
-    check_free(model, np.stack([above_goal, home]), settings, load=load, gripper_open=load is not None, what=what)
+    prove_move_clear(
+        model, np.stack([above_goal, home]), settings, load=load, gripper_open=load is not None, move_name=what
+    )
     return above_goal, home
 
 
-def left_behind(scene: Scene, start: Array, goal: Array) -> Load | None:
+def placed_load(scene: Scene, start: Array, goal: Array) -> Load | None:
     """Say where the carried object stands once it was moved along a path between two configurations."""
     if scene.carried is None:
         return None
-    pose = tool_pose(goal) @ np.linalg.inv(tool_pose(start)) @ standing(scene.carried)
+    pose = tool_pose(goal) @ np.linalg.inv(tool_pose(start)) @ shape_pose(scene.carried)
     x, y, z = (float(value) for value in pose[:3, 3])
-    return Load(placed=(x, y, z), turned=pose[:3, :3])
+    return Load(position=(x, y, z), rotation=pose[:3, :3])

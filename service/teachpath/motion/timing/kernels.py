@@ -16,14 +16,14 @@ import numpy as np
 
 from teachpath.motion.arm.puma560 import Array
 
-CLOSE: Final = 0.997  # use of acceleration and jerk limits up to which a ramp is accepted
-AFTER: Final = 3  # setpoints behind a ramp that its differences still reach
-SOFTER: Final = 0.6  # the next try after a broken jerk limit
-SLOWER: Final = 0.7  # the next try after a broken acceleration limit
-SOONER: Final = 0.002  # s, by which a ramp must be shorter than the one followed
-AHEAD: Final = 0.03  # s, over which the speed of the joints sets what is worth a try
-STEEPEST: Final = 1e4  # 1/s^2, of a ramp
-HARDEST: Final = 1e6  # 1/s^3
+ACCEPTED_LIMIT_USE: Final = 0.997  # use of acceleration and jerk limits up to which a ramp is accepted
+TRAILING_SETPOINTS: Final = 3  # setpoints behind a ramp that its differences still reach
+JERK_REDUCTION: Final = 0.6  # the next try after a broken jerk limit
+ACCELERATION_REDUCTION: Final = 0.7  # the next try after a broken acceleration limit
+MIN_TIME_SAVED: Final = 0.002  # s, by which a ramp must be shorter than the one followed
+LOOKAHEAD_TIME: Final = 0.03  # s, over which the speed of the joints sets what is worth a try
+MAX_RATE_ACCELERATION: Final = 1e4  # 1/s^2, of a ramp
+MAX_RATE_JERK: Final = 1e6  # 1/s^3
 
 KEPT, SPEED_BROKEN, ACCELERATION_BROKEN, JERK_BROKEN = 0, 1, 2, 3
 
@@ -39,7 +39,7 @@ def compiled(function: F) -> F:
 
 
 @compiled
-def look(table: Array, step: float, tau: float, out: Array) -> None:
+def evaluate_table(table: Array, step: float, tau: float, out: Array) -> None:
     """Write joints and length (7,) at plan time `tau` to `out`; at rest before and behind."""
     last = table.shape[0] - 1
     tau = min(max(tau, 0.0), last * step)
@@ -52,7 +52,7 @@ def look(table: Array, step: float, tau: float, out: Array) -> None:
 
 
 @compiled
-def along(ramp: Array, t: float) -> tuple[float, float, float]:
+def evaluate_ramp(ramp: Array, t: float) -> tuple[float, float, float]:
     """Return tau, r and r' at time `t` after the beginning of a ramp."""
     tau, r, a, jerk = ramp[0], ramp[1], ramp[2], ramp[6]
     for phase in range(3):
@@ -68,7 +68,7 @@ def along(ramp: Array, t: float) -> tuple[float, float, float]:
 
 
 @compiled
-def draw(ramp: Array, state: Array, target: float, steepest: float, hardest: float) -> float:
+def shortest_ramp(ramp: Array, state: Array, target: float, steepest: float, hardest: float) -> float:
     """Write the shortest ramp from a state (tau, r, r') to a constant rate; return its peak |r'|, or -1 without one.
 
     The velocity problem of L. Berscheid & T. Kröger, Jerk-limited real-time trajectory generation with arbitrary target
@@ -93,7 +93,7 @@ def draw(ramp: Array, state: Array, target: float, steepest: float, hardest: flo
 
 
 @compiled
-def judge(table: Array, step: float, ramp: Array, sent: Array, limits: Array, dt: float) -> tuple[int, float]:
+def check_ramp(table: Array, step: float, ramp: Array, sent: Array, limits: Array, dt: float) -> tuple[int, float]:
     """Stream a ramp in thought, from the newest setpoints on.
 
     Args:
@@ -105,16 +105,16 @@ def judge(table: Array, step: float, ramp: Array, sent: Array, limits: Array, dt
         Which limit is broken first, or KEPT, and how long after the beginning [s].
     """
     q0, q1, q2, q3 = sent[0].copy(), sent[1].copy(), sent[2].copy(), np.empty(7)
-    count = ceil((ramp[3] + ramp[4] + ramp[5]) / dt) + AFTER
+    count = ceil((ramp[3] + ramp[4] + ramp[5]) / dt) + TRAILING_SETPOINTS
     for k in range(1, count + 1):
-        tau, _, _ = along(ramp, k * dt)
-        look(table, step, tau, q3)
+        tau, _, _ = evaluate_ramp(ramp, k * dt)
+        evaluate_table(table, step, tau, q3)
         for i in range(6):
             if abs(q3[i] - q2[i]) > limits[0, i]:
                 return SPEED_BROKEN, k * dt
-            if abs(q3[i] - 2.0 * q2[i] + q1[i]) > CLOSE * limits[1, i]:
+            if abs(q3[i] - 2.0 * q2[i] + q1[i]) > ACCEPTED_LIMIT_USE * limits[1, i]:
                 return ACCELERATION_BROKEN, k * dt
-            if abs(q3[i] - 3.0 * q2[i] + 3.0 * q1[i] - q0[i]) > CLOSE * limits[2, i]:
+            if abs(q3[i] - 3.0 * q2[i] + 3.0 * q1[i] - q0[i]) > ACCEPTED_LIMIT_USE * limits[2, i]:
                 return JERK_BROKEN, k * dt
         for i in range(6):
             q0[i], q1[i], q2[i] = q1[i], q2[i], q3[i]
@@ -122,7 +122,7 @@ def judge(table: Array, step: float, ramp: Array, sent: Array, limits: Array, dt
 
 
 @compiled
-def seek(
+def find_ramp(
     table: Array, step: float, state: Array, target: float, sent: Array, limits: Array, dt: float, within: float,
     tries: int, ramp: Array,
 ) -> float:  # fmt: skip
@@ -136,14 +136,14 @@ def seek(
         tries: ramps that are judged at most.
         ramp: (8,) where it is written.
     """
-    steepest, hardest = _most(table, step, state, limits, dt)
+    steepest, hardest = _search_bounds(table, step, state, limits, dt)
     failed_a, failed_j, kept_a, kept_j, best = 0.0, 0.0, 0.0, 0.0, -1.0
     trial = np.empty(8)
     for _ in range(tries):
-        peak = draw(trial, state, target, steepest, hardest)
-        if peak < 0.0 or trial[3] + trial[4] + trial[5] >= within - SOONER:
+        peak = shortest_ramp(trial, state, target, steepest, hardest)
+        if peak < 0.0 or trial[3] + trial[4] + trial[5] >= within - MIN_TIME_SAVED:
             return best
-        broken, when = judge(table, step, trial, sent, limits, dt)
+        broken, when = check_ramp(table, step, trial, sent, limits, dt)
         if broken == SPEED_BROKEN:
             return best
         if broken == KEPT:
@@ -154,22 +154,22 @@ def seek(
                 return best
             failed_a, failed_j = max(failed_a, kept_a), max(failed_j, kept_j)
         elif broken == JERK_BROKEN and not trial[3] <= when - 1.5 * dt <= trial[3] + trial[4]:
-            failed_j, hardest = hardest, SOFTER * hardest
+            failed_j, hardest = hardest, JERK_REDUCTION * hardest
         else:
             failed_a = min(steepest, peak)
-            steepest = SLOWER * failed_a
+            steepest = ACCELERATION_REDUCTION * failed_a
         if best >= 0.0:
             steepest, hardest = sqrt(kept_a * failed_a), sqrt(kept_j * failed_j)
     return best
 
 
 @compiled
-def _most(table: Array, step: float, state: Array, limits: Array, dt: float) -> tuple[float, float]:
+def _search_bounds(table: Array, step: float, state: Array, limits: Array, dt: float) -> tuple[float, float]:
     """Return the largest |r'| and |r''| that are worth a try: they would leave nothing to the rest of the motion."""
     last = table.shape[0] - 1
     row = min(max(int(state[0] / step + 0.5), 0), last)
-    reach = int(state[1] * AHEAD / step)
-    steepest, hardest = STEEPEST, HARDEST
+    reach = int(state[1] * LOOKAHEAD_TIME / step)
+    steepest, hardest = MAX_RATE_ACCELERATION, MAX_RATE_JERK
     for i in range(6):
         moving = 1e-12
         for share in range(3):
@@ -180,9 +180,9 @@ def _most(table: Array, step: float, state: Array, limits: Array, dt: float) -> 
 
 
 @compiled
-def motion(table: Array, step: float, state: Array, out: Array) -> None:
+def evaluate_motion(table: Array, step: float, state: Array, out: Array) -> None:
     """Write the joints' and the length's value, velocity and acceleration (3, 7) at a state (tau, r, r') to `out`."""
-    look(table, step, state[0], out[0])
+    evaluate_table(table, step, state[0], out[0])
     last = table.shape[0] - 1
     row = min(max(int(state[0] / step + 0.5), 0), last)
     ahead = min(max(state[0], 0.0), last * step) - row * step

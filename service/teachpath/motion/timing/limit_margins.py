@@ -12,16 +12,16 @@ from typing import Final
 
 import numpy as np
 
-from teachpath.motion.arm.joint_path import Limits
+from teachpath.motion.arm.joint_path import MotionLimits
 from teachpath.motion.arm.puma560 import Array
 
 # Of moves that have a reserve on both sides: shares of speed, acceleration and jerk.
-RESERVE: Final = (0.99, 0.93, 0.87)
-SLOW: Final = 0.02  # share of its speed limit below which the way that a joint turns does not count
+SYMMETRIC_MARGINS: Final = (0.99, 0.93, 0.87)
+SLOW_SPEED_SHARE: Final = 0.02  # share of its speed limit below which the way that a joint turns does not count
 
 
 @dataclass(frozen=True)
-class Reserve:
+class Margins:
     """Shares of the limits that a plan uses.
 
     Attributes:
@@ -34,30 +34,30 @@ class Reserve:
     speed: float = 0.99
     along: tuple[float, float] = (0.99, 0.99)
     against: tuple[float, float] = (0.97, 0.95)
-    fast: tuple[float, float] = (0.93, 0.86)
+    against_at_speed: tuple[float, float] = (0.93, 0.86)
 
     @property
-    def falls(self) -> tuple[float, float]:
+    def against_decrease(self) -> tuple[float, float]:
         """By how much `against` falls up to the speed limit."""
-        return self.against[0] - self.fast[0], self.against[1] - self.fast[1]
+        return self.against[0] - self.against_at_speed[0], self.against[1] - self.against_at_speed[1]
 
-    def stretch(self, setpoints: Array, limits: Limits, rate: float) -> float:
+    def time_stretch(self, setpoints: Array, limits: MotionLimits, rate: float) -> float:
         """Return the factor by which time must be stretched so that setpoints (n, 6) use these shares at most."""
         v, a, j = (change / limit for change, limit in zip(_changes(setpoints, rate), _each(limits), strict=True))
         fast = np.minimum((np.abs(v).max(axis=1) / self.speed) ** 2, 1.0)
         factors = [np.abs(v).max() / self.speed]
         for k, (use, root) in enumerate(((a, np.sqrt), (j, np.cbrt))):
-            turning = v[1 : 1 + len(use)] * (np.abs(v[1 : 1 + len(use)]) > SLOW)
-            against = (self.against[k] - self.falls[k] * fast[1 : 1 + len(use)])[:, None]
+            turning = v[1 : 1 + len(use)] * (np.abs(v[1 : 1 + len(use)]) > SLOW_SPEED_SHARE)
+            against = (self.against[k] - self.against_decrease[k] * fast[1 : 1 + len(use)])[:, None]
             share = np.where(use * turning < 0.0, against, self.along[k])
             factors.append(root((np.abs(use) / share).max()))
         return float(max(factors))
 
 
-NOTHING_LEFT: Final = Reserve(1.0, (1.0, 1.0), (1.0, 1.0), (1.0, 1.0))
+NO_MARGINS: Final = Margins(1.0, (1.0, 1.0), (1.0, 1.0), (1.0, 1.0))
 
 
-def uses(setpoints: Array, limits: Limits, rate: float) -> tuple[Array, Array, Array]:
+def limit_uses(setpoints: Array, limits: MotionLimits, rate: float) -> tuple[Array, Array, Array]:
     """Measure the use of speed (n - 1, 6), acceleration (n - 2, 6) and jerk limits (n - 3, 6) by differences."""
     first, second, third = (
         np.abs(change) / limit for change, limit in zip(_changes(setpoints, rate), _each(limits), strict=True)
@@ -69,5 +69,5 @@ def _changes(setpoints: Array, rate: float) -> list[Array]:
     return [np.diff(setpoints[:, :6], order, axis=0) * rate**order for order in (1, 2, 3)]
 
 
-def _each(limits: Limits) -> tuple[Array, Array, Array]:
+def _each(limits: MotionLimits) -> tuple[Array, Array, Array]:
     return limits.speed, limits.acceleration, limits.jerk

@@ -12,17 +12,17 @@ from typing import Final
 import numpy as np
 from scipy.interpolate import CubicHermiteSpline
 
-from teachpath.motion.arm.joint_path import JointPath, Limits
+from teachpath.motion.arm.joint_path import JointPath, MotionLimits
 from teachpath.motion.arm.puma560 import Array
-from teachpath.motion.timing.jerk_limited_topp import spline_rows
+from teachpath.motion.timing.jerk_limited_topp import quadratic_basis
 
-STEP: Final = 0.0005  # s, between two instants at most
-LONGEST: Final = 120_000  # instants; a track that takes longer has them farther apart
-PIECES: Final = 20  # per interval of the pace, in which time is integrated
+MAX_TABLE_STEP: Final = 0.0005  # s, between two instants at most
+MAX_TABLE_ROWS: Final = 120_000  # instants; a track that takes longer has them farther apart
+SUBINTERVALS: Final = 20  # per interval of the pace, in which time is integrated
 
 
 @dataclass(frozen=True, eq=False)
-class Track:
+class TimedTrajectory:
     """Joints and length by plan time.
 
     Attributes:
@@ -33,7 +33,7 @@ class Track:
 
     table: Array
     step: float
-    limits: Limits
+    limits: MotionLimits
 
     @property
     def duration(self) -> float:
@@ -60,7 +60,7 @@ class Track:
         return self((np.arange(-3.0, count + 4) + phase) * (override / rate))
 
 
-def paced(path: JointPath, pace: Array, limits: Limits) -> Track:
+def time_joint_path(path: JointPath, pace: Array, limits: MotionLimits) -> TimedTrajectory:
     """Run through a path whose parameter sigma goes from 0 to 1 at (d sigma / dt)^2 = x(sigma).
 
     Args:
@@ -69,24 +69,26 @@ def paced(path: JointPath, pace: Array, limits: Limits) -> Track:
         limits: which the arm must keep.
     """
     intervals = len(pace) - 2
-    grid = np.linspace(0.0, 1.0, PIECES * intervals + 1)
+    grid = np.linspace(0.0, 1.0, SUBINTERVALS * intervals + 1)
     nodes, weights = np.polynomial.legendre.leggauss(4)
-    half = 0.5 / (PIECES * intervals)
+    half = 0.5 / (SUBINTERVALS * intervals)
     inner = ((grid[:-1] + half)[:, None] + half * nodes).ravel()
     pieces = half * ((1.0 / np.sqrt(_pace(pace, inner)[0])).reshape(-1, 4) @ weights)
     elapsed = np.concatenate([[0.0], np.cumsum(pieces)])
     clock = CubicHermiteSpline(grid, elapsed, 1.0 / np.sqrt(_pace(pace, grid)[0]))
-    count = min(int(np.ceil(elapsed[-1] / STEP)), LONGEST)
+    count = min(int(np.ceil(elapsed[-1] / MAX_TABLE_STEP)), MAX_TABLE_ROWS)
     instants = np.linspace(0.0, elapsed[-1], count + 1)
     sigma = np.interp(instants, elapsed, grid)
     for _ in range(3):
         sigma = np.clip(sigma - (clock(sigma) - instants) * np.sqrt(_pace(pace, sigma)[0]), 0.0, 1.0)
     x, slope, curvature = _pace(pace, sigma)
     one, two, three = np.sqrt(x), slope / 2, curvature * np.sqrt(x) / 2  # d sigma / dt and so on
-    return Track(composed([path(sigma, k) for k in range(4)], one, two, three), float(elapsed[-1]) / count, limits)
+    return TimedTrajectory(
+        apply_chain_rule([path(sigma, k) for k in range(4)], one, two, three), float(elapsed[-1]) / count, limits
+    )
 
 
-def composed(values: list[Array], one: Array, two: Array, three: Array) -> Array:
+def apply_chain_rule(values: list[Array], one: Array, two: Array, three: Array) -> Array:
     """Return a table (n, 4, 7) by the chain rule.
 
     Args:
@@ -101,7 +103,7 @@ def composed(values: list[Array], one: Array, two: Array, three: Array) -> Array
 
 
 def _pace(pace: Array, sigma: Array) -> tuple[Array, Array, Array]:
-    first, *shares = spline_rows(sigma, len(pace) - 2)
+    first, *shares = quadratic_basis(sigma, len(pace) - 2)
     near = pace[first[:, None] + np.arange(3)]
     x, slope, curvature = (np.einsum("ij,ij->i", near, share) for share in shares)
     return x, slope, curvature

@@ -14,37 +14,37 @@ from scipy.interpolate import BSpline, make_interp_spline
 from scipy.ndimage import uniform_filter1d
 
 from teachpath.errors import PathRefused
-from teachpath.motion.arm.joint_path import JointPath, Limits
+from teachpath.motion.arm.joint_path import JointPath, MotionLimits
 from teachpath.motion.arm.puma560 import Array
 from teachpath.motion.paths.ik_branches import Candidate, configurations
-from teachpath.motion.paths.tool_path import Route
-from teachpath.motion.timing.jerk_limited_topp import fastest_pace
-from teachpath.motion.timing.limit_margins import Reserve
-from teachpath.motion.timing.timed_trajectory import Track, paced
-from teachpath.motion.timing.velocity_profile import squared_rates, times
+from teachpath.motion.paths.tool_path import ToolPath
+from teachpath.motion.timing.jerk_limited_topp import minimize_duration
+from teachpath.motion.timing.limit_margins import Margins
+from teachpath.motion.timing.timed_trajectory import TimedTrajectory, time_joint_path
+from teachpath.motion.timing.velocity_profile import max_squared_rates, reach_times
 from teachpath.nurbs import Curve
 
-GUESSED: Final = (0.98, 0.90)  # shares of speed and acceleration limits that the guess uses
-PLACES: Final = 400  # of the curve in the guess, at least so many ...
-PER_SPAN: Final = 24  # ... and so many between two knots
-FEWER: Final = 150  # places of the estimate
-MARGIN: Final = 0.1  # s, that the guess is too short for want of jerk limits
-WINDOW: Final = 0.05  # s, of the filter that takes the jumps of acceleration out of the guess
-KNOT: Final = 0.05  # s, between two knots of the smooth guess
-FEWEST: Final = 24  # intervals of the smooth guess, at least
-MOST: Final = 80  # and at most
-FINER: Final = 10  # intervals of the pace for each interval of the guess
-FINEST: Final = 16  # the same where the curve has kinks of acceleration, which the pace must follow
-SMOOTH: Final = 3  # derivatives that a curve without such kinks has
-NODES: Final = 400  # of the joints' spline, at least
-PHASES: Final = (0.0, 0.25, 0.5, 0.75)  # of the first setpoint, in control periods
-OVERRIDES: Final = (0.1, 0.3, 0.5, 0.7, 0.9)
-STRETCHES: Final = 4  # times that time is stretched at most
-EXACT: Final = 1e-3  # relative stretch that is not worth repeating
+GUESS_LIMIT_SHARES: Final = (0.98, 0.90)  # shares of speed and acceleration limits that the guess uses
+MIN_GUESS_SAMPLES: Final = 400  # of the curve in the guess, at least so many ...
+GUESS_SAMPLES_PER_SPAN: Final = 24  # ... and so many between two knots
+ESTIMATE_SAMPLES: Final = 150  # places of the estimate
+GUESS_EXTRA_TIME: Final = 0.1  # s, that the guess is too short for want of jerk limits
+FILTER_WINDOW: Final = 0.05  # s, of the filter that takes the jumps of acceleration out of the guess
+GUESS_KNOT_SPACING: Final = 0.05  # s, between two knots of the smooth guess
+MIN_GUESS_INTERVALS: Final = 24  # intervals of the smooth guess, at least
+MAX_GUESS_INTERVALS: Final = 80  # and at most
+RATE_INTERVALS: Final = 10  # intervals of the pace for each interval of the guess
+KINKED_RATE_INTERVALS: Final = 16  # the same where the curve has kinks of acceleration, which the pace must follow
+SMOOTH_DERIVATIVES: Final = 3  # derivatives that a curve without such kinks has
+MIN_SPLINE_NODES: Final = 400  # of the joints' spline, at least
+SETPOINT_PHASES: Final = (0.0, 0.25, 0.5, 0.75)  # of the first setpoint, in control periods
+CHECKED_OVERRIDES: Final = (0.1, 0.3, 0.5, 0.7, 0.9)
+MAX_STRETCHES: Final = 4  # times that time is stretched at most
+STRETCH_TOLERANCE: Final = 1e-3  # relative stretch that is not worth repeating
 
 
-def timed(
-    way: Route, candidate: Candidate, limits: Limits, *, rate: float, reserve: Reserve | None = None
+def time_tool_path(
+    tool_path: ToolPath, candidate: Candidate, limits: MotionLimits, *, rate: float, margins: Margins | None = None
 ) -> tuple[JointPath, Array]:
     """Find the fastest motion along a route on one branch of the arm.
 
@@ -61,33 +61,37 @@ def timed(
     Raises:
         PathRefused: no motion was found that keeps the limits.
     """
-    warp, reserve = _guess(way, candidate, limits), reserve or Reserve()
-    intervals = (FINER if _smoothness(way.curve) >= SMOOTH else FINEST) * (len(warp.c) - warp.k)
-    sigma = np.linspace(0.0, 1.0, max(NODES, intervals) + 1)
+    warp, margins = _guess(tool_path, candidate, limits), margins or Margins()
+    intervals = (RATE_INTERVALS if _smoothness(tool_path.curve) >= SMOOTH_DERIVATIVES else KINKED_RATE_INTERVALS) * (
+        len(warp.c) - warp.k
+    )
+    sigma = np.linspace(0.0, 1.0, max(MIN_SPLINE_NODES, intervals) + 1)
     u = np.asarray(warp(sigma), dtype=np.float64)
-    path = JointPath(sigma, way.arc.lengths(u), configurations(way, candidate, u))
-    pace = fastest_pace(path, limits, intervals, reserve)
-    for _ in range(STRETCHES):
-        factor = _factor(paced(path, pace, limits), rate, reserve)
+    path = JointPath(sigma, tool_path.arc.lengths(u), configurations(tool_path, candidate, u))
+    pace = minimize_duration(path, limits, intervals, margins)
+    for _ in range(MAX_STRETCHES):
+        factor = _time_stretch(time_joint_path(path, pace, limits), rate, margins)
         pace = pace / factor**2
-        if abs(factor - 1.0) < EXACT:
+        if abs(factor - 1.0) < STRETCH_TOLERANCE:
             break
     if not np.all(np.isfinite(pace)):
         raise PathRefused("the path turns too sharply for the joints; smooth it by moving its control points apart")
     return path, pace
 
 
-def lower_bound(way: Route, candidate: Candidate, limits: Limits) -> float:
+def duration_lower_bound(tool_path: ToolPath, candidate: Candidate, limits: MotionLimits) -> float:
     """Return the shortest time [s] that speed and acceleration limits alone allow: no jerk limit, no reserve."""
-    u = _places(way, 4 * PLACES)
-    spline = make_interp_spline(u, configurations(way, candidate, u), k=5)
+    u = _guess_samples(tool_path, 4 * MIN_GUESS_SAMPLES)
+    spline = make_interp_spline(u, configurations(tool_path, candidate, u), k=5)
     free = np.full(len(u), np.inf)
-    return float(times(u, squared_rates(u, spline(u, 1), spline(u, 2), limits.speed, limits.acceleration, free))[-1])
+    return float(
+        reach_times(u, max_squared_rates(u, spline(u, 1), spline(u, 2), limits.speed, limits.acceleration, free))[-1]
+    )
 
 
-def estimate(way: Route, candidate: Candidate, limits: Limits) -> float:
+def estimate_duration(tool_path: ToolPath, candidate: Candidate, limits: MotionLimits) -> float:
     """Guess quickly how long the fastest motion takes [s]; `timed` finds out."""
-    return float(_profile(way, candidate, limits, FEWER)[1][-1] + MARGIN)
+    return float(_profile(tool_path, candidate, limits, ESTIMATE_SAMPLES)[1][-1] + GUESS_EXTRA_TIME)
 
 
 def _smoothness(curve: Curve) -> int:
@@ -96,13 +100,17 @@ def _smoothness(curve: Curve) -> int:
     return curve.degree - int(np.unique(inner, return_counts=True)[1].max(initial=0))
 
 
-def _guess(way: Route, candidate: Candidate, limits: Limits) -> BSpline[np.float64]:
+def _guess(tool_path: ToolPath, candidate: Candidate, limits: MotionLimits) -> BSpline[np.float64]:
     """Return the curve's parameter by nearly proportional time, from 0 to 1; it grows with the cube at both ends."""
-    u, reached = _profile(way, candidate, limits, PLACES)
-    duration = reached[-1] + MARGIN
-    instants = np.linspace(0.0, duration, 50 * min(max(FEWEST, int(np.ceil(duration / KNOT))), MOST) + 1)
-    smooth = np.interp(instants - MARGIN / 2, reached, u)
-    width = max(1, round(WINDOW / (instants[1] - instants[0])))
+    u, reached = _profile(tool_path, candidate, limits, MIN_GUESS_SAMPLES)
+    duration = reached[-1] + GUESS_EXTRA_TIME
+    instants = np.linspace(
+        0.0,
+        duration,
+        50 * min(max(MIN_GUESS_INTERVALS, int(np.ceil(duration / GUESS_KNOT_SPACING))), MAX_GUESS_INTERVALS) + 1,
+    )
+    smooth = np.interp(instants - GUESS_EXTRA_TIME / 2, reached, u)
+    width = max(1, round(FILTER_WINDOW / (instants[1] - instants[0])))
     for _ in range(2):
         smooth = uniform_filter1d(smooth, width, mode="nearest")
     knots = np.concatenate([np.zeros(5), np.linspace(0.0, 1.0, len(instants) // 50 + 1), np.ones(5)])
@@ -113,30 +121,30 @@ def _guess(way: Route, candidate: Candidate, limits: Limits) -> BSpline[np.float
     return BSpline(knots, coefficients, 5)
 
 
-def _profile(way: Route, candidate: Candidate, limits: Limits, places: int) -> tuple[Array, Array]:
+def _profile(tool_path: ToolPath, candidate: Candidate, limits: MotionLimits, places: int) -> tuple[Array, Array]:
     """Return places of the curve and when each is reached [s], jerk being limited only where the curve itself bends."""
-    u = _places(way, places)
-    spline = make_interp_spline(u, configurations(way, candidate, u), k=5)
+    u = _guess_samples(tool_path, places)
+    spline = make_interp_spline(u, configurations(tool_path, candidate, u), k=5)
     slow = np.min(limits.jerk / np.maximum(np.abs(spline(u, 3)), 1e-9), axis=1) ** (2 / 3)
-    speed, acceleration = GUESSED[0] * limits.speed, GUESSED[1] * limits.acceleration
-    reached = times(u, squared_rates(u, spline(u, 1), spline(u, 2), speed, acceleration, slow))
+    speed, acceleration = GUESS_LIMIT_SHARES[0] * limits.speed, GUESS_LIMIT_SHARES[1] * limits.acceleration
+    reached = reach_times(u, max_squared_rates(u, spline(u, 1), spline(u, 2), speed, acceleration, slow))
     return u, reached
 
 
-def _places(way: Route, least: int) -> Array:
-    knots = np.unique(way.curve.knots)
-    lengths = way.arc.lengths(knots)
-    counts = np.maximum(min(PER_SPAN, 3 * least // len(knots)), np.ceil(least * np.diff(lengths) / lengths[-1])).astype(
-        np.int64
-    )
+def _guess_samples(tool_path: ToolPath, least: int) -> Array:
+    knots = np.unique(tool_path.curve.knots)
+    lengths = tool_path.arc.lengths(knots)
+    counts = np.maximum(
+        min(GUESS_SAMPLES_PER_SPAN, 3 * least // len(knots)), np.ceil(least * np.diff(lengths) / lengths[-1])
+    ).astype(np.int64)
     spans = zip(knots[:-1], knots[1:], counts, strict=True)
     return np.unique(np.concatenate([np.linspace(a, b, count + 1) for a, b, count in spans]))
 
 
-def _factor(track: Track, rate: float, reserve: Reserve) -> float:
+def _time_stretch(trajectory: TimedTrajectory, rate: float, margins: Margins) -> float:
     """Return by what time must be stretched so that setpoints keep the limits with the reserve."""
-    runs = [(phase, 1.0) for phase in PHASES] + [(0.0, override) for override in OVERRIDES]
+    runs = [(phase, 1.0) for phase in SETPOINT_PHASES] + [(0.0, override) for override in CHECKED_OVERRIDES]
     return max(
-        reserve.stretch(track.setpoints(rate, phase=phase, override=override), track.limits, rate)
+        margins.time_stretch(trajectory.setpoints(rate, phase=phase, override=override), trajectory.limits, rate)
         for phase, override in runs
     )

@@ -14,12 +14,12 @@ from numpy.typing import NDArray
 
 from teachpath.motion.arm.puma560 import Array
 
-TINY: Final = 1e-12
+EPSILON: Final = 1e-12
 
 Mask = NDArray[np.bool_]
 
 
-def squared_rates(grid: Array, first: Array, second: Array, speed: Array, acceleration: Array, cap: Array) -> Array:
+def max_squared_rates(grid: Array, first: Array, second: Array, speed: Array, acceleration: Array, cap: Array) -> Array:
     """Find the largest x = p'^2 at every point of a grid of p, from rest to rest.
 
     Args:
@@ -37,11 +37,11 @@ def squared_rates(grid: Array, first: Array, second: Array, speed: Array, accele
     a, b = np.concatenate([first, -first], axis=1), np.concatenate([second, -second], axis=1)  # a u + b x <= c
     with np.errstate(divide="ignore", invalid="ignore"):
         top, slope = np.concatenate([acceleration, acceleration]) / a, b / a  # u <= top - slope x where a > 0
-        highest = np.minimum(np.min(np.where(np.abs(first) > TINY, (speed / first) ** 2, np.inf), axis=1), cap)
-    up, down = a > TINY, a < -TINY
+        highest = np.minimum(np.min(np.where(np.abs(first) > EPSILON, (speed / first) ** 2, np.inf), axis=1), cap)
+    up, down = a > EPSILON, a < -EPSILON
     highest = np.minimum(highest, _without_next(top, slope, up, down, np.append(steps, steps[-1])))
-    still = np.where((np.abs(first) <= TINY) & (np.abs(second) > TINY), acceleration, np.inf)
-    highest = np.minimum(highest, np.min(still / np.maximum(np.abs(second), TINY), axis=1))
+    still = np.where((np.abs(first) <= EPSILON) & (np.abs(second) > EPSILON), acceleration, np.inf)
+    highest = np.minimum(highest, np.min(still / np.maximum(np.abs(second), EPSILON), axis=1))
     reachable = np.zeros(len(grid))
     for k in range(len(grid) - 2, 0, -1):
         steeper = 1.0 / steps[k] - slope[k][down[k]]
@@ -54,7 +54,7 @@ def squared_rates(grid: Array, first: Array, second: Array, speed: Array, accele
     return found
 
 
-def times(grid: Array, squares: Array) -> Array:
+def reach_times(grid: Array, squares: Array) -> Array:
     """Return when each point of the grid is reached (n,) [s], for x piecewise linear."""
     rates = np.sqrt(squares)
     slowest = 1e-3 * rates.max()
@@ -66,8 +66,8 @@ def _without_next(top: Array, slope: Array, up: Mask, down: Mask, steps: Array) 
     with np.errstate(divide="ignore", invalid="ignore"):
         steeper = slope[:, :, None] - slope[:, None, :]
         room = (top[:, :, None] - top[:, None, :]) / steeper
-        met = up[:, :, None] & down[:, None, :] & (steeper > TINY)
+        met = up[:, :, None] & down[:, None, :] & (steeper > EPSILON)
         pairs = np.min(np.where(met, room, np.inf), axis=(1, 2))
         steeper = slope - 1.0 / steps[:, None]  # the next x must not be negative: u >= -x / (2 step)
-        nonnegative = np.min(np.where(up & (steeper > TINY), top / steeper, np.inf), axis=1)
+        nonnegative = np.min(np.where(up & (steeper > EPSILON), top / steeper, np.inf), axis=1)
     return np.asarray(np.minimum(pairs, nonnegative), dtype=np.float64)

@@ -9,7 +9,7 @@ import numpy as np
 from teachpath.io.bus import MemoryBus
 from teachpath.live.preview import CLUSTER_COLORS, Preview, commands
 from teachpath.live.preview.scene_tree import pack
-from teachpath.motion.arm.geometry import drawing
+from teachpath.motion.arm.geometry import visual_solids
 from teachpath.motion.arm.kinematics import link_frames
 from teachpath.motion.execution.motion_preview import MotionPreview
 from teachpath.offline.report.content import Review
@@ -28,7 +28,7 @@ def way_color(cluster: int) -> int:
 
 def scene_batch(review: Review, home: Array) -> bytes:
     """Return the commands that draw all that stands: arm, scene, demonstrations and paths."""
-    preview = Preview(MemoryBus(), Keys(), drawing(), robot="", home=home, hands=list)
+    preview = Preview(MemoryBus(), Keys(), visual_solids(), robot="", home=home, hands=list)
     preview.show_object(review.scene.carried)
     arm = preview.connect(lambda: None).pop() or b""
     drawn = [

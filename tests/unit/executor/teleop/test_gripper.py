@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from teachpath.executor.teleop.gripper import GripperFollower
-from teachpath.motion.arm.kinematics import downward, inverse, tool_pose
+from teachpath.motion.arm.kinematics import downward_poses, inverse_kinematics, tool_pose
 from teachpath.motion.arm.puma560 import LOWER, UPPER
 from teachpath.motion.collision.builtin_scenes import paper_scene
 from teachpath.records import Calibration, JointState, TeleopRequest
@@ -21,7 +21,7 @@ REACH = 0.03
 
 def above(height: float) -> np.ndarray:
     """A configuration within its limits with the tool straight down over the block."""
-    q = inverse(downward((BLOCK + height * np.eye(3)[2])[None], np.pi)).joints[0, 1]
+    q = inverse_kinematics(downward_poses((BLOCK + height * np.eye(3)[2])[None], np.pi)).joints[0, 1]
     return np.where(q < LOWER, q + 2 * np.pi, np.where(q > UPPER, q - 2 * np.pi, q))
 
 

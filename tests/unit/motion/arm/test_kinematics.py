@@ -3,21 +3,21 @@ import numpy as np
 import pytest
 
 from teachpath.motion.arm.kinematics import (
-    BRANCHES,
-    Lengths,
-    downward,
-    explain_reach,
-    inverse,
+    BRANCH_NAMES,
+    LinkLengths,
+    describe_reach,
+    downward_poses,
+    inverse_kinematics,
     jacobian,
-    least_singular_value,
     link_frames,
+    min_singular_value,
     tool_pose,
 )
-from teachpath.motion.arm.mjcf import mjcf
-from teachpath.motion.arm.puma560 import DEFAULT, LOWER, TOOL_LENGTH, UPPER, VARIANTS
+from teachpath.motion.arm.mjcf import write_mjcf
+from teachpath.motion.arm.puma560 import DEFAULT_VARIANT, LOWER, TOOL_LENGTH, UPPER, VARIANTS
 from teachpath.motion.collision.builtin_scenes import paper_scene
 
-LENGTHS = Lengths.of(VARIANTS[DEFAULT])
+LENGTHS = LinkLengths.of_variant(VARIANTS[DEFAULT_VARIANT])
 
 
 @pytest.fixture(scope="module")
@@ -42,7 +42,7 @@ def product_of_screws(q: np.ndarray) -> np.ndarray:
         return m
 
     pose = np.eye(4)
-    for link, angle in zip(VARIANTS[DEFAULT].links, q, strict=True):
+    for link, angle in zip(VARIANTS[DEFAULT_VARIANT].links, q, strict=True):
         pose = pose @ turn(2, angle) @ shift(2, link.d) @ shift(0, link.a) @ turn(0, link.alpha)
     return pose @ shift(2, TOOL_LENGTH)
 
@@ -53,7 +53,7 @@ def test_forward_kinematics_is_the_product_of_elementary_screws(configurations: 
 
 
 def test_forward_kinematics_agrees_with_mujoco(configurations: np.ndarray) -> None:
-    model = mujoco.MjModel.from_xml_string(mjcf(paper_scene()))
+    model = mujoco.MjModel.from_xml_string(write_mjcf(paper_scene()))
     data = mujoco.MjData(model)
     for q in configurations[:50]:
         data.qpos[:6] = q
@@ -68,22 +68,22 @@ def test_forward_kinematics_agrees_with_mujoco(configurations: np.ndarray) -> No
 
 def test_all_eight_branches_reach_the_pose_and_one_is_the_configuration(configurations: np.ndarray) -> None:
     poses = tool_pose(configurations)
-    solutions = inverse(poses)
-    assert solutions.excess.max() <= 0
-    assert solutions.joints.shape == (len(poses), len(BRANCHES), 6)
+    solutions = inverse_kinematics(poses)
+    assert solutions.reach_excess.max() <= 0
+    assert solutions.joints.shape == (len(poses), len(BRANCH_NAMES), 6)
     np.testing.assert_allclose(tool_pose(solutions.joints), np.repeat(poses[:, None], 8, axis=1), atol=1e-10)
     off = np.abs(np.exp(1j * solutions.joints) - np.exp(1j * configurations[:, None])).max(axis=2)
     assert off.min(axis=1).max() < 1e-9
 
 
 def test_the_branches_are_what_their_names_say(configurations: np.ndarray) -> None:
-    joints = inverse(tool_pose(configurations)).joints
+    joints = inverse_kinematics(tool_pose(configurations)).joints
     frames = link_frames(joints)
     shoulder, elbow, wrist = (frames[..., i, :3, 3] for i in (1, 2, 4))
     ahead = np.einsum("...i,...i", wrist - shoulder, frames[..., 1, :3, 0])
     higher = np.cross(wrist - shoulder, elbow - shoulder)
     bends = np.einsum("...i,...i", higher, frames[..., 1, :3, 2])
-    for index, name in enumerate(BRANCHES):
+    for index, name in enumerate(BRANCH_NAMES):
         side, bend, flip = name.split()
         assert np.all(ahead[:, index] > 0) == (side == "righty")
         # The elbow is up when it lies above the line from shoulder to wrist, seen from the arm's own side.
@@ -108,30 +108,30 @@ def test_jacobian_is_the_derivative_of_the_tool_pose(configurations: np.ndarray)
 
 def test_a_pose_out_of_reach_says_by_how_much() -> None:
     too_far = 0.03
-    height = LENGTHS.shoulder - LENGTHS.hand
-    at = np.hypot(LENGTHS.upper_arm + LENGTHS.forearm + too_far, LENGTHS.offset)
-    solutions = inverse(downward(np.array([[at, 0.0, height]]), 0.0))
-    np.testing.assert_allclose(solutions.excess, too_far, atol=1e-12)
-    assert solutions.beyond[0]
-    assert explain_reach(too_far, True, 0.41) == "wrist centre 3.0 cm outside the reach at s = 0.410 m"
+    height = LENGTHS.shoulder_height - LENGTHS.wrist_to_grasp
+    at = np.hypot(LENGTHS.upper_arm + LENGTHS.forearm + too_far, LENGTHS.shoulder_offset)
+    solutions = inverse_kinematics(downward_poses(np.array([[at, 0.0, height]]), 0.0))
+    np.testing.assert_allclose(solutions.reach_excess, too_far, atol=1e-12)
+    assert solutions.beyond_outer_reach[0]
+    assert describe_reach(too_far, True, 0.41) == "wrist centre 3.0 cm outside the reach at s = 0.410 m"
 
 
 def test_a_pose_at_the_arms_own_axis_is_too_near() -> None:
-    solutions = inverse(downward(np.array([[0.05, 0.0, 0.9]]), 0.0))
-    assert solutions.excess[0, 0] == pytest.approx(LENGTHS.offset - 0.05)
-    assert not solutions.beyond[0]
+    solutions = inverse_kinematics(downward_poses(np.array([[0.05, 0.0, 0.9]]), 0.0))
+    assert solutions.reach_excess[0, 0] == pytest.approx(LENGTHS.shoulder_offset - 0.05)
+    assert not solutions.beyond_outer_reach[0]
 
 
 def test_at_a_singular_wrist_joint_four_stays_where_it_was() -> None:
     q = np.array([0.3, 0.9, -2.0, 0.7, 0.0, 0.4])
-    joints = inverse(tool_pose(q)[None], q4_before=0.7).joints[0]
+    joints = inverse_kinematics(tool_pose(q)[None], previous_q4=0.7).joints[0]
     np.testing.assert_allclose(joints[0], q, atol=1e-9)
-    assert least_singular_value(q) < 1e-9
+    assert min_singular_value(q) < 1e-9
 
 
 def test_downward_tools_point_down_and_turn_about_the_vertical() -> None:
     for roll in np.linspace(-3, 3, 7):
-        pose = downward(np.array([0.1, 0.2, 0.3]), roll)
+        pose = downward_poses(np.array([0.1, 0.2, 0.3]), roll)
         np.testing.assert_allclose(pose[:3, 2], [0, 0, -1])
         np.testing.assert_allclose(np.linalg.det(pose[:3, :3]), 1.0)
         np.testing.assert_allclose(pose[:3, 0], [np.cos(roll), np.sin(roll), 0])

@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from teachpath.motion.arm.kinematics import inverse, jacobian, link_frames, tool_pose
-from teachpath.motion.arm.mjcf import mjcf, physical_inertia
+from teachpath.motion.arm.kinematics import inverse_kinematics, jacobian, link_frames, tool_pose
+from teachpath.motion.arm.mjcf import physical_inertia, write_mjcf
 from teachpath.motion.arm.puma560 import (
-    DEFAULT,
+    DEFAULT_VARIANT,
     GRIPPER_COM,
     GRIPPER_INERTIA,
     GRIPPER_MASS,
@@ -23,7 +23,7 @@ from teachpath.motion.arm.puma560 import (
 from teachpath.motion.collision.builtin_scenes import empty_scene
 from tests.unit.motion.arm.screws import Body, Screws
 
-TABLE = VARIANTS[DEFAULT]
+TABLE = VARIANTS[DEFAULT_VARIANT]
 NOMINAL = np.array([0, np.pi / 4, np.pi, 0, np.pi / 4, 0])  # `qn` of the toolbox
 ONES, NOTHING = np.ones(6), np.zeros(6)
 # Printed with four decimals, and taken from ones with four more.
@@ -36,7 +36,7 @@ class Bare:
     """The arm in MuJoCo with exactly the published masses, without our gripper, contacts and joint stops."""
 
     def __init__(self) -> None:
-        self.model = model = mujoco.MjModel.from_xml_string(mjcf(empty_scene(), variant=TABLE))
+        self.model = model = mujoco.MjModel.from_xml_string(write_mjcf(empty_scene(), variant=TABLE))
         for number, link in enumerate(TABLE.links, start=1):
             model.body_mass[model.body(f"link{number}").id] = link.mass
             model.body_inertia[model.body(f"link{number}").id] = link.inertia
@@ -132,7 +132,7 @@ def test_pose_and_jacobian_are_those_of_the_screws(variant: Variant, configurati
 
 @every_variant
 def test_inverse_dynamics_is_that_of_the_screws(variant: Variant, configurations: np.ndarray) -> None:
-    model = mujoco.MjModel.from_xml_string(mjcf(empty_scene(), variant=variant))
+    model = mujoco.MjModel.from_xml_string(write_mjcf(empty_scene(), variant=variant))
     model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_CONSTRAINT
     data, other = mujoco.MjData(model), screws_of(variant)
     bodies, zero = [], link_frames(NOTHING, variant)
@@ -158,7 +158,7 @@ def test_the_eight_branches_are_all_that_there_are() -> None:
     """Newton's method on the screws, from anywhere, finds nothing that the closed form has not."""
     other, rng = screws_of(TABLE), np.random.default_rng(8)
     pose = tool_pose(np.array([0.4, 0.7, -2.2, 0.9, 1.1, -0.5]), TABLE)
-    known, found = inverse(pose[None], variant=TABLE).joints[0], set()
+    known, found = inverse_kinematics(pose[None], variant=TABLE).joints[0], set()
     for _ in range(100):
         answer = _newton(other, pose, rng.uniform(-np.pi, np.pi, 6))
         if answer is not None:

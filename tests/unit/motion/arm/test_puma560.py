@@ -8,10 +8,20 @@ import mujoco
 import numpy as np
 import pytest
 
-from teachpath.motion.arm.geometry import drawing, solids
-from teachpath.motion.arm.mjcf import mjcf, physical_inertia
-from teachpath.motion.arm.puma560 import ACCELERATION, DEFAULT, LOWER, SPEED, TORQUE, UPPER, VARIANTS, Link, Variant
-from teachpath.motion.collision.builtin_scenes import paper_scene, scenes
+from teachpath.motion.arm.geometry import collision_solids, visual_solids
+from teachpath.motion.arm.mjcf import physical_inertia, write_mjcf
+from teachpath.motion.arm.puma560 import (
+    ACCELERATION,
+    DEFAULT_VARIANT,
+    LOWER,
+    SPEED,
+    TORQUE,
+    UPPER,
+    VARIANTS,
+    Link,
+    Variant,
+)
+from teachpath.motion.collision.builtin_scenes import builtin_scenes, paper_scene
 from teachpath.motion.settings import MotionSettings
 
 PROBE = '<geom name="probe" type="sphere" size="0.0001" contype="0" conaffinity="0"/>'
@@ -34,7 +44,7 @@ def test_the_variants_are_those_of_the_setting_and_differ() -> None:
 @every_variant
 def test_what_a_variant_does_not_name_is_the_defaults_and_limits_are_alike(variant: Variant) -> None:
     for column, source in variant.sources.items():
-        of = [[getattr(link, column) for link in v.links] for v in (variant, VARIANTS[DEFAULT])]
+        of = [[getattr(link, column) for link in v.links] for v in (variant, VARIANTS[DEFAULT_VARIANT])]
         alike = column in ("lower", "upper", "torque", "speed", "acceleration") or "not given there, so" in source
         assert of[0] == of[1] or not alike
 
@@ -70,7 +80,7 @@ def test_the_simulated_inertia_differs_only_where_no_body_can_have_the_published
 
 @every_variant
 def test_the_acceleration_box_keeps_every_torque_at_full_speed(variant: Variant) -> None:
-    model = mujoco.MjModel.from_xml_string(mjcf(scenes()["empty"], variant=variant))
+    model = mujoco.MjModel.from_xml_string(write_mjcf(builtin_scenes()["empty"], variant=variant))
     model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_CONSTRAINT  # neither contacts nor joint stops
     data = mujoco.MjData(model)
     rng = np.random.default_rng(3)
@@ -88,31 +98,33 @@ def test_the_acceleration_box_keeps_every_torque_at_full_speed(variant: Variant)
 
 
 def test_every_part_is_a_geom_of_its_link() -> None:
-    model = mujoco.MjModel.from_xml_string(mjcf(paper_scene()))
-    for part in solids():
+    model = mujoco.MjModel.from_xml_string(write_mjcf(paper_scene()))
+    for part in collision_solids():
         assert model.geom_bodyid[model.geom(part.name).id] == (model.body(f"link{part.link}").id if part.link else 0)
-    assert len({part.name for part in drawing()}) == len(drawing())
+    assert len({part.name for part in visual_solids()}) == len(visual_solids())
 
 
 def test_what_is_drawn_alone_stands_out_by_millimetres() -> None:
     """Every corner of a trim lies within 6 mm of a solid of the same link."""
-    model = mujoco.MjModel.from_xml_string(mjcf(scenes()["empty"]).replace("</worldbody>", PROBE + "</worldbody>"))
+    model = mujoco.MjModel.from_xml_string(
+        write_mjcf(builtin_scenes()["empty"]).replace("</worldbody>", PROBE + "</worldbody>")
+    )
     data = mujoco.MjData(model)
     mujoco.mj_kinematics(model, data)
     probe = model.geom("probe").id
-    for part in (part for part in drawing() if part.trim):
+    for part in (part for part in visual_solids() if part.visual_only):
         pose = data.body(f"link{part.link}") if part.link else data.body(0)
         reach = part.size if part.kind == "box" else (2 * part.size[0], 2 * part.size[0], part.size[1])
         for sign in np.ndindex(2, 2, 2):
             corner = np.array(part.position) + (np.array(sign) - 0.5) * reach * (1.0 if part.kind == "box" else SQUARE)
             data.geom_xpos[probe] = pose.xpos + pose.xmat.reshape(3, 3) @ corner
-            near = [s for s in solids() if s.link == part.link]
+            near = [s for s in collision_solids() if s.link == part.link]
             gaps = [mujoco.mj_geomDistance(model, data, probe, model.geom(s.name).id, 1.0, None) for s in near]
             assert min(gaps) < 0.006, part.name
 
 
 def test_motors_are_limited_to_the_published_torques() -> None:
-    model = mujoco.MjModel.from_xml_string(mjcf(paper_scene()))
+    model = mujoco.MjModel.from_xml_string(write_mjcf(paper_scene()))
     np.testing.assert_allclose(model.actuator_ctrlrange, np.column_stack([-TORQUE, TORQUE]))
     np.testing.assert_allclose(model.jnt_range[:6], np.column_stack([LOWER, UPPER]))
 
@@ -120,7 +132,7 @@ def test_motors_are_limited_to_the_published_torques() -> None:
 def test_the_parts_join_into_one_arm_in_every_configuration() -> None:
     chain = ["foot", "pedestal", "trunk", "shoulder", "upper arm", "forearm", "wrist roll", "wrist yoke", "wrist"]
     chain += ["flange", "palm", "left finger"]
-    model = mujoco.MjModel.from_xml_string(mjcf(paper_scene()))
+    model = mujoco.MjModel.from_xml_string(write_mjcf(paper_scene()))
     data = mujoco.MjData(model)
     rng = np.random.default_rng(4)
     for _ in range(20):

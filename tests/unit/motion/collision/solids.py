@@ -3,8 +3,8 @@
 import mujoco
 import numpy as np
 
-from teachpath.motion.arm.geometry import solids
-from teachpath.motion.arm.mjcf import mjcf
+from teachpath.motion.arm.geometry import collision_solids
+from teachpath.motion.arm.mjcf import write_mjcf
 from teachpath.motion.collision.builtin_scenes import empty_scene
 
 RIM = np.linspace(0.0, 2 * np.pi, 12, endpoint=False)
@@ -15,9 +15,9 @@ class Surface:
     """Corners of boxes and meshes, rims of cylinders, poles of spheres: of the arm's moving parts."""
 
     def __init__(self) -> None:
-        self._model = mujoco.MjModel.from_xml_string(mjcf(empty_scene()))
+        self._model = mujoco.MjModel.from_xml_string(write_mjcf(empty_scene()))
         self._data = mujoco.MjData(self._model)
-        self._geoms = [self._model.geom(part.name).id for part in solids() if part.link >= 1]
+        self._geoms = [self._model.geom(part.name).id for part in collision_solids() if part.link >= 1]
         self._local = [self._points(geom) for geom in self._geoms]
 
     def __call__(self, q: np.ndarray) -> np.ndarray:

@@ -1,12 +1,12 @@
 import numpy as np
 import pytest
 
-from teachpath.motion.arm.kinematics import downward, inverse, tool_pose
+from teachpath.motion.arm.kinematics import downward_poses, inverse_kinematics, tool_pose
 from teachpath.motion.arm.puma560 import LOWER, UPPER
 from teachpath.motion.collision.builtin_scenes import paper_scene
-from teachpath.motion.collision.collision_model import FAR, Clearance, CollisionModel, Load
+from teachpath.motion.collision.collision_model import MAX_DISTANCE, Clearance, CollisionModel, Load
 from teachpath.motion.settings import MotionSettings
-from teachpath.motion.timing.joint_moves import left_behind
+from teachpath.motion.timing.joint_moves import placed_load
 from teachpath.records import Scene, Shape
 from tests.unit.motion.collision.solids import Surface
 
@@ -15,7 +15,7 @@ HOME = np.array(MotionSettings().home)
 
 def over(x: float, y: float, z: float) -> np.ndarray:
     """A configuration with the tool pointing down at a place, elbow up."""
-    return inverse(downward(np.array([[x, y, z]]), 0.0)).joints[:, 1]
+    return inverse_kinematics(downward_poses(np.array([[x, y, z]]), 0.0)).joints[:, 1]
 
 
 def test_the_distance_of_the_fingers_to_a_table_is_the_gap_below_them() -> None:
@@ -24,8 +24,8 @@ def test_the_distance_of_the_fingers_to_a_table_is_the_gap_below_them() -> None:
         tip = 0.135 - 0.13  # of the fingers below the grasp point
         least = CollisionModel(Scene("s", (table,))).clearances(over(0.5, 0.1, 0.5 + tip + gap))[0]
         assert least.distance == pytest.approx(gap, abs=1e-6)
-        assert least.other == "table"
-        assert "finger" in least.part
+        assert least.other_body == "table"
+        assert "finger" in least.body
 
 
 def test_a_place_is_free_in_the_middle_and_struck_at_its_worst() -> None:
@@ -44,7 +44,7 @@ def test_the_arm_at_home_is_clear_of_itself() -> None:
 def test_a_folded_arm_meets_itself() -> None:
     least = CollisionModel(Scene("s")).clearances(over(0.15, -0.05, 0.4))[0]
     assert least.distance < 0.0
-    assert {least.part, least.other} & {"pedestal", "trunk", "shoulder", "upper arm"}
+    assert {least.body, least.other_body} & {"pedestal", "trunk", "shoulder", "upper arm"}
 
 
 def test_the_block_may_touch_the_table_it_stands_on_but_not_what_is_beside_it() -> None:
@@ -53,18 +53,18 @@ def test_the_block_may_touch_the_table_it_stands_on_but_not_what_is_beside_it() 
     q = over(*scene.carried.position)
     upright = np.eye(4)
     upright[:3, 3] = scene.carried.position
-    load = Load(grasp=np.linalg.inv(tool_pose(q[0])) @ upright)
+    load = Load(grasp_pose=np.linalg.inv(tool_pose(q[0])) @ upright)
     model = CollisionModel(scene)
-    assert model.supports(q, load)[0].distance == pytest.approx(0.0, abs=1e-6)
+    assert model.support_distances(q, load)[0].distance == pytest.approx(0.0, abs=1e-6)
     assert model.clearances(q, load=load)[0].distance > 0.01
-    assert model.straddles(q, Load(placed=scene.carried.position))[0].distance > 0.005
+    assert model.finger_distances(q, Load(position=scene.carried.position))[0].distance > 0.005
     (beside,) = model.clearances(over(0.445 - 0.02 - 0.002, 0.0, 0.6), load=load)  # the box's face is at x = 0.445
     assert beside.distance == pytest.approx(0.002, abs=1e-6)
-    assert (beside.part, beside.other) == ("block", "box")
+    assert (beside.body, beside.other_body) == ("block", "box")
 
 
 def test_no_moving_point_is_farther_from_an_axis_than_its_lever() -> None:
-    surface, levers = Surface(), CollisionModel(paper_scene()).levers()
+    surface, levers = Surface(), CollisionModel(paper_scene()).lever_arms()
     q = np.random.default_rng(5).uniform(LOWER, UPPER, (60, 6))
     longest = np.zeros(6)
     for joint in range(6):
@@ -99,7 +99,7 @@ TURNED = (np.cos(np.pi / 8), 0.0, 0.0, np.sin(np.pi / 8))
 def test_every_kind_of_shape_is_met_where_it_is(shape: Shape, distance: float) -> None:
     model = CollisionModel(Scene("s", (shape,)))
     (least,) = model.clearances(over(0.5 - 0.07 - 0.011, 0.0, 0.75))
-    assert least.other == shape.name
+    assert least.other_body == shape.name
     assert least.distance == pytest.approx(distance, abs=2e-5)
 
 
@@ -107,14 +107,14 @@ def test_the_object_stands_turned_where_a_turned_tool_left_it() -> None:
     scene = paper_scene()
     assert scene.carried is not None
     start, goal = over(*scene.carried.position)[0], over(0.6, 0.2, 0.6)[0]
-    load = left_behind(scene, start, goal + np.array([0, 0, 0, 0, 0, 0.5]))
+    load = placed_load(scene, start, goal + np.array([0, 0, 0, 0, 0, 0.5]))
     assert load is not None
-    assert load.turned is not None
-    assert np.arctan2(load.turned[1, 0], load.turned[0, 0]) == pytest.approx(-0.5, abs=1e-9)
+    assert load.rotation is not None
+    assert np.arctan2(load.rotation[1, 0], load.rotation[0, 0]) == pytest.approx(-0.5, abs=1e-9)
 
 
 def test_nothing_near_is_far() -> None:
-    assert CollisionModel(Scene("s")).clearances(over(0.5, 0.0, 0.8))[0].distance <= FAR
+    assert CollisionModel(Scene("s")).clearances(over(0.5, 0.0, 0.8))[0].distance <= MAX_DISTANCE
 
 
 @pytest.mark.parametrize(
@@ -126,4 +126,4 @@ def test_nothing_near_is_far() -> None:
     ],
 )
 def test_what_is_too_near_is_said_without_a_negative_number(distance: float, least: float, sentence: str) -> None:
-    assert Clearance(distance, "block", "box").too_near(distance, least) == sentence
+    assert Clearance(distance, "block", "box").describe_violation(distance, least) == sentence

@@ -7,16 +7,16 @@ import pytest
 import ruckig
 
 import teachpath.motion
-from teachpath.motion.arm.joint_path import ARM
+from teachpath.motion.arm.joint_path import ARM_LIMITS
 from teachpath.motion.arm.kinematics import tool_pose
 from teachpath.motion.execution.governor import BACKWARD, Governor
-from teachpath.motion.paths.ik_branches import candidates, usable
-from teachpath.motion.paths.tool_path import route
+from teachpath.motion.paths.ik_branches import enumerate_candidates, is_usable
+from teachpath.motion.paths.tool_path import sample_tool_path
 from teachpath.motion.settings import MotionSettings
-from teachpath.motion.timing.joint_moves import straight
-from teachpath.motion.timing.limit_margins import RESERVE, uses
-from teachpath.motion.timing.timed_trajectory import Track, paced
-from teachpath.motion.timing.timing import timed
+from teachpath.motion.timing.joint_moves import straight_move
+from teachpath.motion.timing.limit_margins import SYMMETRIC_MARGINS, limit_uses
+from teachpath.motion.timing.timed_trajectory import TimedTrajectory, time_joint_path
+from teachpath.motion.timing.timing import time_tool_path
 from teachpath.nurbs import Curve
 from tests.unit.motion.ways import FAR, NEAR, hooked, wandering, way
 
@@ -25,16 +25,16 @@ LIMIT = 1.0 + 1e-9
 CURVES = {"near": way(NEAR).curve, "far": way(FAR, degree=5).curve, "hooked": hooked(), "wandering": wandering(1)}
 
 
-def track_of(curve: Curve) -> Track:
+def track_of(curve: Curve) -> TimedTrajectory:
     settings = MotionSettings()
-    found = route(curve, settings)
-    candidate = next(c for c in candidates(found, settings) if usable(c, settings))
-    return paced(*timed(found, candidate, ARM, rate=1 / DT), ARM)
+    found = sample_tool_path(curve, settings)
+    candidate = next(c for c in enumerate_candidates(found, settings) if is_usable(c, settings))
+    return time_joint_path(*time_tool_path(found, candidate, ARM_LIMITS, rate=1 / DT), ARM_LIMITS)
 
 
 @pytest.fixture(scope="module")
-def tracks() -> dict[str, Track]:
-    line = straight(np.zeros(6), np.array([1.0, -0.4, 0.2, 0.0, 0.9, 2.0]), ARM, reserve=RESERVE)
+def tracks() -> dict[str, TimedTrajectory]:
+    line = straight_move(np.zeros(6), np.array([1.0, -0.4, 0.2, 0.0, 0.9, 2.0]), ARM_LIMITS, margins=SYMMETRIC_MARGINS)
     return {"line": line} | {name: track_of(curve) for name, curve in CURVES.items()}
 
 
@@ -64,7 +64,7 @@ class Log:
 
     def most_used(self) -> float:
         rest = [self.sent[-1]] * 3 if self.stands() else []
-        return float(max(use.max() for use in uses(np.array(self.sent + rest), ARM, 1 / DT)))
+        return float(max(use.max() for use in limit_uses(np.array(self.sent + rest), ARM_LIMITS, 1 / DT)))
 
 
 def command(governor: Governor, rng: np.random.Generator) -> None:
@@ -83,7 +83,7 @@ def command(governor: Governor, rng: np.random.Generator) -> None:
 
 @pytest.mark.parametrize("pause", [3, 12, 120])
 @pytest.mark.parametrize("name", ["line", *CURVES])
-def test_no_sequence_of_commands_breaks_a_limit(tracks: dict[str, Track], name: str, pause: int) -> None:
+def test_no_sequence_of_commands_breaks_a_limit(tracks: dict[str, TimedTrajectory], name: str, pause: int) -> None:
     for seed in range(8):
         rng = np.random.default_rng(seed)
         log = Log(Governor(tracks[name], DT, override=rng.uniform(0.05, 1.0)))
@@ -102,7 +102,7 @@ def test_no_sequence_of_commands_breaks_a_limit(tracks: dict[str, Track], name: 
 
 
 @pytest.mark.parametrize("name", ["line", *CURVES])
-def test_a_hold_from_any_place_at_full_speed_stands_soon(tracks: dict[str, Track], name: str) -> None:
+def test_a_hold_from_any_place_at_full_speed_stands_soon(tracks: dict[str, TimedTrajectory], name: str) -> None:
     track = tracks[name]
     stops = []
     for start in range(1, int(track.duration / DT), 7):
@@ -115,13 +115,13 @@ def test_a_hold_from_any_place_at_full_speed_stands_soon(tracks: dict[str, Track
     assert max(stops) <= 0.55
 
 
-def test_undisturbed_it_takes_the_time_of_its_track(tracks: dict[str, Track]) -> None:
+def test_undisturbed_it_takes_the_time_of_its_track(tracks: dict[str, TimedTrajectory]) -> None:
     for track in tracks.values():
         log = Log(Governor(track, DT))
         assert (log.until(log.finished, within=5000) - 1) * DT <= track.duration <= (len(log.sent) - 4) * DT
 
 
-def test_the_way_is_the_same_at_every_rate_and_back(tracks: dict[str, Track]) -> None:
+def test_the_way_is_the_same_at_every_rate_and_back(tracks: dict[str, TimedTrajectory]) -> None:
     track = tracks["near"]
     log = Log(Governor(track, DT, override=0.37))
     log.until(lambda: log.governor.progress.s > 0.4, within=2000)
@@ -136,7 +136,7 @@ def test_the_way_is_the_same_at_every_rate_and_back(tracks: dict[str, Track]) ->
         assert np.linalg.norm(wanted - point, axis=1).min() < 1e-4
 
 
-def test_reverse_goes_back_to_the_beginning_and_resume_on_to_the_end(tracks: dict[str, Track]) -> None:
+def test_reverse_goes_back_to_the_beginning_and_resume_on_to_the_end(tracks: dict[str, TimedTrajectory]) -> None:
     log = Log(Governor(tracks["far"], DT))
     log.until(lambda: log.governor.progress.s > 0.3, within=500)
     log.governor.reverse()
@@ -155,7 +155,7 @@ def test_reverse_goes_back_to_the_beginning_and_resume_on_to_the_end(tracks: dic
     assert log.most_used() < LIMIT
 
 
-def test_hold_comes_to_rest_and_stays_until_resumed(tracks: dict[str, Track]) -> None:
+def test_hold_comes_to_rest_and_stays_until_resumed(tracks: dict[str, TimedTrajectory]) -> None:
     log = Log(Governor(tracks["near"], DT))
     log.until(lambda: log.governor.progress.s > 0.3, within=500)
     log.governor.hold()
@@ -171,7 +171,7 @@ def test_hold_comes_to_rest_and_stays_until_resumed(tracks: dict[str, Track]) ->
     log.until(log.finished, within=500)
 
 
-def test_an_override_sets_the_rate(tracks: dict[str, Track]) -> None:
+def test_an_override_sets_the_rate(tracks: dict[str, TimedTrajectory]) -> None:
     log = Log(Governor(tracks["near"], DT, override=0.25))
     log.step()
     assert log.governor.progress.rate == 0.25
@@ -179,7 +179,7 @@ def test_an_override_sets_the_rate(tracks: dict[str, Track]) -> None:
     log.until(lambda: log.governor.progress.rate == 0.6, within=100)
 
 
-def longest_wait(track: Track, rng: np.random.Generator, *, steady: bool) -> int:
+def longest_wait(track: TimedTrajectory, rng: np.random.Generator, *, steady: bool) -> int:
     """Change the override every 40 to 640 ms on the way; when `steady`, only once the rate is constant."""
     governor = Governor(track, DT, override=rng.uniform(0.05, 1.0))
     pause, waited, longest = 0, 0, 0
@@ -195,17 +195,21 @@ def longest_wait(track: Track, rng: np.random.Generator, *, steady: bool) -> int
 
 
 @pytest.mark.parametrize("name", ["line", *CURVES])
-def test_at_a_constant_rate_any_override_is_answered_in_the_same_period(tracks: dict[str, Track], name: str) -> None:
+def test_at_a_constant_rate_any_override_is_answered_in_the_same_period(
+    tracks: dict[str, TimedTrajectory], name: str
+) -> None:
     assert all(longest_wait(tracks[name], np.random.default_rng(seed), steady=True) == 0 for seed in range(20))
 
 
 @pytest.mark.parametrize("name", ["line", *CURVES])
-def test_amid_a_turn_any_override_is_answered_within_a_tenth_of_a_second(tracks: dict[str, Track], name: str) -> None:
+def test_amid_a_turn_any_override_is_answered_within_a_tenth_of_a_second(
+    tracks: dict[str, TimedTrajectory], name: str
+) -> None:
     assert all(longest_wait(tracks[name], np.random.default_rng(seed), steady=False) * DT < 0.1 for seed in range(20))
 
 
 @pytest.mark.parametrize("share", [0.0, float("nan"), -1.0])
-def test_an_override_of_zero_or_nan_holds(tracks: dict[str, Track], share: float) -> None:
+def test_an_override_of_zero_or_nan_holds(tracks: dict[str, TimedTrajectory], share: float) -> None:
     log = Log(Governor(tracks["far"], DT))
     log.until(lambda: log.governor.progress.s > 0.2, within=500)
     log.governor.set_override(share)
@@ -213,7 +217,7 @@ def test_an_override_of_zero_or_nan_holds(tracks: dict[str, Track], share: float
     log.until(log.stands, within=130)
 
 
-def test_the_motion_it_tells_is_the_derivative_of_what_it_sends(tracks: dict[str, Track]) -> None:
+def test_the_motion_it_tells_is_the_derivative_of_what_it_sends(tracks: dict[str, TimedTrajectory]) -> None:
     governor = Governor(tracks["far"], 1e-4, override=0.8)
     told = []
     for cycle in range(9000):

@@ -6,7 +6,7 @@ import pytest
 from teachpath.motion.collision.builtin_scenes import paper_scene
 from teachpath.motion.execution.motion_preview import preview_motion
 from teachpath.motion.execution.program import PlanProgram
-from teachpath.motion.planning.certificate import digest, track
+from teachpath.motion.planning.certificate import digest, plan_trajectory
 from teachpath.motion.planning.plan import plan
 from teachpath.motion.settings import MotionSettings
 from teachpath.records import Plan
@@ -20,7 +20,7 @@ def slower() -> list[Plan]:
     """One plan at several paces; the tables of some end a last bit away from the length of the path."""
     made = plan(way(MIDDLE), paper_scene())
     paces = [replace(made, pace=made.pace * share) for share in np.linspace(0.5, 1.0, 20)]
-    timed = [replace(one, duration=track(one).duration) for one in paces]
+    timed = [replace(one, duration=plan_trajectory(one).duration) for one in paces]
     return [replace(one, certificate=replace(one.certificate, digest=digest(one))) for one in timed]
 
 

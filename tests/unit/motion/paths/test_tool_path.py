@@ -7,8 +7,8 @@ from teachpath.errors import UnusableInput, UnusableSettings
 from teachpath.motion.arm.kinematics import tool_pose
 from teachpath.motion.arm.puma560 import LOWER, UPPER
 from teachpath.motion.collision.builtin_scenes import paper_scene
-from teachpath.motion.paths.ik_branches import candidates, within_limits
-from teachpath.motion.paths.tool_path import ArcLength, route
+from teachpath.motion.paths.ik_branches import enumerate_candidates, shift_within_limits
+from teachpath.motion.paths.tool_path import ArcLength, sample_tool_path
 from teachpath.motion.planning.plan import plan
 from teachpath.motion.settings import MotionSettings
 from teachpath.records import Scene, Shape
@@ -19,7 +19,7 @@ SETTINGS = MotionSettings()
 
 def test_the_nodes_lie_at_even_arc_lengths() -> None:
     curve = way(MIDDLE).curve
-    found = route(curve, SETTINGS)
+    found = sample_tool_path(curve, SETTINGS)
     assert found.lengths[-1] == pytest.approx(curve.length(), rel=1e-9)
     u = np.linspace(0, 1, 400_001)
     walked = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(curve(u), axis=0), axis=1))]
@@ -29,29 +29,29 @@ def test_the_nodes_lie_at_even_arc_lengths() -> None:
 
 def test_a_sharp_bend_gets_more_nodes() -> None:
     points = way(MIDDLE).curve.control_points.copy()
-    smooth = route(clamped(points), SETTINGS)
+    smooth = sample_tool_path(clamped(points), SETTINGS)
     points[4] = points[3] + [0.0, 0.003, 0.0]
     points[5] = points[3] + [0.03, 0.002, 0.0]
-    sharp = route(clamped(points), SETTINGS)
+    sharp = sample_tool_path(clamped(points), SETTINGS)
     assert len(sharp.lengths) / sharp.lengths[-1] > 1.5 * len(smooth.lengths) / smooth.lengths[-1]
 
 
 def test_every_candidate_is_continuous_and_on_the_path() -> None:
-    found = route(way(MIDDLE).curve, SETTINGS)
-    every = candidates(found, SETTINGS)
+    found = sample_tool_path(way(MIDDLE).curve, SETTINGS)
+    every = enumerate_candidates(found, SETTINGS)
     assert len(every) == 8 * len(SETTINGS.rolls)
     for candidate in every:
         np.testing.assert_allclose(tool_pose(candidate.joints)[:, :3, 3], found.positions, atol=1e-9)
-        assert candidate.arm.jumps.any() == (np.abs(np.diff(candidate.joints, axis=0)).max() > 0.35)
+        assert candidate.branch.jumps.any() == (np.abs(np.diff(candidate.joints, axis=0)).max() > 0.35)
         inside = np.all((candidate.joints >= LOWER) & (candidate.joints <= UPPER))
-        assert inside == (candidate.over.max() <= 0)
+        assert inside == (candidate.limit_excess.max() <= 0)
 
 
 def test_whole_turns_bring_a_joint_back_into_its_range() -> None:
     inside = np.linspace(LOWER + 0.5, LOWER + 1.0, 5)
-    np.testing.assert_allclose(within_limits(inside + 2 * np.pi * np.array([1, -1, 1, 2, 0, 1])) % (2 * np.pi),
+    np.testing.assert_allclose(shift_within_limits(inside + 2 * np.pi * np.array([1, -1, 1, 2, 0, 1])) % (2 * np.pi),
                                inside % (2 * np.pi), atol=1e-9)  # fmt: skip
-    shifted = within_limits(inside[:, :1].repeat(6, axis=1) * 0 + 2 * np.pi * np.array([3, 1, -1, 2, -2, 5]))
+    shifted = shift_within_limits(inside[:, :1].repeat(6, axis=1) * 0 + 2 * np.pi * np.array([3, 1, -1, 2, -2, 5]))
     assert np.all((shifted >= LOWER) & (shifted <= UPPER))
 
 

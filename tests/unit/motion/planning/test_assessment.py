@@ -5,12 +5,12 @@ import pytest
 
 from teachpath.errors import PathRefused
 from teachpath.motion.collision.builtin_scenes import empty_scene, paper_scene
-from teachpath.motion.paths.ik_branches import candidates, least_wrong
-from teachpath.motion.paths.tool_path import route
+from teachpath.motion.paths.ik_branches import enumerate_candidates, nearest_to_usable
+from teachpath.motion.paths.tool_path import sample_tool_path
 from teachpath.motion.planning.assessment import assess
-from teachpath.motion.planning.failure import first_stretch
+from teachpath.motion.planning.failure import first_failing_range
 from teachpath.motion.planning.plan import plan
-from teachpath.motion.planning.suggestion import influences
+from teachpath.motion.planning.suggestion import control_point_weights
 from teachpath.motion.settings import MotionSettings
 from teachpath.nurbs import Curve
 from teachpath.records import Assessment, Scene
@@ -45,9 +45,9 @@ def test_a_path_that_is_refused_is_found_wrong_where_the_plan_says(curve: Curve,
     assert looked.failure is not None
     failure = looked.failure
     assert (failure.fault, looked.duration) == (fault, None)
-    assert failure.stretch[0] == failure.s <= failure.stretch[1]
+    assert failure.interval[0] == failure.s <= failure.interval[1]
     assert f"control point {failure.suggestion.control_point + 1} of 9" in looked.sentence
-    inside = (looked.lengths >= failure.stretch[0] - 1e-9) & (looked.lengths <= failure.stretch[1] + 1e-9)
+    inside = (looked.lengths >= failure.interval[0] - 1e-9) & (looked.lengths <= failure.interval[1] + 1e-9)
     assert all(word for word, here in zip(looked.faults, inside, strict=True) if here)
     with pytest.raises(PathRefused) as refused:
         plan(learned(curve), paper_scene())
@@ -101,7 +101,7 @@ def test_doing_what_was_proposed_again_and_again_makes_the_path_good(curve: Curv
 
 def test_moving_a_control_point_moves_the_curve_by_its_influence() -> None:
     curve = way(MIDDLE).curve
-    shares = influences(curve, 0.37)
+    shares = control_point_weights(curve, 0.37)
     assert shares.sum() == pytest.approx(1.0)
     for k in range(len(shares)):
         points = curve.control_points.copy()
@@ -111,14 +111,14 @@ def test_moving_a_control_point_moves_the_curve_by_its_influence() -> None:
 
 
 def test_the_first_stretch_is_the_first_run() -> None:
-    assert first_stretch(np.array([False, True, True, False, True])) == (1, 2)
-    assert first_stretch(np.array([True, True])) == (0, 1)
+    assert first_failing_range(np.array([False, True, True, False, True])) == (1, 2)
+    assert first_failing_range(np.array([True, True])) == (0, 1)
     with pytest.raises(ValueError, match="nothing"):
-        first_stretch(np.array([False]))
+        first_failing_range(np.array([False]))
 
 
 def test_the_least_wrong_branch_has_the_fewest_wrong_nodes() -> None:
-    every = candidates(route(way(0.31).curve, MotionSettings()), MotionSettings())
-    chosen = least_wrong(every)
-    counts = [np.count_nonzero((c.over.max(axis=1) > 0) | c.arm.jumps) for c in every]
-    assert np.count_nonzero((chosen.over.max(axis=1) > 0) | chosen.arm.jumps) == min(counts)
+    every = enumerate_candidates(sample_tool_path(way(0.31).curve, MotionSettings()), MotionSettings())
+    chosen = nearest_to_usable(every)
+    counts = [np.count_nonzero((c.limit_excess.max(axis=1) > 0) | c.branch.jumps) for c in every]
+    assert np.count_nonzero((chosen.limit_excess.max(axis=1) > 0) | chosen.branch.jumps) == min(counts)

@@ -9,7 +9,7 @@ from teachpath.motion.arm.kinematics import tool_pose
 from teachpath.motion.arm.puma560 import ACCELERATION, JERK, LOWER, SPEED, UPPER
 from teachpath.motion.collision.builtin_scenes import empty_scene, paper_scene
 from teachpath.motion.paths.tool_path import ArcLength
-from teachpath.motion.planning.certificate import digest, limit_uses, track, verify
+from teachpath.motion.planning.certificate import digest, largest_limit_uses, plan_trajectory, verify
 from teachpath.motion.planning.plan import plan
 from teachpath.motion.settings import MotionSettings
 from teachpath.nurbs import Curve
@@ -27,7 +27,7 @@ def middle() -> Plan:
 def test_the_three_ways_of_the_paper_keep_every_limit_and_the_path(x: float, degree: int) -> None:
     path = way(x, degree=degree)
     made = plan(path, paper_scene())
-    setpoints = track(made).setpoints(250.0)
+    setpoints = plan_trajectory(made).setpoints(250.0)
     q, s = setpoints[:, :6], setpoints[:, 6]
     assert np.all((q >= LOWER) & (q <= UPPER))
     for order, limit in ((1, SPEED), (2, ACCELERATION), (3, JERK)):
@@ -37,13 +37,13 @@ def test_the_three_ways_of_the_paper_keep_every_limit_and_the_path(x: float, deg
     assert np.linalg.norm(poses[:, :3, 3] - wanted, axis=1).max() < 1e-4
     np.testing.assert_allclose(poses[:, :3, 2], np.tile([0, 0, -1], (len(s), 1)), atol=1e-4)
     assert made.certificate.clearance.value >= MotionSettings().clearance_min
-    assert track(made).duration == made.duration
+    assert plan_trajectory(made).duration == made.duration
 
 
 def test_the_certificate_agrees_with_setpoints_differenced_again(middle: Plan) -> None:
     certificate = middle.certificate
     written = certificate.position_use, certificate.velocity_use, certificate.acceleration_use, certificate.jerk_use
-    assert written == limit_uses(track(middle).setpoints(250.0), 250.0)
+    assert written == largest_limit_uses(plan_trajectory(middle).setpoints(250.0), 250.0)
 
 
 def test_a_plan_survives_json_and_any_change_of_it_is_noticed(middle: Plan) -> None:
@@ -154,7 +154,7 @@ def test_the_tool_rolls_along_the_path_where_no_one_roll_leads_through() -> None
     made = plan(learned(curve), both)
     assert "rolling" in made.certificate.branch
     assert made.certificate.clearance.value >= MotionSettings().clearance_min
-    setpoints = track(made).setpoints(250.0)
+    setpoints = plan_trajectory(made).setpoints(250.0)
     poses = tool_pose(setpoints[:, :6])
     wanted = curve(ArcLength(curve).parameters(setpoints[:, 6]))
     assert np.linalg.norm(poses[:, :3, 3] - wanted, axis=1).max() < 1e-4

@@ -8,11 +8,11 @@ from teachpath.motion.arm.dynamics import Dynamics
 from teachpath.motion.arm.kinematics import tool_pose
 from teachpath.motion.arm.puma560 import ACCELERATION, LOWER, SPEED, TORQUE, UPPER
 from teachpath.motion.collision.builtin_scenes import paper_scene
-from teachpath.motion.paths.ik_branches import candidates, usable
-from teachpath.motion.paths.tool_path import route
-from teachpath.motion.planning.certificate import track
+from teachpath.motion.paths.ik_branches import enumerate_candidates, is_usable
+from teachpath.motion.paths.tool_path import sample_tool_path
+from teachpath.motion.planning.certificate import plan_trajectory
 from teachpath.motion.planning.plan import plan
-from teachpath.motion.planning.torque_limited import within_torques
+from teachpath.motion.planning.torque_limited import time_within_torques
 from teachpath.motion.settings import MotionSettings
 from teachpath.records import Shape
 from tests.unit.motion.ways import MIDDLE, way
@@ -27,7 +27,7 @@ V = RNG.uniform(-1, 1, (50, 6)) * SPEED
 def test_nothing_asks_more_than_the_bound() -> None:
     for carried in (None, LOAD):
         dynamics = Dynamics(carried)
-        bound = dynamics.largest(Q, V, ACCELERATION)
+        bound = dynamics.torque_bounds(Q, V, ACCELERATION)
         for _ in range(30):
             rate = RNG.uniform(-1, 1, (50, 1))
             acceleration = RNG.choice([-1.0, 1.0], (50, 6)) * ACCELERATION
@@ -52,23 +52,23 @@ def test_power_is_what_the_energy_gains() -> None:
 
 def test_the_share_of_acceleration_left_is_the_largest_that_the_motors_bear() -> None:
     dynamics = Dynamics(replace(LOAD, size=(0.25, 0.25, 0.25)))
-    left = dynamics.share_left(Q, V, ACCELERATION)
+    left = dynamics.acceleration_share(Q, V, ACCELERATION)
     assert 0.0 < left < 1.0
-    assert np.max(dynamics.largest(Q, V, left * ACCELERATION) / TORQUE) == pytest.approx(1.0)
-    assert Dynamics(replace(LOAD, size=(0.6, 0.6, 0.6))).share_left(Q, V, ACCELERATION) < 0.0
+    assert np.max(dynamics.torque_bounds(Q, V, left * ACCELERATION) / TORQUE) == pytest.approx(1.0)
+    assert Dynamics(replace(LOAD, size=(0.6, 0.6, 0.6))).acceleration_share(Q, V, ACCELERATION) < 0.0
 
 
 def test_the_certified_torques_bound_those_of_the_plan() -> None:
     made = plan(way(MIDDLE), paper_scene())
-    rows = track(made).table[::10]
+    rows = plan_trajectory(made).table[::10]
     needed = Dynamics(paper_scene().carried).torques(*(rows[:, k, :6] for k in range(3)))
     assert 0.3 < (np.abs(needed) / TORQUE).max() < made.certificate.torque_use.value < 1.0
 
 
 def test_what_is_too_heavy_is_refused_with_the_place_and_the_control_point() -> None:
     settings = MotionSettings()
-    found = route(way(MIDDLE).curve, settings)
-    candidate = next(c for c in candidates(found, settings) if usable(c, settings))
+    found = sample_tool_path(way(MIDDLE).curve, settings)
+    candidate = next(c for c in enumerate_candidates(found, settings) if is_usable(c, settings))
     block = Shape("block", "box", (0.5, 0.5, 0.5), (0.0, 0.0, 0.0))
     with pytest.raises(PathRefused, match=r"torque at joint \d at s = .*carry less.*control point \d of 9"):
-        within_torques(found, candidate, Dynamics(block), settings)
+        time_within_torques(found, candidate, Dynamics(block), settings)

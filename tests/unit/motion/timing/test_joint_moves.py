@@ -2,14 +2,14 @@ import numpy as np
 import pytest
 
 from teachpath.errors import PathRefused
-from teachpath.motion.arm.joint_path import ARM
-from teachpath.motion.arm.kinematics import downward, inverse, tool_pose
+from teachpath.motion.arm.joint_path import ARM_LIMITS
+from teachpath.motion.arm.kinematics import downward_poses, inverse_kinematics, tool_pose
 from teachpath.motion.collision.builtin_scenes import paper_scene
 from teachpath.motion.collision.collision_model import CollisionModel
-from teachpath.motion.paths.ik_branches import within_limits
+from teachpath.motion.paths.ik_branches import shift_within_limits
 from teachpath.motion.settings import MotionSettings
-from teachpath.motion.timing.joint_moves import approach, left_behind, retreat, straight
-from teachpath.motion.timing.limit_margins import uses
+from teachpath.motion.timing.joint_moves import joint_waypoints, placed_load, straight_move, waypoints_home
+from teachpath.motion.timing.limit_margins import limit_uses
 from teachpath.records import Scene, Shape
 
 SETTINGS = MotionSettings()
@@ -17,7 +17,7 @@ HOME = np.array(SETTINGS.home)
 
 
 def over(x: float, y: float, z: float) -> np.ndarray:
-    return within_limits(inverse(downward(np.array([[x, y, z]]), np.pi)).joints[:, 1])[0]
+    return shift_within_limits(inverse_kinematics(downward_poses(np.array([[x, y, z]]), np.pi)).joints[:, 1])[0]
 
 
 LEFT, RIGHT = over(0.55, 0.25, 0.6), over(0.55, -0.25, 0.6)
@@ -35,42 +35,42 @@ def block_at(q: np.ndarray) -> Shape:
 @pytest.mark.parametrize("share", [1e-8, 1e-4, 0.1, 1.0])
 def test_a_straight_run_keeps_the_limits_and_ends_where_it_should(share: float) -> None:
     goal = LEFT + share * (RIGHT - LEFT)
-    track = straight(LEFT, goal, ARM, reserve=(1.0, 1.0, 1.0))
+    track = straight_move(LEFT, goal, ARM_LIMITS, margins=(1.0, 1.0, 1.0))
     np.testing.assert_allclose(track.table[[0, -1], 0, :6], [LEFT, goal], rtol=0, atol=1e-12)
     setpoints = track.setpoints(250.0)
-    assert max(use.max() for use in uses(setpoints, ARM, 250.0)) <= 1.0 + 1e-6
+    assert max(use.max() for use in limit_uses(setpoints, ARM_LIMITS, 250.0)) <= 1.0 + 1e-6
     along = (setpoints[:, :6] - LEFT) @ (goal - LEFT) / np.sum((goal - LEFT) ** 2)
     np.testing.assert_allclose(setpoints[:, :6], LEFT + along[:, None] * (goal - LEFT), rtol=0, atol=1e-12)
 
 
 def test_a_free_way_is_straight() -> None:
-    assert len(approach(scene_with(), LEFT, RIGHT, SETTINGS)) == 2
+    assert len(joint_waypoints(scene_with(), LEFT, RIGHT, SETTINGS)) == 2
 
 
 def test_a_blocked_way_goes_over_the_home() -> None:
-    stops = approach(scene_with(block_at((LEFT + RIGHT) / 2)), LEFT, RIGHT, SETTINGS)
+    stops = joint_waypoints(scene_with(block_at((LEFT + RIGHT) / 2)), LEFT, RIGHT, SETTINGS)
     assert len(stops) == 3
     np.testing.assert_array_equal(stops[1], HOME)
 
 
 def test_without_any_free_way_it_is_refused_by_name() -> None:
     with pytest.raises(PathRefused, match=r"on the way to the path's start: .* into post"):
-        approach(scene_with(block_at(RIGHT)), LEFT, RIGHT, SETTINGS)
+        joint_waypoints(scene_with(block_at(RIGHT)), LEFT, RIGHT, SETTINGS)
 
 
 def test_the_way_home_must_be_free() -> None:
     goal = over(0.55, 0.25, 0.52)
     start = over(0.55, -0.25, 0.52)
-    assert len(retreat(scene_with(), start, goal, LEFT, SETTINGS)) == 2
+    assert len(waypoints_home(scene_with(), start, goal, LEFT, SETTINGS)) == 2
     with pytest.raises(PathRefused, match=r"on the way home from the goal: .* into post"):
-        retreat(scene_with(block_at((LEFT + HOME) / 2)), start, goal, LEFT, SETTINGS)
+        waypoints_home(scene_with(block_at((LEFT + HOME) / 2)), start, goal, LEFT, SETTINGS)
 
 
 def test_the_object_is_left_where_the_path_brought_it() -> None:
     scene = paper_scene()
     assert scene.carried is not None
-    load = left_behind(scene, over(0.58, -0.28, 0.52), over(0.60, 0.20, 0.54))
+    load = placed_load(scene, over(0.58, -0.28, 0.52), over(0.60, 0.20, 0.54))
     assert load is not None
-    moved = np.array(load.placed) - np.array(scene.carried.position)
+    moved = np.array(load.position) - np.array(scene.carried.position)
     np.testing.assert_allclose(moved, [0.02, 0.48, 0.02], atol=1e-9)
-    assert left_behind(Scene("empty"), LEFT, RIGHT) is None
+    assert placed_load(Scene("empty"), LEFT, RIGHT) is None

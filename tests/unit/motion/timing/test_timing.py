@@ -1,34 +1,36 @@
 import numpy as np
 import pytest
 
-from teachpath.motion.arm.joint_path import ARM, JointPath, Limits
+from teachpath.motion.arm.joint_path import ARM_LIMITS, JointPath, MotionLimits
 from teachpath.motion.arm.kinematics import tool_pose
 from teachpath.motion.arm.puma560 import ACCELERATION, JERK, SPEED
-from teachpath.motion.paths.ik_branches import Candidate, candidates, usable
-from teachpath.motion.paths.tool_path import Route, route
+from teachpath.motion.paths.ik_branches import Candidate, enumerate_candidates, is_usable
+from teachpath.motion.paths.tool_path import ToolPath, sample_tool_path
 from teachpath.motion.settings import MotionSettings
-from teachpath.motion.timing.jerk_limited_topp import fastest_pace
-from teachpath.motion.timing.limit_margins import NOTHING_LEFT, Reserve, uses
-from teachpath.motion.timing.timed_trajectory import Track, paced
-from teachpath.motion.timing.timing import lower_bound, timed
-from teachpath.motion.timing.velocity_profile import squared_rates, times
+from teachpath.motion.timing.jerk_limited_topp import minimize_duration
+from teachpath.motion.timing.limit_margins import NO_MARGINS, Margins, limit_uses
+from teachpath.motion.timing.timed_trajectory import TimedTrajectory, time_joint_path
+from teachpath.motion.timing.timing import duration_lower_bound, time_tool_path
+from teachpath.motion.timing.velocity_profile import max_squared_rates, reach_times
 from teachpath.nurbs import Curve
 from tests.unit.motion.ways import FAR, MIDDLE, NEAR, clamped, hooked, wandering, way
 
 RATE = 250.0
 
 
-def on_a_branch(curve: Curve) -> tuple[Route, Candidate]:
+def on_a_branch(curve: Curve) -> tuple[ToolPath, Candidate]:
     settings = MotionSettings()
-    found = route(curve, settings)
-    return found, max((c for c in candidates(found, settings) if usable(c, settings)), key=lambda c: c.conditioned)
+    found = sample_tool_path(curve, settings)
+    return found, max(
+        (c for c in enumerate_candidates(found, settings) if is_usable(c, settings)), key=lambda c: c.min_singular_value
+    )
 
 
-def fastest(curve: Curve, limits: Limits = ARM) -> tuple[Track, float]:
+def fastest(curve: Curve, limits: MotionLimits = ARM_LIMITS) -> tuple[TimedTrajectory, float]:
     """The track along a curve and the lower bound of its duration."""
     found, candidate = on_a_branch(curve)
-    path, pace = timed(found, candidate, limits, rate=RATE)
-    return paced(path, pace, limits), lower_bound(found, candidate, limits)
+    path, pace = time_tool_path(found, candidate, limits, rate=RATE)
+    return time_joint_path(path, pace, limits), duration_lower_bound(found, candidate, limits)
 
 
 @pytest.mark.parametrize("seed", range(6))
@@ -37,9 +39,9 @@ def test_setpoints_keep_the_limits_with_the_reserve_at_any_phase_and_override(se
     track, _ = fastest(wandering(seed))
     for _ in range(20):
         setpoints = track.setpoints(RATE, phase=rng.uniform(), override=rng.choice([1.0, rng.uniform(0.05, 1.0)]))
-        assert Reserve().stretch(setpoints, ARM, RATE) <= 1.002
-        assert max(use.max() for use in uses(setpoints, ARM, RATE)) <= 1.0
-    assert Reserve().stretch(track.setpoints(RATE), ARM, RATE) > 0.99
+        assert Margins().time_stretch(setpoints, ARM_LIMITS, RATE) <= 1.002
+        assert max(use.max() for use in limit_uses(setpoints, ARM_LIMITS, RATE)) <= 1.0
+    assert Margins().time_stretch(track.setpoints(RATE), ARM_LIMITS, RATE) > 0.99
 
 
 def test_the_reserve_is_against_the_way_a_joint_turns_and_larger_when_it_turns_fast() -> None:
@@ -47,19 +49,19 @@ def test_the_reserve_is_against_the_way_a_joint_turns_and_larger_when_it_turns_f
 
     def turning(speed: float, acceleration: float) -> float:
         joints = (speed * t + acceleration * t**2 / 2) * np.array([1.0, 0, 0, 0, 0, 0])
-        return Reserve().stretch(joints, ARM, RATE) ** 2
+        return Margins().time_stretch(joints, ARM_LIMITS, RATE) ** 2
 
     a, slow, fast = ACCELERATION[0], 0.1 * SPEED[0], 0.9 * SPEED[0]
-    assert turning(-slow, -a) == pytest.approx(1 / Reserve().along[0])
+    assert turning(-slow, -a) == pytest.approx(1 / Margins().along[0])
     assert turning(3 * slow, -a) == pytest.approx(turning(-3 * slow, a))
-    assert turning(fast, -a) > turning(3 * slow, -a) > 1 / Reserve().against[0]
+    assert turning(fast, -a) > turning(3 * slow, -a) > 1 / Margins().against[0]
 
 
 def test_a_kink_of_acceleration_and_the_reserve_cost_little() -> None:
     found, candidate = on_a_branch(way(MIDDLE).curve)
     kept, used = (
-        paced(*timed(found, candidate, ARM, rate=RATE, reserve=reserve), ARM).duration
-        for reserve in (Reserve(), NOTHING_LEFT)
+        time_joint_path(*time_tool_path(found, candidate, ARM_LIMITS, rate=RATE, margins=reserve), ARM_LIMITS).duration
+        for reserve in (Margins(), NO_MARGINS)
     )
     assert used < kept < 1.03 * used
 
@@ -72,11 +74,11 @@ def test_the_ways_of_the_paper_take_little_longer_than_without_jerk_limit_and_re
 
 def test_a_sharp_bend_slows_only_itself() -> None:
     found, candidate = on_a_branch(hooked())
-    path, pace = timed(found, candidate, ARM, rate=RATE)
-    track = paced(path, pace, ARM)
+    path, pace = time_tool_path(found, candidate, ARM_LIMITS, rate=RATE)
+    track = time_joint_path(path, pace, ARM_LIMITS)
     # No constant box of limits for the length runs faster than the steepest place allows everywhere.
     by_length = JointPath(found.lengths, found.lengths, candidate.joints)
-    first, second, third = (np.abs(by_length(by_length.dense(), k)[:, :6]).max(axis=0) for k in (1, 2, 3))
+    first, second, third = (np.abs(by_length(by_length.dense_parameters(), k)[:, :6]).max(axis=0) for k in (1, 2, 3))
     box = 1 / max((first / SPEED).max(), np.sqrt(second / ACCELERATION).max(), np.cbrt(third / JERK).max())
     assert track.duration < 0.2 * found.lengths[-1] / box
 
@@ -84,14 +86,14 @@ def test_a_sharp_bend_slows_only_itself() -> None:
 @pytest.mark.parametrize("curve", [way(MIDDLE).curve, way(FAR, degree=5).curve, hooked()])
 def test_the_tool_stays_on_the_curve(curve: Curve) -> None:
     found, candidate = on_a_branch(curve)
-    path, pace = timed(found, candidate, ARM, rate=RATE)
-    setpoints = paced(path, pace, ARM).setpoints(RATE, phase=0.3)
+    path, pace = time_tool_path(found, candidate, ARM_LIMITS, rate=RATE)
+    setpoints = time_joint_path(path, pace, ARM_LIMITS).setpoints(RATE, phase=0.3)
     wanted = found.curve(found.arc.parameters(setpoints[:, 6]))
     assert np.linalg.norm(tool_pose(setpoints[:, :6])[:, :3, 3] - wanted, axis=1).max() < 1e-5
 
 
 def test_a_smaller_share_of_the_limits_takes_longer() -> None:
-    durations = [fastest(way(MIDDLE).curve, ARM.scaled(s, s, s))[0].duration for s in (0.2, 0.5, 1.0)]
+    durations = [fastest(way(MIDDLE).curve, ARM_LIMITS.scaled(s, s, s))[0].duration for s in (0.2, 0.5, 1.0)]
     assert durations == sorted(durations, reverse=True)
 
 
@@ -125,7 +127,7 @@ def test_one_joint_alone_takes_hardly_longer_than_its_closed_form(turn: float) -
     else:
         shortest = 4 * np.cbrt(turn / (2 * j))
     path = line(turn)
-    duration = paced(path, fastest_pace(path, ARM, 100, NOTHING_LEFT), ARM).duration
+    duration = time_joint_path(path, minimize_duration(path, ARM_LIMITS, 100, NO_MARGINS), ARM_LIMITS).duration
     assert 0.999 * shortest < duration < 1.04 * shortest
 
 
@@ -133,9 +135,9 @@ def test_one_joint_alone_takes_hardly_longer_than_its_closed_form(turn: float) -
 def test_the_lower_bound_of_a_line_is_the_trapezoid(turn: float) -> None:
     grid = np.linspace(0.0, 1.0, 4001)
     first = np.tile([turn, 0, 0, 0, 0, 0], (len(grid), 1))
-    squares = squared_rates(grid, first, 0 * first, SPEED, ACCELERATION, np.full(len(grid), np.inf))
+    squares = max_squared_rates(grid, first, 0 * first, SPEED, ACCELERATION, np.full(len(grid), np.inf))
     v, a = min(SPEED[0], np.sqrt(turn * ACCELERATION[0])), ACCELERATION[0]
-    assert times(grid, squares)[-1] == pytest.approx(turn / v + v / a, rel=2e-3)
+    assert reach_times(grid, squares)[-1] == pytest.approx(turn / v + v / a, rel=2e-3)
 
 
 def test_a_path_of_few_millimetres_can_be_timed() -> None:
