@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from teachpath.errors import UnusableInput
 
 Array = NDArray[np.float64]
+Matrix = np.ndarray[tuple[int, int], np.dtype[np.float64]]  # an array of rows
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,7 +31,7 @@ class Curve:
 
     degree: int
     knots: Array
-    control_points: Array
+    control_points: Matrix
     weights: Array
 
     def __post_init__(self) -> None:

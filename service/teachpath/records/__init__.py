@@ -4,7 +4,7 @@ Conventions (ARCHITECTURE.md): metres, radians, seconds inside; integer nanoseco
 (names end in `_ns`); quaternions w, x, y, z; frame `world` unless another is named.
 """
 
-from teachpath.records.arrays import Array, Quaternion, Vector
+from teachpath.records.arrays import Array, Matrix, Quaternion, Vector
 from teachpath.records.assessments import Assessment, Failure, Suggestion
 from teachpath.records.calibrations import Calibration, MeasuredCalibration, TaughtPoint
 from teachpath.records.control import Command, JournalEntry, Lease, LeaseRequest, TeleopRequest
@@ -48,6 +48,7 @@ __all__ = [
     "LearnedPath",
     "Lease",
     "LeaseRequest",
+    "Matrix",
     "MeasuredCalibration",
     "Phase",
     "Plan",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from teachpath.records.arrays import Array, Vector
+from teachpath.records.arrays import Array, Matrix, Vector
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,7 +50,7 @@ class Assessment:
 
     lengths: Array
     parameters: Array
-    positions: Array
+    positions: Matrix
     faults: tuple[str, ...]
     reach: Array
     limits: Array

@@ -7,7 +7,7 @@ from enum import StrEnum
 
 import numpy as np
 
-from teachpath.records.arrays import Array, Quaternion, Vector
+from teachpath.records.arrays import Array, Matrix, Quaternion, Vector
 from teachpath.records.calibrations import Calibration
 
 
@@ -61,8 +61,8 @@ class Trajectory:
     """
 
     times: Array
-    positions: Array
-    orientations: Array | None = None
+    positions: Matrix
+    orientations: Matrix | None = None
 
     def __len__(self) -> int:
         return len(self.times)

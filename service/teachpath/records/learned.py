@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from teachpath.nurbs import Curve
-from teachpath.records.arrays import Array
+from teachpath.records.arrays import Array, Matrix
 
 
 @dataclass(frozen=True, slots=True)
@@ -116,7 +116,7 @@ class Learned:
 
     mode: str
     demonstrations: tuple[str, ...]
-    linkage: Array
+    linkage: Matrix
     threshold: float
     clusters: tuple[Cluster, ...]
     paths: tuple[LearnedPath, ...]

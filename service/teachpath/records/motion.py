@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from teachpath.records.arrays import Array, Quaternion, Vector
+from teachpath.records.arrays import Array, Matrix, Quaternion, Vector
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,9 +86,9 @@ class Plan:
     path_version: int
     scene: Scene
     lengths: Array
-    joints: Array
+    joints: Matrix
     pace: Array
-    limits: Array
+    limits: Matrix
     above_start: Array
     above_goal: Array
     duration: float

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from teachpath.motion.arm.kinematics import tool_pose
 from teachpath.motion.arm.puma560 import Array
-from teachpath.records import JointState, Setpoint
+from teachpath.records import JointState, Matrix, Setpoint
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,11 +30,11 @@ class TimeSeries:
     """
 
     times: Array
-    positions: Array
-    velocities: Array
-    torques: Array
-    tool: Array
-    object: Array
+    positions: Matrix
+    velocities: Matrix
+    torques: Matrix
+    tool: Matrix
+    object: Matrix
     gripper_closed: tuple[bool, ...]
     tracking_error: Array
     lateness: Array

@@ -15,7 +15,7 @@ from teachpath.motion.arm.puma560 import Array
 from teachpath.motion.execution.segments import Segment, stretches
 from teachpath.motion.planning.certificate import verify
 from teachpath.motion.settings import MotionSettings
-from teachpath.records import Plan
+from teachpath.records import Matrix, Plan
 
 MOST: Final = 6000  # instants; a plan that takes longer has them farther apart
 
@@ -45,11 +45,11 @@ class MotionPreview:
 
     plan: str
     times: Array
-    joints: Array
+    joints: Matrix
     progress: Array
     gripper_closed: tuple[bool, ...]
-    object_position: Array
-    object_orientation: Array
+    object_position: Matrix
+    object_orientation: Matrix
     stretches: tuple[SegmentInterval, ...]
 
 
