@@ -14,7 +14,7 @@ from fastapi import FastAPI
 
 from teachpath import __version__
 from teachpath.api.events import events_router
-from teachpath.api.parts import Parts
+from teachpath.api.parts import Advice, Health, Parts
 from teachpath.api.station import build_api
 from teachpath.api.view import view_router
 from teachpath.config import Settings
@@ -150,22 +150,21 @@ class Station:
         """Return the object's trajectory of a stored demonstration."""
         return trajectory_of(self.store, self.settings, demonstration)
 
-    def health(self) -> dict[str, Any]:
+    def health(self) -> Health:
         """Say which parts run, and what an operator should know."""
-        status = self.executions.status
-        return {
-            "version": __version__,
-            "uptime": round(time.monotonic() - self._started, 1),
-            "bus": asdict(self.settings.bus),
-            "processes": {p.name: "running" if p.is_alive() else "ended" for p in self.processes},
-            "recording": sorted(r.tracker for r in self.recorder.reports()),
-            "backlog": self.recorder.backlog,
-            "longest_backlog": self.settings.recording.longest_backlog,
-            "trackers": [asdict(tracker) for tracker in self.recorder.trackers()],
-            "coach": {"task": self._shown, "sentence": self.guidance.advice(self._shown)},
-            "executor": asdict(status) if status else None,
-            "notes": self.notes(),
-        }
+        return Health(
+            version=__version__,
+            uptime=round(time.monotonic() - self._started, 1),
+            bus=self.settings.bus,
+            processes={p.name: "running" if p.is_alive() else "ended" for p in self.processes},
+            recording=tuple(sorted(r.tracker for r in self.recorder.reports())),
+            backlog=self.recorder.backlog,
+            longest_backlog=self.settings.recording.longest_backlog,
+            trackers=tuple(self.recorder.trackers()),
+            coach=Advice(self._shown, self.guidance.advice(self._shown)),
+            executor=self.executions.status,
+            notes=tuple(self.notes()),
+        )
 
     def notes(self) -> list[str]:
         """Say what an operator should know."""

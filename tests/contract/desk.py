@@ -6,7 +6,10 @@ import queue
 from typing import Any
 
 import numpy as np
+from fastapi.routing import APIRoute
 from httpx import ASGITransport, AsyncClient, Response
+from pydantic import TypeAdapter
+from starlette.routing import Match
 
 from teachpath.app import Station
 
@@ -24,7 +27,18 @@ class Desk:
         station.bus.subscribe(station.keys.job("*"), lambda _, payload: self._news.put(payload))
 
     def send(self, method: str, address: str, **options: Any) -> Response:
-        return self._loop.run(self._client.request(method, address, **options))
+        answer = self._loop.run(self._client.request(method, address, **options))
+        if answer.is_success:
+            self._check_described(answer)
+        return answer
+
+    def _check_described(self, answer: Response) -> None:
+        """Check that an answer holds exactly what the description of the API says."""
+        scope = {"type": "http", "method": answer.request.method, "path": answer.request.url.path}
+        route = next(r for r in self.station.web.routes if r.matches(scope)[0] is Match.FULL)
+        if isinstance(route, APIRoute) and route.response_model is not None:
+            model, document = TypeAdapter(route.response_model), answer.json()
+            assert model.dump_python(model.validate_python(document), mode="json") == document
 
     def get(self, resource: str, **options: Any) -> Response:
         return self.send("GET", API + resource, **options)

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Any
-
-from fastapi import APIRouter
+from fastapi import APIRouter, Response
 from pydantic import Field
 
+from teachpath.api.answers import model_of, sent
 from teachpath.api.closed import Body
 from teachpath.api.curves import CurveBody
 from teachpath.api.parts import Parts
-from teachpath.io.documents import to_document
+from teachpath.records import Assessment
 
 
 class Edited(Body):
@@ -25,8 +24,8 @@ def assessments_router(parts: Parts) -> APIRouter:
     router = APIRouter(tags=["curves"])
     store = parts.store
 
-    @router.post("/paths/{path}/assessment")
-    def assess_path(path: str, edited: Edited) -> dict[str, Any]:
+    @router.post("/paths/{path}/assessment", response_model=model_of(Assessment))
+    def assess_path(path: str, edited: Edited) -> Response:
         """Look quickly at a curve: reach, joint limits and clearance along it, what fails first and what to move.
 
         Nothing is stored and nothing certified: that is for a plan. When a newer curve of the same path comes while
@@ -35,6 +34,6 @@ def assessments_router(parts: Parts) -> APIRouter:
         stored = store.path(path) if edited.version is None else store.versions.get(path, edited.version)[1]
         scene = parts.settings.scene(store.task(store.run(stored.run).task).scene)
         curve = edited.curve.curve() if edited.curve else stored.curve
-        return to_document(parts.assessor.assess(stored, scene, parts.settings.motion, curve=curve))
+        return sent(parts.assessor.assess(stored, scene, parts.settings.motion, curve=curve))
 
     return router

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Literal
 
-from fastapi import APIRouter
+from fastapi import APIRouter, Response
 from pydantic import Field
 
+from teachpath.api.answers import model_of, sent
 from teachpath.api.closed import Body
 from teachpath.api.parts import Parts
 from teachpath.editing import MAX_CONTROL_POINTS, EditResult, check_editable, elevate_degree, insert_knot, remove_knot
 from teachpath.errors import UnusableInput
 from teachpath.exchange import SAME_SHAPE_TOLERANCE
-from teachpath.io.documents import to_document
 from teachpath.nurbs import Curve
 
 MOST_PARAMETERS = 2001
@@ -60,10 +60,10 @@ def curves_router(parts: Parts) -> APIRouter:
         points: list[list[float]] = evaluation.curve.curve()(evaluation.u).tolist() if evaluation.u else []  # type: ignore[arg-type]
         return points
 
-    @router.post("/curves/{operation}")
-    def operate(operation: Literal["insert-knot", "remove-knot", "elevate"], wanted: Operation) -> dict[str, Any]:
+    @router.post("/curves/{operation}", response_model=model_of(EditResult))
+    def operate(operation: Literal["insert-knot", "remove-knot", "elevate"], wanted: Operation) -> Response:
         """Insert or remove a knot, or raise the degree, and leave the shape; `deviation` is how far it moved [m]."""
-        return to_document(_operated(operation, wanted))
+        return sent(_operated(operation, wanted))
 
     return router
 

@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
-from fastapi import APIRouter, Query
+from fastapi import APIRouter, Query, Response
 from fastapi.responses import FileResponse
 from pydantic import Field
 
+from teachpath.api.answers import model_of, sent
 from teachpath.api.closed import Body
 from teachpath.api.parts import Parts
-from teachpath.io.documents import to_document
 from teachpath.recorder.annotations import Amendment
-from teachpath.records import Demonstration
+from teachpath.records import Demonstration, Trajectory
 
 
 class Amended(Body):
@@ -42,13 +42,13 @@ def demonstrations_router(parts: Parts) -> APIRouter:
             demonstration, Amendment(mark=amended.mark, discarded=amended.discarded, trim=amended.trim)
         )
 
-    @router.get("/demonstrations/{demonstration}/trajectory")
+    @router.get("/demonstrations/{demonstration}/trajectory", response_model=model_of(Trajectory))
     def get_trajectory(
         demonstration: str,
         most: Annotated[int, Query(ge=2, le=100_000, description="points; further ones are left out evenly")] = 100_000,
-    ) -> dict[str, Any]:
+    ) -> Response:
         """Return the object's trajectory in its transport phase: times [s], positions [m], orientations, world."""
-        return to_document(parts.trajectory(store.demonstration(demonstration)).thinned(most))
+        return sent(parts.trajectory(store.demonstration(demonstration)).thinned(most))
 
     @router.get("/demonstrations/{demonstration}/recording", response_class=FileResponse)
     def get_recording(demonstration: str) -> FileResponse:

@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
 from fastapi import APIRouter, Header, Query, Response
 from fastapi.responses import FileResponse
 from pydantic import Field
 
+from teachpath.api.answers import model_of, sent
 from teachpath.api.closed import Body
 from teachpath.api.names import TrackerName, TrackerNameOrEmpty
 from teachpath.api.parts import Parts
 from teachpath.errors import UnusableInput
-from teachpath.io.documents import to_document
 from teachpath.io.store.store import Execution
+from teachpath.motion.analysis.time_series import TimeSeries
 from teachpath.records import Command, ExecutorStatus, TeleopRequest
 from teachpath.robot.executions import Executions
 
@@ -119,15 +120,15 @@ def _add_looks(router: APIRouter, parts: Parts) -> None:
         file = executions.recording(execution)
         return FileResponse(file, media_type="application/octet-stream", filename=f"{execution}.mcap")
 
-    @router.get("/executions/{execution}/series")
+    @router.get("/executions/{execution}/series", response_model=model_of(TimeSeries))
     def get_series(
         execution: str, points: Annotated[int, Query(ge=2, le=20_000, description="at most")] = 500
-    ) -> dict[str, Any]:
+    ) -> Response:
         """Return what the arm did over time, for plots and for showing it again.
 
         Joints, velocities, torques, tool and object, tracking error, and the lateness of setpoints; no peak is lost.
         """
-        return to_document(executions.series(execution, points))
+        return sent(executions.series(execution, points))
 
 
 def _add_steering(router: APIRouter, executions: Executions) -> None:

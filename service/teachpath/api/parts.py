@@ -4,18 +4,53 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
 
 from teachpath.config import Settings
+from teachpath.io.bus import BusSettings
 from teachpath.io.store.store import Store
 from teachpath.jobs.curve_assessor import CurveAssessor
 from teachpath.jobs.jobs import Jobs
 from teachpath.recorder.calibrations import Calibrations
+from teachpath.recorder.presence import Tracker
 from teachpath.recorder.recorder import Recorder
 from teachpath.recorder.websocket_trackers import WebSocketTrackers
-from teachpath.records import Demonstration, Trajectory
+from teachpath.records import Demonstration, ExecutorStatus, Trajectory
 from teachpath.robot.executions import Executions
 from teachpath.robot.joint_feed import JointFeed
+
+
+@dataclass(frozen=True, slots=True)
+class Advice:
+    """What the operator of a task should do next, in words."""
+
+    task: str
+    sentence: str
+
+
+@dataclass(frozen=True, slots=True)
+class Health:
+    """Which parts of a station run, and what an operator should know.
+
+    Attributes:
+        uptime: since the station was opened [s].
+        processes: of each process beside the service, whether it is `running` or has `ended`.
+        recording: trackers that are being recorded.
+        backlog: samples that wait for the recorder.
+        executor: None until it has said something.
+        notes: in words, what needs somebody.
+    """
+
+    version: str
+    uptime: float
+    bus: BusSettings
+    processes: dict[str, str]
+    recording: tuple[str, ...]
+    backlog: int
+    longest_backlog: int
+    trackers: tuple[Tracker, ...]
+    coach: Advice
+    executor: ExecutorStatus | None
+    notes: tuple[str, ...]
 
 
 @dataclass(frozen=True)
@@ -32,5 +67,5 @@ class Parts:
     websocket_trackers: WebSocketTrackers
     joints: JointFeed
     trajectory: Callable[[Demonstration], Trajectory]
-    health: Callable[[], dict[str, Any]]
+    health: Callable[[], Health]
     imported: Callable[[Demonstration, Trajectory], None]

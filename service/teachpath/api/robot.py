@@ -2,40 +2,85 @@
 
 from __future__ import annotations
 
-from typing import Any
+from dataclasses import dataclass
 
-from fastapi import APIRouter
+from fastapi import APIRouter, Response
 
+from teachpath.api.answers import model_of, sent
 from teachpath.api.parts import Parts
-from teachpath.io.documents import to_document
 from teachpath.motion.arm.puma560 import ACCELERATION, FINGER_TRAVEL, JERK, LOWER, SPEED, TOOL_LENGTH, TORQUE, UPPER
 from teachpath.motion.arm.variants import arm
+from teachpath.records import Array, MotionPreview
+
+
+@dataclass(frozen=True, slots=True)
+class LinkGeometry:
+    """A link by its standard Denavit-Hartenberg parameters: a and d [m], alpha [rad]."""
+
+    a: float
+    d: float
+    alpha: float
+
+
+@dataclass(frozen=True, eq=False)
+class Robot:
+    """How the arm is built.
+
+    Attributes:
+        name: of the arm in its keys.
+        variant: the published table that its lengths and masses come from.
+        links: from the base to the wrist.
+        lower: (6,) limits of the joints [rad].
+        upper: (6,) likewise.
+        speed: (6,) limits [rad/s].
+        acceleration: (6,) limits [rad/s^2].
+        jerk: (6,) limits [rad/s^3].
+        torque: (6,) limits [N m].
+        tool_length: from the wrist's centre to the grasp point [m].
+        finger_travel: of each finger [m].
+        home: configuration in which the arm waits [rad].
+    """
+
+    name: str
+    variant: str
+    links: tuple[LinkGeometry, ...]
+    lower: Array
+    upper: Array
+    speed: Array
+    acceleration: Array
+    jerk: Array
+    torque: Array
+    tool_length: float
+    finger_travel: float
+    home: tuple[float, ...]
 
 
 def robot_router(parts: Parts) -> APIRouter:
     """Return the routes of the arm."""
     router = APIRouter(tags=["robot"])
 
-    @router.get("/robot")
-    def get_robot() -> dict[str, Any]:
+    @router.get("/robot", response_model=model_of(Robot))
+    def get_robot() -> Response:
         """Describe the arm: standard Denavit-Hartenberg links, joint limits, gripper, and where it waits."""
-        return {
-            "name": parts.settings.bus.robot,
-            "variant": arm().name,
-            "links": [{"a": link.a, "d": link.d, "alpha": link.alpha} for link in arm().links],
-            "lower": LOWER.tolist(),
-            "upper": UPPER.tolist(),
-            "speed": SPEED.tolist(),
-            "acceleration": ACCELERATION.tolist(),
-            "jerk": JERK.tolist(),
-            "torque": TORQUE.tolist(),
-            "tool_length": TOOL_LENGTH,
-            "finger_travel": FINGER_TRAVEL,
-            "home": list(parts.settings.motion.home),
-        }
+        return sent(
+            Robot(
+                name=parts.settings.bus.robot,
+                variant=arm().name,
+                links=tuple(LinkGeometry(link.a, link.d, link.alpha) for link in arm().links),
+                lower=LOWER,
+                upper=UPPER,
+                speed=SPEED,
+                acceleration=ACCELERATION,
+                jerk=JERK,
+                torque=TORQUE,
+                tool_length=TOOL_LENGTH,
+                finger_travel=FINGER_TRAVEL,
+                home=parts.settings.motion.home,
+            )
+        )
 
-    @router.get("/plans/{plan}/motion")
-    def get_motion(plan: str) -> dict[str, Any]:
+    @router.get("/plans/{plan}/motion", response_model=model_of(MotionPreview))
+    def get_motion(plan: str) -> Response:
         """Return the whole motion of a plan at full speed, from the arm's home and back; nothing moves.
 
         Times [s], joints [rad], pose of the carried object [m, world], and what the arm does when, in words.
@@ -45,6 +90,6 @@ def robot_router(parts: Parts) -> APIRouter:
         )
 
         stored = parts.store.plan(plan)
-        return to_document(preview_motion(stored, parts.settings.motion, dwell=parts.settings.executor.dwell))
+        return sent(preview_motion(stored, parts.settings.motion, dwell=parts.settings.executor.dwell))
 
     return router

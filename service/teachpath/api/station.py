@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 from fastapi import APIRouter, Depends, FastAPI
 from starlette.middleware.trustedhost import TrustedHostMiddleware
 
@@ -19,14 +17,14 @@ from teachpath.api.exports import exports_router
 from teachpath.api.faults import REFUSALS, answer_errors
 from teachpath.api.guard import Guard
 from teachpath.api.joints import joints_router
-from teachpath.api.parts import Parts
+from teachpath.api.parts import Health, Parts
 from teachpath.api.recording import recording_router
 from teachpath.api.robot import robot_router
 from teachpath.api.tasks import tasks_router
 from teachpath.api.trackers import trackers_router
 from teachpath.api.versions import versions_router
 from teachpath.api.work import jobs_router, results_router
-from teachpath.io.documents import to_document
+from teachpath.records import Scene
 
 PREFIX = "/api/v1"
 
@@ -75,13 +73,13 @@ def station_router(parts: Parts) -> APIRouter:
     router = APIRouter(tags=["station"])
 
     @router.get("/health")
-    def get_health() -> dict[str, Any]:
+    def get_health() -> Health:
         """Say which parts run, and what an operator should know."""
         return parts.health()
 
     @router.get("/scenes")
-    def list_scenes() -> list[dict[str, Any]]:
+    def list_scenes() -> list[Scene]:
         """List the scenes: table, obstacles and the object at its start."""
-        return [to_document(scene) for scene in parts.settings.scenes]
+        return list(parts.settings.scenes)
 
     return router

@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-from typing import Any
+from dataclasses import dataclass
 
 from fastapi import APIRouter, Response
 from pydantic import Field
 
+from teachpath.api.answers import model_of, sent
 from teachpath.api.closed import Body
 from teachpath.api.curves import CurveBody
 from teachpath.api.parts import Parts
 from teachpath.editing import difference
-from teachpath.io.documents import to_document
 from teachpath.io.store.versions import Edit
-from teachpath.records import Difference, Version
+from teachpath.records import Difference, LearnedPath, Version
 
 TEXT = r"^[^\x00-\x1f\x7f]*$"  # one line
 BRANCH = r"^([^\W_][\w .-]*)?$"
@@ -32,6 +32,14 @@ class NewVersion(Body):
     note: str = Field("", max_length=2000, description="why")
 
 
+@dataclass(frozen=True, eq=False)
+class SavedVersion:
+    """A version of a learned path, and the path itself."""
+
+    version: Version
+    path: LearnedPath
+
+
 def versions_router(parts: Parts) -> APIRouter:
     """Return the routes of versions."""
     router = APIRouter(tags=["versions"])
@@ -42,11 +50,10 @@ def versions_router(parts: Parts) -> APIRouter:
         """List the versions of a path over all its branches, oldest first; the first is the one that was learned."""
         return versions.list(path)
 
-    @router.get("/paths/{path}/versions/{number}")
-    def get_version(path: str, number: int) -> dict[str, Any]:
+    @router.get("/paths/{path}/versions/{number}", response_model=model_of(SavedVersion))
+    def get_version(path: str, number: int) -> Response:
         """Return one version and its curve."""
-        version, learned = versions.get(path, number)
-        return {"version": to_document(version), "path": to_document(learned)}
+        return sent(SavedVersion(*versions.get(path, number)))
 
     @router.post("/paths/{path}/versions", status_code=201)
     def save_version(path: str, new: NewVersion, response: Response) -> Version:

@@ -8,13 +8,13 @@ from fastapi import APIRouter, Query, Response
 from pydantic import Field, model_validator
 from pydantic_core import PydanticCustomError
 
+from teachpath.api.answers import model_of, sent
 from teachpath.api.closed import Body, unknown
 from teachpath.api.parts import Parts
 from teachpath.errors import NotFound
-from teachpath.io.documents import to_document
-from teachpath.io.store.store import Store
-from teachpath.learning.clustering.cuts import dendrogram, recut_members
-from teachpath.records import Job, LearnedPath
+from teachpath.io.store.store import Run, Store
+from teachpath.learning.clustering.cuts import Dendrogram, dendrogram, recut_members
+from teachpath.records import Job, LearnedPath, Plan
 
 # The fields that each kind of job takes.
 FIELDS: Final = {
@@ -109,24 +109,24 @@ def results_router(parts: Parts) -> APIRouter:
     router = APIRouter(tags=["results"])
     store, jobs = parts.store, parts.jobs
 
-    @router.get("/tasks/{task}/runs")
-    def list_runs(task: str) -> list[dict[str, Any]]:
+    @router.get("/tasks/{task}/runs", response_model=model_of(list[Run]))
+    def list_runs(task: str) -> Response:
         """List a task's learning runs, newest first: clusters, scores, dendrogram, convergence, paths."""
-        return [to_document(run) for run in store.runs(store.task(task).name)]
+        return sent(store.runs(store.task(task).name))
 
-    @router.get("/tasks/{task}/runs/{run}")
-    def get_run(task: str, run: str) -> dict[str, Any]:
+    @router.get("/tasks/{task}/runs/{run}", response_model=model_of(Run))
+    def get_run(task: str, run: str) -> Response:
         """Return one learning run."""
         stored = store.run(run)
         _of_task(store.task(task).name, stored.task, f"run {run!r}")
-        return to_document(stored)
+        return sent(stored)
 
-    @router.get("/tasks/{task}/runs/{run}/dendrogram")
+    @router.get("/tasks/{task}/runs/{run}/dendrogram", response_model=model_of(Dendrogram))
     def get_dendrogram(
         task: str,
         run: str,
         most: Annotated[int, Query(ge=1, le=200, description="clusters that a listed cut leaves at most")] = 30,
-    ) -> dict[str, Any]:
+    ) -> Response:
         """Return how the run's demonstrations merge, ready to be drawn, and what other cuts would leave.
 
         `leaves` are the demonstrations from left to right; the members of every cluster of every cut are neighbours
@@ -135,17 +135,17 @@ def results_router(parts: Parts) -> APIRouter:
         """
         stored = store.run(run)
         _of_task(store.task(task).name, stored.task, f"run {run!r}")
-        return to_document(dendrogram(stored.learned, most))
+        return sent(dendrogram(stored.learned, most))
 
-    @router.get("/paths/{path}")
-    def get_path(path: str) -> dict[str, Any]:
+    @router.get("/paths/{path}", response_model=model_of(LearnedPath))
+    def get_path(path: str) -> Response:
         """Return the newest version of a learned path on its main branch: degree, knots, control points, weights."""
-        return to_document(store.path(path))
+        return sent(store.path(path))
 
-    @router.get("/paths/{path}/plans")
-    def list_plans(path: str) -> list[dict[str, Any]]:
+    @router.get("/paths/{path}/plans", response_model=model_of(list[Plan]))
+    def list_plans(path: str) -> Response:
         """List a path's plans, newest first."""
-        return [to_document(plan) for plan in store.plans(store.path(path).id)]
+        return sent(store.plans(store.path(path).id))
 
     @router.post("/paths/{path}/plans", status_code=202)
     def begin_plan(path: str, response: Response, new: NewPlan | None = None) -> Job:
@@ -155,10 +155,10 @@ def results_router(parts: Parts) -> APIRouter:
         response.headers["Location"] = f"/api/v1/jobs/{job.id}"
         return job
 
-    @router.get("/plans/{plan}")
-    def get_plan(plan: str) -> dict[str, Any]:
+    @router.get("/plans/{plan}", response_model=model_of(Plan))
+    def get_plan(plan: str) -> Response:
         """Return one plan with its certificate."""
-        return to_document(store.plan(plan))
+        return sent(store.plan(plan))
 
     return router
 

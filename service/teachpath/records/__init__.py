@@ -20,6 +20,7 @@ from teachpath.records.motion import (
     Setpoint,
     Shape,
 )
+from teachpath.records.previews import MotionPreview, SegmentInterval
 from teachpath.records.versions import MAIN_BRANCH, ControlPointChange, Difference, Version
 from teachpath.records.work import Job, JobState
 
@@ -50,12 +51,14 @@ __all__ = [
     "LeaseRequest",
     "Matrix",
     "MeasuredCalibration",
+    "MotionPreview",
     "Phase",
     "Plan",
     "Quaternion",
     "Sample",
     "Scene",
     "Score",
+    "SegmentInterval",
     "Setpoint",
     "Shape",
     "StreamStatistics",

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -15,42 +14,9 @@ from teachpath.motion.arm.puma560 import Array
 from teachpath.motion.execution.segments import Segment, stretches
 from teachpath.motion.planning.certificate import verify
 from teachpath.motion.settings import MotionSettings
-from teachpath.records import Matrix, Plan
+from teachpath.records import MotionPreview, Plan, SegmentInterval
 
 MOST: Final = 6000  # instants; a plan that takes longer has them farther apart
-
-
-@dataclass(frozen=True, slots=True)
-class SegmentInterval:
-    """When a stretch of the motion lasts, in words and seconds."""
-
-    name: str
-    begin: float
-    end: float
-
-
-@dataclass(frozen=True, eq=False)
-class MotionPreview:
-    """The motion at full speed from the arm's home, at even instants.
-
-    Attributes:
-        times: (n,) [s], from 0.
-        joints: (n, 6) configurations [rad].
-        progress: (n,) share of the learned path's length that is done.
-        gripper_closed: (n,)
-        object_position: (n, 3) centre of the carried object [m, world]; (0, 3) when the scene has none.
-        object_orientation: (n, 4) w, x, y, z; (0, 4) when the scene has none.
-        stretches: what the arm does when.
-    """
-
-    plan: str
-    times: Array
-    joints: Matrix
-    progress: Array
-    gripper_closed: tuple[bool, ...]
-    object_position: Matrix
-    object_orientation: Matrix
-    stretches: tuple[SegmentInterval, ...]
 
 
 def preview_motion(plan: Plan, settings: MotionSettings, *, dwell: float, rate: float = 50.0) -> MotionPreview:

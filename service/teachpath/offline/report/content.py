@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 from teachpath.errors import NotFound, PathRefused
 from teachpath.io.store.store import Run, Store
-from teachpath.motion.execution.motion_preview import MotionPreview, preview_motion
+from teachpath.motion.execution.motion_preview import preview_motion
 from teachpath.motion.settings import MotionSettings
-from teachpath.records import Demonstration, LearnedPath, Plan, Scene, Trajectory
+from teachpath.records import Demonstration, LearnedPath, MotionPreview, Plan, Scene, Trajectory
 
 
 @dataclass(frozen=True, eq=False)

@@ -11,9 +11,8 @@ from teachpath.live.preview import CLUSTER_COLORS, Preview, commands
 from teachpath.live.preview.scene_tree import pack
 from teachpath.motion.arm.geometry import visual_solids
 from teachpath.motion.arm.kinematics import link_frames
-from teachpath.motion.execution.motion_preview import MotionPreview
 from teachpath.offline.report.content import Review
-from teachpath.records import Array
+from teachpath.records import Array, MotionPreview
 from teachpath_proto.keys import Keys
 
 POINTS = 160  # of a path and of a demonstration as drawn

@@ -7,12 +7,12 @@ from teachpath.errors import PathRefused
 from teachpath.motion.arm.kinematics import tool_pose
 from teachpath.motion.arm.puma560 import SPEED
 from teachpath.motion.collision.builtin_scenes import empty_scene, paper_scene
-from teachpath.motion.execution.motion_preview import MotionPreview, preview_motion
+from teachpath.motion.execution.motion_preview import preview_motion
 from teachpath.motion.execution.program import PlanProgram
 from teachpath.motion.paths.tool_path import ArcLength
 from teachpath.motion.planning.plan import plan
 from teachpath.motion.settings import MotionSettings
-from teachpath.records import Plan
+from teachpath.records import MotionPreview, Plan
 from tests.unit.motion.ways import MIDDLE, way
 
 SETTINGS = MotionSettings()

@@ -1,0 +1,40 @@
+"""A plan's whole motion against time, to be looked at before anything moves."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from teachpath.records.arrays import Array, Matrix
+
+
+@dataclass(frozen=True, slots=True)
+class SegmentInterval:
+    """When a stretch of the motion lasts, in words and seconds."""
+
+    name: str
+    begin: float
+    end: float
+
+
+@dataclass(frozen=True, eq=False)
+class MotionPreview:
+    """The motion at full speed from the arm's home, at even instants.
+
+    Attributes:
+        times: (n,) [s], from 0.
+        joints: (n, 6) configurations [rad].
+        progress: (n,) share of the learned path's length that is done.
+        gripper_closed: (n,)
+        object_position: (n, 3) centre of the carried object [m, world]; (0, 3) when the scene has none.
+        object_orientation: (n, 4) w, x, y, z; (0, 4) when the scene has none.
+        stretches: what the arm does when.
+    """
+
+    plan: str
+    times: Array
+    joints: Matrix
+    progress: Array
+    gripper_closed: tuple[bool, ...]
+    object_position: Matrix
+    object_orientation: Matrix
+    stretches: tuple[SegmentInterval, ...]
