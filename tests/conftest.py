@@ -2,6 +2,7 @@
 
 import os
 import shutil
+import tempfile
 from collections.abc import Generator, Iterator
 from typing import Any
 
@@ -9,6 +10,9 @@ import pytest
 
 NAMES = ("chromium", "chromium-browser", "google-chrome")
 ABSENT = "no Chromium to look at the page with; get it with: sudo apt-get install chromium"
+# The logins of the stations that tests start lie here, not among this user's own.
+STATE = tempfile.TemporaryDirectory(prefix="teachpath-tests-")
+os.environ["XDG_STATE_HOME"] = STATE.name
 REQUIRED = "TEACHPATH_REQUIRE_BROWSER"  # set where the browser tests must run: without a browser they fail
 
 

@@ -2,7 +2,6 @@
 
 The contract is in proto/teachpath_proto/motion.proto. Put your controller into `Arm`; this one is wherever it was sent.
 Start the service without the simulated arm, `TEACHPATH_SIMULATOR__START=false teachpath serve`, then:
-
     python 04_drive_a_robot.py [--endpoint tcp/127.0.0.1:7447]
 """
 
@@ -12,6 +11,7 @@ from collections import deque
 
 from teachpath_client import Link
 from teachpath_proto.keys import Keys
+from teachpath_proto.logins import Role
 from teachpath_proto.motion_pb2 import JointState, Setpoint
 
 HOME = [0.365, 1.663, -3.177, 0.0, -1.628, 0.365]  # [rad]
@@ -34,9 +34,9 @@ def main() -> None:
     """Apply each setpoint when it is due and publish the joint state a hundred times a second, until Ctrl-C."""
     parser = argparse.ArgumentParser(description="Drive a robot of your own.")
     parser.add_argument("--endpoint", default="tcp/127.0.0.1:7447")
-    options = parser.parse_args()
+    endpoint = parser.parse_args().endpoint
     keys, arm, waiting, newest, missed, told = Keys(), Arm(), deque[Setpoint](), Setpoint(), 0, 0
-    with Link(options.endpoint) as link:
+    with Link(endpoint, role=Role.ROBOT) as link:
         link.subscribe(keys.setpoint("puma560"), lambda payload: waiting.append(Setpoint.FromString(payload)))
         publisher = link.publisher(keys.state("puma560"))
         alive = link.announce(keys.alive("robot", "puma560"))

@@ -9,6 +9,8 @@ from typing import Any
 import zenoh
 import zenoh.ext
 
+from teachpath_proto.logins import Login, Role, find_login, logins_path
+
 CACHE_SIZE = 1024  # samples that a subscriber which missed some can still ask for
 HEARTBEAT = 0.2  # [s] after a put until a subscriber is told its number, so that a lost last one is missed too
 
@@ -20,25 +22,40 @@ class ClientError(Exception):
 class Link:
     """A session with one station; use it as a context manager.
 
+    Args:
+        endpoint: where the station listens.
+        role: what this program does there; its login is this user's for that role.
+        login: another login, as `teachpath login create` gave it.
+        timeout: [s] to connect in.
+
     Raises:
-        ClientError: nobody listens at `endpoint`.
+        ClientError: nobody listens at `endpoint`, or it does not know the login.
     """
 
-    def __init__(self, endpoint: str, *, timeout: float = 10.0) -> None:
-        config = zenoh.Config()
-        for path, value in {
+    def __init__(
+        self, endpoint: str, *, role: Role = Role.TRACKER, login: Login | None = None, timeout: float = 10.0
+    ) -> None:
+        values: dict[str, object] = {
             "mode": "client",
             "connect/endpoints": [endpoint],
             "connect/timeout_ms": int(timeout * 1000),
             "connect/exit_on_failure": True,
             "scouting/multicast/enabled": False,
             "scouting/gossip/enabled": False,
-        }.items():
+        }
+        try:
+            login = login or find_login(endpoint, role)
+        except ValueError as error:
+            raise ClientError(str(error)) from None
+        if login is not None:
+            values["transport/auth/usrpwd"] = {"user": login.user, "password": login.password}
+        config = zenoh.Config()
+        for path, value in values.items():
             config.insert_json5(path, json.dumps(value))
         try:
             self._session = zenoh.open(config)
         except zenoh.ZError as error:
-            raise ClientError(f"no station at {endpoint}: is `teachpath serve` running there? ({error})") from error
+            raise ClientError(_unreachable(endpoint, role, login, error)) from error
         self._publishers: list[zenoh.ext.AdvancedPublisher] = []
 
     def __enter__(self) -> Link:
@@ -79,6 +96,16 @@ class Link:
             if reply.err is not None:
                 raise ClientError(_reason(reply.err.payload.to_bytes()))
         raise ClientError(f"the station did not answer {key} within {timeout:g} s")
+
+
+def _unreachable(endpoint: str, role: Role, login: Login | None, error: Exception) -> str:
+    known = (
+        f"does it still know the login {login.user!r}?"
+        if login
+        else f"this user has no login there ({logins_path(endpoint)}); its operator makes one with: "
+        f"teachpath login create NAME --role {role}"
+    )
+    return f"no station at {endpoint}: is `teachpath serve` running there, and {known} ({error})"
 
 
 def _reason(payload: bytes) -> str:

@@ -17,9 +17,10 @@ from teachpath.api.events import events_router
 from teachpath.api.parts import Advice, Health, Parts
 from teachpath.api.station import build_api
 from teachpath.api.view import view_router
-from teachpath.config import Settings
+from teachpath.config import Settings, instructions
 from teachpath.errors import NotFound
-from teachpath.io.bus import Bus, open_bus
+from teachpath.io.bus import Bus, listen_on_bus
+from teachpath.io.bus_access import prepare_access
 from teachpath.io.store.store import Store
 from teachpath.io.wire import report_document
 from teachpath.jobs import worker
@@ -41,6 +42,7 @@ from teachpath.robot.executions import Executions
 from teachpath.robot.joint_feed import JointFeed
 from teachpath.robot.processes import WorkerProcess
 from teachpath_proto.keys import Keys
+from teachpath_proto.logins import Role
 
 log = logging.getLogger("teachpath")
 
@@ -65,7 +67,8 @@ class Station:
         self._lock = StationLock(Path(settings.store.data_dir))
         self._lock.__enter__()
         try:
-            self.bus: Bus = open_bus(settings.bus, listen=True)
+            access = prepare_access(settings.bus.endpoint) if settings.bus.access_control else None
+            self.bus: Bus = listen_on_bus(settings.bus, access)
         except BaseException:
             self._lock.__exit__(None, None, None)
             raise
@@ -97,8 +100,13 @@ class Station:
             home=np.array(settings.motion.home),
             hands=self.recorder.hands,
         )
-        ours = ("simulator", "executor") if settings.simulator.start else ("executor",)
-        self.processes = [WorkerProcess(name, settings.model_dump_json()) for name in ours]
+        ours = {"simulator": Role.ROBOT, "executor": Role.EXECUTOR}
+        if not settings.simulator.start:
+            del ours["simulator"]
+        self.processes = [
+            WorkerProcess(name, instructions(settings, access.login(role) if access else None))
+            for name, role in ours.items()
+        ]
         self.web: FastAPI = build_api(self._parts(), view_router(self.preview), events_router(self.event_hub))
         self._state_poller = StatePoller(self.event_hub, self._polls())
         self._shown = ""

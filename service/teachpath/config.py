@@ -31,6 +31,7 @@ from teachpath.recording.settings import RecordingSettings
 from teachpath.records import Calibration, Scene, Shape
 from teachpath.simulator.settings import SimulatorSettings
 from teachpath_proto.keys import is_name, name_refusal
+from teachpath_proto.logins import Login, Role
 
 PREFIX = "TEACHPATH_"
 FORMER_NAMES = {"learning.guard": "learning.min_silhouette"}  # setting -> what it is called now
@@ -81,6 +82,18 @@ class Settings(BaseModel):
         """Return the settings of learning with `changes` laid over them; raises UnusableSettings."""
         _refuse_unknown(changes, LearningSettings, "learning.")
         return _checked({"learning": asdict(self.learning) | dict(changes)}).learning
+
+
+def instructions(settings: Settings, login: Login | None) -> str:
+    """Write one line of JSON for a process beside the service: its settings, and its login on the bus."""
+    return json.dumps({"settings": settings.model_dump(mode="json"), "login": asdict(login) if login else None})
+
+
+def from_instructions(line: str) -> tuple[Settings, Login | None]:
+    """Read what `instructions` wrote."""
+    document = json.loads(line)
+    login = document["login"]
+    return load(document=document["settings"]), Login(**{**login, "role": Role(login["role"])}) if login else None
 
 
 def load(file: Path | None = None, *, document: dict[str, Any] | None = None) -> Settings:

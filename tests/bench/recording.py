@@ -17,7 +17,7 @@ import zenoh
 from report import Figure, against
 
 from teachpath.commands.serving import free_port
-from teachpath.io.bus import Bus, BusSettings, MemoryBus, open_bus
+from teachpath.io.bus import Bus, BusSettings, MemoryBus, listen_on_bus
 from teachpath.io.store.settings import StoreSettings
 from teachpath.io.store.store import Store
 from teachpath.motion.collision.builtin_scenes import paper_scene
@@ -62,7 +62,7 @@ def _through_memory(samples: int) -> tuple[float, dict[str, Trajectory]]:
 
 def _through_zenoh(samples: int) -> float:
     settings = BusSettings(endpoint=f"tcp/127.0.0.1:{free_port()}")
-    bus = open_bus(settings, listen=True)
+    bus = listen_on_bus(settings)
     try:
         with _recorder(bus):
             return samples / _send("recorder", settings.endpoint, samples)

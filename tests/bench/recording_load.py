@@ -16,7 +16,7 @@ import zenoh
 from report import Figure
 
 from teachpath.commands.serving import free_port
-from teachpath.io.bus import Bus, BusSettings, open_bus
+from teachpath.io.bus import Bus, BusSettings, listen_on_bus
 from teachpath.io.store.settings import StoreSettings
 from teachpath.io.store.store import Store
 from teachpath.motion.collision.builtin_scenes import empty_scene
@@ -64,7 +64,7 @@ def measure(*, seconds: float) -> list[Figure]:
 
 def _record(folder: str, seconds: float) -> tuple[int, float, float, float, float, np.ndarray]:
     settings = BusSettings(endpoint=f"tcp/127.0.0.1:{free_port()}")
-    bus = open_bus(settings, listen=True)
+    bus = listen_on_bus(settings)
     try:
         with _recorder(bus, folder) as (recorder, store):
             for number in range(TRACKERS):

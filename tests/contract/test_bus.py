@@ -8,7 +8,7 @@ from collections.abc import Iterator
 import pytest
 
 from teachpath.errors import Conflict, TeachpathError, Unreachable
-from teachpath.io.bus import Bus, BusSettings, MemoryBus, open_bus
+from teachpath.io.bus import Bus, BusSettings, MemoryBus, listen_on_bus, open_bus
 from teachpath_client import Link
 
 
@@ -26,7 +26,7 @@ def ends(request: pytest.FixtureRequest) -> Iterator[tuple[Bus, Bus]]:
         opened = [MemoryBus()]
     else:
         settings = BusSettings(endpoint=free_endpoint())
-        opened.append(open_bus(settings, listen=True))
+        opened.append(listen_on_bus(settings))
         if "two" in request.param:
             opened += [open_bus(settings), open_bus(settings)]
     yield opened[-1], opened[-2] if len(opened) > 1 else opened[-1]
@@ -113,9 +113,9 @@ def test_connecting_to_nobody_is_a_sentence() -> None:
 
 def test_a_taken_endpoint_is_a_sentence() -> None:
     settings = BusSettings(endpoint=free_endpoint())
-    first = open_bus(settings, listen=True)
+    first = listen_on_bus(settings)
     with pytest.raises(Unreachable, match="taken"):
-        open_bus(settings, listen=True)
+        listen_on_bus(settings)
     first.close()
 
 
@@ -139,7 +139,7 @@ def test_a_subscription_that_counts_what_it_missed_serves_plain_publishers_and_e
 
 def test_what_a_client_sends_comes_once_and_in_order_from_the_first_that_comes() -> None:
     settings = BusSettings(endpoint=free_endpoint())
-    bus = open_bus(settings, listen=True)
+    bus = listen_on_bus(settings)
     got: queue.Queue[int] = queue.Queue()
     missed: list[int] = []
     try:

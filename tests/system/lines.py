@@ -9,7 +9,7 @@ from typing import Any
 
 import zenoh
 
-from teachpath.io.bus import BusSettings, open_bus
+from teachpath.io.bus import BusSettings, listen_on_bus
 from teachpath.io.store.settings import StoreSettings
 from teachpath.io.store.store import Store
 from teachpath.io.wire import sample_message
@@ -32,7 +32,7 @@ class Desk:
 
     def __init__(self, folder: Path, settings: RecordingSettings) -> None:
         (self.port,) = free_ports(1)
-        self.bus = open_bus(BusSettings(endpoint=f"tcp/127.0.0.1:{self.port}"), listen=True)
+        self.bus = listen_on_bus(BusSettings(endpoint=f"tcp/127.0.0.1:{self.port}"))
         self.store = Store(StoreSettings(data_dir=str(folder)))
         self.recorder = Recorder(self.bus, KEYS, self.store, settings, scene=lambda _: SCENE, calibration=Calibration)
         self.recorder.start()

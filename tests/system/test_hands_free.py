@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from teachpath.io.bus import BusSettings, open_bus
+from teachpath.io.bus import BusSettings, listen_on_bus
 from teachpath.io.store.settings import StoreSettings
 from teachpath.io.store.store import Store
 from teachpath.motion.collision.builtin_scenes import paper_scene
@@ -28,7 +28,7 @@ def endpoint(tmp_path: Path) -> Iterator[str]:
     """Where a recorder listens."""
     (port,) = free_ports(1)
     endpoint = f"tcp/127.0.0.1:{port}"
-    bus, store = open_bus(BusSettings(endpoint=endpoint), listen=True), Store(StoreSettings(data_dir=str(tmp_path)))
+    bus, store = listen_on_bus(BusSettings(endpoint=endpoint)), Store(StoreSettings(data_dir=str(tmp_path)))
     recorder = Recorder(bus, Keys(), store, RecordingSettings(), scene=lambda _: paper_scene(), calibration=Calibration)
     recorder.start()
     yield endpoint

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import logging
 import os
 import sys
@@ -15,10 +14,11 @@ import typer
 
 from teachpath.commands.options import Config, Data, settings_of
 from teachpath.commands.serving import serving, until_signalled
-from teachpath.config import Settings, load
+from teachpath.config import Settings, from_instructions, load
 from teachpath.io.bus import open_bus
 from teachpath.robot.processes import GRACE
 from teachpath_proto.keys import Keys
+from teachpath_proto.logins import Login, Role, find_login
 
 Attached = Annotated[bool, typer.Option("--attached", hidden=True)]
 
@@ -48,10 +48,10 @@ def executor(config: Config = None, attached: Attached = False) -> None:
     """
     from teachpath.executor.loop import Executor
 
-    settings = _settings(config, attached)
+    settings, login = _settings(config, attached, Role.EXECUTOR)
     with until_signalled() as stop:
         _leave_with_parent(stop, attached)
-        bus = open_bus(settings.bus)
+        bus = open_bus(settings.bus, login)
         try:
             Executor(
                 bus,
@@ -71,10 +71,10 @@ def simulator(config: Config = None, attached: Attached = False) -> None:
     """
     from teachpath.simulator.loop import Simulator
 
-    settings = _settings(config, attached)
+    settings, login = _settings(config, attached, Role.ROBOT)
     with until_signalled() as stop:
         _leave_with_parent(stop, attached)
-        bus = open_bus(settings.bus)
+        bus = open_bus(settings.bus, login)
         try:
             Simulator(
                 bus,
@@ -88,9 +88,12 @@ def simulator(config: Config = None, attached: Attached = False) -> None:
             bus.close()
 
 
-def _settings(config: Path | None, attached: bool) -> Settings:
+def _settings(config: Path | None, attached: bool, role: Role) -> tuple[Settings, Login | None]:
     _log_to_stderr()
-    return load(document=json.loads(sys.stdin.readline())) if attached else load(config)
+    if attached:
+        return from_instructions(sys.stdin.readline())
+    settings = load(config)
+    return settings, find_login(settings.bus.endpoint, role)
 
 
 def _leave_with_parent(stop: threading.Event, attached: bool) -> None:

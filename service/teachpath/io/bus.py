@@ -10,7 +10,8 @@ import json
 import queue
 import re
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
 from typing import Annotated, Any, Protocol
 
@@ -20,6 +21,8 @@ from annotated_types import Ge, Le
 
 from teachpath import errors
 from teachpath.errors import TeachpathError, Unreachable
+from teachpath.io.bus_access import BusAccess, listening_config
+from teachpath_proto.logins import Login
 
 Receive = Callable[[str, bytes], None]
 Answer = Callable[[bytes], bytes]
@@ -37,6 +40,8 @@ class BusSettings:
     prefix: str = "teachpath/station"
     # name of the arm in its keys
     robot: str = "puma560"
+    # every role has its own login and its own keys; false lets every program that reaches the endpoint do everything
+    access_control: bool = True
     # [s] how long to wait for the endpoint when connecting
     connect_timeout: Annotated[float, Ge(0.1), Le(60)] = 10.0
 
@@ -82,27 +87,49 @@ class Bus(Protocol):
         """Take back every declaration and leave."""
 
 
-def open_bus(settings: BusSettings, *, listen: bool = False) -> Bus:
-    """Join the station's bus: as the listening peer of the service, or connected to it.
+def listen_on_bus(settings: BusSettings, access: BusAccess | None = None) -> Bus:
+    """Open the station's bus as its one listening peer.
+
+    Args:
+        access: the logins that are let in, each held to the keys of its role; None lets everybody do everything.
 
     Raises:
-        Unreachable: the endpoint is taken (listen) or nobody listens there.
+        Unreachable: the endpoint is taken.
     """
-    return ZenohBus(settings, listen=listen)
+    guard: AbstractContextManager[dict[str, object]] = (
+        nullcontext({}) if access is None else listening_config(access, settings.prefix)
+    )
+    with guard as guarded:
+        return ZenohBus(
+            {**_session_config(settings, listen=True), **guarded},
+            f"{settings.endpoint}: is it taken by another service?",
+        )
+
+
+def open_bus(settings: BusSettings, login: Login | None = None) -> Bus:
+    """Join the station's bus as a client.
+
+    Raises:
+        Unreachable: nobody listens there, or the login is not let in.
+    """
+    config = _session_config(settings, listen=False)
+    if login is not None:
+        config["transport/auth/usrpwd"] = {"user": login.user, "password": login.password}
+    return ZenohBus(config, f"{settings.endpoint}: is the service running there, and is the login one of its own?")
 
 
 class ZenohBus:
     """A Zenoh session that meets nobody but the configured endpoint: no multicast, no gossip."""
 
-    def __init__(self, settings: BusSettings, *, listen: bool) -> None:
+    def __init__(self, values: Mapping[str, object], place: str) -> None:
+        """Open a session with these values of Zenoh's configuration; `place` says where, for an error."""
         config = zenoh.Config()
-        for path, value in _session_config(settings, listen).items():
+        for path, value in values.items():
             config.insert_json5(path, json.dumps(value))
         try:
             self._session = zenoh.open(config)
         except zenoh.ZError as error:
-            what = "is it taken by another service?" if listen else "is the service running there?"
-            raise Unreachable(f"no Zenoh session at {settings.endpoint}: {what} ({error})") from error
+            raise Unreachable(f"no Zenoh session at {place} ({error})") from error
         self._lock = threading.Lock()
         self._publishers: dict[str, Any] = {}
         self._handles: list[Handle] = []
@@ -164,7 +191,7 @@ class ZenohBus:
         return handle
 
 
-def _session_config(settings: BusSettings, listen: bool) -> dict[str, object]:
+def _session_config(settings: BusSettings, *, listen: bool) -> dict[str, object]:
     # A peer does not route between other peers, but it does between its clients: one peer listens, all others are
     # clients of it.
     return {

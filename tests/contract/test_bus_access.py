@@ -1,0 +1,241 @@
+"""Every role on the bus, every key, every verb: what the table grants goes through, and nothing else."""
+
+import json
+import queue
+import stat
+import threading
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+import zenoh
+
+from teachpath.errors import Unreachable
+from teachpath.io.bus import Bus, BusSettings, listen_on_bus, open_bus
+from teachpath.io.bus_access import BusAccess, granted, new_password, prepare_access
+from teachpath_proto.logins import Login, Role, find_login, logins_path, read_logins, write_logins
+from tests.contract.test_bus import free_endpoint
+
+PREFIX = "teachpath/station"
+KEYS = [
+    f"{PREFIX}/{key}"
+    for key in (
+        "executor/command",
+        "executor/stop",
+        "executor/lease",
+        "executor/status",
+        "executor/journal",
+        "robot/puma560/setpoint",
+        "robot/puma560/state",
+        "robot/puma560/reset",
+        "trackers/glove/samples",
+        "trackers/glove/feedback",
+        "recorder/start",
+        "recorder/status",
+        "jobs/job-1",
+        "station/plans",
+        "elsewhere",
+    )
+]
+STOP = f"{PREFIX}/executor/stop"
+WAIT = 30.0  # [s] that only bounds a hang
+DENIED = 1.0  # [s] until a question that nobody lets through is given up
+
+
+@pytest.fixture(scope="module")
+def station() -> Iterator[tuple[BusSettings, BusAccess, Bus]]:
+    settings = BusSettings(endpoint=free_endpoint())
+    logins = tuple(Login(role.value, new_password(), role) for role in Role)
+    access = BusAccess(new_password(), (*logins, Login("left", new_password(), Role.TRACKER, only="left")))
+    bus = listen_on_bus(settings, access)
+    yield settings, access, bus
+    bus.close()
+
+
+@pytest.fixture(params=list(Role))
+def member(request: pytest.FixtureRequest, station: tuple[BusSettings, BusAccess, Bus]) -> Iterator[tuple[Login, Bus]]:
+    """A login of each role and its session."""
+    settings, access, _ = station
+    login = access.login(request.param)
+    bus = open_bus(settings, login)
+    yield login, bus
+    bus.close()
+
+
+def allowed(login: Login, verb: str) -> set[str]:
+    patterns = [zenoh.KeyExpr(key) for key in granted(login, PREFIX).get(verb, [])]
+    return {key for key in KEYS if any(pattern.includes(zenoh.KeyExpr(key)) for pattern in patterns)}
+
+
+def test_puts_arrive_from_those_who_may(station: tuple[BusSettings, BusAccess, Bus], member: tuple[Login, Bus]) -> None:
+    (_, _, service), (login, bus) = station, member
+    heard: queue.Queue[tuple[str, bytes]] = queue.Queue()
+    handles = [service.subscribe(key, lambda key, payload: heard.put((key, payload))) for key in KEYS]
+    for key in KEYS:
+        bus.publish(key, b"mine")
+    last = sorted(allowed(login, "put"))[0]
+    bus.publish(last, b"last")
+    assert set(iter(lambda: heard.get(timeout=WAIT), (last, b"last"))) == {
+        (key, b"mine") for key in allowed(login, "put")
+    }
+    for handle in handles:
+        handle.close()
+
+
+def test_only_those_hear_who_may(station: tuple[BusSettings, BusAccess, Bus], member: tuple[Login, Bus]) -> None:
+    (_, _, service), (login, bus) = station, member
+    may, heard, begun = allowed(login, "subscribe"), queue.Queue[str](), threading.Event()
+    for key in KEYS:
+        bus.subscribe(key, lambda key, payload: heard.put(key) if payload == b"theirs" else begun.set())
+    last = sorted(may)[0]
+    while not begun.wait(0.05):  # until its subscriptions have arrived
+        service.publish(last, b"begin")
+    for key in KEYS:
+        service.publish(key, b"theirs")
+    service.publish(last, b"theirs")
+    came = [heard.get(timeout=WAIT) for _ in range(len(may) + 1)]
+    assert set(came) == may
+    assert heard.empty()
+
+
+def test_only_those_answer_who_may(station: tuple[BusSettings, BusAccess, Bus], member: tuple[Login, Bus]) -> None:
+    (_, _, service), (login, bus) = station, member
+    for key in KEYS:
+        bus.serve(key, lambda _: b"me")
+    answered = {key for key in KEYS if asked(service, key)}
+    while not allowed(login, "serve") <= answered:  # its declarations may still be under way
+        answered |= {key for key in KEYS if asked(service, key)}
+    assert answered == allowed(login, "serve")
+
+
+def test_only_those_are_answered_who_may_ask(
+    station: tuple[BusSettings, BusAccess, Bus], member: tuple[Login, Bus]
+) -> None:
+    (_, _, service), (login, bus) = station, member
+    handles = [service.serve(key, lambda _: b"the service") for key in KEYS]
+    answers: dict[str, bool] = {}
+    may = allowed(login, "ask")
+
+    def ask(key: str) -> None:
+        answers[key] = asked(bus, key, WAIT if key in may else DENIED)
+
+    threads = [threading.Thread(target=ask, args=(key,)) for key in KEYS]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    for handle in handles:
+        handle.close()
+    assert {key for key, answer in answers.items() if answer} == may
+
+
+def test_nobody_deletes(station: tuple[BusSettings, BusAccess, Bus], member: tuple[Login, Bus]) -> None:
+    (settings, _, service), (login, _) = station, member
+    heard: queue.Queue[tuple[str, bytes]] = queue.Queue()
+    handles = [service.subscribe(key, lambda key, payload: heard.put((key, payload))) for key in KEYS]
+    session = raw(settings, login)
+    for key in KEYS:
+        session.delete(key)
+    last = sorted(allowed(login, "put"))[0]
+    session.put(last, b"last")
+    assert heard.get(timeout=WAIT) == (last, b"last")
+    session.close()
+    for handle in handles:
+        handle.close()
+
+
+def test_a_stop_reaches_the_executor_from_everybody_and_cannot_be_swallowed(
+    station: tuple[BusSettings, BusAccess, Bus],
+) -> None:
+    settings, access, service = station
+    executor, viewer = (raw(settings, access.login(role)) for role in (Role.EXECUTOR, Role.VIEWER))
+    swallowed: list[int] = []
+    impostor = viewer.declare_queryable(STOP, lambda query: swallowed.append(1), complete=True)
+    reached: queue.Queue[str] = queue.Queue()
+
+    def answer(query: Any) -> None:
+        with query:
+            reached.put("asked")
+            query.reply(STOP, b"the executor")
+
+    queryable = executor.declare_queryable(STOP, answer)
+    while not asked(service, STOP):
+        pass
+    for _ in range(20):
+        assert service.ask(STOP, timeout=WAIT) == b"the executor"
+    assert not swallowed
+    told: queue.Queue[bytes] = queue.Queue()
+    subscriber = executor.declare_subscriber(STOP, lambda sample: told.put(sample.payload.to_bytes()))
+    for role in (Role.ROBOT, Role.TRACKER, Role.OPERATOR, Role.VIEWER):
+        bus = open_bus(settings, access.login(role))
+        bus.publish(STOP, role.value.encode())
+        assert told.get(timeout=WAIT) == role.value.encode()
+        assert bus.ask(STOP, timeout=WAIT) == b"the executor"
+        bus.close()
+    for declared in (impostor, queryable, subscriber):
+        declared.undeclare()
+    executor.close()
+    viewer.close()
+
+
+def test_a_tracker_that_is_held_to_one_name_is_no_other(station: tuple[BusSettings, BusAccess, Bus]) -> None:
+    settings, access, service = station
+    heard: queue.Queue[str] = queue.Queue()
+    handle = service.subscribe(f"{PREFIX}/trackers/*/samples", lambda key, _: heard.put(key))
+    bus = open_bus(settings, access.logins[-1])
+    bus.publish(f"{PREFIX}/trackers/right/samples", b"hijacked")
+    bus.publish(f"{PREFIX}/trackers/left/samples", b"mine")
+    assert heard.get(timeout=WAIT) == f"{PREFIX}/trackers/left/samples"
+    bus.close()
+    handle.close()
+
+
+@pytest.mark.parametrize("login", [None, Login("viewer", "guessed", Role.VIEWER), Login("root", "", Role.EXECUTOR)])
+def test_without_the_right_password_nobody_comes_in(
+    station: tuple[BusSettings, BusAccess, Bus], login: Login | None
+) -> None:
+    settings = BusSettings(endpoint=station[0].endpoint, connect_timeout=0.5)
+    with pytest.raises(Unreachable, match="is the login one of its own"):
+        open_bus(settings, login)
+
+
+def test_local_logins_are_made_once_and_only_their_owner_reads_them() -> None:
+    endpoint = free_endpoint()
+    first, again = prepare_access(endpoint), prepare_access(endpoint)
+    path = logins_path(endpoint)
+    assert stat.S_IMODE(path.stat().st_mode) == 0o600
+    local = {login.user: login.password for login in read_logins(path)}
+    assert set(local) == {"robot", "tracker", "operator", "viewer"}
+    assert find_login(endpoint, Role.EXECUTOR) is None
+    assert first.logins[1:] == again.logins[1:]
+    assert first.login(Role.EXECUTOR).password != again.login(Role.EXECUTOR).password
+    assert find_login(endpoint, Role.TRACKER) == first.login(Role.TRACKER)
+
+
+def test_a_broken_file_of_logins_is_named(tmp_path: Path) -> None:
+    path = tmp_path / "logins.json"
+    write_logins(path, [Login("a", "b", Role.VIEWER)])
+    path.write_text(path.read_text().replace("viewer", "king"))
+    with pytest.raises(ValueError, match=f"{path} holds no logins"):
+        read_logins(path)
+
+
+def asked(bus: Bus, key: str, timeout: float = DENIED) -> bool:
+    try:
+        return bool(bus.ask(key, timeout=timeout))
+    except Unreachable:
+        return False
+
+
+def raw(settings: BusSettings, login: Login) -> Any:
+    """Open a session that may try what our own bus never would."""
+    config = zenoh.Config()
+    for path, value in {
+        "mode": "client",
+        "connect/endpoints": [settings.endpoint],
+        "scouting/multicast/enabled": False,
+        "transport/auth/usrpwd": {"user": login.user, "password": login.password},
+    }.items():
+        config.insert_json5(path, json.dumps(value))
+    return zenoh.open(config)
