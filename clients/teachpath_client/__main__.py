@@ -24,6 +24,7 @@ from teachpath_client.synthetic import experiment_1, experiment_2
 from teachpath_client.tracker import Routine, Tracker
 from teachpath_client.tracker_calibration import COLUMNS, calibrate_tracker, lines, measure_points, read_points
 from teachpath_proto import tracker_pb2
+from teachpath_proto.logins import read_logins
 from teachpath_proto.reports import report_document
 
 ReadingFilter = Callable[[Iterator[HandReading]], Iterator[HandReading]]
@@ -90,6 +91,7 @@ def _parser() -> argparse.ArgumentParser:
         command.add_argument("--tracker", default="glove-1", help="name of this tracker (%(default)s)")
         command.add_argument("--endpoint", default="tcp/127.0.0.1:7447", help="the station's (%(default)s)")
         command.add_argument("--prefix", default="teachpath/station", help="of the station's keys (%(default)s)")
+        command.add_argument("--login", metavar="FILE", default="", help="as `teachpath login create` wrote it")
         command.add_argument("--speed", type=_speed, default=1.0, help="1 = real time (default)")
     for name, command in commands.choices.items():
         command.description = ABOUT[name]
@@ -156,7 +158,7 @@ def _tracker(options: argparse.Namespace) -> None:
     with (
         ended_by_signals(source),
         source,
-        Link(options.endpoint) as link,
+        _link(options) as link,
         pedal_or_none(options.pedal) as reading_filter,
     ):
         tracker = Tracker(link, options.tracker, prefix=options.prefix)
@@ -220,15 +222,27 @@ def _calibrate_tracker(options: argparse.Namespace) -> None:
         print(line)
 
 
+def _link(options: argparse.Namespace) -> Link:
+    try:
+        login = next(iter(read_logins(Path(options.login))), None) if options.login else None
+    except ValueError as error:
+        raise ClientError(str(error)) from None
+    if options.login and login is None:
+        raise ClientError(
+            f"there is no login in {options.login}; make one with: teachpath login create NAME --role tracker"
+        )
+    return Link(options.endpoint, login=login)
+
+
 def _synthetic(options: argparse.Namespace) -> None:
     experiment = experiment_1 if options.experiment == 1 else experiment_2
-    with Link(options.endpoint) as link:
+    with _link(options) as link:
         _record(Tracker(link, options.tracker, prefix=options.prefix), options, experiment(options.seed))
 
 
 def _replay(options: argparse.Namespace) -> None:
     recordings = [_recording(source, options.url) for source in options.sources]
-    with Link(options.endpoint) as link:
+    with _link(options) as link:
         tracker = Tracker(link, options.tracker, prefix=options.prefix)
         for readings in recordings:
             _record(tracker, options, readings)
