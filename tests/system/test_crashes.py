@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from teachpath.recorder.recording_thread import FLUSH_EVERY
+from teachpath.recorder.recording_thread import FLUSH_INTERVAL
 from teachpath_client import HandReading, Link, Tracker
 from teachpath_client.synthetic import RATE, experiment_1
 from tests.system.processes import OUTLIVED, Service, run, wait_until
@@ -43,7 +43,7 @@ def test_a_kill_in_mid_take_costs_at_most_the_last_second(tmp_path: Path) -> Non
     found = re.search(r"(\d+) samples .* are whole, at most the last second is missing; made (demo-\w+)", doctor.out)
     assert found is not None, doctor.out
     # one sample more: the one whose arrival lets the recorder look at its clock
-    assert sent - (FLUSH_EVERY * RATE + 1) <= int(found[1]) <= sent
+    assert sent - (FLUSH_INTERVAL * RATE + 1) <= int(found[1]) <= sent
     assert fingerprints(killed.data).items() >= files.items()
     assert "every recording is whole" in run("doctor", "--data", str(killed.data), folder=tmp_path).out
 
