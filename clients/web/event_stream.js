@@ -15,7 +15,7 @@ const OF_TASK = ["demonstrations", "runs", "jobs"];
 export class Feed {
   #standing = {}; // topic -> {id: how it stands}
   #waiting = new Set();
-  #reading = false;
+  #reading = null; // the rounds under way
   #pause = SHORTEST;
   #listeners = new Map();
 
@@ -47,17 +47,20 @@ export class Feed {
     this.read("tasks", "executions", ...OF_TASK);
   }
 
-  // Read lists anew; what is asked for meanwhile is read in the next round.
-  async read(...names) {
+  // Read lists anew; what is asked for meanwhile is read in the next round. Resolves when they have been read.
+  read(...names) {
     for (const name of names) this.#waiting.add(name);
-    if (this.#reading) return;
-    this.#reading = true;
+    if (this.#waiting.size) this.#reading ??= this.#readRounds();
+    return this.#reading;
+  }
+
+  async #readRounds() {
     while (this.#waiting.size) {
       const round = [...this.#waiting];
       this.#waiting.clear();
       await Promise.all(round.map((name) => this.#readOne(name)));
     }
-    this.#reading = false;
+    this.#reading = null;
   }
 
   async #readOne(name) {
@@ -66,17 +69,19 @@ export class Feed {
     try {
       const list = await get(OF_TASK.includes(name) ? at("tasks", task, name) : name);
       if (task === this.store.state.task || !OF_TASK.includes(name)) this.store.set({ [name]: list });
-      if (name === "tasks") this.#choose(list);
+      if (name === "tasks" && task === this.store.state.task) this.#choose(list); // a task that was chosen meanwhile may be newer than the list
     } catch {
       // the connection's state says so already, and it is read again when it is back
     }
   }
 
-  // Paths may have been edited since they were learned.
+  // Paths may have been edited since they were learned. An answer that is older than what is known, or none, changes nothing.
   async #readNewest(state) {
     const paths = runOf(state)?.learned.paths ?? [];
     const read = await Promise.all(paths.map((path) => get(at("paths", path.id)).catch(() => path)));
-    this.store.set({ newest: { ...this.store.state.newest, ...Object.fromEntries(read.map((path) => [path.id, path])) } });
+    const { newest } = this.store.state;
+    const newer = read.filter((path) => path.version >= (newest[path.id]?.version ?? 0));
+    this.store.set({ newest: { ...newest, ...Object.fromEntries(newer.map((path) => [path.id, path])) } });
   }
 
   // A task that is gone, or none, gives way to the one that was chosen in this browser tab, else to the newest.

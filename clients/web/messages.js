@@ -4,12 +4,15 @@ import { element } from "./elements.js";
 const LASTS = 6000; // [ms] of a note; an error stays until it is closed or another attempt succeeds
 
 export class Messages {
+  #said = 0; // sentences so far
+
   constructor(place) {
     this.place = place;
   }
 
   say(text, kind = "note") {
     clearTimeout(this.timer);
+    this.#said += 1;
     const close = element("button", { type: "button", class: "close", "aria-label": "Close this message" }, "×");
     close.addEventListener("click", () => this.clear());
     // an error interrupts the screen reader, a note waits its turn
@@ -25,11 +28,12 @@ export class Messages {
     this.place.hidden = true;
   }
 
-  // Do `order`; show its error as a sentence. Returns what it returned, or undefined.
+  // Do `order`; show its error as a sentence. Returns what it returned, or undefined. What was said after it began stays.
   async attempt(order) {
+    const before = this.#said;
     try {
       const outcome = await order();
-      this.clear();
+      if (this.#said === before) this.clear();
       return outcome;
     } catch (error) {
       this.say(error.message, "error");

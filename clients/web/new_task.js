@@ -15,12 +15,19 @@ export function newTask(place, { store, feed, attempt, open }) {
     element("p", { class: "orders" }, element("button", { type: "submit", class: "primary" }, "Make the task")),
   );
   place.append(form);
+  let chosen = ""; // by the person, since the popover was opened; whatever comes later leaves it
+  const offer = (scenes) => {
+    const used = store.state.tasks?.find((task) => task.name === store.state.task)?.scene;
+    scene.replaceChildren(...scenes.map((one) => element("option", { value: one.name }, one.name)));
+    scene.value = [chosen, used].find((one) => scenes.some((other) => other.name === one)) ?? scenes[0]?.name ?? "";
+  };
+  scene.addEventListener("change", () => (chosen = scene.value));
   place.addEventListener("toggle", async (event) => {
     if (event.newState !== "open") return;
-    const scenes = (await attempt(() => get("scenes"))) ?? [];
-    const used = store.state.tasks?.find((task) => task.name === store.state.task)?.scene;
-    scene.replaceChildren(...scenes.map((one) => element("option", { value: one.name, selected: one.name === used && "" }, one.name)));
+    chosen = "";
     name.focus();
+    const scenes = await attempt(() => get("scenes"));
+    if (scenes) offer(scenes);
   });
   form.addEventListener("submit", (event) => {
     event.preventDefault();
@@ -29,9 +36,11 @@ export function newTask(place, { store, feed, attempt, open }) {
       if (store.state.tasks?.some((task) => task.name === wanted)) throw new Error(`There is a task ${wanted} already: choose it above, or give another name.`);
       await put(at("tasks", wanted), { scene: scene.value });
       await feed.read("tasks");
+      if (name.value.trim() !== wanted) return; // another one is named meanwhile
+      name.value = "";
+      if (!place.matches(":popover-open")) return; // it was left meanwhile
       store.set({ task: wanted });
       place.hidePopover();
-      name.value = "";
       open("demonstrate");
     });
   });

@@ -36,17 +36,18 @@ export class Gallery {
   }
 
   update(state, changed) {
-    if (changed.has("tasks") || changed.has("task")) this.#showScene(state);
+    if (changed.has("tasks") || changed.has("task")) this.#showScene();
     if (["demonstrations", "runs", "run", "newest", "task", "courses"].some((name) => changed.has(name))) this.#showTask(state);
     if (changed.has("focus") || changed.has("path") || changed.has("runs")) this.#emphasize(state);
   }
 
-  async #showScene(state) {
+  async #showScene() {
     try {
       this.#scenes ??= await get("scenes");
     } catch {
       return; // asked again with the next change of the tasks
     }
+    const { state } = this.store; // another task may have been chosen meanwhile
     const name = state.tasks?.find((task) => task.name === state.task)?.scene;
     const scene = this.#scenes.find((other) => other.name === name) ?? this.#scenes[0];
     this.#keep("scene", new Map(scene.obstacles.map((shape) => [shape.name, [JSON.stringify(shape), () => solid(shape)]])));

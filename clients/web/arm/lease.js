@@ -51,12 +51,14 @@ class ControlLease {
   }
 
   async #beat() {
+    const { token } = this;
     try {
       const lease = await post("lease/beat", {}, this.headers);
+      if (token !== this.token) return; // given back meanwhile, perhaps taken anew
       if (lease.holder === this.name) this.waiting = false;
       this.changed();
     } catch (error) {
-      if (error.status) this.#end(); // refused: it has lapsed, or somebody was given it
+      if (error.status && token === this.token) this.#end(); // refused: it has lapsed, or somebody was given it
     }
   }
 

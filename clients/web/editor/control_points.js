@@ -20,11 +20,13 @@ export function points(place, editor) {
     element("label", { class: "check" }, pins, "Unlock start and goal"),
   );
   const inputs = [...fields, weight].map(({ input }) => input);
+  for (const input of inputs) input.addEventListener("input", () => (input.dataset.typed = "")); // until it is entered
   list.addEventListener("change", () => editor.choose([...list.selectedOptions].map((option) => Number(option.value))));
   pins.addEventListener("change", () => editor.unlock(pins.checked));
   place.addEventListener("change", (event) => {
     const at = inputs.indexOf(event.target);
     if (at < 0) return;
+    delete event.target.dataset.typed;
     if (event.target.value === "" || !event.target.checkValidity()) {
       editor.context.messages.say(`The ${at < 3 ? AXES[at] : "weight"} ${event.target.value || "is empty; it"} must be a number from ${event.target.min} to ${event.target.max}.`, "error");
       fill(editor, fields, weight);
@@ -92,6 +94,7 @@ function fill({ draft, middle }, fields, weight) {
 }
 
 function show(input, value, disabled) {
+  if (input === document.activeElement && "typed" in input.dataset) return; // whatever comes meanwhile
   input.disabled = disabled;
   if (input.value !== String(value)) input.value = String(value);
 }

@@ -92,10 +92,10 @@ export class Draft {
     this.keep();
   }
 
-  // The curve has been saved as this version.
-  saved(base) {
+  // A curve has been saved as this version; the draft may be a step further by now.
+  saved(base, curve) {
     this.base = base;
-    this.original = this.curve;
+    this.original = curve;
     this.keep();
   }
 

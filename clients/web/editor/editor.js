@@ -15,6 +15,7 @@ const MAIN = "main";
 const AGAIN = 1000; // [ms] before the service is asked again
 
 export class Editor {
+  opened = Promise.resolve(); // the newest opening; settled when it is over
   #parts = [];
   #gesture = null; // {curve, indices, by} while something is dragged
   #frame = 0;
@@ -59,9 +60,14 @@ export class Editor {
 
   // Edit a path: the draft that this tab has begun, else the newest version on its main branch. `spread`: the radii
   // of the corridor around what was learned [m], or null.
-  async open(path, spread) {
-    if (path === this.draft?.path) return;
+  open(path, spread) {
+    this.opened = this.#open(path, spread);
+    return this.opened;
+  }
+
+  async #open(path, spread) {
     const turn = ++this.#asked;
+    if (path === this.draft?.path) return;
     const [versions, first] = await Promise.all([get(at("paths", path, "versions")), get(at("paths", path, "versions", 1))]);
     let draft = Draft.of(path);
     if (!draft) {
@@ -69,6 +75,7 @@ export class Editor {
       draft = new Draft(path, newest, (await get(at("paths", path, "versions", newest.number))).path.curve);
     }
     if (turn !== this.#asked) return; // another path was opened meanwhile
+    this.end(); // a gesture under way is a step of the former draft
     Object.assign(this, { draft, versions, spread, learned: first.path.curve });
     this.show(this.shown);
     if (!this.shown) this.#all();
@@ -85,16 +92,17 @@ export class Editor {
     if (!this.draft) return;
     const { path } = this.draft;
     const versions = await get(at("paths", path, "versions"));
-    if (path !== this.draft?.path) return;
+    if (path !== this.draft?.path || versions.length < this.versions.length) return; // an older answer: none is ever taken away
     this.versions = versions;
     this.tell("versions");
   }
 
-  // Go on from a stored version; what was edited stays one step back.
-  async take(number) {
-    const { version, path } = await get(at("paths", this.draft.path, "versions", number));
-    this.draft.rebase(version, path.curve, `going on from version ${number}`);
-    this.#all();
+  // Go on from a stored version; what was edited, until it is here too, stays one step back.
+  async take(number, draft = this.draft) {
+    const { version, path } = await get(at("paths", draft.path, "versions", number));
+    if (draft === this.draft) this.end();
+    draft.rebase(version, path.curve, `going on from version ${number}`);
+    if (draft === this.draft) this.#all();
   }
 
   choose(indices) {
@@ -165,7 +173,7 @@ export class Editor {
   async operate(operation, more, what) {
     const { curve, path } = this.draft;
     const answer = await post(`curves/${operation}`, { curve, ...more });
-    if (path !== this.draft?.path || !sameCurve(curve, this.draft.curve)) return null; // edited meanwhile
+    if (path !== this.draft?.path || this.#gesture || !sameCurve(curve, this.draft.curve)) return null; // edited meanwhile
     this.change(answer.curve, what);
     return answer;
   }

@@ -25,6 +25,8 @@ export function knots(place, editor) {
   remove.addEventListener("click", () => operate("remove-knot", { u: Number(choice.value), tolerance: Number(allowed.value) / 1000 }, `Knot removed at u = ${Number(Number(choice.value).toPrecision(4))}`));
   elevate.addEventListener("click", () => operate("elevate", {}, `Degree raised to ${editor.draft.curve.degree + 1}`));
 
+  let proposed = {}; // {value, of}: what was proposed for u, and for which choice of control points
+
   return {
     update({ draft }, what) {
       if (!draft || what === "drag" || what === "verdict" || what === "versions") return;
@@ -37,7 +39,11 @@ export function knots(place, editor) {
       remove.disabled = choice.disabled = !inner.length;
       elevate.disabled = curve.degree >= 7;
       const around = draft.chosen.length === 1 ? grevilleOf(curve, draft.chosen[0]) : 0.5;
-      if (document.activeElement !== u) u.value = String(Number(middleOfSpan(curve, around).toFixed(6)));
+      // What was typed stays until other points are chosen.
+      const of = `${draft.path} ${draft.chosen}`;
+      if (document.activeElement === u || (u.value !== proposed.value && of === proposed.of)) return;
+      u.value = String(Number(middleOfSpan(curve, around).toFixed(6)));
+      proposed = { value: u.value, of };
     },
   };
 }

@@ -19,14 +19,17 @@ export function saving(place, editor) {
   form.addEventListener("submit", (event) => {
     event.preventDefault();
     localStorage.setItem(AUTHOR, fields.author.value);
-    editor.context.attempt(() => store(editor, fields, fields.branch.value, ask));
+    editor.context.attempt(() => store(editor, editor.draft, fields, fields.branch.value, ask));
   });
+  let filled = null; // {path, branch}: for which path, and with what, the field was filled in
 
   return {
     update(editor, what) {
       const { draft } = editor;
       if (!draft || what === "drag" || what === "verdict") return;
-      if (what === "draft") fields.branch.value = draft.base.branch;
+      const { path, base: { branch } } = draft;
+      if (what === "draft" && (filled?.path !== path || fields.branch.value === filled.branch)) fields.branch.value = branch;
+      if (what === "draft") filled = { path, branch };
       save.disabled = !draft.edited && fields.branch.value === draft.base.branch;
       const newer = editor.versions.findLast((version) => version.branch === draft.base.branch);
       const behind = newer && newer.number > draft.base.number ? ` Version ${title(newer)} was saved meanwhile${newer.author && ` by ${newer.author}`}.` : "";
@@ -35,8 +38,8 @@ export function saving(place, editor) {
   };
 }
 
-async function store(editor, fields, branch, ask) {
-  const { draft } = editor;
+// Whatever is typed, edited or opened while the service saves is left as it is.
+async function store(editor, draft, fields, branch, ask) {
   const { curve } = draft;
   const words = Object.fromEntries(["name", "author", "note"].map((name) => [name, fields[name].value]));
   let saved;
@@ -45,12 +48,12 @@ async function store(editor, fields, branch, ask) {
   } catch (error) {
     if (error.kind !== "Outdated") throw error;
     const choice = await ask(error, `${words.author || "edit"}-${draft.base.number}`);
-    if (choice.branch) await store(editor, fields, choice.branch, ask);
-    else if (choice.theirs) await editor.take(error.newer.number);
+    if (choice.branch) await store(editor, draft, fields, choice.branch, ask);
+    else if (choice.theirs) await editor.take(error.newer.number, draft);
     return editor.readVersions();
   }
-  draft.saved(saved);
-  for (const name of ["name", "note"]) fields[name].value = "";
+  draft.saved(saved, curve);
+  for (const name of ["name", "note"]) if (fields[name].value === words[name]) fields[name].value = "";
   await editor.readVersions();
   if (draft !== editor.draft) return;
   editor.refresh();

@@ -12,22 +12,34 @@ export function versions(place, editor) {
     const number = event.target.closest("button")?.dataset.version;
     if (number) editor.context.attempt(() => editor.take(Number(number)));
   });
-  compare.addEventListener("click", () => editor.context.attempt(() => show(editor, Number(first.value), Number(second.value), told)));
+  let turn = 0; // the newest comparison is the one that is shown
+  const difference = () => {
+    const mine = ++turn;
+    return show(editor, Number(first.value), Number(second.value), told, () => mine === turn);
+  };
+  compare.addEventListener("click", () => editor.context.attempt(difference));
+  const chosen = new Map(); // select -> number of a version, as a person chose it
+  for (const select of [first, second]) select.addEventListener("change", () => chosen.set(select, select.value));
+  let path = "";
 
   return {
     update(editor, what) {
       const { draft } = editor;
       if (!draft || !["draft", "curve", "versions"].includes(what)) return;
+      if (draft.path !== path) {
+        path = draft.path;
+        chosen.clear();
+      }
       if (what === "draft") {
+        turn += 1;
         editor.sketch.compare(null, null);
         told.textContent = "";
       }
       replace(table, content(editor));
       const numbers = editor.versions.map(({ number }) => String(number));
       for (const [select, usual] of [[first, "1"], [second, numbers.at(-1)]]) {
-        const kept = numbers.includes(select.value) && select.options.length === numbers.length ? select.value : usual;
         select.replaceChildren(...editor.versions.map((version) => element("option", { value: String(version.number) }, title(version))));
-        select.value = kept;
+        select.value = chosen.get(select) ?? usual;
       }
       compare.disabled = numbers.length < 2;
     },
@@ -53,11 +65,11 @@ function content({ draft, versions }) {
   return element("table", {}, head, element("tbody", {}, rows));
 }
 
-async function show(editor, a, b, told) {
+async function show(editor, a, b, told, newest) {
   const { path } = editor.draft;
   const read = (number) => get(at("paths", path, "versions", number));
   const [difference, one, other] = await Promise.all([get(at("paths", path, "versions", a, "difference", b)), read(a), read(b)]);
-  if (path !== editor.draft?.path) return;
+  if (path !== editor.draft?.path || !newest()) return;
   editor.sketch.compare(one.path.curve, other.path.curve);
   told.textContent = `Version ${a} (orange) and version ${b} (pink): ${difference.sentence}.`;
   told.scrollIntoView({ block: "nearest" });

@@ -29,6 +29,7 @@ export class Showing {
   #before = new Set(); // demonstrations of this page's earlier sittings
   #since = 0; // [s] in the phase
   #closed = false; // the headset's hand
+  #over = false;
   #held = null; // where the object is for a pose of that hand
   #asked = 0;
 
@@ -47,7 +48,9 @@ export class Showing {
   async begin({ rate }) {
     await this.link.connect();
     this.#before = new Set((await this.#shown()).map((one) => one.id));
+    if (this.#over) return; // finished meanwhile
     await post(at("tasks", this.task, "recording"), { tracker: name, rate, armed: true });
+    if (this.#over) return; // the service ends it: the tracker has gone
     const deeds = { may: () => this.phase === "ready", grasp: () => this.grasp(), release: () => this.release() };
     this.steering = steering(this.easel, this.carry, deeds);
     this.#ends.push(pointer(this.easel, this.carry, deeds), () => this.steering.end());
@@ -76,6 +79,7 @@ export class Showing {
 
   // End the recording; returns its account, or null when there is no connection.
   async finish({ discard = false } = {}) {
+    this.#over = true;
     this.sampler.stop();
     for (const end of this.#ends.splice(0)) end();
     this.view.spare(0);

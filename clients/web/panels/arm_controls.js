@@ -24,6 +24,9 @@ export function control(place, context) {
 }
 
 class ControlPanel {
+  #asked = 0; // questions who holds control
+  #answered = 0; // the newest of them that was answered
+
   constructor(place, context) {
     Object.assign(this, { place, context });
     this.lease = lease;
@@ -55,9 +58,12 @@ class ControlPanel {
     if (["executor", "executions", "plan", "lease", "connection"].some((name) => changed.has(name))) this.#paint(state);
   }
 
-  // Who holds control: the executor alone knows.
+  // Who holds control: the executor alone knows. An answer that comes behind that of a later question is too old.
   async #look() {
+    const question = ++this.#asked;
     const lease = await get("lease").catch(() => null);
+    if (question < this.#answered) return;
+    this.#answered = question;
     this.context.store.set({ lease });
     this.#paint(this.context.store.state);
   }
@@ -68,9 +74,10 @@ class ControlPanel {
       if (button.disabled || this.holding || (event.type === "keydown" && (event.repeat || !["Enter", " "].includes(event.key)))) return;
       event.preventDefault();
       button.classList.add("holding");
+      const { plan } = this.context.store.state;
       this.holding = setTimeout(() => {
         this.#let(button);
-        this.#start();
+        if (plan.id === this.context.store.state.plan?.id) this.#start(plan); // else it is not what was looked at when it was pressed
       }, HOLD);
     };
     const end = () => this.#let(button);
@@ -84,9 +91,8 @@ class ControlPanel {
     button.classList.remove("holding");
   }
 
-  #start() {
+  #start(plan) {
     const { context, lease, parts } = this;
-    const { plan } = context.store.state;
     context.attempt(async () => {
       await post("executions", { plan: plan.id, override: Number(parts.speed.value) / 100 }, lease.headers);
       await context.feed.read("executions");

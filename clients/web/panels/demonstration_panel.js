@@ -26,6 +26,8 @@ export function show(place, context) {
 }
 
 class ShowPanel {
+  #beginning = false;
+
   constructor(place, context) {
     Object.assign(this, { place, context });
     this.seconds = 3;
@@ -57,18 +59,13 @@ class ShowPanel {
   }
 
   async #begin({ headset = false } = {}) {
-    if (this.showing) return;
+    if (this.showing || this.#beginning) return;
+    this.#beginning = true;
     const { context, parts } = this;
     // The headset's session first: it must come from the click itself.
     const hand = headset && (await context.attempt(() => this.#wear()));
-    if (headset && !hand) return;
-    const showing = await context.attempt(async () => {
-      const scene = await this.#scene();
-      const made = new Showing(context, scene, context.store.state.task, { changed: () => this.#paint(), failed: (why) => this.#stop(why) });
-      this.showing = made;
-      await made.begin({ rate: headset ? 0 : RATE });
-      return made;
-    });
+    const showing = (hand || !headset) && (await context.attempt(() => this.#record(headset ? 0 : RATE)));
+    this.#beginning = false;
     if (!showing) {
       await this.#stop("");
       return;
@@ -85,17 +82,33 @@ class ShowPanel {
     if (!hand) context.easel.element.focus({ preventScroll: true });
   }
 
-  // The chosen task's scene; without any task one is made.
+  // Begin a recording for the task that is chosen now; null when another one was chosen before it began.
+  async #record(rate) {
+    const { context } = this;
+    const { task, scene } = await this.#scene();
+    if (task !== context.store.state.task) return null;
+    const showing = new Showing(context, scene, task, { changed: () => this.#paint(), failed: (why) => this.#stop(why) });
+    this.showing = showing;
+    try {
+      await showing.begin({ rate });
+    } catch (error) {
+      if (this.showing === showing) throw error;
+    }
+    return this.showing === showing ? showing : null;
+  }
+
+  // The chosen task and its scene; without any task one is made.
   async #scene() {
     const { store, feed } = this.context;
     if (!store.state.task) {
       const name = this.parts.name.value.trim() || "first-task";
       await put(at("tasks", name), { scene: "paper" });
-      store.set({ task: name });
+      store.set({ task: store.state.task || name });
       await feed.read("tasks");
     }
-    const task = await get(at("tasks", store.state.task));
-    return (await get("scenes")).find((scene) => scene.name === task.scene);
+    const { task } = store.state;
+    const [{ scene }, scenes] = await Promise.all([get(at("tasks", task)), get("scenes")]);
+    return { task, scene: scenes.find(({ name }) => name === scene) };
   }
 
   async #wear() {
@@ -131,9 +144,9 @@ class ShowPanel {
   async #stop(why, { discard = false } = {}) {
     const { showing, hand } = this;
     this.showing = this.hand = null;
-    if (!showing) return null;
-    this.#hide(false);
+    if (showing) this.#hide(false);
     await hand?.end();
+    if (!showing) return null;
     const report = await showing.finish({ discard }).catch((error) => {
       why ||= error.message;
       return null;
@@ -149,7 +162,7 @@ class ShowPanel {
     const take = takes.findLast((one) => Boolean(one.discarded_ns) !== discarded);
     if (!take) return;
     const amended = await this.context.attempt(() => patch(at("demonstrations", take.id), { discarded }));
-    if (amended && this.showing) this.showing.takes = takes.map((one) => (one.id === amended.id ? amended : one));
+    if (amended && this.showing) this.showing.takes = this.showing.takes.map((one) => (one.id === amended.id ? amended : one));
     this.#paint();
   }
 

@@ -39,18 +39,26 @@ export function cut(place, { store, attempt }) {
     if (make) attempt(() => post(at("tasks", store.state.task, "jobs"), { kind: "recut", run: shown.run, threshold: height }));
   });
 
+  // Only the cut of the run that is looked at can be moved, so that no dendrogram that comes later undoes it.
+  const ready = (run) => {
+    const known = shown?.run === run;
+    slider.disabled = !known;
+    for (const part of [tree.element, orders]) part.inert = !known;
+  };
   const show = (state, run, dendrogram) => {
     const highest = dendrogram.merges.at(-1)?.[2] ?? 0;
     shown = { run, dendrogram, top: 1.12 * Math.max(highest, dendrogram.threshold) || 1 };
     const numbers = new Map((state.demonstrations ?? []).map((d) => [d.id, d.number]));
     tree.draw(dendrogram, shown.top, numbers);
     move(dendrogram.threshold);
+    ready(run);
   };
   return {
     async update(state, changed) {
       markFocus(place, state.focus); // also on what has just been drawn anew
       const run = runOf(state);
       place.parentElement.hidden = !(run?.learned.demonstrations.length > 1);
+      ready(run?.id);
       if (place.parentElement.hidden || run.id === shown?.run || asked.has(run.id) || !state.demonstrations) return;
       asked.add(run.id);
       const dendrogram = await attempt(() => get(at("tasks", state.task, "runs", run.id, "dendrogram")));

@@ -39,7 +39,10 @@ export const panel = {
       const id = event.target.closest("button")?.dataset.path;
       if (id) context.store.set({ path: id });
     });
-    context.feed.on("paths", (piece) => piece.id === editor.draft?.path && editor.readVersions().catch(() => {}));
+    context.feed.on("paths", async (piece) => {
+      await editor.opened.catch(() => {}); // its list may be from before this version
+      if (piece.id === editor.draft?.path) editor.readVersions().catch(() => {});
+    });
   },
 
   update(state, changed) {

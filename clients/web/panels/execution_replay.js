@@ -11,10 +11,12 @@ const LISTED = 20;
 
 export function replay(place, context) {
   const panel = new ReplayPanel(place, context);
-  return { update: (state, changed) => panel.update(state, changed), hide: () => panel.player.close(), player: panel.player };
+  return { update: (state, changed) => panel.update(state, changed), hide: () => panel.hide(), player: panel.player };
 }
 
 class ReplayPanel {
+  #opened = 0; // executions that were asked for: only the newest one is shown
+
   constructor(place, context) {
     Object.assign(this, { place, context });
     this.list = element("ol", { class: "executions", "aria-label": "executions, newest first" });
@@ -41,8 +43,15 @@ class ReplayPanel {
     return "";
   }
 
+  hide() {
+    this.#opened += 1;
+    this.player.close();
+  }
+
   async #open(execution) {
+    const turn = ++this.#opened;
     const [rows, arm, plan] = await Promise.all([get(`${at("executions", execution, "series")}?points=${POINTS}`), get("robot"), this.#plan(execution)]);
+    if (turn !== this.#opened) return; // another one was chosen meanwhile, or the tab was left
     if (rows.times.length < 2) {
       this.context.messages.say("Nothing was recorded of this execution: the arm did not begin to move.", "error");
       return;

@@ -17,8 +17,8 @@ export function live(place, { attempt }) {
   return {
     update() {},
     async show() {
-      arm ??= await attempt(() => get("robot"));
       stream.start();
+      arm ??= await attempt(() => get("robot"));
     },
     hide() {
       stream.stop();

@@ -8,11 +8,13 @@ import { pathOf } from "../store.js";
 
 export function preview(place, context) {
   const panel = new PreviewPanel(place, context);
-  return { update: (state, changed) => panel.update(state, changed), hide: () => panel.player.close(), player: panel.player };
+  return { update: (state, changed) => panel.update(state, changed), hide: () => panel.hide(), player: panel.player };
 }
 
 class PreviewPanel {
-  plan = null; // of the path that is looked at, newest first; null: there is none
+  plan = null; // the newest of the path that is looked at; null: there is none; undefined: not known yet
+  #fetched = 0; // questions so far: only the newest one's answer counts
+  #opened = 0;
 
   constructor(place, context) {
     Object.assign(this, { place, context });
@@ -41,11 +43,17 @@ class PreviewPanel {
 
   // The newest plan of the path, of whatever version: only what is certified can be run.
   async #fetch(path) {
+    const turn = ++this.#fetched;
     const before = this.plan?.id;
+    if (path?.id !== this.path?.id) {
+      this.plan = undefined; // nobody starts the former path's plan meanwhile
+      this.context.store.set({ plan: null });
+      this.player.close();
+    }
     this.path = path;
     const read = (...pieces) => (path ? get(at("paths", path.id, ...pieces)).catch(() => null) : null);
     const [plans, newest] = await Promise.all([read("plans"), read()]);
-    if (path !== this.path) return; // another one was chosen meanwhile
+    if (turn !== this.#fetched) return; // another one was chosen meanwhile, or planned again
     this.plan = plans?.[0] ?? null;
     this.newest = newest?.version;
     if (this.plan?.id !== before) this.player.close();
@@ -61,10 +69,16 @@ class PreviewPanel {
     });
   }
 
+  hide() {
+    this.#opened += 1;
+    this.player.close();
+  }
+
   async #open() {
+    const turn = ++this.#opened;
     const { plan, context } = this;
     const [rows, arm] = await Promise.all([get(at("plans", plan.id, "motion")), get("robot")]);
-    if (plan !== this.plan || this.player.motion) return;
+    if (turn !== this.#opened || plan !== this.plan || this.player.motion) return; // left meanwhile, or it is another plan
     this.player.open(new Motion(rows), new Ghost(context.easel, context.view, arm, plan.scene.carried));
     this.#paint();
     this.player.start();
@@ -75,7 +89,7 @@ class PreviewPanel {
     const working = job?.state === "queued" || job?.state === "running";
     const newer = plan && newest > plan.path_version && newest;
     replace(this.facts, content(path, plan, job, working, newer));
-    this.make.hidden = !path || (Boolean(plan) && !newer) || working;
+    this.make.hidden = !path || plan === undefined || (plan !== null && !newer) || working;
     this.make.textContent = newer ? `Plan version ${newer}` : "Plan the motion";
     this.open.hidden = !plan || Boolean(this.player.motion);
   }
@@ -85,6 +99,7 @@ function content(path, plan, job, working, newer) {
   if (!path) return [hint("Nothing to run yet. Show a task, learn its ways and choose one: its motion is planned and certified before the arm may move."), next("ways", "Go to the ways")];
   const who = element("p", {}, `Way ${path.cluster}${plan ? `, version ${plan.path_version}` : ""}.`);
   if (working) return [who, element("p", { class: "hint" }, job.message || "Planning …"), bar(job.fraction, "planning")];
+  if (plan === undefined) return [who, hint("Looking for its certified motion …")];
   if (!plan) {
     const why = job?.state === "failed" && element("p", { class: "failed" }, `It cannot be run: ${job.message}`);
     return why ? [who, why, next("edit", "Edit the path")] : [who, hint("This path has no certified motion yet.")];

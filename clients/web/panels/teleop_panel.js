@@ -23,6 +23,10 @@ export function leading(place, context) {
 }
 
 class LeadingPanel {
+  #beginning = false;
+  #turn = 0; // whoever ends it, also while it begins, is not overruled by answers that come later
+  #offered = 0;
+
   constructor(place, context) {
     Object.assign(this, { context, parts: parts() });
     const { all, begin, grip, finish, hand } = this.parts;
@@ -45,6 +49,7 @@ class LeadingPanel {
 
   // Stop the arm where it is, and let the hand go.
   async end() {
+    this.#turn += 1;
     const { sitting, execution } = this;
     if (!sitting) return;
     this.#close();
@@ -52,31 +57,45 @@ class LeadingPanel {
   }
 
   async #begin() {
-    const { hand, clutch, calibration } = this.parts;
-    const { context } = this;
-    const worn = hand.value === WORN;
-    const own = worn || hand.value === HERE;
-    // The headset's session first: it must come from the click itself.
-    if (worn && !(await context.attempt(() => this.#wear()))) return;
-    const begun = await context.attempt(async () => {
-      const [arm, scenes, scene] = await Promise.all([get("robot"), get("scenes"), this.#scene()]);
-      const deeds = { own, worn, button: clutch, changed: () => this.#paint(), failed: (why) => this.#fail(why) };
-      this.sitting = new Leading(context.easel, scenes.find(({ name }) => name === scene), arm, deeds);
-      await this.sitting.begin();
-      const { name } = this.sitting;
-      const order = own ? { tracker: name } : { tracker: hand.value, calibration: calibration.value, clutch: name };
-      const { id } = await post("teleoperation", { ...order, scene }, lease.headers);
-      this.execution = id;
-      return true;
-    });
+    if (this.#beginning || this.sitting) return;
+    this.#beginning = true;
+    this.#paint();
+    const turn = ++this.#turn;
+    const begun = await this.context.attempt(() => this.#lead(() => turn === this.#turn));
+    this.#beginning = false;
     if (!begun) {
       this.#close();
       return;
     }
     this.stream.start();
-    if (own && !worn) context.easel.keys("Lead the arm: hold Enter, arrows move, Page Up and Page Down change the height, G closes and opens the gripper");
+    const { own, worn } = this.sitting;
+    if (own && !worn) this.context.easel.keys("Lead the arm: hold Enter, arrows move, Page Up and Page Down change the height, G closes and opens the gripper");
     this.#paint();
-    clutch.focus();
+    this.parts.clutch.focus();
+  }
+
+  // Let the arm follow the hand that is chosen now; `wanted()` tells whether nobody has ended it meanwhile.
+  async #lead(wanted) {
+    const { hand: { value: hand }, clutch: button, calibration: { value: calibration } } = this.parts;
+    const worn = hand === WORN;
+    const own = worn || hand === HERE;
+    if (worn) await this.#wear(); // the headset's session first: it must come from the click itself
+    const [arm, scenes, scene] = await Promise.all([get("robot"), get("scenes"), this.#scene()]);
+    if (!wanted()) return false;
+    const deeds = { own, worn, button, changed: () => this.#paint(), failed: (why) => this.#fail(why) };
+    const sitting = new Leading(this.context.easel, scenes.find(({ name }) => name === scene), arm, deeds);
+    this.sitting = sitting;
+    try {
+      await sitting.begin();
+    } catch (error) {
+      if (!wanted()) return false;
+      throw error;
+    }
+    const order = own ? { tracker: sitting.name } : { tracker: hand, calibration, clutch: sitting.name };
+    const { id } = await post("teleoperation", { ...order, scene }, lease.headers);
+    if (wanted()) this.execution = id;
+    else await post(at("executions", id, "stop"), {}, lease.headers);
+    return wanted();
   }
 
   async #wear() {
@@ -92,7 +111,6 @@ class LeadingPanel {
     await hand.start();
     this.context.view.spare(Infinity); // nobody looks at the page meanwhile
     this.worn = hand;
-    return true;
   }
 
   // What stands around the arm: the chosen task's scene.
@@ -136,17 +154,14 @@ class LeadingPanel {
 
   // Trackers that could lead: not the pages.
   async #offer(trackers) {
+    const turn = ++this.#offered;
     const worn = (await unavailable()) === "" && WORN;
+    if (turn !== this.#offered) return; // other trackers are here meanwhile
     const names = [HERE, worn, ...trackers.map(({ name }) => name).filter((name) => !name.startsWith("page-"))].filter(Boolean);
     const { hand } = this.parts;
-    const chosen = hand.value;
-    replace(hand, names.map((name) => element("option", { value: name }, name)));
-    if (names.includes(chosen)) hand.value = chosen;
-    if (trackers.length) {
-      const measured = await get("calibrations").catch(() => []);
-      const known = ["identity", ...new Set(measured.map(({ calibration }) => calibration.name))];
-      replace(this.parts.calibration, known.map((name) => element("option", { value: name }, name)));
-    }
+    refill(hand, names);
+    const measured = trackers.length && (await get("calibrations").catch(() => null));
+    if (measured && turn === this.#offered) refill(this.parts.calibration, ["identity", ...new Set(measured.map(({ calibration }) => calibration.name))]);
     this.#paint();
   }
 
@@ -156,7 +171,7 @@ class LeadingPanel {
     const busy = executor && !["idle", "ended", "faulted"].includes(executor.state);
     parts.idle.hidden = Boolean(sitting);
     parts.active.hidden = !sitting;
-    parts.begin.disabled = Boolean(busy) || connection !== "live" || Boolean(there?.holder && !lease.held);
+    parts.begin.disabled = this.#beginning || Boolean(busy) || connection !== "live" || Boolean(there?.holder && !lease.held);
     parts.from.hidden = [HERE, WORN, ""].includes(parts.hand.value);
     if (!sitting) return;
     parts.grip.hidden = !sitting.own || sitting.worn;
@@ -167,6 +182,13 @@ class LeadingPanel {
     parts.clutch.setAttribute("aria-pressed", String(sitting.pressed));
     if (executor?.execution === this.execution && executor) this.#tell(executor);
   }
+}
+
+// Offer other names; what is chosen stays chosen while it is there, else it is the first.
+function refill(select, names) {
+  const chosen = select.value;
+  replace(select, names.map((name) => element("option", { value: name }, name)));
+  select.value = names.includes(chosen) ? chosen : names[0];
 }
 
 function inWords({ state, reason, stretch }, { own, worn }) {
