@@ -1,4 +1,4 @@
-"""The browser of all tests that look at the page, and a last line that says when they were left out."""
+"""The browser of all tests that look at the page, a last line that says when they were left out, and no deadlines."""
 
 import os
 import shutil
@@ -7,6 +7,11 @@ from collections.abc import Generator, Iterator
 from typing import Any
 
 import pytest
+from hypothesis import HealthCheck, settings
+
+# No example fails because the machine was busy.
+settings.register_profile("teachpath", deadline=None, suppress_health_check=[HealthCheck.too_slow])
+settings.load_profile("teachpath")
 
 NAMES = ("chromium", "chromium-browser", "google-chrome")
 ABSENT = "no Chromium to look at the page with; get it with: sudo apt-get install chromium"

@@ -88,7 +88,7 @@ class Link:
         """Show on `key` that this client is alive, until it leaves or dies."""
         return self._session.liveliness().declare_token(key)
 
-    def ask(self, key: str, payload: bytes = b"", *, timeout: float = 10.0) -> bytes:
+    def ask(self, key: str, payload: bytes = b"", *, timeout: float = 30.0) -> bytes:
         """Query `key` and return the answer; raises ClientError with the station's reason."""
         for reply in self._session.get(key, payload=payload, timeout=timeout):
             if reply.ok is not None:

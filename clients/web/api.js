@@ -1,5 +1,5 @@
 // The REST API of the service: every answer is a document, every failure a sentence with a way out.
-const PATIENCE = 15_000; // [ms]
+const PATIENCE = 30_000; // [ms]
 const SILENT = "The service does not answer. Is it running? This page connects again by itself.";
 
 // What the service refused, or that it did not answer (status 0).

@@ -12,6 +12,7 @@ from pydantic import TypeAdapter
 from starlette.routing import Match
 
 from teachpath.app import Station
+from tests.waiting import HANG
 
 API = "/api/v1"
 
@@ -60,7 +61,7 @@ class Desk:
             job: dict[str, Any] = self.send("GET", accepted.headers["location"]).json()
             if job["finished_ns"]:
                 return job
-            self._news.get(timeout=60)
+            self._news.get(timeout=HANG)
 
 
 def refused(response: Response, status: int, sentence: str) -> None:

@@ -4,12 +4,14 @@ import itertools
 import queue
 import socket
 from collections.abc import Iterator
+from contextlib import suppress
 
 import pytest
 
 from teachpath.errors import Conflict, TeachpathError, Unreachable
 from teachpath.io.bus import Bus, BusSettings, MemoryBus, listen_on_bus, open_bus
 from teachpath_client import Link
+from tests.waiting import HANG, wait_until
 
 
 def free_endpoint() -> str:
@@ -37,12 +39,13 @@ def ends(request: pytest.FixtureRequest) -> Iterator[tuple[Bus, Bus]]:
 def wait_reachable(asker: Bus, server: Bus) -> None:
     """Return once a declaration of `server` is known to `asker`."""
     handle = server.serve("t/ready", lambda _: b"yes")
-    for _ in range(50):
-        try:
-            asker.ask("t/ready", timeout=0.2)
-            break
-        except Unreachable:
-            continue
+
+    def answers() -> bool:
+        with suppress(Unreachable):
+            return bool(asker.ask("t/ready"))
+        return False
+
+    wait_until(answers, "the other end is heard")
     handle.close()
 
 
@@ -55,7 +58,7 @@ def test_delivers_in_order_to_matching_keys_only(ends: tuple[Bus, Bus]) -> None:
     here.publish("t/a/b/samples", b"no")
     for i in range(100):
         here.publish("t/a/samples", str(i).encode())
-    assert [got.get(timeout=5) for _ in range(100)] == [("t/a/samples", str(i).encode()) for i in range(100)]
+    assert [got.get(timeout=HANG) for _ in range(100)] == [("t/a/samples", str(i).encode()) for i in range(100)]
     assert got.empty()
 
 
@@ -86,9 +89,9 @@ def test_shows_who_is_alive(ends: tuple[Bus, Bus]) -> None:
     seen: queue.Queue[tuple[str, bool]] = queue.Queue()
     token = here.announce("t/alive/glove")
     there.watch("t/alive/**", lambda key, alive: seen.put((key, alive)))
-    assert seen.get(timeout=5) == ("t/alive/glove", True)
+    assert seen.get(timeout=HANG) == ("t/alive/glove", True)
     token.close()
-    assert seen.get(timeout=5) == ("t/alive/glove", False)
+    assert seen.get(timeout=HANG) == ("t/alive/glove", False)
 
 
 def test_a_closed_subscription_is_silent(ends: tuple[Bus, Bus]) -> None:
@@ -99,10 +102,10 @@ def test_a_closed_subscription_is_silent(ends: tuple[Bus, Bus]) -> None:
     there.subscribe("t/x", lambda _, payload: keep.put(payload))
     wait_reachable(here, there)
     here.publish("t/x", b"1")
-    assert got.get(timeout=5) == keep.get(timeout=5) == b"1"
+    assert got.get(timeout=HANG) == keep.get(timeout=HANG) == b"1"
     handle.close()
     here.publish("t/x", b"2")
-    assert keep.get(timeout=5) == b"2"
+    assert keep.get(timeout=HANG) == b"2"
     assert got.empty()
 
 
@@ -129,7 +132,7 @@ def test_a_subscription_that_counts_what_it_missed_serves_plain_publishers_and_e
     wait_reachable(here, there)
     for i in range(200):
         here.publish("t/a/samples", str(i).encode())
-    assert [got.get(timeout=5) for _ in range(200)] == [str(i).encode() for i in range(200)]
+    assert [got.get(timeout=HANG) for _ in range(200)] == [str(i).encode() for i in range(200)]
     handle.close()
     here.publish("t/a/samples", b"late")
     there.subscribe("t/*/samples", lambda _, payload: got.put(payload), missed=missed.append)
@@ -150,9 +153,9 @@ def test_what_a_client_sends_comes_once_and_in_order_from_the_first_that_comes()
                 publisher.put(str(next(sent)).encode())
             for _ in range(500):
                 publisher.put(str(next(sent)).encode())
-            last, seen = next(sent) - 1, [got.get(timeout=5)]
+            last, seen = next(sent) - 1, [got.get(timeout=HANG)]
             while seen[-1] < last:
-                seen.append(got.get(timeout=5))
+                seen.append(got.get(timeout=HANG))
             assert seen == list(range(seen[0], last + 1))
             assert missed == []
     finally:

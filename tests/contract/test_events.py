@@ -17,6 +17,7 @@ from teachpath.app import Station
 from teachpath.commands.serving import free_port
 from tests.contract.desk import csv
 from tests.contract.stations import station
+from tests.waiting import HANG
 
 
 class Served:
@@ -53,14 +54,14 @@ def served() -> Iterator[Served]:
 def until(socket: ClientConnection, topic: str, key: str = "") -> dict[str, Any]:
     """Return the first piece of a topic, and id when one is given."""
     while True:
-        piece: dict[str, Any] = json.loads(socket.recv(timeout=20))
+        piece: dict[str, Any] = json.loads(socket.recv(timeout=HANG))
         if piece["topic"] == topic and key in ("", piece["id"]):
             return piece
 
 
 def test_a_listener_is_first_told_to_read_everything(served: Served) -> None:
     with served.listen() as socket:
-        first = json.loads(socket.recv(timeout=5))
+        first = json.loads(socket.recv(timeout=HANG))
     assert (first["topic"], first["id"], first["reason"]) == ("all", "", "connected")
 
 
@@ -84,9 +85,9 @@ def test_a_change_that_was_refused_is_not_told(served: Served) -> None:
     with served.listen() as socket:
         served.call("PUT", "/tasks/no..name", json={})
         served.call("PUT", "/tasks/after", json={})
-        pieces = [json.loads(socket.recv(timeout=5)) for _ in range(2)]
+        pieces = [json.loads(socket.recv(timeout=HANG)) for _ in range(2)]
         while pieces[-1]["id"] != "after":
-            pieces.append(json.loads(socket.recv(timeout=5)))
+            pieces.append(json.loads(socket.recv(timeout=HANG)))
     assert not [piece for piece in pieces if piece["id"] == "no..name"]
 
 
@@ -96,7 +97,7 @@ def test_a_foreign_page_is_refused(served: Served, origin: str) -> None:
         served.listen(origin=origin)
     assert refused.value.response.status_code == 403
     with served.listen(origin=f"http://{served.address}") as own:
-        assert own.recv(timeout=5)
+        assert own.recv(timeout=HANG)
 
 
 def test_whoever_talks_back_is_closed_with_a_sentence(served: Served) -> None:
@@ -104,6 +105,6 @@ def test_whoever_talks_back_is_closed_with_a_sentence(served: Served) -> None:
         socket.send("stop the arm")
         while socket.close_code is None:
             with suppress(ConnectionClosed):
-                socket.recv(timeout=5)
+                socket.recv(timeout=HANG)
         assert socket.close_code == 1008
         assert "give orders over REST" in (socket.close_reason or "")

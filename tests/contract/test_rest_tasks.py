@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from tests.contract.desk import Desk, csv, npy, refused
-from tests.system.processes import wait_until
+from tests.waiting import wait_until
 
 # recording
 
@@ -136,9 +136,9 @@ def test_demonstrations_are_discarded_restored_marked_and_trimmed(desk: Desk) ->
 def test_trackers_that_are_there_are_in_the_health(desk: Desk) -> None:
     token = desk.station.bus.announce(desk.station.keys.alive("tracker", "glove-9"))
     seen = lambda: [t["name"] for t in desk.get("/health").json()["trackers"]]  # noqa: E731
-    wait_until(lambda: "glove-9" in seen(), seconds=1.0, what="the tracker is there")
+    wait_until(lambda: "glove-9" in seen(), "the tracker is there")
     token.close()
-    wait_until(lambda: "glove-9" not in seen(), seconds=1.0, what="the tracker has gone")
+    wait_until(lambda: "glove-9" not in seen(), "the tracker has gone")
 
 
 def test_what_is_not_usable_is_not_learned_from(desk: Desk) -> None:

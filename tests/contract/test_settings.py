@@ -17,6 +17,7 @@ import pytest
 from teachpath.config import Settings, load
 from teachpath.errors import NotFound, UnusableInput, UnusableSettings
 from tests.contract import settings_file
+from tests.waiting import HANG
 
 ROOMS = [(room, type(getattr(Settings(), room))) for room in Settings.model_fields]
 ROOMS = [(room, kind) for room, kind in ROOMS if is_dataclass(kind)]
@@ -181,7 +182,10 @@ def test_settings_reach_another_process_whole(tmp_path: Path) -> None:
 def test_the_command_line_ends_with_the_sentence(tmp_path: Path) -> None:
     file = toml(tmp_path, "[web]\nprot = 1\n")
     ended = subprocess.run(
-        [sys.executable, "-m", "teachpath", "serve", "--config", str(file)], capture_output=True, text=True, timeout=60
+        [sys.executable, "-m", "teachpath", "serve", "--config", str(file)],
+        capture_output=True,
+        text=True,
+        timeout=HANG,
     )
     assert (ended.returncode, ended.stderr) == (
         1,

@@ -18,6 +18,7 @@ from teachpath.records import JointState
 from tests.contract.desk import Desk, refused
 from tests.contract.test_rest_work import planned
 from tests.unit.recording.hands import demonstration, sample
+from tests.waiting import HANG, wait_until
 
 START = (0.58, -0.28, 0.52)  # of the object in the paper's scene
 
@@ -28,7 +29,7 @@ def come(port: int, name: str, **options: Any) -> ClientConnection:
 
 def ask(socket: ClientConnection, order: Any) -> dict[str, Any]:
     socket.send(order if isinstance(order, str) else json.dumps(order))
-    answer: dict[str, Any] = json.loads(socket.recv(timeout=60))
+    answer: dict[str, Any] = json.loads(socket.recv(timeout=HANG))
     return answer
 
 
@@ -36,7 +37,7 @@ def closed(socket: ClientConnection) -> str:
     """Read until the service closes; return its reason."""
     with suppress(ConnectionClosed):
         while True:
-            socket.recv(timeout=60)
+            socket.recv(timeout=HANG)
     assert socket.close_reason is not None
     return socket.close_reason
 
@@ -47,21 +48,17 @@ def there(station: Station, name: str) -> bool:
 
 def recorded(station: Station, name: str, count: int) -> None:
     """Wait until the recorder has come so far; the station of these tests waits only briefly at the end."""
-    wait(lambda: any(r.tracker == name and r.received >= count for r in station.recorder.reports()))
-
-
-def wait(true: Any) -> None:
-    deadline = time.monotonic() + 60
-    while not true():
-        assert time.monotonic() < deadline, "it does not come true"
-        time.sleep(0.005)
+    wait_until(
+        lambda: any(r.tracker == name and r.received >= count for r in station.recorder.reports()),
+        f"{count} samples of {name} are recorded",
+    )
 
 
 def test_a_page_shows_a_demonstration_and_ends_with_the_handshake(desk: Desk, port: int) -> None:
     desk.put("/tasks/socket", {"scene": "paper"})
     with come(port, "page-1") as socket:
         assert ask(socket, {"ping": 12.5})["pong"] == 12.5
-        wait(lambda: there(desk.station, "page-1"))
+        wait_until(lambda: there(desk.station, "page-1"), "the page is there")
         assert desk.post("/tasks/socket/recording", {"tracker": "page-1"}).status_code == 201
         stream = demonstration(at=START)
         for s in stream:
@@ -69,13 +66,14 @@ def test_a_page_shows_a_demonstration_and_ends_with_the_handshake(desk: Desk, po
         recorded(desk.station, "page-1", len(stream))
         report = ask(socket, {"end": len(stream)})["report"]
         assert (report["received"], report["lost"], len(report["demonstrations"])) == (len(stream), 0, 1)
+        before = time.time_ns()
         pong = ask(socket, {"ping": 1})
         assert pong["samples"] == {"passed": len(stream), "refused": 0}
-        assert abs(pong["service_ns"] - time.time_ns()) < 5e9
+        assert before <= pong["service_ns"] <= time.time_ns()
         assert "not being recorded" in ask(socket, {"end": 1})["refused"]
     (shown,) = desk.get("/tasks/socket/demonstrations").json()
     assert (shown["verdict"], shown["source"]) == ("clean", "page-1")
-    wait(lambda: not there(desk.station, "page-1"))
+    wait_until(lambda: not there(desk.station, "page-1"), "the page has gone")
 
 
 @pytest.mark.parametrize(
@@ -114,15 +112,21 @@ def test_samples_that_come_out_of_order_and_twice_are_accounted_for(desk: Desk, 
 def test_a_flood_keeps_nobody_from_being_answered(port: int) -> None:
     with come(port, "page-4") as flood, come(port, "page-5") as calm:
         payload = sample_message(sample(1, START)).SerializeToString()
-        pouring = threading.Thread(target=lambda: [flood.send(payload) for _ in range(2500)])
+
+        def pour() -> None:
+            with suppress(ConnectionClosed):
+                for _ in range(2500):
+                    flood.send(payload)
+
+        pouring = threading.Thread(target=pour)
         pouring.start()
         for k in range(20):
             assert ask(calm, {"ping": k})["pong"] == k
         pouring.join()
         # A machine that takes in over 1000 a second closes it; on a slower one the flood itself is slowed down.
-        flood.send('{"ping": 1}')
         with suppress(ConnectionClosed):
-            assert json.loads(flood.recv(timeout=60))["samples"]["passed"] == 2500
+            flood.send('{"ping": 1}')
+            assert json.loads(flood.recv(timeout=HANG))["samples"]["passed"] == 2500
         assert flood.close_reason is None or "faster than 1000 a second" in flood.close_reason
 
 
@@ -142,7 +146,7 @@ def test_foreign_pages_bad_names_and_taken_names_are_refused(desk: Desk, port: i
     with come(port, "..%20x") as socket:
         assert "cannot name a tracker" in closed(socket)
     token = desk.station.bus.announce(desk.station.keys.alive("tracker", "real"))
-    wait(lambda: there(desk.station, "real"))
+    wait_until(lambda: there(desk.station, "real"), "the tracker is there")
     with come(port, "real") as socket:
         assert "a tracker real is there already" in closed(socket)
     token.close()
@@ -157,13 +161,14 @@ def test_a_second_page_of_the_name_takes_over(port: int) -> None:
 def test_a_page_that_breaks_off_is_seen_to_have_gone(desk: Desk, port: int) -> None:
     desk.put("/tasks/broken", {"scene": "paper"})
     with come(port, "page-9") as socket:
+        wait_until(lambda: there(desk.station, "page-9"), "the page is there")
         desk.post("/tasks/broken/recording", {"tracker": "page-9"})
         for s in demonstration(at=START)[:45]:
             socket.send(sample_message(s).SerializeToString())
-        ask(socket, {"ping": 1})
+        recorded(desk.station, "page-9", 45)
         socket.socket.shutdown(SHUT_RDWR)  # no closing handshake
-    wait(lambda: not there(desk.station, "page-9"))
-    wait(lambda: len(desk.get("/tasks/broken/demonstrations").json()) == 1)
+    wait_until(lambda: not there(desk.station, "page-9"), "the page has gone")
+    wait_until(lambda: len(desk.get("/tasks/broken/demonstrations").json()) == 1, "the take has ended")
     (shown,) = desk.get("/tasks/broken/demonstrations").json()
     assert (shown["verdict"], shown["reasons"][0]) == ("reject", "the tracker has gone in mid-take")
     desk.post("/tasks/broken/recording/stop", {"tracker": "page-9"})
@@ -184,9 +189,9 @@ def test_joint_states_come_decimated_and_the_newest_wins(desk: Desk, port: int) 
         for k in range(200):
             publish(desk.station, k, k / 1000)
             time.sleep(0.0025)
-        frames = [json.loads(socket.recv(timeout=60))]
+        frames = [json.loads(socket.recv(timeout=HANG))]
         while frames[-1]["stamp_ns"] < 199:
-            frames.append(json.loads(socket.recv(timeout=60)))
+            frames.append(json.loads(socket.recv(timeout=HANG)))
         seconds = time.monotonic() - began
         assert len(frames) <= 25 * seconds + 2
         stamps = [frame["stamp_ns"] for frame in frames]

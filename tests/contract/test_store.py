@@ -30,6 +30,7 @@ from teachpath.records import (
 )
 from tests.contract.rows import a_job, demonstration, learned
 from tests.unit.io.test_documents import a_path, a_plan
+from tests.waiting import HANG
 
 Open = Callable[[], Store]
 
@@ -130,7 +131,7 @@ def test_numbers_have_no_gaps_however_many_write(open_: Open, store: Store) -> N
     together = threading.Barrier(6)
 
     def write(who: int) -> list[int]:
-        together.wait(timeout=10)
+        together.wait(timeout=HANG)
         mine = [demonstration(f"d-{who}-{i}", task="tu"[who % 2]) for i in range(8)]
         return [stores[who % 3].add_demonstration(d).number for d in mine]
 
@@ -155,7 +156,9 @@ TEXT = st.text(max_size=20)
 COUNT = st.integers(0, 2**62)
 
 
-@settings(max_examples=40, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(
+    max_examples=40, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow]
+)
 @given(
     duration=FINITE,
     created_ns=COUNT,

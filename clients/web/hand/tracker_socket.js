@@ -5,7 +5,7 @@ import { encode } from "./hand_sample.js";
 const FULL = 64 * 1024; // bytes waiting in the socket, over which samples are left out, but counted
 const PING = 1000; // [ms]
 const PINGS = 30; // newest ones, of which the fastest tells the offset
-const PATIENCE = 5000; // [ms] for the account at the end
+const PATIENCE = 30_000; // [ms] for the account at the end
 const SHORTEST = 250; // [ms] pause before connecting again
 const LONGEST = 2000;
 

@@ -26,7 +26,8 @@ from teachpath.config import Settings
 from teachpath.errors import PathRefused, TeachpathError, Unreachable, UnusableRecording
 
 READY = 60.0  # [s] for executor and simulated arm to appear
-HOLDS = 20  # tries to go on after the arm was held
+HOLDS = 20  # tries to go on after the arm was held in one place
+LEAVE = 10.0  # [s] for the tracker client to end its recording, before it is killed
 console = Console(stderr=True)
 
 
@@ -75,6 +76,7 @@ class _Story:
     def __init__(self, api: Api, url: str, settings: Settings, stop: Any) -> None:
         self._api, self._url, self._settings, self._stop = api, url, settings, stop
         self._held = 0
+        self._came = 0.0  # share of the path behind the arm
 
     def tell(self, *, speed: float, seed: int, recordings: Path | None) -> dict[str, Any]:
         """Tell the whole story and return its summary; raises TeachpathError at the step that failed."""
@@ -179,6 +181,8 @@ class _Story:
             def show_unless_stopped(fraction: float, state: str) -> None:
                 self._pause(0.0)
                 show(fraction, state)
+                if fraction > self._came:
+                    self._came, self._held = fraction, 0
                 if state.startswith("held"):
                     self._resume(execution["id"], state)
 
@@ -207,7 +211,11 @@ def _client(command: list[str]) -> Iterator[subprocess.Popen[str]]:
     finally:
         if process.poll() is None:
             process.terminate()
-            process.wait(1.0)
+            try:
+                process.wait(LEAVE)
+            except subprocess.TimeoutExpired:
+                process.kill()
+                process.wait()
 
 
 def _settings(config: Path | None, folder: Path, port: int | None) -> Settings:

@@ -27,7 +27,7 @@ from teachpath.records import Array, Command, ExecutorStatus, JournalEntry, Plan
 from teachpath_proto.keys import Keys
 
 UNNAMED = "somebody"  # who commands without a lease and without a name
-RESET = 5.0  # [s] that the simulated arm may take to build a scene
+RESET = 10.0  # [s] that the simulated arm may take to build a scene
 FREE = ("stop", "revoke")  # verbs that need no lease
 
 

@@ -69,7 +69,7 @@ class Bus(Protocol):
     def serve(self, key: str, answer: Answer) -> Handle:
         """Answer queries on `key`; a TeachpathError that `answer` raises is raised again where the query was asked."""
 
-    def ask(self, key: str, payload: bytes = b"", *, timeout: float = 5.0) -> bytes:
+    def ask(self, key: str, payload: bytes = b"", *, timeout: float = 10.0) -> bytes:
         """Query `key` and return the answer.
 
         Raises:
@@ -161,7 +161,7 @@ class ZenohBus:
     def serve(self, key: str, answer: Answer) -> Handle:
         return self._keep(_Server(self._session, key, answer))
 
-    def ask(self, key: str, payload: bytes = b"", *, timeout: float = 5.0) -> bytes:
+    def ask(self, key: str, payload: bytes = b"", *, timeout: float = 10.0) -> bytes:
         for reply in self._session.get(key, payload=payload, timeout=timeout):
             if reply.ok is not None:
                 return bytes(reply.ok.payload.to_bytes())
@@ -284,7 +284,7 @@ class MemoryBus:
         self._answers[key] = answer
         return _Undeclare(lambda: self._answers.pop(key, None))
 
-    def ask(self, key: str, payload: bytes = b"", *, timeout: float = 5.0) -> bytes:
+    def ask(self, key: str, payload: bytes = b"", *, timeout: float = 10.0) -> bytes:
         answer = self._answers.get(key)
         if answer is None:
             raise Unreachable(f"nobody answered {key} within {timeout:g} s; is that part of the service running?")

@@ -100,7 +100,7 @@ class Jobs:
             process.kill()
             process.join()
         for thread in self._threads:
-            thread.join(timeout=1.0)
+            thread.join(timeout=10.0)
         self._news.close()
         self._news.cancel_join_thread()
 

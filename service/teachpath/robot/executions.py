@@ -221,7 +221,7 @@ class Executions:
         self._plans[key] = plan
         self._recorder.begin(header)
         try:
-            self._bus.ask(self._keys.executor_command, encode_command(command), timeout=10.0)
+            self._bus.ask(self._keys.executor_command, encode_command(command), timeout=30.0)
         except TeachpathError as error:
             refused = ExecutorStatus(execution=key, state="faulted", reason=str(error))
             self._store.put_execution(key, plan, refused)

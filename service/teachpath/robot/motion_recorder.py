@@ -23,7 +23,7 @@ ROUND: Final = 0.05  # [s] between two looks at what came
 FLUSH_NS: Final = 1_000_000_000  # between two flushes
 AFTER_NS: Final = 500_000_000  # behind the end of an execution, in which the arm still settles
 OVER: Final = ("ended", "faulted")
-PATIENCE: Final = 3.0  # [s] that somebody waits for the end of a file
+PATIENCE: Final = 10.0  # [s] that somebody waits for the end of a file
 
 
 class MotionRecorder:

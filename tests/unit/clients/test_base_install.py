@@ -5,6 +5,8 @@ import subprocess
 import sys
 from importlib.metadata import PackageNotFoundError, distribution, packages_distributions, requires
 
+from tests.waiting import HANG
+
 GUARD = """
 import sys
 allowed = set({allowed!r}) | set(sys.stdlib_module_names)
@@ -60,7 +62,7 @@ def run(code: str) -> subprocess.CompletedProcess[str]:
         if any(owner.lower().replace("_", "-") in base for owner in owners)
     }
     guard = GUARD.format(allowed=sorted(names | {"teachpath_client", "teachpath_proto"}))
-    return subprocess.run([sys.executable, "-c", guard + code], capture_output=True, text=True, timeout=60)
+    return subprocess.run([sys.executable, "-c", guard + code], capture_output=True, text=True, timeout=HANG)
 
 
 def test_the_guard_keeps_the_service_and_its_dependencies_out() -> None:

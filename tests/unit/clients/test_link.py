@@ -9,7 +9,8 @@ import pytest
 import zenoh
 
 from teachpath_client.link import ClientError, Link
-from tests.system.processes import free_ports, wait_until
+from tests.system.processes import free_ports
+from tests.waiting import HANG, wait_until
 
 pytestmark = pytest.mark.system
 
@@ -60,9 +61,9 @@ def test_all_that_was_put_arrives_and_the_process_ends(kind: str) -> None:
                 station.session, "lab/**", station.keep, recovery=recovery
             )
         command = [sys.executable, "-W", "error", "-c", CLIENT, station.endpoint]
-        ended = subprocess.run(command, capture_output=True, text=True, timeout=30)
+        ended = subprocess.run(command, capture_output=True, text=True, timeout=HANG)
         assert (ended.returncode, ended.stderr) == (0, "")
-        wait_until(lambda: len(station.received) >= 200, seconds=10, what="all arrived")
+        wait_until(lambda: len(station.received) >= 200, "all arrived")
         assert station.received == [str(i).encode() for i in range(200)]
         subscriber.undeclare()
 
@@ -74,7 +75,7 @@ def test_a_subscriber_that_comes_late_can_ask_for_what_was_published() -> None:
             publisher.put(str(i).encode())
         history = zenoh.ext.HistoryConfig(max_samples=1000)
         subscriber = zenoh.ext.declare_advanced_subscriber(station.session, "lab/**", station.keep, history=history)
-        wait_until(lambda: len(station.received) >= 50, seconds=10, what="the history arrived")
+        wait_until(lambda: len(station.received) >= 50, "the history arrived")
         assert station.received == [str(i).encode() for i in range(50)]
         subscriber.undeclare()
 

@@ -7,6 +7,7 @@ import threading
 import pytest
 
 from teachpath.commands.serving import until_signalled
+from tests.waiting import HANG
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
@@ -23,7 +24,7 @@ def test_a_signal_is_heard_whichever_thread_it_is_given_to(number: signal.Signal
                 threading.Timer(0.2, signal.pthread_kill, (other.ident, number)).start()
             else:
                 os.kill(os.getpid(), number)
-            assert stop.wait(timeout=30.0)
+            assert stop.wait(timeout=HANG)
             asleep.set()
             other.join()
         assert signal.getsignal(number) is before

@@ -13,6 +13,7 @@ from teachpath.io.store.store import Store
 from teachpath.jobs.jobs import JobKind, Jobs, JobSettings
 from teachpath.records import Job, JobState
 from teachpath_proto.keys import Keys
+from tests.waiting import HANG
 
 KEYS = Keys("test")
 
@@ -32,10 +33,9 @@ def crash(word: str, *, progress: Callable[[float, str], None]) -> str:
 
 
 def linger(word: str, *, progress: Callable[[float, str], None]) -> str:
-    for i in range(600):
-        progress(i / 600, "waiting")
+    while True:  # until it is cancelled, or its process ended
+        progress(0.5, "waiting")
         time.sleep(0.05)
-    return word
 
 
 def fault(word: str, *, progress: Callable[[float, str], None]) -> str:
@@ -74,7 +74,7 @@ def bench(store: Store) -> Iterator[Bench]:
 
 def test_jobs_run_in_their_order_and_keep_their_outcome(bench: Bench) -> None:
     submitted = [bench.jobs.submit("t", "echo", {"word": w}) for w in ("a", "b", "c")]
-    ended = [bench.ended.get(timeout=30) for _ in submitted]
+    ended = [bench.ended.get(timeout=HANG) for _ in submitted]
     assert [job.id for job in ended] == [job.id for job in submitted]
     assert [job.outcome for job in ended] == ["a", "b", "c"]
     assert all(job.attempt == 1 and job.state is JobState.SUCCEEDED for job in ended)
@@ -84,7 +84,7 @@ def test_a_refusal_keeps_its_sentence_and_a_fault_is_named(bench: Bench) -> None
     bench.jobs.submit("t", "refuse", {"word": "x"})
     bench.jobs.submit("t", "fault", {"word": "boom"})
     bench.jobs.submit("t", "echo", {"word": "after"})
-    refused, faulted, fine = (bench.ended.get(timeout=30) for _ in range(3))
+    refused, faulted, fine = (bench.ended.get(timeout=HANG) for _ in range(3))
     assert (refused.state, refused.message) == (JobState.FAILED, "cannot learn x")
     assert faulted.state is JobState.FAILED
     assert "ZeroDivisionError('boom')" in faulted.message
@@ -94,7 +94,7 @@ def test_a_refusal_keeps_its_sentence_and_a_fault_is_named(bench: Bench) -> None
 def test_a_job_whose_process_dies_is_begun_anew_then_given_up(bench: Bench) -> None:
     bench.jobs.submit("t", "crash", {"word": "x"})
     bench.jobs.submit("t", "echo", {"word": "after"})
-    ended = {job.kind: job for job in (bench.ended.get(timeout=60) for _ in range(2))}
+    ended = {job.kind: job for job in (bench.ended.get(timeout=HANG) for _ in range(2))}
     assert ended["crash"].state is JobState.FAILED
     assert "died 2 times" in ended["crash"].message
     assert ended["echo"].state is JobState.SUCCEEDED
@@ -105,10 +105,10 @@ def test_running_and_queued_jobs_can_be_cancelled_and_ended_ones_not(bench: Benc
     running = bench.jobs.submit("t", "linger", {"word": "x"})
     queued = bench.jobs.submit("t", "linger", {"word": "y"})
     bench.bus.subscribe(KEYS.job(running.id), lambda _, payload: progress.put(payload))
-    progress.get(timeout=30)
+    progress.get(timeout=HANG)
     assert bench.jobs.cancel(queued.id).state is JobState.CANCELLED
     bench.jobs.cancel(running.id)
-    assert {bench.ended.get(timeout=30).id for _ in range(2)} == {queued.id, running.id}
+    assert {bench.ended.get(timeout=HANG).id for _ in range(2)} == {queued.id, running.id}
     assert bench.store.job(running.id).state is JobState.CANCELLED
     with pytest.raises(Conflict, match="already cancelled"):
         bench.jobs.cancel(running.id)
@@ -121,13 +121,13 @@ def test_a_job_survives_a_restart_and_is_done_once(store: Store) -> None:
     running = first.jobs.submit("t", "linger", {"word": "x"})
     waiting = first.jobs.submit("t", "echo", {"word": "w"})
     first.bus.subscribe(KEYS.job(running.id), lambda _, payload: heard.put(payload))
-    heard.get(timeout=30)
+    heard.get(timeout=HANG)
     first.jobs.stop()
     assert [job.id for job in store.jobs(unfinished=True)] == [running.id, waiting.id]
 
     second = Bench(store, linger=echo)
     second.jobs.start()
-    ended = [second.ended.get(timeout=30) for _ in range(2)]
+    ended = [second.ended.get(timeout=HANG) for _ in range(2)]
     second.jobs.stop()
     assert [(job.id, job.state.value, job.attempt) for job in ended] == [
         (running.id, "succeeded", 2),

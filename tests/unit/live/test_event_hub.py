@@ -2,6 +2,7 @@ import threading
 
 from teachpath.live.event_hub import RESYNC_TOPIC, Document, EventHub, Subscriber
 from teachpath.live.state_poller import StatePoller
+from tests.waiting import HANG
 
 
 def listen(hub: EventHub) -> Subscriber:
@@ -118,5 +119,5 @@ def test_a_look_that_fails_does_not_end_the_lookout() -> None:
 
     poller = StatePoller(hub, {"station": poll}, interval=0.01)
     poller.start()
-    assert looked.wait(10)
+    assert looked.wait(HANG)
     poller.stop()

@@ -1,6 +1,5 @@
 """A recorder on an in-memory bus for tests, with a clock of its own."""
 
-import time
 from collections.abc import Callable
 from typing import Any
 
@@ -12,6 +11,7 @@ from teachpath.recording.settings import RecordingSettings
 from teachpath.records import Calibration, Demonstration, Sample, Scene, Shape, Trajectory
 from teachpath_proto import tracker_pb2
 from teachpath_proto.keys import Keys
+from tests.waiting import wait_until
 
 KEYS = Keys("test")
 SCENE = Scene("paper", (), Shape("block", "box", (0.04, 0.04, 0.04), (0.5, 0.0, 0.48)))
@@ -58,9 +58,10 @@ class Bench:
     def until(
         self, true: Callable[[tracker_pb2.RecordingReport], bool], tracker: str = "glove"
     ) -> tracker_pb2.RecordingReport:
-        deadline = time.monotonic() + 10.0
-        while True:
+        def found() -> tracker_pb2.RecordingReport | None:
             (report,) = (r for r in self.recorder.reports() if r.tracker == tracker)
-            if true(report):
-                return report
-            assert time.monotonic() < deadline, report
+            return report if true(report) else None
+
+        report = wait_until(found, "the recording is so")
+        assert report is not None
+        return report

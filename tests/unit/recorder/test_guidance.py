@@ -8,6 +8,7 @@ from teachpath.learning.settings import LearningSettings
 from teachpath.recorder.guidance import GuidanceThread
 from teachpath.records import Demonstration, Trajectory
 from tests.contract.rows import demonstration
+from tests.waiting import HANG
 
 SHOWN = (0.0, 0.0, 0.3, 0.0, 0.0, 0.3)  # how far each demonstration swings out [m]
 
@@ -69,9 +70,9 @@ def test_it_answers_from_its_own_thread_and_outlives_what_cannot_be_read() -> No
     guidance.start()
     assert guidance.advice("t") == ""
     guidance.request("broken")
-    assert asked.acquire(timeout=5)
+    assert asked.acquire(timeout=HANG)
     guidance.request("t")
-    assert answered.acquire(timeout=5)
+    assert answered.acquire(timeout=HANG)
     guidance.stop()
     assert guidance.advice("t") == "one demonstration so far; show it again"
     assert "damaged" in guidance.advice("broken")
@@ -91,7 +92,7 @@ def test_of_a_burst_every_task_is_compared() -> None:
     for task in ("a", "b", "a"):
         guidance.request(task)
     guidance.start()
-    assert done.wait(timeout=30)
+    assert done.wait(timeout=HANG)
     guidance.stop()
     assert asked == ["a", "b"]
     assert set(guidance.all_advice()) == {"a", "b"}

@@ -1,7 +1,6 @@
 """Whoever watches may stall: a page that sleeps, a coach that ponders. The recorder records on."""
 
 import threading
-import time
 
 import numpy as np
 
@@ -13,6 +12,7 @@ from teachpath.recorder.guidance import GuidanceThread
 from teachpath.records import Demonstration, Trajectory
 from tests.unit.recorder.recorders import KEYS, Bench
 from tests.unit.recording.hands import demonstration
+from tests.waiting import HANG
 
 SHOWN = 110
 TAKES = 8
@@ -22,9 +22,7 @@ def record(bench: Bench) -> None:
     bench.begin()
     for pop in range(TAKES):
         bench.send(demonstration(1 + pop * SHOWN))
-    began = time.monotonic()
     report = bench.end(TAKES * SHOWN)
-    assert time.monotonic() - began < 10.0
     assert (report.received, report.lost, len(report.demonstrations)) == (TAKES * SHOWN, 0, TAKES)
 
 
@@ -42,7 +40,7 @@ def test_a_coach_that_ponders_keeps_the_recorder_from_nothing(store: object) -> 
 
     def ponder(_: Demonstration) -> Trajectory:
         asked.set()
-        ponders.wait(30.0)
+        ponders.wait()
         raise UnusableRecording("nobody needs it any more")
 
     bench = Bench(store, recorded=lambda made, _: guidance.request(made.task))  # type: ignore[arg-type]
@@ -50,7 +48,7 @@ def test_a_coach_that_ponders_keeps_the_recorder_from_nothing(store: object) -> 
     guidance.start()
     try:
         record(bench)
-        assert asked.wait(5.0)
+        assert asked.wait(HANG)
     finally:
         ponders.set()
         guidance.stop()

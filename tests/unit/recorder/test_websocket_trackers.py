@@ -9,6 +9,7 @@ from teachpath.recorder.websocket_trackers import WebSocketTracker, WebSocketTra
 from teachpath.records import Sample
 from tests.unit.recorder.recorders import KEYS, Bench
 from tests.unit.recording.hands import demonstration, sample
+from tests.waiting import wait_until
 
 
 class Door:
@@ -131,8 +132,7 @@ def test_names_are_kept_apart(door: Door) -> None:
         door.register("../glove")
     token = door.bench.bus.announce(KEYS.alive("tracker", "glove"))
     door.bench.begin("glove")
-    while not door.bench.recorder.trackers():
-        pass
+    wait_until(door.bench.recorder.trackers, "the tracker is there")
     with pytest.raises(Conflict, match="a tracker glove is there already"):
         door.register("glove")
     token.close()
@@ -147,16 +147,14 @@ def test_names_are_kept_apart(door: Door) -> None:
 def test_one_that_comes_back_at_once_is_not_taken_for_another(door: Door) -> None:
     recorder = door.bench.recorder
     page = door.register()
-    while not any(tracker.announced for tracker in recorder.trackers()):
-        pass
+    wait_until(lambda: any(tracker.announced for tracker in recorder.trackers()), "the tracker is there")
     other = door.bench.bus.announce(KEYS.alive("tracker", "page"))  # as if the bus still told of it
     door.gate.unregister(page)
     door.gate.unregister(door.register())
     other.close()
     door.now += websocket_trackers.REANNOUNCE_GRACE
     door.bench.bus.announce(KEYS.alive("tracker", "page"))
-    while not any(tracker.announced for tracker in recorder.trackers()):
-        pass
+    wait_until(lambda: any(tracker.announced for tracker in recorder.trackers()), "the tracker is there")
     with pytest.raises(Conflict):
         door.register()
 

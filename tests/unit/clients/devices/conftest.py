@@ -4,7 +4,7 @@ from types import FrameType
 
 import pytest
 
-from tests.unit.clients.devices.readings import DEADLINE
+from tests.waiting import HANG
 
 
 @pytest.fixture(autouse=True)
@@ -12,10 +12,10 @@ def deadline() -> Iterator[None]:
     """Fail a test that waits for a reading which never comes."""
 
     def fail(_number: int, _frame: FrameType | None) -> None:
-        raise AssertionError(f"still waiting after {2 * DEADLINE:g} s")
+        raise AssertionError(f"still waiting after {HANG:g} s")
 
     before = signal.signal(signal.SIGALRM, fail)
-    signal.setitimer(signal.ITIMER_REAL, 2 * DEADLINE)
+    signal.setitimer(signal.ITIMER_REAL, HANG)
     yield
     signal.setitimer(signal.ITIMER_REAL, 0.0)
     signal.signal(signal.SIGALRM, before)

@@ -1,14 +1,12 @@
 """Readings, calibrations and records that the tests of the devices share."""
 
 import math
-import time
 from collections.abc import Callable, Iterator
 
 from teachpath_client.devices.fastrak_wire import Pose
 from teachpath_client.devices.glove_calibration import GloveCalibration
 from teachpath_client.reading import HandReading
-
-DEADLINE = 20.0  # [s] after which a test gives up; none should come near it
+from tests.waiting import wait_until
 
 
 def calibration(sensors: int = 22) -> GloveCalibration:
@@ -36,22 +34,15 @@ def pose(i: int, station: int = 1) -> Pose:
 
 
 def until(true: Callable[[], object], what: str) -> None:
-    """Wait until `true` returns something true; fails after the deadline."""
-    end = time.monotonic() + DEADLINE
-    wait = iter(lambda: time.monotonic() < end, False)
-    for _ in wait:
-        if true():
-            return
-        time.sleep(0.001)
-    raise AssertionError(f"not in time: {what}")
+    """Wait until `true` returns something true."""
+    wait_until(true, what)
 
 
 def gather(source: Iterator[HandReading], last: Callable[[HandReading], bool]) -> list[HandReading]:
-    """Return readings up to and including the one that `last` knows; fails after the deadline."""
-    end, found = time.monotonic() + DEADLINE, []
+    """Return readings up to and including the one that `last` knows."""
+    found = []
     for reading in source:
         found.append(reading)
         if last(reading):
             return found
-        assert time.monotonic() < end, f"{len(found)} readings, but not the last one"
     raise AssertionError("the source ended")

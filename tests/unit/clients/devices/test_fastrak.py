@@ -26,6 +26,7 @@ from tests.unit.clients.devices.emulated_devices import (
 )
 from tests.unit.clients.devices.readings import gather, readings, until
 
+LINE = 0.5  # [s] that a record is dated back at most, for the bytes behind it
 FORMATS = pytest.mark.parametrize("form", ["binary", "ascii"])
 
 
@@ -56,11 +57,15 @@ def test_every_whole_record_comes_out_once_and_right_among_torn_ones_and_noise(t
 
 def test_times_begin_at_0_and_never_run_back(tmp_path: Path) -> None:
     with fastrak(tmp_path) as device, FastrakSource(fastrak_settings(tmp_path)) as source:
+        began, stream = time.monotonic(), iter(source)
         device.play(readings(200))
-        got = gather(iter(source), ends_with(device))
+        got = [next(stream)]
+        first = time.monotonic()
+        got += gather(stream, ends_with(device))
+        ended = time.monotonic()
     assert got[0].time == 0.0
     assert all(b.time > a.time for a, b in pairwise(got))
-    assert got[-1].time == pytest.approx(device.intact[-1][0] - device.intact[0][0], abs=0.5)
+    assert device.intact[-1][0] - first - LINE <= got[-1].time <= ended - began + LINE
 
 
 @FORMATS
@@ -78,26 +83,31 @@ def test_a_device_that_was_unplugged_goes_on_with_the_right_times_and_the_gap_is
         stream = iter(source)
         device.play(first)
         before = gather(stream, ends_with(device))
+        left = time.monotonic()
         for _ in range(2):
             device.unplug()
             away += 50.0
             device.plug()
         device.play(second)
         after = gather(stream, ends_with(device))
+        back = time.monotonic()
     assert [place(r) for r in before + after] == [place(r) for r in first + second]
-    gap = device.intact[30][0] - device.intact[29][0]
-    assert after[0].time - before[-1].time == pytest.approx(100.0 + gap, abs=0.5)
+    gap = after[0].time - before[-1].time - away
+    assert device.intact[30][0] - left - LINE <= gap <= back - device.intact[29][0] + LINE
     for reading, true in zip(after, second, strict=True):  # in metres still: the device woke up in inches
         assert reading.position == pytest.approx(true.position, abs=1e-4)
 
 
 def test_a_device_that_was_switched_off_behind_its_adapter_is_set_up_again(tmp_path: Path) -> None:
-    shown = readings(40)
-    with fastrak(tmp_path) as device, FastrakSource(fastrak_settings(tmp_path, silence=0.2)) as source:
+    shown, now = readings(40), [0.0]
+    settings = fastrak_settings(tmp_path, silence=0.2)
+    with fastrak(tmp_path) as device, FastrakSource(settings, clock=lambda: now[0]) as source:
         stream = iter(source)
         device.play(shown[:20])
         gather(stream, ends_with(device))
         device.simulator.power_up()
+        now[0] += 1.0
+        until(lambda: device.simulator.streaming, "it is set up again")
         device.play(shown[20:])
         again = gather(stream, ends_with(device))
     assert [place(r) for r in again] == [place(r) for r in shown[20:]]
@@ -105,11 +115,13 @@ def test_a_device_that_was_switched_off_behind_its_adapter_is_set_up_again(tmp_p
 
 @FORMATS
 def test_a_device_that_paused_for_long_goes_on(tmp_path: Path, form: Any, caplog: pytest.LogCaptureFixture) -> None:
-    shown = readings(40)
-    with fastrak(tmp_path) as device, FastrakSource(fastrak_settings(tmp_path, silence=0.1, format=form)) as source:
+    shown, now = readings(40), [0.0]
+    settings = fastrak_settings(tmp_path, silence=0.1, format=form)
+    with fastrak(tmp_path) as device, FastrakSource(settings, clock=lambda: now[0]) as source:
         stream = iter(source)
         device.play(shown[:20])
         before = gather(stream, ends_with(device))
+        now[0] += 1.0
         until(lambda: "was silent for 0.1 s" in caplog.text, "the pause is noticed")
         # Records that go out while the driver sets the device up again are missing; so it shows the last one longer.
         device.play([*shown[20:], *[shown[-1]] * 200])
@@ -159,7 +171,7 @@ def test_a_polled_device_is_asked_at_its_rate(tmp_path: Path) -> None:
         stream = iter(source)
         got = [next(stream) for _ in range(11)]
         assert not device.simulator.streaming
-    assert got[-1].time == pytest.approx(10 / 50.0, abs=0.15)
+    assert got[-1].time > 8 / 50.0  # never faster; a look that came late is made up for at most once
 
 
 def test_an_error_of_the_device_says_that_the_pose_is_a_guess(tmp_path: Path) -> None:
