@@ -3,37 +3,60 @@
 #   make test    check and all tests          make bench   measured figures
 #   make check   format, lint, types          make proto   regenerate the messages
 #   make experiments [ARGS=--quick]   the paper's experiments, as a report in reports/
+#   make pins [ARGS=--upgrade]   choose the versions of requirements/ anew
 #   make clean   remove what the above made
 SHELL  := /bin/sh
 SPEED  ?= 4
 ARGS   ?=
-PYTHON ?= $(shell for p in python3.13 python3.12 python3.11 python3 python; do \
-	$$p -c 'import sys; sys.exit(sys.version_info < (3, 11))' >/dev/null 2>&1 && { echo $$p; break; }; done)
 BIN    := .venv/bin
-READY  := .venv/.ready
+# Looked up once, and only where .venv has to be made. The installer is a uv that is there, else the pinned one from
+# PyPI; `make UV=` leaves the work to pip.
+PYTHON ?= $(eval PYTHON := $(shell for p in python3.13 python3.12 python3.11 python3 python; do \
+	$$p -c 'import sys; sys.exit(sys.version_info < (3, 11))' >/dev/null 2>&1 && { echo $$p; break; }; done))$(PYTHON)
+UV     ?= $(eval UV := $(shell uv --version >/dev/null 2>&1 && echo uv || echo $(BIN)/uv))$(UV)
+# Stamps: what the service needs is installed; what checks and tests need is, too.
+SERVICE := .venv/.service
+READY   := .venv/.ready
+# Every file is checked against its hash, and nothing is installed that requirements/ does not name.
+PINNED  := --no-deps --require-hashes -r requirements
 
-.PHONY: demo serve test check bench experiments proto clean setup browser
+.PHONY: demo serve test check bench experiments proto pins clean setup browser
 .DEFAULT_GOAL := help
 
 help:
-	@sed -n '1,7s/^# \{0,1\}//p' Makefile
+	@sed -n '1,8s/^# \{0,1\}//p' Makefile
 
-$(READY): pyproject.toml constraints.txt
-	@test -n "$(PYTHON)" || { echo "teachpath needs Python 3.11 or newer; name it: make PYTHON=/path/to/python3.11"; exit 1; }
-	@$(PYTHON) -m venv .venv 2>.venv.log || { \
-		if command -v apt-get >/dev/null && [ "$$(id -u)" = 0 ]; then apt-get update -q && apt-get install -y -q python3-venv && $(PYTHON) -m venv .venv; \
-		else cat .venv.log; echo "Python has no venv module here; get it with: sudo apt-get install python3-venv"; exit 1; fi; }
-	@rm -f .venv.log
-	@echo "setting up .venv with $$($(PYTHON) --version), this takes a minute or two ..."
-	@$(BIN)/python -m pip install -q --disable-pip-version-check -c constraints.txt -e '.[service,dev]'
+# An environment with pip in it, from scratch where another interpreter's stands; Debian keeps the module that makes one
+# in a package of its own.
+define venv
+	{ $(PYTHON) -m venv .venv 2>.venv.log || $(PYTHON) -m venv --clear .venv 2>.venv.log || { \
+		if command -v apt-get >/dev/null && [ "$$(id -u)" = 0 ]; then apt-get update -q && apt-get install -y -q python3-venv && $(PYTHON) -m venv --clear .venv; \
+		else cat .venv.log; echo "Python has no venv module here; get it with: sudo apt-get install python3-venv"; false; fi; } && rm -f .venv.log; }
+endef
+pip     = $(BIN)/python -m pip install -q --disable-pip-version-check $(1)
+# pip steps in where uv fails: it knows the proxies and package indexes of which only pip was told.
+install = { test -n "$(UV)" && $(UV) pip install -q --python $(BIN)/python $(1); } || \
+	{ { $(BIN)/python -m pip --version >/dev/null 2>&1 || $(venv); } && $(call pip,$(1)); }
+
+$(SERVICE): pyproject.toml requirements/service.txt requirements/uv.txt
+	@test -n "$$(command -v $(PYTHON))" || { echo "teachpath needs Python 3.11 or newer; name it: make PYTHON=/path/to/python3.11"; exit 1; }
+	@echo "setting up .venv with $$($(PYTHON) --version) ..."
+	@case "$(UV)" in "" | $(BIN)/uv) false ;; *) $(UV) venv -q --allow-existing --python "$$(command -v $(PYTHON))" .venv ;; esac || $(venv)
+	@test "$(UV)" != $(BIN)/uv || $(call pip,$(PINNED)/uv.txt) || true
+	@$(call install,$(PINNED)/service.txt)
+	@$(call install,--no-deps --no-build-isolation -e .)
+	@touch $@
+
+$(READY): $(SERVICE) requirements/dev.txt
+	@$(call install,$(PINNED)/dev.txt)
 	@touch $@
 
 setup: $(READY)
 
-demo: $(READY)
+demo: $(SERVICE)
 	@$(BIN)/teachpath demo --speed $(SPEED) $(ARGS)
 
-serve: $(READY)
+serve: $(SERVICE)
 	@$(BIN)/teachpath serve $(ARGS)
 
 check: $(READY)
@@ -56,6 +79,16 @@ bench: $(READY)
 
 experiments: $(READY)
 	@$(BIN)/python -m tests.experiments.run $(ARGS)
+
+# Versions stay where they are unless ARGS says otherwise: --upgrade, or --upgrade-package NAME.
+COMPILE = $(BIN)/uv pip compile -q --universal --python-version 3.11 --fork-strategy fewest --generate-hashes \
+	--no-header --no-annotate --no-emit-index-url $(ARGS)
+pins: $(SERVICE)
+	@$(call install,$(PINNED)/uv.txt)
+	$(COMPILE) --group setup -o requirements/uv.txt
+	$(COMPILE) pyproject.toml --extra service --group build -o requirements/service.txt
+	$(COMPILE) pyproject.toml --extra dev -c requirements/service.txt -o requirements/dev.txt \
+		$$(sed -n 's/^\([a-z0-9-]*\)==.*/--no-emit-package \1/p' requirements/service.txt)
 
 proto: $(READY)
 	cd proto && ../$(BIN)/python -m grpc_tools.protoc -I . --python_out=. --pyi_out=. teachpath_proto/tracker.proto teachpath_proto/motion.proto teachpath_proto/job.proto

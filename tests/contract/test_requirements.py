@@ -1,0 +1,49 @@
+"""The pinned requirements: everything that is asked for has a version and hashes, and no address."""
+
+import re
+import tomllib
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+PYPROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())
+FILES = {name: (ROOT / "requirements" / f"{name}.txt").read_text() for name in ("service", "dev", "uv")}
+
+
+def pinned(text: str) -> list[str]:
+    """Return the names of the distributions that a requirements file pins."""
+    return re.findall(r"^([a-z0-9-]+)==", text, re.MULTILINE)
+
+
+def wanted(*lists: list[str]) -> set[str]:
+    """Return the names of the distributions in lists of requirements, as they are written in a pinned file."""
+    names = (re.match(r"[A-Za-z0-9._-]+", requirement) for asked in lists for requirement in asked)
+    return {re.sub(r"[-_.]+", "-", name[0]).lower() for name in names if name}
+
+
+@pytest.mark.parametrize("name", FILES)
+def test_every_requirement_is_a_version_with_hashes_and_nothing_else(name: str) -> None:
+    lines = FILES[name].replace("\\\n", "").splitlines()
+    assert lines
+    for line in lines:
+        assert re.fullmatch(r"[a-z0-9-]+==[\w.]+( ; [^;@]+?)?( +--hash=sha256:[0-9a-f]{64})+ *", line), line[:100]
+
+
+def test_everything_that_is_asked_for_is_pinned() -> None:
+    extras, groups = PYPROJECT["project"]["optional-dependencies"], PYPROJECT["dependency-groups"]
+    service, dev = set(pinned(FILES["service"])), set(pinned(FILES["dev"]))
+    assert wanted(PYPROJECT["project"]["dependencies"], extras["service"], groups["build"]) <= service
+    assert wanted(extras["dev"], extras["lerobot"]) <= service | dev
+    assert wanted(groups["setup"]) == set(pinned(FILES["uv"]))
+
+
+def test_a_distribution_is_pinned_in_one_place() -> None:
+    names = [name for text in FILES.values() for name in pinned(text)]
+    assert len(names) == len(set(names))
+
+
+def test_what_only_the_server_of_meshcat_needs_is_left_out() -> None:
+    (meshcat,) = PYPROJECT["tool"]["uv"]["dependency-metadata"]
+    assert f"{meshcat['name']}=={meshcat['version']}" in PYPROJECT["project"]["optional-dependencies"]["service"]
+    assert not {"ipython", "jedi", "pyngrok", "tornado", "pyzmq"} & set(pinned(FILES["service"] + FILES["dev"]))
