@@ -80,13 +80,13 @@ class _Story:
 
     def tell(self, *, speed: float, seed: int, recordings: Path | None) -> dict[str, Any]:
         """Tell the whole story and return its summary; raises TeachpathError at the step that failed."""
-        self._wait_ready()
         if recordings is None:
             task, reports = self._show_experiment(speed, seed)
         else:
             task, reports = self._show_recordings(recordings, speed)
         run = self._learn(task)
         plan = self._plan(task, run)
+        self._wait_ready()  # as late as possible: executor and arm come up while the hand shows
         execution = self._execute(plan["id"])
         return _summary(reports, run, plan, execution)
 
