@@ -6,15 +6,11 @@ has no release, so it counts as held for a moment; the kernel's device tells bot
 
 from __future__ import annotations
 
-import errno
-import fcntl
 import os
 import select
 import struct
-import termios
 import threading
 import time
-import tty
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
@@ -23,6 +19,7 @@ from typing import Protocol
 
 from teachpath_client.link import ClientError
 from teachpath_client.reading import HandReading
+from teachpath_client.terminal import Terminal, open_terminal
 
 PEDAL_BIT = 2  # of HandSample.buttons
 HELD = 0.15  # [s] that a key of the terminal counts as held: some samples must carry it
@@ -30,7 +27,8 @@ EVENT = struct.Struct("llHHi")  # struct input_event of linux/input.h: time, typ
 KEY_EVENT, RELEASED, PRESSED = 0x01, 0, 1  # EV_KEY; value 2 repeats a key that is held
 GRAB = 0x40044590  # EVIOCGRAB: nobody else gets the keys, so that the pedal does not type into the terminal
 NAMES = {"space": b" ", "enter": b"\n", "tab": b"\t"}  # of keys that a letter cannot name
-PATIENCE = 0.1  # [s] between looks whether it is over
+KEYS = f"{', '.join(NAMES)}, a letter"
+READ_TIMEOUT = 0.1  # [s] between looks whether it is over
 
 
 class Pedal(Protocol):
@@ -53,33 +51,25 @@ def open_pedal(where: str) -> TerminalPedal | EventPedal:
 
 
 class _Pressed(ABC):
-    """Reads a file descriptor on a thread of its own while the context is open."""
+    """Listens on a thread of its own while the context is open."""
 
-    def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
-        self._clock = clock
+    def __init__(self) -> None:
         self._over = threading.Event()
         self._thread: threading.Thread | None = None
-        self._fd = -1
 
     def _listen(self) -> None:
-        while not self._over.is_set():
-            if not select.select([self._fd], [], [], PATIENCE)[0]:
-                continue
-            try:
-                content = os.read(self._fd, 4096)
-            except BlockingIOError:
-                continue
-            except OSError as error:
-                if error.errno in (errno.ENODEV, errno.EIO):  # it was unplugged: it is not pressed
-                    self._take(b"")
-                return
-            if not content:
-                return
-            self._take(content)
+        with suppress(EOFError):
+            while not self._over.is_set():
+                if content := self._read():
+                    self._take(content)
+
+    @abstractmethod
+    def _read(self) -> bytes:
+        """Return what came, nothing after a moment; raises EOFError when no more can come."""
 
     @abstractmethod
     def _take(self, content: bytes) -> None:
-        """Take what the device has written; nothing when it was unplugged."""
+        """Take what came."""
 
     def _start(self) -> None:
         self._over.clear()
@@ -96,32 +86,32 @@ class _Pressed(ABC):
 class TerminalPedal(_Pressed):
     """One key of the terminal; Ctrl-C still ends the program."""
 
-    def __init__(self, key: str, *, fd: int = 0, clock: Callable[[], float] = time.monotonic) -> None:
-        super().__init__(clock)
+    def __init__(
+        self, key: str, *, terminal: Terminal | None = None, clock: Callable[[], float] = time.monotonic
+    ) -> None:
+        super().__init__()
         self._key = NAMES.get(key, key.encode())
         if len(self._key) != 1:
-            raise ClientError(
-                f"--pedal {key} is no key: name {', '.join(NAMES)}, a letter, or a device like /dev/input/event5"
-            )
-        self._fd = fd
+            raise ClientError(f"--pedal {key} is no key: name {KEYS}, or a device like /dev/input/event5")
+        self._terminal, self._clock = terminal or open_terminal(), clock
         self._until = float("-inf")
 
     def __enter__(self) -> TerminalPedal:
-        if not os.isatty(self._fd):
-            raise ClientError("--pedal needs a terminal to read the key from; name a device such as /dev/input/event5")
-        self._before = termios.tcgetattr(self._fd)
-        tty.setcbreak(self._fd)
+        self._terminal.__enter__()
         self._start()
         return self
 
     def __exit__(self, *_: object) -> None:
         self._stop()
-        termios.tcsetattr(self._fd, termios.TCSANOW, self._before)
+        self._terminal.__exit__(None, None, None)
 
     @property
     def is_down(self) -> bool:
         """Whether the key came a moment ago."""
         return self._clock() < self._until
+
+    def _read(self) -> bytes:
+        return self._terminal.read(READ_TIMEOUT)
 
     def _take(self, content: bytes) -> None:
         if self._key in content.replace(b"\r", b"\n"):
@@ -129,15 +119,19 @@ class TerminalPedal(_Pressed):
 
 
 class EventPedal(_Pressed):
-    """A pedal's own device; any of its keys counts. Nobody else gets its keys meanwhile."""
+    """A pedal's own device, on Linux; any of its keys counts. Nobody else gets its keys meanwhile."""
 
     def __init__(self, path: str) -> None:
         super().__init__()
-        self._path = path
+        self._path, self._fd = path, -1
         self._down: set[int] = set()
         self._rest = b""
 
     def __enter__(self) -> EventPedal:
+        try:
+            import fcntl
+        except ImportError:
+            raise ClientError(f"--pedal {self._path}: devices are read on Linux alone; name a key: {KEYS}") from None
         try:
             self._fd = os.open(self._path, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC)
         except OSError as error:
@@ -158,9 +152,21 @@ class EventPedal(_Pressed):
         """Whether one of its keys is pressed."""
         return bool(self._down)
 
-    def _take(self, content: bytes) -> None:
+    def _read(self) -> bytes:
+        if not select.select([self._fd], [], [], READ_TIMEOUT)[0]:
+            return b""
+        try:
+            content = os.read(self._fd, 4096)
+        except BlockingIOError:
+            return b""
+        except OSError as error:
+            self._down.clear()  # it was unplugged: it is not pressed
+            raise EOFError(str(error)) from None
         if not content:
-            self._down.clear()
+            raise EOFError("it has closed")
+        return content
+
+    def _take(self, content: bytes) -> None:
         self._rest += content
         whole = len(self._rest) - len(self._rest) % EVENT.size
         for _, _, kind, code, value in EVENT.iter_unpack(self._rest[:whole]):

@@ -1,21 +1,16 @@
-"""A serial line: a tty opened raw, read with a timeout; works for serial ports, USB adapters and ptys alike."""
+"""A serial line, read with a timeout: a serial port, a USB adapter or a pseudo-terminal."""
 
 from __future__ import annotations
 
-import fcntl
+import errno
 import os
-import select
-import termios
-import tty
+
+from serial import Serial
 
 from teachpath_client.link import ClientError
 
-BAUDS = {
-    rate: int(getattr(termios, f"B{rate}")) for rate in (1200, 2400, 4800, 9600, 19200, 38400, 57600, 115200, 230400)
-}
-CHUNK = 4096  # bytes a read takes at most
-STUCK = 1.0  # [s] after which a line that takes no bytes counts as lost
-INPUT_SPEED, OUTPUT_SPEED = 4, 5  # places in what tcgetattr returns
+BAUD_RATES = (1200, 2400, 4800, 9600, 19200, 38400, 57600, 115200, 230400)
+WRITE_TIMEOUT = 1.0  # [s] after which a line that takes no bytes counts as lost
 
 
 class SerialLine:
@@ -26,63 +21,49 @@ class SerialLine:
     """
 
     def __init__(self, path: str, baud: int = 115200) -> None:
-        if baud not in BAUDS:
-            raise ClientError(f"{baud} baud is no speed of a serial line; there are {', '.join(map(str, BAUDS))}")
+        if baud not in BAUD_RATES:
+            known = ", ".join(map(str, BAUD_RATES))
+            raise ClientError(f"{baud} baud is no speed of a serial line; there are {known}")
         self.path, self.baud = path, baud
-        self._fd = -1
+        self._port = Serial()
 
     def open(self) -> None:
-        """Open the port for this process alone, raw, with nothing of old in it."""
+        """Open the port for this process alone, with nothing of old in it."""
         self.close()
         try:
-            self._fd = os.open(self.path, os.O_RDWR | os.O_NOCTTY | os.O_NONBLOCK | os.O_CLOEXEC)
             # Two readers of one line would each get half of every record.
-            fcntl.flock(self._fd, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            tty.setraw(self._fd)
-            attributes = termios.tcgetattr(self._fd)
-            attributes[INPUT_SPEED] = attributes[OUTPUT_SPEED] = BAUDS[self.baud]
-            control = int(attributes[2]) & ~(termios.CSTOPB | termios.CRTSCTS)
-            attributes[2] = control | termios.CLOCAL | termios.CREAD
-            termios.tcsetattr(self._fd, termios.TCSANOW, attributes)
-            termios.tcflush(self._fd, termios.TCIOFLUSH)
-        except BlockingIOError:
+            self._port = Serial(self.path, self.baud, exclusive=True, write_timeout=WRITE_TIMEOUT)
+            self._port.reset_output_buffer()
+        except Exception as error:  # termios.error too, which pyserial lets pass: Windows has no such name
             self.close()
-            raise ClientError(f"another program is using {self.path}; end it first") from None
-        except (OSError, termios.error) as error:
-            self.close()
-            raise ClientError(f"cannot open {self.path} as a serial line: {error}; is the device plugged in?") from None
+            number = getattr(error, "errno", None)
+            if number in (errno.EAGAIN, errno.EWOULDBLOCK):
+                raise ClientError(f"another program is using {self.path}; end it first") from None
+            reason = os.strerror(number) if number else error
+            raise ClientError(
+                f"cannot open {self.path} as a serial line: {reason}; is the device plugged in?"
+            ) from None
 
     def close(self) -> None:
         """Let go of the port; a second call does nothing."""
-        fd, self._fd = self._fd, -1
-        if fd >= 0:
-            os.close(fd)
+        self._port.close()
 
     def read(self, timeout: float) -> bytes:
         """Return the bytes that came, as soon as there are any; none after `timeout` [s]."""
         try:
-            if not select.select([self._fd], [], [], timeout)[0]:
-                return b""
-            content = os.read(self._fd, CHUNK)
-        except BlockingIOError:
-            return b""
+            if self._port.timeout != timeout:  # setting it configures the port anew
+                self._port.timeout = timeout
+            first: bytes = self._port.read(1)
+            return first + self._port.read(self._port.in_waiting) if first else b""
         except (OSError, ValueError) as error:
             raise self._lost(error) from None
-        if not content:
-            raise self._lost("it hung up")
-        return content
 
     def write(self, content: bytes) -> None:
         """Send bytes."""
-        while content:
-            try:
-                if not select.select([], [self._fd], [], STUCK)[1]:
-                    raise self._lost(f"it took no bytes for {STUCK:g} s")
-                content = content[os.write(self._fd, content) :]
-            except BlockingIOError:
-                continue
-            except (OSError, ValueError) as error:
-                raise self._lost(error) from None
+        try:
+            self._port.write(content)
+        except (OSError, ValueError) as error:
+            raise self._lost(error) from None
 
     def _lost(self, reason: object) -> ClientError:
         return ClientError(f"the device at {self.path} is gone: {reason}")

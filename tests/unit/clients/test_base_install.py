@@ -5,6 +5,8 @@ import subprocess
 import sys
 from importlib.metadata import PackageNotFoundError, distribution, packages_distributions, requires
 
+import pytest
+
 from tests.waiting import HANG
 
 GUARD = """
@@ -30,6 +32,26 @@ HELP = """
 import runpy
 sys.argv = ["teachpath-client", "--help"]
 runpy.run_module("teachpath_client", run_name="__main__")
+"""
+# Windows has none of these. pyserial and asyncio choose their parts by the system, so they are loaded before.
+WINDOWS = """
+import sys, asyncio, serial
+for name in ("fcntl", "termios", "tty", "pty", "pwd", "grp", "resource"):
+    sys.modules[name] = None
+"""
+WITHOUT_EMULATORS = """
+import pkgutil, importlib, teachpath_client
+for module in pkgutil.walk_packages(teachpath_client.__path__, "teachpath_client."):
+    if not module.name.endswith(".emulators"):  # devices on pseudo-terminals, for tests
+        importlib.import_module(module.name)
+"""
+EVENT_PEDAL = """
+from teachpath_client.link import ClientError
+from teachpath_client.pedal import open_pedal
+try:
+    open_pedal("/dev/input/event5").__enter__()
+except ClientError as error:
+    print(error)
 """
 
 
@@ -66,7 +88,7 @@ def run(code: str) -> subprocess.CompletedProcess[str]:
 
 
 def test_the_guard_keeps_the_service_and_its_dependencies_out() -> None:
-    for name in ("teachpath", "scipy", "fastapi", "sqlalchemy", "mujoco", "annotated_types", "serial"):
+    for name in ("teachpath", "scipy", "fastapi", "sqlalchemy", "mujoco", "annotated_types", "matplotlib"):
         ended = run(f"import {name}")
         assert ended.returncode == 1
         assert "is not in the base install" in ended.stderr
@@ -88,3 +110,11 @@ def test_the_command_line_helps() -> None:
     assert ended.returncode == 0, ended.stderr
     for command in ("tracker", "sources", "glove-calibrate", "synthetic", "replay"):
         assert command in ended.stdout
+
+
+@pytest.mark.parametrize("code", [WITHOUT_EMULATORS, SYNTHETIC, HELP, EVENT_PEDAL])
+def test_the_client_needs_no_module_that_windows_lacks(code: str) -> None:
+    ended = run(WINDOWS + code)
+    assert (ended.returncode, ended.stderr) == (0, "")
+    if code is EVENT_PEDAL:
+        assert "devices are read on Linux alone; name a key: space, enter, tab, a letter" in ended.stdout

@@ -12,6 +12,7 @@ from teachpath_client.__main__ import main
 from teachpath_client.link import ClientError
 from teachpath_client.pedal import EVENT, KEY_EVENT, PEDAL_BIT, EventPedal, TerminalPedal, open_pedal, with_pedal
 from teachpath_client.reading import HandReading
+from teachpath_client.terminal import PosixTerminal, WindowsConsole
 from tests.unit.clients.devices.readings import readings, until
 
 
@@ -41,7 +42,7 @@ def event(value: int, code: int = 57, kind: int = KEY_EVENT) -> bytes:
 @pytest.mark.parametrize(("key", "typed"), [("space", b" "), ("enter", b"\r"), ("b", b"xyb")])
 def test_a_key_of_the_terminal_is_held_for_a_moment(terminal: tuple[int, int], key: str, typed: bytes) -> None:
     now = [0.0]
-    with TerminalPedal(key, fd=terminal[1], clock=lambda: now[0]) as pedal:
+    with TerminalPedal(key, terminal=PosixTerminal(terminal[1]), clock=lambda: now[0]) as pedal:
         os.write(terminal[0], b"q")
         assert not pedal.is_down
         os.write(terminal[0], typed)
@@ -52,10 +53,40 @@ def test_a_key_of_the_terminal_is_held_for_a_moment(terminal: tuple[int, int], k
 
 def test_the_terminal_is_left_as_it_was_and_ctrl_c_works_meanwhile(terminal: tuple[int, int]) -> None:
     before = termios.tcgetattr(terminal[1])
-    with TerminalPedal("space", fd=terminal[1]):
+    with TerminalPedal("space", terminal=PosixTerminal(terminal[1])):
         assert termios.tcgetattr(terminal[1])[3] & termios.ISIG
         assert not termios.tcgetattr(terminal[1])[3] & (termios.ICANON | termios.ECHO)
     assert termios.tcgetattr(terminal[1]) == before
+
+
+class Typed:
+    """A Windows console on which all this was typed."""
+
+    def __init__(self, *keys: bytes) -> None:
+        self._bytes = [key[i : i + 1] for key in keys for i in range(len(key))]
+
+    def kbhit(self) -> bool:
+        return bool(self._bytes)
+
+    def getch(self) -> bytes:
+        return self._bytes.pop(0)
+
+
+def test_a_windows_console_gives_keys_one_by_one_and_no_code_of_a_key_without_a_character() -> None:
+    now = [0.0]
+
+    def sleep(seconds: float) -> None:
+        now[0] += seconds
+
+    up = b"\xe0H"
+    with WindowsConsole(Typed(b"b", up, b" "), is_console=True, sleep=sleep, clock=lambda: now[0]) as console:
+        assert [console.read(0.1) for _ in range(4)] == [b"b", b"", b" ", b""]
+    assert 0.1 <= now[0] < 0.2
+
+
+def test_a_key_of_a_windows_console_is_a_pedal() -> None:
+    with TerminalPedal("enter", terminal=WindowsConsole(Typed(b"b\r"), is_console=True), clock=lambda: 0.0) as pedal:
+        until(lambda: pedal.is_down, "Enter was typed")
 
 
 def test_a_device_is_down_from_press_to_release(device: tuple[Path, int]) -> None:
@@ -89,8 +120,10 @@ def test_what_is_no_pedal_is_said(tmp_path: Path) -> None:
         open_pedal(str(tmp_path / "none")).__enter__()
     read, write = os.pipe()
     with pytest.raises(ClientError, match="needs a terminal"):
-        TerminalPedal("space", fd=read).__enter__()
+        TerminalPedal("space", terminal=PosixTerminal(read)).__enter__()
     os.close(read)
     os.close(write)
+    with pytest.raises(ClientError, match="needs a terminal"):
+        TerminalPedal("space", terminal=WindowsConsole(Typed(), is_console=False)).__enter__()
     with pytest.raises(SystemExit):
         main(["tracker", "--source", "synthetic", "--takes", "-1"])
