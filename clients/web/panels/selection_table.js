@@ -13,7 +13,7 @@ const COLUMNS = {
 // In the mode of the paper ranks go by the log-likelihood, else by z.
 const SHOWN = { default: ["rank", "z", "margin", "likelihood"], other: ["rank", "likelihood", "margin"] };
 const NOTES = {
-  default: "Ranked by z: how far one is from the others of its way in course, shape, smoothness and bends, in robust standard deviations; 0 is like them or better.",
+  default: "Ranked by z: how far one is from the others of its way in course, shape, smoothness and bending, in robust standard deviations; 0 is like them or better.",
   other: "Ranked by the log-likelihood under the model of the way.",
 };
 const figure = (value, digits) => (value === null ? "" : number(value, digits));

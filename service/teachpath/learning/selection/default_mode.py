@@ -3,24 +3,26 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
+from teachpath.learning.selection.consistency import MODEL_STATES, ConsistencyScores, score_consistency
 from teachpath.learning.selection.deviations import describe_deviation
-from teachpath.learning.selection.features import FeatureSet, extract_features
+from teachpath.learning.selection.features import Feature, FeatureSet, extract_features
+from teachpath.learning.selection.gaussian_hmm import TrainingBudget, train_model
 from teachpath.learning.selection.paper_mode import unscored
-from teachpath.learning.selection.scoring import ConsistencyScores, TrainingBudget, score_consistency, train_model
 from teachpath.learning.settings import LearningSettings, StepCallback
-from teachpath.records import Cluster, Score, Trajectory
+from teachpath.records import Cluster, Deviation, Score, Trajectory
 
-MIN_RELIABLE_MEMBERS = 4  # members below which the ranking is unreliable
-SMALL_CLUSTER_FACTOR = 1.5  # factor on the limit for so few
-MAX_FOLDS = 10  # above THOROUGH members a model is trained per fold, not per member
-MAX_LEAVE_ONE_OUT = 30
+MIN_RELIABLE_MEMBERS = 4  # below which the ranking is unreliable
+SMALL_CLUSTER_FACTOR = 1.5  # on the limit of z for so few members
+MAX_LEAVE_ONE_OUT = 30  # members up to which each is scored by models of all others
+MAX_FOLDS = 10  # above
 REPETITION_FOLDS = 5
 REPETITION_BUDGET = TrainingBudget(iterations=2, sequences=15)
-MAX_COMPARED_MEMBERS = 50  # others at most that the words about a departure are found by
-HOLDOUT_SHARE = 0.2  # share of the members that a repetition leaves out, at least one
+MAX_COMPARED_MEMBERS = 50  # with which the words about a deviation compare
+HOLDOUT_SHARE = 0.2  # of the members that a repetition leaves out, at least one
 
 Ranking = list[tuple[int, bool]]  # member and whether it is selected, most consistent first
 
@@ -28,53 +30,60 @@ Ranking = list[tuple[int, bool]]  # member and whether it is selected, most cons
 def select(
     index: int, members: Mapping[str, Trajectory], settings: LearningSettings, *, on_step: StepCallback
 ) -> Cluster:
-    """Rank the members of a cluster by consistency and keep all that are not inconsistent.
+    """Rank the members of a cluster by consistency and select all that are not inconsistent.
 
-    Every member is scored by models trained on the others: a model cannot be lenient to what it never saw; in their
-    smoothness also by models of the better half, so that two that shake do not excuse each other. The
-    scores per frame of three kinds of features, course, shape and smoothness, become robust z values, and so does what
-    its bends have that those of the others have not; their sum, better than the median counting as the median, is the
-    measure.
+    `consistency.py` defines the measure. A member is inconsistent when its measure is below `settings.inconsistent`;
+    with two or three members the limit is half as much again, because so few scores say little about their spread.
 
     Args:
         index: number of the cluster.
         members: id -> trajectory.
-        settings: `keep` members are kept at least, and all above `inconsistent`, which is half as much again for two
-            or three members, for the spread of so few scores says little; `repeats` is for the stability.
-        on_step: called after each model trained, and three times for each member.
+        settings: at least `keep` members are selected; `repeats` repetitions with other members left out count how
+            stable the selection is.
+        on_step: called after each trained model, and three times for each member.
     """
     names = sorted(members)
     if len(names) == 1:
         return unscored(index, names, "one demonstration only: nothing to compare it with")
     trajectories = [members[name] for name in names]
-    kinds = extract_features(trajectories, settings.period, on_step)
+    features = extract_features(trajectories, settings.period, on_step)
     notes = []
-    if kinds[-1].kind != "smoothness":
-        notes.append("a demonstration is shorter than the analysis window: judged by course, shape and bends only")
+    if Feature.SMOOTHNESS not in features:
+        notes.append("a demonstration is shorter than the analysis window: judged by course, shape and bending only")
     if len(names) < MIN_RELIABLE_MEMBERS:
         notes.append(f"{len(names)} demonstrations: too few for a reliable ranking")
-    judgement = score_consistency(
-        kinds, range(len(names)), _folds(len(names)), effort=TrainingBudget(), on_step=on_step
-    )
-    stabilities = _stabilities(kinds, len(names), settings, on_step)
-    limit = _limit(len(names), settings)
+    everybody = range(len(names))
+    consistency = score_consistency(features, everybody, _folds(len(names)), budget=TrainingBudget(), on_step=on_step)
+    stabilities = _stabilities(features, len(names), settings, on_step)
+    judged = _Judged(names, trajectories, features, consistency, _limit(len(names), settings))
     scores = []
-    for rank, (i, keep) in enumerate(_ranked(judgement, settings)):
-        scores.append(_score(names[i], i, rank, keep, judgement, stabilities, limit, kinds, trajectories))
+    for rank, (i, selected) in enumerate(_ranking(consistency, settings)):
+        scores.append(_score(judged, i, rank, selected, stabilities[i]))
         on_step()
-    history = train_model(kinds[0].sequences, kinds[0].states, TrainingBudget()).history
+    history = _convergence(features)
     on_step()
     return Cluster(index, tuple(score.demonstration for score in scores), tuple(scores), history, "; ".join(notes))
 
 
 def step_count(sizes: Sequence[int], repeats: int) -> int:
-    """Return how often `select` ticks at most for clusters of these sizes."""
+    """Return how many steps `select` reports at most for clusters of these sizes."""
     total = 0
     for size in sizes:
         if size > 1:
-            again = len(_drops(size, repeats, 0)) * (4 * min(size - 1, REPETITION_FOLDS) + 2)
+            again = len(_holdouts(size, repeats, 0)) * (4 * min(size - 1, REPETITION_FOLDS) + 2)
             total += 4 * _folds(size) + 2 + again + 1 + 3 * size
     return total
+
+
+@dataclass(frozen=True, eq=False)
+class _Judged:
+    """The members of a cluster with what is known of their consistency, and the limit of the measure."""
+
+    names: Sequence[str]
+    trajectories: Sequence[Trajectory]
+    features: Mapping[Feature, FeatureSet]
+    consistency: ConsistencyScores
+    limit: float
 
 
 def _folds(count: int) -> int:
@@ -85,15 +94,16 @@ def _limit(count: int, settings: LearningSettings) -> float:
     return settings.inconsistent * (SMALL_CLUSTER_FACTOR if count < MIN_RELIABLE_MEMBERS else 1)
 
 
-def _ranked(judgement: ConsistencyScores, settings: LearningSettings) -> Ranking:
-    limit = _limit(len(judgement.order), settings)
+def _ranking(consistency: ConsistencyScores, settings: LearningSettings) -> Ranking:
+    limit = _limit(len(consistency.order), settings)
     return [
-        (int(i), rank < settings.keep or bool(judgement.total[i] >= limit)) for rank, i in enumerate(judgement.order)
+        (int(i), rank < settings.keep or bool(consistency.total[i] >= limit))
+        for rank, i in enumerate(consistency.order)
     ]
 
 
-def _drops(count: int, repeats: int, seed: int) -> list[set[int]]:
-    """Return which members each repetition leaves out; nobody can be missed among three."""
+def _holdouts(count: int, repeats: int, seed: int) -> list[set[int]]:
+    """Return which members each repetition leaves out; of three or fewer members none can be spared."""
     if count < MIN_RELIABLE_MEMBERS:
         return []
     rng = np.random.default_rng(seed)
@@ -104,45 +114,53 @@ def _drops(count: int, repeats: int, seed: int) -> list[set[int]]:
 
 
 def _stabilities(
-    kinds: Sequence[FeatureSet], count: int, settings: LearningSettings, on_step: StepCallback
+    features: Mapping[Feature, FeatureSet], count: int, settings: LearningSettings, on_step: StepCallback
 ) -> list[float | None]:
-    """Return for every member the share of repetitions with it in which it is selected."""
-    taken, kept = np.zeros(count, dtype=int), np.zeros(count, dtype=int)
-    for dropped in _drops(count, settings.repeats, settings.seed):
-        rest = [i for i in range(count) if i not in dropped]
+    """Return for every member the share of the repetitions with it in which it is selected."""
+    scored = np.zeros(count, dtype=int)
+    selected = np.zeros(count, dtype=int)
+    for holdout in _holdouts(count, settings.repeats, settings.seed):
+        rest = [i for i in range(count) if i not in holdout]
         folds = min(len(rest), REPETITION_FOLDS)
-        judgement = score_consistency(kinds, rest, folds, effort=REPETITION_BUDGET, on_step=on_step)
-        for place, keep in _ranked(judgement, settings):
-            taken[rest[place]] += 1
-            kept[rest[place]] += keep
-    return [float(k / n) if n else None for k, n in zip(kept, taken, strict=True)]
+        consistency = score_consistency(features, rest, folds, budget=REPETITION_BUDGET, on_step=on_step)
+        for place, keep in _ranking(consistency, settings):
+            scored[rest[place]] += 1
+            selected[rest[place]] += keep
+    return [float(k / n) if n else None for k, n in zip(selected, scored, strict=True)]
 
 
-def _score(
-    name: str,
-    i: int,
-    rank: int,
-    keep: bool,
-    judgement: ConsistencyScores,
-    stabilities: Sequence[float | None],
-    limit: float,
-    kinds: Sequence[FeatureSet],
-    trajectories: Sequence[Trajectory],
-) -> Score:
-    measure, order = judgement.total, judgement.order
-    found, note = None, ""
-    if measure[i] < limit / 2:
-        # Shaking shows in course and shape too, but not the other way round.
-        worst = -1 if judgement.z[-1, i] < limit else int(np.argmin(judgement.z[:, i]))
-        others = [trajectory for k, trajectory in enumerate(trajectories) if k != i][:MAX_COMPARED_MEMBERS]
-        profiles = judgement.profiles[worst]
-        usual = float(np.median(np.concatenate([profile for k, profile in enumerate(profiles) if k != i])))
-        kind = kinds[worst]
-        found = describe_deviation(
-            trajectories[i], others, kind.kind, profile=profiles[i], times=kind.times[i], usual=usual
-        )
-        if measure[i] < limit:
-            note = f"inconsistent in its {kind.kind} (z {measure[i]:.1f}): {found.sentence}"
-    likelihood = sum(float(row[i].sum()) for row in judgement.profiles)
+def _convergence(features: Mapping[Feature, FeatureSet]) -> tuple[float, ...]:
+    """Return the log-likelihoods while a model of the course of all members is trained (Fig. 4)."""
+    return train_model(features[Feature.COURSE].sequences, MODEL_STATES[Feature.COURSE], TrainingBudget()).history
+
+
+def _score(judged: _Judged, i: int, rank: int, selected: bool, stability: float | None) -> Score:
+    consistency = judged.consistency
+    measure, order = consistency.total, consistency.order
+    deviation, note = None, ""
+    if measure[i] < judged.limit / 2:
+        feature = _worst_feature(consistency, i, judged.limit)
+        deviation = _deviation(judged, i, feature)
+        if measure[i] < judged.limit:
+            note = f"inconsistent in its {feature} (z {measure[i]:.1f}): {deviation.sentence}"
+    likelihood = sum(float(row[i].sum()) for row in consistency.profiles.values())
     margin = float(measure[i] - measure[order[rank + 1]]) if rank + 1 < len(order) else None
-    return Score(name, likelihood, rank + 1, keep, note, margin, float(measure[i]), stabilities[i], found)
+    return Score(judged.names[i], likelihood, rank + 1, selected, note, margin, float(measure[i]), stability, deviation)
+
+
+def _worst_feature(consistency: ConsistencyScores, i: int, limit: float) -> Feature:
+    """Return the feature in which a member differs most.
+
+    Shaking shows in course and shape too, but not the other way round, so the last feature goes first.
+    """
+    features = list(consistency.z)
+    z = [float(of[i]) for of in consistency.z.values()]
+    return features[-1] if z[-1] < limit else features[int(np.argmin(z))]
+
+
+def _deviation(judged: _Judged, i: int, feature: Feature) -> Deviation:
+    others = [trajectory for k, trajectory in enumerate(judged.trajectories) if k != i][:MAX_COMPARED_MEMBERS]
+    profiles = judged.consistency.profiles[feature]
+    usual = float(np.median(np.concatenate([profile for k, profile in enumerate(profiles) if k != i])))
+    times = judged.features[feature].times[i]
+    return describe_deviation(judged.trajectories[i], others, feature, profile=profiles[i], times=times, usual=usual)

@@ -9,6 +9,7 @@ from scipy.ndimage import binary_closing, median_filter
 from scipy.signal import savgol_filter
 
 from teachpath.learning.resampling import arc_lengths, at_equal_arc_length, smoothed
+from teachpath.learning.selection.features import Feature
 from teachpath.records import Array, Deviation, Trajectory
 
 MIN_DEFICIT_SHARE = 0.25  # share of the largest deficit that a frame must have to be odd too
@@ -26,28 +27,34 @@ SPAN_MARGIN = 0.4  # s, around the span that is looked at
 
 
 def describe_deviation(
-    trajectory: Trajectory, others: Sequence[Trajectory], kind: str, *, profile: Array, times: Array, usual: float
+    trajectory: Trajectory,
+    others: Sequence[Trajectory],
+    feature: Feature,
+    *,
+    profile: Array,
+    times: Array,
+    usual: float,
 ) -> Deviation:
     """Return where a demonstration is unlikeliest and what is odd about it there.
 
     Args:
         trajectory: of the demonstration.
         others: of the other members of its cluster.
-        kind: in which it differs most: course, shape, bends or smoothness.
-        profile: (frames,) log-likelihoods of its frames in the features of that kind.
+        feature: in which it differs most.
+        profile: (frames,) log-likelihoods of its frames in that feature.
         times: (frames,) [s] of these frames, since the first sample.
         usual: log-likelihood of a frame of the others.
     """
     since = trajectory.times - trajectory.times[0]
     s = arc_lengths(smoothed(trajectory))
     away, within = _beside(trajectory, others)
-    if kind in ("shape", "bends") and np.any(away > within):
+    if feature in (Feature.SHAPE, Feature.BENDING) and np.any(away > within):
         # A bow taken off a path with a detour is spread along all of it; the distance says where the detour is.
         profile, usual = within - away, 0.0
         times = np.interp(np.linspace(0.0, s[-1], PATH_POINTS), s, since)
     begin, end = _span(profile, times, usual)
     share = (float(np.interp(begin, since, s) / s[-1]), float(np.interp(end, since, s) / s[-1]))
-    what = _told(trajectory, others, kind, (begin, end), _worst(away, within, share))
+    what = _told(trajectory, others, feature, (begin, end), _worst(away, within, share))
     sentence = f"{what}, {begin:.1f} to {end:.1f} s after the grasp, at {share[0]:.0%} to {share[1]:.0%} of its way"
     return Deviation(share, (begin, end), sentence)
 
@@ -69,7 +76,7 @@ def _span(profile: Array, times: Array, usual: float) -> tuple[float, float]:
 def _told(
     trajectory: Trajectory,
     others: Sequence[Trajectory],
-    kind: str,
+    feature: Feature,
     seconds: tuple[float, float],
     beside: tuple[float, float],
 ) -> str:
@@ -101,13 +108,13 @@ def _told(
         return f"stands still for {still:.1f} s"
     shake, rate = _shaking(trajectory.positions, since, inside)
     normal = float(np.median([_shaking(other.positions, other.times - other.times[0])[0] for other in others]))
-    trembles = shake > 1.1 * normal and kind == "smoothness"
+    trembles = shake > 1.1 * normal and feature is Feature.SMOOTHNESS
     if trembles or shake > max(2 * normal, MIN_SHAKING_SHARE * away):
         word = "shakes" if rate < MIN_TREMOR_RATE else "trembles"
         return f"{word} by {shake * 100:.1f} cm about {rate:.0f} times a second"
     if away > 1.5 * usual:
         return f"runs up to {away * 100:.1f} cm beside the others, who stay within {usual * 100:.1f} cm"
-    if kind == "bends":
+    if feature is Feature.BENDING:
         return "bends as none of the others does, though not far beside them"
     return "is in another place than the others at that time: quicker, slower or beside them"
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -11,6 +13,33 @@ from teachpath.learning.selection.hmm import LOG_2PI, LeftRightHmm
 from teachpath.records import Array
 
 SINGLE_SEQUENCE_FACTOR = 4.0  # factor on the variance of a model of one sequence
+VARIANCE_FLOOR_SHARE = 0.02  # of the overall variance, which the variance of the states keeps at least
+
+
+@dataclass(frozen=True)
+class TrainingBudget:
+    """Limits of the training of one model; measured, more iterations or sequences make no better model.
+
+    Attributes:
+        iterations: of Baum-Welch, at most.
+        sequences: that the model is trained on, at most.
+    """
+
+    iterations: int = 8
+    sequences: int = 30
+
+
+def train_model(sequences: Sequence[Array], states: int, budget: TrainingBudget) -> TiedGaussianHmm:
+    """Train a model on sequences of shape (frames, features); of too many, evenly picked ones are taken."""
+    if len(sequences) > budget.sequences:
+        sequences = [sequences[i] for i in np.linspace(0, len(sequences) - 1, budget.sequences).astype(int)]
+    variance = np.concatenate(sequences).var(axis=0)
+    # A direction in which nothing moves must not weigh more than the others.
+    floor = np.maximum(VARIANCE_FLOOR_SHARE * variance, 1e-3 * VARIANCE_FLOOR_SHARE * variance.max() + 1e-12)
+    model = TiedGaussianHmm(floor, states=states, iterations=budget.iterations)
+    model.train(sequences)
+    model.widen(len(sequences))
+    return model
 
 
 class TiedGaussianHmm(LeftRightHmm):

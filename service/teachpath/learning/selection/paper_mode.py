@@ -11,8 +11,8 @@ from dataclasses import replace
 
 import numpy as np
 
+from teachpath.learning.selection.consistency import robust_z
 from teachpath.learning.selection.mixture_hmm import MixtureHmm
-from teachpath.learning.selection.scoring import robust_z
 from teachpath.learning.selection.symbols import WINDOW, spectra, symbol_sequences
 from teachpath.learning.settings import LearningSettings, StepCallback
 from teachpath.records import Array, Cluster, Score

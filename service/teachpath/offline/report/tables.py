@@ -55,7 +55,7 @@ def selection(review: Review) -> str:
                 ]
             )
     ranked = (
-        "Ranked by z: how far one is from the others of its way in course, shape, smoothness and bends, in robust "
+        "Ranked by z: how far one is from the others of its way in course, shape, smoothness and bending, in robust "
         "standard deviations; 0 is like them or better."
         if review.run.learned.mode == "default"
         else "Ranked by the log-likelihood under the model of the way."

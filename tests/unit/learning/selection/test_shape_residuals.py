@@ -1,11 +1,12 @@
-"""What bends tell: a detour is found, while pace and slow drift say nothing, in whatever frame, unit or direction."""
+"""Excess bending: a detour is found, while pace and slow drift say nothing, in whatever frame, unit or direction."""
 
 from __future__ import annotations
 
 import numpy as np
 
 from teachpath.learning.resampling import smoothed
-from teachpath.learning.selection.shape_residuals import courses, score_bending
+from teachpath.learning.selection.features import courses
+from teachpath.learning.selection.shape_residuals import score_bending
 from teachpath.records import Array
 from tests.unit.learning import synthetic
 
