@@ -22,7 +22,7 @@ from teachpath.errors import NotFound
 from teachpath.io.bus import Bus, listen_on_bus
 from teachpath.io.bus_access import prepare_access
 from teachpath.io.store.store import Store
-from teachpath.io.wire import report_document
+from teachpath.io.wire import recording_document
 from teachpath.jobs import worker
 from teachpath.jobs.curve_assessor import CurveAssessor
 from teachpath.jobs.jobs import JobKind, Jobs
@@ -35,7 +35,8 @@ from teachpath.offline.lock import StationLock
 from teachpath.recorder.annotations import Annotations
 from teachpath.recorder.calibrations import Calibrations
 from teachpath.recorder.guidance import GuidanceThread
-from teachpath.recorder.recorder import Recorder
+from teachpath.recorder.queries import RecorderQueries
+from teachpath.recorder.recorder import DemonstrationCallbacks, Lookup, Recorder
 from teachpath.recorder.websocket_trackers import WebSocketTrackers
 from teachpath.records import Demonstration, Job, Learned, Plan, Trajectory
 from teachpath.robot.executions import Executions
@@ -81,11 +82,13 @@ class Station:
             self.keys,
             self.store,
             settings.recording,
-            scene=settings.scene,
-            calibration=self.calibrations.get,
-            on_demonstration=lambda demonstration, trajectory: self._turn_to(demonstration.task),
-            on_change=lambda demonstration: self._turn_to(demonstration.task),
+            Lookup(scene=settings.scene, calibration=self.calibrations.get),
+            DemonstrationCallbacks(
+                added=lambda demonstration, trajectory: self._show_task(demonstration.task),
+                changed=lambda demonstration: self._show_task(demonstration.task),
+            ),
         )
+        self._queries = RecorderQueries(self.bus, self.keys, self.recorder)
         self.guidance = GuidanceThread(self.store.demonstrations, self.trajectory, settings.learning)
         self.jobs = Jobs(self.bus, self.keys, self.store, settings.jobs, self._kinds())
         self.assessor = CurveAssessor()
@@ -98,7 +101,7 @@ class Station:
             visual_solids(),
             robot=settings.bus.robot,
             home=np.array(settings.motion.home),
-            hands=self.recorder.hands,
+            statuses=self.recorder.shown_statuses,
         )
         ours = {"simulator": Role.ROBOT, "executor": Role.EXECUTOR}
         if not settings.simulator.start:
@@ -120,6 +123,7 @@ class Station:
             self.preview.start()
             self.guidance.start()
             self.recorder.start()
+            self._queries.start()
             self.executions.start()
             self.joints.start()
             self._state_poller.start()
@@ -127,7 +131,7 @@ class Station:
                 process.start()
             self.jobs.start()
             if tasks := self.store.tasks():
-                self._turn_to(tasks[-1].name)
+                self._show_task(tasks[-1].name)
             else:
                 self.preview.show_object(self.settings.scenes[0].carried)
         except BaseException:
@@ -141,6 +145,7 @@ class Station:
         self._state_poller.stop()
         for process in self.processes:
             process.request_stop()
+        self._queries.stop()
         self.recorder.stop()
         self.guidance.stop()
         self.jobs.stop()
@@ -165,7 +170,7 @@ class Station:
             uptime=round(time.monotonic() - self._started, 1),
             bus=self.settings.bus,
             processes={p.name: "running" if p.is_alive() else "ended" for p in self.processes},
-            recording=tuple(sorted(r.tracker for r in self.recorder.reports())),
+            recording=tuple(sorted(status.tracker for status in self.recorder.statuses())),
             backlog=self.recorder.backlog,
             longest_backlog=self.settings.recording.longest_backlog,
             trackers=tuple(self.recorder.trackers()),
@@ -179,14 +184,16 @@ class Station:
         notes = [f"the {p.name} has ended: {p.last_error()}" for p in self.processes if not p.is_alive()]
         notes += self.recorder.faults() + self.executions.faults()
         unfinished = self.store.recordings.unfinished()
-        if unfinished and not self.recorder.reports():
+        if unfinished and not self.recorder.statuses():
             notes.append(f"{len(unfinished)} recordings were cut off; stop the service and run: teachpath doctor")
         return notes
 
     def _polls(self) -> dict[str, Poll]:
-        """Return what pages are told of without asking, because no row of the store holds it."""
+        """Return by topic how to read the states that no row of the store holds."""
         return {
-            "recordings": lambda: {r.tracker: report_document(r) for r in self.recorder.reports()},
+            "recordings": lambda: {
+                s.tracker: recording_document(s) for s in self.recorder.statuses(with_statistics=True)
+            },
             "trackers": lambda: {
                 t.name: {"announced": t.announced, "silent": t.is_silent} for t in self.recorder.trackers()
             },
@@ -208,7 +215,7 @@ class Station:
             self.joints,
             self.trajectory,
             self.health,
-            lambda demonstration, trajectory: self._turn_to(demonstration.task),
+            lambda demonstration, trajectory: self._show_task(demonstration.task),
         )
 
     def _kinds(self) -> dict[str, JobKind]:
@@ -250,8 +257,8 @@ class Station:
 
     # what the view shows
 
-    def _turn_to(self, task: str) -> None:
-        """Let coach and preview turn to a task: its demonstrations have changed."""
+    def _show_task(self, task: str) -> None:
+        """Show a task whose demonstrations have changed: in the guidance, and its object in the preview."""
         self._shown = task
         self.guidance.request(task)
         self.preview.show_object(self.settings.scene(self.store.task(task).scene).carried)

@@ -21,9 +21,10 @@ from teachpath.io.bus import Bus, BusSettings, MemoryBus, listen_on_bus
 from teachpath.io.store.settings import StoreSettings
 from teachpath.io.store.store import Store
 from teachpath.motion.collision.builtin_scenes import paper_scene
-from teachpath.recorder.recorder import Recorder
+from teachpath.recorder.queries import RecorderQueries
+from teachpath.recorder.recorder import DemonstrationCallbacks, Lookup, Recorder
 from teachpath.recording.settings import RecordingSettings
-from teachpath.records import Calibration, Demonstration, Trajectory
+from teachpath.records import Calibration, Demonstration, RecordingRequest, StopRequest, Trajectory
 from teachpath_client.synthetic import RATE
 
 DEMO = 4236  # samples of the demo's twelve demonstrations
@@ -50,13 +51,14 @@ def _through_memory(samples: int) -> tuple[float, dict[str, Trajectory]]:
     payloads = sender.payloads(samples)
     with _recorder(bus := MemoryBus()) as made:
         recorder = made[0]
-        recorder.begin("bench", sender.TRACKER, scene="paper")
+        recorder.begin(RecordingRequest("bench", sender.TRACKER, scene="paper"))
         began = time.perf_counter()
         for payload in payloads:
             bus.publish(sender.KEYS.samples(sender.TRACKER), payload)
-        report = recorder.end(sender.TRACKER, last_sequence=samples)
+        statistics = recorder.end(StopRequest(sender.TRACKER, samples)).statistics
         seconds = time.perf_counter() - began
-        _check(report.received, report.lost, samples)
+        assert statistics is not None
+        _check(statistics.received, statistics.lost, samples)
         return samples / seconds, made[1]
 
 
@@ -123,14 +125,16 @@ def _recorder(bus: Bus) -> Iterator[tuple[Recorder, dict[str, Trajectory]]]:
             sender.KEYS,
             store,
             RecordingSettings(handshake_timeout=60.0),
-            scene=lambda _: paper_scene(),
-            calibration=Calibration,
-            on_demonstration=keep,
+            Lookup(scene=lambda _: paper_scene(), calibration=Calibration),
+            DemonstrationCallbacks(added=keep),
         )
+        queries = RecorderQueries(bus, sender.KEYS, recorder)
         recorder.start()
+        queries.start()
         try:
             yield recorder, trajectories
         finally:
+            queries.stop()
             recorder.stop()
             store.close()
 

@@ -20,9 +20,9 @@ from teachpath.io.bus import Bus, BusSettings, listen_on_bus
 from teachpath.io.store.settings import StoreSettings
 from teachpath.io.store.store import Store
 from teachpath.motion.collision.builtin_scenes import empty_scene
-from teachpath.recorder.recorder import Recorder
+from teachpath.recorder.recorder import Lookup, Recorder
 from teachpath.recording.settings import RecordingSettings
-from teachpath.records import Calibration
+from teachpath.records import Calibration, RecordingRequest, StopRequest
 from teachpath_proto import tracker_pb2
 
 TRACKERS = 400
@@ -68,12 +68,13 @@ def _record(folder: str, seconds: float) -> tuple[int, float, float, float, floa
     try:
         with _recorder(bus, folder) as (recorder, store):
             for number in range(TRACKERS):
-                recorder.begin(TASK, crowd.name(number), scene="empty")
+                recorder.begin(RecordingRequest(TASK, crowd.name(number), scene="empty"))
             with _watched(recorder) as backlogs:
                 cpu, sent = _crowd(settings.endpoint, seconds)
-                reports = [recorder.end(crowd.name(n), last_sequence=sent) for n in range(TRACKERS)]
-            lost = sum(report.lost for report in reports) + sum(sent - r.received - r.lost for r in reports)
-            made = sum(len(report.demonstrations) for report in reports)
+                ended = [recorder.end(StopRequest(crowd.name(n), sent)) for n in range(TRACKERS)]
+            counted = [status.statistics for status in ended if status.statistics is not None]
+            lost = sum(s.lost for s in counted) + sum(sent - s.received - s.lost for s in counted)
+            made = sum(len(status.demonstrations) for status in ended)
             return sent * TRACKERS, float(lost), float(made), cpu, float(max(backlogs)), _transits(store)
     finally:
         bus.close()
@@ -83,7 +84,8 @@ def _record(folder: str, seconds: float) -> tuple[int, float, float, float, floa
 def _recorder(bus: Bus, folder: str) -> Iterator[tuple[Recorder, Store]]:
     store = Store(StoreSettings(data_dir=folder))
     settings = RecordingSettings(handshake_timeout=60.0)
-    recorder = Recorder(bus, crowd.KEYS, store, settings, scene=lambda _: empty_scene(), calibration=Calibration)
+    lookup = Lookup(scene=lambda _: empty_scene(), calibration=Calibration)
+    recorder = Recorder(bus, crowd.KEYS, store, settings, lookup)
     recorder.start()
     try:
         yield recorder, store

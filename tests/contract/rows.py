@@ -4,7 +4,17 @@ from dataclasses import replace
 
 import numpy as np
 
-from teachpath.records import Calibration, Cluster, Demonstration, Job, JobState, Learned, Score, StreamStatistics
+from teachpath.records import (
+    Calibration,
+    Cluster,
+    Demonstration,
+    Job,
+    JobState,
+    Learned,
+    Score,
+    StreamStatistics,
+    Verdict,
+)
 from tests.unit.io.test_documents import a_path
 
 
@@ -20,7 +30,7 @@ def demonstration(key: str, **changes: object) -> Demonstration:
         "samples": 5,
         "grasp": 1,
         "release": 4,
-        "verdict": "clean",
+        "verdict": Verdict.CLEAN,
         "account": StreamStatistics(received=5),
         "recording": f"t/{key}.mcap",
     }

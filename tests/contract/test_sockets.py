@@ -13,7 +13,7 @@ from websockets.exceptions import ConnectionClosed, InvalidStatus
 from websockets.sync.client import ClientConnection, connect
 
 from teachpath.app import Station
-from teachpath.io.wire import encode_state, sample_message
+from teachpath.io.wire import encode_sample, encode_state
 from teachpath.records import JointState
 from tests.contract.desk import Desk, refused
 from tests.contract.test_rest_work import planned
@@ -48,10 +48,12 @@ def there(station: Station, name: str) -> bool:
 
 def recorded(station: Station, name: str, count: int) -> None:
     """Wait until the recorder has come so far; the station of these tests waits only briefly at the end."""
-    wait_until(
-        lambda: any(r.tracker == name and r.received >= count for r in station.recorder.reports()),
-        f"{count} samples of {name} are recorded",
-    )
+
+    def received() -> int:
+        statuses = station.recorder.statuses(with_statistics=True)
+        return sum(s.statistics.received for s in statuses if s.tracker == name and s.statistics is not None)
+
+    wait_until(lambda: received() >= count, f"{count} samples of {name} are recorded")
 
 
 def test_a_page_shows_a_demonstration_and_ends_with_the_handshake(desk: Desk, port: int) -> None:
@@ -62,7 +64,7 @@ def test_a_page_shows_a_demonstration_and_ends_with_the_handshake(desk: Desk, po
         assert desk.post("/tasks/socket/recording", {"tracker": "page-1"}).status_code == 201
         stream = demonstration(at=START)
         for s in stream:
-            socket.send(sample_message(s).SerializeToString())
+            socket.send(encode_sample(s))
         recorded(desk.station, "page-1", len(stream))
         report = ask(socket, {"end": len(stream)})["report"]
         assert (report["received"], report["lost"], len(report["demonstrations"])) == (len(stream), 0, 1)
@@ -103,7 +105,7 @@ def test_samples_that_come_out_of_order_and_twice_are_accounted_for(desk: Desk, 
         desk.post("/tasks/disorder/recording", {"tracker": "page-3"})
         stream = demonstration(at=START)
         for s in [*stream[:50], stream[51], stream[50], stream[51], stream[10], *stream[53:]]:
-            socket.send(sample_message(s).SerializeToString())
+            socket.send(encode_sample(s))
         recorded(desk.station, "page-3", len(stream))
         report = ask(socket, {"end": len(stream)})["report"]
         assert (report["reordered"], report["duplicated"], report["lost"]) == (1, 2, 1)
@@ -111,7 +113,7 @@ def test_samples_that_come_out_of_order_and_twice_are_accounted_for(desk: Desk, 
 
 def test_a_flood_keeps_nobody_from_being_answered(port: int) -> None:
     with come(port, "page-4") as flood, come(port, "page-5") as calm:
-        payload = sample_message(sample(1, START)).SerializeToString()
+        payload = encode_sample(sample(1, START))
 
         def pour() -> None:
             with suppress(ConnectionClosed):
@@ -164,7 +166,7 @@ def test_a_page_that_breaks_off_is_seen_to_have_gone(desk: Desk, port: int) -> N
         wait_until(lambda: there(desk.station, "page-9"), "the page is there")
         desk.post("/tasks/broken/recording", {"tracker": "page-9"})
         for s in demonstration(at=START)[:45]:
-            socket.send(sample_message(s).SerializeToString())
+            socket.send(encode_sample(s))
         recorded(desk.station, "page-9", 45)
         socket.socket.shutdown(SHUT_RDWR)  # no closing handshake
     wait_until(lambda: not there(desk.station, "page-9"), "the page has gone")

@@ -16,11 +16,11 @@ from typing import Any
 from teachpath.io.bus import MemoryBus
 from teachpath.io.store.settings import StoreSettings
 from teachpath.io.store.store import Store
-from teachpath.io.wire import sample_message
+from teachpath.io.wire import encode_sample
 from teachpath.motion.collision.builtin_scenes import paper_scene
-from teachpath.recorder.recorder import Recorder
+from teachpath.recorder.recorder import Lookup, Recorder
 from teachpath.recording.settings import RecordingSettings
-from teachpath.records import Calibration, Sample
+from teachpath.records import Calibration, RecordingRequest, RecordingStatus, Sample, StopRequest
 from teachpath_proto.keys import Keys
 from tests.unit.recording.hands import demonstration
 
@@ -43,12 +43,11 @@ class Trial:
             KEYS,
             self.store,
             RecordingSettings(),
-            scene=lambda _: paper_scene(),
-            calibration=Calibration,
+            Lookup(scene=lambda _: paper_scene(), calibration=Calibration),
             clock=lambda: self.now,
         )
         self.recorder.start()
-        self.recorder.begin("lift", "glove", scene="paper")
+        self.recorder.begin(RecordingRequest("lift", "glove", scene="paper"))
         self.takes = 0
 
     def mount(self, options: str) -> None:
@@ -69,34 +68,37 @@ class Trial:
         self.send(samples[:60])
         faults = self.recorder.faults()
         self.send(samples[60:])
-        return {"faults": faults, "demonstrations": len(self.report().demonstrations), "files": self.files()}
+        return {"faults": faults, "demonstrations": len(self.status().demonstrations), "files": self.files()}
 
     def send(self, samples: list[Sample]) -> None:
         for s in samples:
-            self.bus.publish(KEYS.samples("glove"), sample_message(s).SerializeToString())
+            self.bus.publish(KEYS.samples("glove"), encode_sample(s))
         deadline = time.monotonic() + 10.0
-        while self.report().received < samples[-1].sequence and time.monotonic() < deadline:
+        while self.statistics().received < samples[-1].sequence and time.monotonic() < deadline:
             time.sleep(0.01)
         self.now += 1.0  # a flush is due
         time.sleep(0.2)
 
-    def report(self) -> Any:
-        (report,) = self.recorder.reports()
-        return report
+    def status(self) -> RecordingStatus:
+        (status,) = self.recorder.statuses(with_statistics=True)
+        return status
+
+    def statistics(self) -> Any:
+        return self.status().statistics
 
     def files(self) -> dict[str, str]:
         return {f.name: hashlib.sha256(f.read_bytes()).hexdigest() for f in self.disk.rglob("*.mcap")}
 
     def end(self) -> dict[str, Any]:
-        report = self.recorder.end("glove", last_sequence=self.takes * SHOWN)
+        statistics: Any = self.recorder.end(StopRequest("glove", self.takes * SHOWN)).statistics
         rows = self.store.demonstrations("lift")
         readable = [len(self.store.recordings.samples(row.recording)) == row.samples for row in rows]
         self.recorder.stop()
         self.store.close()
         return {
-            "received": report.received,
-            "lost": report.lost,
-            "notes": list(report.notes),
+            "received": statistics.received,
+            "lost": statistics.lost,
+            "notes": list(statistics.notes),
             "verdicts": [row.verdict for row in rows],
             "readable": readable,
         }

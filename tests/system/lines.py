@@ -12,10 +12,10 @@ import zenoh
 from teachpath.io.bus import BusSettings, listen_on_bus
 from teachpath.io.store.settings import StoreSettings
 from teachpath.io.store.store import Store
-from teachpath.io.wire import sample_message
-from teachpath.recorder.recorder import Recorder
+from teachpath.io.wire import encode_recording_status, encode_sample
+from teachpath.recorder.recorder import Lookup, Recorder
 from teachpath.recording.settings import RecordingSettings
-from teachpath.records import Calibration, Sample, Scene, Shape
+from teachpath.records import Calibration, RecordingRequest, RecordingStatus, Sample, Scene, Shape, StopRequest
 from teachpath_client import Link
 from teachpath_proto import tracker_pb2
 from teachpath_proto.keys import Keys
@@ -27,6 +27,10 @@ SCENE = Scene("table", (), Shape("block", "box", (0.04, 0.04, 0.04), (0.5, 0.0, 
 Report = tracker_pb2.RecordingReport
 
 
+def report_of(status: RecordingStatus) -> Report:
+    return Report.FromString(encode_recording_status(status))
+
+
 class Desk:
     """A recorder that listens."""
 
@@ -34,15 +38,18 @@ class Desk:
         (self.port,) = free_ports(1)
         self.bus = listen_on_bus(BusSettings(endpoint=f"tcp/127.0.0.1:{self.port}"))
         self.store = Store(StoreSettings(data_dir=str(folder)))
-        self.recorder = Recorder(self.bus, KEYS, self.store, settings, scene=lambda _: SCENE, calibration=Calibration)
+        self.recorder = Recorder(self.bus, KEYS, self.store, settings, Lookup(lambda _: SCENE, Calibration))
         self.recorder.start()
 
     def begin(self, tracker: str, task: str) -> None:
-        self.recorder.begin(task, tracker, scene="table")
+        self.recorder.begin(RecordingRequest(task, tracker, scene="table"))
 
     def report(self, tracker: str) -> Report:
-        (found,) = (r for r in self.recorder.reports() if r.tracker == tracker)
-        return found
+        (found,) = (s for s in self.recorder.statuses(with_statistics=True) if s.tracker == tracker)
+        return report_of(found)
+
+    def end(self, tracker: str, last: int | None = None) -> Report:
+        return report_of(self.recorder.end(StopRequest(tracker, last)))
 
     def received(self, tracker: str, count: int, seconds: float = 20.0) -> None:
         wait_until(
@@ -104,7 +111,7 @@ def publish(publisher: Any, samples: list[Sample], *, rate: float = 0.0) -> None
     """Publish samples, at `rate` [Hz] or as fast as they go."""
     due = time.monotonic()
     for sample in samples:
-        publisher.put(sample_message(sample).SerializeToString())
+        publisher.put(encode_sample(sample))
         if rate:
             due += 1.0 / rate
             time.sleep(max(0.0, due - time.monotonic()))

@@ -11,7 +11,8 @@ from teachpath.io.bus import BusSettings, listen_on_bus
 from teachpath.io.store.settings import StoreSettings
 from teachpath.io.store.store import Store
 from teachpath.motion.collision.builtin_scenes import paper_scene
-from teachpath.recorder.recorder import Recorder
+from teachpath.recorder.queries import RecorderQueries
+from teachpath.recorder.recorder import Lookup, Recorder
 from teachpath.recording.settings import RecordingSettings
 from teachpath.records import Calibration
 from teachpath_client.__main__ import main
@@ -29,9 +30,13 @@ def endpoint(tmp_path: Path) -> Iterator[str]:
     (port,) = free_ports(1)
     endpoint = f"tcp/127.0.0.1:{port}"
     bus, store = listen_on_bus(BusSettings(endpoint=endpoint)), Store(StoreSettings(data_dir=str(tmp_path)))
-    recorder = Recorder(bus, Keys(), store, RecordingSettings(), scene=lambda _: paper_scene(), calibration=Calibration)
+    lookup = Lookup(scene=lambda _: paper_scene(), calibration=Calibration)
+    recorder = Recorder(bus, Keys(), store, RecordingSettings(), lookup)
+    queries = RecorderQueries(bus, Keys(), recorder)
     recorder.start()
+    queries.start()
     yield endpoint
+    queries.stop()
     recorder.stop()
     bus.close()
     store.close()

@@ -14,7 +14,7 @@ import pytest
 import zenoh
 from mcap.reader import make_reader
 
-from teachpath.io.wire import sample_message
+from teachpath.io.wire import encode_sample
 from teachpath_proto import tracker_pb2
 from tests.system.lines import KEYS, Desk, desk, plain_session
 from tests.unit.recording.hands import demonstration
@@ -42,7 +42,9 @@ TORN: list[Callable[[random.Random], bytes]] = [
 
 
 def good(chance: random.Random) -> tracker_pb2.HandSample:
-    return sample_message(demonstration(chance.randrange(1, 10**6))[chance.randrange(SHOWN)])
+    return tracker_pb2.HandSample.FromString(
+        encode_sample(demonstration(chance.randrange(1, 10**6))[chance.randrange(SHOWN)])
+    )
 
 
 def flipped(content: bytes, chance: random.Random) -> bytes:
@@ -66,13 +68,13 @@ def gloved(chance: random.Random, flexions: list[float]) -> bytes:
 
 
 def stamped(device_ns: int) -> bytes:
-    message = sample_message(demonstration()[0])
+    message = tracker_pb2.HandSample.FromString(encode_sample(demonstration()[0]))
     message.device_ns = device_ns
     return message.SerializeToString()
 
 
 def shown(takes: int) -> Payloads:
-    return [sample_message(s).SerializeToString() for i in range(takes) for s in demonstration(1 + i * SHOWN)]
+    return [encode_sample(s) for i in range(takes) for s in demonstration(1 + i * SHOWN)]
 
 
 def send(publisher: Any, payloads: Payloads) -> None:
@@ -101,7 +103,7 @@ def with_a_calm_take(here: Desk, mischief: Callable[[], None]) -> None:
         calm.start()
         mischief()
         calm.join()
-        report = here.recorder.end("calm", last_sequence=len(payloads))
+        report = here.end("calm", len(payloads))
     assert (report.received, report.lost, report.refused, len(report.demonstrations)) == (len(payloads), 0, 0, 2)
     assert [d.verdict for d in here.store.demonstrations("calm")] == ["clean", "clean"]
     taken = kept(here, "calm")
@@ -127,7 +129,7 @@ def test_a_thousand_malformed_payloads_are_counted_and_named(tmp_path: Path, see
                 here.refused_or_received("fuzz", len(payloads))
 
         with_a_calm_take(here, rain)
-        report = here.recorder.end("fuzz")
+        report = here.end("fuzz")
     assert report.received + report.refused == len(payloads)
     assert report.refused > 800
     for said in ("bytes is over the limit", "not finite", "no unit quaternion", "flexion", "device time"):
@@ -136,7 +138,7 @@ def test_a_thousand_malformed_payloads_are_counted_and_named(tmp_path: Path, see
 
 
 def test_a_flood_at_a_hundred_times_the_rate_keeps_nobody_waiting(tmp_path: Path) -> None:
-    flood = [sample_message(s).SerializeToString() for i in range(100) for s in demonstration(1 + i * SHOWN)]
+    flood = [encode_sample(s) for i in range(100) for s in demonstration(1 + i * SHOWN)]
     with desk(tmp_path, longest_backlog=2000) as here:
         here.begin("flood", "flood")
         deepest, reports = 0, []
@@ -153,7 +155,7 @@ def test_a_flood_at_a_hundred_times_the_rate_keeps_nobody_waiting(tmp_path: Path
                     due += 1.0 / (100.0 * RATE)
                     time.sleep(max(0.0, due - time.monotonic()))
                     deepest = max(deepest, here.recorder.backlog)
-                reports.append(here.recorder.end("flood", last_sequence=len(flood)))
+                reports.append(here.end("flood", len(flood)))
 
         with_a_calm_take(here, pour)
     (report,) = reports

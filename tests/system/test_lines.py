@@ -34,7 +34,7 @@ def test_what_a_client_skips_doubles_and_sends_late_is_named_number_by_number(tm
     with desk(tmp_path) as here, bad_line(here) as (_, link):
         here.begin("glove", "lift")
         publish(link.publisher(KEYS.samples("glove")), sent)
-        report = here.recorder.end("glove", last_sequence=last)
+        report = here.end("glove", last)
     runs = [[gone[0]]]
     for number in gone[1:]:
         runs[-1].append(number) if number == runs[-1][-1] + 1 else runs.append([number])
@@ -57,7 +57,7 @@ def test_a_line_that_stalls_loses_nothing(tmp_path: Path) -> None:
         assert here.report("glove").received == 150
         proxy.go_on()
         publish(publisher, stream[250:], rate=500.0)
-        report = here.recorder.end("glove", last_sequence=len(stream))
+        report = here.end("glove", len(stream))
         assert (report.received, report.lost, stretches(report)) == (len(stream), 0, [])
         assert [d.account.lost for d in here.store.demonstrations("lift")] == [0, 0, 0]
 
@@ -80,8 +80,8 @@ def test_a_line_that_breaks_loses_what_was_under_way_and_our_client_sends_it_aga
             proxy.go_on()
             publish(publisher, stream[300:], rate=60.0)  # back in one or two seconds
             calm.join()
-            report = here.recorder.end("glove", last_sequence=len(stream))
-            untouched = here.recorder.end("calm", last_sequence=len(other))
+            report = here.end("glove", len(stream))
+            untouched = here.end("calm", len(other))
         assert (untouched.received, untouched.lost) == (len(other), 0)
         assert report.received + report.lost == len(stream)
         if ours:

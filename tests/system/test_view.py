@@ -53,7 +53,7 @@ class Server:
         self.bus = MemoryBus()
 
     def start(self, demonstrations: int) -> None:
-        self.preview = Preview(self.bus, KEYS, visual_solids(), robot=ROBOT, home=HOME, hands=list)
+        self.preview = Preview(self.bus, KEYS, visual_solids(), robot=ROBOT, home=HOME, statuses=list)
         self.preview.show_object(paper_scene().carried)
         self.preview.start()
         app = FastAPI()

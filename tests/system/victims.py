@@ -15,11 +15,11 @@ from pathlib import Path
 from teachpath.io.bus import MemoryBus
 from teachpath.io.store.settings import StoreSettings
 from teachpath.io.store.store import Store
-from teachpath.io.wire import sample_message
+from teachpath.io.wire import encode_sample
 from teachpath.motion.collision.builtin_scenes import paper_scene
-from teachpath.recorder.recorder import Recorder
+from teachpath.recorder.recorder import Lookup, Recorder
 from teachpath.recording.settings import RecordingSettings
-from teachpath.records import Calibration
+from teachpath.records import Calibration, RecordingRequest
 from teachpath_proto.keys import Keys
 from tests.unit.recording.hands import demonstration
 
@@ -32,16 +32,17 @@ KEYS = Keys("victims")
 def record(folder: Path, sent: int) -> None:
     """Record for ever, telling on the pipe `sent` what was sent before it is sent."""
     bus, store = MemoryBus(), Store(StoreSettings(data_dir=str(folder)))
-    recorder = Recorder(bus, KEYS, store, RecordingSettings(), scene=lambda _: paper_scene(), calibration=Calibration)
+    lookup = Lookup(scene=lambda _: paper_scene(), calibration=Calibration)
+    recorder = Recorder(bus, KEYS, store, RecordingSettings(), lookup)
     recorder.start()
-    recorder.begin("lift", "glove", scene="paper")
+    recorder.begin(RecordingRequest("lift", "glove", scene="paper"))
     x, y, z = paper_scene().carried.position  # type: ignore[union-attr]
     first, due = 1, time.monotonic()
     while True:
         for sample in demonstration(first, at=(x, y, z)):
             due += 1.0 / RATE
             time.sleep(max(0.0, due - time.monotonic()))
-            payload = sample_message(sample).SerializeToString()
+            payload = encode_sample(sample)
             now = time.monotonic()
             bus.publish(KEYS.samples("glove"), payload)
             os.write(sent, f"{sample.sequence} {now}\n".encode())

@@ -11,8 +11,7 @@ from pydantic import Field
 from teachpath.api.answers import model_of, sent
 from teachpath.api.closed import Body
 from teachpath.api.parts import Parts
-from teachpath.recorder.annotations import Amendment
-from teachpath.records import Demonstration, Trajectory
+from teachpath.records import Amendment, Demonstration, Trajectory
 
 
 class Amended(Body):

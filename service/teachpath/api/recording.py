@@ -10,9 +10,8 @@ from pydantic import Field
 from teachpath.api.closed import Body
 from teachpath.api.parts import Parts
 from teachpath.errors import UnusableInput
-from teachpath.io.wire import report_document
-from teachpath.recording.state_machine import Routine
-from teachpath.records import Demonstration
+from teachpath.io.wire import recording_document
+from teachpath.records import Demonstration, RecordingRequest, Routine, StopRequest
 
 
 class Recording(Body):
@@ -49,35 +48,37 @@ def recording_router(parts: Parts) -> APIRouter:
     def get_recording_state(task: str) -> list[dict[str, Any]]:
         """Return the accounts of the task's running recordings."""
         name = parts.store.task(task).name
-        return [report_document(report) for report in recorder.reports() if report.task == name]
+        return [recording_document(s) for s in recorder.statuses(with_statistics=True) if s.task == name]
 
     @router.post("/tasks/{task}/recording", status_code=201)
     def start_recording(task: str, recording: Recording) -> dict[str, Any]:
         """Start recording from a tracker; demonstrations are cut by themselves as the hand grasps and releases."""
-        return report_document(
+        return recording_document(
             recorder.begin(
-                task,
-                recording.tracker,
-                calibration=recording.calibration,
-                rate=recording.rate,
-                routine=Routine(recording.armed, recording.countdown, recording.takes, recording.one_by_one),
+                RecordingRequest(
+                    task,
+                    recording.tracker,
+                    calibration=recording.calibration,
+                    rate=recording.rate,
+                    routine=Routine(recording.armed, recording.countdown, recording.takes, recording.one_by_one),
+                )
             )
         )
 
     @router.post("/tasks/{task}/recording/stop")
     def stop_recording(task: str, ended: Ended) -> dict[str, Any]:
         """Stop recording and return the account of every sample."""
-        return report_document(recorder.end(of_task(task, ended.tracker), discard=ended.discard))
+        return recording_document(recorder.end(StopRequest(of_task(task, ended.tracker), discard=ended.discard)))
 
     @router.post("/tasks/{task}/recording/pause")
     def pause_recording(task: str, named: Named) -> dict[str, Any]:
         """Record nothing until `resume`; what is carried now is recorded to its end first."""
-        return report_document(recorder.pause(of_task(task, named.tracker)))
+        return recording_document(recorder.pause(of_task(task, named.tracker)))
 
     @router.post("/tasks/{task}/recording/resume")
     def resume_recording(task: str, named: Named) -> dict[str, Any]:
         """Record again."""
-        return report_document(recorder.resume(of_task(task, named.tracker)))
+        return recording_document(recorder.resume(of_task(task, named.tracker)))
 
     @router.post("/tasks/{task}/recording/discard")
     def discard_last(task: str) -> Demonstration:
@@ -91,7 +92,7 @@ def recording_router(parts: Parts) -> APIRouter:
 
     def of_task(task: str, tracker: str) -> str:
         name = parts.store.task(task).name
-        running = {report.tracker for report in recorder.reports() if report.task == name}
+        running = {status.tracker for status in recorder.statuses() if status.task == name}
         if tracker not in running:
             raise UnusableInput(f"{tracker!r} is not recording {task}; running: {sorted(running) or 'none'}")
         return tracker

@@ -24,7 +24,7 @@ from teachpath.api import sockets
 from teachpath.api.closed import unknown
 from teachpath.api.parts import Parts
 from teachpath.errors import TeachpathError, UnusableInput
-from teachpath.io.wire import LARGEST_SAMPLE
+from teachpath.io.wire import MAX_SAMPLE_SIZE
 from teachpath.recorder.websocket_trackers import WebSocketTracker
 
 SILENCE: Final = 10.0  # [s] after which a page that says nothing, not even a ping, has gone
@@ -110,7 +110,7 @@ def _answer(tracker: WebSocketTracker, content: bytes | str) -> Answer:
 
 def _parse(text: str) -> Answer:
     try:
-        order = json.loads(text) if len(text) <= LARGEST_SAMPLE else None
+        order = json.loads(text) if len(text) <= MAX_SAMPLE_SIZE else None
     except (ValueError, RecursionError):
         order = None
     return order if isinstance(order, dict) else {}

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from teachpath.errors import UnusableRecording
-from teachpath.io.wire import FARTHEST
+from teachpath.io.wire import MAX_COORDINATE
 from teachpath.records import Array
 
 UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254}
@@ -117,8 +117,10 @@ def _check(track: Track, where: str) -> None:
         column = (COLUMNS + ROTATION)[int(bad[0, 1])]
         raise UnusableRecording(f"{where}: sample {int(bad[0, 0])} has a {column} that is not finite")
     farthest, span = np.max(np.abs(track.positions)), track.times[-1] - track.times[0]
-    if farthest > FARTHEST:
-        raise UnusableRecording(f"{where}: a position is {farthest:g} m away, limit {FARTHEST:g}; are the units right?")
+    if farthest > MAX_COORDINATE:
+        raise UnusableRecording(
+            f"{where}: a position is {farthest:g} m away, limit {MAX_COORDINATE:g}; are the units right?"
+        )
     if span > LONGEST:
         raise UnusableRecording(f"{where}: it lasts {span:g} s, limit {LONGEST:g}; t is in seconds")
     steps = np.diff(track.times)

@@ -12,9 +12,8 @@ from dataclasses import replace
 
 from teachpath.errors import UnusableInput, UnusableRecording, UnusableSample
 from teachpath.io.documents import decode, encode
-from teachpath.io.wire import sample_from
+from teachpath.io.wire import decode_sample, encode_sample
 from teachpath.records import Demonstration, Sample
-from teachpath_proto import tracker_pb2
 
 MARK = "# teachpath "
 COLUMNS = ["sequence", "device_ns", "receive_ns", "x", "y", "z", "qw", "qx", "qy", "qz", "tracked", "buttons"]
@@ -73,17 +72,13 @@ def _sample(row: list[str], count: int, tracker: str, where: str) -> Sample:
         turn = [float(cell) for cell in row[6:10] if cell]
         if len(turn) not in (0, 4) or row[10] not in ("0", "1") or not 0 <= receive_ns <= LARGEST_NS:
             raise ValueError(f"{','.join(row[2:11])} is no receive time, place, quaternion (or none) and 0 or 1")
-        message = tracker_pb2.HandSample(
-            sequence=sequence,
-            device_ns=device_ns,
-            position=tracker_pb2.Vector3(x=x, y=y, z=z),
-            orientation=tracker_pb2.Quaternion(**dict(zip("wxyz", turn, strict=False))),
-            flexions=[float(cell) for cell in row[12:] if cell],
-            tracked=row[10] == "1",
-            buttons=int(row[11]),
+        orientation = (turn[0], turn[1], turn[2], turn[3]) if turn else None
+        flexions = tuple(float(cell) for cell in row[12:] if cell)
+        stated = Sample(
+            tracker, sequence, device_ns, receive_ns, (x, y, z), orientation, flexions, row[10] == "1", int(row[11])
         )
-        sample = sample_from(message, tracker, receive_ns)
+        sample = decode_sample(tracker, encode_sample(stated), receive_ns)
     except (ValueError, UnusableSample) as error:
         raise UnusableRecording(f"{where}: {error}") from None
     # It was of unit length when it was written; to make it so again would change its last bit.
-    return replace(sample, orientation=(turn[0], turn[1], turn[2], turn[3])) if turn else sample
+    return replace(sample, orientation=orientation)

@@ -10,7 +10,7 @@ from teachpath.io.documents import decode
 from teachpath.io.store.recordings import read_facts, salvage
 from teachpath.io.store.store import Store
 from teachpath.offline.lock import StationLock
-from teachpath.recorder.session import RecordingSession
+from teachpath.recorder.session import RecordingSession, RecordingSetup
 from teachpath.recording.settings import RecordingSettings
 from teachpath.records import Demonstration, Scene
 
@@ -66,15 +66,9 @@ def _repair(part: Path, store: Store, settings: RecordingSettings, scenes: dict[
         return Finding(name, 0, 0.0, (), f"{name}: nothing could be read ({fault}); kept as {part.name + SALVAGED}")
     seconds = (samples[-1].device_ns - samples[0].device_ns) * 1e-9 if samples else 0.0
     task = store.task(header.task)
-    session = RecordingSession(
-        store,
-        settings,
-        task=header.task,
-        tracker=header.tracker,
-        calibration=header.calibration,
-        scene=scenes[task.scene],
-    )
-    session.note("repaired after the service was cut off; what came after the last flush is missing")
+    setup = RecordingSetup(header.task, header.tracker, header.calibration, scenes[task.scene])
+    session = RecordingSession(store, settings, setup)
+    session.counter.note("repaired after the service was cut off; what came after the last flush is missing")
     finished = [session.add(sample) for sample in samples]
     made = [d.id for d, _ in [f for f in finished if f is not None] + session.finish(torn=True)]
     part.rename(part.with_name(part.name + SALVAGED))

@@ -12,14 +12,14 @@ from teachpath.io.files import Track, read_tracks
 from teachpath.io.sample_files import holds_samples, read_samples
 from teachpath.io.store.recordings import read_facts_stream, salvage_stream
 from teachpath.io.store.store import Store
-from teachpath.recorder.annotations import MARKS, Amendment, Annotations
-from teachpath.recorder.session import RecordingSession
+from teachpath.recorder.annotations import MARKS, Annotations
+from teachpath.recorder.session import RecordingSession, RecordingSetup
 from teachpath.recording.demonstration import point_to_world
 from teachpath.recording.phase_statistics import PhaseStatistics, phase_statistics
 from teachpath.recording.phases import GRASP_BUTTON, Segmenter, TransportSpan
+from teachpath.recording.quality import QualityReport, reassess_quality
 from teachpath.recording.settings import RecordingSettings
-from teachpath.recording.verdict import Verdict, judge_again
-from teachpath.records import Calibration, Demonstration, Sample, Scene, Trajectory
+from teachpath.records import Amendment, Calibration, Demonstration, Sample, Scene, Trajectory
 from teachpath_proto.keys import is_name, name_refusal
 
 MOST_REFUSED = 100_000  # of a file that says so
@@ -78,17 +78,11 @@ def _recorded(
     """Record each motion as if live."""
     made: list[tuple[Demonstration, Trajectory]] = []
     for samples in read.motions:
-        session = RecordingSession(
-            store,
-            settings,
-            task=task,
-            tracker=read.tracker,
-            calibration=read.calibration,
-            scene=scene,
-            rate=read.stated.account.declared_rate if read.stated else 0.0,
-        )
+        rate = read.stated.account.declared_rate if read.stated else 0.0
+        setup = RecordingSetup(task, read.tracker, read.calibration, scene, rate)
+        session = RecordingSession(store, settings, setup)
         for _ in range(min(read.stated.account.refused, MOST_REFUSED) if read.stated else 0):
-            session.refuse("some samples were refused when it was recorded")
+            session.counter.count_refused("some samples were refused when it was recorded")
         finished = [session.add(sample) for sample in samples]
         made += [f for f in finished if f is not None] + session.finish()
     return made
@@ -132,17 +126,17 @@ def _believed(stated: Demonstration, samples: list[Sample], name: str) -> Demons
 def _judged(
     store: Store, settings: RecordingSettings, made: tuple[Demonstration, Trajectory], read: _Read
 ) -> tuple[Demonstration, Trajectory]:
-    """Keep what only the recorder could see, e.g. that the tracker went away in mid-take."""
+    """Keep the reasons that only the recorder could see, e.g. that the tracker was lost in mid-take."""
     stated = read.stated
     if stated is None:
         return made
     row, trajectory = made
-    before = _parts(stated, read.motions[0], settings)
-    now = _parts(row, store.recordings.samples(row.recording), settings)
-    verdict = judge_again(Verdict(stated.verdict, stated.reasons), before, now, settings)
-    if verdict == Verdict(row.verdict, row.reasons):
+    before = _statistics(stated, read.motions[0], settings)
+    now = _statistics(row, store.recordings.samples(row.recording), settings)
+    quality = reassess_quality(QualityReport(stated.verdict, stated.reasons), before, now, settings)
+    if quality == QualityReport(row.verdict, row.reasons):
         return made
-    return store.change_demonstration(row.id, verdict=verdict.word, reasons=verdict.reasons), trajectory
+    return store.change_demonstration(row.id, verdict=quality.verdict, reasons=quality.reasons), trajectory
 
 
 def _curated(
@@ -160,7 +154,7 @@ def _curated(
     return said, annotations.trajectory(said) if trim else trajectory
 
 
-def _parts(row: Demonstration, samples: list[Sample], settings: RecordingSettings) -> PhaseStatistics:
+def _statistics(row: Demonstration, samples: list[Sample], settings: RecordingSettings) -> PhaseStatistics:
     return phase_statistics(samples, TransportSpan(*row.transport), row.account, settings)
 
 

@@ -60,7 +60,7 @@ def dataset_of(demonstrations: Sequence[Demonstration], received: Sequence[Seque
         "demonstration": [d.id for d in demonstrations],
         "source": [d.source for d in demonstrations],
         "calibration": [d.calibration.name for d in demonstrations],
-        "verdict": [d.verdict for d in demonstrations],
+        "verdict": [d.verdict.value for d in demonstrations],
         "reasons": ["; ".join(d.reasons) for d in demonstrations],
         "mark": [d.mark for d in demonstrations],
     }

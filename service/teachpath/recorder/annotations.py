@@ -1,4 +1,4 @@
-"""What an operator says of demonstrations that are stored: discard, restore, mark, trim. Nothing is ever deleted."""
+"""The operator's edits of stored demonstrations: discard, restore, mark, trim. Nothing is ever deleted."""
 
 from __future__ import annotations
 
@@ -13,27 +13,18 @@ from teachpath.recorder.take_completion import reassess
 from teachpath.recording.demonstration import object_trajectory
 from teachpath.recording.phases import TransportSpan
 from teachpath.recording.settings import RecordingSettings
-from teachpath.records import Demonstration, Scene, Trajectory
+from teachpath.records import Amendment, Demonstration, Scene, Trajectory
 
 MARKS: Final = ("", "good", "bad")
 
 
 @dataclass(frozen=True)
-class Amendment:
-    """What is to be changed of a demonstration; None leaves a thing as it is."""
-
-    mark: str | None = None
-    discarded: bool | None = None
-    trim: tuple[int, int] | None = None  # an empty span brings back the recorder's own cut
-
-
-@dataclass(frozen=True)
 class Annotations:
-    """Changes what is said of demonstrations.
+    """Changes stored demonstrations as the operator wants.
 
     Attributes:
-        scene: gives the scene of a name; raises NotFound.
-        changed: told of every demonstration that has changed.
+        scene: returns the scene of a name; raises NotFound.
+        on_change: called with every demonstration that has changed.
     """
 
     store: Store
@@ -67,7 +58,7 @@ class Annotations:
         return self.amend(max(discarded, key=lambda d: d.discarded_ns).id, Amendment(discarded=False))
 
     def amend(self, key: str, amendment: Amendment) -> Demonstration:
-        """Change what is said of a demonstration and return it; one that is trimmed is judged by what is left of it.
+        """Change a demonstration and return it; after a trim its quality is assessed again.
 
         Raises:
             NotFound: no such demonstration.
@@ -82,12 +73,12 @@ class Annotations:
         if amendment.discarded is not None:
             changes["discarded_ns"] = time.time_ns() if amendment.discarded else 0
         if amendment.trim is not None:
-            changes |= self._trimmed(stored, amendment.trim)
-        on_change = self.store.change_demonstration(key, **changes)
-        self.on_change(on_change)
-        return on_change
+            changes |= self._trim_changes(stored, amendment.trim)
+        changed = self.store.change_demonstration(key, **changes)
+        self.on_change(changed)
+        return changed
 
-    def _trimmed(self, stored: Demonstration, trim: tuple[int, int]) -> dict[str, Any]:
+    def _trim_changes(self, stored: Demonstration, trim: tuple[int, int]) -> dict[str, Any]:
         begin, end = trim
         chosen = None if begin == end else trim
         least = self.settings.shortest_transport
@@ -97,7 +88,7 @@ class Annotations:
                 f"least {least} of them"
             )
         samples = self.store.recordings.samples(stored.recording)
-        on_change = replace(stored, trim=chosen)
-        changes = reassess(stored, on_change, samples, self.settings)
-        times = self.trajectory(replace(on_change, **changes)).times
+        changed = replace(stored, trim=chosen)
+        changes = reassess(stored, changed, samples, self.settings)
+        times = self.trajectory(replace(changed, **changes)).times
         return {"trim": chosen, **changes, "duration": float(times[-1])}

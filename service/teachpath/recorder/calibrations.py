@@ -1,4 +1,4 @@
-"""The calibrations of a station, from its settings and as measured; and demonstrations under another than today's."""
+"""The calibrations of a station, from its settings and as measured, and demonstrations with outdated ones."""
 
 from __future__ import annotations
 
@@ -20,11 +20,11 @@ VERSION_SEPARATOR = "@"  # lab@2 is the second version of lab; no name has this 
 
 @dataclass(frozen=True)
 class Calibrations:
-    """Gives, measures and compares calibrations.
+    """Finds, measures and compares calibrations.
 
     Attributes:
-        fixed: those of the settings; they cannot be measured anew.
-        scene: gives the scene of a name; raises NotFound.
+        configured: the calibrations of the settings, which cannot be measured.
+        scene: returns the scene of a name; raises NotFound.
     """
 
     store: Store
@@ -44,7 +44,7 @@ class Calibrations:
         """Return the calibration `name` in its newest version, or one version of it (`lab@2`).
 
         Raises:
-            NotFound: there is none of that name; names the known ones.
+            NotFound: there is none of that name; the message lists the known ones.
         """
         for calibration in self.configured:
             if calibration.name == name:
@@ -61,7 +61,7 @@ class Calibrations:
         return versions[0].calibration
 
     def newest(self) -> list[MeasuredCalibration]:
-        """List those of the settings, then the newest version of each measured one."""
+        """List the calibrations of the settings, then the newest version of each measured one."""
         return [MeasuredCalibration(calibration) for calibration in self.configured] + self.store.calibrations.newest()
 
     def measure(
@@ -72,9 +72,9 @@ class Calibrations:
         Args:
             name: of the calibration; every version of it is kept.
             points: see `fit_frame`.
-            source: tracker that was shown the points.
+            source: tracker that measured the points.
             fit_scale: see `fit_frame`.
-            keep: False: only say what it would be.
+            keep: store the calibration; if False, it is only returned.
 
         Raises:
             UnusableInput: a bad name, or points that fix no frame.
@@ -91,18 +91,18 @@ class Calibrations:
     def require_current(self, demonstrations: Sequence[Demonstration], *, command: str = "learn") -> None:
         """Refuse demonstrations whose calibration has been measured or set anew since they were recorded.
 
-        Each is in the world by its own calibration, so those of different names agree. Whether an older mapping of
-        one name is still true of an old demonstration (the tracker was moved since) or never was (the new one
-        corrects it), only the operator knows.
+        Demonstrations under calibrations of different names are all in world coordinates and agree. An older version
+        of one name may still be right for an old demonstration, because the tracker was moved since, or it was wrong
+        from the beginning and the new version corrects it; only the operator knows.
 
         Args:
             demonstrations: of one task.
-            command: that they are refused to.
+            command: which needs them; for the message.
 
         Raises:
-            Conflict: names them and both ways out.
+            Conflict: the message names the demonstrations and both ways out.
         """
-        outdated = [d for d in demonstrations if self._present(d.calibration) != d.calibration]
+        outdated = [d for d in demonstrations if self._current_version(d.calibration) != d.calibration]
         if outdated:
             numbers, first = ", ".join(str(d.number) for d in outdated), outdated[0]
             raise Conflict(
@@ -113,18 +113,18 @@ class Calibrations:
             )
 
     def convert(self, demonstrations: Sequence[Demonstration], name: str = "") -> list[Demonstration]:
-        """Put demonstrations under their calibration as it is today, or under `name`, and judge them again.
+        """Change the calibration of demonstrations to its present version, or to `name`, and assess them again.
 
-        The samples stay in the tracker's frame and the phases where they were cut, so it can be undone by converting
-        them back. Either all are changed or none.
+        The samples stay in the tracker's frame and the phases where they were cut, so that a second conversion can
+        undo the first. Either all are changed or none.
 
         Raises:
             NotFound: no such calibration, or a recording is missing.
         """
-        changes = {d.id: self._converted(d, self.get(name or d.calibration.name)) for d in demonstrations}
+        changes = {d.id: self._conversion_changes(d, self.get(name or d.calibration.name)) for d in demonstrations}
         return [self.store.change_demonstration(key, **changed) for key, changed in changes.items()]
 
-    def _converted(self, demonstration: Demonstration, calibration: Calibration) -> dict[str, Any]:
+    def _conversion_changes(self, demonstration: Demonstration, calibration: Calibration) -> dict[str, Any]:
         if calibration == demonstration.calibration:
             return {}
         samples = self.store.recordings.samples(demonstration.recording)
@@ -134,7 +134,7 @@ class Calibrations:
         times = Annotations(self.store, self.settings, self.scene).trajectory(moved).times
         return {"calibration": calibration, **changes, "duration": float(times[-1])}
 
-    def _present(self, calibration: Calibration) -> Calibration:
+    def _current_version(self, calibration: Calibration) -> Calibration:
         try:
             return self.get(calibration.name)
         except NotFound:  # of another station: nothing here contradicts it

@@ -1,4 +1,4 @@
-"""The running coach: compares the demonstrations of a task after every new one, on a thread of its own."""
+"""Guidance while demonstrating: after every new demonstration, how far those of the task agree and what is missing."""
 
 from __future__ import annotations
 
@@ -16,18 +16,18 @@ from teachpath.periodic_thread import PeriodicThread
 from teachpath.recording.guidance import ClusterSummary, advise
 from teachpath.records import Array, Demonstration, Trajectory
 
-MAX_DEMONSTRATIONS = 60  # newest demonstrations that are compared
-RESAMPLED_POINTS = 50  # of each, at equal arc length
+MAX_DEMONSTRATIONS = 60  # newest ones that are compared
+RESAMPLED_POINTS = 50  # of each demonstration, at equal arc length
 POLL_INTERVAL = 0.05  # [s] between two looks for requests
 
 
 class GuidanceThread:
-    """Keeps one sentence a task.
+    """Keeps one sentence of advice a task, compared anew on request on a thread of its own.
 
     Args:
-        demonstrations: gives the demonstrations of a task.
-        trajectory: gives the object's trajectory of one.
-        settings: of learning, whose clustering tells the ways apart.
+        demonstrations: returns the demonstrations of a task.
+        trajectory: returns the object's trajectory of a demonstration.
+        settings: of learning, whose clustering is used.
     """
 
     def __init__(
@@ -36,34 +36,36 @@ class GuidanceThread:
         trajectory: Callable[[Demonstration], Trajectory],
         settings: LearningSettings,
     ) -> None:
-        self._demonstrations, self._trajectory, self._settings = demonstrations, trajectory, settings
+        self._demonstrations = demonstrations
+        self._trajectory = trajectory
+        self._settings = settings
         self._requests: queue.SimpleQueue[str] = queue.SimpleQueue()
-        self._courses: dict[tuple[str, tuple[int, int]], Array] = {}
+        self._courses: dict[tuple[str, tuple[int, int]], Array] = {}  # by id and transport phase
         self._advice: dict[str, str] = {}
         self._thread = PeriodicThread("guidance", POLL_INTERVAL, self._serve_requests)
 
     def start(self) -> None:
-        """Compare from now on."""
+        """Serve requests from now on."""
         self._thread.start()
 
     def stop(self) -> None:
-        """Compare no more; a second call does nothing."""
+        """Finish the comparison that is under way, and stop; a second call does nothing."""
         self._thread.stop()
 
     def request(self, task: str) -> None:
-        """Compare a task's demonstrations anew, soon."""
+        """Have the demonstrations of a task compared anew, soon."""
         self._requests.put(task)
 
     def advice(self, task: str) -> str:
-        """Return what was found last for a task, or nothing."""
+        """Return the newest advice for a task, or nothing."""
         return self._advice.get(task, "")
 
     def all_advice(self) -> dict[str, str]:
-        """Return what was found last, by task."""
+        """Return the newest advice by task."""
         return dict(self._advice)
 
     def compare(self, task: str) -> str:
-        """Compare a task's demonstrations now and return the sentence."""
+        """Compare the demonstrations of a task now and return the advice."""
         usable = [d for d in self._demonstrations(task) if d.is_usable][-MAX_DEMONSTRATIONS:]
         courses = [self._course(d) for d in usable]
         self._courses = {(d.id, d.transport): c for d, c in zip(usable, courses, strict=True)}
@@ -73,11 +75,11 @@ class GuidanceThread:
         return advise(_clusters(np.array(courses), self._settings, length), length)
 
     def _serve_requests(self) -> None:
-        """Compare every task that was requested meanwhile, once."""
-        requests: dict[str, None] = {}
+        """Compare every task that was requested since the last call, once."""
+        tasks: dict[str, None] = {}
         while not self._requests.empty():
-            requests[self._requests.get()] = None
-        for task in requests:
+            tasks[self._requests.get()] = None
+        for task in tasks:
             try:
                 self._advice[task] = self.compare(task)
             except TeachpathError as error:
@@ -91,13 +93,14 @@ class GuidanceThread:
 
 
 def _clusters(courses: Array, settings: LearningSettings, length: float) -> list[ClusterSummary]:
+    """Group courses (n, RESAMPLED_POINTS, 3) [m] of paths of a typical `length` [m]."""
     if len(courses) < 2:
         return [ClusterSummary(len(courses), 0.0)]
     condensed = pairwise_distances(courses)
     labels = cluster_distances(condensed, len(courses), settings, length=length).labels
     left, right = np.triu_indices(len(courses), 1)
-    shown = []
-    for cluster in range(1, int(labels.max()) + 1):
-        within = condensed[(labels[left] == cluster) & (labels[right] == cluster)]
-        shown.append(ClusterSummary(int(np.count_nonzero(labels == cluster)), float(within.max(initial=0.0))))
-    return shown
+    summaries = []
+    for label in range(1, int(labels.max()) + 1):
+        within = condensed[(labels[left] == label) & (labels[right] == label)]
+        summaries.append(ClusterSummary(int(np.count_nonzero(labels == label)), float(within.max(initial=0.0))))
+    return summaries

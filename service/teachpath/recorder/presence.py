@@ -1,4 +1,4 @@
-"""Which trackers are there: by their liveliness tokens, and by what they send."""
+"""Which trackers are there, by their liveliness tokens and by the samples that they send."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from dataclasses import dataclass
 # [s] after its last sample a tracker counts as silent, and one without a liveliness token as gone. A page shows it
 # within 1 s.
 SILENCE_TIMEOUT = 0.8
-MAX_TRACKERS = 1000  # trackers that are remembered; a flood of names must not fill the memory
+MAX_TRACKERS = 1000  # a flood of names must not fill the memory
 
 
 @dataclass(frozen=True, slots=True)
@@ -17,7 +17,7 @@ class Tracker:
     """A tracker that is there."""
 
     name: str
-    announced: bool  # by a liveliness token; else it only sends
+    announced: bool  # by a liveliness token; a tracker without one only sends
     silence: float  # [s] since its last sample; negative: it has sent none
 
     @property
@@ -27,7 +27,7 @@ class Tracker:
 
 
 class Presence:
-    """Follows who comes and goes; safe to use from several threads."""
+    """Follows which trackers come and go; safe to use from several threads."""
 
     def __init__(self, clock: Callable[[], float]) -> None:
         self._clock, self._lock = clock, threading.Lock()
@@ -56,12 +56,12 @@ class Presence:
                 self._last_sample = {name: at for name, at in self._last_sample.items() if at > limit}
 
     def silence_of(self, tracker: str) -> float:
-        """Return how long nothing came from a tracker [s]; 0 when it is not known."""
+        """Return the time since the last sample of a tracker [s]; 0 when none is known."""
         with self._lock:
             return self._clock() - self._last_sample.get(tracker, self._clock())
 
     def trackers(self) -> list[Tracker]:
-        """Return who is there, by name."""
+        """Return the trackers that are there, by name."""
         now = self._clock()
         with self._lock:
             sending = {name for name, at in self._last_sample.items() if now - at <= SILENCE_TIMEOUT}

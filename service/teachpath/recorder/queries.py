@@ -2,25 +2,29 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from teachpath.errors import UnusableInput
 from teachpath.io.bus import Bus, Handle
-from teachpath.io.wire import encode_demonstration, parse
-from teachpath.recorder.annotations import Amendment
-from teachpath.recording.state_machine import Routine
-from teachpath_proto import tracker_pb2
+from teachpath.io.wire import (
+    decode_amendment,
+    decode_recording_request,
+    decode_stop_request,
+    decode_task_reference,
+    decode_tracker,
+    encode_demonstration,
+    encode_recorder_status,
+    encode_recording_status,
+)
+from teachpath.recorder.recorder import Recorder
 from teachpath_proto.keys import Keys
-
-if TYPE_CHECKING:  # the recorder opens its own queries
-    from teachpath.recorder.recorder import Recorder
 
 
 class RecorderQueries:
     """Answers the queries under `recorder/`."""
 
     def __init__(self, bus: Bus, keys: Keys, recorder: Recorder) -> None:
-        self._bus, self._keys, self._recorder, self._curation = bus, keys, recorder, recorder.annotations
+        self._bus = bus
+        self._keys = keys
+        self._recorder = recorder
         self._handles: list[Handle] = []
 
     def start(self) -> None:
@@ -38,63 +42,37 @@ class RecorderQueries:
         self._handles = [self._bus.serve(key, answer) for key, answer in answers.items()]
 
     def stop(self) -> None:
-        """Answer no more; a second call does nothing."""
+        """Stop answering; a second call does nothing."""
         for handle in self._handles:
             handle.close()
         self._handles.clear()
 
     def _start(self, payload: bytes) -> bytes:
-        request = parse(tracker_pb2.StartRecording, payload)
-        return self._recorder.begin(
-            request.task,
-            request.tracker,
-            calibration=request.calibration,
-            scene=request.scene,
-            rate=request.rate,
-            routine=Routine(
-                armed=request.armed,
-                countdown=request.countdown if request.HasField("countdown") else None,
-                takes=request.takes,
-                one_by_one=request.one_by_one,
-            ),
-        ).SerializeToString()
+        return encode_recording_status(self._recorder.begin(decode_recording_request(payload)))
 
     def _stop(self, payload: bytes) -> bytes:
-        request = parse(tracker_pb2.StopRecording, payload)
-        return self._recorder.end(
-            request.tracker, last_sequence=request.last_sequence, discard=request.discard
-        ).SerializeToString()
+        return encode_recording_status(self._recorder.end(decode_stop_request(payload)))
 
     def _pause(self, payload: bytes) -> bytes:
-        return self._recorder.pause(parse(tracker_pb2.PauseRecording, payload).tracker).SerializeToString()
+        return encode_recording_status(self._recorder.pause(decode_tracker(payload)))
 
     def _resume(self, payload: bytes) -> bytes:
-        return self._recorder.resume(parse(tracker_pb2.PauseRecording, payload).tracker).SerializeToString()
+        return encode_recording_status(self._recorder.resume(decode_tracker(payload)))
 
     def _discard(self, payload: bytes) -> bytes:
-        return encode_demonstration(self._curation.discard_last(self._task(payload)))
+        return encode_demonstration(self._recorder.annotations.discard_last(self._task(payload)))
 
     def _restore(self, payload: bytes) -> bytes:
-        return encode_demonstration(self._curation.restore_last(self._task(payload)))
+        return encode_demonstration(self._recorder.annotations.restore_last(self._task(payload)))
 
     def _amend(self, payload: bytes) -> bytes:
-        request = parse(tracker_pb2.AmendDemonstration, payload)
-        return encode_demonstration(
-            self._curation.amend(
-                request.demonstration,
-                Amendment(
-                    mark=request.mark if request.HasField("mark") else None,
-                    discarded=request.discarded if request.HasField("discarded") else None,
-                    trim=(request.trim.begin, request.trim.end) if request.HasField("trim") else None,
-                ),
-            )
-        )
+        return encode_demonstration(self._recorder.annotations.amend(*decode_amendment(payload)))
 
     def _status(self, _: bytes) -> bytes:
-        return tracker_pb2.RecorderStatus(recordings=self._recorder.reports()).SerializeToString()
+        return encode_recorder_status(self._recorder.statuses(with_statistics=True))
 
     def _task(self, payload: bytes) -> str:
-        request = parse(tracker_pb2.PickDemonstration, payload)
-        if not request.task and not request.tracker:
+        reference = decode_task_reference(payload)
+        if not reference.task and not reference.tracker:
             raise UnusableInput("name the task, or a tracker that is recording it")
-        return request.task or self._recorder.task_of(request.tracker)
+        return reference.task or self._recorder.task_of(reference.tracker)

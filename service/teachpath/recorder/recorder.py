@@ -1,46 +1,72 @@
-"""The recorder: hand samples from the bus into recordings, cut into demonstrations, every sample accounted for."""
+"""The recorder: hand samples from the bus into recordings, cut into demonstrations, every sample counted."""
 
 from __future__ import annotations
 
 import logging
 import time
 from collections.abc import Callable
+from dataclasses import dataclass, replace
 
 from teachpath.errors import Conflict, UnusableInput
 from teachpath.io.bus import Bus, Handle
 from teachpath.io.store.store import Store
-from teachpath.recorder.annotations import Amendment, Annotations
-from teachpath.recorder.feedback import FeedbackPublisher, Standing
+from teachpath.recorder.annotations import Annotations
+from teachpath.recorder.feedback import FeedbackPublisher
 from teachpath.recorder.presence import Presence, Tracker
-from teachpath.recorder.queries import RecorderQueries
 from teachpath.recorder.recording_thread import RecordingThread
 from teachpath.recorder.sample_queues import SampleQueues
-from teachpath.recorder.session import RecordingSession
+from teachpath.recorder.session import RecordingSession, RecordingSetup
 from teachpath.recorder.take import FinishedTake
-from teachpath.recording.live_hand import Hand
 from teachpath.recording.settings import RecordingSettings
-from teachpath.recording.state_machine import RecordingState, Routine
-from teachpath.records import Calibration, Demonstration, Scene, Trajectory
-from teachpath_proto import tracker_pb2
+from teachpath.records import (
+    Amendment,
+    Calibration,
+    Demonstration,
+    RecordingRequest,
+    RecordingState,
+    RecordingStatus,
+    Scene,
+    StopRequest,
+    Trajectory,
+)
 from teachpath_proto.keys import Keys, is_name, name_refusal
 
-MAX_SHOWN_HANDS = 32  # that are shown; more would hide each other
+MAX_SHOWN_HANDS = 32  # more would hide each other
+MAX_RATE = 10_000.0  # [Hz] that a client may declare
 
 log = logging.getLogger("teachpath")
-OnDemonstration = Callable[[Demonstration, Trajectory], None]
-Report = tracker_pb2.RecordingReport
+
+
+@dataclass(frozen=True)
+class Lookup:
+    """Finds what a recording names; both functions raise NotFound."""
+
+    scene: Callable[[str], Scene]
+    calibration: Callable[[str], Calibration]
+
+
+@dataclass(frozen=True)
+class DemonstrationCallbacks:
+    """What the recorder calls when demonstrations come or change.
+
+    Attributes:
+        added: called with each new demonstration, synchronously on the recording thread or on the thread that called
+            `begin` or `end`; it must not block.
+        changed: called with each demonstration that an operator has discarded, restored, marked or trimmed.
+    """
+
+    added: Callable[[Demonstration, Trajectory], None] = lambda demonstration, trajectory: None
+    changed: Callable[[Demonstration], None] = lambda demonstration: None
 
 
 class Recorder:
     """Turns sample streams into demonstrations; one running recording a tracker.
 
     Args:
-        scene: gives the scene of a name; raises NotFound.
-        calibration: gives the calibration of a name; raises NotFound.
-        on_change: called with each demonstration that an operator has discarded, restored, marked or trimmed.
-        on_demonstration: called with each new demonstration, synchronously on the recorder thread or on the thread that
-            called `begin` or `end`; it must not block.
         clock: [s] monotonic.
+
+    Attributes:
+        annotations: changes stored demonstrations.
     """
 
     def __init__(
@@ -49,193 +75,178 @@ class Recorder:
         keys: Keys,
         store: Store,
         settings: RecordingSettings,
+        lookup: Lookup,
+        callbacks: DemonstrationCallbacks | None = None,
         *,
-        scene: Callable[[str], Scene],
-        calibration: Callable[[str], Calibration],
-        on_demonstration: OnDemonstration = lambda demonstration, trajectory: None,
-        on_change: Callable[[Demonstration], None] = lambda demonstration: None,
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
-        self._bus, self._keys, self._store, self._settings = bus, keys, store, settings
-        self._scene, self._calibration, self._on_demonstration, self._clock = (
-            scene,
-            calibration,
-            on_demonstration,
-            clock,
-        )
-        self.annotations = Annotations(store, settings, scene, on_change)
-        self._queries = RecorderQueries(bus, keys, self)
+        self._bus = bus
+        self._keys = keys
+        self._store = store
+        self._settings = settings
+        self._lookup = lookup
+        self._callbacks = callbacks or DemonstrationCallbacks()
+        self._clock = clock
+        self.annotations = Annotations(store, settings, lookup.scene, self._callbacks.changed)
         self._presence = Presence(clock)
         self._queues = SampleQueues(keys, self._presence, settings.longest_backlog)
-        self._recording_thread = RecordingThread(
+        self._recording = RecordingThread(
             self._queues,
             self._presence,
             settings,
-            on_finished=self._publish_finished,
+            on_finished=self._report_finished,
             on_discard_request=self._discard_last_of,
             clock=clock,
         )
-        self._feedback = FeedbackPublisher(bus, keys, self.standings, store.demonstration, clock=clock)
+        self._feedback = FeedbackPublisher(bus, keys, self.statuses, store.demonstration, clock=clock)
         self._missed = 0
         self._handles: list[Handle] = []
 
     def start(self) -> None:
         """Begin to listen."""
-        self._recording_thread.start()
+        self._recording.start()
         self._feedback.start()
         self._handles = [
             self._bus.subscribe(self._keys.all_samples, self._queues.on_sample, missed=self._count_missed),
             self._bus.watch(self._keys.all_trackers_alive, self._queues.on_liveliness),
         ]
-        self._queries.start()
 
     def stop(self) -> None:
         """End every running recording, keeping what is complete, and stop listening."""
-        self._queries.stop()
         for handle in self._handles:
             handle.close()
-        self._recording_thread.stop()
+        self._recording.stop()
         self._feedback.stop()
 
-    def begin(
-        self,
-        task: str,
-        tracker: str,
-        *,
-        calibration: str = "",
-        scene: str = "",
-        rate: float = 0.0,
-        routine: Routine | None = None,
-    ) -> Report:
-        """Start recording demonstrations of `task` from `tracker`.
+    def begin(self, request: RecordingRequest) -> RecordingStatus:
+        """Start recording demonstrations of a task from a tracker.
 
-        A task that does not exist is made when `scene` is named. A recording whose tracker has gone gives way.
-
-        Args:
-            rate: [Hz] that the client declares; 0: it says nothing.
-            routine: how takes follow each other; None: one after the other, counted down as the settings say.
+        A task that does not exist is made when the request names a scene. A recording whose tracker was lost is ended
+        first.
 
         Raises:
-            UnusableInput: a name that cannot be a folder and a key, or no rate.
+            UnusableInput: a name that cannot be a folder and a key, or a rate outside its limits.
             NotFound: no such task, scene or calibration.
             Conflict: this tracker is being recorded already.
         """
-        for what, name in (("task", task), ("tracker", tracker)):
-            if not is_name(name):
-                raise UnusableInput(name_refusal(what, name))
-        if not 0.0 <= rate <= 10_000.0:
-            raise UnusableInput(f"a rate of {rate:g} Hz is outside 0 (not said) to 10000")
-        if scene:
-            self._scene(scene)
-            self._store.ensure_task(task, scene=scene, calibration=self._calibration(calibration or "identity").name)
-        stored = self._store.task(task)
-        with self._recording_thread.condition:
-            before = self._recording_thread.sessions.get(tracker)
-            finished = self._recording_thread.drain(before) if before is not None else []
+        self._check(request)
+        if request.scene:
+            self._lookup.scene(request.scene)
+            calibration = self._lookup.calibration(request.calibration or "identity").name
+            self._store.ensure_task(request.task, scene=request.scene, calibration=calibration)
+        tracker, sessions = request.tracker, self._recording.sessions
+        setup = self._setup(request)
+        with self._recording.condition:
+            before = sessions.get(tracker)
+            finished = self._recording.drain(before) if before is not None else []
             if before is not None and before.state is not RecordingState.LOST:
                 raise Conflict(f"{tracker} is already recording {before.task}; stop that first")
-            session = RecordingSession(
-                self._store,
-                self._settings,
-                task=task,
-                tracker=tracker,
-                calibration=self._calibration(calibration or stored.calibration),
-                scene=self._scene(stored.scene),
-                rate=rate,
-                routine=routine,
-                clock=self._clock,
-            )
+            session = RecordingSession(self._store, self._settings, setup, clock=self._clock)
             finished += before.finish() if before is not None else []
-            self._recording_thread.sessions[tracker] = session
+            sessions[tracker] = session
             self._queues.open(tracker)
-            report = session.report()
-        self._publish_finished(finished)
-        return report
+            status = session.status(with_statistics=True)
+        self._report_finished(finished)
+        return status
 
-    def end(self, tracker: str, *, last_sequence: int | None = None, discard: bool = False) -> Report:
-        """End the recording of `tracker` and return its account.
+    def end(self, request: StopRequest) -> RecordingStatus:
+        """End the recording of a tracker and return its status.
 
         Waits up to `handshake_timeout` for samples up to `last_sequence` that are still under way; those that do not
-        come are lost. A demonstration whose object was released is kept; one still open is thrown away on `discard`.
+        come are lost. A demonstration whose object was released is kept.
+
+        Raises:
+            NotFound: the tracker is not being recorded.
         """
-        with self._recording_thread.condition:
-            session = self._recording_thread.session(tracker)
+        tracker, last_sequence = request.tracker, request.last_sequence
+        with self._recording.condition:
+            session = self._recording.session(tracker)
             if last_sequence is not None:
-                arrived = lambda: session.account.highest >= last_sequence  # noqa: E731
-                self._recording_thread.condition.wait_for(arrived, timeout=self._settings.handshake_timeout)
-            finished = self._recording_thread.drain(session)
+                arrived = lambda: session.counter.highest >= last_sequence  # noqa: E731
+                self._recording.condition.wait_for(arrived, timeout=self._settings.handshake_timeout)
+            finished = self._recording.drain(session)
             if last_sequence is not None:
-                session.expect(last_sequence)
-            if self._recording_thread.sessions.get(tracker) is session:
-                del self._recording_thread.sessions[tracker]
+                session.counter.count_missing_until(last_sequence)
+            if self._recording.sessions.get(tracker) is session:
+                del self._recording.sessions[tracker]
                 self._queues.close(tracker)
-            finished += session.finish(discard=discard)
-        self._publish_finished(finished)
-        return session.report(ended=True)
+            finished += session.finish(discard=request.discard)
+        self._report_finished(finished)
+        return replace(session.status(with_statistics=True), state=None, phase=None)
 
-    def pause(self, tracker: str) -> Report:
+    def pause(self, tracker: str) -> RecordingStatus:
         """Record nothing from `tracker` until `resume`; what is carried now is recorded to its end first."""
-        with self._recording_thread.condition:
-            session = self._recording_thread.session(tracker)
+        with self._recording.condition:
+            session = self._recording.session(tracker)
             session.pause()
-            return session.report()
+            return session.status(with_statistics=True)
 
-    def resume(self, tracker: str) -> Report:
+    def resume(self, tracker: str) -> RecordingStatus:
         """Record from `tracker` again."""
-        with self._recording_thread.condition:
-            session = self._recording_thread.session(tracker)
+        with self._recording.condition:
+            session = self._recording.session(tracker)
             session.resume()
-            return session.report()
+            return session.status(with_statistics=True)
 
-    def reports(self) -> list[Report]:
-        """Return the accounts of all running recordings."""
-        with self._recording_thread.condition:
-            return [session.report() for session in self._recording_thread.sessions.values()]
+    def statuses(self, *, with_statistics: bool = False) -> list[RecordingStatus]:
+        """Return the status of every running recording, without its hand."""
+        with self._recording.condition:
+            return [session.status(with_statistics=with_statistics) for session in self._recording.sessions.values()]
 
-    def standings(self) -> list[Standing]:
-        """Return how each running recording stands, for its hand."""
-        with self._recording_thread.condition:
-            return [session.standing() for session in self._recording_thread.sessions.values()]
+    def shown_statuses(self) -> list[RecordingStatus]:
+        """Return the status of the recordings whose hands are to be drawn, with them; at most `MAX_SHOWN_HANDS`."""
+        with self._recording.condition:
+            shown = list(self._recording.sessions.values())[:MAX_SHOWN_HANDS]
+            return [session.status(with_hand=True) for session in shown]
 
     def trackers(self) -> list[Tracker]:
-        """Return the trackers that are there: those that say so, and those that send."""
+        """Return the trackers that are there: those with a liveliness token, and those that send."""
         return self._presence.trackers()
 
     @property
     def backlog(self) -> int:
-        """How many samples have been received and not yet recorded; of each tracker at most `longest_backlog`."""
+        """How many samples were received and not recorded yet; of each tracker at most `longest_backlog`."""
         return self._queues.backlog
 
     def faults(self) -> list[str]:
         """Say what keeps samples from being recorded now, for the operator."""
-        with self._recording_thread.condition:
-            found = [
-                f"{session.tracker}: {session.fault}"
-                for session in self._recording_thread.sessions.values()
-                if session.fault
-            ]
+        with self._recording.condition:
+            sessions = list(self._recording.sessions.values())
+            found = [f"{session.tracker}: {session.fault}" for session in sessions if session.fault]
         if self._missed:
             found.append(f"Zenoh reports {self._missed} samples that never came")
-        return found + [said for said in [self._queues.invalid_names()] if said]
-
-    def hands(self) -> list[Hand]:
-        """Return the hands that are recorded, as they are seen now; at most `MAX_SHOWN_HANDS`."""
-        with self._recording_thread.condition:
-            seen = [session.hand() for session in list(self._recording_thread.sessions.values())[:MAX_SHOWN_HANDS]]
-        return [hand for hand in seen if hand is not None]
+        return found + [sentence for sentence in [self._queues.invalid_names()] if sentence]
 
     def task_of(self, tracker: str) -> str:
         """Return the task that `tracker` is recording; raises NotFound."""
-        return self._recording_thread.session(tracker).task
+        return self._recording.session(tracker).task
+
+    def _check(self, request: RecordingRequest) -> None:
+        for what, name in (("task", request.task), ("tracker", request.tracker)):
+            if not is_name(name):
+                raise UnusableInput(name_refusal(what, name))
+        if not 0.0 <= request.rate <= MAX_RATE:
+            raise UnusableInput(f"a rate of {request.rate:g} Hz is outside 0 (not said) to {MAX_RATE:g}")
+
+    def _setup(self, request: RecordingRequest) -> RecordingSetup:
+        task = self._store.task(request.task)
+        return RecordingSetup(
+            task=request.task,
+            tracker=request.tracker,
+            calibration=self._lookup.calibration(request.calibration or task.calibration),
+            scene=self._lookup.scene(task.scene),
+            rate=request.rate,
+            routine=request.routine,
+        )
 
     def _count_missed(self, count: int) -> None:  # on the transport's thread
         self._missed += count
 
-    def _publish_finished(self, finished: list[FinishedTake]) -> None:
+    def _report_finished(self, finished: list[FinishedTake]) -> None:
         for demonstration, trajectory in finished:
             try:
-                self._on_demonstration(demonstration, trajectory)
-            except Exception:  # whoever shows it may fail; the demonstration is stored, and recording goes on
+                self._callbacks.added(demonstration, trajectory)
+            except Exception:  # the display may fail; the demonstration is stored, and recording goes on
                 log.exception("demonstration %s is stored, but could not be shown", demonstration.id)
 
     def _discard_last_of(self, session: RecordingSession) -> None:

@@ -1,4 +1,4 @@
-"""The scribe: the thread that records what has been received, one tracker after the other."""
+"""The thread that records the samples that were received, one tracker after the other."""
 
 from __future__ import annotations
 
@@ -15,21 +15,21 @@ from teachpath.recorder.take import FinishedTake
 from teachpath.recording.settings import RecordingSettings
 
 FLUSH_INTERVAL = 0.75  # [s] under a second, with a margin for a busy machine
-ROUND_INTERVAL = 0.02  # [s] between two looks at what has come; no pause while more waits than one round takes
-BATCH_SIZE = 200  # samples of one tracker that are recorded before the next one's turn
+ROUND_INTERVAL = 0.02  # [s] pause between two rounds; none while more samples wait than one round records
+BATCH_SIZE = 200  # samples of one tracker that are recorded before the turn of the next
 
 
 class RecordingThread:
-    """Holds the running recordings, one a tracker, and writes into them what waits in the intake.
+    """Holds the running recordings, one a tracker, and writes into them the samples that wait in the queues.
 
     Args:
-        made: called with new demonstrations, on this thread.
-        unwanted: called with a recording whose hand asks for its last demonstration to be discarded.
+        on_finished: called with new demonstrations, on this thread.
+        on_discard_request: called with a recording whose hand commands to discard its last demonstration.
         clock: [s] monotonic.
 
     Attributes:
-        sessions: the running recordings by tracker; touched only while `changed` is held.
-        changed: notified whenever samples have been recorded.
+        sessions: the running recordings by tracker; used only while `condition` is held.
+        condition: notified whenever samples have been recorded.
     """
 
     def __init__(
@@ -42,8 +42,12 @@ class RecordingThread:
         on_discard_request: Callable[[RecordingSession], None],
         clock: Callable[[], float],
     ) -> None:
-        self._queues, self._presence, self._settings, self._clock = queues, presence, settings, clock
-        self._on_finished, self._on_discard_request = on_finished, on_discard_request
+        self._queues = queues
+        self._presence = presence
+        self._settings = settings
+        self._on_finished = on_finished
+        self._on_discard_request = on_discard_request
+        self._clock = clock
         self.sessions: dict[str, RecordingSession] = {}
         self.condition = threading.Condition()
         self._thread = PeriodicThread("recorder", ROUND_INTERVAL, self.process_round)
@@ -53,7 +57,7 @@ class RecordingThread:
         self._thread.start()
 
     def stop(self) -> None:
-        """Record what still waits, end every recording, and stop; a second call does nothing."""
+        """Record the samples that still wait, end every recording, and stop; a second call does nothing."""
         self._thread.stop()
         with self.condition:
             for session in self.sessions.values():
@@ -69,18 +73,19 @@ class RecordingThread:
         return session
 
     def drain(self, session: RecordingSession) -> list[FinishedTake]:
-        """Record all that waits of one tracker; call it while `changed` is held."""
+        """Record all samples of one tracker that wait; the caller holds `condition`."""
         finished = []
         while batch := self._queues.pop(session.tracker, BATCH_SIZE):
             finished += self._record(session, batch)
         return finished
 
     def process_round(self) -> bool:
-        """Record a batch of each tracker in turn, so that none keeps the others waiting.
+        """Record one batch of each tracker in turn, so that no tracker keeps the others waiting.
 
         Returns:
-            Whether a batch was full: more waits, and the next round should begin at once. What trickles in meanwhile
-            does not count, or rounds of hundreds of trackers would follow each other for a sample each.
+            Whether a batch was full, so that more samples wait and the next round should begin at once. Samples that
+            arrive during the round do not count: with hundreds of trackers, rounds would follow each other for one
+            sample each.
         """
         with self.condition:
             sessions = list(self.sessions.values())
@@ -98,10 +103,10 @@ class RecordingThread:
             finished = self._record(session, batch)
             if now - session.last_flush >= FLUSH_INTERVAL:
                 session.flush(now)
-            on_discard_request = session.pop_discard_request()
+            discard_requested = session.pop_discard_request()
             self.condition.notify_all()
         self._on_finished(finished)
-        if on_discard_request:
+        if discard_requested:
             self._on_discard_request(session)
         return len(batch)
 
@@ -109,17 +114,17 @@ class RecordingThread:
         if batch and batch[-1].payload is not None:
             self._presence.on_sample(session.tracker)
         if dropped := self._queues.dropped(session.tracker):
-            session.note(f"{dropped} samples came faster than they can be recorded, and were turned away")
-        return [on_finished for received in batch if (on_finished := self._record_one(session, received)) is not None]
+            session.counter.note(f"{dropped} samples came faster than they can be recorded, and were turned away")
+        return [made for item in batch if (made := self._record_item(session, item)) is not None]
 
-    def _record_one(self, session: RecordingSession, received: QueueItem) -> FinishedTake | None:
-        payload, receive_ns = received
+    def _record_item(self, session: RecordingSession, item: QueueItem) -> FinishedTake | None:
+        payload, receive_ns = item
         try:
             if payload is None:
                 return session.on_tracker_lost("the tracker has gone" + " in mid-take" * session.is_carrying)
             return session.add(decode_sample(session.tracker, payload, receive_ns), payload)
         except UnusableSample as error:
-            session.refuse(str(error))
+            session.counter.count_refused(str(error))
         except Exception as error:  # one take's fault must not end the others
             session.fail(f"recording failed: {error!r}")
         return None
@@ -129,7 +134,7 @@ class RecordingThread:
         if self._presence.silence_of(session.tracker) <= limit:
             return
         with self.condition:
-            # Samples that wait are no silence.
+            # A tracker whose samples wait in its queue is not silent.
             if not (self._queues.is_empty(session.tracker) and session.is_carrying):
                 return
             try:

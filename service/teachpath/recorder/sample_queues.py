@@ -1,7 +1,7 @@
-"""What has been received and not yet recorded: the transport's threads append here, the recorder takes out.
+"""Queues of received samples: the transport's threads append to them, the recording thread takes out.
 
-A tracker that nobody records is only heard, and every other has a line of its own of limited length, so that neither
-a flood nor a crowd of strangers costs memory or keeps others waiting.
+Only recorded trackers have queues, and each queue is of limited length, so that neither a flood nor a crowd of
+unrecorded trackers costs memory or keeps others waiting.
 """
 
 from __future__ import annotations
@@ -11,33 +11,35 @@ from collections import deque
 from typing import NamedTuple
 
 from teachpath.recorder.presence import Presence
-from teachpath_proto.keys import Keys, is_name
+from teachpath_proto.keys import Keys, is_name, name_refusal
 
 
 class QueueItem(NamedTuple):
-    """One payload and when it came; None stands for the news that its tracker has gone."""
+    """One payload and its receive time; a payload of None says that the tracker has gone."""
 
     payload: bytes | None
     receive_ns: int
 
 
 class _Queue:
-    __slots__ = ("dropped", "waiting")
+    __slots__ = ("dropped", "items")
 
     def __init__(self) -> None:
-        self.waiting: deque[QueueItem] = deque()
+        self.items: deque[QueueItem] = deque()
         self.dropped = 0
 
 
 class SampleQueues:
-    """The lines of the trackers that are recorded.
+    """One queue for each tracker that is recorded.
 
     Args:
-        longest: samples that may wait in one line; what comes on top of that is turned away, and counted.
+        max_length: samples that one queue may hold; further ones are dropped, and counted.
     """
 
     def __init__(self, keys: Keys, presence: Presence, max_length: int) -> None:
-        self._keys, self._presence, self.max_length = keys, presence, max_length
+        self._keys = keys
+        self._presence = presence
+        self.max_length = max_length
         self._queues: dict[str, _Queue] = {}  # by the key of the samples
         self._invalid_name_count = 0
         self._last_invalid_name = ""
@@ -49,47 +51,51 @@ class SampleQueues:
         queue = self._queues.get(key)
         if queue is None:
             self._on_unrecorded_sample(self._keys.tracker_of(key))
-        elif len(queue.waiting) < self.max_length:
-            queue.waiting.append(QueueItem(payload, time.time_ns()))
+        elif len(queue.items) < self.max_length:
+            queue.items.append(QueueItem(payload, time.time_ns()))
         else:
             queue.dropped += 1
 
     def on_liveliness(self, key: str, alive: bool) -> None:
-        """Take from the bus that a tracker came or went; what it sent before is recorded before."""
+        """Take note that a tracker came or went; samples that it sent before are recorded before."""
         tracker = self._keys.announced(key)
         if not is_name(tracker):
-            self._invalid_name_count, self._last_invalid_name = self._invalid_name_count + 1, tracker
+            self._count_invalid_name(tracker)
             return
         self._presence.on_liveliness(tracker, alive)
         queue = self._queues.get(self._keys.samples(tracker))
         if queue is not None and not alive:
-            queue.waiting.append(QueueItem(None, 0))
+            queue.items.append(QueueItem(None, 0))
 
     def _on_unrecorded_sample(self, tracker: str) -> None:
         if is_name(tracker):
             self._presence.on_sample(tracker)
         else:
-            self._invalid_name_count, self._last_invalid_name = self._invalid_name_count + 1, tracker
+            self._count_invalid_name(tracker)
 
-    # on the recorder's
+    def _count_invalid_name(self, tracker: str) -> None:
+        self._invalid_name_count += 1
+        self._last_invalid_name = tracker
+
+    # on the recording thread
 
     def open(self, tracker: str) -> None:
-        """Let the samples of `tracker` wait from now on."""
+        """Queue the samples of `tracker` from now on."""
         self._queues[self._keys.samples(tracker)] = _Queue()
 
     def close(self, tracker: str) -> None:
-        """Only hear `tracker` from now on."""
+        """Queue no more samples of `tracker`, and forget those in its queue."""
         self._queues.pop(self._keys.samples(tracker), None)
 
     def pop(self, tracker: str, limit: int) -> list[QueueItem]:
-        """Take up to `most` from the line of `tracker`, in the order they came."""
+        """Remove and return up to `limit` items from the queue of `tracker`, the oldest first."""
         queue = self._queues.get(self._keys.samples(tracker))
         if queue is None:
             return []
-        return [queue.waiting.popleft() for _ in range(min(limit, len(queue.waiting)))]
+        return [queue.items.popleft() for _ in range(min(limit, len(queue.items)))]
 
     def dropped(self, tracker: str) -> int:
-        """Return how many samples of `tracker` were turned away since this was last asked."""
+        """Return how many samples of `tracker` were dropped since the last call."""
         queue = self._queues.get(self._keys.samples(tracker))
         if queue is None or not queue.dropped:
             return 0
@@ -97,20 +103,20 @@ class SampleQueues:
         return count
 
     def is_empty(self, tracker: str) -> bool:
-        """Tell whether nothing of `tracker` waits."""
+        """Tell whether no sample of `tracker` waits."""
         queue = self._queues.get(self._keys.samples(tracker))
-        return queue is None or not queue.waiting
+        return queue is None or not queue.items
 
     def invalid_names(self) -> str:
-        """Say who came under a name that cannot be recorded, or nothing."""
+        """Return a sentence about trackers whose names cannot be recorded, or nothing."""
         if not self._invalid_name_count:
             return ""
         return (
-            f"{self._invalid_name_count} messages came from trackers whose names cannot be recorded, the last of them "
-            f"from {self._last_invalid_name[:80]!r}: use letters, digits, '.', '_' or '-', at most 64"
+            f"{self._invalid_name_count} messages came from trackers whose names cannot be recorded; "
+            f"{name_refusal('tracker', self._last_invalid_name)}"
         )
 
     @property
     def backlog(self) -> int:
-        """How many samples wait in all lines."""
-        return sum(len(queue.waiting) for queue in list(self._queues.values()))
+        """How many samples wait in all queues."""
+        return sum(len(queue.items) for queue in list(self._queues.values()))

@@ -1,4 +1,4 @@
-"""The take that is open: its samples so far, and its file as far as that can be written."""
+"""One take: the samples that may become a demonstration, and their file as far as it can be written."""
 
 from __future__ import annotations
 
@@ -17,12 +17,16 @@ FinishedTake = tuple[Demonstration, Trajectory]
 
 
 class Take:
-    """Keeps and writes samples until they become a demonstration or are dropped.
+    """Keeps and writes samples until they become a demonstration or are discarded.
 
-    A file that cannot be written is left as it is, for the doctor; the samples are kept no less.
+    A file that cannot be written any more is left as it is, for the doctor; the samples are kept all the same.
 
     Args:
-        note: is told what an operator should know.
+        note: called with sentences for the operator.
+
+    Attributes:
+        samples: in the order received.
+        fault: why nothing is written, or empty.
     """
 
     def __init__(
@@ -30,13 +34,13 @@ class Take:
     ) -> None:
         self._store, self._settings, self._header, self._note = store, settings, header, note
         self.samples: list[Sample] = []
-        self.fault = ""  # why nothing is written
+        self.fault = ""
         self._id = f"demo-{uuid.uuid4().hex[:12]}"
         self._file: RecordingFile | None = None
 
     @property
     def seconds(self) -> float:
-        """How long it has been going on, by the device's clock."""
+        """Duration so far, by the device's clock."""
         return (self.samples[-1].device_ns - self.samples[0].device_ns) * 1e-9 if self.samples else 0.0
 
     def write(self, sample: Sample, payload: bytes) -> None:
@@ -49,15 +53,15 @@ class Take:
                 self._file = self._store.recordings.begin(self._id, self._header)
             self._file.write(sample, payload)
         except OSError as error:
-            self.fail(_cannot("written", error))
+            self.fail(_disk_fault("written", error))
 
     def flush(self) -> None:
-        """Hand what was written to the operating system."""
+        """Hand all that was written to the operating system."""
         if self._file is not None:
             try:
                 self._file.flush()
             except OSError as error:
-                self.fail(_cannot("written", error))
+                self.fail(_disk_fault("written", error))
 
     def fail(self, reason: str) -> None:
         """Write no more of this take, and leave its file as it is."""
@@ -68,36 +72,37 @@ class Take:
             self._file = None
 
     def finalize(
-        self, cut: TransportSpan, account: StreamStatistics, carried: Vector | None, fault: str
+        self, cut: TransportSpan, statistics: StreamStatistics, carried: Vector | None, fault: str
     ) -> FinishedTake | None:
-        """Make a demonstration of it; one that cannot be made leaves a note that says why, and no file.
+        """Make and store its demonstration; if that is impossible, note why, and leave no file.
 
         Args:
-            account: of its samples.
+            cut: its transport phase.
+            statistics: of its samples.
             carried: start of the object's centre [m, world], or None.
-            fault: why it ended too early, or empty.
+            fault: why the take ended too early, or empty.
         """
         try:
             if self._file is None:
                 raise UnusableRecording(f"a demonstration was lost: {self.fault}")
-            facts = {"id": self._id, "task": self._header.task, "source": self._header.tracker}
-            taken = SegmentedTake(self.samples, cut, account, self._header.calibration, carried, fault)
-            return complete_take(self._store, self._settings, self._file, taken, facts)
+            identity = {"id": self._id, "task": self._header.task, "source": self._header.tracker}
+            take = SegmentedTake(self.samples, cut, statistics, self._header.calibration, carried, fault)
+            return complete_take(self._store, self._settings, self._file, take, identity)
         except UnusableRecording as error:
             self._note(str(error))
             self.discard()
         except OSError as error:
-            self.fail(_cannot("finished", error))
+            self.fail(_disk_fault("finished", error))
         return None
 
     def discard(self) -> None:
-        """Throw it away."""
+        """Throw the file away."""
         if self._file is not None:
             self._file.discard()
             self._file = None
 
 
-def _cannot(what: str, error: OSError) -> str:
+def _disk_fault(what: str, error: OSError) -> str:
     return (
         f"the recording cannot be {what}: {error.strerror or error}; free space or mend the folder, then show it again"
     )

@@ -1,4 +1,4 @@
-"""How a take ends: its samples become a demonstration, judged, with its file finished and its row stored."""
+"""How a take becomes a demonstration: assess its quality, finish its file, store its row."""
 
 from __future__ import annotations
 
@@ -16,88 +16,95 @@ from teachpath.recording.demonstration import object_trajectory, to_world, usabl
 from teachpath.recording.phase_statistics import PhaseStatistics, phase_statistics
 from teachpath.recording.phases import TransportSpan
 from teachpath.recording.position_outliers import find_outliers
+from teachpath.recording.quality import QualityReport, assess_quality, reassess_quality
 from teachpath.recording.settings import RecordingSettings
-from teachpath.recording.verdict import Verdict, judge, judge_again
-from teachpath.records import Calibration, Demonstration, Sample, StreamStatistics, Trajectory, Vector
+from teachpath.records import Calibration, Demonstration, Sample, StreamStatistics, Trajectory, Vector, Verdict
 
 
 @dataclass(frozen=True, eq=False)
 class SegmentedTake:
-    """A take whose phases are known.
+    """A take whose transport phase is known.
 
     Attributes:
-        account: of its samples; the faults of the positions are added here.
+        samples: in the order received.
+        cut: its transport phase.
+        statistics: of its samples, without the outliers of their positions.
+        calibration: of its tracker.
         carried: start of the object's centre [m, world], or None.
-        fault: why it ended too early, or empty.
+        fault: why the take ended too early, or empty.
     """
 
     samples: Sequence[Sample]
     cut: TransportSpan
-    account: StreamStatistics
+    statistics: StreamStatistics
     calibration: Calibration
     carried: Vector | None
     fault: str = ""
 
 
 def complete_take(
-    store: Store, settings: RecordingSettings, take: RecordingFile, taken: SegmentedTake, facts: Mapping[str, str]
+    store: Store, settings: RecordingSettings, file: RecordingFile, take: SegmentedTake, identity: Mapping[str, str]
 ) -> tuple[Demonstration, Trajectory]:
-    """Finish a take's file and store its demonstration; `facts` are its id, task and source.
+    """Finish the file of a take and store its demonstration.
+
+    Args:
+        identity: id, task and source of the demonstration.
 
     Raises:
         UnusableRecording: the transport phase is too short; nothing was finished or stored.
         OSError: the file cannot be finished.
     """
-    cut = taken.cut
+    cut = take.cut
     if cut.release - cut.grasp < settings.shortest_transport:
         raise UnusableRecording(
             f"a transport phase of {cut.release - cut.grasp} samples is under the least of "
             f"{settings.shortest_transport}: the object was let go at once"
         )
-    account, left_out = add_position_outliers(taken, settings)
-    trajectory = object_trajectory(taken.samples, cut, taken.calibration, taken.carried, left_out=left_out)
-    verdict = _judge(phase_statistics(taken.samples, cut, account, settings), taken, settings)
+    statistics, left_out = add_position_outliers(take, settings)
+    trajectory = object_trajectory(take.samples, cut, take.calibration, take.carried, left_out=left_out)
+    quality = _assess(phase_statistics(take.samples, cut, statistics, settings), take, settings)
     demonstration = Demonstration(
-        id=facts["id"],
-        task=facts["task"],
+        id=identity["id"],
+        task=identity["task"],
         number=0,
-        source=facts["source"],
-        calibration=taken.calibration,
+        source=identity["source"],
+        calibration=take.calibration,
         created_ns=time.time_ns(),
         duration=float(trajectory.times[-1]),
-        samples=len(taken.samples),
+        samples=len(take.samples),
         grasp=cut.grasp,
         release=cut.release,
-        verdict=verdict.word,
-        account=account,
+        verdict=quality.verdict,
+        account=statistics,
         recording="",
-        reasons=verdict.reasons,
+        reasons=quality.reasons,
         left_out=left_out,
     )
-    file = take.finish(facts_of(demonstration))
-    stored = store.add_demonstration(replace(demonstration, recording=store.recordings.place(file)))
+    finished = file.finish(facts_of(demonstration))
+    stored = store.add_demonstration(replace(demonstration, recording=store.recordings.place(finished)))
     return stored, trajectory
 
 
-def add_position_outliers(
-    taken: SegmentedTake, settings: RecordingSettings
-) -> tuple[StreamStatistics, tuple[int, ...]]:
-    """Return a take's account with the faults of its positions, and the numbers of the samples that jumped."""
-    ordered = usable_samples(taken.samples[taken.cut.grasp : taken.cut.release])
+def add_position_outliers(take: SegmentedTake, settings: RecordingSettings) -> tuple[StreamStatistics, tuple[int, ...]]:
+    """Return the statistics of a take with the outliers of its positions, and the numbers of the samples that jump."""
+    ordered = usable_samples(take.samples[take.cut.grasp : take.cut.release])
     if not ordered:
-        return taken.account, ()
-    positions = to_world(taken.calibration, np.array([s.position for s in ordered]))
-    faults = find_outliers(ordered, positions, settings)
-    account = replace(
-        taken.account, jumps=len(faults.outliers), leaps=faults.level_shifts, out_of_workspace=faults.out_of_workspace
+        return take.statistics, ()
+    positions = to_world(take.calibration, np.array([s.position for s in ordered]))
+    found = find_outliers(ordered, positions, settings)
+    statistics = replace(
+        take.statistics,
+        jumps=len(found.outliers),
+        leaps=found.level_shifts,
+        out_of_workspace=found.out_of_workspace,
     )
-    return account, faults.outliers
+    return statistics, found.outliers
 
 
 def reassess(
     before: Demonstration, after: Demonstration, samples: Sequence[Sample], settings: RecordingSettings
 ) -> dict[str, Any]:
-    """Return what is thought of a demonstration whose calibration or trim has changed, as changes of its row.
+    """Assess the quality of a demonstration whose calibration or trim has changed; return the changes of its row.
 
     Args:
         before: as it is stored.
@@ -105,21 +112,20 @@ def reassess(
         samples: of its recording.
     """
     cut = TransportSpan(*after.transport)
-    account, left_out = add_position_outliers(
-        SegmentedTake(samples, cut, before.account, after.calibration, None), settings
-    )
-    verdict = judge_again(
-        Verdict(before.verdict, before.reasons),
+    take = SegmentedTake(samples, cut, before.account, after.calibration, None)
+    statistics, left_out = add_position_outliers(take, settings)
+    quality = reassess_quality(
+        QualityReport(before.verdict, before.reasons),
         phase_statistics(samples, TransportSpan(*before.transport), before.account, settings),
-        phase_statistics(samples, cut, account, settings),
+        phase_statistics(samples, cut, statistics, settings),
         settings,
     )
-    return {"account": account, "left_out": left_out, "verdict": verdict.word, "reasons": verdict.reasons}
+    return {"account": statistics, "left_out": left_out, "verdict": quality.verdict, "reasons": quality.reasons}
 
 
-def _judge(parts: PhaseStatistics, taken: SegmentedTake, settings: RecordingSettings) -> Verdict:
-    verdict = judge(parts, settings)
-    if not taken.fault:
-        return verdict
-    reasons = (taken.fault, *verdict.reasons)
-    return Verdict("reject" if taken.cut.open_ended or verdict.word == "reject" else "repaired", reasons)
+def _assess(statistics: PhaseStatistics, take: SegmentedTake, settings: RecordingSettings) -> QualityReport:
+    quality = assess_quality(statistics, settings)
+    if not take.fault:
+        return quality
+    rejected = take.cut.open_ended or quality.verdict == Verdict.REJECT
+    return QualityReport(Verdict.REJECT if rejected else Verdict.REPAIRED, (take.fault, *quality.reasons))

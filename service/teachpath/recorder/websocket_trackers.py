@@ -1,8 +1,7 @@
-"""The gate: trackers that come over a WebSocket, from the page above all, join the bus like any other."""
+"""Trackers over a WebSocket, mostly hands in a page: their samples go on the bus like those of any other tracker."""
 
 from __future__ import annotations
 
-import json
 import threading
 import time
 from collections.abc import Callable, Sequence
@@ -10,48 +9,50 @@ from typing import Any, Final
 
 from teachpath.errors import Conflict, UnusableInput, UnusableSample
 from teachpath.io.bus import Bus, Handle
-from teachpath.io.wire import LARGEST_SAMPLE, parse, report_document, sample_from
+from teachpath.io.wire import decode_sample, recording_document, sample_payload
 from teachpath.recorder.presence import Tracker
 from teachpath.recorder.recorder import Recorder
-from teachpath_proto import tracker_pb2
+from teachpath.records import StopRequest
 from teachpath_proto.keys import Keys, is_name, name_refusal
 
-MAX_TRACKERS: Final = 32  # trackers that may be here at once
-RATE_LIMIT: Final = 1000.0  # samples a second in the long run
+MAX_TRACKERS: Final = 32  # connected at once
+RATE_LIMIT: Final = 1000.0  # [1/s] samples in the long run
 RATE_BURST: Final = 2000.0  # samples that may come at once, after a pause of the network
-MAX_CONSECUTIVE_REJECTS: Final = 100  # refused messages in a row, after which a tracker has to leave
-
-REANNOUNCE_GRACE: Final = 5.0  # [s] a tracker that has just been let out may still be seen on the bus
+MAX_CONSECUTIVE_REJECTS: Final = 100  # messages; a tracker with more is disconnected
+REANNOUNCE_GRACE: Final = 5.0  # [s] for which the bus may still show a tracker that has just been unregistered
 
 OnDisconnect = Callable[[str], None]
 
 
 class WebSocketTrackers:
-    """Lets trackers in and out; safe to use from several threads.
+    """Registers trackers that connect over a WebSocket; safe to use from several threads.
 
     Args:
-        recorder: ends recordings with the handshake, and knows which trackers are there without the gate.
+        recorder: ends recordings with the handshake, and knows the trackers of the bus.
         clock: [s] monotonic, for the limit on the rate.
     """
 
     def __init__(
         self, bus: Bus, keys: Keys, recorder: Recorder, *, clock: Callable[[], float] = time.monotonic
     ) -> None:
-        self._bus, self._keys, self._recorder, self._clock = bus, keys, recorder, clock
+        self._bus = bus
+        self._keys = keys
+        self._recorder = recorder
+        self._clock = clock
         self._lock = threading.Lock()
         self._trackers: dict[str, WebSocketTracker] = {}
-        self._unregistered: dict[str, float] = {}  # when
+        self._unregistered: dict[str, float] = {}  # by name: when
 
     def register(self, name: str, on_disconnect: OnDisconnect) -> WebSocketTracker:
-        """Let a tracker in; one of the same name that came through the gate before has to leave.
+        """Register a tracker; one of the same name that was registered here before is disconnected.
 
         Args:
             name: of the tracker, unique at the station.
-            on_disconnect: called with a sentence, from any thread, when it has to leave.
+            on_disconnect: called with a sentence, from any thread, when the tracker is disconnected.
 
         Raises:
             UnusableInput: the name cannot be a key.
-            Conflict: a tracker of that name is there without the gate, or too many are here.
+            Conflict: a tracker of that name is on the bus already, or too many are connected.
         """
         if not is_name(name):
             raise UnusableInput(name_refusal("tracker", name))
@@ -71,8 +72,9 @@ class WebSocketTrackers:
         with self._lock:
             if self._trackers.get(tracker.name) is tracker:
                 del self._trackers[tracker.name]
-                recent = {name: at for name, at in self._unregistered.items() if self._clock() - at < REANNOUNCE_GRACE}
-                self._unregistered = recent | {tracker.name: self._clock()}
+                now = self._clock()
+                recent = {name: at for name, at in self._unregistered.items() if now - at < REANNOUNCE_GRACE}
+                self._unregistered = recent | {tracker.name: now}
         tracker.withdraw()
 
     def _check_free(self, name: str, trackers: Sequence[Tracker]) -> None:
@@ -86,12 +88,12 @@ class WebSocketTrackers:
 
 
 class WebSocketTracker:
-    """One tracker that came through the gate.
+    """One tracker that is connected over a WebSocket.
 
     Attributes:
         name: of the tracker.
-        passed: samples that were put on the bus and are sound.
-        refused: messages that could not be used.
+        accepted: number of samples that were put on the bus and are sound.
+        refused: number of messages that could not be used.
     """
 
     def __init__(
@@ -104,46 +106,51 @@ class WebSocketTracker:
         clock: Callable[[], float],
     ) -> None:
         self.name = name
-        self.accepted = self.refused = 0
-        self._bus, self._recorder, self._clock = bus, recorder, clock
-        self._key, self._alive = keys.samples(name), keys.alive("tracker", name)
+        self.accepted = 0
+        self.refused = 0
+        self._bus = bus
+        self._recorder = recorder
+        self._clock = clock
         self._on_disconnect = on_disconnect
-        self._token: Handle | None = None
+        self._samples_key = keys.samples(name)
+        self._liveliness_key = keys.alive("tracker", name)
+        self._liveliness: Handle | None = None
         self._consecutive_rejects = 0
-        self._tokens, self._refilled = RATE_BURST, clock()
+        self._tokens = RATE_BURST  # of the token bucket that limits the rate
+        self._refilled = clock()
 
     def announce(self) -> None:
-        """Show that the tracker is there."""
-        self._token = self._bus.announce(self._alive)
+        """Show on the bus that the tracker is there."""
+        self._liveliness = self._bus.announce(self._liveliness_key)
 
     def withdraw(self) -> None:
-        """Show that it has gone; a second call does nothing."""
-        token, self._token = self._token, None
-        if token is not None:
-            token.close()
+        """Show on the bus that it has gone; a second call does nothing."""
+        liveliness, self._liveliness = self._liveliness, None
+        if liveliness is not None:
+            liveliness.close()
 
     def disconnect(self, sentence: str) -> None:
-        """Tell it to leave, and why."""
+        """Disconnect the tracker and say why."""
         self.withdraw()
         self._on_disconnect(sentence)
 
     def publish(self, content: bytes | dict[str, Any]) -> str:
-        """Put a sample on the bus and return an empty text, or why it was refused.
+        """Put a sample on the bus and return an empty text, or the reason why it was refused.
 
-        What is a `HandSample` with unsound values goes on the bus all the same, as from any other tracker, so that
-        the account of the recording holds it as refused.
+        A `HandSample` with unsound values goes on the bus all the same, as from any other tracker, so that the
+        statistics of the recording count it as refused.
 
         Args:
             content: a `HandSample` as protobuf, or as JSON object with the names of its fields.
 
         Raises:
-            UnusableInput: samples come too fast, or too many were refused in a row: the tracker has to leave.
+            UnusableInput: samples come too fast, or too many in a row were refused: disconnect the tracker.
         """
-        self._count_rate()
+        self._limit_rate()
         try:
-            message = _message(content)
-            self._bus.publish(self._key, message.SerializeToString())
-            sample_from(message, self.name, 0)
+            payload = sample_payload(content)
+            self._bus.publish(self._samples_key, payload)
+            decode_sample(self.name, payload, 0)
         except UnusableSample as error:
             return self.refuse(str(error))
         self.accepted += 1
@@ -151,7 +158,7 @@ class WebSocketTracker:
         return ""
 
     def refuse(self, sentence: str) -> str:
-        """Count something that cannot be used and return the sentence; raises UnusableInput as `take` does."""
+        """Count a message that cannot be used and return the sentence; raises UnusableInput as `publish` does."""
         self.refused += 1
         self._consecutive_rejects += 1
         if self._consecutive_rejects > MAX_CONSECUTIVE_REJECTS:
@@ -159,31 +166,16 @@ class WebSocketTracker:
         return sentence
 
     def end_recording(self, last_sequence: int, *, discard: bool) -> dict[str, Any]:
-        """End the recording of this tracker with the handshake and return its account.
+        """End the recording of this tracker with the handshake and return its report.
 
         Raises:
             NotFound: it is not being recorded.
         """
-        return report_document(self._recorder.end(self.name, last_sequence=last_sequence, discard=discard))
+        return recording_document(self._recorder.end(StopRequest(self.name, last_sequence, discard)))
 
-    def _count_rate(self) -> None:
+    def _limit_rate(self) -> None:
         now = self._clock()
         self._tokens = min(RATE_BURST, self._tokens + RATE_LIMIT * (now - self._refilled)) - 1.0
         self._refilled = now
         if self._tokens < 0.0:
             raise UnusableInput(f"samples come faster than {RATE_LIMIT:g} a second; slow down")
-
-
-def _message(content: bytes | dict[str, Any]) -> tracker_pb2.HandSample:
-    if isinstance(content, dict):
-        try:
-            return tracker_pb2.HandSample(**content)
-        except (TypeError, ValueError, AttributeError) as error:
-            shown = json.dumps(content)[:120]
-            raise UnusableSample(f"{shown} is no HandSample: {' '.join(str(error).split())}") from None
-    if len(content) > LARGEST_SAMPLE:
-        raise UnusableSample(f"a sample of {len(content)} bytes is over the limit of {LARGEST_SAMPLE}")
-    try:
-        return parse(tracker_pb2.HandSample, content)
-    except UnusableInput as error:
-        raise UnusableSample(str(error)) from None

@@ -9,9 +9,7 @@ from scipy.spatial.transform import Rotation
 
 from teachpath.errors import UnusableRecording
 from teachpath.recording.phases import TransportSpan
-from teachpath.records import Array, Calibration, Quaternion, Sample, Trajectory, Vector
-
-Pose = tuple[Vector, Quaternion]
+from teachpath.records import Array, Calibration, Pose, Sample, Trajectory, Vector
 
 
 def to_world(calibration: Calibration, positions: Array) -> Array:

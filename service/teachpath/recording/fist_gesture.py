@@ -7,20 +7,12 @@ demonstration; held for more than six times as long it is a resting hand and say
 from __future__ import annotations
 
 import math
-from enum import StrEnum
 
 from teachpath.recording.phases import hand_closure
 from teachpath.recording.settings import RecordingSettings
-from teachpath.records import Sample, Vector
+from teachpath.records import FistCommand, Sample, Vector
 
 DISCARD_FACTOR, REST_FACTOR = 3, 6  # times `fist_time`
-
-
-class FistCommand(StrEnum):
-    """What a fist asks for."""
-
-    TOGGLE = "toggle"
-    DISCARD = "discard"
 
 
 class FistGesture:

@@ -1,4 +1,4 @@
-"""The account of a take, part by part: what is learned of it, and the hand's ways to the object and back."""
+"""Statistics of a take phase by phase: the reach to the object, its transport, which is learned, and the return."""
 
 from __future__ import annotations
 
@@ -13,13 +13,16 @@ from teachpath.records import Sample, StreamStatistics
 
 @dataclass(frozen=True, slots=True)
 class PhaseStatistics:
-    """A take and its parts; every sample is in one of them, and every step to a sample belongs to its part.
+    """Statistics of a take and of its phases.
+
+    Every sample belongs to one phase, and every step from one sample to the next to the phase of the later one.
 
     Attributes:
-        whole: of the take, as the recorder kept it: with what was refused, and the faults of the positions.
+        whole: of the take, as the recorder kept them: with refused payloads and outliers of the positions.
         reach: up to the last sample before the grasp.
-        carried: from the grasp to the first sample after the release: what is learned, and how it began and ended.
-        back: what came after that.
+        transport: from the grasp to the first sample after the release, because the step to that sample ends what is
+            learned.
+        return_: all later samples.
     """
 
     whole: StreamStatistics
@@ -31,24 +34,24 @@ class PhaseStatistics:
 def phase_statistics(
     samples: Sequence[Sample], cut: TransportSpan, whole: StreamStatistics, settings: RecordingSettings
 ) -> PhaseStatistics:
-    """Return the parts of a take.
+    """Return the statistics of each phase of a take.
 
-    A sample that came only after the release is lost of what is learned, which is without it. What only the handshake
-    told to be lost comes after all samples.
+    A sample of the transport that came only after the release counts as lost there, because the trajectory is learned
+    without it. Samples whose loss only the handshake at the end has shown belong behind all others.
 
     Args:
         samples: in the order received.
         cut: its transport phase.
-        whole: the account of the take.
+        whole: the statistics of the take.
     """
-    stream = StreamCounter(declared_rate=whole.declared_rate, largest_clock_step=settings.largest_clock_step)
-    borders, parts = (cut.grasp, cut.release + 1), []
+    counter = StreamCounter(declared_rate=whole.declared_rate, largest_clock_step=settings.largest_clock_step)
+    borders, phases = (cut.grasp, cut.release + 1), []
     for index, sample in enumerate(samples):
         if index in borders:
-            parts.append(stream.interval())
-            stream.begin_interval(joined=True)
-        stream.observe(sample)
-    unseen = max(whole.lost - stream.statistics().lost, 0)
-    last = stream.interval()
-    reach, transport, return_ = [*parts, replace(last, lost=last.lost + unseen), StreamStatistics()][:3]
+            phases.append(counter.interval())
+            counter.begin_interval(counts_loss_before=True)
+        counter.observe(sample)
+    unseen = max(whole.lost - counter.statistics().lost, 0)
+    last = counter.interval()
+    reach, transport, return_ = [*phases, replace(last, lost=last.lost + unseen), StreamStatistics()][:3]
     return PhaseStatistics(whole, reach, transport, return_)

@@ -102,7 +102,7 @@ class Segmenter:
         """Return the cut that the end of the stream completes, or None when nothing was grasped."""
         if self.phase is Phase.REACH:
             return None
-        if self.phase in (Phase.GRASP, Phase.TRANSPORT):
+        if self.phase.is_hand_closed:
             self._release = self._count
             return self._complete(open_ended=True)
         return self._complete()

@@ -2,36 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from enum import StrEnum
-
-from teachpath.errors import UnusableInput
-
-MAX_COUNTDOWN = 60.0  # [s]
-
-
-class RecordingState(StrEnum):
-    """What a recording does with the samples that come."""
-
-    RECORDING = "recording"
-    COUNTDOWN = "countdown"  # records as soon as it has been counted down
-    PAUSING = "pausing"  # paused as soon as what is carried has been let go
-    PAUSED = "paused"
-    LOST = "lost"  # the tracker has gone; recording goes on when it comes back
-
-
-@dataclass(frozen=True, slots=True)
-class Routine:
-    """How an operator wants takes to follow each other; raises UnusableInput for a countdown that has no end."""
-
-    armed: bool = False  # begin paused
-    countdown: float | None = None  # [s] before each take; None: as the settings say
-    takes: int = 0  # after so many it pauses by itself; 0: never
-    one_by_one: bool = False  # pause after each take
-
-    def __post_init__(self) -> None:
-        if self.countdown is not None and not 0.0 <= self.countdown <= MAX_COUNTDOWN:
-            raise UnusableInput(f"a countdown of {self.countdown:g} s is outside 0 to {MAX_COUNTDOWN:g}")
+from teachpath.records import RecordingState, Routine
 
 
 class RecordingStateMachine:

@@ -1,4 +1,4 @@
-"""The account of a sample stream: what came, what did not, what came twice or late, and how its clock ran."""
+"""Statistics of a sample stream: received, lost, duplicated and late samples, and how the device's clock runs."""
 
 from __future__ import annotations
 
@@ -11,20 +11,24 @@ from teachpath.records import Sample, StreamStatistics
 
 MAX_SEQUENCE_JUMP = 100_000  # sequence numbers; a larger gap is a restarted device, not loss
 MAX_LISTED_GAPS = 20
-HISTORY_SIZE = 512
+HISTORY_SIZE = 512  # samples whose device times are remembered, to tell duplicates from conflicts
 MAX_CLOCK_RATE = 100.0  # device seconds in one of ours; beyond it the receive times come from a burst
-RESTART_THRESHOLD = 10  # older numbers in a row, each with a newer time: the device counts anew
+RESTART_THRESHOLD = 10  # older numbers in a row, each with a newer time, that show that the device counts anew
 
 
 class StreamCounter:
-    """Counts the samples of one tracker by their sequence numbers, all of them and those of the part that is open.
+    """Counts the samples of one tracker by their sequence numbers: all of them, and those of the current interval.
 
-    A sample below the highest number seen fills a gap (reordered) or was there before (duplicated; in conflict when
-    it was taken at another time).
+    A sample below the highest number seen fills a gap (reordered) or came before (duplicated). A duplicate with
+    another device time is in conflict with the first.
 
     Args:
-        declared_rate: [Hz] what the client says it sends; 0: it says nothing.
+        declared_rate: [Hz] that the client declares; 0: it declares none.
         largest_clock_step: [s] see RecordingSettings.
+
+    Attributes:
+        first: number of the first sample; None: no sample came.
+        highest: highest number seen; -1: no sample came.
     """
 
     def __init__(self, *, declared_rate: float = 0.0, largest_clock_step: float = 0.25) -> None:
@@ -32,22 +36,36 @@ class StreamCounter:
         self.highest = -1
         self._declared_rate = declared_rate
         self._largest_clock_step_ns = round(largest_clock_step * 1e9)
-        self._missing: list[tuple[int, int]] = []  # stretches of numbers, rising, first and last of each
-        self._settled: list[tuple[int, int]] = []  # those of before the device counted anew
+        self._missing: list[tuple[int, int]] = []  # stretches of missing numbers, rising, first and last of each
+        self._settled: list[tuple[int, int]] = []  # the stretches of before the device counted anew
         self._lost = 0
-        self._received = self._duplicated = self._reordered = self._refused = self._untracked = 0
-        self._conflicts = self._clock_jumps = self._late_in_a_row = 0
+        self._received = 0
+        self._duplicated = 0
+        self._reordered = 0
+        self._refused = 0
+        self._untracked = 0
+        self._conflicts = 0
+        self._clock_jumps = 0
+        self._late_in_a_row = 0
         self._recent: list[tuple[int, int]] = [(-1, 0)] * HISTORY_SIZE
-        self._last_device_ns = self._last_receive_ns = 0
-        self._steps = self._device_ns = self._receive_ns = 0  # sums over the steps of the clock that were no jumps
-        self._longest_gap_ns = self._longest_gap_of_part_ns = 0
+        self._last_device_ns = 0
+        self._last_receive_ns = 0
+        # sums over all steps of the device's clock that were no jumps
+        self._steps = 0
+        self._device_ns = 0
+        self._receive_ns = 0
+        self._longest_gap_ns = 0
         self._clock = DeviceClock()
         self._interrupted = False
-        self._notes, self._notes_of_part = _notes(), _notes()
-        self._refusals, self._refusals_of_part = _refusals(), _refusals()
-        self._part_is_empty = True
-        self._first_of_part = 0
-        self._before_part = self._counts()
+        self._notes = _new_notes()
+        self._refusals = _new_refusals()
+        # the current interval
+        self._interval_is_empty = True
+        self._interval_first = 0  # lowest number that counts in it
+        self._interval_longest_gap_ns = 0
+        self._interval_notes = _new_notes()
+        self._interval_refusals = _new_refusals()
+        self._before_interval = self._counts()
 
     def observe(self, sample: Sample) -> bool:
         """Count one sample; return whether it is newer than all before (neither late nor a duplicate)."""
@@ -71,8 +89,8 @@ class StreamCounter:
             self._observe_clock(sample, step)
         self._last_device_ns, self._last_receive_ns = sample.device_ns, sample.receive_ns
         self._clock.observe(sample)
-        if self._part_is_empty:
-            self._begin_with_this(sample.sequence)
+        if self._interval_is_empty:
+            self._begin_interval_with(sample.sequence)
         return True
 
     @property
@@ -86,35 +104,19 @@ class StreamCounter:
         return self._late_in_a_row >= RESTART_THRESHOLD
 
     def interrupt(self) -> None:
-        """Expect that the device may count anew: it was away."""
+        """Expect that the device may count anew, because it was away."""
         self._interrupted = True
 
-    def refuse(self, reason: str) -> None:
+    def count_refused(self, reason: str) -> None:
         """Count a payload that is no usable sample."""
         self._refused += 1
         self._refusals.add(reason)
-        self._refusals_of_part.add(reason)
+        self._interval_refusals.add(reason)
 
-    def begin_interval(self, *, joined: bool = False, newest: Sample | None = None) -> None:
-        """Begin another part.
-
-        Args:
-            joined: what was lost before its first sample is lost of it; else it is lost of no part.
-            newest: the sample that was observed last, when it is the first of this part.
-        """
-        self._part_is_empty = not joined and newest is None
-        self._first_of_part = self.highest + (newest is None)
-        self._before_part = self._counts()
-        if newest is not None:
-            self._before_part["received"] -= 1
-            self._before_part["untracked"] -= not newest.tracked
-        self._longest_gap_of_part_ns = 0
-        self._notes_of_part, self._refusals_of_part = _notes(), _refusals()
-
-    def expect(self, last_sequence: int) -> None:
-        """Count as lost what the client says it sent after the highest number seen."""
+    def count_missing_until(self, last_sequence: int) -> None:
+        """Count as lost the samples after the highest number seen that the client says it sent."""
         if self.first is None:
-            self.first = last_sequence  # nothing came at all; how many were sent is not known
+            self.first = last_sequence  # no sample came; how many were sent is not known
             self.note(f"no sample came, though the client says it sent up to number {last_sequence}")
         if 0 < last_sequence - self.highest <= MAX_SEQUENCE_JUMP:
             self._miss(self.highest + 1, last_sequence)
@@ -123,23 +125,45 @@ class StreamCounter:
     def note(self, sentence: str) -> None:
         """Keep a sentence for the operator."""
         self._notes.add(sentence)
-        self._notes_of_part.add(sentence)
+        self._interval_notes.add(sentence)
+
+    def begin_interval(self, *, counts_loss_before: bool = False, first: Sample | None = None) -> None:
+        """Begin another interval.
+
+        Args:
+            counts_loss_before: if True, samples lost before the first sample of the interval count in it; otherwise
+                in no interval.
+            first: the sample observed last, if it is the first of this interval.
+        """
+        self._interval_is_empty = not counts_loss_before and first is None
+        self._interval_first = self.highest + (first is None)
+        self._before_interval = self._counts()
+        if first is not None:
+            self._before_interval["received"] -= 1
+            self._before_interval["untracked"] -= not first.tracked
+        self._interval_longest_gap_ns = 0
+        self._interval_notes = _new_notes()
+        self._interval_refusals = _new_refusals()
 
     def statistics(self) -> StreamStatistics:
-        """Return the counts so far."""
+        """Return the statistics of all samples so far."""
         notes = self._refusals.messages() + self._notes.messages()
-        return self._stated(self._counts(), self._longest_gap_ns, notes, first=0)
+        return self._statistics(self._counts(), self._longest_gap_ns, notes, first=0)
 
     def interval(self, *, excluding: Sample | None = None) -> StreamStatistics:
-        """Return the counts of the part that is open, but for one sample: the newest, when it is of the next part."""
-        counts = {name: max(count - self._before_part[name], 0) for name, count in self._counts().items()}
+        """Return the statistics of the current interval.
+
+        Args:
+            excluding: the sample observed last, if it belongs to the next interval.
+        """
+        counts = {name: max(count - self._before_interval[name], 0) for name, count in self._counts().items()}
         if excluding is not None:
             counts["received"] -= 1
             counts["untracked"] -= not excluding.tracked
-        # A late sample of a former part fills a gap there and none here.
-        counts |= self._missing_since(self._first_of_part)
-        notes = self._refusals_of_part.messages() + self._notes_of_part.messages()
-        return self._stated(counts, self._longest_gap_of_part_ns, notes, first=self._first_of_part)
+        # A late sample of an earlier interval fills a gap there and none here.
+        counts |= self._missing_since(self._interval_first)
+        notes = self._interval_refusals.messages() + self._interval_notes.messages()
+        return self._statistics(counts, self._interval_longest_gap_ns, notes, first=self._interval_first)
 
     def _counts(self) -> dict[str, int]:
         return {
@@ -161,10 +185,10 @@ class StreamCounter:
         lost = [b - a + 1 for a, b in gaps if b >= a]
         return {"gaps": len(lost), "lost": sum(lost)}
 
-    def _stated(
-        self, counts: dict[str, int], longest_gap_ns: int, kept: Iterable[str], *, first: int
+    def _statistics(
+        self, counts: dict[str, int], longest_gap_ns: int, messages: Iterable[str], *, first: int
     ) -> StreamStatistics:
-        clock, notes = self._clock.estimate(), tuple(kept)
+        clock, notes = self._clock.estimate(), tuple(messages)
         if clock is not None and abs(clock.rate - 1.0) > REAL_TIME_TOLERANCE:
             notes = (*notes, f"the device's clock runs {clock.rate:.3g} x ours")
         steps, device_ns = counts.pop("steps"), counts.pop("device_ns")
@@ -179,12 +203,12 @@ class StreamCounter:
             notes=notes,
         )
 
-    def _begin_with_this(self, sequence: int) -> None:
-        self._part_is_empty = False
-        self._first_of_part = sequence
+    def _begin_interval_with(self, sequence: int) -> None:
+        self._interval_is_empty = False
+        self._interval_first = sequence
         now = self._counts()
-        self._before_part |= {name: now[name] for name in ("clock_jumps", "steps", "device_ns")}
-        self._longest_gap_of_part_ns = 0
+        self._before_interval |= {name: now[name] for name in ("clock_jumps", "steps", "device_ns")}
+        self._interval_longest_gap_ns = 0
 
     def _count_anew(self, sequence: int) -> None:
         if self.first is not None:
@@ -193,7 +217,8 @@ class StreamCounter:
         self._settled += self._missing
         self._missing.clear()
         self._recent = [(-1, 0)] * HISTORY_SIZE
-        self._last_device_ns = self._late_in_a_row = 0
+        self._last_device_ns = 0
+        self._late_in_a_row = 0
         self._clock.restart()
 
     def _observe_late(self, sample: Sample) -> None:
@@ -222,8 +247,8 @@ class StreamCounter:
         self._steps += step
         self._device_ns += device
         self._receive_ns += receive
-        if device > self._longest_gap_of_part_ns:
-            self._longest_gap_of_part_ns = device
+        if device > self._interval_longest_gap_ns:
+            self._interval_longest_gap_ns = device
             self._longest_gap_ns = max(self._longest_gap_ns, device)
 
     def _is_explained(self, device: int, step: int, receive: int) -> bool:
@@ -247,9 +272,9 @@ class StreamCounter:
         return True
 
 
-def _notes() -> MessageCounter:
+def _new_notes() -> MessageCounter:
     return MessageCounter("more happened than can be listed")
 
 
-def _refusals() -> MessageCounter:
+def _new_refusals() -> MessageCounter:
     return MessageCounter("samples were refused for other reasons")

@@ -4,11 +4,20 @@ Conventions (ARCHITECTURE.md): metres, radians, seconds inside; integer nanoseco
 (names end in `_ns`); quaternions w, x, y, z; frame `world` unless another is named.
 """
 
-from teachpath.records.arrays import Array, Matrix, Quaternion, Vector
+from teachpath.records.arrays import Array, Matrix, Pose, Quaternion, Vector
 from teachpath.records.assessments import Assessment, Failure, Suggestion
 from teachpath.records.calibrations import Calibration, MeasuredCalibration, TaughtPoint
 from teachpath.records.control import Command, JournalEntry, Lease, LeaseRequest, TeleopRequest
-from teachpath.records.demonstrations import Clock, Demonstration, Phase, Sample, StreamStatistics, Task, Trajectory
+from teachpath.records.demonstrations import (
+    Clock,
+    Demonstration,
+    Phase,
+    Sample,
+    StreamStatistics,
+    Task,
+    Trajectory,
+    Verdict,
+)
 from teachpath.records.learned import Cluster, Deviation, Fit, Learned, LearnedPath, Score
 from teachpath.records.motion import (
     Certificate,
@@ -21,11 +30,23 @@ from teachpath.records.motion import (
     Shape,
 )
 from teachpath.records.previews import MotionPreview, SegmentInterval
+from teachpath.records.recording import (
+    Amendment,
+    FistCommand,
+    HandState,
+    RecordingRequest,
+    RecordingState,
+    RecordingStatus,
+    Routine,
+    StopRequest,
+    TaskReference,
+)
 from teachpath.records.versions import MAIN_BRANCH, ControlPointChange, Difference, Version
 from teachpath.records.work import Job, JobState
 
 __all__ = [
     "MAIN_BRANCH",
+    "Amendment",
     "Array",
     "Assessment",
     "Calibration",
@@ -40,7 +61,9 @@ __all__ = [
     "ExecutorStatus",
     "Extreme",
     "Failure",
+    "FistCommand",
     "Fit",
+    "HandState",
     "Job",
     "JobState",
     "JointState",
@@ -54,19 +77,27 @@ __all__ = [
     "MotionPreview",
     "Phase",
     "Plan",
+    "Pose",
     "Quaternion",
+    "RecordingRequest",
+    "RecordingState",
+    "RecordingStatus",
+    "Routine",
     "Sample",
     "Scene",
     "Score",
     "SegmentInterval",
     "Setpoint",
     "Shape",
+    "StopRequest",
     "StreamStatistics",
     "Suggestion",
     "Task",
+    "TaskReference",
     "TaughtPoint",
     "TeleopRequest",
     "Trajectory",
     "Vector",
+    "Verdict",
     "Version",
 ]

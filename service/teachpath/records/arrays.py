@@ -9,3 +9,4 @@ Array = NDArray[np.float64]
 Matrix = np.ndarray[tuple[int, int], np.dtype[np.float64]]  # an array of rows
 Vector = tuple[float, float, float]
 Quaternion = tuple[float, float, float, float]
+Pose = tuple[Vector, Quaternion]

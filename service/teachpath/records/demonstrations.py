@@ -20,6 +20,24 @@ class Phase(StrEnum):
     RELEASE = "release"  # the hand opens
     RETURN = "return"
 
+    @property
+    def is_hand_closed(self) -> bool:
+        """Whether the hand is closed around the object."""
+        return self in (Phase.GRASP, Phase.TRANSPORT)
+
+    @property
+    def has_object(self) -> bool:
+        """Whether the object is in the hand, until it is certain that the hand has released it."""
+        return self.is_hand_closed or self is Phase.RELEASE
+
+
+class Verdict(StrEnum):
+    """How good a demonstration is."""
+
+    CLEAN = "clean"
+    REPAIRED = "repaired"  # usable, with losses
+    REJECT = "reject"  # kept, but not learned from
+
 
 @dataclass(frozen=True, slots=True)
 class Sample:
@@ -137,7 +155,7 @@ class Demonstration:
     samples: int
     grasp: int
     release: int
-    verdict: str  # clean, repaired, reject
+    verdict: Verdict
     account: StreamStatistics
     recording: str  # place of the MCAP file within the recordings
     reasons: tuple[str, ...] = ()  # why the verdict is not clean
@@ -154,4 +172,4 @@ class Demonstration:
     @property
     def is_usable(self) -> bool:
         """Whether it is learned from: not rejected, not discarded and not marked bad."""
-        return self.verdict != "reject" and self.mark != "bad" and not self.discarded_ns
+        return self.verdict != Verdict.REJECT and self.mark != "bad" and not self.discarded_ns

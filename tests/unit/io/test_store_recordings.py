@@ -15,7 +15,7 @@ from scipy.spatial.transform import Rotation
 from teachpath.errors import NotFound, UnusableRecording
 from teachpath.io.documents import encode
 from teachpath.io.store.recordings import RecordingFile, RecordingHeader, Recordings, read_facts, salvage
-from teachpath.io.wire import sample_message
+from teachpath.io.wire import encode_sample
 from teachpath.recording.demonstration import to_world
 from teachpath.records import Calibration, Sample
 from teachpath_proto import tracker_pb2
@@ -132,7 +132,7 @@ def test_viewers_find_the_hand_and_its_frame_beside_the_samples(tmp_path: Path) 
 def test_what_came_on_the_wire_is_what_is_kept(tmp_path: Path) -> None:
     recordings = Recordings(tmp_path)
     begun = recordings.begin("d", HEADER)
-    payload = sample_message(SAMPLES[0]).SerializeToString() + b"\xfa\x3e\x03new"  # a field of a newer client
+    payload = encode_sample(SAMPLES[0]) + b"\xfa\x3e\x03new"  # a field of a newer client
     begun.write(SAMPLES[0], payload)
     begun.finish({"verdict": "clean"})
     with recordings.path("lift/d.mcap").open("rb") as stream:
@@ -151,6 +151,6 @@ def test_a_recording_of_before_the_drawing_is_read(tmp_path: Path) -> None:
     schema = register_schema(writer, tracker_pb2.HandSample)
     channel = writer.register_channel(topic="samples", message_encoding="protobuf", schema_id=schema)
     for s in SAMPLES:
-        writer.add_message(channel, s.receive_ns, sample_message(s).SerializeToString(), s.device_ns)
+        writer.add_message(channel, s.receive_ns, encode_sample(s), s.device_ns)
     writer.finish()
     assert same(Recordings(tmp_path).samples("lift/old.mcap"), SAMPLES)

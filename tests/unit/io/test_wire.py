@@ -14,7 +14,7 @@ GOOD = sample(7, (0.1, 0.2, 0.3))
 
 
 def payload(**changes: object) -> bytes:
-    return wire.sample_message(replace(GOOD, **changes)).SerializeToString()  # type: ignore[arg-type]
+    return wire.encode_sample(replace(GOOD, **changes))  # type: ignore[arg-type]
 
 
 def test_a_sample_survives_the_wire() -> None:

@@ -12,9 +12,7 @@ from teachpath.motion.arm.geometry import visual_solids
 from teachpath.motion.arm.kinematics import link_frames
 from teachpath.motion.collision.builtin_scenes import empty_scene, paper_scene
 from teachpath.motion.settings import MotionSettings
-from teachpath.recording.demonstration import Pose
-from teachpath.recording.live_hand import Hand
-from teachpath.records import JointState, Phase
+from teachpath.records import HandState, JointState, Phase, Pose, RecordingState, RecordingStatus
 from teachpath_proto.keys import Keys
 from tests.unit.live.pages import ignore, take
 
@@ -28,14 +26,15 @@ class Station:
     def __init__(self) -> None:
         self.bus = MemoryBus()
         self.now = 0.0
-        self.hands: list[Hand] = []
+        self.received = 0
+        self.statuses: list[RecordingStatus] = []
         self.preview = Preview(
             self.bus,
             KEYS,
             visual_solids(),
             robot="puma560",
             home=HOME,
-            hands=lambda: self.hands,
+            statuses=lambda: self.statuses,
             settings=PreviewSettings(rate=0.01),  # its own thread stays out of the way
             clock=lambda: self.now,
         )
@@ -48,9 +47,10 @@ class Station:
     def see(self, x: float, phase: Phase = Phase.REACH, *, take: int = 1, carried: Pose | None = None) -> None:
         """Let the hand be at `x` and draw it."""
         self.now += 0.02
-        received = self.hands[0].received + 1 if self.hands else 1
-        held = phase is Phase.TRANSPORT
-        self.hands = [Hand("glove", received, take, phase, held, (x, 0.0, 0.6), paper_scene().carried, carried)]
+        self.received += 1
+        hand = HandState((x, 0.0, 0.6), phase is Phase.TRANSPORT, self.received, take, carried)
+        shape = paper_scene().carried
+        self.statuses = [RecordingStatus("t", "glove", RecordingState.RECORDING, phase, carried=shape, hand=hand)]
         self.preview.update()
 
 

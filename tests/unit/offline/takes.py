@@ -7,7 +7,7 @@ import numpy as np
 
 from teachpath.io.store.store import Store
 from teachpath.recorder.annotations import Annotations
-from teachpath.recorder.session import RecordingSession
+from teachpath.recorder.session import RecordingSession, RecordingSetup
 from teachpath.recording.phases import GRASP_BUTTON
 from teachpath.recording.settings import RecordingSettings
 from teachpath.records import Calibration, Demonstration, Sample, Scene, Trajectory
@@ -59,8 +59,8 @@ TAKES: dict[str, Callable[[], list[Sample]]] = {"whole": whole, "lossy": lossy, 
 def record(store: Store, samples: Sequence[Sample], *, gone: bool = False, rate: float = 50.0) -> Demonstration:
     """Record a take under a calibration of its own; `gone`: the tracker leaves before the hand has come to rest."""
     store.ensure_task("lift", scene="empty", calibration="lab")
-    session = RecordingSession(store, SETTINGS, task="lift", tracker="glove", calibration=LAB, scene=EMPTY, rate=rate)
-    session.refuse("a payload was no sample")
+    session = RecordingSession(store, SETTINGS, RecordingSetup("lift", "glove", LAB, EMPTY, rate))
+    session.counter.count_refused("a payload was no sample")
     finished = [session.add(sample) for sample in (samples[:-20] if gone else samples)]
     finished += [session.on_tracker_lost("the tracker has gone in mid-take")] if gone else session.finish()
     ((row, _),) = [f for f in finished if f is not None]

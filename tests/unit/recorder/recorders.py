@@ -5,8 +5,9 @@ from typing import Any
 
 from teachpath.io.bus import MemoryBus
 from teachpath.io.store.store import Store
-from teachpath.io.wire import sample_message
-from teachpath.recorder.recorder import Recorder
+from teachpath.io.wire import encode_sample
+from teachpath.recorder.queries import RecorderQueries
+from teachpath.recorder.recorder import DemonstrationCallbacks, Lookup, Recorder
 from teachpath.recording.settings import RecordingSettings
 from teachpath.records import Calibration, Demonstration, Sample, Scene, Shape, Trajectory
 from teachpath_proto import tracker_pb2
@@ -30,17 +31,17 @@ class Bench:
             KEYS,
             store,
             RecordingSettings(handshake_timeout=1.0),
-            scene=lambda name: {"paper": SCENE}[name],
-            calibration=Calibration,
-            on_demonstration=recorded or (lambda *made: self.recorded.append(made)),
-            on_change=self.changed.append,
+            Lookup(scene=lambda name: {"paper": SCENE}[name], calibration=Calibration),
+            DemonstrationCallbacks(recorded or (lambda *made: self.recorded.append(made)), self.changed.append),
             clock=lambda: self.now,
         )
+        self._queries = RecorderQueries(self.bus, KEYS, self.recorder)
         self.recorder.start()
+        self._queries.start()
 
     def send(self, samples: list[Sample], tracker: str = "glove") -> None:
         for s in samples:
-            self.bus.publish(KEYS.samples(tracker), sample_message(s).SerializeToString())
+            self.bus.publish(KEYS.samples(tracker), encode_sample(s))
 
     def begin(self, tracker: str = "glove", task: str = "lift", **wishes: Any) -> None:
         request = tracker_pb2.StartRecording(task=task, tracker=tracker, scene="paper", **wishes)
@@ -51,6 +52,9 @@ class Bench:
         answer = self.bus.ask(KEYS.recorder_stop, request.SerializeToString())
         return tracker_pb2.RecordingReport.FromString(answer)
 
+    def reports(self) -> list[tracker_pb2.RecordingReport]:
+        return list(tracker_pb2.RecorderStatus.FromString(self.bus.ask(KEYS.recorder_status)).recordings)
+
     def received(self, count: int, tracker: str = "glove") -> tracker_pb2.RecordingReport:
         """Return the report of a running recording as soon as `count` samples are in it."""
         return self.until(lambda report: report.received >= count, tracker)
@@ -59,7 +63,7 @@ class Bench:
         self, true: Callable[[tracker_pb2.RecordingReport], bool], tracker: str = "glove"
     ) -> tracker_pb2.RecordingReport:
         def found() -> tracker_pb2.RecordingReport | None:
-            (report,) = (r for r in self.recorder.reports() if r.tracker == tracker)
+            (report,) = (r for r in self.reports() if r.tracker == tracker)
             return report if true(report) else None
 
         report = wait_until(found, "the recording is so")

@@ -3,7 +3,7 @@
 import pytest
 
 from teachpath.errors import NotFound, UnusableInput
-from teachpath.recorder.annotations import Amendment
+from teachpath.records import Amendment
 from teachpath_proto import tracker_pb2
 from tests.unit.recorder.recorders import KEYS, Bench
 from tests.unit.recording.hands import demonstration

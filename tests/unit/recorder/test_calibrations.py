@@ -12,7 +12,7 @@ from teachpath.io.store.settings import StoreSettings
 from teachpath.io.store.store import Store
 from teachpath.recorder.annotations import Annotations
 from teachpath.recorder.calibrations import Calibrations
-from teachpath.recorder.session import RecordingSession
+from teachpath.recorder.session import RecordingSession, RecordingSetup
 from teachpath.recording.settings import RecordingSettings
 from teachpath.records import Calibration, Demonstration, Scene, TaughtPoint, Vector
 from tests.unit.recording.hands import demonstration
@@ -43,9 +43,7 @@ def store(tmp_path: Path) -> Iterator[Store]:
 
 
 def recorded(store: Store, calibration: Calibration) -> Demonstration:
-    session = RecordingSession(
-        store, RecordingSettings(), task="lift", tracker="glove", calibration=calibration, scene=EMPTY
-    )
+    session = RecordingSession(store, RecordingSettings(), RecordingSetup("lift", "glove", calibration, EMPTY))
     finished = [session.add(sample) for sample in demonstration()] + session.finish()
     ((row, _),) = [f for f in finished if f is not None]
     return row

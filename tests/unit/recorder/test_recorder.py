@@ -4,6 +4,7 @@ from dataclasses import replace
 import pytest
 
 from teachpath.errors import Conflict, NotFound, UnusableInput
+from teachpath.records import RecordingRequest, StopRequest
 from tests.unit.recorder.recorders import KEYS, Bench
 from tests.unit.recording.hands import PERIOD_NS, START_NS, demonstration, sample
 
@@ -119,9 +120,9 @@ def test_refusals_say_what_is_running(bench: Bench) -> None:
     with pytest.raises(Conflict, match="already recording lift"):
         bench.begin()
     with pytest.raises(NotFound, match=r"running: \['glove'\]"):
-        bench.recorder.end("other")
+        bench.recorder.end(StopRequest("other"))
     with pytest.raises(NotFound, match="no task"):
-        bench.recorder.begin("unknown", "other")
+        bench.recorder.begin(RecordingRequest("unknown", "other"))
     with pytest.raises(UnusableInput, match="not a StartRecording"):
         bench.bus.ask(KEYS.recorder_start, b"\xff\xff")
 

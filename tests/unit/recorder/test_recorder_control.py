@@ -6,7 +6,7 @@ import pytest
 
 from teachpath.errors import Conflict, NotFound, UnusableInput
 from teachpath.recording.phases import GRASP_BUTTON, TOGGLE_BUTTON
-from teachpath.records import Sample
+from teachpath.records import Sample, StopRequest
 from teachpath_proto import tracker_pb2
 from tests.unit.recorder.recorders import KEYS, Bench
 from tests.unit.recording.hands import CLOSED, PERIOD_NS, START_NS, demonstration, sample
@@ -150,7 +150,7 @@ def test_a_client_that_comes_back_within_its_recording_counts_anew(bench: Bench)
     assert (report.received, report.duplicated, len(report.demonstrations)) == (SHOWN + 15, 0, 1)
     assert verdicts(bench) == [("clean", ())]
     with pytest.raises(NotFound):
-        bench.recorder.end("glove")
+        bench.recorder.end(StopRequest("glove"))
 
 
 def test_a_tracker_that_falls_silent_in_mid_take_ends_it(bench: Bench) -> None:

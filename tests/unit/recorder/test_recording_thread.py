@@ -1,15 +1,15 @@
-"""The rounds of the scribe, made one by one: who waits for whom, and when it may rest."""
+"""The rounds of the recording thread, one by one: which tracker waits for which, and when the thread pauses."""
 
 from collections.abc import Iterator
 
 import pytest
 
 from teachpath.io.store.store import Store
-from teachpath.io.wire import sample_message
+from teachpath.io.wire import encode_sample
 from teachpath.recorder.presence import Presence
 from teachpath.recorder.recording_thread import BATCH_SIZE, FLUSH_INTERVAL, RecordingThread
 from teachpath.recorder.sample_queues import SampleQueues
-from teachpath.recorder.session import RecordingSession
+from teachpath.recorder.session import RecordingSession, RecordingSetup
 from teachpath.recording.settings import RecordingSettings
 from teachpath.records import Calibration, Scene
 from tests.unit.recorder.recorders import KEYS
@@ -19,7 +19,7 @@ SETTINGS = RecordingSettings()
 
 
 class Desk:
-    """A scribe whose rounds are made by the test."""
+    """A recording thread whose rounds the test makes."""
 
     def __init__(self, store: Store, trackers: tuple[str, ...]) -> None:
         self.now = 0.0
@@ -34,23 +34,16 @@ class Desk:
             clock=lambda: self.now,
         )
         for tracker in trackers:
-            self.thread.sessions[tracker] = RecordingSession(
-                store,
-                SETTINGS,
-                task="lift",
-                tracker=tracker,
-                calibration=Calibration("identity"),
-                scene=Scene("empty"),
-                clock=lambda: self.now,
-            )
+            setup = RecordingSetup("lift", tracker, Calibration("identity"), Scene("empty"))
+            self.thread.sessions[tracker] = RecordingSession(store, SETTINGS, setup, clock=lambda: self.now)
             self.queues.open(tracker)
 
     def send(self, tracker: str, count: int, first: int = 1) -> None:
         for n in range(first, first + count):
-            self.queues.on_sample(KEYS.samples(tracker), sample_message(sample(n, (0.0, 0.0, 0.0))).SerializeToString())
+            self.queues.on_sample(KEYS.samples(tracker), encode_sample(sample(n, (0.0, 0.0, 0.0))))
 
     def recorded(self, tracker: str) -> int:
-        return self.thread.sessions[tracker].account.received
+        return self.thread.sessions[tracker].counter.received
 
 
 @pytest.fixture

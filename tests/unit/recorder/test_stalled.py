@@ -27,7 +27,9 @@ def record(bench: Bench) -> None:
 
 
 def test_a_page_that_takes_nothing_keeps_the_recorder_from_nothing(bench: Bench) -> None:
-    view = Preview(bench.bus, KEYS, visual_solids(), robot="puma", home=np.zeros(6), hands=bench.recorder.hands)
+    view = Preview(
+        bench.bus, KEYS, visual_solids(), robot="puma", home=np.zeros(6), statuses=bench.recorder.shown_statuses
+    )
     with view:
         viewer = view.connect(lambda: None)
         assert viewer.pop()  # the first batch, which it never acknowledges

@@ -3,7 +3,7 @@ from typing import Any
 import pytest
 
 from teachpath.errors import Conflict, NotFound, UnusableInput
-from teachpath.io.wire import sample_message
+from teachpath.io.wire import encode_sample
 from teachpath.recorder import websocket_trackers
 from teachpath.recorder.websocket_trackers import WebSocketTracker, WebSocketTrackers
 from teachpath.records import Sample
@@ -42,7 +42,7 @@ def test_a_demonstration_over_the_gate_gets_the_verdict_and_the_account_of_any_o
     for s in stream[:55]:
         assert page.publish(as_json(s)) == ""
     for s in stream[55:]:
-        assert page.publish(sample_message(s).SerializeToString()) == ""
+        assert page.publish(encode_sample(s)) == ""
     report = page.end_recording(len(stream), discard=False)
     bench.begin("glove", "other")
     bench.send(stream)

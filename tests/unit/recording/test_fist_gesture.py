@@ -5,9 +5,9 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from teachpath.recording.fist_gesture import FistCommand, FistGesture
+from teachpath.recording.fist_gesture import FistGesture
 from teachpath.recording.settings import RecordingSettings
-from teachpath.records import Sample, Vector
+from teachpath.records import FistCommand, Sample, Vector
 from tests.unit.recording.hands import demonstration, sample
 
 OBJECT = (0.5, 0.0, 0.5)

@@ -8,9 +8,9 @@ from hypothesis import strategies as st
 
 from teachpath.recording.phase_statistics import PhaseStatistics, phase_statistics
 from teachpath.recording.phases import TransportSpan
+from teachpath.recording.quality import QualityReport, assess_quality
 from teachpath.recording.settings import RecordingSettings
 from teachpath.recording.stream_statistics import StreamCounter
-from teachpath.recording.verdict import Verdict, judge
 from teachpath.records import Sample
 from tests.unit.recording.hands import PERIOD_NS, sample
 
@@ -29,14 +29,14 @@ def parts(samples: list[Sample], *, until: int = SENT, opened: bool = True) -> P
     stream = StreamCounter()
     for each in samples:
         stream.observe(each)
-    stream.expect(until - 1)
+    stream.count_missing_until(until - 1)
     grasp = next(i for i, s in enumerate(samples) if s.sequence >= REACH)
     release = next((i for i, s in enumerate(samples) if s.sequence >= REACH + CARRY), len(samples))
     return phase_statistics(samples, TransportSpan(grasp, release, not opened), stream.statistics(), SETTINGS)
 
 
-def verdict(samples: list[Sample]) -> Verdict:
-    return judge(parts(samples), SETTINGS)
+def verdict(samples: list[Sample]) -> QualityReport:
+    return assess_quality(parts(samples), SETTINGS)
 
 
 @given(lost=st.sets(st.integers(1, SENT - 1)), twice=st.sets(st.integers(0, SENT - 1), max_size=5))
@@ -63,13 +63,13 @@ def test_a_hole_rejects_a_take_only_where_it_is_learned(begin: int, length: int)
     few = SETTINGS.largest_loss * CARRY
     if not learned:
         way = "reaching" if begin < REACH else "returning"
-        assert judged.word == "repaired"
+        assert judged.verdict == "repaired"
         (reason,) = judged.reasons
         assert reason.startswith(f"while {way}, outside what is learned: ")
         assert f"{len(hole)} sample" in reason
         assert (f"a gap of {(len(hole) + 1) * 0.02:.2f} s" in reason) == (len(hole) > LONGEST)
     elif not few - 1 <= len(hole) <= few + 1:
-        assert judged.word == ("repaired" if len(hole) < few else "reject")
+        assert judged.verdict == ("repaired" if len(hole) < few else "reject")
 
 
 def test_a_long_reach_does_not_make_light_of_what_is_lost_of_the_carried() -> None:
@@ -80,8 +80,10 @@ def test_a_long_reach_does_not_make_light_of_what_is_lost_of_the_carried() -> No
     for each in kept:
         stream.observe(each)
     release = next(i for i, s in enumerate(kept) if s.sequence >= count + CARRY)
-    judged = judge(phase_statistics(kept, TransportSpan(count, release), stream.statistics(), SETTINGS), SETTINGS)
-    assert judged.word == "reject"
+    judged = assess_quality(
+        phase_statistics(kept, TransportSpan(count, release), stream.statistics(), SETTINGS), SETTINGS
+    )
+    assert judged.verdict == "reject"
     assert "of 61 samples are faulty" in judged.reasons[0]
 
 
@@ -111,7 +113,7 @@ def test_a_clock_that_jumps_while_the_hand_returns_is_said_and_rejects_nothing()
     for place, word in ((REACH // 2, "repaired"), (REACH + 5, "reject"), (SENT - 5, "repaired")):
         moved = [replace(s, device_ns=s.device_ns + 10**12 * (s.sequence >= place)) for s in sent()]
         judged = verdict(moved)
-        assert judged.word == word, place
+        assert judged.verdict == word, place
         assert "clock jumps once" in judged.reasons[0]
 
 

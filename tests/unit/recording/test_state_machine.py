@@ -1,7 +1,8 @@
 import pytest
 
 from teachpath.errors import UnusableInput
-from teachpath.recording.state_machine import RecordingState, RecordingStateMachine, Routine
+from teachpath.recording.state_machine import RecordingStateMachine
+from teachpath.records import RecordingState, Routine
 
 
 def test_records_at_once_or_waits_armed() -> None:

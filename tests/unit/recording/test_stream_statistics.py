@@ -11,7 +11,7 @@ def account_of(sequences: list[int], expected: int | None = None) -> StreamCount
     for sequence in sequences:
         statistics.observe(sample(sequence, (0.0, 0.0, 0.0)))
     if expected is not None:
-        statistics.expect(expected)
+        statistics.count_missing_until(expected)
     return statistics
 
 

@@ -20,16 +20,16 @@ from mcap_protobuf.schema import register_schema
 from teachpath.errors import NotFound, UnusableRecording
 from teachpath.io import documents, wire
 from teachpath.io.store.recordings import Opener, open_new
+from teachpath.io.wire import message_types
 from teachpath.records import ExecutorStatus, JointState, JournalEntry, LearnedPath, Plan, Setpoint
-from teachpath_proto import motion_pb2
 
 HEADER, FACTS = "teachpath-motion", "facts"  # names of the metadata
 CHUNK: Final = 64 * 1024  # bytes; small chunks lose less when a file is cut off
 TOPICS: Final[dict[str, tuple[Any, Any]]] = {  # message, decoder
-    "setpoints": (motion_pb2.Setpoint, wire.decode_setpoint),
-    "states": (motion_pb2.JointState, wire.decode_state),
-    "statuses": (motion_pb2.ExecutorStatus, wire.decode_status),
-    "journal": (motion_pb2.JournalEntry, wire.decode_entry),
+    "setpoints": (message_types.SETPOINT, wire.decode_setpoint),
+    "states": (message_types.JOINT_STATE, wire.decode_state),
+    "statuses": (message_types.EXECUTOR_STATUS, wire.decode_status),
+    "journal": (message_types.JOURNAL_ENTRY, wire.decode_entry),
 }
 
 

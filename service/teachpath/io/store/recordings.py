@@ -23,9 +23,8 @@ from teachpath.errors import NotFound, UnusableRecording
 from teachpath.io import documents
 from teachpath.io.store.drawing import Drawing
 from teachpath.io.store.mcap_file import McapFile, Stamped
-from teachpath.io.wire import parse, sample_from, sample_message
+from teachpath.io.wire import decode_sample, encode_sample, message_types
 from teachpath.records import Calibration, Demonstration, Sample
-from teachpath_proto import tracker_pb2
 
 TOPIC = "samples"
 HEADER, FACTS = "teachpath", "facts"  # names of the metadata
@@ -64,14 +63,14 @@ class RecordingFile:
     def _begin(self, header: RecordingHeader) -> None:
         self._mcap = McapFile(self._file)
         self._mcap.add_metadata(HEADER, {"header": documents.encode(header).decode()})
-        self._channel = self._mcap.add_channel(TOPIC, tracker_pb2.HandSample)
+        self._channel = self._mcap.add_channel(TOPIC, message_types.HAND_SAMPLE)
         self._drawing = Drawing(self._mcap, header.calibration)
         self._batch: list[Stamped] = []
         self.flush()
 
     def write(self, sample: Sample, payload: bytes = b"") -> None:
         """Append one sample; `payload` is its message as it came, made anew when empty."""
-        data = payload or sample_message(sample).SerializeToString()
+        data = payload or encode_sample(sample)
         number = sample.sequence & 0xFFFFFFFF
         self._batch.append(Stamped(self._channel, number, sample.receive_ns, sample.device_ns, data))
         self._drawing.draw(sample, self._batch)
@@ -168,8 +167,8 @@ def salvage_stream(stream: BinaryIO) -> tuple[RecordingHeader | None, list[Sampl
             elif isinstance(record, Channel) and record.topic == TOPIC:
                 ours.add(record.id)
             elif isinstance(record, Message) and record.channel_id in ours:
-                message = parse(tracker_pb2.HandSample, record.data)
-                samples.append(sample_from(message, header.tracker if header else "", record.log_time))
+                tracker = header.tracker if header else ""
+                samples.append(decode_sample(tracker, record.data, record.log_time))
             elif isinstance(record, Statistics):
                 # A reader passes over a record of a kind that it does not know, so a damaged kind hides a whole chunk.
                 written = sum(record.channel_message_counts.get(channel, 0) for channel in ours)

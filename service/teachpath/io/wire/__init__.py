@@ -12,16 +12,6 @@ from teachpath.io.wire.control import (
     encode_lease,
     encode_lease_request,
 )
-from teachpath.io.wire.hand import (
-    FARTHEST,
-    LARGEST_SAMPLE,
-    decode_sample,
-    encode_demonstration,
-    encode_feedback,
-    encode_report,
-    sample_from,
-    sample_message,
-)
 from teachpath.io.wire.jobs import encode_progress
 from teachpath.io.wire.motion import (
     decode_setpoint,
@@ -31,22 +21,44 @@ from teachpath.io.wire.motion import (
     encode_state,
     encode_status,
 )
-from teachpath.io.wire.parsing import parse
-from teachpath_proto.reports import report_document
+from teachpath.io.wire.recording import (
+    decode_amendment,
+    decode_recording_request,
+    decode_stop_request,
+    decode_task_reference,
+    decode_tracker,
+    encode_demonstration,
+    encode_feedback,
+    encode_recorder_status,
+    encode_recording_status,
+    recording_document,
+)
+from teachpath.io.wire.samples import (
+    MAX_COORDINATE,
+    MAX_SAMPLE_SIZE,
+    decode_sample,
+    encode_sample,
+    sample_payload,
+)
 
 __all__ = [
     "ACTIONS",
-    "FARTHEST",
-    "LARGEST_SAMPLE",
+    "MAX_COORDINATE",
+    "MAX_SAMPLE_SIZE",
     "VERBS",
+    "decode_amendment",
     "decode_command",
     "decode_entry",
     "decode_lease",
     "decode_lease_request",
+    "decode_recording_request",
     "decode_sample",
     "decode_setpoint",
     "decode_state",
     "decode_status",
+    "decode_stop_request",
+    "decode_task_reference",
+    "decode_tracker",
     "encode_command",
     "encode_demonstration",
     "encode_entry",
@@ -54,12 +66,12 @@ __all__ = [
     "encode_lease",
     "encode_lease_request",
     "encode_progress",
-    "encode_report",
+    "encode_recorder_status",
+    "encode_recording_status",
+    "encode_sample",
     "encode_setpoint",
     "encode_state",
     "encode_status",
-    "parse",
-    "report_document",
-    "sample_from",
-    "sample_message",
+    "recording_document",
+    "sample_payload",
 ]

@@ -1,4 +1,4 @@
-"""The running preview: one thread that lets arm, object and hands follow the bus."""
+"""The running preview: one thread that draws arm, object and hands as the bus reports them."""
 
 from __future__ import annotations
 
@@ -20,18 +20,16 @@ from teachpath.live.preview.scene_tree import SceneTree, Viewer
 from teachpath.motion.arm.geometry import LinkSolid
 from teachpath.motion.arm.kinematics import link_frames
 from teachpath.periodic_thread import PeriodicThread
-from teachpath.recording.live_hand import Hand
-from teachpath.records import Array, Phase, Shape, Vector
+from teachpath.records import Array, HandState, Phase, RecordingStatus, Shape, Vector
 from teachpath_proto.keys import Keys
 
 OPEN_HAND_COLOR, CLOSED_HAND_COLOR = 0x3F7FBF, 0xE08A00
-
-Hands = Callable[[], Iterable[Hand]]
+MARKER_RADIUS = 0.016  # [m]
 
 
 @dataclass(frozen=True)
 class PreviewSettings:
-    """How the view follows."""
+    """How often the view is drawn, and for how long a hand is shown."""
 
     # [Hz] how often arm, object and hands are drawn
     rate: Annotated[float, Gt(0), Le(60)] = 30.0
@@ -45,19 +43,19 @@ class PreviewSettings:
 
 @dataclass
 class _HandDrawing:
-    """A hand as drawn now."""
+    """A hand as it is drawn now."""
 
     trail: deque[Vector]
-    seen: float
+    last_sample: float  # [s] when its newest sample was seen
     received: int = -1
     take: int = 0
-    closed: bool | None = None
-    holds: bool = False
-    trail_drawn: float = field(default=-np.inf)
+    is_closed: bool | None = None
+    has_object: bool = False
+    trail_drawn: float = field(default=-np.inf)  # [s] when
 
 
 class Preview:
-    """Draws for every connected page; start it, or use it as a context manager."""
+    """Draws for every connected viewer; start it, or use it as a context manager."""
 
     def __init__(
         self,
@@ -67,7 +65,7 @@ class Preview:
         *,
         robot: str,
         home: Array,
-        hands: Hands,
+        statuses: Callable[[], Iterable[RecordingStatus]],
         settings: PreviewSettings | None = None,
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
@@ -75,18 +73,21 @@ class Preview:
 
         Args:
             drawing: the primitives of the arm, each in the frame of its link.
-            robot: name of the arm whose joint states are followed.
+            robot: name of the arm whose joint states are drawn.
             home: (6,) configuration shown until the first joint state comes [rad].
-            hands: gives the hands that are being recorded, as they are seen now.
-            clock: seconds, monotonic.
+            statuses: returns the recordings whose hands are drawn, with their hands.
+            clock: [s] monotonic.
         """
-        self._bus, self._keys, self._robot = bus, keys, robot
-        self._look_at_hands, self._clock = hands, clock
+        self._bus = bus
+        self._keys = keys
+        self._robot = robot
+        self._statuses = statuses
+        self._clock = clock
         self._settings = settings or PreviewSettings()
         self._tree = SceneTree()
         self._state: bytes | None = None
-        self._hands: dict[str, _HandDrawing] = {}
-        self._carried: Shape | None = None
+        self._hands: dict[str, _HandDrawing] = {}  # by tracker
+        self._object: Shape | None = None
         self._handles: list[Handle] = []
         self._thread = PeriodicThread("preview", 1.0 / self._settings.rate, self.update)
         self._fingers: list[tuple[str, Array]] = []
@@ -96,9 +97,7 @@ class Preview:
 
     def start(self) -> None:
         """Follow the bus from now on."""
-        self._handles = [
-            self._bus.subscribe(self._keys.state(self._robot), self._receive_state),
-        ]
+        self._handles = [self._bus.subscribe(self._keys.state(self._robot), self._receive_state)]
         self._thread.start()
 
     def stop(self) -> None:
@@ -118,21 +117,24 @@ class Preview:
         self.stop()
 
     def connect(self, wake: Callable[[], None]) -> Viewer:
-        """Add a page; its `take()` says what to tell it, and `wake()` is called, from any thread, on news."""
+        """Add a viewer; its `pop()` returns what to send, and `wake()` is called, from any thread, when there is more.
+
+        The first batch draws all that is shown now.
+        """
         return self._tree.connect(wake)
 
     def disconnect(self, viewer: Viewer) -> None:
-        """Forget a page that has gone."""
+        """Forget a viewer that has gone."""
         self._tree.disconnect(viewer)
 
     def paths(self, prefix: str = "/") -> list[str]:
-        """Return the names in the tree, at and below `prefix`, that hold an object."""
+        """Return the paths in the tree, at and below `prefix`, that hold an object."""
         return self._tree.paths(prefix)
 
     def show_object(self, carried: Shape | None) -> None:
-        """Show this object at its start instead of the one shown before; None: there is none."""
+        """Show this object at its start instead of the one shown before; None: show none."""
         self.clear("/object")
-        self._carried = carried
+        self._object = carried
         if carried is not None:
             body = commands.solid("/object", carried.kind, carried.size, color=carried.color, vertices=carried.vertices)
             self._tree.set_object("/object", body)
@@ -140,7 +142,7 @@ class Preview:
             self._tree.flush()
 
     def clear(self, prefix: str) -> None:
-        """Take away all at and below `prefix`, e.g. `/hand`."""
+        """Remove all at and below `prefix`, e.g. `/hand`."""
         self._tree.delete(prefix, commands.delete(prefix))
 
     def update(self) -> None:
@@ -158,10 +160,10 @@ class Preview:
         try:
             state = decode_state(payload)
         except UnusableInput:
-            return  # the next one comes in 10 ms; whoever commands the arm reports it
+            return  # the next one comes in 10 ms; the executor reports it
         self._pose_arm(state.position, gripper_closed=state.gripper_closed)
-        if any(drawn.holds for drawn in self._hands.values()):
-            return  # whoever shows the task has the object
+        if any(drawn.has_object for drawn in self._hands.values()):
+            return  # the object is in a hand
         # an orientation of zeros says that the arm's scene has no object
         if any(state.object_orientation) and self._tree.paths("/object"):
             self._place("/object", commands.pose_of(state.object_position, state.object_orientation))
@@ -186,46 +188,50 @@ class Preview:
 
     def _follow_hands(self) -> None:
         now = self._clock()
-        for hand in self._look_at_hands():
-            drawn = self._hands.get(hand.tracker)
+        for status in self._statuses():
+            hand = status.hand
+            if hand is None:
+                continue
+            drawn = self._hands.get(status.tracker)
             if drawn is None:
-                drawn = self._hands[hand.tracker] = _HandDrawing(deque(maxlen=self._settings.trail_points), now)
+                drawn = self._hands[status.tracker] = _HandDrawing(deque(maxlen=self._settings.trail_points), now)
             if hand.received != drawn.received:
-                drawn.seen, drawn.received = now, hand.received
-                self._draw_hand(hand, drawn, now)
-                self._draw_object(hand, drawn)
-        for tracker in [t for t, drawn in self._hands.items() if now - drawn.seen > self._settings.hand_silence]:
+                drawn.last_sample, drawn.received = now, hand.received
+                self._draw_hand(status.tracker, hand, drawn, now)
+                self._draw_object(status, hand, drawn)
+        limit = now - self._settings.hand_silence
+        for tracker in [tracker for tracker, drawn in self._hands.items() if drawn.last_sample < limit]:
             self._put_back(self._hands.pop(tracker))
             self.clear(f"/hand/{tracker}")
 
-    def _draw_hand(self, hand: Hand, drawn: _HandDrawing, now: float) -> None:
-        marker, trail = f"/hand/{hand.tracker}/marker", f"/hand/{hand.tracker}/trail"
+    def _draw_hand(self, tracker: str, hand: HandState, drawn: _HandDrawing, now: float) -> None:
+        marker, trail = f"/hand/{tracker}/marker", f"/hand/{tracker}/trail"
         if drawn.take != hand.take:
             drawn.take = hand.take
             drawn.trail.clear()
             self.clear(trail)
         drawn.trail.append(hand.position)
-        if drawn.closed != hand.closed:
-            drawn.closed = hand.closed
-            color = CLOSED_HAND_COLOR if hand.closed else OPEN_HAND_COLOR
-            self._tree.set_object(marker, commands.solid(marker, "sphere", (0.016,), color=color))
+        if drawn.is_closed != hand.is_closed:
+            drawn.is_closed = hand.is_closed
+            color = CLOSED_HAND_COLOR if hand.is_closed else OPEN_HAND_COLOR
+            self._tree.set_object(marker, commands.solid(marker, "sphere", (MARKER_RADIUS,), color=color))
         self._place(marker, commands.pose_of(hand.position))
         if len(drawn.trail) >= 2 and now - drawn.trail_drawn >= 1.0 / self._settings.trail_rate:
             drawn.trail_drawn = now
             self._tree.set_object(trail, commands.line(trail, np.array(drawn.trail), color=OPEN_HAND_COLOR))
 
-    def _draw_object(self, hand: Hand, drawn: _HandDrawing) -> None:
-        """Let the object go with the hand that took it; it lies where it was let go until the next reach begins."""
-        if hand.thing is None or hand.thing != self._carried:
+    def _draw_object(self, status: RecordingStatus, hand: HandState, drawn: _HandDrawing) -> None:
+        """Draw the object in the hand that carries it; once released, it stays there until the next reach begins."""
+        if status.carried is None or status.carried != self._object or status.phase is None:
             return
-        if hand.holds:
-            drawn.holds = True
-            if hand.carried is not None:
-                self._place("/object", commands.pose_of(*hand.carried))
-        elif hand.phase is Phase.REACH:
+        if status.phase.has_object:
+            drawn.has_object = True
+            if hand.carried_pose is not None:
+                self._place("/object", commands.pose_of(*hand.carried_pose))
+        elif status.phase is Phase.REACH:
             self._put_back(drawn)
 
     def _put_back(self, drawn: _HandDrawing) -> None:
-        if drawn.holds and self._carried is not None:
-            self._place("/object", commands.pose_of(self._carried.position))
-        drawn.holds = False
+        if drawn.has_object and self._object is not None:
+            self._place("/object", commands.pose_of(self._object.position))
+        drawn.has_object = False

@@ -27,7 +27,7 @@ def way_color(cluster: int) -> int:
 
 def scene_batch(review: Review, home: Array) -> bytes:
     """Return the commands that draw all that stands: arm, scene, demonstrations and paths."""
-    preview = Preview(MemoryBus(), Keys(), visual_solids(), robot="", home=home, hands=list)
+    preview = Preview(MemoryBus(), Keys(), visual_solids(), robot="", home=home, statuses=list)
     preview.show_object(review.scene.carried)
     arm = preview.connect(lambda: None).pop() or b""
     drawn = [

@@ -7,7 +7,7 @@ import pytest
 
 from teachpath.errors import Conflict, UnusableInput
 from teachpath.io.documents import encode
-from teachpath.io.wire import sample_message
+from teachpath.io.wire import encode_sample
 from teachpath.motion.arm.kinematics import tool_pose
 from teachpath.motion.collision.builtin_scenes import empty_scene
 from teachpath.records import Calibration, TeleopRequest
@@ -37,7 +37,7 @@ class Held(Bench):
 
     def show(self, tracker: str, hand: np.ndarray, buttons: int) -> None:
         shown = sample(self.number, tuple(hand), buttons=buttons)
-        self.bus.publish(KEYS.samples(tracker), sample_message(shown).SerializeToString())
+        self.bus.publish(KEYS.samples(tracker), encode_sample(shown))
 
     def press(self) -> None:
         self.buttons = CLUTCH

@@ -4,8 +4,8 @@ import pytest
 
 from teachpath.errors import UnusableSettings
 from teachpath.recording.phase_statistics import PhaseStatistics
+from teachpath.recording.quality import assess_quality
 from teachpath.recording.settings import RecordingSettings
-from teachpath.recording.verdict import judge
 from teachpath.records import StreamStatistics
 
 SETTINGS = RecordingSettings()
@@ -41,17 +41,17 @@ def transport(account: StreamStatistics) -> PhaseStatistics:
     ],
 )
 def test_the_verdict_follows_the_numbers_and_says_them(changes: dict[str, int], word: str, reason: str) -> None:
-    verdict = judge(transport(replace(CLEAN, **changes)), SETTINGS)  # type: ignore[arg-type]
-    assert verdict.word == word
-    assert reason in (verdict.reasons[0] if verdict.reasons else "")
-    assert bool(verdict.reasons) == (word != "clean")
+    report = assess_quality(transport(replace(CLEAN, **changes)), SETTINGS)  # type: ignore[arg-type]
+    assert report.verdict == word
+    assert reason in (report.reasons[0] if report.reasons else "")
+    assert bool(report.reasons) == (word != "clean")
 
 
 def test_the_limits_are_those_of_the_settings() -> None:
     lost = StreamStatistics(received=90, lost=10)
-    assert judge(transport(lost), replace(SETTINGS, largest_loss=0.1)).word == "repaired"
+    assert assess_quality(transport(lost), replace(SETTINGS, largest_loss=0.1)).verdict == "repaired"
     gap = transport(replace(CLEAN, longest_gap_ns=300_000_000))
-    assert judge(gap, replace(SETTINGS, longest_gap=0.3)).word == "clean"
+    assert assess_quality(gap, replace(SETTINGS, longest_gap=0.3)).verdict == "clean"
 
 
 def test_a_workspace_without_room_is_refused() -> None:

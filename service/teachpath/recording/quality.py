@@ -1,0 +1,128 @@
+"""How good a demonstration is: its verdict, with the numbers that explain it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+from teachpath.recording.phase_statistics import PhaseStatistics
+from teachpath.recording.settings import RecordingSettings
+from teachpath.records import StreamStatistics, Verdict
+
+FAULTS = {
+    "lost": "lost",
+    "refused": "refused",
+    "untracked": "untracked",
+    "jumps": "jumping",
+    "out_of_workspace": "out of the workspace",
+    "conflicts": "in conflict",
+}
+REPAIRS = {"duplicated": "came twice", "reordered": "came late"}
+# Statistics that belong to a place within a take. Refused payloads have no place, and outliers of the position are
+# counted in the transport phase alone.
+LOCATED = ("lost", "untracked", "conflicts", "duplicated", "reordered", "longest_gap_ns", "clock_jumps")
+
+
+@dataclass(frozen=True, slots=True)
+class QualityReport:
+    """The verdict on a demonstration and its reasons, the gravest first."""
+
+    verdict: Verdict
+    reasons: tuple[str, ...] = ()
+
+
+def assess_quality(statistics: PhaseStatistics, settings: RecordingSettings) -> QualityReport:
+    """Return the verdict on a demonstration.
+
+    Only faults from grasp to release, which is what will be learned, reject it. Faults while the hand reaches or
+    returns are counted and named, and make it repaired at best.
+    """
+    transport = _with_unlocated(statistics)
+    rejections = [*_excessive_faults(statistics, transport, settings), *_unusable(transport, settings)]
+    repairs = [*_repairs(transport), *_faults_elsewhere(statistics, settings)]
+    whole = statistics.whole
+    if whole.declared_rate and abs(whole.seen_rate / whole.declared_rate - 1.0) > settings.rate_tolerance:
+        repairs.append(f"the rate is {whole.seen_rate:.3g} Hz, declared {whole.declared_rate:.3g} Hz")
+    verdict = Verdict.REJECT if rejections else Verdict.REPAIRED if repairs else Verdict.CLEAN
+    return QualityReport(verdict, (*rejections, *repairs))
+
+
+def reassess_quality(
+    former: QualityReport, before: PhaseStatistics, now: PhaseStatistics, settings: RecordingSettings
+) -> QualityReport:
+    """Return the verdict on a demonstration whose statistics have changed.
+
+    Reasons that do not follow from the statistics, such as a torn end, are kept.
+
+    Args:
+        former: the report so far.
+        before: the statistics that it was made from.
+        now: the statistics as they are now.
+        settings: limits of the recording.
+    """
+    assessed, fresh = assess_quality(before, settings), assess_quality(now, settings)
+    kept = tuple(reason for reason in former.reasons if reason not in assessed.reasons)
+    if not kept:
+        return fresh
+    rejected_otherwise = former.verdict == Verdict.REJECT and assessed.verdict != Verdict.REJECT
+    rejected = fresh.verdict == Verdict.REJECT or rejected_otherwise
+    return QualityReport(Verdict.REJECT if rejected else Verdict.REPAIRED, (*kept, *fresh.reasons))
+
+
+def _with_unlocated(statistics: PhaseStatistics) -> StreamStatistics:
+    """Return the statistics of the transport phase, together with all that has no place within the take."""
+    return replace(statistics.whole, **{name: getattr(statistics.transport, name) for name in LOCATED})
+
+
+def _excessive_faults(
+    statistics: PhaseStatistics, transport: StreamStatistics, settings: RecordingSettings
+) -> list[str]:
+    limit, found = settings.largest_loss, []
+    total = statistics.transport.received + statistics.transport.lost
+    faults = sum(getattr(transport, name) for name in FAULTS if name != "refused")
+    if faults > limit * total:
+        found.append(f"{faults} of {_samples(total)} are faulty, {faults / total:.1%}, limit {limit:.1%}")
+    refused, came = statistics.whole.refused, statistics.whole.received + statistics.whole.refused
+    if refused > limit * came:
+        found.append(f"{refused} of {_samples(came)} were refused, {refused / came:.1%}, limit {limit:.1%}")
+    return found
+
+
+def _unusable(statistics: StreamStatistics, settings: RecordingSettings) -> list[str]:
+    found = _breaks(statistics, settings, f", limit {settings.longest_gap:.2f} s")
+    if statistics.leaps:
+        found.append(
+            f"the position leaps {_times(statistics.leaps)} by over {100 * settings.largest_jump:.3g} cm and stays"
+        )
+    return found
+
+
+def _breaks(statistics: StreamStatistics, settings: RecordingSettings, limit: str = "") -> list[str]:
+    found = []
+    if statistics.longest_gap_ns > settings.longest_gap * 1e9:
+        found.append(f"a gap of {statistics.longest_gap_ns * 1e-9:.2f} s{limit}")
+    if statistics.clock_jumps:
+        found.append(f"the device's clock jumps {_times(statistics.clock_jumps)}")
+    return found
+
+
+def _repairs(statistics: StreamStatistics) -> list[str]:
+    return [
+        f"{_samples(getattr(statistics, name))} {words}"
+        for name, words in (FAULTS | REPAIRS).items()
+        if getattr(statistics, name)
+    ]
+
+
+def _faults_elsewhere(statistics: PhaseStatistics, settings: RecordingSettings) -> list[str]:
+    """Name the faults of the phases that are not learned."""
+    phases = {"reaching": statistics.reach, "returning": statistics.return_}
+    faults = {phase: [*_breaks(each, settings), *_repairs(each)] for phase, each in phases.items()}
+    return [f"while {phase}, outside what is learned: {', '.join(found)}" for phase, found in faults.items() if found]
+
+
+def _samples(count: int) -> str:
+    return f"{count} sample{'s' if count != 1 else ''}"
+
+
+def _times(count: int) -> str:
+    return "once" if count == 1 else f"{count} times"
