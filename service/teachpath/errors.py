@@ -16,6 +16,10 @@
 A message names the value, the limit, the place and the way out.
 """
 
+from __future__ import annotations
+
+from typing import Any
+
 
 class TeachpathError(Exception):
     """Base of all errors that teachpath raises on purpose; its text is a sentence for the operator."""
@@ -38,11 +42,19 @@ class UnusableSettings(UnusableInput):
 
 
 class LearningFailed(TeachpathError):
-    """No path can be learned from these demonstrations."""
+    """No path can be learned from these demonstrations; `demonstration` is the id of the one to blame, if it is one."""
+
+    def __init__(self, sentence: str, demonstration: str = "") -> None:
+        super().__init__(sentence)
+        self.demonstration = demonstration
 
 
 class PathRefused(TeachpathError):
-    """The arm cannot follow this path."""
+    """The arm cannot follow this path; `failure` says where, why and what to change (a `records.Failure`), if known."""
+
+    def __init__(self, sentence: str, failure: Any = None) -> None:
+        super().__init__(sentence)
+        self.failure = failure
 
 
 class NotFound(TeachpathError):

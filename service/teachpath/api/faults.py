@@ -16,13 +16,12 @@ from teachpath.errors import (
     Conflict,
     LearningFailed,
     NotFound,
-    Outdated,
     PathRefused,
     TeachpathError,
     Unreachable,
     UnusableInput,
 )
-from teachpath.io.documents import to_document
+from teachpath.records import Failure, Version
 
 MOST_FAULTS: Final = 20  # fields that a refusal lists
 
@@ -51,7 +50,9 @@ class Refusal(BaseModel):
     errors: list[Fault] = Field(
         default=[], description="the unusable fields of the request, at most 20, when that is the reason"
     )
-    newer: dict[str, Any] | None = Field(None, description="the version saved meanwhile, when that is the reason")
+    newer: Version | None = Field(None, description="the version saved meanwhile, when that is the reason")
+    failure: Failure | None = Field(None, description="where the path fails, why, and which control point to move")
+    demonstration: str = Field("", description="id of the demonstration that is to blame")
 
 
 # What any resource may answer instead of its outcome.
@@ -75,8 +76,7 @@ def answer_errors(app: FastAPI) -> None:
 
     @app.exception_handler(TeachpathError)
     async def answer(_: Request, error: TeachpathError) -> JSONResponse:
-        newer = to_document(error.newer) if isinstance(error, Outdated) else None
-        return _answer(status_of(error), str(error), type(error).__name__, newer=newer)
+        return _answer(status_of(error), str(error), type(error).__name__, **_evidence(error))
 
     @app.exception_handler(RequestValidationError)
     async def name_fields(request: Request, error: RequestValidationError) -> JSONResponse:
@@ -102,11 +102,14 @@ def answer_errors(app: FastAPI) -> None:
         return _answer(500, f"this is a fault of teachpath, please report it: {error!r}", "InternalError")
 
 
-def _answer(
-    status: int, sentence: str, kind: str, faults: list[Fault] | None = None, newer: dict[str, Any] | None = None
-) -> JSONResponse:
-    refusal = Refusal(detail=_printable(sentence), error=kind, errors=faults or [], newer=newer)
-    return JSONResponse(refusal.model_dump(exclude_defaults=True), status)
+def _answer(status: int, sentence: str, kind: str, faults: list[Fault] | None = None, **evidence: Any) -> JSONResponse:
+    refusal = Refusal(detail=_printable(sentence), error=kind, errors=faults or [], **evidence)
+    return JSONResponse(refusal.model_dump(mode="json", exclude_defaults=True), status)
+
+
+def _evidence(error: TeachpathError) -> dict[str, Any]:
+    """Return the records that an error carries."""
+    return {name: getattr(error, name) for name in ("newer", "failure", "demonstration") if hasattr(error, name)}
 
 
 def _fault(request: Request, error: dict[str, Any]) -> Fault:

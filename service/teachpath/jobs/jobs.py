@@ -16,7 +16,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from annotated_types import Ge, Le
 
-from teachpath.errors import Cancelled, Conflict, TeachpathError
+from teachpath.errors import Cancelled, Conflict, LearningFailed, PathRefused, TeachpathError
+from teachpath.io.documents import to_document
 from teachpath.io.wire import encode_progress
 from teachpath.jobs import worker
 from teachpath.records import Job, JobState
@@ -150,7 +151,7 @@ class Jobs:
             if not self._stopping.is_set():
                 self._end(key, JobState.CANCELLED, str(error))
         except TeachpathError as error:
-            self._end(key, JobState.FAILED, str(error))
+            self._end(key, JobState.FAILED, str(error), **_evidence(error))
         except BrokenProcessPool:
             if not self._stopping.is_set():
                 self._pool = self._open_pool()
@@ -158,8 +159,8 @@ class Jobs:
         finally:
             self._running = ""
 
-    def _end(self, key: str, state: JobState, message: str) -> Job:
-        job = self._store.set_job(key, state=state.value, message=message, finished_ns=time.time_ns())
+    def _end(self, key: str, state: JobState, message: str, **evidence: Any) -> Job:
+        job = self._store.set_job(key, state=state.value, message=message, finished_ns=time.time_ns(), **evidence)
         self._announce(job)
         return job
 
@@ -177,3 +178,12 @@ class Jobs:
             except Conflict:
                 continue  # ended meanwhile
             self._bus.publish(self._keys.job(key), encode_progress(job))
+
+
+def _evidence(error: TeachpathError) -> dict[str, Any]:
+    """Return the records that an error carries, as a job keeps them."""
+    if isinstance(error, PathRefused) and error.failure is not None:
+        return {"failure": to_document(error.failure)}
+    if isinstance(error, LearningFailed):
+        return {"demonstration": error.demonstration}
+    return {}

@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import StrEnum
 
+from teachpath.records.assessments import Failure
+
 
 class JobState(StrEnum):
     """The life of a job."""
@@ -18,7 +20,14 @@ class JobState(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Job:
-    """Background work on a task: `learn`, `recut` or `plan`. `outcome` is the id of the run or plan it made."""
+    """Background work on a task: `learn`, `recut` or `plan`.
+
+    Attributes:
+        message: what it does now, or why it failed.
+        outcome: id of the run or plan that it made.
+        failure: where a path fails that the arm cannot follow, why, and what to change.
+        demonstration: id of the one because of which nothing could be learned.
+    """
 
     id: str
     task: str
@@ -31,3 +40,5 @@ class Job:
     attempt: int
     created_ns: int
     finished_ns: int
+    failure: Failure | None = None
+    demonstration: str = ""

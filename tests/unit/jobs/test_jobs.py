@@ -7,15 +7,16 @@ from typing import Any
 
 import pytest
 
-from teachpath.errors import Conflict, LearningFailed
+from teachpath.errors import Conflict, LearningFailed, PathRefused
 from teachpath.io.bus import MemoryBus
 from teachpath.io.store.store import Store
 from teachpath.jobs.jobs import JobKind, Jobs, JobSettings
-from teachpath.records import Job, JobState
+from teachpath.records import Failure, Job, JobState, Suggestion
 from teachpath_proto.keys import Keys
 from tests.waiting import HANG
 
 KEYS = Keys("test")
+FAILURE = Failure("reach", 0.1, (0.1, 0.2), (0.5, 0.0, 0.5), "too far", Suggestion(3, (0.0, 0.0, -0.01), "lower it"))
 
 
 def echo(word: str, *, progress: Callable[[float, str], None]) -> str:
@@ -24,7 +25,11 @@ def echo(word: str, *, progress: Callable[[float, str], None]) -> str:
 
 
 def refuse(word: str, *, progress: Callable[[float, str], None]) -> str:
-    raise LearningFailed(f"cannot learn {word}")
+    raise LearningFailed(f"cannot learn {word}", "demonstration-7")
+
+
+def block(word: str, *, progress: Callable[[float, str], None]) -> str:
+    raise PathRefused(f"cannot follow {word}", FAILURE)
 
 
 def crash(word: str, *, progress: Callable[[float, str], None]) -> str:
@@ -49,7 +54,7 @@ class Bench:
         self.store, self.bus = store, MemoryBus()
         self.ended: queue.Queue[Job] = queue.Queue()
         self.outcomes: list[str] = []
-        works = {f.__name__: f for f in (echo, refuse, crash, linger, fault)} | instead
+        works = {f.__name__: f for f in (echo, refuse, block, crash, linger, fault)} | instead
         kinds = {name: JobKind(self.prepare, work, self.finish) for name, work in works.items()}
         settings = JobSettings(attempts=2)
         self.jobs = Jobs(self.bus, KEYS, store, settings, kinds, finished=self.ended.put)
@@ -89,6 +94,16 @@ def test_a_refusal_keeps_its_sentence_and_a_fault_is_named(bench: Bench) -> None
     assert faulted.state is JobState.FAILED
     assert "ZeroDivisionError('boom')" in faulted.message
     assert fine.state is JobState.SUCCEEDED
+
+
+def test_a_refusal_keeps_the_record_that_it_carries(bench: Bench) -> None:
+    for kind in ("refuse", "block", "echo"):
+        bench.jobs.submit("t", kind, {"word": "x"})
+    refused, blocked, fine = (bench.ended.get(timeout=30) for _ in range(3))
+    assert (refused.demonstration, refused.failure) == ("demonstration-7", None)
+    assert (blocked.demonstration, blocked.failure) == ("", FAILURE)
+    assert (fine.demonstration, fine.failure) == ("", None)
+    assert bench.store.job(blocked.id).failure == FAILURE
 
 
 def test_a_job_whose_process_dies_is_begun_anew_then_given_up(bench: Bench) -> None:

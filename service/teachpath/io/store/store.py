@@ -31,7 +31,7 @@ from teachpath.io.store.tables import (
     TaskRow,
 )
 from teachpath.io.store.versions import Versions, learned_row
-from teachpath.records import Demonstration, ExecutorStatus, Job, JobState, Learned, LearnedPath, Plan, Task
+from teachpath.records import Demonstration, ExecutorStatus, Failure, Job, JobState, Learned, LearnedPath, Plan, Task
 
 Row = TypeVar("Row", bound=Base)
 
@@ -280,4 +280,5 @@ def _execution(row: ExecutionTable) -> Execution:
 
 def _job(row: JobRow) -> Job:
     fields = {name: getattr(row, name) for name in Job.__dataclass_fields__}
-    return Job(**{**fields, "state": JobState(row.state)})
+    failure = None if row.failure is None else from_document(Failure, row.failure)
+    return Job(**{**fields, "state": JobState(row.state), "failure": failure})

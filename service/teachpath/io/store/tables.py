@@ -98,6 +98,8 @@ class JobRow(Base):
     attempt: Mapped[int] = mapped_column(Integer)
     created_ns: Mapped[int] = mapped_column(BigInteger)
     finished_ns: Mapped[int] = mapped_column(BigInteger)
+    failure: Mapped[dict[str, Any] | None] = mapped_column(JSON(none_as_null=True))
+    demonstration: Mapped[str] = mapped_column(ID)
 
 
 class ExecutionTable(Base):

@@ -52,7 +52,8 @@ def path_clearance(
     if load is not None:
         lowest = -settings.contact_tolerance
         if prove_distance(sweep, lambda q: model.support_distances(q, load), lowest).distance < lowest:
-            raise PathRefused(describe(support_failure(tool_path, candidate, model, load, settings)))
+            failure = support_failure(tool_path, candidate, model, load, settings)
+            raise PathRefused(describe(failure), failure)
     return _extreme(proved, float(joints(proved.parameter)[6]))
 
 
@@ -60,7 +61,8 @@ def clearance_refusal(
     tool_path: ToolPath, candidate: Candidate, model: CollisionModel, settings: MotionSettings
 ) -> PathRefused:
     """Explain where something comes too near on a candidate, and which control point to move."""
-    return PathRefused(describe(clearance_failure(tool_path, candidate, model, settings)))
+    failure = clearance_failure(tool_path, candidate, model, settings)
+    return PathRefused(describe(failure), failure)
 
 
 def clearance_failure(

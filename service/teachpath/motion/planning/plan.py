@@ -172,4 +172,4 @@ def _turn(path: LearnedPath, settings: MotionSettings) -> Curve | None:
 
 def _refuse(failure: Failure | None) -> None:
     if failure is not None:
-        raise PathRefused(describe(failure))
+        raise PathRefused(describe(failure), failure)

@@ -10,6 +10,7 @@ from teachpath.motion.arm.puma560 import ACCELERATION, JERK, LOWER, SPEED, UPPER
 from teachpath.motion.collision.builtin_scenes import empty_scene, paper_scene
 from teachpath.motion.paths.tool_path import ArcLength
 from teachpath.motion.planning.certificate import digest, largest_limit_uses, plan_trajectory, verify
+from teachpath.motion.planning.failure import describe
 from teachpath.motion.planning.plan import plan
 from teachpath.motion.settings import MotionSettings
 from teachpath.nurbs import Curve
@@ -72,6 +73,18 @@ def test_a_path_through_an_obstacle_is_refused_by_name_and_place() -> None:
         plan(way(0.48), paper_scene())
     with pytest.raises(PathRefused, match="into cylinder, has to stay"):
         plan(way(0.67), paper_scene())
+
+
+@pytest.mark.parametrize(("x", "fault"), [(0.48, "collision"), (1.5, "reach"), (0.31, "limit")])
+def test_a_refusal_carries_the_record_that_its_sentence_tells(x: float, fault: str) -> None:
+    path = way(x)
+    with pytest.raises(PathRefused) as refused:
+        plan(path, paper_scene())
+    failure = refused.value.failure
+    assert failure.fault == fault
+    assert describe(failure) == str(refused.value)
+    assert 0 <= failure.suggestion.control_point < len(path.curve.control_points)
+    assert failure.interval[0] == failure.s <= failure.interval[1]
 
 
 def test_a_path_out_of_reach_is_refused_with_its_place() -> None:
