@@ -28,7 +28,7 @@ from teachpath.jobs.curve_assessor import CurveAssessor
 from teachpath.jobs.jobs import JobKind, Jobs
 from teachpath.learning.settings import LearningSettings
 from teachpath.live.event_hub import EventHub
-from teachpath.live.preview import Preview
+from teachpath.live.preview.preview import Preview
 from teachpath.live.state_poller import Poll, StatePoller
 from teachpath.motion.arm.geometry import visual_solids
 from teachpath.offline.lock import StationLock
@@ -102,6 +102,7 @@ class Station:
             robot=settings.bus.robot,
             home=np.array(settings.motion.home),
             statuses=self.recorder.shown_statuses,
+            settings=settings.preview,
         )
         ours = {"simulator": Role.ROBOT, "executor": Role.EXECUTOR}
         if not settings.simulator.start:

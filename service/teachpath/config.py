@@ -24,6 +24,7 @@ from teachpath.io.meshes import read_hull
 from teachpath.io.store.settings import StoreSettings
 from teachpath.jobs.jobs import JobSettings
 from teachpath.learning.settings import LearningSettings
+from teachpath.live.preview.settings import PreviewSettings
 from teachpath.motion.arm.variants import choose
 from teachpath.motion.collision.builtin_scenes import empty_scene, paper_scene
 from teachpath.motion.settings import MotionSettings
@@ -68,6 +69,7 @@ class Settings(BaseModel):
     executor: ExecutorSettings = ExecutorSettings()
     simulator: SimulatorSettings = SimulatorSettings()
     jobs: JobSettings = JobSettings()
+    preview: PreviewSettings = PreviewSettings()
     calibrations: tuple[Calibration, ...] = (Calibration("identity"), ROBOTTASKS)
     scenes: tuple[Scene, ...] = (paper_scene(), empty_scene())
 

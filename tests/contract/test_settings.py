@@ -1,5 +1,6 @@
 """The settings: deploy/teachpath.toml is the defaults, and every wrong setting is refused with its name."""
 
+import ast
 import json
 import os
 import re
@@ -14,6 +15,7 @@ from typing import Any
 
 import pytest
 
+from teachpath import config
 from teachpath.config import Settings, load
 from teachpath.errors import NotFound, UnusableInput, UnusableSettings
 from tests.contract import settings_file
@@ -50,6 +52,17 @@ def toml(tmp_path: Path, text: str) -> Path:
 
 def test_the_annotated_file_is_written_from_the_source() -> None:
     assert settings_file.FILE.read_text() == settings_file.text(), "run: python -m tests.contract.settings_file"
+
+
+def test_every_settings_class_of_the_service_is_in_the_tree() -> None:
+    service = Path(config.__file__).parent
+    found = {
+        node.name
+        for file in service.rglob("*.py")
+        for node in ast.walk(ast.parse(file.read_text()))
+        if isinstance(node, ast.ClassDef) and node.name.endswith("Settings") and "UnusableInput" not in ast.dump(node)
+    }
+    assert found == {kind.__name__ for _, kind in ROOMS} | {"Settings"}
 
 
 def test_the_annotated_file_is_the_defaults() -> None:

@@ -17,7 +17,7 @@ from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 from matplotlib.ticker import PercentFormatter
 
-from teachpath.live.preview import CLUSTER_COLORS
+from teachpath.live.preview.commands import CLUSTER_COLORS
 from teachpath.records import Array, Learned, Trajectory
 from tests.experiments import quoted
 from tests.experiments.scenarios import GROUPINGS, SCENARIOS, SHAPES, along

@@ -24,7 +24,7 @@ from teachpath.io.bus import MemoryBus
 from teachpath.io.documents import to_document
 from teachpath.learning.clustering.cuts import dendrogram
 from teachpath.live.event_hub import EventHub
-from teachpath.live.preview import Preview
+from teachpath.live.preview.preview import Preview
 from teachpath.motion.arm.geometry import visual_solids
 from teachpath.motion.arm.kinematics import link_frames
 from teachpath.motion.collision.builtin_scenes import paper_scene

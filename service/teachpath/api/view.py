@@ -9,7 +9,9 @@ from fastapi import APIRouter, Response, WebSocket
 from fastapi.responses import FileResponse, PlainTextResponse
 
 from teachpath.api import sockets
-from teachpath.live.preview import Preview, Viewer, viewer_files, web_files
+from teachpath.live.preview.asset_paths import viewer_files, web_files
+from teachpath.live.preview.preview import Preview
+from teachpath.live.preview.scene_tree import Viewer
 
 # The two hashes are the style elements that meshcat's bundle puts into the page: its own (empty) one and dat.gui's.
 STYLE_HASHES: Final = (

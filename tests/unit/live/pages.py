@@ -5,7 +5,7 @@ from typing import Any
 
 import umsgpack
 
-from teachpath.live.preview import Viewer
+from teachpath.live.preview.scene_tree import Viewer
 
 
 def ignore() -> None:

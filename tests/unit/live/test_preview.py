@@ -1,13 +1,18 @@
 """The preview: what pages are told, and that a page that does not listen costs nothing."""
 
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+import pytest
 
 from teachpath.io import wire
 from teachpath.io.bus import MemoryBus
-from teachpath.live.preview import CLUSTER_COLORS, Preview, PreviewSettings, Viewer
+from teachpath.live.preview.commands import CLUSTER_COLORS
+from teachpath.live.preview.preview import Preview
+from teachpath.live.preview.scene_tree import Viewer
+from teachpath.live.preview.settings import PreviewSettings
 from teachpath.motion.arm.geometry import visual_solids
 from teachpath.motion.arm.kinematics import link_frames
 from teachpath.motion.collision.builtin_scenes import empty_scene, paper_scene
@@ -27,6 +32,7 @@ class Station:
         self.bus = MemoryBus()
         self.now = 0.0
         self.received = 0
+        self.carried = paper_scene().carried
         self.statuses: list[RecordingStatus] = []
         self.preview = Preview(
             self.bus,
@@ -49,8 +55,9 @@ class Station:
         self.now += 0.02
         self.received += 1
         hand = HandState((x, 0.0, 0.6), phase is Phase.TRANSPORT, self.received, take, carried)
-        shape = paper_scene().carried
-        self.statuses = [RecordingStatus("t", "glove", RecordingState.RECORDING, phase, carried=shape, hand=hand)]
+        self.statuses = [
+            RecordingStatus("t", "glove", RecordingState.RECORDING, phase, carried=self.carried, hand=hand)
+        ]
         self.preview.update()
 
 
@@ -130,10 +137,15 @@ def test_malformed_states_are_left_out() -> None:
         assert take(viewer) == []
 
 
+def poses(viewer: Viewer, path: str) -> list[np.ndarray]:
+    """Return the poses (4, 4) that the page is sent for `path`, in order."""
+    sent = [c for c in take(viewer) if c["path"] == path and c["type"] == "set_transform"]
+    return [np.reshape(c["matrix"], (4, 4)).T for c in sent]
+
+
 def placed(viewer: Viewer, path: str) -> list[tuple[float, ...]]:
-    """Return where the page is told to put what is at `path`, in order."""
-    told = [c for c in take(viewer) if c["path"] == path and c["type"] == "set_transform"]
-    return [tuple(round(v, 4) for v in c["matrix"][12:15]) for c in told]
+    """Return the positions of those poses."""
+    return [tuple(round(v, 4) for v in pose[:3, 3].tolist()) for pose in poses(viewer, path)]
 
 
 def test_a_hand_is_drawn_with_its_trail_until_it_falls_silent() -> None:
@@ -193,6 +205,27 @@ def test_an_object_in_a_hand_that_vanishes_goes_back() -> None:
         station.now += PreviewSettings().hand_silence + 0.1
         preview.update()
         assert placed(viewer, "/object") == [tuple(round(v, 4) for v in thing.position)]
+
+
+@pytest.mark.parametrize("vanishes", [False, True])
+def test_a_block_that_stands_turned_goes_back_turned(vanishes: bool) -> None:
+    station = Station()
+    assert station.carried is not None
+    station.carried = block = replace(station.carried, orientation=(np.cos(0.4), 0.0, 0.0, np.sin(0.4)))
+    with station.preview as preview:
+        preview.show_object(block)
+        viewer = preview.connect(ignore)
+        (start,) = poses(viewer, "/object")
+        station.see(0.2, Phase.TRANSPORT, carried=((0.3, 0.1, 0.7), (1.0, 0.0, 0.0, 0.0)))
+        (carried,) = poses(viewer, "/object")
+        if vanishes:
+            station.now += PreviewSettings().hand_silence + 0.1
+            preview.update()
+        else:
+            station.see(0.3, take=2)
+        (back,) = poses(viewer, "/object")
+        assert not np.allclose(carried[:3, :3], start[:3, :3])
+        assert np.array_equal(back, start)
 
 
 def test_stops_listening_when_stopped() -> None:

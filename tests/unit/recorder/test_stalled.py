@@ -6,7 +6,7 @@ import numpy as np
 
 from teachpath.errors import UnusableRecording
 from teachpath.learning.settings import LearningSettings
-from teachpath.live.preview import Preview
+from teachpath.live.preview.preview import Preview
 from teachpath.motion.arm.geometry import visual_solids
 from teachpath.recorder.guidance import GuidanceThread
 from teachpath.records import Demonstration, Trajectory

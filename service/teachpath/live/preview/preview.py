@@ -7,16 +7,15 @@ from collections import deque
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 from types import TracebackType
-from typing import Annotated
 
 import numpy as np
-from annotated_types import Ge, Gt, Le
 
 from teachpath.errors import UnusableInput
 from teachpath.io.bus import Bus, Handle
 from teachpath.io.wire import decode_state
 from teachpath.live.preview import commands
 from teachpath.live.preview.scene_tree import SceneTree, Viewer
+from teachpath.live.preview.settings import PreviewSettings
 from teachpath.motion.arm.geometry import LinkSolid
 from teachpath.motion.arm.kinematics import link_frames
 from teachpath.periodic_thread import PeriodicThread
@@ -25,20 +24,6 @@ from teachpath_proto.keys import Keys
 
 OPEN_HAND_COLOR, CLOSED_HAND_COLOR = 0x3F7FBF, 0xE08A00
 MARKER_RADIUS = 0.016  # [m]
-
-
-@dataclass(frozen=True)
-class PreviewSettings:
-    """How often the view is drawn, and for how long a hand is shown."""
-
-    # [Hz] how often arm, object and hands are drawn
-    rate: Annotated[float, Gt(0), Le(60)] = 30.0
-    # [Hz] how often the trail of a hand is drawn
-    trail_rate: Annotated[float, Gt(0), Le(30)] = 5.0
-    # points in the trail of a hand
-    trail_points: Annotated[int, Ge(2), Le(10_000)] = 600
-    # [s] without a sample after which a hand disappears
-    hand_silence: Annotated[float, Gt(0)] = 2.0
 
 
 @dataclass
@@ -138,7 +123,7 @@ class Preview:
         if carried is not None:
             body = commands.solid("/object", carried.kind, carried.size, color=carried.color, vertices=carried.vertices)
             self._tree.set_object("/object", body)
-            self._place("/object", commands.pose_of(carried.position, carried.orientation))
+            self._place_at_start(carried)
             self._tree.flush()
 
     def clear(self, prefix: str) -> None:
@@ -233,5 +218,8 @@ class Preview:
 
     def _put_back(self, drawn: _HandDrawing) -> None:
         if drawn.has_object and self._object is not None:
-            self._place("/object", commands.pose_of(self._object.position))
+            self._place_at_start(self._object)
         drawn.has_object = False
+
+    def _place_at_start(self, carried: Shape) -> None:
+        self._place("/object", commands.pose_of(carried.position, carried.orientation))

@@ -12,7 +12,7 @@ from string import Template
 
 from teachpath import __version__
 from teachpath.errors import UnusableInput
-from teachpath.live.preview import viewer_files, web_files
+from teachpath.live.preview.asset_paths import viewer_files, web_files
 from teachpath.offline.report import figures, tables
 from teachpath.offline.report.content import Review
 from teachpath.offline.report.scene import frames, scene_batch

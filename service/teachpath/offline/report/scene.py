@@ -7,7 +7,9 @@ from typing import Any
 import numpy as np
 
 from teachpath.io.bus import MemoryBus
-from teachpath.live.preview import CLUSTER_COLORS, Preview, commands
+from teachpath.live.preview import commands
+from teachpath.live.preview.commands import CLUSTER_COLORS
+from teachpath.live.preview.preview import Preview
 from teachpath.live.preview.scene_tree import pack
 from teachpath.motion.arm.geometry import visual_solids
 from teachpath.motion.arm.kinematics import link_frames
