@@ -171,6 +171,17 @@ def test_every_resource_is_described_with_its_refusals(desk: Desk) -> None:
                     assert response["content"]["application/json"]["schema"]["$ref"].endswith("/Refusal")
 
 
+def test_no_answer_is_described_as_just_an_object(desk: Desk) -> None:
+    description = desk.send("GET", "/openapi.json").json()
+    for path, methods in description["paths"].items():
+        for method, operation in methods.items():
+            (status,) = (status for status in operation["responses"] if status.startswith("2"))
+            for kind, content in operation["responses"][status].get("content", {}).items():
+                schema = json.dumps(content["schema"])
+                assert kind != "application/json" or ("$ref" in schema or "number" in schema), (method, path, schema)
+    assert all("properties" in model or "enum" in model for model in description["components"]["schemas"].values())
+
+
 # whatever comes
 
 TEXT = st.text(st.characters(), max_size=20)  # with halves of surrogate pairs

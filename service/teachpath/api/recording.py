@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from dataclasses import dataclass
 
 from fastapi import APIRouter
 from pydantic import Field
@@ -11,7 +11,7 @@ from teachpath.api.closed import Body
 from teachpath.api.parts import Parts
 from teachpath.errors import UnusableInput
 from teachpath.io.wire import recording_document
-from teachpath.records import Demonstration, RecordingRequest, Routine, StopRequest
+from teachpath.records import Demonstration, RecordingRequest, RecordingStatus, Routine, StopRequest
 
 
 class Recording(Body):
@@ -39,21 +39,73 @@ class Named(Body):
     tracker: str = Field(description="name of the tracker that is recording the task")
 
 
+@dataclass(frozen=True, slots=True)
+class RecordingReport:
+    """The account of a recording: all samples that came, and all that did not; times in nanoseconds.
+
+    Attributes:
+        demonstrations: ids of those made so far, in order.
+        missing: first and last of the numbers that never came, of the first 20 gaps.
+        idle: samples that belong to no demonstration.
+        gaps: stretches of numbers that never came.
+        conflicts: numbers that came twice with different device times.
+        declared_rate: [Hz] that the client said; 0: none.
+        seen_rate: [Hz] numbers a second of the device's clock.
+        clock_offset_ns: host clock minus device clock, with the least transit in it.
+        clock_rate: seconds of the device's clock in one of the host's; 0: not known.
+        phase: of the hand; empty when the recording has ended.
+        state: recording, countdown, pausing, paused or lost; empty when the recording has ended.
+        pedal: whether the pedal has been used.
+        countdown_left: [s] until samples are recorded.
+        takes_left: demonstrations until it pauses by itself; 0: nobody has said how many.
+        sign: what the fist that is held now asks for as it opens: toggle, discard or nothing.
+        notes: what an operator should know, in words.
+    """
+
+    task: str
+    tracker: str
+    demonstrations: tuple[str, ...]
+    received: int
+    lost: int
+    duplicated: int
+    reordered: int
+    refused: int
+    untracked: int
+    gaps: int
+    missing: tuple[tuple[int, int], ...]
+    longest_gap_ns: int
+    conflicts: int
+    clock_jumps: int
+    declared_rate: float
+    seen_rate: float
+    clock_offset_ns: int
+    clock_uncertainty_ns: int
+    clock_rate: float
+    idle: int
+    phase: str
+    state: str
+    pedal: bool
+    countdown_left: float
+    takes_left: int
+    sign: str
+    notes: tuple[str, ...]
+
+
 def recording_router(parts: Parts) -> APIRouter:
     """Return the routes that start and stop recording; tracker clients do the same over Zenoh."""
     router = APIRouter(tags=["recording"])
     recorder = parts.recorder
 
     @router.get("/tasks/{task}/recording")
-    def get_recording_state(task: str) -> list[dict[str, Any]]:
+    def get_recording_state(task: str) -> list[RecordingReport]:
         """Return the accounts of the task's running recordings."""
         name = parts.store.task(task).name
-        return [recording_document(s) for s in recorder.statuses(with_statistics=True) if s.task == name]
+        return [_report(s) for s in recorder.statuses(with_statistics=True) if s.task == name]
 
     @router.post("/tasks/{task}/recording", status_code=201)
-    def start_recording(task: str, recording: Recording) -> dict[str, Any]:
+    def start_recording(task: str, recording: Recording) -> RecordingReport:
         """Start recording from a tracker; demonstrations are cut by themselves as the hand grasps and releases."""
-        return recording_document(
+        return _report(
             recorder.begin(
                 RecordingRequest(
                     task,
@@ -66,19 +118,19 @@ def recording_router(parts: Parts) -> APIRouter:
         )
 
     @router.post("/tasks/{task}/recording/stop")
-    def stop_recording(task: str, ended: Ended) -> dict[str, Any]:
+    def stop_recording(task: str, ended: Ended) -> RecordingReport:
         """Stop recording and return the account of every sample."""
-        return recording_document(recorder.end(StopRequest(of_task(task, ended.tracker), discard=ended.discard)))
+        return _report(recorder.end(StopRequest(of_task(task, ended.tracker), discard=ended.discard)))
 
     @router.post("/tasks/{task}/recording/pause")
-    def pause_recording(task: str, named: Named) -> dict[str, Any]:
+    def pause_recording(task: str, named: Named) -> RecordingReport:
         """Record nothing until `resume`; what is carried now is recorded to its end first."""
-        return recording_document(recorder.pause(of_task(task, named.tracker)))
+        return _report(recorder.pause(of_task(task, named.tracker)))
 
     @router.post("/tasks/{task}/recording/resume")
-    def resume_recording(task: str, named: Named) -> dict[str, Any]:
+    def resume_recording(task: str, named: Named) -> RecordingReport:
         """Record again."""
-        return recording_document(recorder.resume(of_task(task, named.tracker)))
+        return _report(recorder.resume(of_task(task, named.tracker)))
 
     @router.post("/tasks/{task}/recording/discard")
     def discard_last(task: str) -> Demonstration:
@@ -98,3 +150,7 @@ def recording_router(parts: Parts) -> APIRouter:
         return tracker
 
     return router
+
+
+def _report(status: RecordingStatus) -> RecordingReport:
+    return RecordingReport(**recording_document(status))
