@@ -10,6 +10,7 @@ from pydantic import Field
 from teachpath.api.closed import Body
 from teachpath.api.parts import Parts
 from teachpath.errors import UnusableInput
+from teachpath.io.documents import from_document
 from teachpath.io.wire import recording_document
 from teachpath.records import Demonstration, RecordingRequest, RecordingStatus, Routine, StopRequest
 
@@ -153,4 +154,4 @@ def recording_router(parts: Parts) -> APIRouter:
 
 
 def _report(status: RecordingStatus) -> RecordingReport:
-    return RecordingReport(**recording_document(status))
+    return from_document(RecordingReport, recording_document(status))
