@@ -1,3 +1,85 @@
-"""Teach a robot a path by showing it: the programming-by-demonstration service."""
+"""Teach a robot a path by showing it: the programming-by-demonstration service, and its parts for programs.
+
+What is listed here is loaded when it is first used, so that the command line starts at once.
+"""
+
+from importlib import import_module
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from teachpath.errors import (
+        Cancelled,
+        Conflict,
+        LearningFailed,
+        NotFound,
+        Outdated,
+        PathRefused,
+        TeachpathError,
+        Unreachable,
+        UnusableInput,
+        UnusableRecording,
+        UnusableSample,
+        UnusableSettings,
+    )
+    from teachpath.learning.settings import LearningSettings
+    from teachpath.motion.collision.builtin_scenes import empty_scene, paper_scene
+    from teachpath.motion.settings import MotionSettings
+    from teachpath.nurbs import Curve
+    from teachpath.python_api import learn, plan, setpoints
+    from teachpath.records import Learned, LearnedPath, Plan, Scene, Shape, Trajectory
 
 __version__ = "0.1.0"
+
+__all__ = [
+    "Cancelled",
+    "Conflict",
+    "Curve",
+    "Learned",
+    "LearnedPath",
+    "LearningFailed",
+    "LearningSettings",
+    "MotionSettings",
+    "NotFound",
+    "Outdated",
+    "PathRefused",
+    "Plan",
+    "Scene",
+    "Shape",
+    "TeachpathError",
+    "Trajectory",
+    "Unreachable",
+    "UnusableInput",
+    "UnusableRecording",
+    "UnusableSample",
+    "UnusableSettings",
+    "empty_scene",
+    "learn",
+    "paper_scene",
+    "plan",
+    "setpoints",
+]
+
+_MODULES = {
+    "LearningSettings": "learning.settings",
+    "MotionSettings": "motion.settings",
+    "empty_scene": "motion.collision.builtin_scenes",
+    "paper_scene": "motion.collision.builtin_scenes",
+    "Curve": "nurbs",
+    "learn": "python_api",
+    "plan": "python_api",
+    "setpoints": "python_api",
+} | dict.fromkeys(("Learned", "LearnedPath", "Plan", "Scene", "Shape", "Trajectory"), "records")
+
+
+def __getattr__(name: str) -> object:
+    if name not in __all__:
+        raise AttributeError(f"module 'teachpath' has no attribute {name!r}")
+    try:
+        return getattr(import_module(f"teachpath.{_MODULES.get(name, 'errors')}"), name)
+    except ModuleNotFoundError as missing:
+        sentence = f"teachpath.{name} needs {missing.name}: pip install 'teachpath[service]'"
+        raise ModuleNotFoundError(sentence, name=missing.name) from missing
+
+
+def __dir__() -> list[str]:
+    return [*__all__, "__version__"]

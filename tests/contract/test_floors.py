@@ -16,10 +16,10 @@ FLOORS = [
     ["errors", "periodic_thread"],
     ["nurbs"],
     ["exchange", "records"],
-    ["editing"],
+    ["editing", "trajectories"],
     ["learning", "motion", "recording", "io"],
     ["recorder", "jobs", "executor", "simulator", "robot", "live"],
-    ["offline", "config"],
+    ["offline", "config", "python_api"],
     ["api"],
     ["app"],
     ["commands"],
@@ -107,8 +107,10 @@ def test_no_door_is_unused() -> None:
 def test_service_and_clients_are_strangers() -> None:
     for file in modules():
         assert not any(name.startswith("teachpath_client") for name in imports(file)), file
-    for file in (ROOT / "clients").rglob("*.py"):
+    for file in (ROOT / "clients" / "teachpath_client").rglob("*.py"):
         assert not any(name.split(".")[0] == "teachpath" for name in imports(file)), file
+    for file in (ROOT / "clients" / "examples").rglob("*.py"):
+        assert not any(name.startswith("teachpath.") for name in imports(file)), f"{file}: import teachpath"
     for file in (ROOT / "proto").rglob("*.py"):
         assert not any(name.split(".")[0] in ("teachpath", "teachpath_client") for name in imports(file)), file
 
@@ -129,6 +131,7 @@ def test_ruckigs_network_service_is_never_asked() -> None:
 @pytest.mark.parametrize(
     ("module", "needless"),
     [
+        ("teachpath", {"numpy", "teachpath.errors"}),
         ("teachpath.__main__", {"scipy.linalg", "numba", "hmmlearn", "sqlalchemy", "fastapi", "mujoco", "meshcat"}),
         ("teachpath.simulator.loop", {"scipy.linalg", "numba", "hmmlearn", "sqlalchemy", "fastapi"}),
         ("teachpath.executor.loop", {"hmmlearn", "sqlalchemy", "fastapi", "meshcat"}),
