@@ -13,7 +13,8 @@ from typing import cast
 
 from teachpath_client.devices import TouchSource, configure, describe_sources, open_source
 from teachpath_client.devices.cyberglove import GloveSettings
-from teachpath_client.link import ClientError, Link
+from teachpath_client.errors import ClientError
+from teachpath_client.link import Link
 from teachpath_client.live import HapticFeedback, calibrate_glove, ended_by_signals, record_live
 from teachpath_client.pedal import pedal_or_none
 from teachpath_client.reading import HandReading, Vector

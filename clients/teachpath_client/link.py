@@ -9,14 +9,11 @@ from typing import Any
 import zenoh
 import zenoh.ext
 
+from teachpath_client.errors import ClientError
 from teachpath_proto.logins import Login, Role, find_login, logins_path
 
 CACHE_SIZE = 1024  # samples that a subscriber which missed some can still ask for
 HEARTBEAT = 0.2  # [s] after a put until a subscriber is told its number, so that a lost last one is missed too
-
-
-class ClientError(Exception):
-    """The station cannot be reached, or refused; the text is a sentence for the operator."""
 
 
 class Link:

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 from mcap.reader import make_reader
 
-from teachpath_client.link import ClientError
+from teachpath_client.errors import ClientError
 from teachpath_client.reading import HandReading
 from teachpath_proto import tracker_pb2
 

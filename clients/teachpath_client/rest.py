@@ -6,7 +6,7 @@ from typing import Any
 
 import httpx
 
-from teachpath_client.link import ClientError
+from teachpath_client.errors import ClientError
 
 
 class Station:

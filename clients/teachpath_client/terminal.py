@@ -10,7 +10,7 @@ from collections.abc import Callable
 from types import TracebackType
 from typing import Protocol, Self
 
-from teachpath_client.link import ClientError
+from teachpath_client.errors import ClientError
 
 NO_TERMINAL = "--pedal needs a terminal to read the key from; name a device such as /dev/input/event5"
 POLL_PERIOD = 0.01  # [s] between looks at a console, which cannot be waited for

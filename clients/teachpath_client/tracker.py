@@ -6,7 +6,8 @@ import time
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
-from teachpath_client.link import ClientError, Link
+from teachpath_client.errors import ClientError
+from teachpath_client.link import Link
 from teachpath_client.reading import HandReading
 from teachpath_proto import tracker_pb2
 from teachpath_proto.keys import Keys, is_name, name_refusal

@@ -12,7 +12,7 @@ from statistics import fmean
 from typing import Any
 
 from teachpath_client.devices.source import Source
-from teachpath_client.link import ClientError
+from teachpath_client.errors import ClientError
 from teachpath_client.reading import HandReading, Vector
 from teachpath_client.rest import Station
 

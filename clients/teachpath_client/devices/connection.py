@@ -14,7 +14,7 @@ from collections.abc import Callable
 from typing import Generic, Protocol, Self, TypeVar
 
 from teachpath_client.devices.serial_line import SerialLine
-from teachpath_client.link import ClientError
+from teachpath_client.errors import ClientError
 
 LOG = logging.getLogger(__name__)
 

@@ -15,7 +15,7 @@ from teachpath_client.devices.glove_calibration import GloveCalibration
 from teachpath_client.devices.live_device import READ_TIMEOUT, LiveDevice, Polling
 from teachpath_client.devices.serial_line import SerialLine
 from teachpath_client.devices.source import Capabilities, configure
-from teachpath_client.link import ClientError
+from teachpath_client.errors import ClientError
 from teachpath_client.reading import HandReading
 
 Raw = tuple[int, ...]

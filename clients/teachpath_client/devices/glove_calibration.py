@@ -10,7 +10,7 @@ from statistics import fmean, median
 from typing import Self
 
 from teachpath_client.devices.cyberglove_wire import SENSORS
-from teachpath_client.link import ClientError
+from teachpath_client.errors import ClientError
 
 MIN_RANGE = 12  # raw steps between open hand and fist; less is noise and creep of the glove
 MIN_SENSOR_SHARE = 0.5  # of the sensors that must tell an open hand from a fist

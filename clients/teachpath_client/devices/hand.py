@@ -11,7 +11,7 @@ from typing import Self
 from teachpath_client.devices.cyberglove import GloveSettings, GloveSource
 from teachpath_client.devices.fastrak import FastrakSettings, FastrakSource
 from teachpath_client.devices.source import Capabilities, configure
-from teachpath_client.link import ClientError
+from teachpath_client.errors import ClientError
 from teachpath_client.reading import HandReading
 
 READ_TIMEOUT = 0.1  # [s] a read waits

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Literal, Self
 
 from teachpath_client.devices.source import Capabilities, configure
-from teachpath_client.link import ClientError
+from teachpath_client.errors import ClientError
 from teachpath_client.reading import HandReading
 from teachpath_client.replay import read_mcap
 from teachpath_client.synthetic import RATE, SENSORS, experiment_1, experiment_2

@@ -7,7 +7,7 @@ import os
 
 from serial import Serial
 
-from teachpath_client.link import ClientError
+from teachpath_client.errors import ClientError
 
 BAUD_RATES = (1200, 2400, 4800, 9600, 19200, 38400, 57600, 115200, 230400)
 WRITE_TIMEOUT = 1.0  # [s] after which a line that takes no bytes counts as lost

@@ -16,7 +16,7 @@ from importlib.metadata import EntryPoint, entry_points
 from types import TracebackType
 from typing import Any, Literal, Protocol, Self, TypeVar, cast, get_args, get_origin, get_type_hints
 
-from teachpath_client.link import ClientError
+from teachpath_client.errors import ClientError
 from teachpath_client.reading import HandReading
 
 GROUP = "teachpath.sources"

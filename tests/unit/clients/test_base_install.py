@@ -46,7 +46,7 @@ for module in pkgutil.walk_packages(teachpath_client.__path__, "teachpath_client
         importlib.import_module(module.name)
 """
 EVENT_PEDAL = """
-from teachpath_client.link import ClientError
+from teachpath_client.errors import ClientError
 from teachpath_client.pedal import open_pedal
 try:
     open_pedal("/dev/input/event5").__enter__()

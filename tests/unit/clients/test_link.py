@@ -8,7 +8,8 @@ from typing import Any
 import pytest
 import zenoh
 
-from teachpath_client.link import ClientError, Link
+from teachpath_client.errors import ClientError
+from teachpath_client.link import Link
 from tests.system.processes import free_ports
 from tests.waiting import HANG, wait_until
 

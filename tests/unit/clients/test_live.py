@@ -13,7 +13,7 @@ from teachpath_client.devices.glove_calibration import GloveCalibration
 from teachpath_client.devices.playback import PlaybackSource
 from teachpath_client.devices.protocol_simulators import GloveSimulator
 from teachpath_client.devices.source import Capabilities
-from teachpath_client.link import ClientError
+from teachpath_client.errors import ClientError
 from teachpath_client.live import HapticFeedback, calibrate_glove, ended_by_signals, record_live
 from teachpath_client.reading import HandReading
 from teachpath_client.tracker import Tracker

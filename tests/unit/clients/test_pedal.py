@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from teachpath_client.__main__ import main
-from teachpath_client.link import ClientError
+from teachpath_client.errors import ClientError
 from teachpath_client.pedal import EVENT, KEY_EVENT, PEDAL_BIT, EventPedal, TerminalPedal, open_pedal, with_pedal
 from teachpath_client.reading import HandReading
 from teachpath_client.terminal import PosixTerminal, WindowsConsole

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from teachpath.io.store.recordings import RecordingHeader, Recordings
 from teachpath.io.wire import decode_sample
 from teachpath.records import Calibration, Sample
-from teachpath_client.link import ClientError
+from teachpath_client.errors import ClientError
 from teachpath_client.reading import HandReading
 from teachpath_client.replay import read_mcap
 from teachpath_client.synthetic import experiment_1

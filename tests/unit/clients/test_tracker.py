@@ -3,7 +3,7 @@ from typing import Any
 
 import pytest
 
-from teachpath_client.link import ClientError
+from teachpath_client.errors import ClientError
 from teachpath_client.reading import HandReading
 from teachpath_client.tracker import Routine, Tracker
 from teachpath_proto import tracker_pb2

@@ -12,7 +12,7 @@ from teachpath_client.devices.emulators import Emulator
 from teachpath_client.devices.fastrak import FastrakSettings, FastrakSource
 from teachpath_client.devices.playback import PlaybackSource
 from teachpath_client.devices.protocol_simulators import FastrakSimulator
-from teachpath_client.link import ClientError
+from teachpath_client.errors import ClientError
 from teachpath_client.reading import HandReading, Vector
 from teachpath_client.tracker_calibration import Pair, calibrate_tracker, lines, measure_points, read_points
 

@@ -8,7 +8,7 @@ import pytest
 from teachpath_client.devices.cyberglove import GloveSource
 from teachpath_client.devices.emulators import RecordCorrupter
 from teachpath_client.devices.protocol_simulators import GloveSimulator
-from teachpath_client.link import ClientError
+from teachpath_client.errors import ClientError
 from teachpath_client.reading import HandReading
 from tests.unit.clients.devices.emulated_devices import (
     GLOVE,

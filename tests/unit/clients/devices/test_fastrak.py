@@ -11,7 +11,7 @@ from teachpath_client.devices.cyberglove import GloveSource
 from teachpath_client.devices.emulators import Emulator, RecordCorrupter
 from teachpath_client.devices.fastrak import FastrakSource
 from teachpath_client.devices.protocol_simulators import FastrakSimulator, GloveSimulator
-from teachpath_client.link import ClientError
+from teachpath_client.errors import ClientError
 from teachpath_client.reading import HandReading
 from tests.unit.clients.devices.emulated_devices import (
     GLOVE,

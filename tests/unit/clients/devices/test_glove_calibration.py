@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from teachpath_client.devices.glove_calibration import GloveCalibration
-from teachpath_client.link import ClientError
+from teachpath_client.errors import ClientError
 from tests.unit.clients.devices.readings import calibration
 
 OPENED = [[60 + i, *[100] * 3, *[50] * 14] for i in (-1, 0, 1)]

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from teachpath_client.devices.fastrak import FastrakSource
 from teachpath_client.devices.hand import HandSource, Pairing
-from teachpath_client.link import ClientError
+from teachpath_client.errors import ClientError
 from teachpath_client.reading import HandReading
 from tests.unit.clients.devices.emulated_devices import (
     GLOVE,

@@ -6,7 +6,7 @@ import pytest
 
 import teachpath_client.devices
 from teachpath_client.devices import configure, describe_sources, open_source
-from teachpath_client.link import ClientError
+from teachpath_client.errors import ClientError
 from teachpath_client.synthetic import experiment_1, experiment_2
 from tests.unit.clients.devices.readings import calibration
 
