@@ -1,7 +1,7 @@
 """Learn the ways in which a task was shown, over REST, and print the clusters.
 
-`POST /tasks/<task>/jobs` begins the work and answers at once with a job; its `outcome` is the id of the run that it
-made: clusters with the log-likelihood of each demonstration, and one learned path (a NURBS) each. Show a task first
+`Station.learn` begins the work at a running station, waits for it, and returns the run that it made: clusters with the
+log-likelihood of each demonstration, and one learned path (a NURBS) each. Show a task first
 (01_publish_a_demonstration.py), then:
 
     python 02_learn_over_rest.py [--task arc] [--url http://127.0.0.1:8765]
@@ -9,9 +9,8 @@ made: clusters with the log-likelihood of each demonstration, and one learned pa
 
 import argparse
 import sys
-import time
 
-from teachpath_client.rest import Station
+from teachpath_client import ClientError, Station
 
 
 def main() -> None:
@@ -21,22 +20,19 @@ def main() -> None:
     parser.add_argument("--url", default="http://127.0.0.1:8765")
     options = parser.parse_args()
     with Station(options.url) as station:
-        numbers = {d["id"]: d["number"] for d in station.call("GET", f"/tasks/{options.task}/demonstrations")}
-        job = station.call("POST", f"/tasks/{options.task}/jobs", {"kind": "learn", "settings": {"seed": 1}})
-        while not job["finished_ns"]:
-            time.sleep(0.1)
-            job = station.call("GET", f"/jobs/{job['id']}")
-        if job["state"] != "succeeded":
-            sys.exit(f"learning {job['state']}: {job['message']}")
-        learned = station.call("GET", f"/tasks/{options.task}/runs/{job['outcome']}")["learned"]
-    for cluster in learned["clusters"]:
-        print(f"way {cluster['index']}: {cluster['note'] or 'ranked by log-likelihood'}")
-        for score in cluster["scores"]:
-            kept = "kept" if score["selected"] else "left out"
-            print(f"  demonstration {numbers[score['demonstration']]}: {score['log_likelihood']:10.1f}  {kept}")
-    for path in learned["paths"]:
-        points, fit = path["curve"]["control_points"], path["fit"]
-        print(f"path {path['id']}: {len(points)} control points, at most {fit['largest'] * 1000:.1f} mm off")
+        numbers = {d.id: d.number for d in station.demonstrations(options.task)}
+        try:
+            run = station.learn(options.task, {"seed": 1})
+        except ClientError as error:
+            sys.exit(str(error))
+    for cluster in run.learned.clusters:
+        print(f"way {cluster.index}: {cluster.note or 'ranked by log-likelihood'}")
+        for score in cluster.scores:
+            kept = "kept" if score.selected else "left out"
+            print(f"  demonstration {numbers[score.demonstration]}: {score.log_likelihood:10.1f}  {kept}")
+    for path in run.learned.paths:
+        off = f", at most {path.fit.largest * 1000:.1f} mm off" if path.fit else ""
+        print(f"path {path.id}: {len(path.curve.control_points)} control points{off}")
 
 
 if __name__ == "__main__":

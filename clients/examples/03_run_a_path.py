@@ -1,4 +1,4 @@
-"""Plan a learned path, move the arm along it, and follow its progress, over REST.
+"""Plan a learned path, move the arm along it, and follow its progress, at a running station.
 
 Planning proves that the arm can follow the path: the plan carries a certificate with the largest use of every limit.
 Only such a plan moves the arm. Learn a task first (02_learn_over_rest.py), then:
@@ -8,11 +8,9 @@ Only such a plan moves the arm. Learn a task first (02_learn_over_rest.py), then
 
 import argparse
 import sys
-import time
 
-from teachpath_client.rest import Station
-
-ENDED = ("ended", "faulted", "idle")
+from teachpath_client import ClientError, Station
+from teachpath_client.models import Execution
 
 
 def main() -> None:
@@ -23,27 +21,25 @@ def main() -> None:
     parser.add_argument("--url", default="http://127.0.0.1:8765")
     options = parser.parse_args()
     with Station(options.url) as station:
-        runs = station.call("GET", f"/tasks/{options.task}/runs")
+        runs = station.runs(options.task)
         if not runs:
             sys.exit(f"nothing was learned for task {options.task} yet; run 02_learn_over_rest.py first")
-        job = station.call("POST", f"/paths/{runs[0]['learned']['paths'][0]['id']}/plans")
-        while not job["finished_ns"]:
-            time.sleep(0.1)
-            job = station.call("GET", f"/jobs/{job['id']}")
-        if job["state"] != "succeeded":
-            sys.exit(f"the arm cannot follow this path: {job['message']}")
-        certificate = station.call("GET", f"/plans/{job['outcome']}")["certificate"]
-        for limit in ("velocity_use", "acceleration_use", "jerk_use", "clearance"):
-            print(f"{limit:17} {certificate[limit]['value']:.3f} at {certificate[limit]['place']}")
-        wanted = {"plan": job["outcome"], "override": options.override}
-        execution = station.call("POST", "/executions", wanted)
-        while (status := execution["status"])["state"] not in ENDED:
-            print(f"{status['state']:12} {status['progress']:6.1%}", flush=True)
-            time.sleep(0.5)
-            execution = station.call("GET", f"/executions/{execution['id']}")
-    print(f"{status['state']}: tracking error {status['tracking_error']:.4f} rad, {status['missed']} setpoints missed")
-    if status["state"] == "faulted":
-        sys.exit(f"the execution faulted: {status['reason']}")
+        try:
+            plan = station.plan(runs[0].learned.paths[0].id)
+            certificate = plan.certificate
+            for limit in (certificate.velocity_use, certificate.acceleration_use, certificate.jerk_use):
+                print(f"{limit.value:.0%} of a limit by {limit.place}")
+            print(f"{certificate.clearance.value:.3f} m clear: {certificate.clearance.place}")
+            execution = station.run(plan.id, override=options.override, on_change=show)
+        except ClientError as error:
+            sys.exit(str(error))
+    status = execution.status
+    print(f"{status.state}: tracking error {status.tracking_error:.4f} rad, {status.missed} setpoints missed")
+
+
+def show(execution: Execution) -> None:
+    """Print how far the arm has come."""
+    print(f"{execution.status.state:12} {execution.status.progress:6.1%}", flush=True)
 
 
 if __name__ == "__main__":

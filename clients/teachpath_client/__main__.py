@@ -19,11 +19,11 @@ from teachpath_client.live import HapticFeedback, calibrate_glove, ended_by_sign
 from teachpath_client.pedal import pedal_or_none
 from teachpath_client.reading import HandReading, Vector
 from teachpath_client.replay import read_mcap
-from teachpath_client.rest import Station
+from teachpath_client.station import Station
 from teachpath_client.status import Status
 from teachpath_client.synthetic import experiment_1, experiment_2
 from teachpath_client.tracker import Routine, Tracker
-from teachpath_client.tracker_calibration import COLUMNS, calibrate_tracker, lines, measure_points, read_points
+from teachpath_client.tracker_calibration import COLUMNS, lines, measure_points, read_points
 from teachpath_proto import tracker_pb2
 from teachpath_proto.logins import read_logins
 from teachpath_proto.reports import report_document
@@ -211,10 +211,9 @@ def _calibrate_tracker(options: argparse.Namespace) -> None:
         make = partial(open_source, options.source, dict(options.option))
         pairs = measure_points(make, options.point, lambda sentence: input(f"{sentence}, then press Enter: "))
     with Station(options.url) as station:
-        measured = calibrate_tracker(
-            station,
+        measured = station.measure_calibration(
             options.name,
-            pairs,
+            [(pair.tracker, pair.world) for pair in pairs],
             source=options.source or options.points.name,
             fit_scale=options.fit_scale,
             keep=not options.dry_run,
@@ -257,7 +256,7 @@ def _recording(source: str, url: str) -> list[HandReading]:
         except OSError as error:
             raise ClientError(f"cannot read {source}: {error.strerror}") from error
     with Station(url) as station:
-        return read_mcap(station.recording(source))
+        return read_mcap(station.recorded_demonstration(source))
 
 
 def _record(tracker: Tracker, options: argparse.Namespace, readings: Iterable[HandReading]) -> None:

@@ -1,49 +1,95 @@
-"""The station's REST API, as far as the clients need it."""
+"""Requests to a station's REST API, and its answers as records."""
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Callable, Mapping
+from typing import Any, Self, TypeVar
 
 import httpx
 
-from teachpath_client.errors import ClientError
+from teachpath_client.errors import ClientError, Refused, Unreachable
+from teachpath_client.models import Refusal
+from teachpath_client.structuring import structured
+
+T = TypeVar("T")
+
+LOCAL = "http://127.0.0.1:8765"
 
 
-class Station:
-    """A station's REST API at `url`; use it as a context manager.
+class Rest:
+    """A station's REST API; use it as a context manager.
 
-    Every method raises ClientError with the station's own sentence when a call is refused.
+    Args:
+        url: of the station.
+        timeout: [s] for an answer.
+        operator: your name, for the journal.
+        lease: token of the control over the arm, where somebody has taken it.
     """
 
-    def __init__(self, url: str, *, timeout: float = 30.0) -> None:
-        self._http = httpx.Client(base_url=f"{url.rstrip('/')}/api/v1", timeout=timeout, trust_env=False)
+    def __init__(self, url: str = LOCAL, *, timeout: float = 60.0, operator: str = "", lease: str = "") -> None:
+        self.url = url.rstrip("/")
+        named = {"Teachpath-Operator": operator, "Teachpath-Lease": lease}
+        headers = {name: value for name, value in named.items() if value}
+        self._http = httpx.Client(base_url=f"{self.url}/api/v1", timeout=timeout, headers=headers, trust_env=False)
 
-    def __enter__(self) -> Station:
+    def __enter__(self) -> Self:
         return self
 
     def __exit__(self, *_: object) -> None:
         self._http.close()
 
-    def call(self, method: str, resource: str, body: dict[str, Any] | None = None) -> Any:
-        """Call a resource, e.g. `call("GET", "/tasks")`, and return its JSON."""
-        return self._send(method, resource, body).json()
+    def call(
+        self,
+        method: str,
+        resource: str,
+        body: Mapping[str, Any] | None = None,
+        *,
+        content: bytes | None = None,
+        **query: Any,
+    ) -> Any:
+        """Call a resource that has no method here, e.g. `call("GET", "/calibrations")`, and return its JSON.
 
-    def recording(self, demonstration: str) -> bytes:
-        """Return the MCAP file of a demonstration."""
-        return self._send("GET", f"/demonstrations/{demonstration}/recording", None).content
+        Raises:
+            Unreachable: no station answers.
+            Refused: the station refused, with its sentence.
+        """
+        answer = self._send(method, resource, body, content, query)
+        return answer.json() if answer.content else None
 
-    def _send(self, method: str, resource: str, body: dict[str, Any] | None) -> httpx.Response:
+    def _ask(
+        self,
+        kind: Callable[..., T],
+        method: str,
+        resource: str,
+        body: Mapping[str, Any] | None = None,
+        *,
+        content: bytes | None = None,
+        **query: Any,
+    ) -> T:
+        """Call a resource and return its answer as a record; raises as `call`."""
+        answer = self._send(method, resource, body, content, query)
         try:
-            response = self._http.request(method, resource, json=body)
+            return structured(kind, answer.json())
+        except ValueError as error:
+            raise ClientError(f"{method} {resource}: {error}; is the station of the same version?") from None
+
+    def _download(self, resource: str) -> bytes:
+        return self._send("GET", resource, None, None, {}).content
+
+    def _send(
+        self, method: str, resource: str, body: Mapping[str, Any] | None, content: bytes | None, query: dict[str, Any]
+    ) -> httpx.Response:
+        try:
+            answer = self._http.request(method, resource, json=body, content=content, params=query)
         except httpx.HTTPError as error:
-            raise ClientError(f"no station at {self._http.base_url}: is `teachpath serve` running? ({error})") from None
-        if response.is_error:
-            raise ClientError(_detail(response))
-        return response
+            raise Unreachable(f"no station at {self.url} ({error}); start it with: teachpath serve") from None
+        if answer.is_error:
+            raise Refused(answer.status_code, _refusal(answer))
+        return answer
 
 
-def _detail(response: httpx.Response) -> str:
+def _refusal(answer: httpx.Response) -> Refusal:
     try:
-        return str(response.json()["detail"])
-    except (ValueError, KeyError, TypeError):
-        return f"the station answered {response.status_code}: {response.text[:200]}"
+        return structured(Refusal, answer.json())
+    except (ValueError, TypeError, AttributeError):
+        return Refusal(f"the station answered {answer.status_code}: {answer.text[:200]}", "")

@@ -1,20 +1,19 @@
-"""The tracker's frame in the world: holds still at taught points, and asks the station for the calibration."""
+"""The tracker's frame in the world: where the tracker sees points that are known, and the calibration in words."""
 
 from __future__ import annotations
 
 import csv
 import math
 import threading
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from statistics import fmean
-from typing import Any
 
 from teachpath_client.devices.source import Source
 from teachpath_client.errors import ClientError
+from teachpath_client.models import MeasuredCalibration
 from teachpath_client.reading import HandReading, Vector
-from teachpath_client.rest import Station
 
 HOLD_TIME = 1.0  # [s] the tracker is held still at a point
 MIN_READINGS = 10  # readings in that time
@@ -86,33 +85,20 @@ def read_points(file: Path) -> list[Pair]:
     return pairs
 
 
-def calibrate_tracker(
-    station: Station, name: str, pairs: Iterable[Pair], *, source: str = "", fit_scale: bool = False, keep: bool = True
-) -> dict[str, Any]:
-    """Let the station fit and keep the calibration `name`; return it with the residual of each point.
-
-    Raises:
-        ClientError: the station refuses, with its sentence (points on one line, contradicting points, a bad name).
-    """
-    points = [{"tracker": pair.tracker, "world": pair.world} for pair in pairs]
-    body = {"points": points, "source": source, "fit_scale": fit_scale, "keep": keep}
-    measured: dict[str, Any] = station.call("PUT", f"/calibrations/{name}", body)
-    return measured
-
-
-def lines(measured: dict[str, Any]) -> Iterator[str]:
+def lines(measured: MeasuredCalibration) -> Iterator[str]:
     """Yield what was measured, for the operator, and the same as a piece of a settings file."""
-    calibration, points = measured["calibration"], measured["points"]
+    calibration, points = measured.calibration, measured.points
     for number, point in enumerate(points, 1):
-        x, y, z = point["world"]
-        yield f"point {number} at {x:g}, {y:g}, {z:g} m: {1000 * point['residual']:.1f} mm off"
-    kept = f"version {measured['version']} is kept" if measured["version"] else "not kept"
-    yield f"{calibration['name']}: {1000 * measured['rms']:.2f} mm rms over {len(points)} points; {kept}"
+        x, y, z = point.world
+        yield f"point {number} at {x:g}, {y:g}, {z:g} m: {1000 * point.residual:.1f} mm off"
+    kept = f"version {measured.version} is kept" if measured.version else "not kept"
+    yield f"{calibration.name}: {1000 * measured.rms:.2f} mm rms over {len(points)} points; {kept}"
     yield "# the same for a settings file:"
     yield "[[calibrations]]"
-    yield f'name = "{calibration["name"]}"'
-    for key in ("scale", "rotation", "offset"):
-        yield f"{key} = {calibration[key]}"
+    yield f'name = "{calibration.name}"'
+    yield f"scale = {calibration.scale}"
+    yield f"rotation = {list(calibration.rotation)}"
+    yield f"offset = {list(calibration.offset)}"
 
 
 def _hold(source: Source, seconds: float) -> tuple[list[HandReading], str]:

@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tests.contract import openapi
+from tests.contract import client_models, openapi
 from tests.contract.desk import API, Desk, csv, refused
 
 # what is not there
@@ -156,6 +156,11 @@ def test_a_page_of_another_origin_gives_no_orders(desk: Desk) -> None:
 def test_the_description_is_as_it_was(desk: Desk) -> None:
     live = openapi.text(desk.send("GET", "/openapi.json").json())
     assert live == openapi.FILE.read_text(), "the API has changed; if it should: python -m tests.contract.openapi"
+
+
+def test_the_client_s_models_are_those_of_the_description(desk: Desk) -> None:
+    live = client_models.text(desk.send("GET", "/openapi.json").json())
+    assert live == client_models.FILE.read_text(), "generate them anew: python -m tests.contract.openapi"
 
 
 def test_every_resource_is_described_with_its_refusals(desk: Desk) -> None:

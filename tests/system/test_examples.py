@@ -54,7 +54,7 @@ def test_the_examples_show_a_task_learn_it_and_run_it_on_a_robot_of_their_own(dr
 
     wait_until(lambda: driven.call("GET", "/health")["executor"], seconds=60, what="the executor is there")
     ran = example("03_run_a_path.py", "--url", driven.url)
-    assert "velocity_use" in ran
+    assert "of a limit by joint" in ran
     assert "\nended: tracking error" in ran
     (execution,) = driven.call("GET", "/executions")
     assert execution["status"]["state"] == "ended"

@@ -3,7 +3,7 @@
 import re
 from dataclasses import replace
 from pathlib import Path
-from typing import Any, Self
+from typing import Self
 
 import pytest
 
@@ -13,8 +13,9 @@ from teachpath_client.devices.fastrak import FastrakSettings, FastrakSource
 from teachpath_client.devices.playback import PlaybackSource
 from teachpath_client.devices.protocol_simulators import FastrakSimulator
 from teachpath_client.errors import ClientError
+from teachpath_client.models import Calibration, MeasuredCalibration, TaughtPoint
 from teachpath_client.reading import HandReading, Vector
-from teachpath_client.tracker_calibration import Pair, calibrate_tracker, lines, measure_points, read_points
+from teachpath_client.tracker_calibration import Pair, lines, measure_points, read_points
 
 PLACES: list[Vector] = [(0.4, -0.3, 0.5), (0.7, -0.3, 0.5), (0.7, 0.3, 0.5)]
 HEADER = "tracker_x,tracker_y,tracker_z,x,y,z\n"
@@ -118,23 +119,10 @@ def test_points_come_from_a_file(tmp_path: Path) -> None:
         read_points(tmp_path / "none.csv")
 
 
-class Asked:
-    """A station that answers with what it was asked."""
-
-    def call(self, method: str, resource: str, body: dict[str, Any]) -> Any:
-        assert (method, resource) == ("PUT", "/calibrations/lab")
-        self.body = body
-        points = [point | {"residual": 0.0012} for point in body["points"]]
-        calibration = {"name": "lab", "scale": 1.0, "rotation": [1.0, 0.0, 0.0, 0.0], "offset": [0.0, 0.0, 0.5]}
-        return {"calibration": calibration, "points": points, "rms": 0.0012, "version": 3}
-
-
 def test_the_operator_sees_the_residuals_and_a_piece_of_a_settings_file() -> None:
-    station = Asked()
-    pairs = [Pair((0.0, 0.0, 0.0), place) for place in PLACES]
-    measured = calibrate_tracker(station, "lab", pairs, source="fastrak", keep=True)  # type: ignore[arg-type]
-    assert station.body["points"][0] == {"tracker": (0.0, 0.0, 0.0), "world": PLACES[0]}
-    said = list(lines(measured))
+    points = [TaughtPoint((0.0, 0.0, 0.0), place, 0.0012) for place in PLACES]
+    calibration = Calibration("lab", 1.0, (1.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.5))
+    said = list(lines(MeasuredCalibration(calibration, 3, points, 0.0012)))
     assert said[0] == "point 1 at 0.4, -0.3, 0.5 m: 1.2 mm off"
     assert said[3] == "lab: 1.20 mm rms over 3 points; version 3 is kept"
     assert said[-4:] == ['name = "lab"', "scale = 1.0", "rotation = [1.0, 0.0, 0.0, 0.0]", "offset = [0.0, 0.0, 0.5]"]

@@ -1,0 +1,146 @@
+"""The typed client of a station: learn, plan, run, and wait for it."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Mapping
+from typing import Any, TypeVar
+
+from teachpath_client.errors import ClientError, ExecutionFaulted, JobFailed
+from teachpath_client.events import Events
+from teachpath_client.models import Execution, Job, Plan, Run
+from teachpath_client.task_resources import TaskResources
+from teachpath_client.work_resources import WorkResources
+
+Awaited = TypeVar("Awaited", Job, Execution)
+
+ENDED_JOBS = ("succeeded", "failed", "cancelled")
+ENDED_EXECUTIONS = ("ended", "faulted", "idle")
+REREAD_INTERVAL = 1.0  # [s] after which what is awaited is read again though no event came
+MIN_READ_INTERVAL = 0.1  # [s] between two readings of what is awaited
+# The resource that is read again, and further topics of events on which it is.
+TOPICS = {Job: ("jobs", "all"), Execution: ("executions", "executor", "all")}
+
+
+def _nothing(_: object) -> None:
+    pass
+
+
+class Station(TaskResources, WorkResources):
+    """A running station; use it as a context manager.
+
+        with Station() as station:
+            run = station.learn("demo")
+            plan = station.plan(run.learned.paths[0].id)
+            station.run(plan.id, override=0.5)
+
+    Every method raises Unreachable when no station answers, and Refused with the station's sentence and record.
+
+    Args:
+        url: of the station.
+        timeout: [s] for an answer.
+        operator: your name, for the journal.
+        lease: token of the control over the arm, where somebody has taken it.
+    """
+
+    def learn(
+        self,
+        task: str,
+        settings: Mapping[str, Any] | None = None,
+        *,
+        calibrations: str = "present",
+        on_change: Callable[[Job], object] = _nothing,
+    ) -> Run:
+        """Learn a path for every way in which a task was demonstrated, and return the run.
+
+        Args:
+            task: what was demonstrated.
+            settings: of learning, laid over the station's own, e.g. `{"seed": 1}`.
+            calibrations: `present` refuses demonstrations under a former version of their calibration, `recorded` not.
+            on_change: called with the job whenever it has gone on.
+
+        Raises:
+            JobFailed: nothing could be learned; `job` says why.
+        """
+        job = self.begin_job(task, "learn", settings=dict(settings or {}), calibrations=calibrations)
+        return self.get_run(task, self.outcome(job, on_change))
+
+    def plan(self, path: str, version: int | None = None, *, on_change: Callable[[Job], object] = _nothing) -> Plan:
+        """Plan a path and return the plan with its certificate.
+
+        Args:
+            path: id of a learned path.
+            version: number of its version; None: the newest on the main branch.
+            on_change: called with the job whenever it has gone on.
+
+        Raises:
+            JobFailed: the arm cannot follow it; `job.failure` says where, why, and which control point to move.
+        """
+        return self.get_plan(self.outcome(self.begin_planning(path, version), on_change))
+
+    def run(
+        self, plan: str, *, override: float = 1.0, on_change: Callable[[Execution], object] = _nothing
+    ) -> Execution:
+        """Move the arm along a plan, and return the execution when it has ended.
+
+        Args:
+            plan: id of a plan.
+            override: share of the planned speed.
+            on_change: called with the execution whenever it has gone on.
+
+        Raises:
+            ExecutionFaulted: the arm has stopped by itself.
+        """
+        execution = self.wait(self.begin_execution(plan, override=override), on_change)
+        if execution.status.state == "faulted":
+            raise ExecutionFaulted(execution)
+        return execution
+
+    def outcome(self, job: Job, on_change: Callable[[Job], object] = _nothing) -> str:
+        """Wait for a job and return the id of the run or plan that it made; raises JobFailed when it made none."""
+        job = self.wait(job, on_change)
+        if job.state != "succeeded":
+            raise JobFailed(job)
+        return job.outcome
+
+    def wait(
+        self, what: Awaited, on_change: Callable[[Awaited], object] = _nothing, *, timeout: float | None = None
+    ) -> Awaited:
+        """Wait until a job or an execution has ended, and return it.
+
+        Args:
+            what: as it was begun.
+            on_change: called with it now, and whenever it has gone on.
+            timeout: [s] None: as long as it takes.
+
+        Raises:
+            ClientError: it has not ended in time.
+        """
+        deadline = float("inf") if timeout is None else time.monotonic() + timeout
+        with self.events() as events:
+            while not _has_ended(what):
+                on_change(what)
+                if time.monotonic() > deadline:
+                    raise ClientError(f"{what.id} has not ended within {timeout:g} s; it goes on")
+                _next_change(events, what)
+                what = self._ask(type(what), "GET", f"/{TOPICS[type(what)][0]}/{what.id}")
+        on_change(what)
+        return what
+
+    def events(self) -> Events:
+        """Return the events from now on; use them as a context manager."""
+        return Events(self.url)
+
+
+def _has_ended(what: Job | Execution) -> bool:
+    return what.state in ENDED_JOBS if isinstance(what, Job) else what.status.state in ENDED_EXECUTIONS
+
+
+def _next_change(events: Events, what: Job | Execution) -> None:
+    """Return when an event says that something may have changed, or after a while; never at once."""
+    time.sleep(MIN_READ_INTERVAL)
+    deadline = time.monotonic() + REREAD_INTERVAL
+    while (left := deadline - time.monotonic()) > 0.0:
+        event = events.next(left)
+        if event is None or (event.topic in TOPICS[type(what)] and event.id in ("", what.id)):
+            return

@@ -1,0 +1,120 @@
+"""Requests of a station about itself, tasks, demonstrations and recordings: each method is one of the REST API."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any, Literal
+
+from teachpath_client.models import (
+    Demonstration,
+    Health,
+    MeasuredCalibration,
+    RecordingReport,
+    Robot,
+    Scene,
+    Task,
+    Trajectory,
+)
+from teachpath_client.rest import Rest
+
+Point = tuple[float, float, float]
+
+
+class TaskResources(Rest):
+    """The station, its tasks and what was shown; every method raises Unreachable or Refused."""
+
+    # the station
+
+    def health(self) -> Health:
+        """Return which parts run, and what an operator should know."""
+        return self._ask(Health, "GET", "/health")
+
+    def scenes(self) -> list[Scene]:
+        """List the scenes."""
+        return self._ask(list[Scene], "GET", "/scenes")
+
+    def robot(self) -> Robot:
+        """Return how the arm is built."""
+        return self._ask(Robot, "GET", "/robot")
+
+    def measure_calibration(
+        self,
+        name: str,
+        points: Iterable[tuple[Point, Point]],
+        *,
+        source: str = "",
+        fit_scale: bool = False,
+        keep: bool = True,
+    ) -> MeasuredCalibration:
+        """Fit a calibration to points, each as the tracker saw it and where it is [m, world], and keep it."""
+        taught = [{"tracker": tracker, "world": world} for tracker, world in points]
+        body = {"points": taught, "source": source, "fit_scale": fit_scale, "keep": keep}
+        return self._ask(MeasuredCalibration, "PUT", f"/calibrations/{name}", body)
+
+    # tasks and their demonstrations
+
+    def tasks(self) -> list[Task]:
+        """List the tasks, oldest first."""
+        return self._ask(list[Task], "GET", "/tasks")
+
+    def get_task(self, task: str) -> Task:
+        """Return one task."""
+        return self._ask(Task, "GET", f"/tasks/{task}")
+
+    def make_task(self, task: str, *, scene: str = "paper", calibration: str = "identity") -> Task:
+        """Make a task; one that exists stays as it is."""
+        return self._ask(Task, "PUT", f"/tasks/{task}", {"scene": scene, "calibration": calibration})
+
+    def demonstrations(self, task: str) -> list[Demonstration]:
+        """List a task's demonstrations in their order."""
+        return self._ask(list[Demonstration], "GET", f"/tasks/{task}/demonstrations")
+
+    def import_file(self, task: str, content: bytes, **options: Any) -> list[Demonstration]:
+        """Import a file; every motion in it becomes a demonstration.
+
+        Args:
+            task: whose demonstrations they become.
+            content: of the file.
+            options: name, format (csv, npy, robottasks or mcap), units, rate, scene, calibration.
+        """
+        return self._ask(list[Demonstration], "POST", f"/tasks/{task}/demonstrations", content=content, **options)
+
+    def amend(
+        self,
+        demonstration: str,
+        *,
+        mark: Literal["", "good", "bad"] | None = None,
+        discarded: bool | None = None,
+        trim: tuple[int, int] | None = None,
+    ) -> Demonstration:
+        """Mark, discard, restore or trim a demonstration; what is None stays as it is."""
+        given = {"mark": mark, "discarded": discarded, "trim": trim}
+        body = {name: value for name, value in given.items() if value is not None}
+        return self._ask(Demonstration, "PATCH", f"/demonstrations/{demonstration}", body)
+
+    def recalibrate(self, task: str, calibration: str = "") -> list[Demonstration]:
+        """Put a task's demonstrations under a calibration (empty: each one's own, as it is today)."""
+        return self._ask(list[Demonstration], "POST", f"/tasks/{task}/calibration", {"calibration": calibration})
+
+    def trajectory(self, demonstration: str, *, most: int = 100_000) -> Trajectory:
+        """Return the object's trajectory of a demonstration, thinned to `most` points."""
+        return self._ask(Trajectory, "GET", f"/demonstrations/{demonstration}/trajectory", most=most)
+
+    def recorded_demonstration(self, demonstration: str) -> bytes:
+        """Return the MCAP file of a demonstration, with every sample."""
+        return self._download(f"/demonstrations/{demonstration}/recording")
+
+    # recording
+
+    def recordings(self, task: str) -> list[RecordingReport]:
+        """List the reports of a task's running recordings."""
+        return self._ask(list[RecordingReport], "GET", f"/tasks/{task}/recording")
+
+    def start_recording(self, task: str, tracker: str, **options: Any) -> RecordingReport:
+        """Start recording from a tracker; options: calibration, rate, armed, countdown, takes, one_by_one."""
+        return self._ask(RecordingReport, "POST", f"/tasks/{task}/recording", {"tracker": tracker} | options)
+
+    def stop_recording(self, task: str, tracker: str, *, discard: bool = False) -> RecordingReport:
+        """Stop recording, and return the account of every sample."""
+        body = {"tracker": tracker, "discard": discard}
+        return self._ask(RecordingReport, "POST", f"/tasks/{task}/recording/stop", body)

@@ -1,0 +1,137 @@
+"""Requests of a station about jobs, paths, plans and executions: each method is one of the REST API."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, Literal
+
+from teachpath_client.models import (
+    Dendrogram,
+    Difference,
+    Execution,
+    ExecutorStatus,
+    Job,
+    JournalEntry,
+    LearnedPath,
+    MotionPreview,
+    Plan,
+    Run,
+    SavedVersion,
+    TimeSeries,
+    Version,
+)
+from teachpath_client.rest import Rest
+
+
+class WorkResources(Rest):
+    """What a station learns, plans and executes; every method raises Unreachable or Refused."""
+
+    # jobs, and what they make
+
+    def begin_job(self, task: str, kind: Literal["learn", "recut", "plan"], **request: Any) -> Job:
+        """Queue a job; `request` is what `POST /tasks/{task}/jobs` takes for its kind."""
+        return self._ask(Job, "POST", f"/tasks/{task}/jobs", {"kind": kind} | request)
+
+    def begin_planning(self, path: str, version: int | None = None) -> Job:
+        """Queue the planning of a path, in its newest version on the main branch or another one."""
+        return self._ask(Job, "POST", f"/paths/{path}/plans", {"version": version})
+
+    def jobs(self, task: str) -> list[Job]:
+        """List a task's jobs, oldest first."""
+        return self._ask(list[Job], "GET", f"/tasks/{task}/jobs")
+
+    def get_job(self, job: str) -> Job:
+        """Return one job."""
+        return self._ask(Job, "GET", f"/jobs/{job}")
+
+    def cancel(self, job: str) -> Job:
+        """Cancel a queued or running job."""
+        return self._ask(Job, "POST", f"/jobs/{job}/cancel")
+
+    def runs(self, task: str) -> list[Run]:
+        """List a task's learning runs, newest first."""
+        return self._ask(list[Run], "GET", f"/tasks/{task}/runs")
+
+    def get_run(self, task: str, run: str) -> Run:
+        """Return one learning run."""
+        return self._ask(Run, "GET", f"/tasks/{task}/runs/{run}")
+
+    def dendrogram(self, task: str, run: str) -> Dendrogram:
+        """Return how a run's demonstrations merge, and what other cuts would leave."""
+        return self._ask(Dendrogram, "GET", f"/tasks/{task}/runs/{run}/dendrogram")
+
+    # paths and plans
+
+    def get_path(self, path: str) -> LearnedPath:
+        """Return the newest version of a path on its main branch."""
+        return self._ask(LearnedPath, "GET", f"/paths/{path}")
+
+    def versions(self, path: str) -> list[Version]:
+        """List the versions of a path, oldest first."""
+        return self._ask(list[Version], "GET", f"/paths/{path}/versions")
+
+    def get_version(self, path: str, number: int) -> SavedVersion:
+        """Return one version and its path."""
+        return self._ask(SavedVersion, "GET", f"/paths/{path}/versions/{number}")
+
+    def save_version(self, path: str, curve: Mapping[str, Any], *, base: int, **words: str) -> Version:
+        """Save an edited curve as a new version; words: branch, name, author, note."""
+        return self._ask(Version, "POST", f"/paths/{path}/versions", {"base": base, "curve": curve} | words)
+
+    def difference(self, path: str, first: int, second: int) -> Difference:
+        """Return how far the second of two versions lies from the first."""
+        return self._ask(Difference, "GET", f"/paths/{path}/versions/{first}/difference/{second}")
+
+    def plans(self, path: str) -> list[Plan]:
+        """List a path's plans, newest first."""
+        return self._ask(list[Plan], "GET", f"/paths/{path}/plans")
+
+    def get_plan(self, plan: str) -> Plan:
+        """Return one plan with its certificate."""
+        return self._ask(Plan, "GET", f"/plans/{plan}")
+
+    def preview(self, plan: str) -> MotionPreview:
+        """Return the whole motion of a plan at full speed; nothing moves."""
+        return self._ask(MotionPreview, "GET", f"/plans/{plan}/motion")
+
+    # executions
+
+    def begin_execution(self, plan: str, *, override: float = 1.0) -> Execution:
+        """Move the arm along a plan, at a share of the planned speed; return at once."""
+        return self._ask(Execution, "POST", "/executions", {"plan": plan, "override": override})
+
+    def executions(self) -> list[Execution]:
+        """List the newest executions, newest first."""
+        return self._ask(list[Execution], "GET", "/executions")
+
+    def get_execution(self, execution: str) -> Execution:
+        """Return how an execution stands."""
+        return self._ask(Execution, "GET", f"/executions/{execution}")
+
+    def override(self, execution: str, share: float) -> Execution:
+        """Change the speed while the arm moves; 0 is a hold on the path."""
+        return self._ask(Execution, "POST", f"/executions/{execution}/override", {"override": share})
+
+    def steer(self, execution: str, verb: Literal["hold", "resume", "reverse"]) -> Execution:
+        """Hold on the path, resume, or go back along it."""
+        return self._ask(Execution, "POST", f"/executions/{execution}/{verb}")
+
+    def stop(self, execution: str) -> Execution:
+        """Stop and end an execution, on its path; this is not an emergency stop."""
+        return self._ask(Execution, "POST", f"/executions/{execution}/stop")
+
+    def stop_arm(self) -> ExecutorStatus:
+        """Stop whatever moves the arm, on its path; this is not an emergency stop."""
+        return self._ask(ExecutorStatus, "POST", "/stop")
+
+    def series(self, execution: str, *, points: int = 500) -> TimeSeries:
+        """Return what the arm did over time, in at most `points` points."""
+        return self._ask(TimeSeries, "GET", f"/executions/{execution}/series", points=points)
+
+    def recorded_execution(self, execution: str) -> bytes:
+        """Return all that was sent and done in an execution as an MCAP file."""
+        return self._download(f"/executions/{execution}/recording")
+
+    def journal(self, execution: str = "", *, limit: int = 100) -> list[JournalEntry]:
+        """List who did what to the arm, newest first."""
+        return self._ask(list[JournalEntry], "GET", "/journal", execution=execution, limit=limit)
