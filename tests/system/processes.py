@@ -14,7 +14,7 @@ from typing import Any
 
 import httpx
 
-from teachpath_client.rest import Station
+from teachpath_client.station import Station
 
 FAMILY = "SYSTEM_TEST_FAMILY"  # in the environment of a command and of all that it starts
 READY = 90.0  # [s] for a service to answer, on a busy machine

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from teachpath_client import ClientError
-from teachpath_client.rest import Station
+from teachpath_client.station import Station
 from tests.system.demos import LEAVE, STORY, Start, assert_nothing_left, assert_story
 from tests.system.processes import Command, free_ports, wait_until
 

@@ -10,7 +10,7 @@ import pytest
 
 from teachpath.io.store.motions import read_motion
 from teachpath.motion.arm.kinematics import tool_pose
-from teachpath_client.rest import Station
+from teachpath_client.station import Station
 from tests.system.demos import LEAVE, STORY, Start, assert_nothing_left, assert_story
 from tests.system.editors import SLOW, Desk
 from tests.system.operators import RESTING, Operator
