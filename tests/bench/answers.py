@@ -62,7 +62,7 @@ def _run(track: TimedTrajectory, dt: float, command: Commands, rng: np.random.Ge
     pause, waiting = 0, None
     for _ in range(PERIODS):
         if pause == 0:
-            _account(track, dt, governor.wish, waiting, found)
+            _account(track, dt, governor.target_rate, waiting, found)
             command(governor, rng)
             pause, waiting = int(rng.integers(10, 160)), []
         pause -= 1
@@ -72,10 +72,10 @@ def _run(track: TimedTrajectory, dt: float, command: Commands, rng: np.random.Ge
         if waiting is None:
             continue
         waiting.append(before)
-        if governor.bound_for == governor.wish:
-            _account(track, dt, governor.wish, waiting, found)
+        if governor.ramp_end_rate == governor.target_rate:
+            _account(track, dt, governor.target_rate, waiting, found)
             waiting = None
-        elif governor.progress.standing:
+        elif governor.progress.at_rest:
             waiting = None
 
 

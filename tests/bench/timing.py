@@ -180,7 +180,7 @@ def _stops(track: TimedTrajectory) -> list[tuple[float, list[float]]]:
             governor.step()
         governor.hold()
         rates = []
-        while not governor.progress.standing:
+        while not governor.progress.at_rest:
             rates.append(governor.step().rate)
         stopped.append((place * DT, rates))
     return stopped
@@ -205,7 +205,7 @@ def _random_commands(track: TimedTrajectory, *, runs: int) -> tuple[np.ndarray, 
                 wait = int(rng.integers(1, 12 if seed % 2 else 160))
             wait -= 1
             began = time.perf_counter()
-            moving = not governor.step().standing
+            moving = not governor.step().at_rest
             if moving:
                 took.append(1e6 * (time.perf_counter() - began))
             sent.append(governor.motion[0].copy())

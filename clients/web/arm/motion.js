@@ -1,6 +1,6 @@
 // A motion against time, a plan's or that of a past execution: where the arm is at any instant, and playing it.
 
-// {times, joints, gripper_closed?, object_position?, object_orientation?, stretches?} as the service gives it.
+// {times, joints, gripper_closed?, object_position?, object_orientation?, segments?} as the service gives it.
 export class Motion {
   constructor(rows) {
     this.rows = rows;
@@ -12,7 +12,7 @@ export class Motion {
 
   // What the arm does at `seconds` from the beginning: {q, closed, position, orientation, words}.
   at(seconds) {
-    const { times, joints, gripper_closed: closed, object_position: places, object_orientation: turns, stretches } = this.rows;
+    const { times, joints, gripper_closed: closed, object_position: places, object_orientation: turns, segments } = this.rows;
     const time = times[0] + Math.max(0, Math.min(seconds, this.duration));
     const [low, share] = between(times, time);
     const high = Math.min(low + 1, times.length - 1);
@@ -22,7 +22,7 @@ export class Motion {
       closed: closed?.[low] ?? false,
       position: places?.length ? mixed(places) : null,
       orientation: turns?.length ? unit(mixed(turns)) : null,
-      words: stretches?.findLast((stretch) => stretch.begin <= time)?.name ?? "",
+      words: segments?.findLast((segment) => segment.begin <= time)?.name ?? "",
     };
   }
 }

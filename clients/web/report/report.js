@@ -48,7 +48,7 @@
     motion.links[low].forEach((pose, i) => viewer.set_transform(["robot", `link${i}`], between(pose, motion.links[high][i])));
     if (motion.object) viewer.set_transform(["object"], between(motion.object[low], motion.object[high]));
     const now = motion.times[low] + part * (motion.times[high] - motion.times[low]);
-    const stretch = motion.stretches.find((one) => now >= one.begin && now <= one.end);
+    const stretch = motion.segments.find((one) => now >= one.begin && now <= one.end);
     byId("said").textContent = `${now.toFixed(2)} of ${motion.times[last].toFixed(2)} s${stretch ? `, ${stretch.name}` : ""}`;
     byId("time").value = String(share);
     viewer.set_dirty();

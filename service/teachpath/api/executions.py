@@ -76,7 +76,7 @@ def _add_beginnings(router: APIRouter, parts: Parts) -> None:
     @router.post("/executions", status_code=202)
     def begin_execution(new: NewExecution, response: Response, lease: Token = "", who: Who = "") -> Execution:
         """Move the arm: approach, grasp, follow the path, release, retreat."""
-        row = executions.begin(new.plan, override=new.override, lease=lease, who=who)
+        row = executions.execute(new.plan, override=new.override, lease=lease, who=who)
         response.headers["Location"] = f"/api/v1/executions/{row.id}"
         return row
 
@@ -93,7 +93,7 @@ def _add_beginnings(router: APIRouter, parts: Parts) -> None:
         calibration = parts.calibrations.get(new.calibration)
         scene = parts.settings.scene(new.scene)
         order = TeleopRequest(new.tracker, calibration, scene, new.scale, new.share, new.clutch)
-        row = executions.mirror(order, lease=lease, who=who)
+        row = executions.teleoperate(order, lease=lease, who=who)
         response.headers["Location"] = f"/api/v1/executions/{row.id}"
         return row
 
@@ -174,6 +174,6 @@ def stops_router(parts: Parts) -> APIRouter:
     @router.post("/stop")
     def stop_whatever_moves(lease: Token = "", who: Who = "") -> ExecutorStatus:
         """Stop whatever moves the arm, on its path; open to everybody. This is not an emergency stop."""
-        return executions.halt(lease=lease, who=who)
+        return executions.stop_all(lease=lease, who=who)
 
     return router

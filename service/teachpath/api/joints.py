@@ -46,11 +46,11 @@ async def _listen(socket: WebSocket) -> None:
 
 async def _send(socket: WebSocket, parts: Parts) -> None:
     """Send the newest joint state, and the executor's status with it, when something has changed."""
-    onlooker = parts.joints.attach()
+    onlooker = parts.joints.subscribe()
     before, told = dict[str, Any](), -PULSE
     try:
         while True:
-            frame, now = onlooker.take(), time.monotonic()
+            frame, now = onlooker.poll(), time.monotonic()
             if frame is not None:
                 document = _document(frame, parts.executions.status)
                 if document != before or now - told >= PULSE:
@@ -60,7 +60,7 @@ async def _send(socket: WebSocket, parts: Parts) -> None:
     except (WebSocketDisconnect, RuntimeError):
         return
     finally:
-        parts.joints.detach(onlooker)
+        parts.joints.unsubscribe(onlooker)
 
 
 def _document(frame: JointFrame, status: ExecutorStatus | None) -> dict[str, Any]:

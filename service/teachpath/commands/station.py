@@ -16,7 +16,7 @@ from teachpath.commands.options import Config, Data, settings_of
 from teachpath.commands.serving import serving, until_signalled
 from teachpath.config import Settings, from_instructions, load
 from teachpath.io.bus import open_bus
-from teachpath.robot.processes import GRACE
+from teachpath.robot.processes import STOP_TIMEOUT
 from teachpath_proto.keys import Keys
 from teachpath_proto.logins import Login, Role, find_login
 
@@ -107,7 +107,7 @@ def _leave_with_parent(stop: threading.Event, attached: bool) -> None:
             continue
         stop.set()
         # Joining the bus cannot be interrupted, and waits long for a service that is gone.
-        time.sleep(GRACE)
+        time.sleep(STOP_TIMEOUT)
         os._exit(1)
 
     threading.Thread(target=wait, name="parent", daemon=True).start()

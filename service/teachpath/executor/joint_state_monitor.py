@@ -25,30 +25,30 @@ class JointStateMonitor:
     def __init__(self, robot: str, silence: float, clock: Callable[[], int]) -> None:
         self._robot, self._silence, self._clock = robot, silence, clock
         self._payloads: deque[tuple[int, bytes]] = deque(maxlen=1)
-        self._heard: tuple[int, JointState] | None = None
+        self._latest: tuple[int, JointState] | None = None
 
     def receive(self, _: str, payload: bytes) -> None:
         """Take a joint state from the bus; it is read by the loop, and by who asks where the arm is."""
         self._payloads.append((self._clock(), payload))
 
-    def listen(self) -> None:
+    def poll(self) -> None:
         """Read what came."""
         try:
             when, payload = self._payloads.pop()
-            self._heard = (when, wire.decode_state(payload))
+            self._latest = (when, wire.decode_state(payload))
         except IndexError:
             return
         except UnusableInput as error:
             log.warning("left out: %s", error)
 
-    def newest(self, now: int) -> tuple[float, JointState] | None:
+    def latest(self, now: int) -> tuple[float, JointState] | None:
         """Return how long the arm has been silent [s] and what it said last, or None when it never spoke."""
-        return None if self._heard is None else ((now - self._heard[0]) / 1e9, self._heard[1])
+        return None if self._latest is None else ((now - self._latest[0]) / 1e9, self._latest[1])
 
-    def present(self) -> JointState:
+    def current(self) -> JointState:
         """Return how the arm stands now; raises Unreachable when it is silent."""
-        self.listen()
-        heard = self.newest(self._clock())
+        self.poll()
+        heard = self.latest(self._clock())
         if heard is None or heard[0] > self._silence:
             raise Unreachable(f"no joint state from {self._robot}; is the simulator or the arm's driver running?")
         return heard[1]
@@ -61,13 +61,13 @@ class SetpointStallDetector:
         self._newest = ("", -1)
         self._since = 0
 
-    def stalled(self, now: int, execution: str, arm: JointState) -> float:
+    def stall_duration(self, now: int, execution: str, arm: JointState) -> float:
         """Return for how long the arm has taken up no further setpoint of an execution [s]."""
         newest = (execution, arm.cycle if arm.execution == execution else -1)
         if newest != self._newest:
             self._newest, self._since = newest, now
         return (now - self._since) / 1e9
 
-    def pause(self, now: int) -> None:
+    def restart(self, now: int) -> None:
         """Count from now on: nothing is sent to the arm."""
         self._since = now

@@ -15,19 +15,19 @@ from typing import Final
 from teachpath.errors import Conflict
 from teachpath.records import Lease, LeaseRequest
 
-USUAL: Final = 5.0  # [s] between two beats, unless the holder says otherwise
-GRANTED: Final = 10.0  # [s] that a holder has to answer the one who asks
+DEFAULT_BEAT_INTERVAL: Final = 5.0  # [s] between two beats, unless the holder says otherwise
+GRANT_DELAY: Final = 10.0  # [s] that a holder has to answer the one who asks
 
 
 @dataclass
-class _Hand:
+class _Claimant:
     """Somebody who holds control, or asks for it."""
 
     name: str
     token: str
     seconds: float
     hold_when_lost: bool
-    until: float  # [s] of the clock, without another beat
+    expires: float  # [s] of the clock, without another beat
 
 
 class ControlLease:
@@ -41,9 +41,9 @@ class ControlLease:
     def __init__(self, clock: Callable[[], int], token: Callable[[], str] = lambda: secrets.token_hex(8)) -> None:
         self._clock, self._token = clock, token
         self._lock = threading.Lock()
-        self._holder: _Hand | None = None
-        self._asking: _Hand | None = None
-        self._granted = 0.0  # [s] of the clock, when the one who asks gets it
+        self._holder: _Claimant | None = None
+        self._requester: _Claimant | None = None
+        self._grant_time = 0.0  # [s] of the clock, when the one who asks gets it
         self._lost = ""
 
     def answer(self, request: LeaseRequest) -> Lease:
@@ -53,23 +53,23 @@ class ControlLease:
             Conflict: somebody else is in control, asks already, or the token is out of date.
         """
         with self._lock:
-            now = self._settled()
+            now = self._update()
             if request.action == "acquire":
                 return self._view(now, self._acquire(request, now))
             if request.action == "ask":
                 return self._view(now, self._ask(request, now))
             if request.action == "look":
                 return self._view(now, None)
-            hand = self._hand(request.token)
+            hand = self._claimant_of(request.token)
             if request.action == "beat":
-                hand.until = now + hand.seconds
+                hand.expires = now + hand.seconds
             elif request.action == "keep" and hand is self._holder:
-                self._asking = None
+                self._requester = None
             elif request.action == "release" and hand is self._holder:
                 self._holder = None
-                self._settled()
+                self._update()
             elif request.action == "release":
-                self._asking = None
+                self._requester = None
             return self._view(now, hand)
 
     def require(self, token: str, who: str) -> str:
@@ -83,87 +83,87 @@ class ControlLease:
             Conflict: somebody else is in control, or the token is out of date.
         """
         with self._lock:
-            now = self._settled()
+            now = self._update()
             if token:
-                hand = self._hand(token)
+                hand = self._claimant_of(token)
                 if hand is self._holder:
                     return hand.name
             if self._holder is not None:
-                raise Conflict(self._taken(now))
+                raise Conflict(self._describe_holder(now))
             return who
 
     def name_of(self, token: str, who: str) -> str:
         """Return the name that belongs to a token, or `who`; never refuses."""
         with self._lock:
-            self._settled()
-            known = [h for h in (self._holder, self._asking) if h is not None and token and h.token == token]
+            self._update()
+            known = [h for h in (self._holder, self._requester) if h is not None and token and h.token == token]
             return known[0].name if known else who
 
-    def seen(self) -> Lease:
+    def public_view(self) -> Lease:
         """Return who is in control, as everybody may see it."""
         with self._lock:
-            return self._view(self._settled(), None)
+            return self._view(self._update(), None)
 
-    def take_lost(self) -> str:
+    def pop_lost_holder(self) -> str:
         """Return once the name of a holder who was lost and wanted the arm held then, else nothing."""
         with self._lock:
-            self._settled()
+            self._update()
             lost, self._lost = self._lost, ""
             return lost
 
-    def _settled(self) -> float:
+    def _update(self) -> float:
         """Let lapse what has lapsed, and grant what is due."""
         now = self._clock() / 1e9
-        holder, asking = self._holder, self._asking
-        if asking is not None and now > asking.until:
-            self._asking = asking = None
-        if holder is not None and now > holder.until:
+        holder, asking = self._holder, self._requester
+        if asking is not None and now > asking.expires:
+            self._requester = asking = None
+        if holder is not None and now > holder.expires:
             self._lost = holder.name if holder.hold_when_lost else ""
             self._holder = holder = None
-        if asking is not None and (holder is None or now >= self._granted):
-            asking.until = now + asking.seconds
-            self._holder, self._asking = asking, None
+        if asking is not None and (holder is None or now >= self._grant_time):
+            asking.expires = now + asking.seconds
+            self._holder, self._requester = asking, None
         return now
 
-    def _acquire(self, request: LeaseRequest, now: float) -> _Hand:
+    def _acquire(self, request: LeaseRequest, now: float) -> _Claimant:
         if self._holder is not None:
-            raise Conflict(self._taken(now))
+            raise Conflict(self._describe_holder(now))
         self._holder = self._new(request, now)
         return self._holder
 
-    def _ask(self, request: LeaseRequest, now: float) -> _Hand:
+    def _ask(self, request: LeaseRequest, now: float) -> _Claimant:
         if self._holder is None:
             return self._acquire(request, now)
-        if self._asking is not None:
-            raise Conflict(f"{self._asking.name} asks for control already; ask again when that is decided")
-        self._asking, self._granted = self._new(request, now), now + GRANTED
-        return self._asking
+        if self._requester is not None:
+            raise Conflict(f"{self._requester.name} asks for control already; ask again when that is decided")
+        self._requester, self._grant_time = self._new(request, now), now + GRANT_DELAY
+        return self._requester
 
-    def _new(self, request: LeaseRequest, now: float) -> _Hand:
-        seconds = request.seconds or USUAL
-        return _Hand(request.name.strip(), self._token(), seconds, request.hold_when_lost, now + seconds)
+    def _new(self, request: LeaseRequest, now: float) -> _Claimant:
+        seconds = request.seconds or DEFAULT_BEAT_INTERVAL
+        return _Claimant(request.name.strip(), self._token(), seconds, request.hold_when_lost, now + seconds)
 
-    def _hand(self, token: str) -> _Hand:
-        for hand in (self._holder, self._asking):
+    def _claimant_of(self, token: str) -> _Claimant:
+        for hand in (self._holder, self._requester):
             if hand is not None and token == hand.token:
                 return hand
         holder = f"{self._holder.name} is in control" if self._holder else "nobody is in control"
         raise Conflict(f"this hold on control is over: it lapsed, was handed over or kept ({holder}); acquire it again")
 
-    def _taken(self, now: float) -> str:
+    def _describe_holder(self, now: float) -> str:
         assert self._holder is not None
         return (
             f"{self._holder.name} is in control; ask for it (POST /api/v1/lease/ask, or in the page), or wait: it "
-            f"lapses {self._holder.until - now:.0f} s after its last beat. Stop is open to everybody"
+            f"lapses {self._holder.expires - now:.0f} s after its last beat. Stop is open to everybody"
         )
 
-    def _view(self, now: float, hand: _Hand | None) -> Lease:
-        holder, asking = self._holder, self._asking
+    def _view(self, now: float, hand: _Claimant | None) -> Lease:
+        holder, asking = self._holder, self._requester
         return Lease(
             holder=holder.name if holder else "",
-            expires_in=holder.until - now if holder else 0.0,
+            expires_in=holder.expires - now if holder else 0.0,
             hold_when_lost=holder.hold_when_lost if holder else False,
             asking=asking.name if asking else "",
-            granted_in=max(self._granted - now, 0.0) if asking else 0.0,
+            granted_in=max(self._grant_time - now, 0.0) if asking else 0.0,
             token=hand.token if hand is not None and hand in (holder, asking) else "",
         )

@@ -14,11 +14,11 @@ _LIMITS: Final = np.stack([SPEED, ACCELERATION, JERK])
 _NAMES: Final = ("speed", "acceleration", "jerk")
 
 
-class Located(Protocol):
+class HasLocation(Protocol):
     """Something that can say in words where it is."""
 
     @property
-    def place(self) -> str:
+    def location(self) -> str:
         """Where it is."""
 
 
@@ -34,10 +34,10 @@ class LimitMeter:
     def __init__(self, rate: float, here: Array, before: LimitMeter | None = None) -> None:
         self._scale = np.array([rate, rate**2, rate**3])[:, None] / _LIMITS  # (3, 6)
         self._last: deque[Array] = deque([here] * 3, maxlen=3)  # newest last
-        self.largest: float = before.largest if before else 0.0
-        self.place: str = before.place if before else ""
+        self.max_use: float = before.max_use if before else 0.0
+        self.max_use_location: str = before.max_use_location if before else ""
 
-    def add(self, position: Array, where: Located) -> None:
+    def add(self, position: Array, where: HasLocation) -> None:
         """Measure the setpoint `position` (6,) [rad]; its place is asked of `where` when it is the largest."""
         third, second, first = self._last
         differences = np.stack(
@@ -46,7 +46,7 @@ class LimitMeter:
         self._last.append(position)
         use = np.abs(differences) * self._scale
         worst = int(np.argmax(use))
-        if use.flat[worst] > self.largest:
+        if use.flat[worst] > self.max_use:
             kind, joint = divmod(worst, 6)
-            self.largest = float(use.flat[worst])
-            self.place = f"{_NAMES[kind]} of joint {joint + 1} {where.place}"
+            self.max_use = float(use.flat[worst])
+            self.max_use_location = f"{_NAMES[kind]} of joint {joint + 1} {where.location}"

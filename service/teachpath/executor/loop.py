@@ -19,7 +19,7 @@ import numpy as np
 from teachpath.executor.command_handler import CommandHandler
 from teachpath.executor.execution import Execution
 from teachpath.executor.joint_state_monitor import JointStateMonitor, SetpointStallDetector
-from teachpath.executor.pacing import Pacer, ask_for_realtime
+from teachpath.executor.pacing import Pacer, request_realtime
 from teachpath.executor.settings import ExecutorSettings
 from teachpath.io import wire
 from teachpath.io.bus import Bus
@@ -32,7 +32,7 @@ log = logging.getLogger(__name__)
 
 IDLE_PERIODS: Final = 5  # control periods between two looks while nothing is under way
 STALL_TIMEOUT: Final = 0.5  # [s] that an arm may take up no setpoint; a driver plays them up to 0.05 s late
-IDLE_RATE: Final = 4.0  # [Hz] statuses then, at most; the service takes an executor for gone after a second
+IDLE_STATUS_RATE: Final = 4.0  # [Hz] statuses then, at most; the service takes an executor for gone after a second
 
 
 class Executor:
@@ -63,45 +63,45 @@ class Executor:
         self._wall = wall
         self._period = 1.0 / self._settings.rate
         self._pacer = Pacer(round(1e9 * self._period), clock=clock, sleep=sleep)
-        self._hearing = JointStateMonitor(robot, self._settings.silence, clock)
-        self._uptake = SetpointStallDetector()
-        self._controls = CommandHandler(
+        self._joint_states = JointStateMonitor(robot, self._settings.silence, clock)
+        self._stall_detector = SetpointStallDetector()
+        self._command_handler = CommandHandler(
             bus,
             keys,
             self._settings,
             motion or MotionSettings(),
-            self._hearing,
+            self._joint_states,
             robot=robot,
-            told=self._status,
-            begun=self._pacer.reset,
+            status=self._status,
+            on_start=self._pacer.reset,
             clock=clock,
             wall=wall,
         )
         self._scheduling = "real-time scheduling was not asked for"
-        self._told = ("", "", 0)  # execution, state and time of the newest status
+        self._published = ("", "", 0)  # execution, state and time of the newest status
 
     def run(self, stop: threading.Event) -> None:
         """Stream until `stop` is set; then the arm is brought to rest on its path first."""
         warm_up(self._period)
         handles = [
-            self._bus.subscribe(self._keys.state(self._robot), self._hearing.receive),
-            *self._controls.serve(),
+            self._bus.subscribe(self._keys.state(self._robot), self._joint_states.receive),
+            *self._command_handler.serve(),
             self._bus.announce(self._keys.alive("executor", self._robot)),
         ]
         if self._settings.realtime:
-            self._scheduling = ask_for_realtime()
+            self._scheduling = request_realtime()
         log.info("%s", self._scheduling)
         # A collection in the loop can last a hundred periods; nothing in this process makes cyclic garbage in bulk.
         gc.collect()
         gc.freeze()
         gc.disable()
-        controls = self._controls
+        controls = self._command_handler
         try:
             self._cycle(self._pacer.wait(counted=False))  # says at once that it is there
-            while not (stop.is_set() and controls.resting):
+            while not (stop.is_set() and controls.is_resting):
                 if stop.is_set() and controls.current is not None:
                     controls.current.end("ended", "the executor was told to stop")
-                resting = controls.resting
+                resting = controls.is_resting
                 self._cycle(self._pacer.wait(IDLE_PERIODS if resting else 1, counted=not resting))
         finally:
             gc.enable()
@@ -110,26 +110,26 @@ class Executor:
                 handle.close()
 
     def _cycle(self, due: int) -> None:
-        self._hearing.listen()
-        current = self._controls.current
-        if current is not None and not current.resting:
-            orders = self._controls.orders
+        self._joint_states.poll()
+        current = self._command_handler.current
+        if current is not None and not current.is_resting:
+            orders = self._command_handler.pending
             while orders:
                 orders.popleft()(current)
-            self._watch(current, due)
-            if current.displaced:
-                current.wait()
+            self._supervise(current, due)
+            if current.displacement:
+                current.skip_period()
             else:
                 setpoint = current.step(due, self._wall())
                 self._bus.publish(self._keys.setpoint(self._robot), wire.encode_setpoint(setpoint))
-                current.think()
-        self._tell(due)
+                current.advance_planning()
+        self._publish_status(due)
 
-    def _watch(self, current: Execution, due: int) -> None:
-        lost = self._controls.lease.take_lost()
+    def _supervise(self, current: Execution, due: int) -> None:
+        lost = self._command_handler.lease.pop_lost_holder()
         if lost:
             self._hold(current, f"nothing was heard of {lost}, who was in control; resume when somebody is there again")
-        heard = self._hearing.newest(due)
+        heard = self._joint_states.latest(due)
         if heard is None:
             return
         silent, arm = heard
@@ -138,24 +138,24 @@ class Executor:
                 current, f"no joint state for {silent:.2f} s: is the arm's driver running? resume when it is back"
             )
             return
-        stalled = self._uptake.stalled(due, current.execution, arm)
-        if current.settled or current.displaced:
-            if current.rests_with(arm) or stalled > STALL_TIMEOUT:  # else it is late, and still on its way there
-                off = float(np.abs(arm.position - current.program.here).max())
-                current.displaced = off if off > self._settings.regain else 0.0
-            if current.displaced:
-                self._uptake.pause(due)
+        stalled = self._stall_detector.stall_duration(due, current.id, arm)
+        if current.is_settled or current.displacement:
+            if current.arm_has_stopped(arm) or stalled > STALL_TIMEOUT:  # else it is late, and still on its way there
+                off = float(np.abs(arm.position - current.program.current_q).max())
+                current.displacement = off if off > self._settings.regain else 0.0
+            if current.displacement:
+                self._stall_detector.restart(due)
             return
         if stalled > STALL_TIMEOUT:
             why = f"the arm has taken up no setpoint for {stalled:.1f} s"
             self._hold(current, f"{why}: does its driver hear them? resume when it does")
-        current.wait_for(arm)
-        if arm.execution == current.execution:
+        current.wait_for_late_arm(arm)
+        if arm.execution == current.id:
             self._judge_tracking(current, arm.tracking_error)
 
     def _hold(self, current: Execution, reason: str) -> None:
-        if not current.program.stopped:
-            self._controls.note("the executor", "hold", reason)
+        if not current.program.hold_requested:
+            self._command_handler.write_journal("the executor", "hold", reason)
         current.hold(reason)
 
     def _judge_tracking(self, current: Execution, error: float) -> None:
@@ -163,23 +163,23 @@ class Executor:
         if error > self._settings.largest_error:
             current.end(
                 "faulted",
-                f"tracking error {error:.3f} rad {current.program.place}, limit "
+                f"tracking error {error:.3f} rad {current.program.location}, limit "
                 f"{self._settings.largest_error:g}: is the arm blocked? free it, or start again at a lower override",
             )
 
-    def _tell(self, due: int) -> None:
+    def _publish_status(self, due: int) -> None:
         """Publish the status: at once when the state has changed, else now and then."""
-        current = self._controls.current
-        status = (current.execution, current.state) if current is not None else ("", "idle")
+        current = self._command_handler.current
+        status = (current.id, current.state) if current is not None else ("", "idle")
         rate = self._settings.status_rate
-        if self._controls.resting:
-            rate = min(rate, IDLE_RATE)
-        if status == self._told[:2] and due - self._told[2] < 1e9 / rate:
+        if self._command_handler.is_resting:
+            rate = min(rate, IDLE_STATUS_RATE)
+        if status == self._published[:2] and due - self._published[2] < 1e9 / rate:
             return
-        self._told = (*status, due)
+        self._published = (*status, due)
         self._bus.publish(self._keys.executor_status, wire.encode_status(self._status()))
 
     def _status(self) -> ExecutorStatus:
-        current, lease = self._controls.current, self._controls.lease.seen()
+        current, lease = self._command_handler.current, self._command_handler.lease.public_view()
         told = current.status(self._pacer) if current is not None else ExecutorStatus()
         return replace(told, operator=lease.holder, asking=lease.asking, scheduling=self._scheduling)

@@ -10,7 +10,7 @@ from typing import Final
 
 import numpy as np
 
-LONGEST_COUNTED: Final = 20_000  # us, lateness above this counts as this
+MAX_COUNTED_LATENESS_US: Final = 20_000  # us, lateness above this counts as this
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,7 +46,7 @@ class Pacer:
         """Begin the account anew."""
         self.cycles = self.late = self.missed = 0
         self._largest = 0.0
-        self._counts = np.zeros(LONGEST_COUNTED + 1, dtype=np.int64)  # one bin a microsecond
+        self._counts = np.zeros(MAX_COUNTED_LATENESS_US + 1, dtype=np.int64)  # one bin a microsecond
 
     def wait(self, periods: int = 1, *, counted: bool = True) -> int:
         """Sleep until the deadline so many periods ahead and return it [ns of the clock]; `counted` or not."""
@@ -74,10 +74,10 @@ class Pacer:
         self.missed += left_out
         self.cycles += 1
         self._largest = max(self._largest, behind / 1e3)
-        self._counts[min(behind // 1000, LONGEST_COUNTED)] += 1
+        self._counts[min(behind // 1000, MAX_COUNTED_LATENESS_US)] += 1
 
 
-def ask_for_realtime(priority: int = 50) -> str:
+def request_realtime(priority: int = 50) -> str:
     """Ask the system to run this thread before all others; return in words whether it does."""
     try:
         os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(priority))

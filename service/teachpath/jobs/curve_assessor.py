@@ -16,8 +16,8 @@ from teachpath.motion.settings import MotionSettings
 from teachpath.nurbs import Curve
 from teachpath.records import Assessment, LearnedPath, Scene
 
-LONGEST: Final = 60.0  # s, until a look counts as stuck; the first one has to load its libraries
-POLITE: Final = 5  # added niceness, so that the control loop goes first
+ASSESSMENT_TIMEOUT: Final = 60.0  # s, until a look counts as stuck; the first one has to load its libraries
+NICENESS: Final = 5  # added niceness, so that the control loop goes first
 
 
 class CurveAssessor:
@@ -25,7 +25,7 @@ class CurveAssessor:
 
     def __init__(self) -> None:
         self._pool: ProcessPoolExecutor | None = None
-        self._turn = threading.Lock()
+        self._lock = threading.Lock()
         self._newest: dict[str, object] = {}
 
     def assess(self, path: LearnedPath, scene: Scene, settings: MotionSettings, *, curve: Curve) -> Assessment:
@@ -37,24 +37,24 @@ class CurveAssessor:
             Unreachable: the process died or is stuck.
         """
         ticket = self._newest[path.id] = object()
-        with self._turn:
+        with self._lock:
             if self._newest[path.id] is not ticket:
                 raise Conflict(f"a newer curve of path {path.id} came meanwhile; this one was not looked at")
             if self._pool is None:
                 self._pool = ProcessPoolExecutor(1, get_context("spawn"), initializer=_init_worker)
             try:
                 found = self._pool.submit(_assess, curve, scene, settings, path.orientation)
-                return found.result(timeout=LONGEST)
+                return found.result(timeout=ASSESSMENT_TIMEOUT)
             except (BrokenProcessPool, TimeoutError):
-                self._leave()
+                self._end_process()
                 raise Unreachable("the process that assesses curves died or is stuck; try again") from None
 
     def stop(self) -> None:
         """End the process."""
-        with self._turn:
-            self._leave()
+        with self._lock:
+            self._end_process()
 
-    def _leave(self) -> None:
+    def _end_process(self) -> None:
         pool, self._pool = self._pool, None
         if pool is None:
             return
@@ -67,7 +67,7 @@ class CurveAssessor:
 
 def _init_worker() -> None:
     worker.exit_with_parent()
-    os.nice(POLITE)
+    os.nice(NICENESS)
 
 
 def _assess(curve: Curve, scene: Scene, settings: MotionSettings, turn: Curve | None) -> Assessment:

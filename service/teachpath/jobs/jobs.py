@@ -55,7 +55,7 @@ class Jobs:
 
     Args:
         kinds: what can be done, by name.
-        finished: called with each job that has ended.
+        on_finished: called with each job that has ended.
     """
 
     def __init__(
@@ -66,13 +66,13 @@ class Jobs:
         settings: JobSettings,
         kinds: dict[str, JobKind],
         *,
-        finished: Callable[[Job], None] = lambda job: None,
+        on_finished: Callable[[Job], None] = lambda job: None,
     ) -> None:
         self._bus, self._keys, self._store, self._settings = bus, keys, store, settings
-        self._kinds, self._finished = kinds, finished
+        self._kinds, self._on_finished = kinds, on_finished
         self._queue: queue.SimpleQueue[str | None] = queue.SimpleQueue()
         self._context = get_context("spawn")
-        self._news = self._context.Queue()
+        self._progress = self._context.Queue()
         self._cancel: Event = self._context.Event()
         self._stopping = threading.Event()
         self._running = ""
@@ -83,7 +83,7 @@ class Jobs:
         """Begin; jobs that an earlier service left unfinished come first."""
         for job in self._store.jobs(unfinished=True):
             self._queue.put(job.id)
-        for run, name in ((self._run, "jobs"), (self._tell, "job progress")):
+        for run, name in ((self._run, "jobs"), (self._pass_on_progress, "job progress")):
             thread = threading.Thread(target=run, name=name, daemon=True)
             thread.start()
             self._threads.append(thread)
@@ -94,7 +94,7 @@ class Jobs:
         self._stopping.set()
         self._cancel.set()
         self._queue.put(None)
-        self._news.put(None)
+        self._progress.put(None)
         processes = active_children()
         self._pool.shutdown(wait=False, cancel_futures=True)
         for process in processes:  # pure work: nothing is lost that would not be done again
@@ -102,8 +102,8 @@ class Jobs:
             process.join()
         for thread in self._threads:
             thread.join(timeout=10.0)
-        self._news.close()
-        self._news.cancel_join_thread()
+        self._progress.close()
+        self._progress.cancel_join_thread()
 
     def submit(self, task: str, kind: str, request: dict[str, Any]) -> Job:
         """Queue a job and return it."""
@@ -118,27 +118,30 @@ class Jobs:
         if self._store.job(key).state is JobState.RUNNING and key == self._running:
             self._cancel.set()
             return self._store.job(key)
-        return self._end(key, JobState.CANCELLED, "cancelled before it began")
+        return self._finish(key, JobState.CANCELLED, "cancelled before it began")
 
     def _open_pool(self) -> ProcessPoolExecutor:
         return ProcessPoolExecutor(
-            max_workers=1, mp_context=self._context, initializer=worker.init_worker, initargs=(self._news, self._cancel)
+            max_workers=1,
+            mp_context=self._context,
+            initializer=worker.init_worker,
+            initargs=(self._progress, self._cancel),
         )
 
     def _run(self) -> None:
         while (key := self._queue.get()) is not None and not self._stopping.is_set():
             try:
-                self._do(key)
+                self._process(key)
             except Conflict:
                 continue  # cancelled while it was queued
             except Exception as error:  # a fault of one job must not stop the others
                 if not self._stopping.is_set():
-                    self._end(key, JobState.FAILED, f"this is a fault of teachpath, please report it: {error!r}")
+                    self._finish(key, JobState.FAILED, f"this is a fault of teachpath, please report it: {error!r}")
 
-    def _do(self, key: str) -> None:
+    def _process(self, key: str) -> None:
         job = self._store.set_job(key, state=JobState.RUNNING.value, attempt=self._store.job(key).attempt + 1)
         if job.attempt > self._settings.attempts:
-            self._end(key, JobState.FAILED, f"its process died {self._settings.attempts} times; is memory short?")
+            self._finish(key, JobState.FAILED, f"its process died {self._settings.attempts} times; is memory short?")
             return
         self._cancel.clear()
         self._running = key
@@ -149,9 +152,9 @@ class Jobs:
             self._announce(self._store.job(key))
         except Cancelled as error:
             if not self._stopping.is_set():
-                self._end(key, JobState.CANCELLED, str(error))
+                self._finish(key, JobState.CANCELLED, str(error))
         except TeachpathError as error:
-            self._end(key, JobState.FAILED, str(error), **_evidence(error))
+            self._finish(key, JobState.FAILED, str(error), **_evidence(error))
         except BrokenProcessPool:
             if not self._stopping.is_set():
                 self._pool = self._open_pool()
@@ -159,7 +162,7 @@ class Jobs:
         finally:
             self._running = ""
 
-    def _end(self, key: str, state: JobState, message: str, **evidence: Any) -> Job:
+    def _finish(self, key: str, state: JobState, message: str, **evidence: Any) -> Job:
         job = self._store.set_job(key, state=state.value, message=message, finished_ns=time.time_ns(), **evidence)
         self._announce(job)
         return job
@@ -167,11 +170,11 @@ class Jobs:
     def _announce(self, job: Job) -> None:
         self._bus.publish(self._keys.job(job.id), encode_progress(job))
         if job.finished_ns:
-            self._finished(job)
+            self._on_finished(job)
 
-    def _tell(self) -> None:
+    def _pass_on_progress(self) -> None:
         """Pass on the progress that the working process reports."""
-        while (news := self._news.get()) is not None:
+        while (news := self._progress.get()) is not None:
             key, fraction, message = news
             try:
                 job = self._store.set_job(key, fraction=fraction, message=message)

@@ -22,16 +22,17 @@ from teachpath.records import Learned, LearnedPath, Plan, Scene, Trajectory
 
 Progress = Callable[[float, str], None]
 
-INTERVAL = 0.05  # s between two tellings of one sentence: each is a row in the store and a message to every page
+# [s] between two reports of one sentence: each is a row in the store and a message to every page
+PROGRESS_INTERVAL = 0.05
 
-_news: Queue[tuple[str, float, str]] | None = None
+_progress_queue: Queue[tuple[str, float, str]] | None = None
 _cancel: Event | None = None
 
 
 def init_worker(news: Queue[tuple[str, float, str]], cancel: Event) -> None:
     """Prepare this process: it ignores Ctrl-C, which its parent handles, and never outlives its parent."""
-    global _news, _cancel
-    _news, _cancel = news, cancel
+    global _progress_queue, _cancel
+    _progress_queue, _cancel = news, cancel
     exit_with_parent()
 
 
@@ -68,9 +69,9 @@ def work(key: str, function: Callable[..., Any], inputs: tuple[Any, ...]) -> Any
         if _cancel is not None and _cancel.is_set():
             raise Cancelled("cancelled by the operator")
         now = time.monotonic()
-        if _news is not None and (sentence != told or now >= due or fraction >= 1.0):
-            _news.put((key, fraction, sentence))
-            told, due = sentence, now + INTERVAL
+        if _progress_queue is not None and (sentence != told or now >= due or fraction >= 1.0):
+            _progress_queue.put((key, fraction, sentence))
+            told, due = sentence, now + PROGRESS_INTERVAL
 
     return function(*inputs, progress=progress)
 

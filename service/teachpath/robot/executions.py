@@ -53,10 +53,10 @@ class Executions:
         self._recorder = MotionRecorder(bus, keys, store.motions, robot=robot)
         self._changed = threading.Condition()
         self._status: ExecutorStatus | None = None
-        self._heard = 0.0
+        self._last_seen = 0.0
         self._plans: dict[str, str | None] = {}
         self._handles: list[Handle] = []
-        self._news: queue.SimpleQueue[ExecutorStatus | JournalEntry | None] = queue.SimpleQueue()
+        self._received: queue.SimpleQueue[ExecutorStatus | JournalEntry | None] = queue.SimpleQueue()
         self._writer: threading.Thread | None = None
 
     def start(self) -> None:
@@ -64,7 +64,7 @@ class Executions:
         self._recorder.start()
         self._handles = [
             self._bus.subscribe(self._keys.executor_status, self._receive),
-            self._bus.subscribe(self._keys.executor_journal, self._note),
+            self._bus.subscribe(self._keys.executor_journal, self._receive_entry),
         ]
         self._writer = threading.Thread(target=self._write, name="executions", daemon=True)
         self._writer.start()
@@ -74,7 +74,7 @@ class Executions:
         for handle in self._handles:
             handle.close()
         if self._writer is not None:
-            self._news.put(None)
+            self._received.put(None)
             self._writer.join()
             self._writer = None
         self._recorder.stop()
@@ -87,7 +87,7 @@ class Executions:
         """Return the file of all that an execution sent and the arm did, whole once it is over; raises NotFound."""
         row = self.get(execution)
         if row.status.state in RESTING:
-            self._recorder.wait_for(row.id)
+            self._recorder.wait_for_file(row.id)
         return self._store.motions.path(row.id)
 
     def series(self, execution: str, points: int) -> TimeSeries:
@@ -98,9 +98,9 @@ class Executions:
     @property
     def status(self) -> ExecutorStatus | None:
         """What the executor said last, or None when it has been silent for over a second."""
-        return self._status if time.monotonic() - self._heard < 1.0 else None
+        return self._status if time.monotonic() - self._last_seen < 1.0 else None
 
-    def begin(self, plan: str, *, override: float = 1.0, lease: str = "", who: str = "") -> Execution:
+    def execute(self, plan: str, *, override: float = 1.0, lease: str = "", who: str = "") -> Execution:
         """Move the robot along a plan.
 
         Args:
@@ -125,9 +125,9 @@ class Executions:
         path = None
         with suppress(NotFound):  # a file without it is judged by its limits alone
             path = self._store.versions.get(stored.path, stored.path_version)[1]
-        return self._begin(command, MotionHeader(key, self._robot, stored, path))
+        return self._start_execution(command, MotionHeader(key, self._robot, stored, path))
 
-    def mirror(self, order: TeleopRequest, *, lease: str = "", who: str = "") -> Execution:
+    def teleoperate(self, order: TeleopRequest, *, lease: str = "", who: str = "") -> Execution:
         """Let the robot mirror a live hand; steer and stop it as any execution.
 
         Raises:
@@ -138,7 +138,7 @@ class Executions:
         """
         key = f"execution-{uuid.uuid4().hex[:12]}"
         command = Command("mirror", key, mirror=encode(order), lease=lease, who=who)
-        return self._begin(command, MotionHeader(key, self._robot))
+        return self._start_execution(command, MotionHeader(key, self._robot))
 
     def command(self, execution: str, command: Command) -> Execution:
         """Steer an execution: override (speed, 0 to 1), hold, resume, step, reverse or stop.
@@ -163,12 +163,12 @@ class Executions:
         self._bus.ask(self._keys.executor_command, encode_command(command))
         return self.get(execution)
 
-    def halt(self, *, lease: str = "", who: str = "") -> ExecutorStatus:
+    def stop_all(self, *, lease: str = "", who: str = "") -> ExecutorStatus:
         """Stop whatever moves; raises Unreachable when the executor does not answer."""
         command = Command("stop", lease=lease, who=who)
         return decode_status(self._bus.ask(self._keys.executor_stop, encode_command(command)))
 
-    def control(self, request: LeaseRequest) -> Lease:
+    def request_lease(self, request: LeaseRequest) -> Lease:
         """Say a word about who is in control.
 
         Raises:
@@ -215,7 +215,7 @@ class Executions:
             assert self._status is not None
             return self._status
 
-    def _begin(self, command: Command, header: MotionHeader) -> Execution:
+    def _start_execution(self, command: Command, header: MotionHeader) -> Execution:
         key, plan = command.execution, header.plan.id if header.plan else None
         self._store.put_execution(key, plan, ExecutorStatus(execution=key, state="starting", override=command.override))
         self._plans[key] = plan
@@ -244,18 +244,18 @@ class Executions:
             status = decode_status(payload)
             with self._changed:
                 before, self._status = self._status, status
-                self._heard = time.monotonic()
+                self._last_seen = time.monotonic()
                 self._changed.notify_all()
             if before is None or (before.execution, before.state) != (status.execution, status.state):
-                self._news.put(status)
+                self._received.put(status)
 
-    def _note(self, _: str, payload: bytes) -> None:
+    def _receive_entry(self, _: str, payload: bytes) -> None:
         with suppress(UnusableInput):
-            self._news.put(decode_entry(payload))
+            self._received.put(decode_entry(payload))
 
     def _write(self) -> None:
         """Store what came; a thread of its own, because the bus's must not wait for the disk."""
-        while (news := self._news.get()) is not None:
+        while (news := self._received.get()) is not None:
             if isinstance(news, JournalEntry):
                 self._store.journal.write(news)
             elif news.execution in self._plans:

@@ -13,7 +13,7 @@ from teachpath.io.wire import decode_setpoint, decode_state
 from teachpath.records import JointState
 from teachpath_proto.keys import Keys
 
-KEPT: Final = 512  # newest messages for one onlooker who does not ask
+MAX_QUEUED: Final = 512  # newest messages for one onlooker who does not ask
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,15 +39,15 @@ class JointFeed:
     def __init__(self, bus: Bus, keys: Keys, *, robot: str) -> None:
         self._bus, self._keys, self._robot = bus, keys, robot
         self._lock = threading.Lock()
-        self._onlookers: tuple[JointStateSubscriber, ...] = ()
+        self._subscribers: tuple[JointStateSubscriber, ...] = ()
         self._last: bytes | None = None
         self._handles: list[Handle] = []
 
     def start(self) -> None:
         """Follow the arm from now on."""
         self._handles = [
-            self._bus.subscribe(self._keys.state(self._robot), self._hear_state),
-            self._bus.subscribe(self._keys.setpoint(self._robot), self._hear_setpoint),
+            self._bus.subscribe(self._keys.state(self._robot), self._receive_state),
+            self._bus.subscribe(self._keys.setpoint(self._robot), self._receive_setpoint),
         ]
 
     def stop(self) -> None:
@@ -56,29 +56,29 @@ class JointFeed:
             handle.close()
         self._handles.clear()
 
-    def attach(self) -> JointStateSubscriber:
+    def subscribe(self) -> JointStateSubscriber:
         """Return an onlooker, who begins with the newest joint state."""
         onlooker = JointStateSubscriber()
         if self._last is not None:
             onlooker.states.append(self._last)
         with self._lock:
-            self._onlookers = (*self._onlookers, onlooker)
+            self._subscribers = (*self._subscribers, onlooker)
         return onlooker
 
-    def detach(self, onlooker: JointStateSubscriber) -> None:
+    def unsubscribe(self, subscriber: JointStateSubscriber) -> None:
         """Forget an onlooker who has gone."""
         with self._lock:
-            self._onlookers = tuple(o for o in self._onlookers if o is not onlooker)
+            self._subscribers = tuple(o for o in self._subscribers if o is not subscriber)
 
     # on the transport's threads: append only
 
-    def _hear_state(self, _: str, payload: bytes) -> None:
+    def _receive_state(self, _: str, payload: bytes) -> None:
         self._last = payload
-        for onlooker in self._onlookers:
+        for onlooker in self._subscribers:
             onlooker.states.append(payload)
 
-    def _hear_setpoint(self, _: str, payload: bytes) -> None:
-        for onlooker in self._onlookers:
+    def _receive_setpoint(self, _: str, payload: bytes) -> None:
+        for onlooker in self._subscribers:
             onlooker.setpoints.append(payload)
 
 
@@ -86,10 +86,10 @@ class JointStateSubscriber:
     """One who looks at the arm, as often as it likes."""
 
     def __init__(self) -> None:
-        self.states: deque[bytes] = deque(maxlen=KEPT)
-        self.setpoints: deque[bytes] = deque(maxlen=KEPT)
+        self.states: deque[bytes] = deque(maxlen=MAX_QUEUED)
+        self.setpoints: deque[bytes] = deque(maxlen=MAX_QUEUED)
 
-    def take(self) -> JointFrame | None:
+    def poll(self) -> JointFrame | None:
         """Return what has happened since the last call, or None when no joint state has come."""
         states = [state for payload in _drain(self.states) if (state := _state(payload)) is not None]
         lateness = [late for payload in _drain(self.setpoints) if (late := _lateness(payload)) is not None]

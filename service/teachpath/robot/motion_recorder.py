@@ -19,11 +19,11 @@ from teachpath_proto.keys import Keys
 
 log = logging.getLogger(__name__)
 
-ROUND: Final = 0.05  # [s] between two looks at what came
+POLL_INTERVAL: Final = 0.05  # [s] between two looks at what came
 FLUSH_NS: Final = 1_000_000_000  # between two flushes
-AFTER_NS: Final = 500_000_000  # behind the end of an execution, in which the arm still settles
+SETTLING_NS: Final = 500_000_000  # behind the end of an execution, in which the arm still settles
 OVER: Final = ("ended", "faulted")
-PATIENCE: Final = 10.0  # [s] that somebody waits for the end of a file
+FILE_END_TIMEOUT: Final = 10.0  # [s] that somebody waits for the end of a file
 
 
 class MotionRecorder:
@@ -38,17 +38,17 @@ class MotionRecorder:
         self, bus: Bus, keys: Keys, motions: Motions, *, robot: str, clock: Callable[[], int] = time.time_ns
     ) -> None:
         self._bus, self._keys, self._motions, self._robot, self._clock = bus, keys, motions, robot, clock
-        self._came: deque[tuple[str, int, bytes]] = deque()
+        self._queue: deque[tuple[str, int, bytes]] = deque()
         self._lock = threading.Lock()
-        self._left = threading.Condition(self._lock)  # a file is whole, or given up
+        self._file_ended = threading.Condition(self._lock)  # a file is whole, or given up
         self._take: MotionTake | None = None
         self._execution = ""
         self._setpoints = self._lost = 0
         self._last_cycle = -1
         self._flushed = 0
-        self._until = 0  # [ns] when the file is ended; 0: not known yet
+        self._end_ns = 0  # [ns] when the file is ended; 0: not known yet
         self._handles: list[Handle] = []
-        self._thread = PeriodicThread("motion recorder", ROUND, self.work)
+        self._thread = PeriodicThread("motion recorder", POLL_INTERVAL, self.process_round)
         self.fault = ""  # why nothing is recorded now, for the operator
 
     def start(self) -> None:
@@ -74,7 +74,7 @@ class MotionRecorder:
         self._handles.clear()
         if self._thread.is_running:
             self._thread.stop()
-            self.work()
+            self.process_round()
         with self._lock:
             self._finish()
 
@@ -82,7 +82,7 @@ class MotionRecorder:
         """Record an execution from now on; a disk that refuses is told in `fault` and keeps no arm from moving."""
         with self._lock:
             self._finish()
-            self._came.clear()
+            self._queue.clear()
             self._execution, self._setpoints, self._lost, self._last_cycle = header.execution, 0, 0, -1
             try:
                 self._take, self.fault = self._motions.begin(header), ""
@@ -92,22 +92,22 @@ class MotionRecorder:
     def abandon(self) -> None:
         """End the recording of an execution that was refused before it began."""
         with self._lock:
-            self._until = self._until or self._clock() + AFTER_NS
+            self._end_ns = self._end_ns or self._clock() + SETTLING_NS
 
-    def wait_for(self, execution: str) -> None:
+    def wait_for_file(self, execution: str) -> None:
         """Wait until the file of an execution that is over has its end."""
         if self._thread.is_running:
-            with self._left:
-                self._left.wait_for(lambda: self._take is None or self._execution != execution, PATIENCE)
+            with self._file_ended:
+                self._file_ended.wait_for(lambda: self._take is None or self._execution != execution, FILE_END_TIMEOUT)
 
-    def work(self) -> None:
+    def process_round(self) -> None:
         """Write what came; the thread calls it all the time."""
         with self._lock:
             now = self._clock()
-            while self._came:
-                topic, at_ns, payload = self._came.popleft()
+            while self._queue:
+                topic, at_ns, payload = self._queue.popleft()
                 if self._take is not None:
-                    self._keep(topic, at_ns, payload)
+                    self._write(topic, at_ns, payload)
             if self._take is None:
                 return
             try:
@@ -116,13 +116,13 @@ class MotionRecorder:
                     self._flushed = now
             except OSError as error:
                 self._fail(error)
-            if self._until and now >= self._until:
+            if self._end_ns and now >= self._end_ns:
                 self._finish()
 
     def _receiver(self, topic: str) -> Callable[[str, bytes], None]:
-        return lambda _, payload: self._came.append((topic, self._clock(), payload))
+        return lambda _, payload: self._queue.append((topic, self._clock(), payload))
 
-    def _keep(self, topic: str, at_ns: int, payload: bytes) -> None:
+    def _write(self, topic: str, at_ns: int, payload: bytes) -> None:
         assert self._take is not None
         with suppress(UnusableInput):
             if topic == "setpoints":
@@ -136,18 +136,18 @@ class MotionRecorder:
                 status = decode_status(payload)
                 if status.execution != self._execution:
                     return
-                if status.state in OVER and not self._until:
-                    self._until = at_ns + AFTER_NS
+                if status.state in OVER and not self._end_ns:
+                    self._end_ns = at_ns + SETTLING_NS
             try:
                 self._take.write(topic, payload, at_ns)
             except OSError as error:
                 self._fail(error)
 
     def _finish(self) -> None:
-        take, self._take, self._until = self._take, None, 0
+        take, self._take, self._end_ns = self._take, None, 0
         if take is None:
             return
-        self._left.notify_all()
+        self._file_ended.notify_all()
         facts = {"execution": self._execution, "setpoints": str(self._setpoints), "lost": str(self._lost)}
         try:
             take.finish(facts)
@@ -159,6 +159,6 @@ class MotionRecorder:
         if self._take is not None:
             self._take.leave()
         self._take = None
-        self._left.notify_all()
+        self._file_ended.notify_all()
         self.fault = f"execution {self._execution} is not recorded: {error}; make room on the disk"
         log.error("%s", self.fault)

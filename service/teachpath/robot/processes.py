@@ -9,7 +9,7 @@ import sys
 import threading
 from collections import deque
 
-GRACE = 1.5  # [s] to end by itself before it is killed
+STOP_TIMEOUT = 1.5  # [s] to end by itself before it is killed
 
 
 class WorkerProcess:
@@ -20,7 +20,7 @@ class WorkerProcess:
         self.name = name
         self._settings = settings
         self._process: subprocess.Popen[str] | None = None
-        self._words: deque[str] = deque(maxlen=20)
+        self._lines: deque[str] = deque(maxlen=20)
 
     def start(self) -> None:
         """Start the process; it is ready when it announces itself on the bus."""
@@ -35,7 +35,7 @@ class WorkerProcess:
         assert self._process.stdin is not None
         self._process.stdin.write(self._settings + "\n")
         self._process.stdin.flush()
-        threading.Thread(target=self._listen, name=f"{self.name} stderr", daemon=True).start()
+        threading.Thread(target=self._read_stderr, name=f"{self.name} stderr", daemon=True).start()
 
     def is_alive(self) -> bool:
         """Tell whether the process runs."""
@@ -44,7 +44,7 @@ class WorkerProcess:
     def last_error(self) -> str:
         """Return the last line the process wrote, or its exit status."""
         code = self._process.poll() if self._process else None
-        return self._words[-1] if self._words else f"exit status {code}"
+        return self._lines[-1] if self._lines else f"exit status {code}"
 
     def request_stop(self) -> None:
         """Ask the process to end by itself."""
@@ -59,14 +59,14 @@ class WorkerProcess:
         with contextlib.suppress(OSError):
             self._process.stdin.close()  # type: ignore[union-attr]
         try:
-            self._process.wait(GRACE)
+            self._process.wait(STOP_TIMEOUT)
         except subprocess.TimeoutExpired:
             self._process.kill()
             self._process.wait()
 
-    def _listen(self) -> None:
+    def _read_stderr(self) -> None:
         assert self._process is not None
         assert self._process.stderr is not None
         for line in self._process.stderr:
-            self._words.append(line.strip())
+            self._lines.append(line.strip())
             sys.stderr.write(f"{self.name}: {line}")

@@ -15,7 +15,7 @@ from teachpath.records import Array, Quaternion, Scene, Vector
 from teachpath.simulator.settings import SimulatorSettings
 
 STEP_NS: Final = 1_000_000
-STILL: Final = 1e-3  # rad/s and m/s, below which a thing stands still
+REST_SPEED: Final = 1e-3  # rad/s and m/s, below which a thing stands still
 
 
 class SimulatedArm:
@@ -52,9 +52,9 @@ class SimulatedArm:
         return np.array(self.data.qvel[:6])
 
     @property
-    def still(self) -> bool:
+    def at_rest(self) -> bool:
         """Whether arm and object stand still."""
-        return bool(np.abs(self.data.qvel).max() < STILL)
+        return bool(np.abs(self.data.qvel).max() < REST_SPEED)
 
     @property
     def torque(self) -> Array:

@@ -26,11 +26,11 @@ from teachpath_proto.keys import Keys
 
 log = logging.getLogger(__name__)
 
-STATE_STEPS: Final = 10  # steps between two joint states: 100 Hz
-CALM_STEPS: Final = 200  # steps of standstill after which the arm dozes
-DOZE: Final = 0.04  # [s] between two joint states of an arm that dozes: 25 Hz, the contract asks for 20
+STEPS_PER_STATE: Final = 10  # steps between two joint states: 100 Hz
+REST_STEPS_BEFORE_IDLE: Final = 200  # steps of standstill after which the arm dozes
+IDLE_STATE_PERIOD: Final = 0.04  # [s] between two joint states of an arm that dozes: 25 Hz, the contract asks for 20
 # A starved process catches up, each setpoint played when it was due: on a busy machine the arm is late, not wrong.
-LAG_NS: Final = 1_000_000_000
+MAX_LAG_NS: Final = 1_000_000_000
 ENDED: Final = ("idle", "ended", "faulted")
 
 
@@ -48,7 +48,7 @@ class Simulator:
         home: Sequence[float] = MotionSettings().home,
         clock: Callable[[], int] = time.time_ns,
         sleep: Callable[[float], object] = time.sleep,
-        doze: Callable[[threading.Event, float], object] = threading.Event.wait,
+        idle_wait: Callable[[threading.Event, float], object] = threading.Event.wait,
     ) -> None:
         """Prepare the arm; nothing runs before `run`.
 
@@ -58,17 +58,17 @@ class Simulator:
             home: (6,) configuration in which the arm starts [rad].
             clock: nanoseconds since the Unix epoch, the clock of the setpoints.
             sleep: waits for so many seconds.
-            doze: waits for so many seconds, or until the event is set.
+            idle_wait: waits for so many seconds, or until the event is set.
         """
         self._bus, self._keys, self._robot = bus, keys, robot
         self._settings = settings or SimulatorSettings()
-        self._clock, self._sleep, self._wait = clock, sleep, doze
-        self._woken = threading.Event()
-        self._calm = 0  # newest steps in which everything stood still
+        self._clock, self._sleep, self._idle_wait = clock, sleep, idle_wait
+        self._wake = threading.Event()
+        self._rest_steps = 0  # newest steps in which everything stood still
         self._lock = threading.Lock()
         self._setpoints: deque[bytes] = deque(maxlen=1000)
         self._statuses: deque[bytes] = deque(maxlen=100)
-        self._begin(scene, home)
+        self._build(scene, home)
 
     def run(self, stop: threading.Event) -> None:
         """Live in real time until `stop` is set."""
@@ -82,13 +82,13 @@ class Simulator:
         try:
             due = self._clock()
             while not stop.is_set():
-                if self._dozing:
-                    due = self._doze(due)
+                if self._is_idle:
+                    due = self._idle(due)
                     continue
                 self.step(due)
                 due += STEP_NS
                 wait = due - self._clock()
-                if abs(wait) > LAG_NS:
+                if abs(wait) > MAX_LAG_NS:
                     due = self._clock()
                 elif wait > 0:
                     self._sleep(wait / 1e9)
@@ -111,99 +111,99 @@ class Simulator:
         """
         scene = documents.decode(Scene, payload) if payload else self._scene
         with self._lock:
-            self._hear()
-            moving = self._playback.execution
-            if moving not in ("", self._over) and not self._playback.holding:
+            self._read_statuses()
+            moving = self._player.execution
+            if moving not in ("", self._finished_execution) and not self._player.holding:
                 raise Conflict(f"execution {moving} is under way in scene {self._scene.name}; stop it first")
-            self._begin(scene, self._arm.position.tolist())
-            self._woken.set()
+            self._build(scene, self._arm.position.tolist())
+            self._wake.set()
             return wire.encode_state(self._state(self._clock()))
 
     def step(self, now: int) -> None:
         """Advance by 1 ms from `now` [ns since the Unix epoch]; every tenth time a joint state is published."""
         with self._lock:
-            self._read(now)
-            wanted = self._playback.wanted
-            self._error = float(np.max(np.abs(wanted.position - self._arm.position)))
-            state = self._state(now) if self._steps % STATE_STEPS == 0 else None
+            self._read_setpoints(now)
+            wanted = self._player.target
+            self._tracking_error = float(np.max(np.abs(wanted.position - self._arm.position)))
+            state = self._state(now) if self._steps % STEPS_PER_STATE == 0 else None
             self._arm.step(wanted.position, wanted.velocity, wanted.acceleration)
             self._steps += 1
-            self._calm = self._calm + 1 if self._playback.resting and self._arm.still else 0
+            self._rest_steps = self._rest_steps + 1 if self._player.at_rest and self._arm.at_rest else 0
         if state is not None:
-            self._tell(state)
+            self._publish(state)
 
     @property
-    def _dozing(self) -> bool:
+    def _is_idle(self) -> bool:
         """Whether arm and object have stood still for a while and nothing is there to change that."""
-        return self._calm >= CALM_STEPS and not self._setpoints
+        return self._rest_steps >= REST_STEPS_BEFORE_IDLE and not self._setpoints
 
-    def _doze(self, since: int) -> int:
+    def _idle(self, since: int) -> int:
         """Let an arm at rest be until something comes, or its next joint state is due; returns when that was [ns].
 
         Nothing is computed: what stands still under constant torques goes on standing still.
         """
         with self._lock:
             state = self._state(since)
-        self._tell(state)
-        self._wait(self._woken, DOZE)
-        self._woken.clear()
+        self._publish(state)
+        self._idle_wait(self._wake, IDLE_STATE_PERIOD)
+        self._wake.clear()
         now = self._clock()
         with self._lock:
-            self._hear()
+            self._read_statuses()
             if now > since:  # the clock may be set back
-                self._playback.play((now - since) / 1e9, now)
+                self._player.advance((now - since) / 1e9, now)
         return now
 
     def _receive(self, _: str, payload: bytes) -> None:
         self._setpoints.append(payload)
-        self._woken.set()
+        self._wake.set()
 
-    def _tell(self, state: JointState) -> None:
+    def _publish(self, state: JointState) -> None:
         self._bus.publish(self._keys.state(self._robot), wire.encode_state(state))
 
-    def _begin(self, scene: Scene, position: Sequence[float]) -> None:
+    def _build(self, scene: Scene, position: Sequence[float]) -> None:
         settings = self._settings
         self._arm = SimulatedArm(scene, settings, position)
         self._scene = scene
-        self._playback = SetpointPlayer(self._arm.position, delay=settings.delay, silence=settings.silence)
+        self._player = SetpointPlayer(self._arm.position, delay=settings.delay, silence=settings.silence)
         self._setpoints.clear()
-        self._over = ""  # the execution that said that it has ended
-        self._closed = False
-        self._error = 0.0
+        self._finished_execution = ""  # the execution that said that it has ended
+        self._gripper_closed = False
+        self._tracking_error = 0.0
         self._steps = 0
-        self._calm = 0
+        self._rest_steps = 0
 
-    def _read(self, now: int) -> None:
+    def _read_setpoints(self, now: int) -> None:
         try:
             while self._setpoints:
-                self._playback.take(wire.decode_setpoint(self._setpoints.popleft()), now)
+                self._player.add(wire.decode_setpoint(self._setpoints.popleft()), now)
         except UnusableInput as error:
             log.warning("left out: %s", error)
-        self._hear()
-        reached = self._playback.play(STEP_NS / 1e9, now)
+        self._read_statuses()
+        reached = self._player.advance(STEP_NS / 1e9, now)
         if reached is not None:
-            self._grip(reached.gripper_closed)
+            self._move_gripper(reached.gripper_closed)
 
-    def _hear(self) -> None:
+    def _read_statuses(self) -> None:
         """Read what the executor says of itself."""
         try:
             while self._statuses:
                 status = wire.decode_status(self._statuses.popleft())
                 if status.state in ENDED:
-                    self._over = status.execution
+                    self._finished_execution = status.execution
         except UnusableInput as error:
             log.warning("left out: %s", error)
 
-    def _grip(self, closed: bool) -> None:
-        if closed and not self._closed:
+    def _move_gripper(self, closed: bool) -> None:
+        if closed and not self._gripper_closed:
             self._arm.grasp()
-        elif self._closed and not closed:
+        elif self._gripper_closed and not closed:
             self._arm.release()
-        self._closed = closed
+        self._gripper_closed = closed
 
     def _state(self, now: int) -> JointState:
-        playback, newest = self._playback, self._playback.reached
-        holding = newest is not None and newest.execution != self._over and playback.holding
+        playback, newest = self._player, self._player.last_reached
+        holding = newest is not None and newest.execution != self._finished_execution and playback.holding
         place, turn = self._arm.object_pose
         return JointState(
             stamp_ns=now,
@@ -211,10 +211,10 @@ class Simulator:
             position=self._arm.position,
             velocity=self._arm.velocity,
             torque=self._arm.torque,
-            tracking_error=self._error,
+            tracking_error=self._tracking_error,
             missed=playback.missed + (playback.overdue if holding else 0),
             holding=holding,
-            gripper_closed=self._closed,
+            gripper_closed=self._gripper_closed,
             object_position=place,
             object_orientation=turn,
             execution=newest.execution if newest is not None else "",

@@ -17,11 +17,11 @@ import numpy as np
 
 from teachpath.records import Array, Setpoint
 
-BRAKE: Final = 5.0  # 1/s, change of the playing rate: at full speed within the joints' limits of acceleration
-LOW: Final = 0.35  # share of the delay, with less than which in store the playing slows down
-HANDED: Final = 0.12  # s, over which the way that was gone without setpoints is handed back to the stream
-KEPT: Final = 2000  # setpoints that wait at most; with more the sender's clock is wrong
-WRONG: Final = 1.0  # s, of a clock that is so far off that its times cannot be meant
+MAX_RATE_SLOPE: Final = 5.0  # 1/s, change of the playing rate: at full speed within the joints' limits of acceleration
+LOW_BUFFER_SHARE: Final = 0.35  # share of the delay, with less than which in store the playing slows down
+OFFSET_DECAY_TIME: Final = 0.12  # s, over which the way that was gone without setpoints is handed back to the stream
+MAX_WAITING: Final = 2000  # setpoints that wait at most; with more the sender's clock is wrong
+MAX_CLOCK_ERROR: Final = 1.0  # s, of a clock that is so far off that its times cannot be meant
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,20 +47,24 @@ class SetpointPlayer:
         self._delay, self._silence = delay, silence
         self._waiting: deque[Setpoint] = deque()
         self._last: Setpoint | None = None  # the newest that was reached
-        self._begin, self._played, self._rate = 0, 0.0, 1.0  # first nominal time [ns], instant behind it [s]
-        self._zero = 0  # [ns] of real time, from when on the player would have played if it never was late
-        self._offset: tuple[Array, Array, float] = (still, still, HANDED)  # what is handed back, and for how long
-        self.wanted = TargetMotion(np.array(position), still, still)
+        self._begin_ns, self._played, self._rate = 0, 0.0, 1.0  # first nominal time [ns], instant behind it [s]
+        self._zero_ns = 0  # [ns] of real time, from when on the player would have played if it never was late
+        self._offset: tuple[Array, Array, float] = (
+            still,
+            still,
+            OFFSET_DECAY_TIME,
+        )  # what is handed back, and for how long
+        self.target = TargetMotion(np.array(position), still, still)
         self.missed = self.late = 0
-        self._newest = -1
-        self._piece: _Piece | None = None  # between the two setpoints that are next to the played instant
+        self._newest_cycle = -1
+        self._quintic: _Quintic | None = None  # between the two setpoints that are next to the played instant
         self._period = 0.004  # s, between two setpoints, as seen
         self._starved = 0.0  # s, for which nothing has been left to play
         self._slope = 0.0  # 1/s, of the playing rate
-        self._alone = True  # whether the wanted motion was no stream, but a rest or what was gone without one
+        self._unbuffered = True  # whether the wanted motion was no stream, but a rest or what was gone without one
 
     @property
-    def reached(self) -> Setpoint | None:
+    def last_reached(self) -> Setpoint | None:
         """The newest setpoint that was reached."""
         return self._last
 
@@ -76,102 +80,104 @@ class SetpointPlayer:
         return self._starved > self._silence
 
     @property
-    def resting(self) -> bool:
+    def at_rest(self) -> bool:
         """Whether nothing waits to be played and the wanted motion stands still."""
-        return not (self._waiting or self.wanted.velocity.any() or self.wanted.acceleration.any())
+        return not (self._waiting or self.target.velocity.any() or self.target.acceleration.any())
 
     @property
     def overdue(self) -> int:
         """How many setpoints should have come while it is holding."""
         return int(self._starved / self._period) if self.holding else 0
 
-    def take(self, setpoint: Setpoint, now: int) -> None:
+    def add(self, setpoint: Setpoint, now: int) -> None:
         """Take a setpoint that came at `now` [ns]; one that is older than those before changes nothing."""
         newest = self._waiting[-1] if self._waiting else self._last
         if newest is None or newest.execution != setpoint.execution:
-            self._start(setpoint, now)
-        elif setpoint.cycle <= self._newest or setpoint.nominal_ns <= newest.nominal_ns:
+            self._start_execution(setpoint, now)
+        elif setpoint.cycle <= self._newest_cycle or setpoint.nominal_ns <= newest.nominal_ns:
             return
         else:
-            ahead = setpoint.cycle - self._newest
+            ahead = setpoint.cycle - self._newest_cycle
             self.missed += ahead - 1
             self._period = (setpoint.nominal_ns - newest.nominal_ns) / 1e9 / ahead
-        self._newest = setpoint.cycle
-        if self._at(setpoint) < self._played:
+        self._newest_cycle = setpoint.cycle
+        if self._time_of(setpoint) < self._played:
             self.late += 1
-        if len(self._waiting) < KEPT:
+        if len(self._waiting) < MAX_WAITING:
             self._waiting.append(setpoint)
 
-    def play(self, dt: float, now: int) -> Setpoint | None:
+    def advance(self, dt: float, now: int) -> Setpoint | None:
         """Go on by `dt` [s] of real time to `now` [ns]; returns the newest setpoint that was reached, if any."""
         if self._last is None and not self._waiting:
             return None
-        self._pace(dt)
+        self._update_rate(dt)
         self._played += self._rate * dt
         reached = None
-        while self._waiting and self._at(self._waiting[0]) <= self._played:
+        while self._waiting and self._time_of(self._waiting[0]) <= self._played:
             self._last = reached = self._waiting.popleft()
-        reached = self._let_go(now) or reached
-        self._starved = self._starved + dt if self._ahead() < 0.0 else 0.0
+        reached = self._skip_standstill(now) or reached
+        self._starved = self._starved + dt if self._buffered_time() < 0.0 else 0.0
         if self._last is not None:
-            self._want(dt, handing=self._alone and (reached is not None or bool(self._waiting)))
+            self._update_target(dt, handing=self._unbuffered and (reached is not None or bool(self._waiting)))
         return reached
 
-    def _start(self, setpoint: Setpoint, now: int) -> None:
+    def _start_execution(self, setpoint: Setpoint, now: int) -> None:
         """Begin another execution: the arm rests, and so does its first setpoint."""
         self._waiting.clear()
-        self._last, self._begin = None, setpoint.nominal_ns
+        self._last, self._begin_ns = None, setpoint.nominal_ns
         waited = (now - setpoint.nominal_ns) / 1e9
-        self._played = (waited if 0.0 <= waited <= WRONG else 0.0) - self._delay
-        self._zero = now - round((self._played + self._delay) * 1e9)
+        self._played = (waited if 0.0 <= waited <= MAX_CLOCK_ERROR else 0.0) - self._delay
+        self._zero_ns = now - round((self._played + self._delay) * 1e9)
         self._rate, self.missed, self.late = 1.0, 0, 0
-        self._alone = True
+        self._unbuffered = True
 
-    def _at(self, setpoint: Setpoint) -> float:
-        return (setpoint.nominal_ns - self._begin) / 1e9
+    def _time_of(self, setpoint: Setpoint) -> float:
+        return (setpoint.nominal_ns - self._begin_ns) / 1e9
 
-    def _ahead(self) -> float:
+    def _buffered_time(self) -> float:
         newest = self._waiting[-1] if self._waiting else self._last
-        return self._at(newest) - self._played if newest is not None else 0.0
+        return self._time_of(newest) - self._played if newest is not None else 0.0
 
-    def _let_go(self, now: int) -> Setpoint | None:
+    def _skip_standstill(self, now: int) -> Setpoint | None:
         """Skip what waits of a standstill and was due: who is late there has lost nothing but time."""
-        reached, due = None, (now - self._zero) / 1e9 - self._delay
-        while len(self._waiting) > 1 and self._at(self._waiting[0]) <= due and _same_rest(self._last, self._waiting):
+        reached, due = None, (now - self._zero_ns) / 1e9 - self._delay
+        while (
+            len(self._waiting) > 1 and self._time_of(self._waiting[0]) <= due and _same_rest(self._last, self._waiting)
+        ):
             self._last = reached = self._waiting.popleft()
-            self._played = self._at(reached)
+            self._played = self._time_of(reached)
         return reached
 
-    def _pace(self, dt: float) -> None:
+    def _update_rate(self, dt: float) -> None:
         """Let the playing rate follow the store: 1 with half a delay or more, 0 with nothing left."""
         newest = self._waiting[-1] if self._waiting else self._last
-        resting = newest is not None and _still(newest)
-        rate = 1.0 if resting else min(max(self._ahead() / (LOW * self._delay), 0.0), 1.0)
-        change = min(max(rate - self._rate, -BRAKE * dt), BRAKE * dt)
+        resting = newest is not None and _is_standstill(newest)
+        rate = 1.0 if resting else min(max(self._buffered_time() / (LOW_BUFFER_SHARE * self._delay), 0.0), 1.0)
+        change = min(max(rate - self._rate, -MAX_RATE_SLOPE * dt), MAX_RATE_SLOPE * dt)
         self._rate += change
         self._slope = change / dt
 
-    def _want(self, dt: float, *, handing: bool) -> None:
+    def _update_target(self, dt: float, *, handing: bool) -> None:
         assert self._last is not None
-        before, rate, last = self.wanted, self._rate, self._last
+        before, rate, last = self.target, self._rate, self._last
         if self._waiting:
-            if self._piece is None or self._piece.one is not last or self._piece.two is not self._waiting[0]:
-                self._piece = _Piece(last, self._waiting[0])
-            p, v, a = self._piece(self._played - self._at(last))
+            if self._quintic is None or self._quintic.one is not last or self._quintic.two is not self._waiting[0]:
+                self._quintic = _Quintic(last, self._waiting[0])
+            p, v, a = self._quintic(self._played - self._time_of(last))
         else:
-            p, v, a = last.position + (self._played - self._at(last)) * last.velocity, last.velocity, np.zeros(6)
+            p, v, a = last.position + (self._played - self._time_of(last)) * last.velocity, last.velocity, np.zeros(6)
         v, a = rate * v, rate**2 * a + self._slope * v
-        self._alone = not self._waiting
+        self._unbuffered = not self._waiting
         if handing:
             self._offset = (before.position + before.velocity * dt - p, before.velocity - v, 0.0)
         error, drift, since = self._offset
-        if since < HANDED:
-            p, v, a = (value + part for value, part in zip((p, v, a), _handed(error, drift, since), strict=True))
+        if since < OFFSET_DECAY_TIME:
+            p, v, a = (value + part for value, part in zip((p, v, a), _decaying(error, drift, since), strict=True))
             self._offset = (error, drift, since + dt)
-        self.wanted = TargetMotion(p, v, a)
+        self.target = TargetMotion(p, v, a)
 
 
-class _Piece:
+class _Quintic:
     """The quintic Hermite polynomial between two setpoints."""
 
     def __init__(self, one: Setpoint, two: Setpoint) -> None:
@@ -195,21 +201,23 @@ class _Piece:
         return p, v, a
 
 
-def _still(setpoint: Setpoint) -> bool:
+def _is_standstill(setpoint: Setpoint) -> bool:
     return not (setpoint.velocity.any() or setpoint.acceleration.any())
 
 
 def _same_rest(last: Setpoint | None, waiting: deque[Setpoint]) -> bool:
     """Tell whether the two that come next belong to the standstill that was reached."""
     return last is not None and all(
-        _still(each) and np.array_equal(each.position, last.position) and each.gripper_closed == last.gripper_closed
+        _is_standstill(each)
+        and np.array_equal(each.position, last.position)
+        and each.gripper_closed == last.gripper_closed
         for each in (last, waiting[0], waiting[1])
     )
 
 
-def _handed(error: Array, drift: Array, since: float) -> tuple[Array, Array, Array]:
+def _decaying(error: Array, drift: Array, since: float) -> tuple[Array, Array, Array]:
     """Let an offset of position and velocity die away to rest, as a quintic over `HANDED`."""
-    h = HANDED
+    h = OFFSET_DECAY_TIME
     x, e, g = since / h, error, drift * h
     c3, c4, c5 = -10 * e - 6 * g, 15 * e + 8 * g, -6 * e - 3 * g
     p = e + x * (g + x * x * (c3 + x * (c4 + x * c5)))

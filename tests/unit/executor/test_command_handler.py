@@ -271,7 +271,7 @@ def test_an_arm_that_is_late_is_not_taken_for_one_that_was_pushed_away(bench: Be
     bench.start(middle)
     bench.when(lambda: bench.state == "following" and bench.statuses[-1].progress > 0.3, lambda: bench.command("hold"))
     bench.when(lambda: bench.state == "held", lambda: None)
-    bench.when(lambda: bench.executor._controls.current.settled, resume_too_early)
+    bench.when(lambda: bench.executor._command_handler.current.is_settled, resume_too_early)
     bench.when(lambda: True, lambda: None)
     bench.when(lambda: True, lambda: bench.command("resume"))
     bench.when(lambda: bench.state == "ended", bench.stop.set)

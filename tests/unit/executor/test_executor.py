@@ -179,7 +179,7 @@ def test_whenever_the_loop_oversleeps_what_was_sent_can_be_judged(bench: Bench, 
     bench.oversleep = dict.fromkeys(range(50, 3000, 7), 5_000_000)
     bench.start(middle)
     bench.when(lambda: bench.statuses[-1].progress > 0.3, lambda: bench.command("hold"))
-    bench.when(lambda: bench.state == "held" and bench.executor._controls.current.settled, lambda: None)  # type: ignore[union-attr]
+    bench.when(lambda: bench.state == "held" and bench.executor._command_handler.current.is_settled, lambda: None)  # type: ignore[union-attr]
     bench.when(lambda: True, lambda: bench.command("resume"))
     bench.when(lambda: bench.state == "ended", bench.stop.set)
     bench.run()

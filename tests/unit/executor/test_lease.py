@@ -1,7 +1,7 @@
 import pytest
 
 from teachpath.errors import Conflict, UnusableInput
-from teachpath.executor.lease import GRANTED, USUAL, ControlLease
+from teachpath.executor.lease import DEFAULT_BEAT_INTERVAL, GRANT_DELAY, ControlLease
 from teachpath.io import wire
 from teachpath.records import LeaseRequest
 
@@ -17,7 +17,7 @@ class Desk:
         return self.lease.answer(LeaseRequest(action, name, token, **more)).token  # type: ignore[arg-type]
 
     def holder(self) -> str:
-        return self.lease.seen().holder
+        return self.lease.public_view().holder
 
 
 @pytest.fixture
@@ -32,7 +32,7 @@ def test_without_a_lease_everybody_may_command(desk: Desk) -> None:
 def test_one_at_a_time_and_its_token_is_its_own(desk: Desk) -> None:
     token = desk.say("acquire", "Ada")
     assert desk.lease.require(token, "") == "Ada"
-    assert desk.lease.seen().token == ""
+    assert desk.lease.public_view().token == ""
     for use in (lambda: desk.say("acquire", "Bea"), lambda: desk.lease.require("", "Bea")):
         with pytest.raises(Conflict, match="Ada is in control"):
             use()
@@ -45,25 +45,25 @@ def test_one_at_a_time_and_its_token_is_its_own(desk: Desk) -> None:
 def test_it_lapses_without_beats_and_not_with_them(desk: Desk) -> None:
     token = desk.say("acquire", "Ada")
     for _ in range(5):
-        desk.now += 0.9 * USUAL
+        desk.now += 0.9 * DEFAULT_BEAT_INTERVAL
         desk.say("beat", token=token)
     assert desk.holder() == "Ada"
-    desk.now += 1.1 * USUAL
+    desk.now += 1.1 * DEFAULT_BEAT_INTERVAL
     assert desk.holder() == ""
-    assert desk.lease.take_lost() == ""  # she did not ask for that
+    assert desk.lease.pop_lost_holder() == ""  # she did not ask for that
 
 
 def test_a_lost_holder_is_told_once(desk: Desk) -> None:
     desk.say("acquire", "Ada", hold_when_lost=True)
-    desk.now += 1.1 * USUAL
-    assert [desk.lease.take_lost(), desk.lease.take_lost()] == ["Ada", ""]
+    desk.now += 1.1 * DEFAULT_BEAT_INTERVAL
+    assert [desk.lease.pop_lost_holder(), desk.lease.pop_lost_holder()] == ["Ada", ""]
 
 
 @pytest.mark.parametrize("answer", ["release", "keep", "nothing"])
 def test_who_asks_gets_it_unless_the_holder_keeps_it(desk: Desk, answer: str) -> None:
     ada = desk.say("acquire", "Ada", seconds=60.0)
     bea = desk.say("ask", "Bea", seconds=8.0)
-    assert (desk.lease.seen().asking, desk.lease.seen().granted_in) == ("Bea", GRANTED)
+    assert (desk.lease.public_view().asking, desk.lease.public_view().granted_in) == ("Bea", GRANT_DELAY)
     with pytest.raises(Conflict, match="Bea asks for control already"):
         desk.say("ask", "Cem")
     with pytest.raises(Conflict, match="Ada is in control"):
@@ -71,7 +71,7 @@ def test_who_asks_gets_it_unless_the_holder_keeps_it(desk: Desk, answer: str) ->
     if answer != "nothing":
         desk.say(answer, token=ada)
     for _ in range(2):
-        desk.now += 0.55 * GRANTED
+        desk.now += 0.55 * GRANT_DELAY
         if answer != "keep":
             desk.say("beat", token=bea)
     assert desk.holder() == ("Ada" if answer == "keep" else "Bea")
@@ -83,7 +83,7 @@ def test_who_asks_gets_it_unless_the_holder_keeps_it(desk: Desk, answer: str) ->
 def test_who_asks_and_goes_away_gets_nothing(desk: Desk) -> None:
     ada = desk.say("acquire", "Ada", seconds=60.0)
     desk.say("ask", "Bea")
-    desk.now += 1.1 * GRANTED
+    desk.now += 1.1 * GRANT_DELAY
     assert desk.holder() == "Ada"
     desk.say("beat", token=ada)
 

@@ -57,7 +57,7 @@ class Bench:
         works = {f.__name__: f for f in (echo, refuse, block, crash, linger, fault)} | instead
         kinds = {name: JobKind(self.prepare, work, self.finish) for name, work in works.items()}
         settings = JobSettings(attempts=2)
-        self.jobs = Jobs(self.bus, KEYS, store, settings, kinds, finished=self.ended.put)
+        self.jobs = Jobs(self.bus, KEYS, store, settings, kinds, on_finished=self.ended.put)
 
     def prepare(self, job: Job) -> tuple[Any, ...]:
         return (job.request["word"],)

@@ -13,7 +13,7 @@ from teachpath.io.bus import MemoryBus
 from teachpath.io.store.motions import MotionHeader, Motions, read_motion
 from teachpath.motion.analysis.time_series import time_series
 from teachpath.records import ExecutorStatus, JournalEntry, Plan, Setpoint
-from teachpath.robot.motion_recorder import AFTER_NS, MotionRecorder
+from teachpath.robot.motion_recorder import SETTLING_NS, MotionRecorder
 from teachpath_proto.keys import Keys
 from tests.unit.executor.executors import Bench
 from tests.unit.motion.ways import MIDDLE, way
@@ -52,10 +52,10 @@ def test_a_motion_is_written_whole_and_read_back(tmp_path: Path, middle: Plan) -
     desk.send(7, "another")
     desk.bus.publish(KEYS.executor_journal, wire.encode_entry(JournalEntry(1, "Ada", "hold", "execution-1", "done")))
     desk.tell("ended")
-    desk.recorder.work()
+    desk.recorder.process_round()
     assert desk.motions.path("execution-1").suffix == ".part"
-    desk.now += AFTER_NS + 1
-    desk.recorder.work()
+    desk.now += SETTLING_NS + 1
+    desk.recorder.process_round()
     motion = read_motion(tmp_path / "execution-1.mcap")
     assert motion.fault == ""
     assert [s.cycle for s in motion.setpoints] == [0, 1, 2, 5]
@@ -78,10 +78,10 @@ def test_who_asks_right_after_the_end_waits_for_the_whole_file(tmp_path: Path) -
     desk.send(0)
     desk.tell("ended")
     with ThreadPoolExecutor() as pool:
-        asked = pool.submit(lambda: (desk.recorder.wait_for("execution-1"), desk.motions.path("execution-1"))[1])
-        desk.recorder.wait_for("execution-0")  # of another one nothing is to come
+        asked = pool.submit(lambda: (desk.recorder.wait_for_file("execution-1"), desk.motions.path("execution-1"))[1])
+        desk.recorder.wait_for_file("execution-0")  # of another one nothing is to come
         assert desk.motions.path("execution-1").suffix == ".part"
-        desk.now += AFTER_NS + 1
+        desk.now += SETTLING_NS + 1
         assert asked.result().suffix == ".mcap"
     desk.recorder.stop()
 
@@ -91,7 +91,7 @@ def test_a_file_that_a_kill_left_is_made_whole_at_the_next_start(tmp_path: Path)
     desk.recorder.begin(MotionHeader("execution-1", "puma560"))
     for cycle in range(500):
         desk.send(cycle)
-    desk.recorder.work()  # a second has passed: flushed
+    desk.recorder.process_round()  # a second has passed: flushed
     part = desk.motions.path("execution-1")
     torn = part.read_bytes()[:-7]
     desk.recorder.stop()
@@ -120,7 +120,7 @@ def test_a_full_disk_is_said_and_stops_no_arm(tmp_path: Path) -> None:
     desk.recorder.begin(MotionHeader("execution-1", "puma560"))
     for cycle in range(2000):
         desk.send(cycle)
-    desk.recorder.work()
+    desk.recorder.process_round()
     assert "execution-1 is not recorded" in desk.recorder.fault
     assert "make room on the disk" in desk.recorder.fault
     desk.recorder.stop()

@@ -36,9 +36,9 @@ def played(arrives: Arrival, left_out: Iterable[int] = (), seconds: float = 2.0)
             k = coming.pop(0)[1]
             nominal = round(1e9 * (1000 + k * PERIOD))
             p, v, a = wanted_at(k * PERIOD)
-            player.take(Setpoint(k, nominal, nominal, p, v, a, False, "e"), round(1e9 * (1000 + ms / 1e3)))
-        player.play(0.001, round(1e9 * (1000 + ms / 1e3)))
-        log.append(np.stack([player.wanted.position, player.wanted.velocity, player.wanted.acceleration]))
+            player.add(Setpoint(k, nominal, nominal, p, v, a, False, "e"), round(1e9 * (1000 + ms / 1e3)))
+        player.advance(0.001, round(1e9 * (1000 + ms / 1e3)))
+        log.append(np.stack([player.target.position, player.target.velocity, player.target.acceleration]))
     return player, np.array(log)
 
 
@@ -93,19 +93,19 @@ def test_who_is_behind_catches_up_at_a_standstill_without_a_jump() -> None:
         if ms % 4 == 0:
             k = ms // 4
             p, v, a = wanted_at(k * PERIOD)
-            player.take(Setpoint(k, round(1e9 * k * PERIOD), 0, p, v, a, k * PERIOD > 2.9, "e"), round(1e6 * ms))
+            player.add(Setpoint(k, round(1e9 * k * PERIOD), 0, p, v, a, k * PERIOD > 2.9, "e"), round(1e6 * ms))
         if ms % 2:  # its machine has time for half of what is to be done
             continue
-        player.play(0.001, round(1e6 * ms))
-        wanted = player.wanted
+        player.advance(0.001, round(1e6 * ms))
+        wanted = player.target
         log.append(np.stack([wanted.position, wanted.velocity, wanted.acceleration]))
-        if player.reached is not None and ms == 2000:
-            reached = ms // 4 - player.reached.cycle
+        if player.last_reached is not None and ms == 2000:
+            reached = ms // 4 - player.last_reached.cycle
     played = np.array(log)
     assert reached * PERIOD > 0.5  # amid the motion
-    assert player.reached is not None
-    assert (999 - player.reached.cycle) * PERIOD < DELAY + 3 * PERIOD
-    assert player.reached.gripper_closed
+    assert player.last_reached is not None
+    assert (999 - player.last_reached.cycle) * PERIOD < DELAY + 3 * PERIOD
+    assert player.last_reached.gripper_closed
     np.testing.assert_array_equal(played[-1, 0], GOAL)
     assert np.all(np.abs(np.diff(played[:, 0], axis=0)) <= 0.001 * SPEED)
     assert np.all(np.abs(played[:, 2]) <= ACCELERATION)
@@ -116,20 +116,20 @@ def test_a_player_that_computes_in_bursts_is_never_ahead_of_its_setpoints() -> N
     for burst in range(40):  # a rest of a second, the move, a rest: each 0.1 s of it heard, then played
         for k in range(25 * burst, 25 * burst + 25):
             p, v, a = wanted_at(k * PERIOD - 1.0)
-            player.take(Setpoint(k, round(1e9 * k * PERIOD), 0, p, v, a, False, "e"), round(1e8 * burst))
+            player.add(Setpoint(k, round(1e9 * k * PERIOD), 0, p, v, a, False, "e"), round(1e8 * burst))
         for ms in range(100 * burst, 100 * burst + 100):
-            player.play(0.001, round(1e6 * ms))
-            np.testing.assert_allclose(player.wanted.position, wanted_at(ms / 1e3 + 0.001 - DELAY - 1.0)[0], atol=1e-6)
+            player.advance(0.001, round(1e6 * ms))
+            np.testing.assert_allclose(player.target.position, wanted_at(ms / 1e3 + 0.001 - DELAY - 1.0)[0], atol=1e-6)
     assert player.late == 0
 
 
 def test_another_execution_begins_from_where_the_arm_is() -> None:
     player, log = played(in_time)
     now = round(1e9 * 1010)
-    player.take(Setpoint(0, now, now, GOAL + 0.004, START, START, False, "next"), now)
+    player.add(Setpoint(0, now, now, GOAL + 0.004, START, START, False, "next"), now)
     steps = []
     for ms in range(200):
-        player.play(0.001, now + round(1e6 * ms))
-        steps.append(player.wanted.position)
+        player.advance(0.001, now + round(1e6 * ms))
+        steps.append(player.target.position)
     assert np.abs(np.diff([log[-1, 0], *steps], axis=0)).max() < 1e-4
     np.testing.assert_allclose(steps[-1], GOAL + 0.004, atol=1e-9)

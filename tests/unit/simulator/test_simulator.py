@@ -41,7 +41,7 @@ class Bench:
             SETTINGS,
             clock=lambda: self.now,
             sleep=self._sleep,
-            doze=self._doze,
+            idle_wait=self._doze,
         )
         self.steps = 0  # of 1 ms that were computed
         self.bus.subscribe(KEYS.state("puma560"), lambda _, p: self.states.append(wire.decode_state(p)))

@@ -12,82 +12,82 @@ from teachpath.io.wire import decode_sample
 from teachpath.records import Sample
 from teachpath_proto.keys import Keys
 
-CLUTCH: Final = 4  # button that is pressed while the arm mirrors the hand
-AGAIN: Final = "let the clutch go, and press it again to move the arm"
-WAITING: Final = "press the clutch (button bit 2) to move the arm"
+CLUTCH_BUTTON: Final = 4  # button that is pressed while the arm mirrors the hand
+RELEASE_FIRST_HINT: Final = "let the clutch go, and press it again to move the arm"
+PRESS_HINT: Final = "press the clutch (button bit 2) to move the arm"
 
 
 class Clutch:
     """Follows a button that may be lost at any moment.
 
     Attributes:
-        pressed: whether the arm follows.
-        stopped: whether `hold` was asked for and not taken back.
-        why: the arm does not follow, in words.
+        engaged: whether the arm follows.
+        hold_requested: whether `hold` was asked for and not taken back.
+        reason: why the arm does not follow.
     """
 
     def __init__(self) -> None:
-        self.pressed = self.stopped = False
-        self.why = WAITING
-        self._fresh = False  # the button was up since
+        self.engaged = self.hold_requested = False
+        self.reason = PRESS_HINT
+        self._released = False  # the button was up since
 
-    def hear(self, down: bool) -> bool:
+    def update(self, pressed: bool) -> bool:
         """Take whether the button is down; return whether the clutch has just closed."""
-        if not down:
-            if self.pressed:
-                self.open(WAITING)
-            self._fresh = True
-            self.why = WAITING if self.why == AGAIN else self.why
-        elif self._fresh and not self.stopped:
-            self.pressed, self._fresh, self.why = True, False, ""
+        if not pressed:
+            if self.engaged:
+                self.disengage(PRESS_HINT)
+            self._released = True
+            self.reason = PRESS_HINT if self.reason == RELEASE_FIRST_HINT else self.reason
+        elif self._released and not self.hold_requested:
+            self.engaged, self._released, self.reason = True, False, ""
             return True
-        elif not self.pressed and not self.stopped:
-            self.why = AGAIN
+        elif not self.engaged and not self.hold_requested:
+            self.reason = RELEASE_FIRST_HINT
         return False
 
-    def open(self, why: str) -> None:
+    def disengage(self, reason: str) -> None:
         """Open it, whatever the button does: it must be up once before the arm follows again."""
-        self.pressed, self._fresh, self.why = False, False, why
+        self.engaged, self._released, self.reason = False, False, reason
 
     def hold(self) -> None:
         """Open it until `resume`."""
-        self.stopped = True
-        self.open("held")
+        self.hold_requested = True
+        self.disengage("held")
 
     def resume(self) -> None:
         """Let it be pressed again."""
-        self.stopped, self.why = False, WAITING
+        self.hold_requested, self.reason = False, PRESS_HINT
 
 
 class RemoteClutch:
     """Another tracker whose button is the clutch: somebody who looks on, while the hand has no button.
 
     Attributes:
-        down: whether the button was down in the newest tracked sample.
-        seen: when that came [ns of the clock].
+        pressed: whether the button was down in the newest tracked sample.
+        last_seen_ns: when that came [ns of the clock].
     """
 
     def __init__(self, bus: Bus, keys: Keys, tracker: str, clock: Callable[[], int]) -> None:
-        self.down, self.seen = False, 0
+        self.pressed, self.last_seen_ns = False, 0
         self._tracker = tracker
-        self._came: deque[tuple[int, bytes]] = deque(maxlen=1)
-        self._handle = bus.subscribe(keys.samples(tracker), lambda _, payload: self._came.append((clock(), payload)))
+        self._newest: deque[tuple[int, bytes]] = deque(maxlen=1)
+        self._handle = bus.subscribe(keys.samples(tracker), lambda _, payload: self._newest.append((clock(), payload)))
 
-    def listen(self) -> None:
+    def poll(self) -> None:
         """Read what came."""
-        if not self._came:
+        if not self._newest:
             return
-        when, payload = self._came.pop()
-        sample = tracked(self._tracker, payload, when)
+        when, payload = self._newest.pop()
+        sample = decode_tracked(self._tracker, payload, when)
         if sample is not None:
-            self.down, self.seen = bool(sample.buttons & CLUTCH), when
+            self.pressed, self.last_seen_ns = bool(sample.buttons & CLUTCH_BUTTON), when
 
     def close(self) -> None:
         """Stop listening."""
         self._handle.close()
 
 
-def tracked(tracker: str, payload: bytes, when: int) -> Sample | None:
+def decode_tracked(tracker: str, payload: bytes, when: int) -> Sample | None:
     """Return a sample, or None when it cannot be used or the hand was not tracked in it."""
     try:
         sample = decode_sample(tracker, payload, when)

@@ -11,9 +11,9 @@ from teachpath.motion.collision.collision_model import Load
 from teachpath.recording.phases import hand_closure
 from teachpath.records import JointState, Sample
 
-CLOSES: Final = 0.6  # closure of the hand above which the gripper closes
-OPENS: Final = 0.4  # and below which it opens
-HELD: Final = 0.05  # m, from the grasp point to the object's centre: farther off it is not in the gripper
+CLOSING_THRESHOLD: Final = 0.6  # closure of the hand above which the gripper closes
+OPENING_THRESHOLD: Final = 0.4  # and below which it opens
+MAX_GRASP_DISTANCE: Final = 0.05  # m, from the grasp point to the object's centre: farther off it is not in the gripper
 
 
 class GripperFollower:
@@ -26,17 +26,17 @@ class GripperFollower:
     def __init__(self, closed: bool) -> None:
         """Begin with the gripper as it is."""
         self.closed = closed
-        self._shut = closed  # whether the hand is
+        self._hand_closed = closed  # whether the hand is
 
-    def begin(self, sample: Sample) -> None:
+    def engage(self, sample: Sample) -> None:
         """Take the hand as it is now; what it does from here on counts."""
-        self._shut = hand_closure(sample) > (CLOSES + OPENS) / 2
+        self._hand_closed = hand_closure(sample) > (CLOSING_THRESHOLD + OPENING_THRESHOLD) / 2
 
     def follow(self, sample: Sample) -> None:
         """Close or open the gripper when the hand has closed or opened."""
         how = hand_closure(sample)
-        if (self._shut and how < OPENS) or (not self._shut and how > CLOSES):
-            self._shut = self.closed = not self._shut
+        if (self._hand_closed and how < OPENING_THRESHOLD) or (not self._hand_closed and how > CLOSING_THRESHOLD):
+            self._hand_closed = self.closed = not self._hand_closed
 
 
 def observed_load(arm: JointState, before: Load | None) -> Load | None:
@@ -52,6 +52,6 @@ def observed_load(arm: JointState, before: Load | None) -> Load | None:
     pose[:3, :3] = rotation_matrices(np.array([arm.object_orientation]))[0]
     pose[:3, 3] = arm.object_position
     tool = tool_pose(arm.position)
-    if arm.gripper_closed and np.linalg.norm(pose[:3, 3] - tool[:3, 3]) <= HELD:
+    if arm.gripper_closed and np.linalg.norm(pose[:3, 3] - tool[:3, 3]) <= MAX_GRASP_DISTANCE:
         return Load(grasp_pose=np.linalg.inv(tool) @ pose)
     return Load(position=arm.object_position, rotation=pose[:3, :3])

@@ -9,7 +9,7 @@ from typing import Final
 import numpy as np
 
 from teachpath.executor.joint_state_monitor import JointStateMonitor
-from teachpath.executor.teleop.clutch import CLUTCH, Clutch, RemoteClutch, tracked
+from teachpath.executor.teleop.clutch import CLUTCH_BUTTON, Clutch, RemoteClutch, decode_tracked
 from teachpath.executor.teleop.gripper import GripperFollower, observed_load
 from teachpath.io.bus import Bus
 from teachpath.motion.collision.collision_model import CollisionModel, Load
@@ -20,8 +20,8 @@ from teachpath.recording.demonstration import to_world
 from teachpath.records import Array, Sample, TeleopRequest
 from teachpath_proto.keys import Keys
 
-KEPT: Final = 5000  # latencies
-LATE: Final = "the arm is late; let the clutch go and press it again"
+MAX_LATENCIES: Final = 5000  # latencies
+LATE_ARM_HINT: Final = "the arm is late; let the clutch go and press it again"
 
 
 class TeleopProgram:
@@ -29,8 +29,8 @@ class TeleopProgram:
 
     Args:
         order: tracker, who presses its clutch, calibration, scene and scale.
-        here: (6,) where the arm rests [rad].
-        hearing: of the arm, which says what its gripper does and where the object is.
+        start_q: (6,) where the arm rests [rad].
+        joint_states: monitor of the arm, which says what its gripper does and where the object is.
         period: between two setpoints [s].
         silence: after which the hand is lost, or who presses its clutch [s].
         clock: monotonic nanoseconds.
@@ -44,70 +44,70 @@ class TeleopProgram:
         bus: Bus,
         keys: Keys,
         order: TeleopRequest,
-        here: Array,
+        start_q: Array,
         settings: MotionSettings,
         *,
-        hearing: JointStateMonitor,
+        joint_states: JointStateMonitor,
         period: float,
         silence: float,
         clock: Callable[[], int],
     ) -> None:
-        self._order, self._clock, self._hearing = order, clock, hearing
-        self._patience = silence * 1e9  # [ns]
-        self._grip = GripperFollower(hearing.present().gripper_closed)
+        self._order, self._clock, self._joint_states = order, clock, joint_states
+        self._silence_ns = silence * 1e9  # [ns]
+        self._gripper = GripperFollower(joint_states.current().gripper_closed)
         model = CollisionModel(order.scene)
-        self._mirror = TeleopFollower(model, here, settings, scale=order.scale, share=order.share, period=period)
+        self._follower = TeleopFollower(model, start_q, settings, scale=order.scale, share=order.share, period=period)
         if order.scene.carried is not None:
-            self._mirror.load = Load(position=order.scene.carried.position)
+            self._follower.load = Load(position=order.scene.carried.position)
         still = np.zeros(6)
-        self._moment = MotionState(np.array(here), still, still, self._grip.closed)
-        self._came: deque[tuple[int, bytes]] = deque(maxlen=1)
-        self._seen = 0  # [ns of the clock] when the newest tracked sample came
+        self._state = MotionState(np.array(start_q), still, still, self._gripper.closed)
+        self._newest: deque[tuple[int, bytes]] = deque(maxlen=1)
+        self._last_seen_ns = 0  # [ns of the clock] when the newest tracked sample came
         self._clutch = Clutch()
-        self._presser = RemoteClutch(bus, keys, order.clutch, clock) if order.clutch else None
-        self._latencies: deque[float] = deque(maxlen=KEPT)
-        self._answered = 0
+        self._remote_clutch = RemoteClutch(bus, keys, order.clutch, clock) if order.clutch else None
+        self._latencies: deque[float] = deque(maxlen=MAX_LATENCIES)
+        self._answered_stamp = 0
         self._handle = bus.subscribe(keys.samples(order.tracker), self._receive)
 
-    before = waits = False
-    over = False
+    before_path = waiting = False
+    finished = False
     progress = 0.0
-    length = 0.0
+    arc_length = 0.0
     override = 1.0
 
     @property
-    def standing(self) -> bool:
+    def at_rest(self) -> bool:
         """Whether the nominal motion is at rest."""
-        return self._mirror.standing
+        return self._follower.at_rest
 
     @property
     def held(self) -> bool:
         """Whether the clutch is open, or a hold was asked for."""
-        return not self._clutch.pressed
+        return not self._clutch.engaged
 
     @property
-    def stopped(self) -> bool:
+    def hold_requested(self) -> bool:
         """Whether `hold` was asked for and not taken back."""
-        return self._clutch.stopped
+        return self._clutch.hold_requested
 
     @property
-    def why_held(self) -> str:
+    def hold_reason(self) -> str:
         """Why the arm does not follow, in words."""
-        return self._clutch.why
+        return self._clutch.reason
 
     @property
-    def here(self) -> Array:
+    def current_q(self) -> Array:
         """The newest setpoint's configuration (6,) [rad]."""
-        return self._moment.position
+        return self._state.position
 
     @property
-    def doing(self) -> str:
+    def activity(self) -> str:
         """What it does, and why the tool is not where the hand is."""
         following = f"mirroring {self._order.tracker}"
-        return f"{following}: {self._mirror.reason}" if self._clutch.pressed and self._mirror.reason else following
+        return f"{following}: {self._follower.reason}" if self._clutch.engaged and self._follower.reason else following
 
     @property
-    def place(self) -> str:
+    def location(self) -> str:
         """Where it is, in words."""
         return f"while mirroring {self._order.tracker}"
 
@@ -122,33 +122,33 @@ class TeleopProgram:
     def step(self) -> MotionState:
         """Advance by one control period; never raises."""
         now = self._clock()
-        if self._presser is not None:
-            self._presser.listen()
-        if self._came:
-            self._hear(*self._came.pop())
-        if self._clutch.pressed:
-            self._watch(now)
-        position, velocity, acceleration = self._mirror.step()
-        if self._mirror.answered != self._answered:
-            self._answered = self._mirror.answered
-            self._latencies.append((now - self._answered) / 1e3)
-        self._moment = MotionState(position, velocity, acceleration, self._grip.closed)
-        return self._moment
+        if self._remote_clutch is not None:
+            self._remote_clutch.poll()
+        if self._newest:
+            self._take_sample(*self._newest.pop())
+        if self._clutch.engaged:
+            self._check_presence(now)
+        position, velocity, acceleration = self._follower.step()
+        if self._follower.answered_stamp != self._answered_stamp:
+            self._answered_stamp = self._follower.answered_stamp
+            self._latencies.append((now - self._answered_stamp) / 1e3)
+        self._state = MotionState(position, velocity, acceleration, self._gripper.closed)
+        return self._state
 
-    def think(self) -> None:
+    def advance_planning(self) -> None:
         """Do one piece of the work that leads to the next motion."""
-        self._mirror.think()
+        self._follower.advance_planning()
 
     def hold(self) -> None:
         """Open the clutch until `resume`."""
         self._clutch.hold()
-        self._mirror.release()
+        self._follower.disengage()
 
-    def wait(self, waits: bool) -> None:
+    def set_waiting(self, waiting: bool) -> None:
         """Open the clutch: the arm is late, and would be where the hand no longer is."""
-        if waits and self._clutch.pressed:
-            self._clutch.open(LATE)
-            self._mirror.release()
+        if waiting and self._clutch.engaged:
+            self._clutch.disengage(LATE_ARM_HINT)
+            self._follower.disengage()
 
     def resume(self) -> None:
         """Let the clutch be pressed again."""
@@ -166,44 +166,44 @@ class TeleopProgram:
     def close(self) -> None:
         """Stop listening to the tracker, and to who presses its clutch."""
         self._handle.close()
-        if self._presser is not None:
-            self._presser.close()
+        if self._remote_clutch is not None:
+            self._remote_clutch.close()
 
     def _receive(self, _: str, payload: bytes) -> None:
-        self._came.append((self._clock(), payload))
+        self._newest.append((self._clock(), payload))
 
-    def _watch(self, now: int) -> None:
+    def _check_presence(self, now: int) -> None:
         """Open the clutch when nobody presses it any more, or nothing is heard of those whom the arm follows."""
-        presser, why = self._presser, ""
-        if now - self._seen > self._patience:
+        presser, why = self._remote_clutch, ""
+        if now - self._last_seen_ns > self._silence_ns:
             why = "the hand was lost; let the clutch go and press it again"
-        elif presser is not None and now - presser.seen > self._patience:
+        elif presser is not None and now - presser.last_seen_ns > self._silence_ns:
             why = f"nothing was heard of {self._order.clutch}, who presses the clutch; press it again"
         if why:
-            self._clutch.open(why)
-        elif presser is not None and not presser.down:
-            self._clutch.hear(False)
-        if not self._clutch.pressed:
-            self._mirror.release()
+            self._clutch.disengage(why)
+        elif presser is not None and not presser.pressed:
+            self._clutch.update(False)
+        if not self._clutch.engaged:
+            self._follower.disengage()
 
-    def _hear(self, when: int, payload: bytes) -> None:
-        sample = tracked(self._order.tracker, payload, when)
+    def _take_sample(self, when: int, payload: bytes) -> None:
+        sample = decode_tracked(self._order.tracker, payload, when)
         if sample is None:
             return
-        self._seen = when
-        arm = self._hearing.newest(when)
+        self._last_seen_ns = when
+        arm = self._joint_states.latest(when)
         if arm is not None and self._order.scene.carried is not None:
-            self._mirror.load = observed_load(arm[1], self._mirror.load)
-        followed = self._clutch.pressed
-        down = self._presser.down if self._presser is not None else bool(sample.buttons & CLUTCH)
-        if self._clutch.hear(down):
-            self._grip.begin(sample)
-            self._mirror.press(self._world(sample))
-        elif self._clutch.pressed:
-            self._grip.follow(sample)
-            self._mirror.move(self._world(sample), when)
+            self._follower.load = observed_load(arm[1], self._follower.load)
+        followed = self._clutch.engaged
+        down = self._remote_clutch.pressed if self._remote_clutch is not None else bool(sample.buttons & CLUTCH_BUTTON)
+        if self._clutch.update(down):
+            self._gripper.engage(sample)
+            self._follower.engage(self._world(sample))
+        elif self._clutch.engaged:
+            self._gripper.follow(sample)
+            self._follower.set_hand(self._world(sample), when)
         elif followed:
-            self._mirror.release()
+            self._follower.disengage()
 
     def _world(self, sample: Sample) -> Array:
         return to_world(self._order.calibration, np.array(sample.position))

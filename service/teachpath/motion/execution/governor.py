@@ -19,20 +19,20 @@ from teachpath.motion.timing import kernels
 from teachpath.motion.timing.joint_moves import straight_move
 from teachpath.motion.timing.timed_trajectory import TimedTrajectory
 
-SLOWEST: Final = 0.01  # an override below this holds
-TRIES: Final = 20  # ramps judged in one period at most
-ROOM: Final = 1 + 1e-12
-AGREE: Final = 1e-6  # s, between the closed form of a ramp and Ruckig's
-BACKWARD: Final = 0.96  # rate of the way back at most: a plan has its reserve on the other side (see `shares`)
+MIN_OVERRIDE: Final = 0.01  # an override below this holds
+MAX_RAMPS_PER_PERIOD: Final = 20  # ramps judged in one period at most
+RUCKIG_MARGIN: Final = 1 + 1e-12
+DURATION_TOLERANCE: Final = 1e-6  # s, between the closed form of a ramp and Ruckig's
+MAX_REVERSE_RATE: Final = 0.96  # rate of the way back at most: a plan has its reserve on the other side (see `shares`)
 
 
 @dataclass(frozen=True, slots=True)
-class GovernorState:
+class PathProgress:
     """Where the arm is: `s` [m], `rate` of plan time; `standing` at rest, `finished` at rest at the end."""
 
     s: float
     rate: float
-    standing: bool
+    at_rest: bool
     finished: bool
 
 
@@ -49,7 +49,7 @@ class Governor:
         self._table, self._step, self._end, self._dt = track.table, track.step, track.duration, dt
         limits = track.limits
         self._limits = np.stack([limits.speed * dt, limits.acceleration * dt**2, limits.jerk * dt**3])
-        self._override, self._held, self._back, self._waits = _share(override), False, False, False
+        self._override, self._held, self._reversing, self._waiting = _share(override), False, False, False
         self._state = np.zeros(3)  # tau, its rate, the rate's derivative
         self._ramp = np.zeros(8)
         self._trial = np.zeros(8)
@@ -67,12 +67,12 @@ class Governor:
     @property
     def held(self) -> bool:
         """Whether rest was asked for, by `hold` or an override of zero."""
-        return self._held or self._override < SLOWEST
+        return self._held or self._override < MIN_OVERRIDE
 
     @property
-    def backward(self) -> bool:
+    def reversing(self) -> bool:
         """Whether the way back was asked for."""
-        return self._back
+        return self._reversing
 
     @property
     def motion(self) -> Array:
@@ -80,11 +80,11 @@ class Governor:
         return self._motion
 
     @property
-    def progress(self) -> GovernorState:
+    def progress(self) -> PathProgress:
         """The present state."""
         tau, rate, slope = self._state
         standing = bool(rate == 0.0 and slope == 0.0)
-        return GovernorState(float(self._motion[0, 6]), float(rate), standing, standing and bool(tau >= self._end))
+        return PathProgress(float(self._motion[0, 6]), float(rate), standing, standing and bool(tau >= self._end))
 
     def set_override(self, share: float) -> None:
         """Go at `share` of the full speed from now on, clipped to 0 to 1; zero holds."""
@@ -94,24 +94,24 @@ class Governor:
         """Come to rest as soon as the limits allow."""
         self._held = True
 
-    def wait(self, waits: bool) -> None:
+    def set_waiting(self, waiting: bool) -> None:
         """Come to rest as for `hold`, or go on as is asked for; `held` does not tell of it."""
-        self._waits = waits
+        self._waiting = waiting
 
     def resume(self) -> None:
         """Go on to the end."""
-        self._held = self._back = False
+        self._held = self._reversing = False
 
     def reverse(self) -> None:
         """Go back along the path to its beginning, at 96 % of the full speed at most."""
-        self._held, self._back = False, True
+        self._held, self._reversing = False, True
 
-    def place(self, tau: float) -> None:
+    def rest_at(self, tau: float) -> None:
         """Stand at plan time `tau` [s], held; only for an arm that rests there already."""
         self._rest(min(max(tau, 0.0), self._end))
         kernels.evaluate_motion(self._table, self._step, self._state, self._motion)
         self._sent[:] = self._motion[0, :6]
-        self._held, self._back = True, False
+        self._held, self._reversing = True, False
 
     @property
     def tau(self) -> float:
@@ -124,21 +124,25 @@ class Governor:
         return self._state.copy()
 
     @property
-    def wish(self) -> float:
+    def target_rate(self) -> float:
         """The rate now asked for, negative on the way back."""
-        return 0.0 if self.held or self._waits else (-min(self._override, BACKWARD) if self._back else self._override)
+        return (
+            0.0
+            if self.held or self._waiting
+            else (-min(self._override, MAX_REVERSE_RATE) if self._reversing else self._override)
+        )
 
     @property
-    def bound_for(self) -> float:
+    def ramp_end_rate(self) -> float:
         """The rate in which the ramp now followed ends; it is `wish` as soon as that could be answered."""
         return float(self._ramp[7])
 
-    def step(self) -> GovernorState:
+    def step(self) -> PathProgress:
         """Advance by one control period; never raises."""
-        wish = self.wish
+        wish = self.target_rate
         left = self._ramp[3] + self._ramp[4] + self._ramp[5] - self._elapsed
         if self._ramp[7] != wish or left > 0.0:
-            self._turn_to(wish, left if self._ramp[7] == wish else np.inf)
+            self._change_rate(wish, left if self._ramp[7] == wish else np.inf)
         self._elapsed += self._dt
         state = self._state
         state[:] = kernels.evaluate_ramp(self._ramp, self._elapsed)
@@ -150,21 +154,30 @@ class Governor:
         self._sent[2] = self._motion[0, :6]
         return self.progress
 
-    def _turn_to(self, wish: float, within: float) -> None:
+    def _change_rate(self, wish: float, within: float) -> None:
         trial, state = self._trial, self._state
         if (state[0] <= 0.0 and wish >= 0.0) or (state[0] >= self._end and wish <= 0.0):
             trial[:] = (state[0], wish, 0.0, 0.0, 0.0, 0.0, 0.0, wish)
             kept = kernels.check_ramp(self._table, self._step, trial, self._sent, self._limits, self._dt)
             if kept[0] == kernels.KEPT:
-                self._follow()
+                self._accept_trial()
             return
         peak = kernels.find_ramp(
-            self._table, self._step, state, wish, self._sent, self._limits, self._dt, within, TRIES, trial
+            self._table,
+            self._step,
+            state,
+            wish,
+            self._sent,
+            self._limits,
+            self._dt,
+            within,
+            MAX_RAMPS_PER_PERIOD,
+            trial,
         )
-        if peak >= 0.0 and self._confirmed(peak):
-            self._follow()
+        if peak >= 0.0 and self._ruckig_agrees(peak):
+            self._accept_trial()
 
-    def _follow(self) -> None:
+    def _accept_trial(self) -> None:
         self._ramp[:] = self._trial
         self._elapsed = 0.0
 
@@ -174,14 +187,14 @@ class Governor:
         self._ramp[0] = tau
         self._elapsed = 0.0
 
-    def _confirmed(self, peak: float) -> bool:
+    def _ruckig_agrees(self, peak: float) -> bool:
         """Tell whether Ruckig finds the same ramp."""
         trial, inputs = self._trial, self._inputs
         inputs.current_position, inputs.current_velocity = [float(trial[0])], [float(trial[1])]
         inputs.current_acceleration, inputs.target_velocity = [float(trial[2])], [float(trial[7])]
         # Room for the present acceleration, on its side alone: without it Ruckig would brake first, and with as much
         # on the other side it would go beyond the peak.
-        along, against = peak * ROOM, max(peak, abs(float(trial[2]))) * ROOM
+        along, against = peak * RUCKIG_MARGIN, max(peak, abs(float(trial[2]))) * RUCKIG_MARGIN
         upward, downward = (along, against) if trial[6] > 0.0 else (against, along)
         inputs.max_acceleration, inputs.min_acceleration = [upward], [-downward]
         inputs.max_jerk = [abs(float(trial[6]))]
@@ -190,7 +203,7 @@ class Governor:
         except RuckigError:
             return False
         closed_form = float(trial[3] + trial[4] + trial[5])
-        return bool(result == Result.Working and abs(self._answer.duration - closed_form) <= AGREE)
+        return bool(result == Result.Working and abs(self._answer.duration - closed_form) <= DURATION_TOLERANCE)
 
 
 def warm_up(dt: float) -> None:

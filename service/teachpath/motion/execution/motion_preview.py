@@ -11,12 +11,12 @@ from scipy.spatial.transform import Rotation
 
 from teachpath.motion.arm.kinematics import tool_pose
 from teachpath.motion.arm.puma560 import Array
-from teachpath.motion.execution.segments import Segment, stretches
+from teachpath.motion.execution.segments import Segment, plan_segments
 from teachpath.motion.planning.certificate import verify
 from teachpath.motion.settings import MotionSettings
 from teachpath.records import MotionPreview, Plan, SegmentInterval
 
-MOST: Final = 6000  # instants; a plan that takes longer has them farther apart
+MAX_INSTANTS: Final = 6000  # instants; a plan that takes longer has them farther apart
 
 
 def preview_motion(plan: Plan, settings: MotionSettings, *, dwell: float, rate: float = 50.0) -> MotionPreview:
@@ -32,12 +32,12 @@ def preview_motion(plan: Plan, settings: MotionSettings, *, dwell: float, rate: 
         PathRefused: the plan has changed since it was certified, or the way from home to its start is not free.
     """
     verify(plan)
-    parts = stretches(plan, np.array(settings.home), settings, dwell)
-    begins = np.concatenate([[0.0], np.cumsum([_lasting(part) for part in parts])])
-    times = np.linspace(0.0, begins[-1], min(int(np.ceil(begins[-1] * rate)) + 1, MOST))
+    parts = plan_segments(plan, np.array(settings.home), settings, dwell)
+    begins = np.concatenate([[0.0], np.cumsum([_duration(part) for part in parts])])
+    times = np.linspace(0.0, begins[-1], min(int(np.ceil(begins[-1] * rate)) + 1, MAX_INSTANTS))
     which = np.clip(np.searchsorted(begins, times, side="right") - 1, 0, len(parts) - 1)
     rows = _rows(parts, begins, times, which, np.array(settings.home))
-    taught = next(index for index, part in enumerate(parts) if part.taught)
+    taught = next(index for index, part in enumerate(parts) if part.is_path)
     share = np.clip(rows[:, 6] / plan.lengths[-1], 0.0, 1.0)  # the track ends within rounding of the length
     positions, orientations = _object(plan, rows[:, :6], which - taught)
     return MotionPreview(
@@ -61,16 +61,16 @@ def _rows(parts: Sequence[Segment], begins: Array, times: Array, which: NDArray[
     here = np.append(home, 0.0)
     for index, (part, begin) in enumerate(zip(parts, begins[:-1], strict=True)):
         mine = which == index
-        if part.track is None:
+        if part.trajectory is None:
             rows[mine] = here
         else:
-            rows[mine] = part.track(times[mine] - begin)
-            here = part.track(np.array([part.track.duration]))[0]
+            rows[mine] = part.trajectory(times[mine] - begin)
+            here = part.trajectory(np.array([part.trajectory.duration]))[0]
     return rows
 
 
-def _lasting(part: Segment) -> float:
-    return part.track.duration if part.track is not None else part.rest
+def _duration(part: Segment) -> float:
+    return part.trajectory.duration if part.trajectory is not None else part.rest_time
 
 
 def _object(plan: Plan, joints: Array, since: NDArray[np.intp]) -> tuple[Array, Array]:

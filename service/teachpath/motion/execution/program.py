@@ -10,15 +10,15 @@ import numpy as np
 
 from teachpath.errors import Conflict
 from teachpath.motion.arm.puma560 import Array
-from teachpath.motion.execution.governor import SLOWEST, Governor
-from teachpath.motion.execution.segments import Detour, MotionState, Segment, plan_return_path, stretches
+from teachpath.motion.execution.governor import MIN_OVERRIDE, Governor
+from teachpath.motion.execution.segments import Detour, MotionState, Segment, plan_return_path, plan_segments
 from teachpath.motion.planning.certificate import verify
 from teachpath.motion.settings import MotionSettings
 from teachpath.motion.timing.jog import jog_trajectory, time_at_length
 from teachpath.motion.timing.timed_trajectory import TimedTrajectory
 from teachpath.records import Plan
 
-REACHED: Final = 1e-5  # m, a node as near as this is where the arm is
+NODE_TOLERANCE: Final = 1e-5  # m, a node as near as this is where the arm is
 
 
 class PlanProgram:
@@ -26,7 +26,7 @@ class PlanProgram:
 
     Args:
         plan: certified; checked again here.
-        here: (6,) where the arm really is, at rest [rad].
+        start_q: (6,) where the arm really is, at rest [rad].
         settings: as for planning.
         override: share of the full speed, 0 to 1.
         dwell: how long the gripper takes to close or open [s].
@@ -39,7 +39,7 @@ class PlanProgram:
     def __init__(
         self,
         plan: Plan,
-        here: Array,
+        start_q: Array,
         settings: MotionSettings,
         *,
         override: float = 1.0,
@@ -48,63 +48,63 @@ class PlanProgram:
     ) -> None:
         verify(plan)
         self._plan, self._settings = plan, settings
-        self._rest_of: Iterator[Segment] = iter(stretches(plan, here, settings, dwell))
+        self._remaining: Iterator[Segment] = iter(plan_segments(plan, start_q, settings, dwell))
         self._length = float(plan.lengths[-1])
-        self._override, self._held, self._waits, self._period = override, False, False, period
+        self._override, self._held, self._waiting, self._period = override, False, False, period
         self._elapsed = 0.0
-        self._done = 0.0
+        self._arc_length = 0.0
         still = np.zeros(6)
-        self._moment = MotionState(np.array(here, dtype=np.float64), still, still, False)
-        self._stretch: Segment | None = None
+        self._state = MotionState(np.array(start_q, dtype=np.float64), still, still, False)
+        self._segment: Segment | None = None
         self._governor: Governor | None = None  # of the stretch
-        self._aside: Detour | None = None
-        self._aside_governors: deque[Governor] = deque()
+        self._detour: Detour | None = None
+        self._detour_governors: deque[Governor] = deque()
         self._advance()
 
     @property
-    def before(self) -> bool:
+    def before_path(self) -> bool:
         """Whether what it does comes before the path is followed."""
-        return self._stretch is not None and self._stretch.before
+        return self._segment is not None and self._segment.before_path
 
     @property
-    def over(self) -> bool:
+    def finished(self) -> bool:
         """Whether all is done."""
-        return self._stretch is None
+        return self._segment is None
 
     @property
-    def standing(self) -> bool:
+    def at_rest(self) -> bool:
         """Whether the arm's nominal motion is at rest."""
-        governor = self._driver
-        return governor is None or governor.progress.standing
+        governor = self._active_governor
+        return governor is None or governor.progress.at_rest
 
     @property
     def held(self) -> bool:
         """Whether rest was asked for, by `hold` or an override of zero, or nothing is left of the way back."""
-        governor = self._driver
-        returned = governor is not None and governor.backward and governor.progress.standing and not self._waits
-        return self._held or self._override < SLOWEST or returned
+        governor = self._active_governor
+        returned = governor is not None and governor.reversing and governor.progress.at_rest and not self._waiting
+        return self._held or self._override < MIN_OVERRIDE or returned
 
     @property
-    def why_held(self) -> str:
+    def hold_reason(self) -> str:
         """Why it stands without having been told to, in words."""
-        if self._override < SLOWEST:
+        if self._override < MIN_OVERRIDE:
             return f"the override is {self._override:g}"
-        return "" if self._held else f"back at the beginning {self.place}; resume to go on"
+        return "" if self._held else f"back at the beginning {self.location}; resume to go on"
 
     @property
-    def stopped(self) -> bool:
+    def hold_requested(self) -> bool:
         """Whether `hold` was asked for and not taken back."""
         return self._held
 
     @property
-    def waits(self) -> bool:
+    def waiting(self) -> bool:
         """Whether it waits for an arm that is late."""
-        return self._waits
+        return self._waiting
 
     @property
-    def here(self) -> Array:
+    def current_q(self) -> Array:
         """The newest setpoint's configuration (6,) [rad]."""
-        return self._moment.position
+        return self._state.position
 
     @property
     def override(self) -> float:
@@ -114,26 +114,26 @@ class PlanProgram:
     @property
     def progress(self) -> float:
         """Share of the learned path's length that is done, 0 to 1."""
-        return min(self._done / self._length, 1.0)
+        return min(self._arc_length / self._length, 1.0)
 
     @property
-    def length(self) -> float:
+    def arc_length(self) -> float:
         """How far along the learned path it is [m]."""
-        return self._done
+        return self._arc_length
 
     @property
-    def doing(self) -> str:
+    def activity(self) -> str:
         """What it does, in words."""
-        if self._aside is not None and self._aside.name:
-            return self._aside.name
-        return self._stretch.name if self._stretch is not None else ""
+        if self._detour is not None and self._detour.name:
+            return self._detour.name
+        return self._segment.name if self._segment is not None else ""
 
     @property
-    def place(self) -> str:
+    def location(self) -> str:
         """Where the execution is, in words."""
-        if self._stretch is None:
+        if self._segment is None:
             return "at its end"
-        return f"at s = {self._done:.3f} m" if self.doing == "on the path" else self.doing
+        return f"at s = {self._arc_length:.3f} m" if self.activity == "on the path" else self.activity
 
     def hold(self) -> None:
         """Come to rest on the path as soon as the limits allow."""
@@ -141,11 +141,11 @@ class PlanProgram:
         for governor in self._governors():
             governor.hold()
 
-    def wait(self, waits: bool) -> None:
+    def set_waiting(self, waiting: bool) -> None:
         """Come to rest on the path until the arm has caught up, or go on as was asked for."""
-        self._waits = waits
+        self._waiting = waiting
         for governor in self._governors():
-            governor.wait(waits)
+            governor.set_waiting(waiting)
 
     def resume(self) -> None:
         """Go on."""
@@ -159,8 +159,8 @@ class PlanProgram:
             self.hold()
             return
         self._held = False
-        step = self._aside is not None and self._aside.landing is not None
-        for governor in self._aside_governors if step else [*self._aside_governors, self._governor]:
+        step = self._detour is not None and self._detour.end_time is not None
+        for governor in self._detour_governors if step else [*self._detour_governors, self._governor]:
             if governor is self._governor or step:
                 governor.reverse()
             else:
@@ -182,98 +182,100 @@ class PlanProgram:
         Raises:
             Conflict: the arm is not held on the path, or the path ends there.
         """
-        stretch, governor = self._stretch, self._governor
-        if stretch is None or stretch.track is None or governor is None or not stretch.taught:
+        stretch, governor = self._segment, self._governor
+        if stretch is None or stretch.trajectory is None or governor is None or not stretch.is_path:
             raise Conflict(
-                f"steps are taken on the path; the arm is {self.doing or 'at rest'}: resume, and hold it there"
+                f"steps are taken on the path; the arm is {self.activity or 'at rest'}: resume, and hold it there"
             )
-        if self._aside is not None and self._aside.landing is None:
-            raise Conflict(f"the arm is {self.doing}; resume, and hold it on the path")
-        if not (self.held and self.standing):
+        if self._detour is not None and self._detour.end_time is None:
+            raise Conflict(f"the arm is {self.activity}; resume, and hold it on the path")
+        if not (self.held and self.at_rest):
             raise Conflict("the arm still moves; hold it first, then step")
-        goal = self._node(nodes) if nodes else self._done + length
-        landing = time_at_length(stretch.track, min(max(goal, 0.0), self._length))
-        begin = governor.tau if self._aside is None else time_at_length(stretch.track, self._done)
-        return Detour("", (jog_trajectory(stretch.track, begin, landing, 1.0 / self._period),), landing)
+        goal = self._node(nodes) if nodes else self._arc_length + length
+        landing = time_at_length(stretch.trajectory, min(max(goal, 0.0), self._length))
+        begin = governor.tau if self._detour is None else time_at_length(stretch.trajectory, self._arc_length)
+        return Detour("", (jog_trajectory(stretch.trajectory, begin, landing, 1.0 / self._period),), landing)
 
     def _node(self, count: int) -> float:
         """Return the length [m] of the node that is `count` nodes away; one that is reached already does not count."""
         lengths = self._plan.lengths
         if count > 0:
-            node = int(np.searchsorted(lengths, self._done + REACHED, side="right")) + count - 1
+            node = int(np.searchsorted(lengths, self._arc_length + NODE_TOLERANCE, side="right")) + count - 1
         else:
-            node = int(np.searchsorted(lengths, self._done - REACHED, side="left")) + count
+            node = int(np.searchsorted(lengths, self._arc_length - NODE_TOLERANCE, side="left")) + count
         return float(lengths[min(max(node, 0), len(lengths) - 1)])
 
-    def plan_return(self, here: Array) -> Detour:
+    def plan_return(self, start_q: Array) -> Detour:
         """Work out the way back from `here` (6,) to the point where the arm was held; `take_aside` begins it.
 
         Raises:
             PathRefused: the way is not free.
         """
-        assert self._stretch is not None
-        tracks = plan_return_path(self._plan, self._stretch, here, self.here, self._settings)
+        assert self._segment is not None
+        tracks = plan_return_path(self._plan, self._segment, start_q, self.current_q, self._settings)
         return Detour("on the way back to the path", tuple(tracks))
 
-    def take_aside(self, aside: Detour) -> None:
+    def start_detour(self, detour: Detour) -> None:
         """Begin a step or a way back; the arm rests at its beginning."""
-        self._aside = aside if aside.tracks else None
-        self._aside_governors = deque(self._governor_of(track) for track in aside.tracks)
+        self._detour = detour if detour.trajectories else None
+        self._detour_governors = deque(self._governor_of(track) for track in detour.trajectories)
         self._held = False
 
     def step(self) -> MotionState:
         """Advance by one control period and return the nominal motion; never raises."""
-        stretch, governor = self._stretch, self._driver
+        stretch, governor = self._segment, self._active_governor
         if stretch is None:
-            return self._moment
+            return self._state
         if governor is None:
-            self._elapsed += 0.0 if self.held or self._waits else self._period
-            if self._elapsed >= stretch.rest:
+            self._elapsed += 0.0 if self.held or self._waiting else self._period
+            if self._elapsed >= stretch.rest_time:
                 self._advance()
-            return self._moment
+            return self._state
         state = governor.step()
-        on_path = stretch.taught and self.doing == stretch.name
+        on_path = stretch.is_path and self.activity == stretch.name
         if on_path:
-            self._done = self._length if state.finished else state.s  # the table ends within rounding of the length
+            self._arc_length = (
+                self._length if state.finished else state.s
+            )  # the table ends within rounding of the length
         position, velocity, acceleration = governor.motion[:, :6].copy()
-        self._moment = MotionState(position, velocity, acceleration, stretch.gripper_closed, on_path)
+        self._state = MotionState(position, velocity, acceleration, stretch.gripper_closed, on_path)
         if state.finished and not self.held:
             self._finish()
-        return self._moment
+        return self._state
 
     @property
-    def _driver(self) -> Governor | None:
-        return self._aside_governors[0] if self._aside_governors else self._governor
+    def _active_governor(self) -> Governor | None:
+        return self._detour_governors[0] if self._detour_governors else self._governor
 
     def _governors(self) -> list[Governor]:
-        return [*self._aside_governors, *([self._governor] if self._governor is not None else [])]
+        return [*self._detour_governors, *([self._governor] if self._governor is not None else [])]
 
     def _governor_of(self, track: TimedTrajectory) -> Governor:
         governor = Governor(track, self._period, override=self._override)
-        governor.wait(self._waits)
+        governor.set_waiting(self._waiting)
         return governor
 
     def _finish(self) -> None:
-        aside = self._aside
+        aside = self._detour
         if aside is None:
             self._advance()
             return
-        self._aside_governors.popleft()
-        if self._aside_governors:
+        self._detour_governors.popleft()
+        if self._detour_governors:
             return
-        self._aside = None
-        if aside.landing is not None and self._governor is not None:
-            self._governor.place(aside.landing)
+        self._detour = None
+        if aside.end_time is not None and self._governor is not None:
+            self._governor.rest_at(aside.end_time)
             self._held = True
 
     def _advance(self) -> None:
-        self._stretch = next(self._rest_of, None)
+        self._segment = next(self._remaining, None)
         self._elapsed, self._governor = 0.0, None
-        if self._stretch is None:
+        if self._segment is None:
             return
-        closed = self._stretch.gripper_closed
-        self._moment = MotionState(self._moment.position, np.zeros(6), np.zeros(6), closed)
-        if self._stretch.track is not None:
-            self._governor = self._governor_of(self._stretch.track)
+        closed = self._segment.gripper_closed
+        self._state = MotionState(self._state.position, np.zeros(6), np.zeros(6), closed)
+        if self._segment.trajectory is not None:
+            self._governor = self._governor_of(self._segment.trajectory)
             if self._held:
                 self._governor.hold()

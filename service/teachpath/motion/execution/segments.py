@@ -18,7 +18,7 @@ from teachpath.motion.timing.limit_margins import SYMMETRIC_MARGINS
 from teachpath.motion.timing.timed_trajectory import TimedTrajectory
 from teachpath.records import Plan
 
-NOWHERE: Final = 1e-9  # rad, a move shorter than this is none
+MIN_MOVE: Final = 1e-9  # rad, a move shorter than this is none
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,13 +38,13 @@ class Detour:
 
     Attributes:
         name: in words, for the operator; empty on the path.
-        tracks: one behind the other.
-        landing: plan time [s] at which a step ends; None for a way back, behind which the program goes on.
+        trajectories: one behind the other.
+        end_time: plan time [s] at which a step ends; None for a way back, behind which the program goes on.
     """
 
     name: str
-    tracks: tuple[TimedTrajectory, ...]
-    landing: float | None = None
+    trajectories: tuple[TimedTrajectory, ...]
+    end_time: float | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,21 +53,21 @@ class Segment:
 
     Attributes:
         name: in words, for the operator.
-        before: whether it comes before the path is followed.
-        taught: whether this is the learned path itself.
+        before_path: whether it comes before the path is followed.
+        is_path: whether this is the learned path itself.
         gripper_closed: while it lasts.
-        rest: how long a rest lasts [s].
+        rest_time: how long a rest lasts [s].
     """
 
     name: str
-    before: bool
+    before_path: bool
     gripper_closed: bool
-    track: TimedTrajectory | None = None
-    rest: float = 0.0
-    taught: bool = False
+    trajectory: TimedTrajectory | None = None
+    rest_time: float = 0.0
+    is_path: bool = False
 
 
-def stretches(plan: Plan, here: Array, settings: MotionSettings, dwell: float) -> list[Segment]:
+def plan_segments(plan: Plan, start_q: Array, settings: MotionSettings, dwell: float) -> list[Segment]:
     """Return what an execution does from `here` (6,) to its end.
 
     Raises:
@@ -76,23 +76,23 @@ def stretches(plan: Plan, here: Array, settings: MotionSettings, dwell: float) -
     carries = plan.scene.carried is not None
     load = Load(position=plan.scene.carried.position) if plan.scene.carried else None
     model = CollisionModel(plan.scene)
-    stops = joint_waypoints(model, here, plan.above_start, settings, load=load, gripper_open=carries)
+    stops = joint_waypoints(model, start_q, plan.above_start, settings, load=load, gripper_open=carries)
     start, goal = plan.joints[0], plan.joints[-1]
     leave = waypoints_home(model, start, goal, plan.above_goal, settings)
     closed = not carries
     return [
         *[piece for a, b in pairwise(stops) for piece in _move("on the approach", a, b, True, closed, settings)],
         *_move("on the way down", plan.above_start, start, True, closed, settings),
-        Segment("closing the gripper", True, True, rest=dwell if carries else 0.0),
-        Segment("on the path", False, True, plan_trajectory(plan), taught=True),
-        Segment("opening the gripper", False, closed, rest=dwell if carries else 0.0),
+        Segment("closing the gripper", True, True, rest_time=dwell if carries else 0.0),
+        Segment("on the path", False, True, plan_trajectory(plan), is_path=True),
+        Segment("opening the gripper", False, closed, rest_time=dwell if carries else 0.0),
         *_move("on the way up", goal, plan.above_goal, False, closed, settings),
         *_move("on the way home", *leave, False, closed, settings),
     ]
 
 
 def plan_return_path(
-    plan: Plan, stretch: Segment, here: Array, there: Array, settings: MotionSettings
+    plan: Plan, segment: Segment, start_q: Array, goal_q: Array, settings: MotionSettings
 ) -> list[TimedTrajectory]:
     """Lead the arm from `here` (6,) back to the point `there` of a stretch at which it was held, slowly.
 
@@ -101,24 +101,24 @@ def plan_return_path(
     """
     carried = plan.scene.carried
     load = None
-    if carried is not None and stretch.gripper_closed:
+    if carried is not None and segment.gripper_closed:
         load = grasped_load(plan.scene, plan.joints[0])
-    elif carried is not None and stretch.before:
+    elif carried is not None and segment.before_path:
         load = Load(position=carried.position)
     elif carried is not None:
         load = placed_load(plan.scene, plan.joints[0], plan.joints[-1])
-    opened = carried is not None and not stretch.gripper_closed
+    opened = carried is not None and not segment.gripper_closed
     what = "on the way back to the path"
     stops = joint_waypoints(
-        CollisionModel(plan.scene), here, there, settings, load=load, gripper_open=opened, move_name=what
+        CollisionModel(plan.scene), start_q, goal_q, settings, load=load, gripper_open=opened, move_name=what
     )
     limits = ARM_LIMITS.scaled(*[settings.move_share] * 3)
-    legs = [(a, b) for a, b in pairwise(stops) if np.abs(b - a).max() >= NOWHERE]
+    legs = [(a, b) for a, b in pairwise(stops) if np.abs(b - a).max() >= MIN_MOVE]
     return [straight_move(a, b, limits, margins=SYMMETRIC_MARGINS) for a, b in legs]
 
 
 def _move(name: str, start: Array, goal: Array, before: bool, closed: bool, settings: MotionSettings) -> list[Segment]:
-    if np.abs(goal - start).max() < NOWHERE:
+    if np.abs(goal - start).max() < MIN_MOVE:
         return []
     limits = ARM_LIMITS.scaled(*[settings.move_share] * 3)
     return [Segment(name, before, closed, straight_move(start, goal, limits, margins=SYMMETRIC_MARGINS))]

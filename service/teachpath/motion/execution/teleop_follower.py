@@ -22,27 +22,29 @@ from teachpath.motion.arm.puma560 import LOWER, UPPER, Array
 from teachpath.motion.collision.collision_model import CollisionModel, Load
 from teachpath.motion.settings import MotionSettings
 
-AHEAD: Final = 6  # control periods between a thought and its motion
-CHUNK: Final = 3  # configurations that are checked in one piece of work
-FARTHEST: Final = 0.25  # rad, that the arm is led ahead at once: more could not be checked in time
-APART: Final = 0.03  # rad, between two configurations that are checked
-WAY: Final = 8  # places on the way to where the hand points that are solved at once
-LEAD: Final = 0.2  # m, that the tool is led ahead at once
-LEAST: Final = 0.02  # share of the way that is tried at least
-JUMP: Final = 0.6  # rad, a turn between two of them that would be another motion of the arm
-GUARD: Final = 0.015  # m, kept clear besides `clearance_min`, for what lies between two checked configurations
-SHYER: Final = 0.5  # share of the way that is tried after something was too near
-NOWHERE: Final = 1e-4  # rad, a way shorter than this is none
-STILL: Final = 1e-9  # rad/s
+LEAD_PERIODS: Final = 6  # control periods between a thought and its motion
+CHECKS_PER_SLICE: Final = 3  # configurations that are checked in one piece of work
+MAX_JOINT_LEAD: Final = 0.25  # rad, that the arm is led ahead at once: more could not be checked in time
+MAX_SAMPLE_STEP: Final = 0.03  # rad, between two configurations that are checked
+POSES_PER_SOLVE: Final = 8  # places on the way to where the hand points that are solved at once
+MAX_TOOL_LEAD: Final = 0.2  # m, that the tool is led ahead at once
+MIN_SHARE: Final = 0.02  # share of the way that is tried at least
+MAX_JOINT_JUMP: Final = 0.6  # rad, a turn between two of them that would be another motion of the arm
+SAMPLING_CLEARANCE: Final = (
+    0.015  # m, kept clear besides `clearance_min`, for what lies between two checked configurations
+)
+BACKOFF_FACTOR: Final = 0.5  # share of the way that is tried after something was too near
+MIN_MOVE: Final = 1e-4  # rad, a way shorter than this is none
+REST_SPEED: Final = 1e-9  # rad/s
 
 
 @dataclass(frozen=True, eq=False)
-class _Next:
+class _PlannedMotion:
     """A checked motion that begins in a given control period."""
 
     cycle: int
-    run: Trajectory
-    heard: int  # stamp of the hand's sample that it answers
+    trajectory: Trajectory
+    stamp: int  # stamp of the hand's sample that it answers
 
 
 class TeleopFollower:
@@ -50,7 +52,7 @@ class TeleopFollower:
 
     Args:
         model: of the scene.
-        here: (6,) where the arm rests [rad]; the tool keeps the orientation that it has there.
+        start_q: (6,) where the arm rests [rad]; the tool keeps the orientation that it has there.
         settings: home, clearances and singularities.
         scale: of the tool's way over the hand's.
         share: of the joints' speed, acceleration and jerk limits.
@@ -63,7 +65,7 @@ class TeleopFollower:
     def __init__(
         self,
         model: CollisionModel,
-        here: Array,
+        start_q: Array,
         settings: MotionSettings,
         *,
         scale: float = 1.0,
@@ -72,23 +74,23 @@ class TeleopFollower:
     ) -> None:
         self._model, self._settings, self._scale, self._period = model, settings, scale, period
         self._limits: MotionLimits = ARM_LIMITS.scaled(share, share, share)
-        pose = tool_pose(here)
-        self._turn = pose[:3, :3]
-        self._branch = _branch(here, pose)
+        pose = tool_pose(start_q)
+        self._orientation = pose[:3, :3]
+        self._branch = _branch(start_q, pose)
         self._ruckig = Ruckig(6)
-        self._state: tuple[Array, Array, Array] = (np.array(here, dtype=np.float64), np.zeros(6), np.zeros(6))
-        self._run: Trajectory | None = None
+        self._state: tuple[Array, Array, Array] = (np.array(start_q, dtype=np.float64), np.zeros(6), np.zeros(6))
+        self._trajectory: Trajectory | None = None
         self._elapsed, self._cycle = 0.0, 0
-        self._next: _Next | None = None
-        self._thought: Iterator[None] | None = None
+        self._planned: _PlannedMotion | None = None
+        self._planning: Iterator[None] | None = None
         self._anchor: tuple[Array, Array] | None = None  # hand and tool when the clutch was pressed [m]
-        self._wanted: Array | None = None  # where the tool should be [m]
-        self._heard = 0
+        self._target: Array | None = None  # where the tool should be [m]
+        self._target_stamp = 0
         self._share = 1.0  # of the way to there that is tried
         self.load: Load | None = None  # what is carried or stands in the way
         self.reason = ""  # why the tool is not where the hand is
-        self.answered = 0  # stamp of the newest sample that the setpoints answer
-        if self._model.clearances(here[None])[0].distance < settings.clearance_min:
+        self.answered_stamp = 0  # stamp of the newest sample that the setpoints answer
+        if self._model.clearances(start_q[None])[0].distance < settings.clearance_min:
             raise PathRefused("the arm stands too near to something; bring it nearer to its home first")
 
     @property
@@ -97,79 +99,79 @@ class TeleopFollower:
         return self._state
 
     @property
-    def standing(self) -> bool:
+    def at_rest(self) -> bool:
         """Whether the arm's nominal motion is at rest."""
-        return bool(np.all(np.abs(self._state[1]) < STILL)) and self._run is None
+        return bool(np.all(np.abs(self._state[1]) < REST_SPEED)) and self._trajectory is None
 
-    def press(self, hand: Array) -> None:
+    def engage(self, hand: Array) -> None:
         """Close the clutch: from now on the tool goes as far from where it is as the hand does from `hand` (3,) [m]."""
         goal = self._end()
         self._anchor = (np.array(hand), tool_pose(goal)[:3, 3])
 
-    def release(self) -> None:
+    def disengage(self) -> None:
         """Open the clutch: the arm ends the motion that it follows, and rests."""
-        self._anchor = self._wanted = self._thought = self._next = None
+        self._anchor = self._target = self._planning = self._planned = None
         self.reason = ""
 
-    def move(self, hand: Array, stamp: int) -> None:
+    def set_hand(self, hand: Array, stamp: int) -> None:
         """Take where the hand is now (3,) [m, world]; `stamp` names the sample. Nothing without the clutch."""
         if self._anchor is not None:
             began, tool = self._anchor
-            self._wanted, self._heard = tool + self._scale * (hand - began), stamp
+            self._target, self._target_stamp = tool + self._scale * (hand - began), stamp
 
     def step(self) -> tuple[Array, Array, Array]:
         """Advance by one control period and return the newest setpoint's position, velocity and acceleration."""
         self._cycle += 1
-        following = self._next
+        following = self._planned
         if following is not None and following.cycle <= self._cycle:
             if following.cycle == self._cycle:
-                self._run, self._elapsed, self.answered = following.run, 0.0, following.heard
-            self._next = None
+                self._trajectory, self._elapsed, self.answered_stamp = following.trajectory, 0.0, following.stamp
+            self._planned = None
         self._elapsed += self._period
-        if self._run is not None:
-            self._state = _at(self._run, self._elapsed)
-            if self._elapsed >= self._run.duration:
-                self._state, self._run = (self._state[0], np.zeros(6), np.zeros(6)), None
+        if self._trajectory is not None:
+            self._state = _at(self._trajectory, self._elapsed)
+            if self._elapsed >= self._trajectory.duration:
+                self._state, self._trajectory = (self._state[0], np.zeros(6), np.zeros(6)), None
         return self._state
 
-    def think(self) -> None:
+    def advance_planning(self) -> None:
         """Do one piece of the work that leads to the next motion; takes a millisecond or two."""
-        if self._thought is None:
-            if self._wanted is None or self._next is not None:
+        if self._planning is None:
+            if self._target is None or self._planned is not None:
                 return
-            self._thought = self._consider(self._wanted, self._heard)
-        if next(self._thought, self) is self:
-            self._thought = None
+            self._planning = self._plan(self._target, self._target_stamp)
+        if next(self._planning, self) is self:
+            self._planning = None
 
-    def _consider(self, wanted: Array, heard: int) -> Iterator[None]:
-        begins = self._cycle + AHEAD
-        state = self._after(AHEAD - 1)
-        goal, reason = self._nearest(wanted, state[0])
+    def _plan(self, wanted: Array, heard: int) -> Iterator[None]:
+        begins = self._cycle + LEAD_PERIODS
+        state = self._after(LEAD_PERIODS - 1)
+        goal, reason = self._reachable_goal(wanted, state[0])
         yield
-        if self.standing and np.abs(goal - state[0]).max() < NOWHERE:
+        if self.at_rest and np.abs(goal - state[0]).max() < MIN_MOVE:
             self.reason = reason
             return
         run = self._motion(state, goal)
         if run is None:
             return
         samples = _samples(run)
-        for first in range(0, len(samples), CHUNK):
-            near = self._too_near(samples[first : first + CHUNK])
+        for first in range(0, len(samples), CHECKS_PER_SLICE):
+            near = self._find_obstruction(samples[first : first + CHECKS_PER_SLICE])
             if near:
-                self.reason, self._share = near, max(SHYER * self._share, LEAST)
+                self.reason, self._share = near, max(BACKOFF_FACTOR * self._share, MIN_SHARE)
                 return
             yield
         if self._cycle < begins and self._anchor is not None:
             self.reason, self._share = reason, min(1.5 * self._share, 1.0)
-            self._next = _Next(begins, run, heard)
+            self._planned = _PlannedMotion(begins, run, heard)
 
-    def _nearest(self, wanted: Array, here: Array) -> tuple[Array, str]:
+    def _reachable_goal(self, wanted: Array, here: Array) -> tuple[Array, str]:
         """Find the configuration on this branch, from `here` (6,), with the tool nearest to where the hand points."""
         begin = tool_pose(here)[:3, 3]
-        lead = min(1.0, LEAD / max(float(np.linalg.norm(wanted - begin)), 1e-12))
-        shares = lead * self._share * np.arange(1, WAY + 1) / WAY
-        poses = np.tile(np.eye(4), (WAY, 1, 1))
-        poses[:, :3, :3] = self._turn
+        lead = min(1.0, MAX_TOOL_LEAD / max(float(np.linalg.norm(wanted - begin)), 1e-12))
+        shares = lead * self._share * np.arange(1, POSES_PER_SOLVE + 1) / POSES_PER_SOLVE
+        poses = np.tile(np.eye(4), (POSES_PER_SOLVE, 1, 1))
+        poses[:, :3, :3] = self._orientation
         poses[:, :3, 3] = begin + shares[:, None] * (wanted - begin)
         solved = inverse_kinematics(poses, previous_q4=float(here[3]))
         joints = np.unwrap(np.concatenate([here[None], solved.joints[:, self._branch]]), axis=0)
@@ -180,26 +182,28 @@ class TeleopFollower:
             (solved.reach_excess[:, self._branch] > 0, "the arm does not reach that far"),
             (np.minimum(low, high).min(axis=1) < 0, "a joint is at its limit"),
             (min_singular_value(joints) < self._settings.least_singular, "the arm is stretched out: a singular pose"),
-            (turns > JUMP, "the arm would have to turn over"),
+            (turns > MAX_JOINT_JUMP, "the arm would have to turn over"),
         )
-        good, reason = WAY, ""
+        good, reason = POSES_PER_SOLVE, ""
         for bad, sentence in checks:
             if bad.any() and int(np.argmax(bad)) < good:
                 good, reason = int(np.argmax(bad)), f"{sentence}; move the hand back"
-        near = int(np.searchsorted(np.maximum.accumulate(np.abs(joints[:good] - here).max(axis=1)), FARTHEST, "right"))
+        near = int(
+            np.searchsorted(np.maximum.accumulate(np.abs(joints[:good] - here).max(axis=1)), MAX_JOINT_LEAD, "right")
+        )
         if good == 0:
-            self._share = max(SHYER * self._share, LEAST)
+            self._share = max(BACKOFF_FACTOR * self._share, MIN_SHARE)
             return here, reason
         goal = joints[max(near, 1) - 1]
         turn = float(np.abs(goal - here).max())
-        return here + (goal - here) * min(1.0, FARTHEST / max(turn, 1e-12)), reason if near >= good else ""
+        return here + (goal - here) * min(1.0, MAX_JOINT_LEAD / max(turn, 1e-12)), reason if near >= good else ""
 
-    def _too_near(self, samples: Array) -> str:
+    def _find_obstruction(self, samples: Array) -> str:
         if np.any(samples < LOWER) or np.any(samples > UPPER):
             return "a joint would pass its limit; move the hand back"
         rows = self._model.clearances(samples, load=self.load, gripper_open=True)  # the wider of both
         least = min(rows, key=lambda row: row.distance)
-        if least.distance < self._settings.clearance_min + GUARD:
+        if least.distance < self._settings.clearance_min + SAMPLING_CLEARANCE:
             near = f"{least.body} would come within {1000 * least.distance:.0f} mm of {least.other_body}"
             return f"{near}; move the hand back"
         if self.load is not None and self.load.grasp_pose is not None:
@@ -224,14 +228,18 @@ class TeleopFollower:
 
     def _after(self, cycles: int) -> tuple[Array, Array, Array]:
         """Return the state that many control periods ahead."""
-        if self._run is None:
+        if self._trajectory is None:
             return self._state
         t = self._elapsed + cycles * self._period
-        return _at(self._run, t) if t < self._run.duration else (_at(self._run, t)[0], np.zeros(6), np.zeros(6))
+        return (
+            _at(self._trajectory, t)
+            if t < self._trajectory.duration
+            else (_at(self._trajectory, t)[0], np.zeros(6), np.zeros(6))
+        )
 
     def _end(self) -> Array:
         """Return the configuration (6,) in which the motion that is followed ends."""
-        return self._state[0] if self._run is None else _at(self._run, self._run.duration)[0]
+        return self._state[0] if self._trajectory is None else _at(self._trajectory, self._trajectory.duration)[0]
 
 
 def _at(run: Trajectory, t: float) -> tuple[Array, Array, Array]:
@@ -245,7 +253,7 @@ def _samples(run: Trajectory) -> Array:
     fine = np.array([run.at_time(float(t))[0] for t in times])
     kept, last = [], fine[0]
     for k, q in enumerate(fine):
-        if k == len(fine) - 1 or np.abs(fine[k + 1] - last).max() > APART:
+        if k == len(fine) - 1 or np.abs(fine[k + 1] - last).max() > MAX_SAMPLE_STEP:
             kept.append(q)
             last = q
     return np.array(kept)

@@ -95,7 +95,7 @@ def test_the_block_is_taken_carried_through_the_clutch_and_put_down() -> None:
 @pytest.mark.parametrize("closed", [False, True])
 def test_only_a_change_of_the_hand_moves_the_gripper(closed: bool) -> None:
     grip = GripperFollower(closed)
-    grip.begin(sample(1, (0.0, 0.0, 0.0), OPEN if closed else CLOSED))
+    grip.engage(sample(1, (0.0, 0.0, 0.0), OPEN if closed else CLOSED))
     grip.follow(sample(2, (0.0, 0.0, 0.0), OPEN if closed else CLOSED))
     assert grip.closed == closed
     grip.follow(sample(3, (0.0, 0.0, 0.0), (0.5,) * 22))

@@ -9,7 +9,7 @@ import ruckig
 import teachpath.motion
 from teachpath.motion.arm.joint_path import ARM_LIMITS
 from teachpath.motion.arm.kinematics import tool_pose
-from teachpath.motion.execution.governor import BACKWARD, Governor
+from teachpath.motion.execution.governor import MAX_REVERSE_RATE, Governor
 from teachpath.motion.paths.ik_branches import enumerate_candidates, is_usable
 from teachpath.motion.paths.tool_path import sample_tool_path
 from teachpath.motion.settings import MotionSettings
@@ -57,7 +57,7 @@ class Log:
         raise AssertionError(f"not done within {within} cycles: {self.governor.progress}")
 
     def stands(self) -> bool:
-        return self.governor.progress.standing
+        return self.governor.progress.at_rest
 
     def finished(self) -> bool:
         return self.governor.progress.finished
@@ -144,7 +144,7 @@ def test_reverse_goes_back_to_the_beginning_and_resume_on_to_the_end(tracks: dic
     while not log.stands() or log.governor.progress.s > 0.0:
         log.step()
         fastest = min(fastest, log.governor.progress.rate)
-    assert -BACKWARD <= fastest < -0.5
+    assert -MAX_REVERSE_RATE <= fastest < -0.5
     assert log.governor.progress.s == 0.0
     assert not log.finished()
     log.step()
@@ -189,7 +189,7 @@ def longest_wait(track: TimedTrajectory, rng: np.random.Generator, *, steady: bo
             pause = rng.integers(10, 160)
         pause -= 1
         governor.step()
-        waited = 0 if governor.bound_for == governor.wish or governor.progress.finished else waited + 1
+        waited = 0 if governor.ramp_end_rate == governor.target_rate or governor.progress.finished else waited + 1
         longest = max(longest, waited)
     return longest
 

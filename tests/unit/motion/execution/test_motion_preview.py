@@ -32,7 +32,7 @@ def motion(middle: Plan) -> MotionPreview:
 def test_it_is_the_motion_of_the_execution(middle: Plan, motion: MotionPreview) -> None:
     program = PlanProgram(middle, np.array(SETTINGS.home), SETTINGS, dwell=DWELL)
     executed = []
-    while not program.over:
+    while not program.finished:
         executed.append(program.step().position)
     run = np.array(executed)
     assert len(run) * 0.004 == pytest.approx(motion.times[-1], abs=0.1)

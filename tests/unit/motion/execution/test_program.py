@@ -27,9 +27,9 @@ def slower() -> list[Plan]:
 def test_whoever_has_done_all_has_done_exactly_one_whatever_the_last_bit_of_the_table(slower: list[Plan]) -> None:
     for made in slower:
         program = PlanProgram(made, np.array(SETTINGS.home), SETTINGS)
-        while not program.over:
+        while not program.finished:
             program.step()
-        assert (program.progress, program.length) == (1.0, made.lengths[-1])
+        assert (program.progress, program.arc_length) == (1.0, made.lengths[-1])
 
 
 def test_what_is_rehearsed_goes_from_nothing_to_one_and_never_back(slower: list[Plan]) -> None:
