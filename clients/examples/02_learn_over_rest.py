@@ -19,12 +19,12 @@ def main() -> None:
     parser.add_argument("--task", default="arc")
     parser.add_argument("--url", default="http://127.0.0.1:8765")
     options = parser.parse_args()
-    with Station(options.url) as station:
-        numbers = {d.id: d.number for d in station.demonstrations(options.task)}
-        try:
+    try:
+        with Station(options.url) as station:
+            numbers = {d.id: d.number for d in station.demonstrations(options.task)}
             run = station.learn(options.task, {"seed": 1})
-        except ClientError as error:
-            sys.exit(str(error))
+    except ClientError as error:
+        sys.exit(str(error))
     for cluster in run.learned.clusters:
         print(f"way {cluster.index}: {cluster.note or 'ranked by log-likelihood'}")
         for score in cluster.scores:

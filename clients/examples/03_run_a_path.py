@@ -20,21 +20,26 @@ def main() -> None:
     parser.add_argument("--override", type=float, default=1.0, help="share of the planned speed")
     parser.add_argument("--url", default="http://127.0.0.1:8765")
     options = parser.parse_args()
+    try:
+        execution = plan_and_run(options)
+    except ClientError as error:
+        sys.exit(str(error))
+    status = execution.status
+    print(f"{status.state}: tracking error {status.tracking_error:.4f} rad, {status.missed} setpoints missed")
+
+
+def plan_and_run(options: argparse.Namespace) -> Execution:
+    """Return the execution when it has ended; raises ClientError when the arm cannot follow the path, or stops."""
     with Station(options.url) as station:
         runs = station.runs(options.task)
         if not runs:
-            sys.exit(f"nothing was learned for task {options.task} yet; run 02_learn_over_rest.py first")
-        try:
-            plan = station.plan(runs[0].learned.paths[0].id)
-            certificate = plan.certificate
-            for limit in (certificate.velocity_use, certificate.acceleration_use, certificate.jerk_use):
-                print(f"{limit.value:.0%} of a limit by {limit.place}")
-            print(f"{certificate.clearance.value:.3f} m clear: {certificate.clearance.place}")
-            execution = station.run(plan.id, override=options.override, on_change=show)
-        except ClientError as error:
-            sys.exit(str(error))
-    status = execution.status
-    print(f"{status.state}: tracking error {status.tracking_error:.4f} rad, {status.missed} setpoints missed")
+            raise ClientError(f"nothing was learned for task {options.task} yet; run 02_learn_over_rest.py first")
+        plan = station.plan(runs[0].learned.paths[0].id)
+        certificate = plan.certificate
+        for limit in (certificate.velocity_use, certificate.acceleration_use, certificate.jerk_use):
+            print(f"{limit.value:.0%} of a limit by {limit.place}")
+        print(f"{certificate.clearance.value:.3f} m clear: {certificate.clearance.place}")
+        return station.run(plan.id, override=options.override, on_change=show)
 
 
 def show(execution: Execution) -> None:

@@ -4,7 +4,8 @@ ClientError
 ├── Unreachable       no station answers
 ├── Refused           the station refused a request; carries its answer
 ├── JobFailed         work ended without an outcome; carries the job
-└── ExecutionFaulted  the arm has stopped by itself; carries the execution
+├── ExecutionFaulted  the arm has stopped by itself; carries the execution
+    └── NotInTime         what was waited for has not ended; it goes on
 """
 
 from __future__ import annotations
@@ -47,3 +48,7 @@ class ExecutionFaulted(ClientError):
     def __init__(self, execution: Execution) -> None:
         super().__init__(f"the execution faulted: {execution.status.reason}")
         self.execution = execution
+
+
+class NotInTime(ClientError):
+    """What was waited for has not ended in the time that was given; it goes on."""

@@ -80,7 +80,9 @@ class Rest:
         self, method: str, resource: str, body: Mapping[str, Any] | None, content: bytes | None, query: dict[str, Any]
     ) -> httpx.Response:
         try:
-            answer = self._http.request(method, resource, json=body, content=content, params=query)
+            answer = self._http.request(
+                method, resource, json=body, content=content, params=query or None
+            )  # {} would take a query out of the address
         except httpx.HTTPError as error:
             raise Unreachable(f"no station at {self.url} ({error}); start it with: teachpath serve") from None
         if answer.is_error:

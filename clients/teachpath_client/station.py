@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from typing import Any, TypeVar
 
-from teachpath_client.errors import ClientError, ExecutionFaulted, JobFailed
+from teachpath_client.errors import ClientError, ExecutionFaulted, JobFailed, NotInTime
 from teachpath_client.events import Events
-from teachpath_client.models import Execution, Job, Plan, Run
+from teachpath_client.models import Execution, Health, Job, Plan, Run
 from teachpath_client.task_resources import TaskResources
 from teachpath_client.work_resources import WorkResources
 
@@ -91,7 +91,11 @@ class Station(TaskResources, WorkResources):
         Raises:
             ExecutionFaulted: the arm has stopped by itself.
         """
-        execution = self.wait(self.begin_execution(plan, override=override), on_change)
+        return self.finish(self.begin_execution(plan, override=override), on_change)
+
+    def finish(self, execution: Execution, on_change: Callable[[Execution], object] = _nothing) -> Execution:
+        """Wait for an execution and return it; raises ExecutionFaulted when the arm has stopped by itself."""
+        execution = self.wait(execution, on_change)
         if execution.status.state == "faulted":
             raise ExecutionFaulted(execution)
         return execution
@@ -114,18 +118,37 @@ class Station(TaskResources, WorkResources):
             timeout: [s] None: as long as it takes.
 
         Raises:
-            ClientError: it has not ended in time.
+            NotInTime: it has not ended; it goes on.
         """
         deadline = float("inf") if timeout is None else time.monotonic() + timeout
         with self.events() as events:
             while not _has_ended(what):
                 on_change(what)
                 if time.monotonic() > deadline:
-                    raise ClientError(f"{what.id} has not ended within {timeout:g} s; it goes on")
-                _next_change(events, what)
+                    raise NotInTime(f"{what.id} has not ended within {timeout:g} s; it goes on")
+                _next_change(events, TOPICS[type(what)], what.id)
                 what = self._ask(type(what), "GET", f"/{TOPICS[type(what)][0]}/{what.id}")
         on_change(what)
         return what
+
+    def wait_for_arm(self, on_change: Callable[[Health], object] = _nothing, *, timeout: float = 60.0) -> Health:
+        """Wait until the executor can move the arm, and return how the station is.
+
+        Args:
+            on_change: called with how it is meanwhile.
+            timeout: [s].
+
+        Raises:
+            ClientError: the station says what is wrong, or it has not come in time.
+        """
+        deadline = time.monotonic() + timeout
+        with self.events() as events:
+            while (health := self.health()).executor is None:
+                on_change(health)
+                if health.notes or time.monotonic() > deadline:
+                    raise ClientError("; ".join(health.notes) or f"the executor has not come within {timeout:g} s")
+                _next_change(events, ("executor", "station"))
+        return health
 
     def events(self) -> Events:
         """Return the events from now on; use them as a context manager."""
@@ -136,11 +159,11 @@ def _has_ended(what: Job | Execution) -> bool:
     return what.state in ENDED_JOBS if isinstance(what, Job) else what.status.state in ENDED_EXECUTIONS
 
 
-def _next_change(events: Events, what: Job | Execution) -> None:
-    """Return when an event says that something may have changed, or after a while; never at once."""
+def _next_change(events: Events, topics: Collection[str], id: str = "") -> None:
+    """Return when an event of one of the topics comes, or after a while; never at once."""
     time.sleep(MIN_READ_INTERVAL)
     deadline = time.monotonic() + REREAD_INTERVAL
     while (left := deadline - time.monotonic()) > 0.0:
         event = events.next(left)
-        if event is None or (event.topic in TOPICS[type(what)] and event.id in ("", what.id)):
+        if event is None or (event.topic in topics and event.id in ("", id)):
             return

@@ -100,6 +100,10 @@ class WorkResources(Rest):
         """Move the arm along a plan, at a share of the planned speed; return at once."""
         return self._ask(Execution, "POST", "/executions", {"plan": plan, "override": override})
 
+    def begin_teleoperation(self, tracker: str, **options: Any) -> Execution:
+        """Let the arm mirror a live hand; options: calibration, scene, scale, share, clutch. Return at once."""
+        return self._ask(Execution, "POST", "/teleoperation", {"tracker": tracker} | options)
+
     def executions(self) -> list[Execution]:
         """List the newest executions, newest first."""
         return self._ask(list[Execution], "GET", "/executions")

@@ -15,6 +15,7 @@ except ModuleNotFoundError as missing:
     sys.exit(f"teachpath: {missing.name} is not installed; the service needs: pip install 'teachpath[service]'")
 
 from teachpath.errors import TeachpathError
+from teachpath_client.errors import ClientError
 
 app = typer.Typer(
     help="Teach a robot a path by showing it. Start with: teachpath demo. At work: serve; then, on its page or from "
@@ -53,7 +54,7 @@ def main() -> None:
     try:
         app()
         ending: str | int | None = 0
-    except TeachpathError as error:
+    except (TeachpathError, ClientError) as error:
         ending = f"teachpath: {error}"
     except SystemExit as leaving:
         ending = leaving.code

@@ -7,8 +7,7 @@ from contextlib import contextmanager, suppress
 from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import connect
 
-from teachpath.commands.rest import Api
-from teachpath.errors import TeachpathError
+from teachpath_client import ClientError, Station
 
 POLL = 0.1  # [s] at which the page asks
 
@@ -29,11 +28,10 @@ def learner_and_page(url: str) -> Iterator[None]:
 
 
 def _learn(url: str, over: threading.Event) -> None:
-    with Api(url) as api:
+    with Station(url) as station:
         while not over.is_set():
-            job = api.call("POST", "/tasks/demo/jobs", {"kind": "learn"})
-            with suppress(TeachpathError):
-                api.follow_job(job, lambda *_: None)
+            with suppress(ClientError):
+                station.learn("demo")
 
 
 def _look(url: str, over: threading.Event) -> None:
@@ -44,7 +42,7 @@ def _look(url: str, over: threading.Event) -> None:
 
 
 def _ask(url: str, over: threading.Event) -> None:
-    with Api(url) as api:
+    with Station(url) as station:
         while not over.wait(POLL):
-            api.call("GET", "/tasks")
-            api.call("GET", "/executions")
+            station.tasks()
+            station.executions()

@@ -4,22 +4,22 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import partial
 from statistics import median
-from typing import Any
 
 import idle
 import teleoperation
 from busy import learner_and_page
 from report import Figure, against
 
-from teachpath.commands.rest import Api
 from teachpath.commands.serving import free_port, serving
 from teachpath.config import load
+from teachpath_client import Station
+from teachpath_client.errors import NotInTime
+from teachpath_client.models import ExecutorStatus, Job
 
-READY = 30.0  # [s] for the executor to appear
 POLL = 0.002  # [s]
 LONGEST_LEARNING = 0.5  # [s]
 
@@ -33,10 +33,10 @@ def measure(*, repeats: int, seconds: float) -> list[Figure]:
         endpoint = f"tcp/127.0.0.1:{free_port()}"
         places = {"web": {"port": free_port()}, "bus": {"endpoint": endpoint}, "store": {"data_dir": folder}}
         settings = load(document=places)
-        with serving(settings), Api(f"http://127.0.0.1:{settings.web.port}") as api:
+        with serving(settings), Station(f"http://127.0.0.1:{settings.web.port}") as station:
             show(endpoint)
-            figures, plan = _jobs(api, repeats)
-            _wait_for_executor(api)
+            figures, plan = _jobs(station, repeats)
+            station.wait_for_arm()
             figures += idle.measure()
             url = f"http://127.0.0.1:{settings.web.port}"
             crowds = (
@@ -46,16 +46,17 @@ def measure(*, repeats: int, seconds: float) -> list[Figure]:
             )
             for load_, crowd in crowds:
                 with crowd():
-                    runs = [_execute(api, plan, seconds) for _ in range(repeats)]
+                    runs = [_execute(station, plan, seconds) for _ in range(repeats)]
                 figures += _lateness(runs, load_, settings.executor.rate)
-                error = [1e3 * run["tracking_error"] for run in runs]
+                error = [1e3 * run.tracking_error for run in runs]
                 limit = 1e3 * settings.executor.largest_error
                 what = f"tracking error of the simulated arm, {load_}"
                 figures.append(against(what, error, "mrad", name="executor.largest_error", value=limit))
-                given_up = float(sum(run["state"] == "faulted" for run in runs))
+                given_up = float(sum(run.state == "faulted" for run in runs))
                 figures.append(Figure(f"executions given up of {repeats}, {load_}", (given_up,), "executions"))
-            figures += teleoperation.measure(api, endpoint, seconds=min(seconds, 20.0))
-            print(f"the executor says: {api.call('GET', '/health')['executor']['scheduling']}\n", flush=True)
+            figures += teleoperation.measure(station, endpoint, seconds=min(seconds, 20.0))
+            executor = station.wait_for_arm().executor
+            print(f"the executor says: {executor and executor.scheduling}\n", flush=True)
             return figures
 
 
@@ -65,78 +66,65 @@ def show(endpoint: str) -> None:
     subprocess.run([*command, "--endpoint", endpoint], check=True, stdout=subprocess.DEVNULL)
 
 
-def _jobs(api: Api, repeats: int) -> tuple[list[Figure], str]:
+def _jobs(station: Station, repeats: int) -> tuple[list[Figure], str]:
     """Learn and plan as jobs of the service; returns the figures and a plan."""
     learning, planning = [], []
     for _ in range(repeats + 1):
-        learned, seconds = _job(api, "/tasks/demo/jobs", {"kind": "learn"})
+        learned, seconds = _job(station, lambda: station.begin_job("demo", "learn"))
         learning.append(seconds)
     cold, *warm = learning
-    run = api.call("GET", f"/tasks/demo/runs/{learned['outcome']}")
-    path = run["learned"]["paths"][0]["id"]
+    path = station.get_run("demo", learned.outcome).learned.paths[0].id
     for _ in range(repeats):
-        planned, seconds = _job(api, f"/paths/{path}/plans", None)
+        planned, seconds = _job(station, lambda: station.begin_planning(path))
         planning.append(seconds)
     # A learning job that has nothing to learn from ends at once: what is left is the way there and back.
-    api.call("PUT", "/tasks/nothing", {"scene": "empty"})
-    empty = [_job(api, "/tasks/nothing/jobs", {"kind": "learn"}, state="failed")[1] for _ in range(5 * repeats)]
+    station.make_task("nothing", scene="empty")
+    begin = partial(station.begin_job, "nothing", "learn")
+    empty = [_job(station, begin, state="failed")[1] for _ in range(5 * repeats)]
     round_trip = median(empty)
     return [
         Figure("job round trip over REST, nothing to do", tuple(empty), "s"),
         against("learning job in a warm worker, POST to outcome", warm, "s", name="limit", value=LONGEST_LEARNING),
         Figure("  the first one, which loads the libraries", (cold,), "s"),
         against("planning job, POST to outcome", planning, "s", name="round trip alone", value=round_trip),
-    ], planned["outcome"]
+    ], planned.outcome
 
 
-def _job(api: Api, resource: str, body: dict[str, Any] | None, *, state: str = "succeeded") -> tuple[Any, float]:
+def _job(station: Station, begin: Callable[[], Job], *, state: str = "succeeded") -> tuple[Job, float]:
     began = time.perf_counter()
-    job = api.call("POST", resource, body)
-    while job["state"] in ("queued", "running"):
+    job = begin()
+    while job.state in ("queued", "running"):  # asked more often than `Station.wait` does: its time is the figure
         time.sleep(POLL)
-        job = api.call("GET", f"/jobs/{job['id']}")
-    if job["state"] != state:
-        raise SystemExit(f"bench: the {job['kind']} job {job['state']}: {job['message']}")
+        job = station.get_job(job.id)
+    if job.state != state:
+        raise SystemExit(f"bench: the {job.kind} job {job.state}: {job.message}")
     return job, time.perf_counter() - began
 
 
-def _wait_for_executor(api: Api) -> None:
-    deadline = time.monotonic() + READY
-    while api.call("GET", "/health")["executor"] is None:
-        if time.monotonic() > deadline:
-            raise SystemExit(f"bench: the executor did not appear within {READY:g} s")
-        time.sleep(0.05)
-
-
-def _execute(api: Api, plan: str, seconds: float) -> Any:
+def _execute(station: Station, plan: str, seconds: float) -> ExecutorStatus:
     """Run one execution to its end, or stop it after `seconds`; returns its last status."""
-    execution = api.call("POST", "/executions", {"plan": plan})
-    deadline = time.monotonic() + seconds
-    asked = False
-    while (status := execution["status"])["state"] not in ("ended", "faulted"):
-        if not asked and time.monotonic() > deadline:
-            asked = True
-            api.call("POST", f"/executions/{execution['id']}/stop")
-        time.sleep(0.05)
-        execution = api.call("GET", f"/executions/{execution['id']}")
-    return status
+    execution = station.begin_execution(plan)
+    try:
+        return station.wait(execution, timeout=seconds).status
+    except NotInTime:
+        return station.wait(station.stop(execution.id)).status
 
 
-def _lateness(runs: list[Any], crowd: str, rate: float) -> list[Figure]:
+def _lateness(runs: list[ExecutorStatus], crowd: str, rate: float) -> list[Figure]:
     period = 1e6 / rate
     names = {"p50": "lateness_p50_us", "p99": "lateness_p99_us", "max": "lateness_max_us"}
-    cycles = sum(run["cycles"] for run in runs)
+    cycles = sum(run.cycles for run in runs)
     figures = [
         against(
             f"executor lateness {name}, {crowd}",
-            [run[field] for run in runs],
+            [getattr(run, field) for run in runs],
             "us",
             name="control period",
             value=period,
         )
         for name, field in names.items()
     ]
-    missed = [100.0 * run["missed"] / run["cycles"] for run in runs]
+    missed = [100.0 * run.missed / run.cycles for run in runs]
     return [*figures, Figure(f"setpoints missed of {cycles:,}, {crowd}", tuple(missed), "%")]
 
 

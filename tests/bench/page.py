@@ -4,14 +4,15 @@ import shutil
 import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import asdict
 from typing import Any
 
 from motion import show
 from report import Figure, against
 
-from teachpath.commands.rest import Api
 from teachpath.commands.serving import free_port, serving
 from teachpath.config import load
+from teachpath_client import Station
 
 POINTS = 20  # control points of the path that is dragged
 FRAME = 16.0  # [ms] limit of a frame
@@ -31,24 +32,22 @@ def measure(*, drags: int) -> list[Figure]:
         places = {"web": {"port": free_port()}, "bus": {"endpoint": endpoint}, "store": {"data_dir": folder}}
         settings = load(document=places)
         url = f"http://127.0.0.1:{settings.web.port}"
-        with serving(settings), Api(url) as api:
+        with serving(settings), Station(url) as station:
             show(endpoint)
-            path = _fine_path(api)
+            path = _fine_path(station)
             with _page(browser, url) as page:
                 _open(page, path)
                 return _figures(_drag(page, drags))
 
 
-def _fine_path(api: Api) -> str:
+def _fine_path(station: Station) -> str:
     """Learn, and give a path as many control points as are to be dragged, its shape unchanged."""
-    job = api.follow_job(api.call("POST", "/tasks/demo/jobs", {"kind": "learn"}), lambda *_: None)
-    path = str(api.call("GET", f"/tasks/demo/runs/{job['outcome']}")["learned"]["paths"][0]["id"])
-    curve = api.call("GET", f"/paths/{path}/versions/1")["path"]["curve"]
-    for k in range(POINTS - len(curve["control_points"])):
-        knot = {"curve": curve, "u": (k + 1) / (POINTS + 1)}
-        curve = api.call("POST", "/curves/insert-knot", knot)["curve"]
-    api.call("POST", f"/paths/{path}/versions", {"base": 1, "curve": curve, "branch": "main"})
-    return path
+    path = station.learn("demo").learned.paths[0]
+    curve = asdict(path.curve)
+    for k in range(POINTS - len(path.curve.control_points)):
+        curve = station.call("POST", "/curves/insert-knot", {"curve": curve, "u": (k + 1) / (POINTS + 1)})["curve"]
+    station.save_version(path.id, curve, base=1, branch="main")
+    return path.id
 
 
 @contextmanager

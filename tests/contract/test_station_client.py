@@ -7,8 +7,8 @@ from typing import Any
 
 import pytest
 
-from teachpath_client import ClientError, Station
-from teachpath_client.errors import ExecutionFaulted, JobFailed, Refused, Unreachable
+from teachpath_client import Station
+from teachpath_client.errors import ExecutionFaulted, JobFailed, NotInTime, Refused, Unreachable
 from teachpath_client.models import Execution, ExecutorStatus, Job
 from tests.contract.desk import Desk, csv
 from tests.contract.test_rest_work import planned
@@ -127,7 +127,7 @@ def test_waiting_ends_in_time_and_what_is_awaited_goes_on(desk: Desk, station: S
     unended = Execution("execution-none", None, 1, ExecutorStatus(state="moving"))
     with pytest.raises(Refused, match="no execution 'execution-none'"):
         station.wait(unended)
-    with pytest.raises(ClientError, match="has not ended within 0 s; it goes on"):
+    with pytest.raises(NotInTime, match="has not ended within 0 s; it goes on"):
         station.wait(unended, timeout=0.0)
 
 

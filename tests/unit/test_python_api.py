@@ -53,6 +53,11 @@ def test_what_is_not_on_the_menu_is_an_attribute_error() -> None:
         teachpath.lern  # type: ignore[attr-defined]  # noqa: B018
 
 
+def test_other_programs_see_the_types() -> None:
+    for folder in ("service/teachpath", "clients/teachpath_client", "proto/teachpath_proto"):
+        assert (ROOT / folder / "py.typed").is_file()
+
+
 # from arrays to setpoints
 
 

@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 import sys
+from dataclasses import asdict
 from pathlib import Path
 
 import numpy as np
 
-from teachpath.commands.rest import Api
 from teachpath.errors import UnusableRecording
 from teachpath.io.documents import from_document
 from teachpath.io.setpoints import read_setpoints
 from teachpath.io.store.motions import read_motion
 from teachpath.motion.analysis.log_check import SetpointLog, check_log
 from teachpath.nurbs import Curve
-from teachpath.records import LearnedPath
+from teachpath_client.station import Station
 
 
 def judge_file(file: Path, plan: str | None, url: str) -> None:
@@ -67,7 +67,7 @@ def _read_csv(content: bytes, name: str) -> SetpointLog:
 
 
 def _path_of(plan: str, url: str) -> Curve:
-    with Api(url) as api:
-        stored = api.call("GET", f"/plans/{plan}")
-        document = api.call("GET", f"/paths/{stored['path']}/versions/{stored['path_version']}")
-    return from_document(LearnedPath, document["path"]).curve
+    with Station(url) as station:
+        stored = station.get_plan(plan)
+        curve = station.get_version(stored.path, stored.path_version).path.curve
+    return from_document(Curve, asdict(curve))

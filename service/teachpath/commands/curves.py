@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 import sys
+from dataclasses import asdict
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import typer
 from rich.console import Console
 from rich.table import Table
 
 from teachpath.commands.options import LOCAL, Url
-from teachpath.commands.rest import Api
 from teachpath.errors import UnusableInput
 from teachpath.exchange import from_json, to_json
+from teachpath.io.documents import from_document, to_document
 from teachpath.nurbs import Curve
+from teachpath_client.models import LearnedPath
+from teachpath_client.station import Station
 
 LARGEST = 1024 * 1024  # bytes of a file with one curve
 
@@ -28,10 +31,10 @@ Number = Annotated[int | None, typer.Option(help="Its version; without it the ne
 def versions(path: Path_, url: Url = LOCAL) -> None:
     """List the versions of a learned path."""
     table = Table("version", "name", "branch", "from", "by", "note")
-    with Api(url) as api:
-        for v in api.call("GET", f"/paths/{path}/versions"):
-            parent = "" if v["parent"] is None else str(v["parent"])
-            table.add_row(str(v["number"]), v["name"], v["branch"], parent, v["author"], v["note"])
+    with Station(url) as station:
+        for v in station.versions(path):
+            parent = "" if v.parent is None else str(v.parent)
+            table.add_row(str(v.number), v.name, v.branch, parent, v.author, v.note)
     Console().print(table)
 
 
@@ -43,15 +46,14 @@ def export(
     url: Url = LOCAL,
 ) -> None:
     """Write a version as JSON that geomdl (NURBS-Python) reads."""
-    with Api(url) as api:
-        stored = _version(api, path, version)
-    curve = stored["curve"]
-    text = to_json(Curve(curve["degree"], curve["knots"], curve["control_points"], curve["weights"]))
+    with Station(url) as station:
+        stored = _version(station, path, version)
+    text = to_json(from_document(Curve, asdict(stored.curve)))
     if out is None:
         sys.stdout.write(text + "\n")
     else:
         out.write_text(text, encoding="utf-8")
-        print(f"version {stored['version']} of {path} written to {out}")
+        print(f"version {stored.version} of {path} written to {out}")
 
 
 @app.command("import")
@@ -66,18 +68,11 @@ def import_(
     url: Url = LOCAL,
 ) -> None:
     """Save a curve from a file as a new version; none is ever saved over another."""
-    curve = from_json(_text(file))
-    document = {
-        "degree": curve.degree,
-        "knots": curve.knots.tolist(),
-        "control_points": curve.control_points.tolist(),
-        "weights": curve.weights.tolist(),
-    }
-    words = {"branch": branch, "name": name, "author": author, "note": note}
-    with Api(url) as api:
-        number = base if base is not None else _version(api, path, None)["version"]
-        saved = api.call("POST", f"/paths/{path}/versions", {"base": number, "curve": document, **words})
-    print(f"saved as version {saved['number']} of {path}, on branch {saved['branch']}; certify it with: teachpath plan")
+    curve = to_document(from_json(_text(file)))
+    with Station(url) as station:
+        number = base if base is not None else _version(station, path, None).version
+        saved = station.save_version(path, curve, base=number, branch=branch, name=name, author=author, note=note)
+    print(f"saved as version {saved.number} of {path}, on branch {saved.branch}; certify it with: teachpath plan")
 
 
 @app.command("compare")
@@ -88,17 +83,12 @@ def compare(
     url: Url = LOCAL,
 ) -> None:
     """Say how far two versions lie apart and which control points were moved."""
-    with Api(url) as api:
-        print(api.call("GET", f"/paths/{path}/versions/{first}/difference/{second}")["sentence"])
+    with Station(url) as station:
+        print(station.difference(path, first, second).sentence)
 
 
-def _version(api: Api, path: str, number: int | None) -> dict[str, Any]:
-    found: dict[str, Any] = (
-        api.call("GET", f"/paths/{path}")
-        if number is None
-        else api.call("GET", f"/paths/{path}/versions/{number}")["path"]
-    )
-    return found
+def _version(station: Station, path: str, number: int | None) -> LearnedPath:
+    return station.get_path(path) if number is None else station.get_version(path, number).path
 
 
 def _text(file: Path) -> str:

@@ -7,23 +7,24 @@ import socket
 import subprocess
 import sys
 import tempfile
-import time
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager, suppress
-from dataclasses import asdict
 from pathlib import Path
+from threading import Event
 from typing import Annotated, Any
 
 import typer
 from rich.console import Console
 
 from teachpath.commands.options import Config, settings_of
-from teachpath.commands.rest import Api
 from teachpath.commands.serving import free_port, serving, until_signalled
 from teachpath.commands.tables import clusters_table, paths_table, plan_lines, reasons
-from teachpath.commands.work import progress_bar, replay_command
+from teachpath.commands.work import execution_shown, execution_state, job_shown, progress_bar, replay_command
 from teachpath.config import Settings
 from teachpath.errors import PathRefused, TeachpathError, Unreachable, UnusableRecording
+from teachpath_client.errors import ClientError, JobFailed
+from teachpath_client.models import Demonstration, Execution, Plan, Run
+from teachpath_client.station import Station
 
 READY = 60.0  # [s] for executor and simulated arm to appear
 HOLDS = 20  # tries to go on after the arm was held in one place
@@ -57,8 +58,8 @@ def demo(
         stack.enter_context(serving(settings))
         url = f"http://{settings.web.host}:{settings.web.port}"
         console.print(f"teachpath serves [bold]{url}[/bold]: open it to watch; API docs at {url}/docs", highlight=False)
-        api = stack.enter_context(Api(url))
-        summary = _Story(api, url, settings, stop).tell(speed=speed, seed=seed, recordings=recordings)
+        station = stack.enter_context(Station(url))
+        summary = _Story(station, settings, stop).tell(speed=speed, seed=seed, recordings=recordings)
         if as_json or once:
             print(json.dumps(summary, indent=2), flush=True)
         if not once:
@@ -73,8 +74,8 @@ class _Stopped(TeachpathError):
 class _Story:
     """The steps of the demo, in order; each prints what it did."""
 
-    def __init__(self, api: Api, url: str, settings: Settings, stop: Any) -> None:
-        self._api, self._url, self._settings, self._stop = api, url, settings, stop
+    def __init__(self, station: Station, settings: Settings, stop: Event) -> None:
+        self._station, self._settings, self._stop = station, settings, stop
         self._held = 0
         self._came = 0.0  # share of the path behind the arm
 
@@ -86,16 +87,10 @@ class _Story:
             task, reports = self._show_recordings(recordings, speed)
         run = self._learn(task)
         plan = self._plan(task, run)
-        self._wait_ready()  # as late as possible: executor and arm come up while the hand shows
-        execution = self._execute(plan["id"])
+        # as late as possible: executor and arm come up while the hand shows
+        self._station.wait_for_arm(lambda _: self._pause(0.0), timeout=READY)
+        execution = self._execute(plan.id)
         return _summary(reports, run, plan, execution)
-
-    def _wait_ready(self) -> None:
-        deadline = time.monotonic() + READY
-        while (health := self._api.call("GET", "/health"))["executor"] is None:
-            if health["notes"] or time.monotonic() > deadline:
-                raise Unreachable("; ".join(health["notes"]) or f"the executor did not appear within {READY:g} s")
-            self._pause()
 
     def _show_experiment(self, speed: float, seed: int) -> tuple[str, list[dict[str, Any]]]:
         command = [sys.executable, "-m", "teachpath_client", "synthetic", "--task", "demo", "--scene", "paper"]
@@ -109,13 +104,13 @@ class _Story:
         except OSError as error:
             raise UnusableRecording(f"cannot read {file}: {error.strerror}") from None
         task = file.stem
-        query = {"name": file.name, "format": "robottasks", "units": "cm", "calibration": "robottasks"}
-        stored = self._api.call("POST", f"/tasks/{task}/demonstrations", content=content, params=query)
+        options = {"name": file.name, "format": "robottasks", "units": "cm", "calibration": "robottasks"}
+        stored = self._station.import_file(task, content, **options)
         console.print(f"imported {len(stored)} demonstrations from {file.name}; replaying them over Zenoh")
         command = replay_command(
-            [d["id"] for d in stored],
-            url=self._url,
-            bus=asdict(self._settings.bus),
+            [d.id for d in stored],
+            url=self._station.url,
+            bus=self._station.health().bus,
             task=f"{task}-replayed",
             scene="empty",
             calibration="robottasks",
@@ -141,58 +136,56 @@ class _Story:
             raise TeachpathError(f"{made} of {expected} demonstrations were recorded: {notes or 'see the tracker'}")
         return reports
 
-    def _demonstrations(self, task: str) -> list[dict[str, Any]]:
-        known = {t["name"] for t in self._api.call("GET", "/tasks")}
-        found: list[dict[str, Any]] = self._api.call("GET", f"/tasks/{task}/demonstrations") if task in known else []
-        return found
+    def _demonstrations(self, task: str) -> list[Demonstration]:
+        known = {known.name for known in self._station.tasks()}
+        return self._station.demonstrations(task) if task in known else []
 
-    def _learn(self, task: str) -> dict[str, Any]:
+    def _learn(self, task: str) -> Run:
         with progress_bar("learning") as show:
-            job = self._api.follow_job(self._api.call("POST", f"/tasks/{task}/jobs", {"kind": "learn"}), show)
-        run: dict[str, Any] = self._api.call("GET", f"/tasks/{task}/runs/{job['outcome']}")
-        numbers = {d["id"]: d["number"] for d in self._demonstrations(task)}
+            run = self._station.learn(task, on_change=job_shown(show))
+        numbers = {d.id: d.number for d in self._demonstrations(task)}
         console.print(clusters_table(run, numbers))
         console.print(paths_table(run))
         for line in reasons(run, numbers):
             console.print(line, highlight=False)
         return run
 
-    def _plan(self, task: str, run: dict[str, Any]) -> dict[str, Any]:
+    def _plan(self, task: str, run: Run) -> Plan:
         """Plan the paths in turn and return the first plan that is certified."""
         refusals = []
-        for path in run["learned"]["paths"]:
+        for path in run.learned.paths:
             with progress_bar("planning") as show:
                 try:
-                    job = self._api.follow_job(self._api.call("POST", f"/paths/{path['id']}/plans"), show)
-                except TeachpathError as error:
-                    refusals.append(f"{path['id']}: {error}")
+                    plan = self._station.plan(path.id, on_change=job_shown(show))
+                except JobFailed as error:
+                    refusals.append(f"{path.id}: {error}")
                     continue
-            plan: dict[str, Any] = self._api.call("GET", f"/plans/{job['outcome']}")
             for refusal in refusals:
                 console.print(f"not executable: {refusal}", highlight=False)
             console.print(plan_lines(plan), highlight=False)
             return plan
         raise PathRefused(f"no learned path of {task} is executable: {' | '.join(refusals)}")
 
-    def _execute(self, plan: str) -> dict[str, Any]:
+    def _execute(self, plan: str) -> Execution:
         with progress_bar("moving") as show:
-            execution = self._api.call("POST", "/executions", {"plan": plan})
+            shown = execution_shown(show)
 
-            def show_unless_stopped(fraction: float, state: str) -> None:
+            def show_unless_stopped(execution: Execution) -> None:
                 self._pause(0.0)
-                show(fraction, state)
-                if fraction > self._came:
-                    self._came, self._held = fraction, 0
-                if state.startswith("held"):
-                    self._resume(execution["id"], state)
+                shown(execution)
+                if execution.status.progress > self._came:
+                    self._came, self._held = execution.status.progress, 0
+                if execution.status.state == "held":
+                    self._resume(execution)
 
-            return self._api.follow_execution(execution, show_unless_stopped)
+            return self._station.run(plan, on_change=show_unless_stopped)
 
-    def _resume(self, execution: str, state: str) -> None:
+    def _resume(self, execution: Execution) -> None:
         """Go on as an operator would when the arm was held, e.g. because this machine was too busy for a moment."""
+        state = execution_state(execution)
         console.print(f"{state}; resuming", highlight=False)
-        with suppress(TeachpathError):  # still silent, or off its place: the next round tries again
-            self._api.call("POST", f"/executions/{execution}/resume")
+        with suppress(ClientError):  # still silent, or off its place: the next round tries again
+            self._station.steer(execution.id, "resume")
         self._held += 1
         if self._held > HOLDS:
             raise Unreachable(f"the arm was held {HOLDS} times: {state}")
@@ -236,33 +229,31 @@ def _is_free(port: int) -> bool:
     return True
 
 
-def _summary(
-    reports: list[dict[str, Any]], run: dict[str, Any], plan: dict[str, Any], execution: dict[str, Any]
-) -> dict[str, Any]:
-    learned, status, certificate = run["learned"], execution["status"], plan["certificate"]
+def _summary(reports: list[dict[str, Any]], run: Run, plan: Plan, execution: Execution) -> dict[str, Any]:
+    learned, status = run.learned, execution.status
     return {
         "demonstrations": sum(len(r["demonstrations"]) for r in reports),
         "samples": sum(r["received"] for r in reports),
         "lost_samples": sum(r["lost"] for r in reports),
-        "clusters": [len(c["members"]) for c in learned["clusters"]],
-        "selected": [sum(s["selected"] for s in c["scores"]) for c in learned["clusters"]],
+        "clusters": [len(c.members) for c in learned.clusters],
+        "selected": [sum(s.selected for s in c.scores) for c in learned.clusters],
         "paths": [
             {
-                "id": p["id"],
-                "control_points": len(p["curve"]["control_points"]),
-                "largest_error_m": p["fit"]["largest"],
+                "id": p.id,
+                "control_points": len(p.curve.control_points),
+                "largest_error_m": p.fit.largest if p.fit else None,
             }
-            for p in learned["paths"]
+            for p in learned.paths
         ],
-        "planned_path": plan["path"],
-        "plan_duration_s": plan["duration"],
-        "least_clearance_m": certificate["clearance"]["value"],
-        "largest_limit_use": status["limit_use"],
-        "largest_tracking_error_rad": status["tracking_error"],
-        "setpoints": status["cycles"],
-        "setpoints_late": status["late"],
-        "setpoints_missed": status["missed"],
-        "lateness_p50_us": status["lateness_p50_us"],
-        "lateness_p99_us": status["lateness_p99_us"],
-        "execution": status["state"],
+        "planned_path": plan.path,
+        "plan_duration_s": plan.duration,
+        "least_clearance_m": plan.certificate.clearance.value,
+        "largest_limit_use": status.limit_use,
+        "largest_tracking_error_rad": status.tracking_error,
+        "setpoints": status.cycles,
+        "setpoints_late": status.late,
+        "setpoints_missed": status.missed,
+        "lateness_p50_us": status.lateness_p50_us,
+        "lateness_p99_us": status.lateness_p99_us,
+        "execution": status.state,
     }

@@ -16,10 +16,10 @@ from rich.console import Console
 from rich.table import Table
 
 from teachpath.commands.options import Config, Data, settings_of
-from teachpath.commands.rest import Api
 from teachpath.commands.work import progress_bar
 from teachpath.errors import NotFound, UnusableRecording
 from teachpath.records import Cluster, Learned, Trajectory
+from teachpath_client.station import Station
 
 ENDINGS = {"csv": ".csv", "robottasks": ".npy"}
 UNITS = {"csv": "m", "robottasks": "cm"}
@@ -69,8 +69,8 @@ def diff(
     from teachpath.learning.compare import compare
 
     if url:
-        with Api(url) as api:
-            before, after = _fetched(api, one), _fetched(api, other)
+        with Station(url) as station:
+            before, after = _fetched(station, one), _fetched(station, other)
     else:
         store = Store(settings_of(config, data).store)
         try:
@@ -197,11 +197,11 @@ def _millimetres(metres: float | None) -> str:
     return "" if metres is None else f"{1e3 * metres:.2f} mm"
 
 
-def _fetched(api: Api, run: str) -> Learned:
+def _fetched(station: Station, run: str) -> Learned:
     from teachpath.io.documents import from_document
 
-    for task in api.call("GET", "/tasks"):
-        for row in api.call("GET", f"/tasks/{task['name']}/runs"):
-            if row["id"] == run:
-                return from_document(Learned, row["learned"])
+    for task in station.tasks():
+        for found in station.runs(task.name):
+            if found.id == run:
+                return from_document(Learned, asdict(found.learned))
     raise NotFound(f"there is no run {run!r}")

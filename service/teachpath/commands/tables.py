@@ -2,82 +2,84 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 from rich.table import Table
 
+from teachpath_client.models import Dendrogram, Plan, Run
 
-def clusters_table(run: dict[str, Any], numbers: dict[str, int]) -> Table:
+
+def clusters_table(run: Run, numbers: dict[str, int]) -> Table:
     """Return clusters, members, log-likelihoods and the selected ones of a run (Aleotti & Caselli 2005, Table I).
 
     Args:
-        run: as GET /tasks/{task}/runs/{run} gives it.
+        run: of learning.
         numbers: of the demonstrations, by id.
     """
-    learned = run["learned"]
-    table = Table(title=f"Results of trajectory clustering ({learned['mode']} mode)")
+    learned = run.learned
+    table = Table(title=f"Results of trajectory clustering ({learned.mode} mode)")
     for name in ("Cluster", "Demonstration", "Log-likelihood", "Selected"):
         table.add_column(name, justify="right" if name != "Selected" else "center")
-    for cluster in learned["clusters"]:
-        for i, score in enumerate(cluster["scores"]):
+    for cluster in learned.clusters:
+        for i, score in enumerate(cluster.scores):
             table.add_row(
-                str(cluster["index"]) if i == 0 else "",
-                str(numbers.get(score["demonstration"], score["demonstration"])),
-                f"{score['log_likelihood']:.3f}",
-                "yes" if score["selected"] else "",
-                end_section=i == len(cluster["scores"]) - 1,
+                str(cluster.index) if i == 0 else "",
+                str(numbers.get(score.demonstration, score.demonstration)),
+                f"{score.log_likelihood:.3f}",
+                "yes" if score.selected else "",
+                end_section=i == len(cluster.scores) - 1,
             )
     return table
 
 
-def reasons(run: dict[str, Any], numbers: dict[str, int]) -> list[str]:
+def reasons(run: Run, numbers: dict[str, int]) -> list[str]:
     """Return what an operator should know of a run: who was left out and why, and the notes on clusters and run."""
     lines = []
-    for cluster in run["learned"]["clusters"]:
-        for score in cluster["scores"]:
-            if score["note"] and not score["selected"]:
-                number = numbers.get(score["demonstration"], score["demonstration"])
-                lines.append(f"demonstration {number} was left out: {score['note']}")
-        lines += [f"cluster {cluster['index']}: {note}" for note in (cluster["note"], cluster["ambiguous"]) if note]
-    return lines + list(run["learned"]["notes"])
+    for cluster in run.learned.clusters:
+        for score in cluster.scores:
+            if score.note and not score.selected:
+                number = numbers.get(score.demonstration, score.demonstration)
+                lines.append(f"demonstration {number} was left out: {score.note}")
+        lines += [f"cluster {cluster.index}: {note}" for note in (cluster.note, cluster.ambiguous) if note]
+    return lines + list(run.learned.notes)
 
 
-def paths_table(run: dict[str, Any]) -> Table:
+def paths_table(run: Run) -> Table:
     """Return the learned paths of a run: degree, control points, errors."""
     table = Table(title="Learned paths")
     for name in ("Path", "Degree", "Control points", "Largest error", "Tube radius"):
         table.add_column(name, justify="right")
-    for path in run["learned"]["paths"]:
-        curve, fit = path["curve"], path["fit"]
-        points = str(len(curve["control_points"]))
-        table.add_row(
-            path["id"], str(curve["degree"]), points, f"{1e3 * fit['largest']:.2f} mm", f"{1e3 * fit['tube']:.1f} mm"
-        )
+    for path in run.learned.paths:
+        curve, fit = path.curve, path.fit
+        errors = (f"{1e3 * fit.largest:.2f} mm", f"{1e3 * fit.tube:.1f} mm") if fit else ("", "")
+        table.add_row(path.id, str(curve.degree), str(len(curve.control_points)), *errors)
     return table
 
 
-def cuts_table(dendrogram: dict[str, Any]) -> Table:
-    """Return the cuts of a run to choose from, as GET /tasks/{task}/runs/{run}/dendrogram gives them."""
-    table = Table(title=f"Cuts of {len(dendrogram['leaves'])} demonstrations")
+def cuts_table(dendrogram: Dendrogram) -> Table:
+    """Return the cuts of a run to choose from."""
+    table = Table(title=f"Cuts of {len(dendrogram.leaves)} demonstrations")
     for name in ("Clusters", "Height", "Members", "Now"):
         table.add_column(name, justify="left" if name == "Members" else "right")
-    for cut in dendrogram["cuts"]:
-        upper = "" if cut["highest"] is None else f" to {100 * cut['highest']:.2f}"
-        heights = f"{100 * cut['lowest']:.2f}{upper} cm{'' if upper else ' and above'}"
-        sizes = ", ".join(str(end - begin) for begin, end in cut["leaf_ranges"])
-        now = "*" if cut["clusters"] == dendrogram["clusters"] else ""
-        table.add_row(str(cut["clusters"]), heights, sizes, now)
+    for cut in dendrogram.cuts:
+        upper = "" if cut.highest is None else f" to {100 * cut.highest:.2f}"
+        heights = f"{100 * cut.lowest:.2f}{upper} cm{'' if upper else ' and above'}"
+        sizes = ", ".join(str(end - begin) for begin, end in cut.leaf_ranges)
+        now = "*" if cut.clusters == dendrogram.clusters else ""
+        table.add_row(str(cut.clusters), heights, sizes, now)
     return table
 
 
-def plan_lines(plan: dict[str, Any]) -> str:
+def plan_lines(plan: Plan) -> str:
     """Return a plan's certificate in a few lines."""
-    c = plan["certificate"]
-    uses = [
-        f"{name} {c[f'{name}_use']['value']:.0%}" for name in ("position", "velocity", "acceleration", "jerk", "torque")
-    ]
+    c = plan.certificate
+    uses = {
+        "position": c.position_use,
+        "velocity": c.velocity_use,
+        "acceleration": c.acceleration_use,
+        "jerk": c.jerk_use,
+        "torque": c.torque_use,
+    }
     return (
-        f"plan {plan['id']}: {plan['duration']:.2f} s along {plan['lengths'][-1]:.3f} m, arm {c['branch']}\n"
-        f"  largest use of the limits: {', '.join(uses)}\n"
-        f"  least clearance {1e3 * c['clearance']['value']:.1f} mm ({c['clearance']['place']})"
+        f"plan {plan.id}: {plan.duration:.2f} s along {plan.lengths[-1]:.3f} m, arm {c.branch}\n"
+        f"  largest use of the limits: {', '.join(f'{name} {use.value:.0%}' for name, use in uses.items())}\n"
+        f"  least clearance {1e3 * c.clearance.value:.1f} mm ({c.clearance.place})"
     )

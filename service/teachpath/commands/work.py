@@ -7,16 +7,17 @@ import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import typer
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
 from teachpath.commands.options import LOCAL, Url
-from teachpath.commands.rest import Api
 from teachpath.commands.tables import clusters_table, cuts_table, paths_table, plan_lines, reasons
 from teachpath.errors import UnusableInput
+from teachpath_client.models import BusSettings, Execution, Job
+from teachpath_client.station import Station
 
 Task = Annotated[str, typer.Argument(help="The task.")]
 AsRecorded = Annotated[bool, typer.Option(help="Also those under a former version of their calibration.")]
@@ -24,8 +25,11 @@ CALIBRATIONS = {False: "present", True: "recorded"}  # by --as-recorded
 console = Console(stderr=True)
 
 
+Show = Callable[[float, str], None]
+
+
 @contextmanager
-def progress_bar(title: str) -> Iterator[Callable[[float, str], None]]:
+def progress_bar(title: str) -> Iterator[Show]:
     """Show a bar on the terminal's error stream; yields `show(fraction, sentence)`."""
     columns = (
         TextColumn("{task.description:<10}"),
@@ -36,6 +40,21 @@ def progress_bar(title: str) -> Iterator[Callable[[float, str], None]]:
     with Progress(*columns, console=console) as bar:
         row = bar.add_task(title, total=1.0, what="")
         yield lambda fraction, what: bar.update(row, completed=fraction, what=what)
+
+
+def job_shown(show: Show) -> Callable[[Job], None]:
+    """Return what shows how a job goes on."""
+    return lambda job: show(job.fraction, job.message or job.state)
+
+
+def execution_shown(show: Show) -> Callable[[Execution], None]:
+    """Return what shows how an execution goes on."""
+    return lambda execution: show(execution.status.progress, execution_state(execution))
+
+
+def execution_state(execution: Execution) -> str:
+    """Return what the arm does in an execution, and why."""
+    return ": ".join(filter(None, (execution.status.state, execution.status.reason)))
 
 
 def learn(
@@ -50,9 +69,9 @@ def learn(
     Clusters the task's demonstrations, selects the consistent ones in each cluster, and fits a NURBS to them.
     """
     settings: dict[str, object] = {"mode": mode} | ({} if threshold is None else {"threshold": threshold})
-    calibrations = CALIBRATIONS[as_recorded]
-    with Api(url) as api:
-        _learned(api, task, "learning", {"kind": "learn", "settings": settings, "calibrations": calibrations})
+    with Station(url) as station:
+        job = station.begin_job(task, "learn", settings=settings, calibrations=CALIBRATIONS[as_recorded])
+        _print_learned(station, job, "learning")
 
 
 def recut(
@@ -68,24 +87,26 @@ def recut(
     Distances are not measured again; the outcome is a new run. Without --clusters and --threshold it lists the cuts
     to choose from.
     """
-    with Api(url) as api:
-        runs = [] if run else api.call("GET", f"/tasks/{task}/runs")
+    with Station(url) as station:
+        runs = [] if run else station.runs(task)
         if not run and not runs:
             sys.exit(f"teachpath: task {task} has no run whose cut could be moved; first: teachpath learn {task}")
-        chosen = run or runs[0]["id"]
+        chosen = run or runs[0].id
         if clusters is None and threshold is None:
-            Console().print(cuts_table(api.call("GET", f"/tasks/{task}/runs/{chosen}/dendrogram")))
-        else:
-            wanted = {"kind": "recut", "run": chosen, "clusters": clusters, "threshold": threshold}
-            _learned(api, task, "cutting", wanted | {"calibrations": CALIBRATIONS[as_recorded]})
+            Console().print(cuts_table(station.dendrogram(task, chosen)))
+            return
+        calibrations = CALIBRATIONS[as_recorded]
+        job = station.begin_job(
+            task, "recut", run=chosen, clusters=clusters, threshold=threshold, calibrations=calibrations
+        )
+        _print_learned(station, job, "cutting")
 
 
-def _learned(api: Api, task: str, title: str, request: dict[str, Any]) -> None:
-    """Follow a job that learns to its end, and print what it learned."""
+def _print_learned(station: Station, job: Job, title: str) -> None:
+    """Wait for a job that learns, and print what it learned."""
     with progress_bar(title) as show:
-        job = api.follow_job(api.call("POST", f"/tasks/{task}/jobs", request), show)
-    run = api.call("GET", f"/tasks/{task}/runs/{job['outcome']}")
-    numbers = {d["id"]: d["number"] for d in api.call("GET", f"/tasks/{task}/demonstrations")}
+        run = station.get_run(job.task, station.outcome(job, job_shown(show)))
+    numbers = {d.id: d.number for d in station.demonstrations(job.task)}
     out = Console()
     out.print(clusters_table(run, numbers))
     out.print(paths_table(run))
@@ -103,9 +124,9 @@ def recalibrate(
     For a task that was recorded before a tracker's frame was measured better: its samples are mapped to the world
     anew and judged again. Nothing is lost; --calibration NAME@1 puts them back under the first version.
     """
-    with Api(url) as api:
-        for d in api.call("POST", f"/tasks/{task}/calibration", {"calibration": calibration}):
-            print(f"{task} {d['number']}: {d['calibration']['name']}, {'; '.join([d['verdict'], *d['reasons']])}")
+    with Station(url) as station:
+        for d in station.recalibrate(task, calibration):
+            print(f"{task} {d.number}: {d.calibration.name}, {'; '.join([d.verdict, *d.reasons])}")
 
 
 def plan(
@@ -114,9 +135,8 @@ def plan(
     url: Url = LOCAL,
 ) -> None:
     """Certify a learned path, or say why not."""
-    with Api(url) as api, progress_bar("planning") as show:
-        job = api.follow_job(api.call("POST", f"/paths/{path}/plans", {"version": version}), show)
-        print(plan_lines(api.call("GET", f"/plans/{job['outcome']}")))
+    with Station(url) as station, progress_bar("planning") as show:
+        print(plan_lines(station.plan(path, version, on_change=job_shown(show))))
 
 
 def run(
@@ -141,18 +161,17 @@ def run(
         return
     if plan is None:
         raise UnusableInput("name the plan to run; teachpath plan PATH makes one")
-    with Api(url) as api, progress_bar("running") as show:
-        execution = api.call("POST", "/executions", {"plan": plan, "override": override})
+    with Station(url) as station, progress_bar("running") as show:
+        execution = station.begin_execution(plan, override=override)
         try:
-            execution = api.follow_execution(execution, show)
+            execution = station.finish(execution, execution_shown(show))
         except KeyboardInterrupt:
-            api.call("POST", f"/executions/{execution['id']}/stop")
-            execution = api.follow_execution(execution, show)
-    status = execution["status"]
+            execution = station.finish(station.stop(execution.id), execution_shown(show))
+    status = execution.status
     print(
-        f"{execution['id']} {status['state']}: {status['cycles']} setpoints, {status['late']} late, "
-        f"{status['missed']} missed; limits used to {status['limit_use']:.1%}, "
-        f"tracking error up to {1e3 * status['tracking_error']:.2f} mrad"
+        f"{execution.id} {status.state}: {status.cycles} setpoints, {status.late} late, "
+        f"{status.missed} missed; limits used to {status.limit_use:.1%}, "
+        f"tracking error up to {1e3 * status.tracking_error:.2f} mrad"
     )
 
 
@@ -167,11 +186,9 @@ def replay(
 
     Every sample goes over Zenoh at its original pace, as if a tracker showed it now, and is recorded anew.
     """
-    with Api(url) as api:
-        stored = api.call("GET", f"/tasks/{task}")
-        demonstrations = api.call("GET", f"/tasks/{task}/demonstrations")
-        bus = api.call("GET", "/health")["bus"]
-    chosen = [d["id"] for d in demonstrations if not number or d["number"] in number]
+    with Station(url) as station:
+        stored, demonstrations, bus = station.get_task(task), station.demonstrations(task), station.health().bus
+    chosen = [d.id for d in demonstrations if not number or d.number in number]
     if not chosen:
         sys.exit(f"teachpath: task {task} has no such demonstrations; it has {len(demonstrations)}")
     command = replay_command(
@@ -179,21 +196,21 @@ def replay(
         url=url,
         bus=bus,
         task=into or f"{task}-replayed",
-        scene=stored["scene"],
-        calibration=stored["calibration"],
+        scene=stored.scene,
+        calibration=stored.calibration,
         speed=speed,
     )
     sys.exit(subprocess.run(command, check=False).returncode)
 
 
 def replay_command(
-    demonstrations: list[str], *, url: str, bus: dict[str, str], task: str, scene: str, calibration: str, speed: float
+    demonstrations: list[str], *, url: str, bus: BusSettings, task: str, scene: str, calibration: str, speed: float
 ) -> list[str]:
     """Return the command of the client process that replays `demonstrations` into `task`."""
     options = {
         "--url": url,
-        "--endpoint": bus["endpoint"],
-        "--prefix": bus["prefix"],
+        "--endpoint": bus.endpoint,
+        "--prefix": bus.prefix,
         "--task": task,
         "--scene": scene,
         "--calibration": calibration,
