@@ -9,6 +9,8 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
+ExecutorState = Literal["idle", "starting", "approaching", "following", "held", "stopping", "ended", "faulted"]
+
 JobState = Literal["queued", "running", "succeeded", "failed", "cancelled"]
 
 Verdict = Literal["clean", "repaired", "reject"]
@@ -285,7 +287,7 @@ class ExecutorStatus:
     """Where an execution stands; see proto/teachpath_proto/motion.proto for the fields."""
 
     execution: str = ""
-    state: str = "idle"
+    state: ExecutorState = "idle"
     reason: str = ""
     progress: float = 0.0
     override: float = 1.0

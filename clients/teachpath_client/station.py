@@ -11,11 +11,11 @@ from teachpath_client.events import Events
 from teachpath_client.models import Execution, Health, Job, Plan, Run
 from teachpath_client.task_resources import TaskResources
 from teachpath_client.work_resources import WorkResources
+from teachpath_proto.control import ExecutorState
 
 Awaited = TypeVar("Awaited", Job, Execution)
 
 ENDED_JOBS = ("succeeded", "failed", "cancelled")
-ENDED_EXECUTIONS = ("ended", "faulted", "idle")
 REREAD_INTERVAL = 1.0  # [s] after which what is awaited is read again though no event came
 MIN_READ_INTERVAL = 0.1  # [s] between two readings of what is awaited
 # The resource that is read again, and further topics of events on which it is.
@@ -156,7 +156,7 @@ class Station(TaskResources, WorkResources):
 
 
 def _has_ended(what: Job | Execution) -> bool:
-    return what.state in ENDED_JOBS if isinstance(what, Job) else what.status.state in ENDED_EXECUTIONS
+    return what.state in ENDED_JOBS if isinstance(what, Job) else ExecutorState(what.status.state).is_resting
 
 
 def _next_change(events: Events, topics: Collection[str], id: str = "") -> None:

@@ -124,7 +124,7 @@ def test_an_execution_is_begun_and_read(desk: Desk, station: Station) -> None:
 
 
 def test_waiting_ends_in_time_and_what_is_awaited_goes_on(desk: Desk, station: Station) -> None:
-    unended = Execution("execution-none", None, 1, ExecutorStatus(state="moving"))
+    unended = Execution("execution-none", None, 1, ExecutorStatus(state="following"))
     with pytest.raises(Refused, match="no execution 'execution-none'"):
         station.wait(unended)
     with pytest.raises(NotInTime, match="has not ended within 0 s; it goes on"):

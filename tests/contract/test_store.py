@@ -28,6 +28,7 @@ from teachpath.records import (
     JobState,
     StreamStatistics,
 )
+from teachpath_proto.control import ExecutorState
 from tests.contract.rows import a_job, demonstration, learned
 from tests.unit.io.test_documents import a_path, a_plan
 from tests.waiting import HANG
@@ -263,8 +264,8 @@ def test_an_execution_keeps_its_newest_status(store: Store) -> None:
     store.add_job(a_job("plan-1", kind="plan"))
     plan = store.finish_planning("plan-1", a_plan())
     for i in range(3):
-        store.put_execution(f"e{i}", plan, ExecutorStatus(execution=f"e{i}", state="starting"))
-    running = ExecutorStatus(execution="e0", state="running", progress=1 / 3, lateness_p99_us=0.1)
+        store.put_execution(f"e{i}", plan, ExecutorStatus(execution=f"e{i}", state=ExecutorState.STARTING))
+    running = ExecutorStatus(execution="e0", state=ExecutorState.FOLLOWING, progress=1 / 3, lateness_p99_us=0.1)
     store.put_execution("e0", plan, running)
     assert store.execution("e0").status == running
     assert [e.id for e in store.executions()] == ["e2", "e1", "e0"]

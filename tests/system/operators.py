@@ -9,10 +9,11 @@ import numpy as np
 
 from teachpath.motion.arm.puma560 import TOOL_LENGTH
 from teachpath_client import HandReading, Link, Tracker
+from teachpath_proto.control import ExecutorState
 from teachpath_proto.keys import Keys
 from tests.system.test_view import Visit, wait_until
 
-RESTING = ("idle", "ended", "faulted")
+RESTING = frozenset(state for state in ExecutorState if state.is_resting)
 # Why the executor holds the arm by itself when the arm's own process gets no turn: an operator then says it again.
 STARVED = ("no joint state", "the arm has taken up no setpoint")
 AGAIN = "let the clutch go"  # what the executor asks for when the clutch is held though the arm does not follow

@@ -11,6 +11,7 @@ from teachpath.api.closed import Body
 from teachpath.api.executions import Token, Who
 from teachpath.api.parts import Parts
 from teachpath.records import JournalEntry, Lease, LeaseRequest
+from teachpath_proto.control import LeaseAction
 
 
 class Claim(Body):
@@ -35,12 +36,12 @@ def control_router(parts: Parts) -> APIRouter:
     @router.get("/lease")
     def get_lease() -> Lease:
         """Say who is in control. With an empty `holder` everybody may command, as scripts do."""
-        return executions.request_lease(LeaseRequest("look"))
+        return executions.request_lease(LeaseRequest(LeaseAction.LOOK))
 
     @router.post("/lease", status_code=201)
     def acquire_lease(claim: Claim) -> Lease:
         """Take control, when nobody has it; send `token` as header Teachpath-Lease from now on, and beats in time."""
-        return executions.request_lease(LeaseRequest("acquire", claim.name, "", claim.seconds, claim.hold_when_lost))
+        return executions.request_lease(_request(LeaseAction.ACQUIRE, claim))
 
     @router.post("/lease/ask")
     def ask_for_lease(claim: Claim) -> Lease:
@@ -49,12 +50,12 @@ def control_router(parts: Parts) -> APIRouter:
         Send beats with `token`: the answer says who holds control. A holder who says nothing loses it after
         `granted_in` seconds; one who keeps it ends the request, and the next beat is refused.
         """
-        return executions.request_lease(LeaseRequest("ask", claim.name, "", claim.seconds, claim.hold_when_lost))
+        return executions.request_lease(_request(LeaseAction.ASK, claim))
 
-    @router.post("/lease/{word}")
-    def speak(word: Literal["beat", "release", "keep"], lease: Token) -> Lease:
+    @router.post("/lease/{action}")
+    def act_on_lease(action: Literal["beat", "release", "keep"], lease: Token) -> Lease:
         """Beat (still here), release control or the request for it, or keep control when somebody asks."""
-        return executions.request_lease(LeaseRequest(word, token=lease))
+        return executions.request_lease(LeaseRequest(LeaseAction(action), token=lease))
 
     @router.get("/journal")
     def list_journal(execution: str = "", limit: Annotated[int, Query(ge=1, le=1000)] = 100) -> list[JournalEntry]:
@@ -67,3 +68,7 @@ def control_router(parts: Parts) -> APIRouter:
         executions.revoke(plan, reason=why.reason, who=who)
 
     return router
+
+
+def _request(action: LeaseAction, claim: Claim) -> LeaseRequest:
+    return LeaseRequest(action, claim.name, seconds=claim.seconds, hold_when_lost=claim.hold_when_lost)

@@ -17,6 +17,7 @@ from teachpath.io.store.store import Execution
 from teachpath.motion.analysis.time_series import TimeSeries
 from teachpath.records import Command, ExecutorStatus, TeleopRequest
 from teachpath.robot.executions import Executions
+from teachpath_proto.control import CommandVerb
 
 Token = Annotated[
     str,
@@ -136,7 +137,7 @@ def _add_steering(router: APIRouter, executions: Executions) -> None:
     def set_override(execution: str, speed: Speed, lease: Token = "", who: Who = "") -> Execution:
         """Change the speed while the arm moves; 0 is a hold on the path."""
         return executions.command(
-            execution, Command("override", execution, override=speed.override, lease=lease, who=who)
+            execution, Command(CommandVerb.OVERRIDE, execution, override=speed.override, lease=lease, who=who)
         )
 
     @router.post("/executions/{execution}/step")
@@ -144,7 +145,9 @@ def _add_steering(router: APIRouter, executions: Executions) -> None:
         """Go a length or a number of nodes along the path from where the arm is held, and hold there."""
         if (wanted.length is None) == (wanted.nodes is None):
             raise UnusableInput("a step has a length in metres or a number of nodes: one of the two")
-        command = Command("step", execution, length=wanted.length or 0.0, nodes=wanted.nodes or 0, lease=lease, who=who)
+        command = Command(
+            CommandVerb.STEP, execution, length=wanted.length or 0.0, nodes=wanted.nodes or 0, lease=lease, who=who
+        )
         return executions.command(execution, command)
 
     @router.post("/executions/{execution}/{verb}")
@@ -155,7 +158,7 @@ def _add_steering(router: APIRouter, executions: Executions) -> None:
 
         Resume brings an arm that was pushed away while it was held back to the path first.
         """
-        return executions.command(execution, Command(verb, execution, lease=lease, who=who))
+        return executions.command(execution, Command(CommandVerb(verb), execution, lease=lease, who=who))
 
 
 def stops_router(parts: Parts) -> APIRouter:
@@ -169,7 +172,7 @@ def stops_router(parts: Parts) -> APIRouter:
         A stop brings the arm to rest on its path: it is not an emergency stop. It is never refused for a field or
         parameter that it does not know.
         """
-        return executions.command(execution, Command("stop", execution, lease=lease, who=who))
+        return executions.command(execution, Command(CommandVerb.STOP, execution, lease=lease, who=who))
 
     @router.post("/stop")
     def stop_whatever_moves(lease: Token = "", who: Who = "") -> ExecutorStatus:

@@ -10,6 +10,7 @@ from collections import deque
 from collections.abc import Callable
 from contextlib import suppress
 from functools import partial
+from typing import Final
 
 import numpy as np
 
@@ -24,11 +25,12 @@ from teachpath.io.bus import Bus, Handle
 from teachpath.motion.execution.program import PlanProgram
 from teachpath.motion.settings import MotionSettings
 from teachpath.records import Array, Command, ExecutorStatus, JournalEntry, Plan, Scene, TeleopRequest
+from teachpath_proto.control import CommandVerb, ExecutorState, LeaseAction
 from teachpath_proto.keys import Keys
 
 DEFAULT_OPERATOR = "somebody"  # who commands without a lease and without a name
 RESET_TIMEOUT = 10.0  # [s] that the simulated arm may take to build a scene
-LEASE_FREE_VERBS = ("stop", "revoke")  # verbs that need no lease
+LEASE_FREE_VERBS: Final = (CommandVerb.STOP, CommandVerb.REVOKE)  # verbs that need no lease
 
 
 class CommandHandler:
@@ -100,26 +102,26 @@ class CommandHandler:
         return wire.encode_status(self._status())
 
     def _answer_stop(self, payload: bytes) -> bytes:
-        command = wire.decode_command(payload) if payload else Command("stop")
-        if command.verb != "stop":
+        command = wire.decode_command(payload) if payload else Command(CommandVerb.STOP)
+        if command.verb != CommandVerb.STOP:
             raise UnusableInput(f"this key answers stop alone; send {command.verb} to {self._keys.executor_command}")
         return self.answer(wire.encode_command(command))
 
     def _answer_lease(self, payload: bytes) -> bytes:
         request = wire.decode_lease_request(payload)
         lease = self.lease.answer(request)
-        if request.action in ("acquire", "release", "ask", "keep"):
+        if request.action not in (LeaseAction.LOOK, LeaseAction.BEAT):
             self.write_journal(request.name or lease.holder or "the holder", f"{request.action} control", "done")
         return wire.encode_lease(lease)
 
     def _dispatch(self, command: Command, who: str) -> None:
-        if command.verb == "start":
+        if command.verb == CommandVerb.START:
             self._start(command, self._plan_program)
-        elif command.verb == "mirror":
+        elif command.verb == CommandVerb.MIRROR:
             self._start(command, self._teleop_program)
-        elif command.verb == "stop":
+        elif command.verb == CommandVerb.STOP:
             self._stop_execution(command, who)
-        elif command.verb == "revoke":
+        elif command.verb == CommandVerb.REVOKE:
             self._revoke(command)
         else:
             current = self.current
@@ -129,19 +131,19 @@ class CommandHandler:
 
     def _steer(self, current: Execution, command: Command, who: str) -> None:
         verb = command.verb
-        if verb == "override":
+        if verb == CommandVerb.OVERRIDE:
             self.pending.append(lambda execution: execution.set_override(command.override))
-        elif verb == "hold":
+        elif verb == CommandVerb.HOLD:
             reason = "held by the operator" if who == DEFAULT_OPERATOR else f"held by {who}"
             self.pending.append(lambda execution: execution.hold(reason))
-        elif verb in ("resume", "reverse", "step"):
+        elif verb in (CommandVerb.RESUME, CommandVerb.REVERSE, CommandVerb.STEP):
             if current.revocation:
                 raise Conflict(current.revocation)
-            if verb == "step":
+            if verb == CommandVerb.STEP:
                 self._step(current, command)
                 return
             self._return_to_path(current)
-            self.pending.append(Execution.resume if verb == "resume" else Execution.reverse)
+            self.pending.append(Execution.resume if verb == CommandVerb.RESUME else Execution.reverse)
         else:
             raise UnusableInput(f"{verb} is not possible while a path is executed")
 
@@ -180,7 +182,9 @@ class CommandHandler:
         current = self.current
         if current is not None and command.execution in ("", current.id):
             reason = "stopped by the operator" if who == DEFAULT_OPERATOR else f"stopped by {who}"
-            self.pending.append(lambda execution: execution.end("ended", reason) if execution is current else None)
+            self.pending.append(
+                lambda execution: execution.end(ExecutorState.ENDED, reason) if execution is current else None
+            )
 
     def _revoke(self, command: Command) -> None:
         if self.current is not None and self.current.plan == command.plan_id:

@@ -10,8 +10,8 @@ from teachpath.executor.teleop.program import TeleopProgram
 from teachpath.motion.execution.program import PlanProgram
 from teachpath.motion.execution.segments import Detour
 from teachpath.records import Array, ExecutorStatus, JointState, Setpoint
+from teachpath_proto.control import ExecutorState
 
-RESTING: Final = ("idle", "ended", "faulted")
 LATE_ARM_SUFFIX: Final = ", waiting for the arm, which is late"
 MAX_ARM_LAG: Final = 0.3  # s, by which an arm may play its setpoints late; a driver's delay and the way there are less
 CAUGHT_UP_LAG: Final = 0.25  # s, below which an arm that was late has caught up
@@ -35,7 +35,7 @@ class Execution:
         self.id = execution
         self.program = program
         self.plan = plan
-        self.state = "approaching"
+        self.state = ExecutorState.APPROACHING
         self.reason = ""
         self.tracking_error = 0.0
         self.revocation = ""  # why its certificate holds no longer
@@ -44,19 +44,19 @@ class Execution:
         self._nominal_ns = 0  # [ns since the Unix epoch] of the newest setpoint
         self._rest_setpoints = 0  # setpoints since the arm's nominal motion came to rest
         self._moving_setpoints = 0  # setpoints since it began to move
-        self._final_state = ""  # the state to end in as soon as the arm stands
+        self._final_state: ExecutorState | None = None  # the state to end in as soon as the arm stands
         self._sent_count = 0
         self._meter = LimitMeter(rate, program.current_q)
 
     @property
     def is_resting(self) -> bool:
         """Whether it is over."""
-        return self.state in RESTING
+        return self.state.is_resting
 
     @property
     def is_settled(self) -> bool:
         """Whether it is held for so long that the arm itself rests."""
-        return self.state == "held" and self._rest_setpoints > SETTLING_TIME * self._rate
+        return self.state is ExecutorState.HELD and self._rest_setpoints > SETTLING_TIME * self._rate
 
     def arm_has_stopped(self, arm: JointState) -> bool:
         """Tell whether the arm has taken up a setpoint of the standstill that it is held at."""
@@ -110,7 +110,7 @@ class Execution:
         if isinstance(self.program, PlanProgram):
             self.program.start_detour(detour)
 
-    def end(self, state: str, reason: str) -> None:
+    def end(self, state: ExecutorState, reason: str) -> None:
         """Come to rest on the path and end there as `ended` or `faulted`."""
         if not self._final_state:
             self._final_state, self.reason = state, reason
@@ -193,14 +193,14 @@ class Execution:
         if self.displacement:
             pushed = f"the arm was pushed {self.displacement:.3f} rad off the point where it was held"
             return f"{pushed}; resume brings it back slowly, stop ends here"
-        return self.reason or (self.program.hold_reason if self.state == "held" else "")
+        return self.reason or (self.program.hold_reason if self.state is ExecutorState.HELD else "")
 
-    def _current_state(self) -> str:
+    def _current_state(self) -> ExecutorState:
         program = self.program
         if self._final_state:
-            return self._final_state if program.at_rest else "stopping"
+            return self._final_state if program.at_rest else ExecutorState.STOPPING
         if program.finished:
-            return "ended"
+            return ExecutorState.ENDED
         if program.held:
-            return "held" if program.at_rest else "stopping"
-        return "approaching" if program.before_path else "following"
+            return ExecutorState.HELD if program.at_rest else ExecutorState.STOPPING
+        return ExecutorState.APPROACHING if program.before_path else ExecutorState.FOLLOWING

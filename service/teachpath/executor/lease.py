@@ -14,6 +14,7 @@ from typing import Final
 
 from teachpath.errors import Conflict
 from teachpath.records import Lease, LeaseRequest
+from teachpath_proto.control import LeaseAction
 
 DEFAULT_BEAT_INTERVAL: Final = 5.0  # [s] between two beats, unless the holder says otherwise
 GRANT_DELAY: Final = 10.0  # [s] that a holder has to answer the one who asks
@@ -54,21 +55,21 @@ class ControlLease:
         """
         with self._lock:
             now = self._update()
-            if request.action == "acquire":
+            if request.action == LeaseAction.ACQUIRE:
                 return self._view(now, self._acquire(request, now))
-            if request.action == "ask":
+            if request.action == LeaseAction.ASK:
                 return self._view(now, self._ask(request, now))
-            if request.action == "look":
+            if request.action == LeaseAction.LOOK:
                 return self._view(now, None)
             hand = self._claimant_of(request.token)
-            if request.action == "beat":
+            if request.action == LeaseAction.BEAT:
                 hand.expires = now + hand.seconds
-            elif request.action == "keep" and hand is self._holder:
+            elif request.action == LeaseAction.KEEP and hand is self._holder:
                 self._requester = None
-            elif request.action == "release" and hand is self._holder:
+            elif request.action == LeaseAction.RELEASE and hand is self._holder:
                 self._holder = None
                 self._update()
-            elif request.action == "release":
+            elif request.action == LeaseAction.RELEASE:
                 self._requester = None
             return self._view(now, hand)
 

@@ -26,6 +26,7 @@ from teachpath.io.bus import Bus
 from teachpath.motion.execution.governor import warm_up
 from teachpath.motion.settings import MotionSettings
 from teachpath.records import ExecutorStatus
+from teachpath_proto.control import CommandVerb, ExecutorState
 from teachpath_proto.keys import Keys
 
 log = logging.getLogger(__name__)
@@ -100,7 +101,7 @@ class Executor:
             self._cycle(self._pacer.wait(counted=False))  # says at once that it is there
             while not (stop.is_set() and controls.is_resting):
                 if stop.is_set() and controls.current is not None:
-                    controls.current.end("ended", "the executor was told to stop")
+                    controls.current.end(ExecutorState.ENDED, "the executor was told to stop")
                 resting = controls.is_resting
                 self._cycle(self._pacer.wait(IDLE_PERIODS if resting else 1, counted=not resting))
         finally:
@@ -155,14 +156,14 @@ class Executor:
 
     def _hold(self, current: Execution, reason: str) -> None:
         if not current.program.hold_requested:
-            self._command_handler.write_journal("the executor", "hold", reason)
+            self._command_handler.write_journal("the executor", CommandVerb.HOLD, reason)
         current.hold(reason)
 
     def _judge_tracking(self, current: Execution, error: float) -> None:
         current.tracking_error = max(current.tracking_error, error)
         if error > self._settings.largest_error:
             current.end(
-                "faulted",
+                ExecutorState.FAULTED,
                 f"tracking error {error:.3f} rad {current.program.location}, limit "
                 f"{self._settings.largest_error:g}: is the arm blocked? free it, or start again at a lower override",
             )
@@ -170,7 +171,7 @@ class Executor:
     def _publish_status(self, due: int) -> None:
         """Publish the status: at once when the state has changed, else now and then."""
         current = self._command_handler.current
-        status = (current.id, current.state) if current is not None else ("", "idle")
+        status = (current.id, current.state) if current is not None else ("", ExecutorState.IDLE)
         rate = self._settings.status_rate
         if self._command_handler.is_resting:
             rate = min(rate, IDLE_STATUS_RATE)

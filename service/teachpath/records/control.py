@@ -6,13 +6,14 @@ from dataclasses import dataclass
 
 from teachpath.records.calibrations import Calibration
 from teachpath.records.motion import Scene
+from teachpath_proto.control import CommandVerb, LeaseAction
 
 
 @dataclass(frozen=True, slots=True)
 class Command:
     """One command to the executor; see proto/teachpath_proto/motion.proto for what goes with which verb."""
 
-    verb: str
+    verb: CommandVerb
     execution: str = ""
     plan: bytes = b""  # in JSON
     override: float = 1.0
@@ -48,9 +49,9 @@ class TeleopRequest:
 
 @dataclass(frozen=True, slots=True)
 class LeaseRequest:
-    """A word about who is in control: look, acquire, beat, release, ask or keep."""
+    """What somebody does about the control lease; name and seconds belong to `acquire` and `ask`."""
 
-    action: str
+    action: LeaseAction
     name: str = ""
     token: str = ""
     seconds: float = 0.0

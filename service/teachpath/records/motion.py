@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from teachpath.records.arrays import Array, Matrix, Quaternion, Vector
+from teachpath_proto.control import ExecutorState
 
 
 @dataclass(frozen=True, slots=True)
@@ -134,7 +135,7 @@ class ExecutorStatus:
     """Where an execution stands; see proto/teachpath_proto/motion.proto for the fields."""
 
     execution: str = ""
-    state: str = "idle"
+    state: ExecutorState = ExecutorState.IDLE
     reason: str = ""
     progress: float = 0.0
     override: float = 1.0

@@ -9,6 +9,7 @@ import uuid
 from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
+from typing import Final
 
 from teachpath.errors import Conflict, NotFound, PathRefused, TeachpathError, Unreachable, UnusableInput
 from teachpath.io.bus import Bus, Handle
@@ -34,10 +35,17 @@ from teachpath.records import (
     TeleopRequest,
 )
 from teachpath.robot.motion_recorder import MotionRecorder
+from teachpath_proto.control import CommandVerb, ExecutorState
 from teachpath_proto.keys import Keys
 
-RESTING = frozenset({"idle", "ended", "faulted"})
-VERBS = ("override", "hold", "resume", "step", "reverse", "stop")
+STEERING_VERBS: Final = (
+    CommandVerb.OVERRIDE,
+    CommandVerb.HOLD,
+    CommandVerb.RESUME,
+    CommandVerb.STEP,
+    CommandVerb.REVERSE,
+    CommandVerb.STOP,
+)
 
 
 class Executions:
@@ -86,7 +94,7 @@ class Executions:
     def recording(self, execution: str) -> Path:
         """Return the file of all that an execution sent and the arm did, whole once it is over; raises NotFound."""
         row = self.get(execution)
-        if row.status.state in RESTING:
+        if row.status.state.is_resting:
             self._recorder.wait_for_file(row.id)
         return self._store.motions.path(row.id)
 
@@ -118,10 +126,10 @@ class Executions:
         stored = self._store.plan(plan)
         self._check_certificate(stored)
         status = self.status
-        if status is not None and status.state not in RESTING:
+        if status is not None and not status.state.is_resting:
             raise Conflict(f"execution {status.execution} is {status.state}; stop it first")
         key = f"execution-{uuid.uuid4().hex[:12]}"
-        command = Command("start", key, plan=encode(stored), override=override, lease=lease, who=who)
+        command = Command(CommandVerb.START, key, plan=encode(stored), override=override, lease=lease, who=who)
         path = None
         with suppress(NotFound):  # a file without it is judged by its limits alone
             path = self._store.versions.get(stored.path, stored.path_version)[1]
@@ -137,7 +145,7 @@ class Executions:
             Unreachable: the executor does not answer.
         """
         key = f"execution-{uuid.uuid4().hex[:12]}"
-        command = Command("mirror", key, mirror=encode(order), lease=lease, who=who)
+        command = Command(CommandVerb.MIRROR, key, mirror=encode(order), lease=lease, who=who)
         return self._start_execution(command, MotionHeader(key, self._robot))
 
     def command(self, execution: str, command: Command) -> Execution:
@@ -150,11 +158,11 @@ class Executions:
             NotFound: no such execution.
             Conflict: it is not the one that is running, or somebody else is in control.
         """
-        if command.verb not in VERBS:
-            raise UnusableInput(f"{command.verb!r} is no command; say {', '.join(VERBS)}")
+        if command.verb not in STEERING_VERBS:
+            raise UnusableInput(f"{command.verb!r} is no command; say {', '.join(STEERING_VERBS)}")
         row = self.get(execution)
-        if command.verb == "stop":
-            if row.status.state not in RESTING:
+        if command.verb == CommandVerb.STOP:
+            if not row.status.state.is_resting:
                 self._bus.ask(self._keys.executor_stop, encode_command(command))
             return self.get(execution)
         status = self.status
@@ -165,7 +173,7 @@ class Executions:
 
     def stop_all(self, *, lease: str = "", who: str = "") -> ExecutorStatus:
         """Stop whatever moves; raises Unreachable when the executor does not answer."""
-        command = Command("stop", lease=lease, who=who)
+        command = Command(CommandVerb.STOP, lease=lease, who=who)
         return decode_status(self._bus.ask(self._keys.executor_stop, encode_command(command)))
 
     def request_lease(self, request: LeaseRequest) -> Lease:
@@ -186,8 +194,8 @@ class Executions:
         stored = self._store.plan(plan)
         self._store.journal.revoke(stored.id, who=who, reason=reason)
         status = self.status
-        if status is not None and status.state not in RESTING:
-            command = Command("revoke", plan_id=stored.id, reason=reason, who=who)
+        if status is not None and not status.state.is_resting:
+            command = Command(CommandVerb.REVOKE, plan_id=stored.id, reason=reason, who=who)
             self._bus.ask(self._keys.executor_command, encode_command(command))
 
     def get(self, execution: str) -> Execution:
@@ -206,7 +214,7 @@ class Executions:
         """
 
         def ended() -> bool:
-            return self._status is not None and self._status.execution == execution and self._status.state in RESTING
+            return self._status is not None and self._status.execution == execution and self._status.state.is_resting
 
         with self._changed:
             if not self._changed.wait_for(ended, timeout):
@@ -217,13 +225,15 @@ class Executions:
 
     def _start_execution(self, command: Command, header: MotionHeader) -> Execution:
         key, plan = command.execution, header.plan.id if header.plan else None
-        self._store.put_execution(key, plan, ExecutorStatus(execution=key, state="starting", override=command.override))
+        self._store.put_execution(
+            key, plan, ExecutorStatus(execution=key, state=ExecutorState.STARTING, override=command.override)
+        )
         self._plans[key] = plan
         self._recorder.begin(header)
         try:
             self._bus.ask(self._keys.executor_command, encode_command(command), timeout=30.0)
         except TeachpathError as error:
-            refused = ExecutorStatus(execution=key, state="faulted", reason=str(error))
+            refused = ExecutorStatus(execution=key, state=ExecutorState.FAULTED, reason=str(error))
             self._store.put_execution(key, plan, refused)
             self._recorder.abandon()
             raise

@@ -22,7 +22,6 @@ log = logging.getLogger(__name__)
 POLL_INTERVAL: Final = 0.05  # [s] between two looks at what came
 FLUSH_NS: Final = 1_000_000_000  # between two flushes
 SETTLING_NS: Final = 500_000_000  # behind the end of an execution, in which the arm still settles
-OVER: Final = ("ended", "faulted")
 FILE_END_TIMEOUT: Final = 10.0  # [s] that somebody waits for the end of a file
 
 
@@ -136,7 +135,7 @@ class MotionRecorder:
                 status = decode_status(payload)
                 if status.execution != self._execution:
                     return
-                if status.state in OVER and not self._end_ns:
+                if status.state.is_resting and not self._end_ns:
                     self._end_ns = at_ns + SETTLING_NS
             try:
                 self._take.write(topic, payload, at_ns)

@@ -31,7 +31,6 @@ REST_STEPS_BEFORE_IDLE: Final = 200  # steps of standstill after which the arm d
 IDLE_STATE_PERIOD: Final = 0.04  # [s] between two joint states of an arm that dozes: 25 Hz, the contract asks for 20
 # A starved process catches up, each setpoint played when it was due: on a busy machine the arm is late, not wrong.
 MAX_LAG_NS: Final = 1_000_000_000
-ENDED: Final = ("idle", "ended", "faulted")
 
 
 class Simulator:
@@ -189,7 +188,7 @@ class Simulator:
         try:
             while self._statuses:
                 status = wire.decode_status(self._statuses.popleft())
-                if status.state in ENDED:
+                if status.state.is_resting:
                     self._finished_execution = status.execution
         except UnusableInput as error:
             log.warning("left out: %s", error)

@@ -13,6 +13,7 @@ from teachpath.io.documents import encode
 from teachpath.motion.arm.puma560 import ACCELERATION, JERK, SPEED
 from teachpath.motion.settings import MotionSettings
 from teachpath.records import Command, ExecutorStatus, JointState, JournalEntry, Lease, LeaseRequest, Plan, Setpoint
+from teachpath_proto.control import CommandVerb, LeaseAction
 from teachpath_proto.keys import Keys
 
 KEYS = Keys()
@@ -111,11 +112,11 @@ class Bench:
 
     def command(self, verb: str, execution: str = "run-1", **given: object) -> ExecutorStatus:
         return wire.decode_status(
-            self.bus.ask(KEYS.executor_command, wire.encode_command(Command(verb, execution, **given)))  # type: ignore[arg-type]
+            self.bus.ask(KEYS.executor_command, wire.encode_command(Command(CommandVerb(verb), execution, **given)))  # type: ignore[arg-type]
         )
 
     def control(self, action: str, name: str = "", **given: object) -> Lease:
-        request = LeaseRequest(action, name, **given)  # type: ignore[arg-type]
+        request = LeaseRequest(LeaseAction(action), name, **given)  # type: ignore[arg-type]
         return wire.decode_lease(self.bus.ask(KEYS.executor_lease, wire.encode_lease_request(request)))
 
     def start(self, what: Plan, override: float = 1.0) -> None:

@@ -8,6 +8,7 @@ from teachpath.io import wire
 from teachpath.io.documents import encode
 from teachpath.motion.arm.kinematics import tool_pose
 from teachpath.records import Command, Plan
+from teachpath_proto.control import CommandVerb
 from tests.unit.executor.executors import KEYS, PERIOD_NS, Bench, standing, within_limits
 from tests.unit.motion.ways import MIDDLE, way
 
@@ -108,7 +109,7 @@ def test_a_stop_may_be_said_at_any_time_and_twice(bench: Bench, middle: Plan) ->
     states: list[str] = []
 
     def stop(execution: str = "run-1") -> None:
-        payload = wire.encode_command(Command("stop", execution))
+        payload = wire.encode_command(Command(CommandVerb.STOP, execution))
         states.append(wire.decode_status(bench.bus.ask(KEYS.executor_stop, payload)).state)
 
     bench.when(lambda: True, lambda: stop(""))  # nothing was ever started

@@ -4,6 +4,7 @@ from teachpath.errors import Conflict, UnusableInput
 from teachpath.executor.lease import DEFAULT_BEAT_INTERVAL, GRANT_DELAY, ControlLease
 from teachpath.io import wire
 from teachpath.records import LeaseRequest
+from teachpath_proto.control import LeaseAction
 
 
 class Desk:
@@ -14,7 +15,7 @@ class Desk:
         self.lease = ControlLease(lambda: round(self.now * 1e9))
 
     def say(self, action: str, name: str = "", token: str = "", **more: object) -> str:
-        return self.lease.answer(LeaseRequest(action, name, token, **more)).token  # type: ignore[arg-type]
+        return self.lease.answer(LeaseRequest(LeaseAction(action), name, token, **more)).token  # type: ignore[arg-type]
 
     def holder(self) -> str:
         return self.lease.public_view().holder
@@ -91,11 +92,11 @@ def test_who_asks_and_goes_away_gets_nothing(desk: Desk) -> None:
 @pytest.mark.parametrize(
     ("request_", "sentence"),
     [
-        (LeaseRequest("acquire", " "), "under a name"),
-        (LeaseRequest("acquire", "x" * 65), "more than 64"),
-        (LeaseRequest("acquire", "a\nb"), "unprintable"),
-        (LeaseRequest("acquire", "Ada", seconds=float("nan")), "between two beats"),
-        (LeaseRequest("acquire", "Ada", seconds=1e9), "at most 60"),
+        (LeaseRequest(LeaseAction.ACQUIRE, " "), "under a name"),
+        (LeaseRequest(LeaseAction.ACQUIRE, "x" * 65), "more than 64"),
+        (LeaseRequest(LeaseAction.ACQUIRE, "a\nb"), "unprintable"),
+        (LeaseRequest(LeaseAction.ACQUIRE, "Ada", seconds=float("nan")), "between two beats"),
+        (LeaseRequest(LeaseAction.ACQUIRE, "Ada", seconds=1e9), "at most 60"),
     ],
 )
 def test_an_unusable_word_is_refused_on_the_wire(request_: LeaseRequest, sentence: str) -> None:

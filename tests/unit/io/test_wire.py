@@ -7,7 +7,9 @@ from hypothesis import strategies as st
 
 from teachpath.errors import UnusableInput, UnusableSample
 from teachpath.io import wire
-from teachpath.records import Command, JournalEntry, Lease, LeaseRequest
+from teachpath.records import Command, ExecutorStatus, JournalEntry, Lease, LeaseRequest
+from teachpath_proto import motion_pb2
+from teachpath_proto.control import CommandVerb, ExecutorState, LeaseAction
 from tests.unit.recording.hands import sample
 
 GOOD = sample(7, (0.1, 0.2, 0.3))
@@ -77,14 +79,34 @@ def test_setpoints_states_and_commands_never_let_rubbish_through(noise: bytes) -
             decode(noise)
 
 
-@pytest.mark.parametrize("verb", wire.VERBS)
-def test_commands_survive_the_wire(verb: str) -> None:
+def test_the_words_of_the_contract_are_those_of_its_messages() -> None:
+    verbs = [name.lower() for name, _ in motion_pb2.ExecutorCommand.Verb.items()]
+    assert verbs == ["unspecified", *CommandVerb]
+    actions = [name.lower() for name, _ in motion_pb2.LeaseRequest.Action.items()]
+    assert {*actions} - {"unspecified"} == {*LeaseAction} - {LeaseAction.LOOK}
+
+
+def test_a_state_that_nobody_knows_is_refused() -> None:
+    with pytest.raises(UnusableInput, match="'dancing' is none of idle, starting"):
+        wire.decode_status(motion_pb2.ExecutorStatus(state="dancing").SerializeToString())
+
+
+@pytest.mark.parametrize("state", ExecutorState)
+def test_a_status_survives_the_wire_with_its_state(state: ExecutorState) -> None:
+    status = ExecutorStatus(execution="e1", state=state)
+    decoded = wire.decode_status(wire.encode_status(status))
+    assert decoded == status
+    assert decoded.state is state
+
+
+@pytest.mark.parametrize("verb", CommandVerb)
+def test_commands_survive_the_wire(verb: CommandVerb) -> None:
     command = Command(verb, "e1", b"{}", 0.5, -0.25, -3, "token", "Ada", "plan-1", "moved", b"[]")
     assert wire.decode_command(wire.encode_command(command)) == command
 
 
 def test_words_about_control_survive_the_wire() -> None:
-    for action in wire.ACTIONS:
+    for action in LeaseAction:
         request = LeaseRequest(action, "Ada", "token", 2.5, True)
         assert wire.decode_lease_request(wire.encode_lease_request(request)) == request
     lease = Lease("Ada", 2.5, True, "Bea", 7.5, "token")
@@ -95,4 +117,4 @@ def test_words_about_control_survive_the_wire() -> None:
 
 def test_an_override_outside_its_range_is_refused() -> None:
     with pytest.raises(UnusableInput, match=r"override 1\.5"):
-        wire.decode_command(wire.encode_command(Command("override", "e1", override=1.5)))
+        wire.decode_command(wire.encode_command(Command(CommandVerb.OVERRIDE, "e1", override=1.5)))

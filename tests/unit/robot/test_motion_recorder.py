@@ -14,6 +14,7 @@ from teachpath.io.store.motions import MotionHeader, Motions, read_motion
 from teachpath.motion.analysis.time_series import time_series
 from teachpath.records import ExecutorStatus, JournalEntry, Plan, Setpoint
 from teachpath.robot.motion_recorder import SETTLING_NS, MotionRecorder
+from teachpath_proto.control import ExecutorState
 from teachpath_proto.keys import Keys
 from tests.unit.executor.executors import Bench
 from tests.unit.motion.ways import MIDDLE, way
@@ -39,7 +40,7 @@ class Desk:
         self.now += 4_000_000
 
     def tell(self, state: str) -> None:
-        status = ExecutorStatus(execution="execution-1", state=state)
+        status = ExecutorStatus(execution="execution-1", state=ExecutorState(state))
         self.bus.publish(KEYS.executor_status, wire.encode_status(status))
 
 

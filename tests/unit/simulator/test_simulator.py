@@ -17,6 +17,7 @@ from teachpath.motion.settings import MotionSettings
 from teachpath.records import ExecutorStatus, JointState, Scene, Setpoint
 from teachpath.simulator.loop import Simulator
 from teachpath.simulator.settings import SimulatorSettings
+from teachpath_proto.control import ExecutorState
 from teachpath_proto.keys import Keys
 
 KEYS = Keys()
@@ -174,7 +175,7 @@ def test_the_end_of_an_execution_is_no_silence() -> None:
     bench.move(HOME + 0.1, 0.4)
 
     def tell(now: int) -> None:
-        status = wire.encode_status(ExecutorStatus(execution="e1", state="ended"))
+        status = wire.encode_status(ExecutorStatus(execution="e1", state=ExecutorState.ENDED))
         bench.bus.publish(KEYS.executor_status, status)
 
     assert not any(state.holding for state in bench.run(0.2, tell))
@@ -250,7 +251,7 @@ def test_the_scene_is_not_changed_under_an_execution() -> None:
     states = bench.run(0.2, change)
     assert "run-1 is under way in scene paper" in refused[-1]
     assert any(states[-1].object_orientation)  # the object is still there
-    ended = wire.encode_status(ExecutorStatus(execution="run-1", state="ended"))
+    ended = wire.encode_status(ExecutorStatus(execution="run-1", state=ExecutorState.ENDED))
     bench.run(0.002, lambda now: bench.bus.publish(KEYS.executor_status, ended))
     assert not any(wire.decode_state(bench.simulator.reset(documents.encode(empty_scene()))).object_orientation)
 

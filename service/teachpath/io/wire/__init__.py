@@ -1,8 +1,6 @@
 """The wire: protobuf messages to records and back, with every value checked on the way in."""
 
 from teachpath.io.wire.control import (
-    ACTIONS,
-    VERBS,
     decode_command,
     decode_entry,
     decode_lease,
@@ -42,10 +40,8 @@ from teachpath.io.wire.samples import (
 )
 
 __all__ = [
-    "ACTIONS",
     "MAX_COORDINATE",
     "MAX_SAMPLE_SIZE",
-    "VERBS",
     "decode_amendment",
     "decode_command",
     "decode_entry",

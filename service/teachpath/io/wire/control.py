@@ -9,9 +9,8 @@ from teachpath.errors import UnusableInput
 from teachpath.io.wire.parsing import parse
 from teachpath.records import Command, JournalEntry, Lease, LeaseRequest
 from teachpath_proto import motion_pb2
+from teachpath_proto.control import CommandVerb, LeaseAction
 
-VERBS: Final = tuple(name.lower() for name in motion_pb2.ExecutorCommand.Verb.keys()[1:])
-ACTIONS: Final = ("look", *(name.lower() for name in motion_pb2.LeaseRequest.Action.keys()[1:]))
 LONGEST_NAME: Final = 64  # characters of a name that everybody is shown
 LONGEST_BEAT: Final = 60.0  # [s] between two beats of a lease
 LONGEST_STEP: Final = 10.0  # [m]
@@ -27,19 +26,19 @@ def decode_command(payload: bytes) -> Command:
     """Check a command; raises UnusableInput."""
     m = parse(motion_pb2.ExecutorCommand, payload)
     if m.verb not in motion_pb2.ExecutorCommand.Verb.values() or not m.verb:
-        raise UnusableInput(f"command {m.verb} is unknown: say {', '.join(VERBS)}")
+        raise UnusableInput(f"command {m.verb} is unknown: say {', '.join(CommandVerb)}")
     if not 0.0 <= m.override <= 1.0:
         raise UnusableInput(f"override {m.override:g} is outside 0 to 1")
     if not abs(m.length) <= LONGEST_STEP:
         raise UnusableInput(f"a step of {m.length:g} m is over {LONGEST_STEP:g} m; are its units metres?")
     _name(m.who)
-    verb = motion_pb2.ExecutorCommand.Verb.Name(m.verb).lower()
+    verb = CommandVerb(motion_pb2.ExecutorCommand.Verb.Name(m.verb).lower())
     return Command(**{name: getattr(m, name) for name in Command.__dataclass_fields__} | {"verb": verb})
 
 
 def encode_lease_request(request: LeaseRequest) -> bytes:
     """Return the message of a word about control."""
-    action = "UNSPECIFIED" if request.action == "look" else request.action.upper()
+    action = "UNSPECIFIED" if request.action == LeaseAction.LOOK else request.action.upper()
     fields = {name: getattr(request, name) for name in LeaseRequest.__dataclass_fields__}
     return motion_pb2.LeaseRequest(**{**fields, "action": action}).SerializeToString()
 
@@ -48,9 +47,10 @@ def decode_lease_request(payload: bytes) -> LeaseRequest:
     """Check a word about control; raises UnusableInput."""
     m = parse(motion_pb2.LeaseRequest, payload)
     if m.action not in motion_pb2.LeaseRequest.Action.values():
-        raise UnusableInput(f"action {m.action} is unknown: say {', '.join(ACTIONS)}")
-    action = ACTIONS[m.action]
-    if action in ("acquire", "ask") and not m.name.strip():
+        raise UnusableInput(f"action {m.action} is unknown: say {', '.join(LeaseAction)}")
+    name = motion_pb2.LeaseRequest.Action.Name(m.action)
+    action = LeaseAction(name.lower()) if m.action else LeaseAction.LOOK
+    if action in (LeaseAction.ACQUIRE, LeaseAction.ASK) and not m.name.strip():
         raise UnusableInput("control is held under a name that everybody sees; give one")
     _name(m.name)
     if not (math.isfinite(m.seconds) and 0.0 <= m.seconds <= LONGEST_BEAT):

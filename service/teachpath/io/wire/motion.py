@@ -10,6 +10,7 @@ from teachpath.errors import UnusableInput
 from teachpath.io.wire.parsing import parse
 from teachpath.records import Array, ExecutorStatus, JointState, Setpoint
 from teachpath_proto import motion_pb2
+from teachpath_proto.control import ExecutorState
 
 
 def encode_setpoint(setpoint: Setpoint) -> bytes:
@@ -104,4 +105,8 @@ def encode_status(status: ExecutorStatus) -> bytes:
 def decode_status(payload: bytes) -> ExecutorStatus:
     """Return the executor's status; raises UnusableInput when malformed."""
     m = parse(motion_pb2.ExecutorStatus, payload)
-    return ExecutorStatus(**{name: getattr(m, name) for name in ExecutorStatus.__dataclass_fields__})
+    try:
+        state = ExecutorState(m.state)
+    except ValueError:
+        raise UnusableInput(f"executor status: state {m.state!r} is none of {', '.join(ExecutorState)}") from None
+    return ExecutorStatus(**{name: getattr(m, name) for name in ExecutorStatus.__dataclass_fields__} | {"state": state})
