@@ -22,6 +22,7 @@ from teachpath.executor.settings import ExecutorSettings
 from teachpath.executor.teleop.program import TeleopProgram
 from teachpath.io import documents, wire
 from teachpath.io.bus import Bus, Handle
+from teachpath.motion.execution.motion_program import MotionProgram
 from teachpath.motion.execution.program import PlanProgram
 from teachpath.motion.settings import MotionSettings
 from teachpath.records import Array, Command, ExecutorStatus, JournalEntry, Plan, Scene, TeleopRequest
@@ -154,8 +155,6 @@ class CommandHandler:
         if off > self._settings.regain:
             raise Conflict(f"the arm is {off:.3f} rad off the path; resume brings it back, then hold it and step")
         here = current.program.current_q
-        if isinstance(current.program, TeleopProgram):
-            raise Conflict("a live hand has no path to step on; stop it, and run a plan")
         aside = current.program.plan_step(length=command.length, nodes=command.nodes)
         self.pending.append(lambda execution: execution.start_detour(aside, here))
 
@@ -171,8 +170,6 @@ class CommandHandler:
             current.displacement or current.arm_has_stopped(self._joint_states.current())
         ):
             raise Conflict(f"the arm is {off:.3f} rad off its setpoint and not at rest yet; hold it first, and wait")
-        if isinstance(current.program, TeleopProgram):
-            raise Conflict(f"the arm was pushed {off:.3f} rad away; stop, and begin again from where it is")
         here = self._resting_q()
         aside = current.program.plan_return(here)
         self.pending.append(lambda execution: execution.start_detour(aside, here))
@@ -190,9 +187,7 @@ class CommandHandler:
         if self.current is not None and self.current.plan == command.plan_id:
             self.pending.append(partial(Execution.revoke, reason=command.reason or "no reason was given"))
 
-    def _start(
-        self, command: Command, make: Callable[[Command], tuple[PlanProgram | TeleopProgram, str, Scene]]
-    ) -> None:
+    def _start(self, command: Command, make: Callable[[Command], tuple[MotionProgram, str, Scene]]) -> None:
         stops = self._stops
         with self._starting:
             if self.current is not None and not self.current.is_resting:
@@ -201,8 +196,9 @@ class CommandHandler:
             with suppress(Unreachable):  # only the simulated robot has a scene to put back
                 self._bus.ask(self._keys.reset(self._robot), documents.encode(scene), timeout=RESET_TIMEOUT)
             if self._stops != stops:
+                program.close()
                 raise Conflict("it was stopped before it began")
-            if self.current is not None and isinstance(self.current.program, TeleopProgram):
+            if self.current is not None:
                 self.current.program.close()
             self._on_start()
             self.pending.clear()

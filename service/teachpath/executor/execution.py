@@ -6,8 +6,7 @@ from typing import Final
 
 from teachpath.executor.limit_meter import LimitMeter
 from teachpath.executor.pacing import Pacer
-from teachpath.executor.teleop.program import TeleopProgram
-from teachpath.motion.execution.program import PlanProgram
+from teachpath.motion.execution.motion_program import MotionProgram
 from teachpath.motion.execution.segments import Detour
 from teachpath.records import Array, ExecutorStatus, JointState, Setpoint
 from teachpath_proto.control import ExecutorState
@@ -23,15 +22,13 @@ class Execution:
 
     Args:
         execution: its id.
-        program: what to run through, or a live hand.
+        program: what to run through.
         plan: id of its plan; empty with a live hand.
         rate: setpoints a second [Hz].
         offset: added to the loop's clock to get nanoseconds since the Unix epoch.
     """
 
-    def __init__(
-        self, execution: str, program: PlanProgram | TeleopProgram, *, plan: str, rate: float, offset: int
-    ) -> None:
+    def __init__(self, execution: str, program: MotionProgram, *, plan: str, rate: float, offset: int) -> None:
         self.id = execution
         self.program = program
         self.plan = plan
@@ -107,8 +104,7 @@ class Execution:
         if self.displacement:
             self._meter = LimitMeter(self._rate, start_q, self._meter)
         self.displacement, self.reason = 0.0, ""
-        if isinstance(self.program, PlanProgram):
-            self.program.start_detour(detour)
+        self.program.start_detour(detour)
 
     def end(self, state: ExecutorState, reason: str) -> None:
         """Come to rest on the path and end there as `ended` or `faulted`."""
@@ -117,9 +113,8 @@ class Execution:
             self.program.hold()
 
     def advance_planning(self) -> None:
-        """Do what is to be done behind a setpoint; only a live hand leaves something."""
-        if isinstance(self.program, TeleopProgram):
-            self.program.advance_planning()
+        """Let the program plan in the time that is left behind a setpoint."""
+        self.program.advance_planning()
 
     def skip_period(self) -> None:
         """Let a period pass in which nothing is sent: the arm was pushed away and stays where it is."""
@@ -166,7 +161,7 @@ class Execution:
     def status(self, pacer: Pacer) -> ExecutorStatus:
         """Tell where it stands, with the account of the loop that runs it."""
         late = pacer.lateness()
-        hand = self.program.latency if isinstance(self.program, TeleopProgram) else (0.0, 0.0)
+        latency_p50, latency_p99 = self.program.latency
         return ExecutorStatus(
             execution=self.id,
             state=self.state,
@@ -185,8 +180,8 @@ class Execution:
             duration=self._sent_count / self._rate,
             length=self.program.arc_length,
             stretch=self.program.activity + (LATE_ARM_SUFFIX if self.program.waiting else ""),
-            hand_latency_p50_us=hand[0],
-            hand_latency_p99_us=hand[1],
+            hand_latency_p50_us=latency_p50,
+            hand_latency_p99_us=latency_p99,
         )
 
     def _describe_reason(self) -> str:

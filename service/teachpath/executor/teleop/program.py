@@ -8,12 +8,13 @@ from typing import Final
 
 import numpy as np
 
+from teachpath.errors import Conflict
 from teachpath.executor.joint_state_monitor import JointStateMonitor
 from teachpath.executor.teleop.clutch import CLUTCH_BUTTON, Clutch, RemoteClutch, decode_tracked
 from teachpath.executor.teleop.gripper import GripperFollower, observed_load
 from teachpath.io.bus import Bus
 from teachpath.motion.collision.collision_model import CollisionModel, Load
-from teachpath.motion.execution.segments import MotionState
+from teachpath.motion.execution.segments import Detour, MotionState
 from teachpath.motion.execution.teleop_follower import TeleopFollower
 from teachpath.motion.settings import MotionSettings
 from teachpath.recording.demonstration import to_world
@@ -162,6 +163,18 @@ class TeleopProgram:
         """Hold at zero; a hand has its own speed."""
         if share <= 0.0:
             self.hold()
+
+    def plan_step(self, *, length: float = 0.0, nodes: int = 0) -> Detour:
+        """Raise Conflict: a live hand has no path."""
+        raise Conflict("a live hand has no path to step on; stop it, and run a plan")
+
+    def plan_return(self, start_q: Array) -> Detour:
+        """Raise Conflict: the hand has moved on since the arm was pushed away."""
+        off = float(np.abs(start_q - self.current_q).max())
+        raise Conflict(f"the arm was pushed {off:.3f} rad away; stop, and begin again from where it is")
+
+    def start_detour(self, detour: Detour) -> None:
+        """Do nothing: a live hand plans no detours."""
 
     def close(self) -> None:
         """Stop listening to the tracker, and to who presses its clutch."""

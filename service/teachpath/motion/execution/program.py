@@ -122,6 +122,11 @@ class PlanProgram:
         return self._arc_length
 
     @property
+    def latency(self) -> tuple[float, float]:
+        """Zeros: a plan answers no hand."""
+        return 0.0, 0.0
+
+    @property
     def activity(self) -> str:
         """What it does, in words."""
         if self._detour is not None and self._detour.name:
@@ -215,6 +220,9 @@ class PlanProgram:
         tracks = plan_return_path(self._plan, self._segment, start_q, self.current_q, self._settings)
         return Detour("on the way back to the path", tuple(tracks))
 
+    def advance_planning(self) -> None:
+        """Do nothing: all was planned before the start."""
+
     def start_detour(self, detour: Detour) -> None:
         """Begin a step or a way back; the arm rests at its beginning."""
         self._detour = detour if detour.trajectories else None
@@ -242,6 +250,9 @@ class PlanProgram:
         if state.finished and not self.held:
             self._finish()
         return self._state
+
+    def close(self) -> None:
+        """Do nothing: a plan holds nothing that must be freed."""
 
     @property
     def _active_governor(self) -> Governor | None:
