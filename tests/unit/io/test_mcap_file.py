@@ -1,14 +1,16 @@
 """The batch writer against the library's readers."""
 
 import io
+import zlib
 
 import pytest
 from google.protobuf.message import Message as ProtobufMessage
 from mcap.reader import make_reader
-from mcap.records import Chunk, ChunkIndex, Message, MessageIndex
+from mcap.records import Chunk, ChunkIndex, Footer, Message, MessageIndex
 from mcap.stream_reader import StreamReader, get_chunk_data_stream
+from mcap.writer import Writer
 
-from teachpath.io.store.mcap_file import McapFile, Stamped
+from teachpath.io.store.mcap_file import FOOTER, MAGIC, McapFile, Stamped
 from teachpath_proto import tracker_pb2
 
 KINDS: list[type[ProtobufMessage]] = [tracker_pb2.HandSample, tracker_pb2.Vector3]
@@ -70,6 +72,25 @@ def test_the_index_of_every_chunk_points_at_its_messages(written: bytes) -> None
                 message = _record_at(plain, at)
                 assert isinstance(message, Message)
                 assert (message.channel_id, message.log_time) == (channel, log_time)
+
+
+def _by_the_library() -> bytes:
+    stream = io.BytesIO()
+    writer = Writer(stream)
+    writer.start(profile="", library="test")
+    writer.add_metadata("facts", {"a": "1"})
+    writer.finish()  # type: ignore[no-untyped-call]
+    return stream.getvalue()
+
+
+@pytest.mark.parametrize("writer", ["ours", "the library's"])
+def test_the_check_sum_of_the_summary_covers_all_from_its_start_to_the_check_sum(writer: str, written: bytes) -> None:
+    """No reader in Python compares it, so that a wrong one would be found by other readers only."""
+    content = written if writer == "ours" else _by_the_library()
+    footer = _record_at(content, len(content) - FOOTER.size - len(MAGIC))
+    assert isinstance(footer, Footer)
+    assert footer.summary_start < len(content) - FOOTER.size - len(MAGIC)
+    assert footer.summary_crc == zlib.crc32(content[footer.summary_start : -len(MAGIC) - 4])
 
 
 def _record_at(content: bytes, offset: int) -> object:
