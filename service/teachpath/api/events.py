@@ -1,10 +1,10 @@
-"""The events: a WebSocket that tells what has changed, so that a page need not ask.
+"""The events: a WebSocket that sends changes and states, so that a page need not poll.
 
 Each message is one JSON document: `{"sequence", "topic", "id"}` says that a resource has changed and may be read anew;
-with `now` it says how it stands (null: it is gone). The topic `all` means: read everything anew. It comes first, and
-again when a listener has fallen behind. Topics are the names of the resources (tasks, demonstrations, runs, paths,
-plans, jobs, executions), and, with `now`, `station`, `executor` (also who has control), `trackers`, `recordings` and
-`coach`.
+with `now` it carries a state (null: the thing has gone). The topic `all` means: read everything anew. It comes first,
+and again when a subscriber has fallen behind. Topics are the names of the resources (tasks, demonstrations, runs,
+paths, plans, jobs, executions), and, with `now`, `station`, `executor` (also who has control), `trackers`,
+`recordings` and `coach`.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""WebSockets: who may open one, and how a page is sent what waits for it."""
+"""WebSockets: who may open one, and how the messages that wait for a page are sent to it."""
 
 from __future__ import annotations
 
@@ -17,17 +17,17 @@ DONE: Final = 1000  # close codes: normal closure, and policy violation
 REFUSED: Final = 1008
 LONGEST_REASON: Final = 120  # bytes; the protocol allows 123
 
-Piece = TypeVar("Piece", covariant=True)
+Message = TypeVar("Message", covariant=True)
 
 
-class Reader(Protocol[Piece]):
-    """Somebody for whom something may wait."""
+class MessageSource(Protocol[Message]):
+    """A source of messages for one page."""
 
-    def pop(self) -> Piece | None:
-        """Return what comes next, or None."""
+    def pop(self) -> Message | None:
+        """Remove and return the next message, or None while none waits."""
 
 
-Read = TypeVar("Read", bound=Reader[Any])
+Source = TypeVar("Source", bound=MessageSource[Any])
 
 
 def same_origin(headers: Mapping[str, str]) -> bool:
@@ -60,46 +60,46 @@ async def close(socket: WebSocket, reason: str = "") -> None:
 
 async def serve(
     socket: WebSocket,
-    attach: Callable[[Callable[[], None]], Read],
-    detach: Callable[[Read], None],
+    connect: Callable[[Callable[[], None]], Source],
+    disconnect: Callable[[Source], None],
     send: Callable[[Any], Awaitable[None]],
-    receive: Callable[[str, Read], str],
+    receive: Callable[[str, Source], str],
 ) -> None:
-    """Send what waits, as it comes, until the page leaves.
+    """Send messages as they come, until the page leaves.
 
     Args:
-        attach: makes the reader; its argument wakes us, from any thread, when something waits.
-        detach: forgets the reader.
-        send: sends one piece.
-        receive: takes what the page says; returns why it cannot be used, which closes the socket, or nothing.
+        connect: makes the source; its argument is to be called, from any thread, when a message waits.
+        disconnect: forgets the source.
+        send: sends one message.
+        receive: called with each text of the page; returns why it cannot be used, which closes the socket, or nothing.
     """
-    loop, news = asyncio.get_running_loop(), asyncio.Event()
+    loop, waiting = asyncio.get_running_loop(), asyncio.Event()
 
     def wake() -> None:
         with suppress(RuntimeError):  # the loop has ended meanwhile
-            loop.call_soon_threadsafe(news.set)
+            loop.call_soon_threadsafe(waiting.set)
 
     async def listen() -> None:
         with suppress(WebSocketDisconnect, KeyError):  # KeyError: bytes where text belongs
-            while not (fault := receive(await socket.receive_text(), reader)):
+            while not (fault := receive(await socket.receive_text(), source)):
                 pass
             await close(socket, fault)
 
-    async def tell() -> None:
+    async def forward() -> None:
         with suppress(WebSocketDisconnect, RuntimeError):
             while True:
-                await news.wait()
-                news.clear()
-                while (piece := reader.pop()) is not None:
-                    await send(piece)
+                await waiting.wait()
+                waiting.clear()
+                while (message := source.pop()) is not None:
+                    await send(message)
 
-    reader = attach(wake)
-    news.set()
-    tasks = [asyncio.create_task(listen()), asyncio.create_task(tell())]
+    source = connect(wake)
+    waiting.set()
+    tasks = [asyncio.create_task(listen()), asyncio.create_task(forward())]
     try:
         await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
     finally:
-        detach(reader)
+        disconnect(source)
         for task in tasks:
             task.cancel()
         await asyncio.gather(*tasks, return_exceptions=True)

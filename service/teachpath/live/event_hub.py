@@ -1,7 +1,7 @@
-"""The news: what has changed, told to everyone who listens, in small documents with a sequence number.
+"""The event hub: publishes changes and states to all subscribers, as small documents with a sequence number.
 
-A piece of news says that a resource has changed (`topic` and `id`, named as in the REST API), or how something stands
-now that changes many times a second (`now`). Whoever falls behind is told to read everything anew.
+An event says that a resource has changed (`topic` and `id`, named as in the REST API), or it carries a state that
+changes many times a second (`now`). A subscriber that falls behind gets one event that asks it to read everything anew.
 """
 
 from __future__ import annotations
@@ -12,12 +12,12 @@ from typing import Any, Final
 
 Document = dict[str, Any]
 Key = tuple[str, str]
-RESYNC_TOPIC: Final = "all"  # the topic of the first piece, and of the one after an overflow: read everything anew
-MAX_PENDING_CHANGES: Final = 256  # changed resources that wait for one listener
+RESYNC_TOPIC: Final = "all"  # of the first event, and of the one after an overflow: read everything anew
+MAX_PENDING_CHANGES: Final = 256  # changed resources that wait for one subscriber
 
 
 class Subscriber:
-    """One who listens: what it has not been told yet, the newest piece of each topic and id."""
+    """The events that one subscriber has not received yet: of each topic and id, the newest."""
 
     def __init__(self, wake: Callable[[], None], first: Document, states: dict[Key, Document]) -> None:
         self.wake = wake
@@ -26,7 +26,7 @@ class Subscriber:
         self._states = dict(states)
 
     def pop(self) -> Document | None:
-        """Return the oldest piece that waits, changes of resources first, or None."""
+        """Remove and return the oldest event, changes of resources before states; None: none waits."""
         with self._lock:
             for pending in (self._changes, self._states):
                 for key in pending:
@@ -35,7 +35,7 @@ class Subscriber:
 
     @property
     def pending(self) -> int:
-        """Number of pieces that wait."""
+        """How many events wait."""
         with self._lock:
             return len(self._changes) + len(self._states)
 
@@ -44,19 +44,21 @@ class Subscriber:
             pending = self._states if "now" in event else self._changes
             pending.pop(key, None)
             if (RESYNC_TOPIC, "") in self._changes and pending is self._changes:
-                return  # it will read everything after this change
+                return  # the subscriber will read everything after this change
             pending[key] = event
             if len(self._changes) > max_pending:
-                self._changes = {
-                    (RESYNC_TOPIC, ""): _resync(event["sequence"], "too much has changed to tell it one by one")
-                }
+                resync = _resync(event["sequence"], "too much has changed to tell it one by one")
+                self._changes = {(RESYNC_TOPIC, ""): resync}
 
 
 class EventHub:
-    """Tells every listener; safe to use from several threads, and never waits for anybody."""
+    """Publishes to every subscriber; safe to use from several threads, and never blocks.
+
+    Args:
+        max_pending: changed resources that may wait for one subscriber.
+    """
 
     def __init__(self, *, max_pending: int = MAX_PENDING_CHANGES) -> None:
-        """Begin with nothing told; at most `longest` changed resources wait for one listener."""
         self._lock = threading.Lock()
         self._max_pending = max_pending
         self._sequence = 0
@@ -64,9 +66,9 @@ class EventHub:
         self._states: dict[Key, Document] = {}
 
     def subscribe(self, wake: Callable[[], None]) -> Subscriber:
-        """Add a listener; `wake()` is called, from any thread, when there is news for it.
+        """Add a subscriber; `wake()` is called, from any thread, when an event waits for it.
 
-        It is told first to read everything, then how all that stands which no resource holds.
+        Its first event asks it to read everything; then come all states.
         """
         with self._lock:
             subscriber = Subscriber(wake, _resync(self._sequence, "connected"), self._states)
@@ -74,16 +76,16 @@ class EventHub:
         return subscriber
 
     def unsubscribe(self, subscriber: Subscriber) -> None:
-        """Forget a listener."""
+        """Forget a subscriber."""
         with self._lock:
             self._subscribers.discard(subscriber)
 
     def publish_change(self, topic: str, key: str) -> None:
-        """Say that a resource has changed."""
+        """Publish that a resource has changed."""
         self._publish((topic, key), {})
 
     def publish_state(self, topic: str, key: str, now: Document | None) -> None:
-        """Say how something stands now; None: it is gone. Whoever comes later is told as well."""
+        """Publish the state `now` of a thing, to later subscribers too; None: it has gone."""
         self._publish((topic, key), {"now": now})
 
     def _publish(self, key: Key, content: Document) -> None:

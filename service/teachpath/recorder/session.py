@@ -127,7 +127,7 @@ class RecordingSession:
             self._follow_commands(sample, position)
         if self.state is RecordingState.COUNTDOWN and self._state_machine.poll_countdown(self._clock()):
             self._drop_take()
-        if self.state in (RecordingState.PAUSED, RecordingState.COUNTDOWN):
+        if not self.state.is_writing:
             self._idle += 1
             return None
         if not fresh:

@@ -32,7 +32,10 @@ class Take:
     def __init__(
         self, store: Store, settings: RecordingSettings, header: RecordingHeader, note: Callable[[str], None]
     ) -> None:
-        self._store, self._settings, self._header, self._note = store, settings, header, note
+        self._store = store
+        self._settings = settings
+        self._header = header
+        self._note = note
         self.samples: list[Sample] = []
         self.fault = ""
         self._id = f"demo-{uuid.uuid4().hex[:12]}"

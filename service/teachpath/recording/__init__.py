@@ -1,1 +1,1 @@
-"""From a stream of hand samples to a demonstration: accounts, phases, the object's trajectory, the verdict. Pure."""
+"""From a stream of hand samples to a demonstration: statistics, phases, trajectory and quality. Pure."""

@@ -1,4 +1,4 @@
-"""The clock of a device against ours: offset by the least transit, its uncertainty, and how fast it runs."""
+"""The clock of a device against the host's: offset, uncertainty and rate."""
 
 from __future__ import annotations
 
@@ -6,35 +6,35 @@ import numpy as np
 
 from teachpath.records import Clock, Sample
 
-WINDOW_SIZE = 500  # newest samples that are looked at: 10 s of a 50 Hz tracker
-MIN_SAMPLES = 10
-REAL_TIME_TOLERANCE = 0.02  # a rate nearer to 1 is a clock that runs with ours, seen through jitter
+WINDOW_SIZE = 500  # newest samples that are used: 10 s of a 50 Hz tracker
+MIN_SAMPLES = 10  # for an estimate
+REAL_TIME_TOLERANCE = 0.02  # a rate that differs from 1 by less is 1, measured with jitter
 
 
 class DeviceClock:
     """Follows the clock of one device."""
 
     def __init__(self) -> None:
-        # a ring of arrays: hundreds of trackers are asked several times a second
+        # ring buffers in arrays, because hundreds of clocks are estimated several times a second
         self._device = np.zeros(WINDOW_SIZE, dtype=np.int64)
         self._receive = np.zeros(WINDOW_SIZE, dtype=np.int64)
         self._observed = 0
 
     def observe(self, sample: Sample) -> None:
-        """Take the times of the next sample."""
+        """Add the times of the next sample."""
         place = self._observed % WINDOW_SIZE
         self._device[place], self._receive[place] = sample.device_ns, sample.receive_ns
         self._observed += 1
 
     def restart(self) -> None:
-        """Forget all before: the clock has jumped."""
+        """Forget all samples, because the clock has jumped."""
         self._observed = 0
 
     def estimate(self) -> Clock | None:
-        """Return how the clock stands at the newest sample, or None after too few samples.
+        """Return the estimate at the newest sample, or None after too few samples.
 
-        Receive times are device times divided by the rate, plus an offset, plus a transit that is never negative: the
-        rate is that of the line of least squares, the offset that of the fastest sample.
+        A receive time is the device time divided by the rate, plus an offset, plus a transit time that is never
+        negative. The rate is fitted by least squares; the offset is that of the sample with the least transit time.
         """
         if self._observed < MIN_SAMPLES:
             return None
@@ -46,7 +46,7 @@ class DeviceClock:
         spread = float(away @ away)
         slope = float(away @ receive) / spread if spread else 1.0
         if slope <= 0.0:
-            return None  # received all at once: nothing can be said
+            return None  # all were received at once
         rate = 1.0 / slope
         if abs(rate - 1.0) <= REAL_TIME_TOLERANCE:
             slope = 1.0

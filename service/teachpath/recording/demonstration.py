@@ -1,4 +1,4 @@
-"""What is learned from a demonstration: the object's trajectory in the world."""
+"""The object's trajectory in the world, which is what a demonstration teaches."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def point_to_world(calibration: Calibration) -> Callable[[Vector], Vector]:
 
 
 def usable_samples(samples: Sequence[Sample]) -> list[Sample]:
-    """Return the samples in the order of their numbers, without duplicates and untracked ones."""
+    """Return the tracked samples in the order of their numbers, each once."""
     used: dict[int, Sample] = {}
     for sample in samples:
         if sample.tracked:
@@ -51,16 +51,16 @@ def object_trajectory(
 ) -> Trajectory:
     """Return the object's motion from grasp to release.
 
-    The hand holds the object where it took it: with T_hand the pose of the hand, the object's is
-    T_hand(t) T_hand(grasp)^-1 T_object(start). Without orientations the offset in the world stays the same; without
-    an object the hand itself is followed.
+    The object keeps its pose in the hand: with T_hand the pose of the hand, that of the object is
+    T_hand(t) T_hand(grasp)^-1 T_object(start). Without measured orientations the object keeps its offset from the hand
+    in the world; without an object the trajectory is that of the hand.
 
     Args:
-        samples: the samples of the demonstration in the order received; duplicates and untracked ones are left out,
-            late ones put back in their place.
+        samples: of the demonstration, in the order received. Duplicates and untracked samples are left out, late ones
+            are sorted in.
         cut: its transport phase.
         carried: start of the object's centre [m, world], or None.
-        left_out: numbers of samples whose position has jumped.
+        left_out: numbers of samples whose position is an outlier.
 
     Raises:
         UnusableRecording: fewer than 2 usable samples.
@@ -88,10 +88,12 @@ def object_trajectory(
 
 
 def object_pose(grasped: Sample, now: Sample, calibration: Calibration, carried: Vector) -> Pose | None:
-    """Return where the object is now, in the hand that took it at `grasped`; None while that is not known.
+    """Return the pose of the object in the hand, to world from object; None while the hand is not tracked.
 
     Args:
-        carried: start of the object's centre [m, world]; its start has no rotation.
+        grasped: the sample with which the hand grasped the object.
+        now: the newest sample.
+        carried: start of the object's centre [m, world]. The rotation is counted from the start.
     """
     if not (grasped.tracked and now.tracked):
         return None

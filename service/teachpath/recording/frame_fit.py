@@ -1,7 +1,7 @@
-"""A tracker's frame in the world, from points that were taught: the least-squares mapping and its residuals.
+"""Calibration of a tracker's frame from taught points: the least-squares mapping to the world and its residuals.
 
 Umeyama, "Least-squares estimation of transformation parameters between two point patterns", IEEE PAMI 13(4), 1991;
-with the scale held at 1 it is the problem of Horn 1987.
+with the scale fixed at 1 it is the problem of Horn 1987.
 """
 
 from __future__ import annotations
@@ -16,15 +16,15 @@ from teachpath.errors import UnusableInput
 from teachpath.records import Array, Calibration, MeasuredCalibration, TaughtPoint
 
 MIN_POINTS = 3  # points that fix a frame
-MAX_COORDINATE = 100.0  # [m] of a taught point; farther is a wrong unit
-MIN_SPREAD = 0.02  # [m] rms of the points across the line that runs best through them
-MIN_SPREAD_RATIO = 0.05  # of that along the line
-MAX_SCALE_DEVIATION = 0.05  # share by which the scale may differ from 1 before the units are doubted
+MAX_COORDINATE = 100.0  # [m] of a taught point; beyond it the units are wrong
+MIN_SPREAD = 0.02  # [m] rms distance of the points from the line that fits them best
+MIN_SPREAD_RATIO = 0.05  # least ratio of that spread to the spread along the line
+MAX_SCALE_DEVIATION = 0.05  # by which a fitted scale may differ from 1 before the units are doubted
 
 
 @dataclass(frozen=True, eq=False)
 class _Fit:
-    """The best mapping between two point sets: world = scale * rotation tracker + offset."""
+    """The least-squares mapping between two point sets: world = scale * rotation tracker + offset."""
 
     rotation: Array
     scale: float
@@ -41,7 +41,7 @@ def fit_frame(
         name: of the calibration.
         points: in the tracker's frame and in the world [m], three or more that do not lie on one line.
         largest_residual: [m] how far a point may lie from where the mapping puts it.
-        fit_scale: find the scale too; else it is 1, as for every tracker that measures in metres.
+        fit_scale: fit the scale too; otherwise it is 1, as for every tracker that measures in metres.
 
     Raises:
         UnusableInput: too few points, points on one line, wrong units, or points that contradict one another.

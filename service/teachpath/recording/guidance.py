@@ -1,11 +1,11 @@
-"""The coach: one sentence that says how far the demonstrations agree, and what to show again."""
+"""Advice to the operator in one sentence: how far the demonstrations agree, and what to show again."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-MIN_DEMONSTRATIONS = 3  # demonstrations of a way
+MIN_DEMONSTRATIONS = 3  # of a cluster
 # Largest spread of a cluster over the length of its path; clusters in recordings of real arms had at most 0.11.
 MAX_SPREAD_RATIO = 0.2
 COUNT_WORDS = ("no", "one", "two")
@@ -14,17 +14,17 @@ ORDINALS = ("first", "second", "third", "fourth", "fifth", "sixth", "seventh", "
 
 @dataclass(frozen=True, slots=True)
 class ClusterSummary:
-    """One way of doing the task, as shown so far."""
+    """One cluster of the demonstrations so far."""
 
     count: int  # of demonstrations
-    spread: float  # [m] largest distance of two of them
+    spread: float  # [m] largest distance between two of them
 
 
 def advise(clusters: Sequence[ClusterSummary], length: float) -> str:
-    """Return the sentence for the operator, or nothing before the first demonstration.
+    """Return the advice, or nothing before the first demonstration.
 
     Args:
-        ways: in their order.
+        clusters: in their order; the page calls them ways.
         length: of a typical path [m].
     """
     total = sum(cluster.count for cluster in clusters)

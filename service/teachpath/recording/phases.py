@@ -1,4 +1,4 @@
-"""The phases of a demonstration, from the glove: reach, grasp, transport, release, return."""
+"""The phases of a demonstration, told from the glove: reach, grasp, transport, release, return."""
 
 from __future__ import annotations
 
@@ -9,16 +9,16 @@ from dataclasses import dataclass
 from teachpath.recording.settings import RecordingSettings
 from teachpath.records import Phase, Sample, Vector
 
-GRASP_BUTTON = 1  # held
-TOGGLE_BUTTON = 2  # pressed: pause or resume
+GRASP_BUTTON = 1  # bit of Sample.buttons; held while a hand without a glove grasps
+TOGGLE_BUTTON = 2  # bit of Sample.buttons; pressed to pause or resume
 
 
 @dataclass(frozen=True, slots=True)
 class TransportSpan:
-    """Where a demonstration lies in its stream, as indices into the samples since the last cut."""
+    """The transport phase of a take, as indices into its samples."""
 
     grasp: int  # first sample with the object in the hand
-    release: int  # first sample after it
+    release: int  # first sample after that
     open_ended: bool = False  # the stream ended while the hand was closed
 
 
@@ -30,17 +30,17 @@ def hand_closure(sample: Sample) -> float:
 
 
 class Segmenter:
-    """Follows one hand and says when a demonstration is complete.
+    """Follows the phases of one hand and cuts the stream of its samples into takes.
 
-    The hand closes when its closure rises over `close_at`, opens when it falls under `open_at`; between the two it
-    stays as it is. When it closes within `grasp_radius` of the object it grasps: from there the object is in the hand.
+    The hand closes when its closure rises over `close_at`, and opens when it falls under `open_at`. A hand that closes
+    within `grasp_radius` of the object grasps it.
 
-    - reach: until the hand grasps.
-    - grasp: until the object has been moved by `lift`; a hand that opens before has let it stand, and reaches again.
+    - reach: until the hand grasps the object.
+    - grasp: until the hand has moved the object by `lift`; if it opens before, it reaches again.
     - transport: until the hand opens.
-    - release: until the hand has been open for `release_time`; one that closes before never let go.
-    - return: until the open hand rests, or for `longest_return`, or until it grasps the object again, which is back in
-      its place. Then the demonstration is complete.
+    - release: until the hand has been open for `release_time`; if it closes before, the transport goes on.
+    - return: until the open hand rests, at most for `longest_return`, or until it grasps the object, which is back in
+      its place, again. Then the take is complete.
     """
 
     def __init__(self, settings: RecordingSettings, carried: Vector | None, *, closed: bool = False) -> None:
@@ -48,7 +48,7 @@ class Segmenter:
 
         Args:
             carried: start of the object's centre [m, world], or None: the hand grasps anywhere.
-            closed: the hand may be closed already, so that it must open before it can grasp.
+            closed: the hand may be closed already; it must open before it can grasp.
         """
         self._settings, self._carried = settings, carried
         self._closed = closed
@@ -66,13 +66,13 @@ class Segmenter:
 
     @property
     def grasp(self) -> int:
-        """Where the hand took the object, as an index into the samples since the last cut; 0 while it reaches."""
+        """Where the hand grasped the object, as an index into the samples of the take; 0 while it reaches."""
         return self._grasp
 
     def push(self, sample: Sample, position: Vector) -> TransportSpan | None:
-        """Take the next sample and its hand position [m, world]; return the cut that it completes.
+        """Add the next sample and its hand position [m, world]; return the span of the take that it completes.
 
-        The sample that completes a cut is the last one of it, but a grasp that completes one is the first of the next.
+        The sample that completes a take is its last one, except for a grasp, which is the first of the next take.
         """
         index, self._count = self._count, self._count + 1
         was_closed = self._closed
@@ -95,11 +95,11 @@ class Segmenter:
         return None
 
     def skip(self) -> None:
-        """Count a sample that says nothing about the phase: a late one or a duplicate."""
+        """Count a sample that is not used for the phase: a late one or a duplicate."""
         self._count += 1
 
     def finish(self) -> TransportSpan | None:
-        """Return the cut that the end of the stream completes, or None when nothing was grasped."""
+        """Return the span of the take that the end of the stream completes, or None if nothing was grasped."""
         if self.phase is Phase.REACH:
             return None
         if self.phase.is_hand_closed:

@@ -1,4 +1,4 @@
-"""What is wrong with the positions of a hand: jumps, leaps, and leaving the workspace."""
+"""Outliers of a hand's positions: single jumps, level shifts, and positions out of the workspace."""
 
 from __future__ import annotations
 
@@ -12,25 +12,25 @@ from teachpath.recording.settings import RecordingSettings
 from teachpath.records import Array, Sample
 
 HALF_WINDOW = 3  # neighbours on each side
-OUTLIER_THRESHOLD = 4.0  # of the neighbours' scatter
-MAD_TO_SIGMA = 1.4826  # standard deviation over median absolute deviation
+OUTLIER_THRESHOLD = 4.0  # standard deviations of the neighbours
+MAD_TO_SIGMA = 1.4826  # standard deviation over median absolute deviation, for a normal distribution
 
 
 @dataclass(frozen=True, slots=True)
 class PositionOutliers:
-    """Faults of the positions of a transport phase."""
+    """Outliers of the positions of a transport phase."""
 
-    outliers: tuple[int, ...]  # numbers of the samples that their neighbours contradict
+    outliers: tuple[int, ...]  # numbers of the samples whose neighbours contradict them
     level_shifts: int  # places where the position jumps and stays
-    out_of_workspace: int  # samples out of the workspace
+    out_of_workspace: int  # number of samples
 
 
 def find_outliers(samples: Sequence[Sample], positions: Array, settings: RecordingSettings) -> PositionOutliers:
-    """Find the faults of a transport phase.
+    """Find the outliers of a transport phase.
 
-    A position has jumped when it is farther than `largest_jump` from the median of its neighbours and farther than
-    their scatter explains (Hampel 1974). A leap is a step between neighbours that is longer than their speed explains
-    by as much.
+    A position is an outlier if its distance from the median of its neighbours is over `largest_jump` and over what
+    their scatter explains (Hampel 1974). A level shift is a step between neighbours that exceeds the step that their
+    speed explains by as much.
 
     Args:
         samples: in the order of their numbers, tracked.
@@ -41,7 +41,7 @@ def find_outliers(samples: Sequence[Sample], positions: Array, settings: Recordi
     if len(positions) <= 2 * HALF_WINDOW:
         return PositionOutliers((), 0, out_of_workspace)
     away = np.linalg.norm(positions - _medians(positions), axis=1)
-    outliers = _gated(away, settings.largest_jump)
+    outliers = _exceeds_scatter(away, settings.largest_jump)
     stayed = positions[~outliers]
     times = np.array([s.device_ns - samples[0].device_ns for s in samples])[~outliers] * 1e-9
     steps = np.linalg.norm(np.diff(stayed, axis=0), axis=1)
@@ -50,7 +50,7 @@ def find_outliers(samples: Sequence[Sample], positions: Array, settings: Recordi
         level_shifts = 0
     else:
         speed = _medians((steps / dt)[:, None])[:, 0]
-        level_shifts = int(np.count_nonzero(_gated(steps - speed * dt, settings.largest_jump)))
+        level_shifts = int(np.count_nonzero(_exceeds_scatter(steps - speed * dt, settings.largest_jump)))
     numbers = tuple(s.sequence for s, bad in zip(samples, outliers, strict=True) if bad)
     return PositionOutliers(numbers, level_shifts, out_of_workspace)
 
@@ -62,7 +62,7 @@ def _medians(values: Array) -> Array:
     return np.asarray(np.median(np.lib.stride_tricks.sliding_window_view(padded, 2 * HALF_WINDOW + 1, axis=0), axis=-1))
 
 
-def _gated(away: Array, floor: float) -> NDArray[np.bool_]:
-    """Tell which distances are over `floor` and over the scatter of their neighbours."""
+def _exceeds_scatter(away: Array, floor: float) -> NDArray[np.bool_]:
+    """Tell which distances (n,) are over `floor` and over the scatter of their neighbours."""
     scatter = MAD_TO_SIGMA * _medians(np.abs(away)[:, None])[:, 0]
     return np.asarray(away > np.maximum(floor, OUTLIER_THRESHOLD * scatter))

@@ -1,4 +1,4 @@
-"""When the samples of a recording are recorded: armed, counted down, paused, lost, take after take."""
+"""The state of a recording: whether it records, counts down, pauses or has lost its tracker, take after take."""
 
 from __future__ import annotations
 
@@ -23,22 +23,22 @@ class RecordingStateMachine:
 
     @property
     def takes_left(self) -> int:
-        """How many takes are still wanted; 0 when nobody has said how many."""
+        """How many demonstrations the routine still wants; 0: it sets no number."""
         return max(self._routine.takes - self._made, 0)
 
     def countdown_left(self, now: float) -> float:
-        """Return what is left of the countdown [s]."""
+        """Return the time until the countdown ends [s]; 0 when none runs."""
         return max(0.0, self._begins_at - now) if self.state is RecordingState.COUNTDOWN else 0.0
 
     def pause(self, *, carrying: bool) -> None:
-        """Record nothing until `resume`; what is carried is recorded to its end first."""
-        if carrying and self.state in (RecordingState.RECORDING, RecordingState.PAUSING):
+        """Record nothing until `resume`; a take whose object is carried now is recorded to its end first."""
+        if carrying and self.state.is_writing:
             self.state = RecordingState.PAUSING
         else:
             self.state = RecordingState.PAUSED
 
     def resume(self, now: float) -> None:
-        """Record again; a lost tracker has to come back for that, and one that was to pause goes on."""
+        """Record again, or cancel a pause that has not begun; a lost tracker must come back first."""
         if self.state is RecordingState.PAUSING:
             self.state = RecordingState.RECORDING
         elif self.state is RecordingState.PAUSED:
@@ -47,7 +47,7 @@ class RecordingStateMachine:
             self._arm(now)
 
     def poll_countdown(self, now: float) -> bool:
-        """Return whether this moment ends the countdown."""
+        """Begin to record when the countdown has ended; return whether it ended with this call."""
         if self.state is not RecordingState.COUNTDOWN or now < self._begins_at:
             return False
         self.state = RecordingState.RECORDING
@@ -55,7 +55,7 @@ class RecordingStateMachine:
 
     def on_tracker_lost(self) -> None:
         """Take note that the tracker has gone."""
-        if self.state in (RecordingState.RECORDING, RecordingState.PAUSING):
+        if self.state.is_writing:
             self.state = RecordingState.LOST
 
     def on_sample(self) -> None:
@@ -64,7 +64,7 @@ class RecordingStateMachine:
             self.state = RecordingState.RECORDING
 
     def end_take(self, now: float, *, made: bool) -> None:
-        """Take note that a take has ended, as a demonstration or as nothing, and make ready for the next."""
+        """Take note that a take has ended, and prepare the next; `made`: it became a demonstration."""
         self._made += made
         enough = self._routine.takes and not self.takes_left
         if self.state is RecordingState.PAUSING or (made and (enough or self._routine.one_by_one)):

@@ -22,6 +22,11 @@ class RecordingState(StrEnum):
     PAUSED = "paused"
     LOST = "lost"  # the tracker has gone; recording goes on when it comes back
 
+    @property
+    def is_writing(self) -> bool:
+        """Whether the samples that come are written into a take."""
+        return self in (RecordingState.RECORDING, RecordingState.PAUSING)
+
 
 class FistCommand(StrEnum):
     """What the operator commands with a fist."""

@@ -10,12 +10,12 @@ from mcap.records import Chunk, ChunkIndex, Footer, Message, MessageIndex
 from mcap.stream_reader import StreamReader, get_chunk_data_stream
 from mcap.writer import Writer
 
-from teachpath.io.store.mcap_file import FOOTER, MAGIC, McapFile, Stamped
+from teachpath.io.store.mcap_file import FOOTER, MAGIC, McapFile, StampedMessage
 from teachpath_proto import tracker_pb2
 
 KINDS: list[type[ProtobufMessage]] = [tracker_pb2.HandSample, tracker_pb2.Vector3]
 BATCHES = [
-    [Stamped(1 + i % 2, i, 1000 * batch + 10 * i, i + 1, bytes([i]) * (i + batch)) for i in range(20)]
+    [StampedMessage(1 + i % 2, i, 1000 * batch + 10 * i, i + 1, bytes([i]) * (i + batch)) for i in range(20)]
     for batch in range(1, 4)
 ]
 

@@ -1,7 +1,7 @@
-"""MCAP, written by the batch: many messages become one chunk in one go.
+"""A writer of MCAP files that makes one chunk of each batch of messages.
 
-The library's own writer takes messages one by one, at several times the cost of a hand sample's way from the wire to
-the disk. Here its records are laid out by the batch (https://mcap.dev/spec); everything reads them with the library.
+The library's own writer takes messages one by one, at several times the cost of all else between the wire and the
+disk. This writer lays out the records itself (https://mcap.dev/spec); they are read with the library.
 """
 
 from __future__ import annotations
@@ -37,13 +37,13 @@ from teachpath.errors import UnusableRecording
 MAGIC = b"\x89MCAP0\r\n"
 DATA_END = struct.pack("<BQI", Opcode.DATA_END, 4, 0)
 FOOTER = struct.Struct("<BQQQI")  # opcode, length, start of the summary and of its offsets, check sum
-COMPRESSION, LEVEL = "zstd", 1
+COMPRESSION, COMPRESSION_LEVEL = "zstd", 1
 _MESSAGE = struct.Struct("<BQHIQQ")  # opcode, length, channel, sequence, log time, publish time; then the data
-_HEAD = _MESSAGE.size - 9  # bytes of it that its length counts
+_MESSAGE_HEAD_SIZE = _MESSAGE.size - 9  # bytes of the above that its length counts
 _INDEX = struct.Struct("<BQHI")  # opcode, length, channel, bytes of the entries
 
 
-class Stamped(NamedTuple):
+class StampedMessage(NamedTuple):
     """One message of a batch; times in nanoseconds since the Unix epoch."""
 
     channel: int
@@ -57,17 +57,17 @@ class McapFile:
     """Writes one MCAP file to `stream`, which stays open; every method raises what the stream raises."""
 
     def __init__(self, stream: BinaryIO) -> None:
-        self._stream, self._at = stream, 0
+        self._stream, self._offset = stream, 0
         self._schemas: list[Schema] = []
         self._channels: list[Channel] = []
         self._chunks: list[ChunkIndex] = []
         self._metadata: list[MetadataIndex] = []
         self._counts: Counter[int] = Counter()
-        self._put(MAGIC + _laid_out(Header(profile="", library="teachpath")))
+        self._write(MAGIC + _serialize(Header(profile="", library="teachpath")))
 
     @classmethod
-    def continued(cls, stream: BinaryIO, content: bytes) -> Self:
-        """Copy a finished file of ours to `stream`, to write on where its records ended.
+    def reopen(cls, stream: BinaryIO, content: bytes) -> Self:
+        """Copy a file that this class has finished to `stream`, and go on writing behind its records.
 
         Raises:
             UnusableRecording: `content` is no such file.
@@ -78,8 +78,8 @@ class McapFile:
         if summary is None or summary.statistics is None or content[end:start] != DATA_END:
             raise UnusableRecording("it is no MCAP file that was finished here")
         file = cls(io.BytesIO())
-        file._stream, file._at = stream, 0
-        file._put(content[:end])
+        file._stream, file._offset = stream, 0
+        file._write(content[:end])
         file._schemas, file._channels = list(summary.schemas.values()), list(summary.channels.values())
         file._chunks, file._metadata = summary.chunk_indexes, summary.metadata_indexes
         file._counts = Counter(summary.statistics.channel_message_counts)
@@ -87,22 +87,22 @@ class McapFile:
 
     def add_channel(self, topic: str, kind: type[Any]) -> int:
         """Declare a topic of protobuf messages and return its channel."""
-        name, description = kind.DESCRIPTOR.full_name, _description(kind)
+        name, descriptors = kind.DESCRIPTOR.full_name, _descriptor_set(kind)
         number = len(self._channels) + 1
-        schema = Schema(id=number, data=description, encoding="protobuf", name=name)
+        schema = Schema(id=number, data=descriptors, encoding="protobuf", name=name)
         channel = Channel(id=number, topic=topic, message_encoding="protobuf", metadata={}, schema_id=number)
         self._schemas.append(schema)
         self._channels.append(channel)
-        self._put(_laid_out(schema, channel))
+        self._write(_serialize(schema, channel))
         return number
 
     def add_metadata(self, name: str, entries: dict[str, str]) -> None:
-        """Write named facts."""
-        record = _laid_out(Metadata(name=name, metadata=entries))
-        self._metadata.append(MetadataIndex(offset=self._at, length=len(record), name=name))
-        self._put(record)
+        """Write a metadata record."""
+        record = _serialize(Metadata(name=name, metadata=entries))
+        self._metadata.append(MetadataIndex(offset=self._offset, length=len(record), name=name))
+        self._write(record)
 
-    def add_messages(self, batch: Sequence[Stamped]) -> None:
+    def add_messages(self, batch: Sequence[StampedMessage]) -> None:
         """Write a batch as one chunk; an empty one writes nothing."""
         if not batch:
             return
@@ -110,18 +110,18 @@ class McapFile:
         entries: dict[int, list[int]] = {}  # of a channel: log time and offset of each of its messages, in turn
         offset = 0
         for channel, sequence, log_time, publish_time, data in batch:
-            length = _HEAD + len(data)
+            length = _MESSAGE_HEAD_SIZE + len(data)
             pieces.append(_MESSAGE.pack(Opcode.MESSAGE, length, channel, sequence, log_time, publish_time))
             pieces.append(data)
             entries.setdefault(channel, []).extend((log_time, offset))
             offset += 9 + length
-        self._put_chunk(b"".join(pieces), min(m.log_time for m in batch), max(m.log_time for m in batch), entries)
+        self._write_chunk(b"".join(pieces), min(m.log_time for m in batch), max(m.log_time for m in batch), entries)
         self._counts.update({channel: len(each) // 2 for channel, each in entries.items()})
 
     def finish(self) -> None:
-        """Write what lets a reader find everything without reading the whole."""
-        self._put(DATA_END)
-        start = self._at
+        """Write the summary, by which a reader finds everything without reading the whole file."""
+        self._write(DATA_END)
+        start = self._offset
         groups: list[tuple[Opcode, Sequence[McapRecord]]] = [
             (Opcode.SCHEMA, self._schemas),
             (Opcode.CHANNEL, self._channels),
@@ -131,22 +131,22 @@ class McapFile:
         ]
         summary, offsets = b"", []
         for opcode, records in groups:
-            group = _laid_out(*records)
+            group = _serialize(*records)
             offsets.append(SummaryOffset(opcode, start + len(summary), len(group)))
             summary += group
         offset_start = start + len(summary)
-        summary += _laid_out(*offsets)
-        footer = _laid_out(Footer(start, offset_start, 0))
-        # The check sum covers the summary and the footer up to the check sum itself.
-        self._put(summary + footer[:-4] + struct.pack("<I", zlib.crc32(footer[:-4], zlib.crc32(summary))) + MAGIC)
+        summary += _serialize(*offsets)
+        footer = _serialize(Footer(start, offset_start, 0))
+        # The check sum covers the summary, and the footer up to the check sum itself.
+        self._write(summary + footer[:-4] + struct.pack("<I", zlib.crc32(footer[:-4], zlib.crc32(summary))) + MAGIC)
 
-    def _put(self, content: bytes) -> None:
+    def _write(self, content: bytes) -> None:
         self._stream.write(content)
-        self._at += len(content)
+        self._offset += len(content)
 
-    def _put_chunk(self, plain: bytes, first: int, last: int, entries: dict[int, list[int]]) -> None:
-        packed = zstandard.ZstdCompressor(level=LEVEL).compress(plain)
-        chunk = _laid_out(
+    def _write_chunk(self, plain: bytes, first: int, last: int, entries: dict[int, list[int]]) -> None:
+        packed = zstandard.ZstdCompressor(level=COMPRESSION_LEVEL).compress(plain)
+        chunk = _serialize(
             Chunk(
                 compression=COMPRESSION,
                 data=packed,
@@ -156,12 +156,12 @@ class McapFile:
                 uncompressed_size=len(plain),
             )
         )
-        start, offsets, indexes = self._at, {}, b""
+        start, offsets, indexes = self._offset, {}, b""
         for channel, flat in entries.items():
             offsets[channel] = start + len(chunk) + len(indexes)
             indexes += _INDEX.pack(Opcode.MESSAGE_INDEX, 6 + 8 * len(flat), channel, 8 * len(flat))
             indexes += struct.pack(f"<{len(flat)}Q", *flat)
-        self._put(chunk + indexes)
+        self._write(chunk + indexes)
         self._chunks.append(
             ChunkIndex(
                 chunk_length=len(chunk),
@@ -190,14 +190,14 @@ class McapFile:
         )
 
 
-def _laid_out(*records: McapRecord) -> bytes:
+def _serialize(*records: McapRecord) -> bytes:
     builder = RecordBuilder()
     for record in records:
         record.write(builder)
-    laid_out: bytes = builder.end()  # type: ignore[no-untyped-call]
-    return laid_out
+    serialized: bytes = builder.end()  # type: ignore[no-untyped-call]
+    return serialized
 
 
-def _description(kind: type[Any]) -> bytes:
-    description: bytes = build_file_descriptor_set(kind).SerializeToString()
-    return description
+def _descriptor_set(kind: type[Any]) -> bytes:
+    descriptors: bytes = build_file_descriptor_set(kind).SerializeToString()
+    return descriptors

@@ -1,8 +1,7 @@
 """Recordings: one MCAP file a demonstration, every hand sample with its source time, receive time and sequence.
 
-Beside the samples stands what viewers draw of them. A file that is being written ends in `.part`; it is flushed every
-second and renamed when finished, so a crash costs at most the samples since the last flush, and `salvage` reads what
-is there.
+A file also holds messages for viewers. While it is written its name ends in `.part`; it is flushed every second and
+renamed when finished, so that a crash costs at most the samples since the last flush, and `salvage` reads the others.
 """
 
 from __future__ import annotations
@@ -21,14 +20,14 @@ from mcap.stream_reader import StreamReader
 
 from teachpath.errors import NotFound, UnusableRecording
 from teachpath.io import documents
-from teachpath.io.store.drawing import Drawing
-from teachpath.io.store.mcap_file import McapFile, Stamped
+from teachpath.io.store.mcap_file import McapFile, StampedMessage
+from teachpath.io.store.viewer_messages import ViewerMessages
 from teachpath.io.wire import decode_sample, encode_sample, message_types
 from teachpath.records import Calibration, Demonstration, Sample
 
 TOPIC = "samples"
 HEADER, FACTS = "teachpath", "facts"  # names of the metadata
-BATCH = 400  # messages; small chunks, of about 64 KiB, lose less when a file is cut off
+BATCH_SIZE = 400  # messages; small chunks, of about 64 KiB, lose less when a file is cut off
 
 Opener = Callable[[Path], BinaryIO]
 
@@ -64,17 +63,17 @@ class RecordingFile:
         self._mcap = McapFile(self._file)
         self._mcap.add_metadata(HEADER, {"header": documents.encode(header).decode()})
         self._channel = self._mcap.add_channel(TOPIC, message_types.HAND_SAMPLE)
-        self._drawing = Drawing(self._mcap, header.calibration)
-        self._batch: list[Stamped] = []
+        self._viewer_messages = ViewerMessages(self._mcap, header.calibration)
+        self._batch: list[StampedMessage] = []
         self.flush()
 
     def write(self, sample: Sample, payload: bytes = b"") -> None:
         """Append one sample; `payload` is its message as it came, made anew when empty."""
         data = payload or encode_sample(sample)
         number = sample.sequence & 0xFFFFFFFF
-        self._batch.append(Stamped(self._channel, number, sample.receive_ns, sample.device_ns, data))
-        self._drawing.draw(sample, self._batch)
-        if len(self._batch) >= BATCH:
+        self._batch.append(StampedMessage(self._channel, number, sample.receive_ns, sample.device_ns, data))
+        self._viewer_messages.append(sample, self._batch)
+        if len(self._batch) >= BATCH_SIZE:
             self._write_batch()
 
     def flush(self) -> None:
@@ -202,7 +201,7 @@ def amended(content: bytes, demonstration: Demonstration) -> bytes:
     if read_facts_stream(io.BytesIO(content)) == facts:
         return content
     stream = io.BytesIO()
-    file = McapFile.continued(stream, content)
+    file = McapFile.reopen(stream, content)
     file.add_metadata(FACTS, facts)
     file.finish()
     return stream.getvalue()

@@ -1,4 +1,4 @@
-"""Importing the modules of a package without running the package's own `__init__`."""
+"""Import the modules of a package without running the package's own `__init__`."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
-"""The commands of meshcat's viewer, as bytes: shapes, lines and poses in, what a page is told out.
+"""Commands for meshcat's viewer, as bytes, from shapes, lines and poses.
 
-meshcat (R. Deits, MIT) builds the commands and its viewer draws them; its own server is never started, because it
+meshcat (R. Deits, MIT) builds the commands and its viewer draws them. Its own server is never started, because it
 listens on every interface.
 """
 
@@ -24,7 +24,7 @@ Outline = Sequence[tuple[float, float]]
 # One colour per cluster, the same as --way-0 ... in the page's style sheet (Okabe & Ito's palette for all eyes).
 CLUSTER_COLORS = (0x0072B2, 0xD55E00, 0x009E73, 0xCC79A7, 0xE69F00, 0x56B4E9)
 
-BEVEL = 0.006  # m, of the edges of prisms as they are drawn
+BEVEL = 0.006  # [m] width of the broken edges of prisms
 
 # three.js lays a cylinder along y; ours stand along z.
 _UPRIGHT = np.array([[1.0, 0, 0, 0], [0, 0, -1, 0], [0, 1, 0, 0], [0, 0, 0, 1]])
@@ -86,7 +86,7 @@ def tube(path: str, points: Array, *, radius: float, color: int, opacity: float 
 
 
 def tube_mesh(points: Array, radius: float, sides: int = 10) -> tuple[Array, Array]:
-    """Return (n * sides, 3) vertices and (m, 3) faces of a tube, its rings carried along without twist.
+    """Return (n * sides, 3) vertices and (m, 3) faces of a tube whose rings do not twist.
 
     Each ring's frame is the one before, reflected twice (Wang et al., Computation of rotation minimizing frames,
     ACM Transactions on Graphics 27(1), 2008).
@@ -167,7 +167,7 @@ def transform(path: str, pose: Array) -> bytes:
 
 
 def delete(path: str) -> bytes:
-    """Take away what is at and below `path`."""
+    """Remove all at and below `path`."""
     return _pack(commands.Delete(_tree(path)).lower())
 
 

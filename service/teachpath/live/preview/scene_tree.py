@@ -1,7 +1,7 @@
-"""The tree of the view: what a page must show now, and what each connected page does not know yet.
+"""The scene tree: what every viewer must show now, and the changes that each viewer has not received yet.
 
-Commands are opaque bytes here. A page has a credit of two batches; while it owes their acknowledgement nothing is sent
-and everything that changes is merged, so that a slow or sleeping page costs no memory and disturbs nobody.
+Commands are opaque bytes here. While a viewer has not acknowledged two batches, nothing is sent to it and its changes
+are merged, so that a slow or sleeping page costs no memory and no time.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ import threading
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
 
-MAX_UNACKNOWLEDGED = 2  # batches sent ahead of their acknowledgement
+MAX_UNACKNOWLEDGED = 2  # batches that are sent before the first of them must be acknowledged
 
 
 def pack(commands: Iterable[bytes]) -> bytes:
@@ -29,7 +29,7 @@ class Node:
 
 
 class Viewer:
-    """One connected page: the changes it has not been sent, one per path and kind."""
+    """One connected viewer: the changes that it has not been sent, one per path and kind."""
 
     def __init__(self, lock: threading.RLock, wake: Callable[[], None]) -> None:
         self._lock = lock
@@ -50,14 +50,14 @@ class Viewer:
         return pack(commands)
 
     def acknowledge(self, batches: int = 1) -> None:
-        """Give credit back: the page has drawn `batches` more batches."""
+        """Take note that the viewer has drawn `batches` more batches."""
         with self._lock:
             self._unacknowledged = max(0, self._unacknowledged - max(0, batches))
         self.wake()
 
     @property
     def pending(self) -> int:
-        """Number of commands that wait for credit."""
+        """How many commands wait to be sent."""
         with self._lock:
             return len(self._ordered) + len(self._transforms)
 
@@ -74,7 +74,7 @@ class Viewer:
 
 
 class SceneTree:
-    """What the view shows, kept in this process and replayed to every page that connects."""
+    """All that the view shows, kept in this process and replayed to every viewer that connects."""
 
     def __init__(self) -> None:
         self._lock = threading.RLock()
@@ -82,7 +82,7 @@ class SceneTree:
         self._viewers: set[Viewer] = set()
 
     def connect(self, wake: Callable[[], None]) -> Viewer:
-        """Add a page; its first batch is the whole tree. `wake()` is called, from any thread, when there is more."""
+        """Add a viewer; its first batch is the whole tree. `wake()` is called, from any thread, when there is more."""
         with self._lock:
             viewer = Viewer(self._lock, wake)
             for kind, path, command in self._replay():
@@ -91,7 +91,7 @@ class SceneTree:
         return viewer
 
     def disconnect(self, viewer: Viewer) -> None:
-        """Forget a page."""
+        """Forget a viewer."""
         with self._lock:
             self._viewers.discard(viewer)
 
@@ -126,7 +126,7 @@ class SceneTree:
         self._wake()
 
     def delete(self, path: str, command: bytes) -> None:
-        """Take away what is at and below `path`, with all that was still to be sent about it."""
+        """Remove all at and below `path`, and all commands for it that were not sent yet."""
         with self._lock:
             gone = [p for p in self._nodes if _within(p, path)]
             if not gone:
@@ -139,7 +139,7 @@ class SceneTree:
         self._wake()
 
     def flush(self) -> None:
-        """Let the pages know that a set of transforms is complete."""
+        """Wake the viewers after a set of transforms is complete."""
         self._wake()
 
     def _node(self, path: str) -> Node:
