@@ -97,13 +97,13 @@ class Certificate:
 
 @dataclass(frozen=True)
 class Clock:
-    """How a device's clock stands to ours.
+    """The clock of a device against the host's.
 
     Attributes:
-        offset_ns: ours minus the device's at the newest sample, with the least transit in it: a delay that every
-            sample has cannot be seen from one side.
-        uncertainty_ns: how much longer than the least transit the median one is.
-        rate: seconds of the device's clock in one of ours.
+        offset_ns: host clock minus device clock at the newest sample. It includes the minimum one-way transit time,
+            which cannot be observed without a round trip.
+        uncertainty_ns: median transit time minus the minimum.
+        rate: seconds of the device's clock in one second of the host's.
     """
 
     offset_ns: int
@@ -515,7 +515,7 @@ class MotionPreview:
         gripper_closed: (n,)
         object_position: (n, 3) centre of the carried object [m, world]; (0, 3) when the scene has none.
         object_orientation: (n, 4) w, x, y, z; (0, 4) when the scene has none.
-        stretches: what the arm does when.
+        segments: what the arm does when.
     """
 
     plan: str
@@ -525,7 +525,7 @@ class MotionPreview:
     gripper_closed: list[bool]
     object_position: list[list[float]]
     object_orientation: list[list[float]]
-    stretches: list[SegmentInterval]
+    segments: list[SegmentInterval]
 
 
 @dataclass(frozen=True)
@@ -753,9 +753,9 @@ class Shape:
 
 @dataclass(frozen=True)
 class StreamStatistics:
-    """What became of the samples of one recording or demonstration.
+    """Counts of the samples of one recording or demonstration.
 
-    Jumps, leaps and samples out of the workspace are those of the transport phase.
+    Jumps, leaps and samples out of the workspace are counted in the transport phase only.
     """
 
     received: int = 0

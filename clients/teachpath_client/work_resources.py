@@ -13,6 +13,7 @@ from teachpath_client.models import (
     Job,
     JournalEntry,
     LearnedPath,
+    Lease,
     MotionPreview,
     Plan,
     Run,
@@ -135,6 +136,10 @@ class WorkResources(Rest):
     def recorded_execution(self, execution: str) -> bytes:
         """Return all that was sent and done in an execution as an MCAP file."""
         return self._download(f"/executions/{execution}/recording")
+
+    def get_lease(self) -> Lease:
+        """Return who is in control of the arm; with an empty `holder` everybody may command."""
+        return self._ask(Lease, "GET", "/lease")
 
     def journal(self, execution: str = "", *, limit: int = 100) -> list[JournalEntry]:
         """List who did what to the arm, newest first."""

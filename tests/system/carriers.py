@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from teachpath_client.models import Demonstration
 from tests.system.processes import Service
 from tests.system.test_view import Visit
 
@@ -18,7 +19,7 @@ def phase(visit: Visit, name: str, seconds: float = 15.0) -> None:
 
 def begin(visit: Visit, service: Service, task: str, button: str = "Show it here") -> None:
     """Choose a new task of the paper's scene and begin to show it, without countdown."""
-    service.call("PUT", f"/tasks/{task}", {"scene": "paper"})
+    service.station.make_task(task)
     visit.page.wait_for_selector(f"#task option[value={task}]", state="attached")
     visit.page.select_option("#task", task)
     visit.page.locator("#tab-demonstrate").click()
@@ -67,8 +68,8 @@ def finish(visit: Visit) -> str:
     return said
 
 
-def has_no_gaps(take: dict[str, Any]) -> bool:
-    return take["account"]["lost"] == take["account"]["gaps"] == take["account"]["refused"] == 0
+def has_no_gaps(take: Demonstration) -> bool:
+    return take.account.lost == take.account.gaps == take.account.refused == 0
 
 
 # a headset, emulated
@@ -148,10 +149,10 @@ def gaps_of(heard: np.ndarray) -> np.ndarray:
     return gaps
 
 
-def is_judged_by_its_frames(take: dict[str, Any], gaps: np.ndarray) -> None:
+def is_judged_by_its_frames(take: Demonstration, gaps: np.ndarray) -> None:
     """A machine without a graphics card may give no frames for a while: the verdict says that, and nothing else."""
-    gap = take["account"]["longest_gap_ns"] / 1e9
+    gap = take.account.longest_gap_ns / 1e9
     assert np.abs(gaps - gap).min() < 1e-5  # as the page stamped it
-    outside = ["outside what is learned" in reason for reason in take["reasons"]]
-    assert bool(outside) == (gap > LIMIT), take["reasons"]
-    assert take["verdict"] == ("clean" if not outside else "repaired" if all(outside) else "reject"), take["reasons"]
+    outside = ["outside what is learned" in reason for reason in take.reasons]
+    assert bool(outside) == (gap > LIMIT), take.reasons
+    assert take.verdict == ("clean" if not outside else "repaired" if all(outside) else "reject"), take.reasons

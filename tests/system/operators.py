@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 
 from teachpath.motion.arm.puma560 import TOOL_LENGTH
-from teachpath_client import HandReading, Link, Tracker
+from teachpath_client import HandReading, Link, Station, Tracker
+from teachpath_client.models import Execution
 from teachpath_proto.control import ExecutorState
 from teachpath_proto.keys import Keys
 from tests.system.test_view import Visit, wait_until
@@ -29,9 +30,9 @@ Done = Callable[[], bool]
 
 
 class Operator:
-    """Somebody at the tab Run of a page; `station` has `call` as the service's API."""
+    """Somebody at the tab Run of a page."""
 
-    def __init__(self, visit: Visit, station: Any) -> None:
+    def __init__(self, visit: Visit, station: Station) -> None:
         self.page, self._station, self._visit = visit.page, station, visit
 
     @property
@@ -39,10 +40,9 @@ class Operator:
         """What the console said, but for orders while the arm was silent (503) or not at rest again yet (409)."""
         return [line for line in self._visit.said if "503" not in line and "409" not in line]
 
-    def executions(self) -> list[dict[str, Any]]:
+    def executions(self) -> list[Execution]:
         """All executions, newest first."""
-        found: list[dict[str, Any]] = self._station.call("GET", "/executions")
-        return found
+        return self._station.executions()
 
     def status(self) -> Status:
         """How the newest execution stands, as the page knows it."""
@@ -76,7 +76,7 @@ class Operator:
 
     def start(self) -> None:
         """Hold the start until the arm begins."""
-        before = [one["id"] for one in self.executions()]
+        before = [one.id for one in self.executions()]
         self.page.wait_for_selector("button.hold:not([disabled])")
         self.hold_start(1000)
         self._visit.wait(lambda: self.status().get("execution", "") not in ("", *before))

@@ -127,6 +127,9 @@ class Service(Command):
         data: its data folder.
         ports: of web and bus, to stand where another one stood; None: free ones.
         settings: further TEACHPATH_* variables.
+
+    Attributes:
+        station: the typed client of its REST API.
     """
 
     def __init__(self, data: Path, *, ports: tuple[int, int] | None = None, **settings: str) -> None:
@@ -157,27 +160,6 @@ class Service(Command):
             assert "Traceback" not in self.err, self.err
         finally:
             self.clean_up()
-
-    def call(self, method: str, resource: str, body: dict[str, Any] | None = None) -> Any:
-        """Call a resource under /api/v1 and return its JSON."""
-        return self.station.call(method, resource, body)
-
-    def demonstrations(self, task: str) -> list[dict[str, Any]]:
-        """Return the stored demonstrations of a task."""
-        found: list[dict[str, Any]] = self.call("GET", f"/tasks/{task}/demonstrations")
-        return found
-
-    def job(self, key: str, *, seconds: float = 30.0) -> dict[str, Any]:
-        """Return a job when it has ended."""
-        ended = ("succeeded", "failed", "cancelled")
-        states: list[dict[str, Any]] = []
-
-        def over() -> bool:
-            states.append(self.call("GET", f"/jobs/{key}"))
-            return states[-1]["state"] in ended
-
-        wait_until(over, seconds=seconds, what=f"job {key} ends")
-        return states[-1]
 
     def kill(self) -> None:
         """End the service as a crash does; its other processes must leave by themselves."""

@@ -30,7 +30,7 @@ def test_a_kill_in_mid_take_costs_at_most_the_last_second(tmp_path: Path) -> Non
     sent = 220  # in mid-transport
     with Service(tmp_path / "data") as killed:
         record(killed, "carry", 1)
-        before, files = killed.demonstrations("carry"), fingerprints(killed.data)
+        before, files = killed.station.demonstrations("carry"), fingerprints(killed.data)
         with Link(killed.endpoint) as link:
             tracker = Tracker(link, "glove")
             tracker.start("carry")
@@ -48,33 +48,33 @@ def test_a_kill_in_mid_take_costs_at_most_the_last_second(tmp_path: Path) -> Non
     assert "every recording is whole" in run("doctor", "--data", str(killed.data), folder=tmp_path).out
 
     with Service(killed.data) as next_one:
-        earlier, made = next_one.demonstrations("carry")
+        earlier, made = next_one.station.demonstrations("carry")
         assert [earlier] == before
-        assert made["id"] == found[2]
-        assert made["samples"] == int(found[1])
-        assert made["verdict"] == "reject"
-        assert any("cut off" in note for note in made["account"]["notes"])
-        assert len(trajectory(next_one, made["id"])[0]) == made["release"] - made["grasp"]
-        assert next_one.call("GET", "/health")["notes"] == []
+        assert made.id == found[2]
+        assert made.samples == int(found[1])
+        assert made.verdict == "reject"
+        assert any("cut off" in note for note in made.account.notes)
+        assert len(trajectory(next_one, made.id)[0]) == made.release - made.grasp
+        assert next_one.station.health().notes == []
         assert len(record(next_one, "carry", 1).demonstrations) == 1
 
 
 def test_a_job_under_way_is_run_again_once(tmp_path: Path) -> None:
     with Service(tmp_path / "data") as killed:
         assert len(record(killed, "carry", 12).demonstrations) == 12
-        job = killed.call("POST", "/tasks/carry/jobs", {"kind": "learn"})
-        running = lambda: killed.call("GET", f"/jobs/{job['id']}")["state"] == "running"  # noqa: E731
+        job = killed.station.begin_job("carry", "learn")
+        running = lambda: killed.station.get_job(job.id).state == "running"  # noqa: E731
         wait_until(running, seconds=20, what="the job runs")
         killed.kill()
         killed.wait_gone(OUTLIVED)
 
     with Service(killed.data) as next_one:
-        ended = next_one.job(job["id"])
-        assert (ended["state"], ended["attempt"]) == ("succeeded", 2), ended["message"]
-        (only,) = next_one.call("GET", "/tasks/carry/runs")
-        assert only["id"] == ended["outcome"]
-        assert len(next_one.call("GET", "/tasks/carry/jobs")) == 1
-        assert len(only["learned"]["demonstrations"]) == 12
+        ended = next_one.station.wait(next_one.station.get_job(job.id))
+        assert (ended.state, ended.attempt) == ("succeeded", 2), ended.message
+        (only,) = next_one.station.runs("carry")
+        assert only.id == ended.outcome
+        assert len(next_one.station.jobs("carry")) == 1
+        assert len(only.learned.demonstrations) == 12
 
 
 def test_files_are_imported_while_no_service_runs(tmp_path: Path) -> None:
@@ -84,5 +84,5 @@ def test_files_are_imported_while_no_service_runs(tmp_path: Path) -> None:
     assert torn.process.returncode == 1
     assert torn.err.startswith("teachpath: cannot read")
     with Service(data) as service:
-        (imported,) = service.demonstrations("files")
-        assert len(trajectory(service, imported["id"])[0]) == 100
+        (imported,) = service.station.demonstrations("files")
+        assert len(trajectory(service, imported.id)[0]) == 100

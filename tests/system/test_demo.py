@@ -43,7 +43,7 @@ def recorded(port: int) -> int:
     """Return how many demonstrations the demo at `port` has recorded so far."""
     try:
         with Station(f"http://127.0.0.1:{port}") as station:
-            return len(station.call("GET", "/tasks/demo/demonstrations"))
+            return len(station.demonstrations("demo"))
     except ClientError:
         return 0
 

@@ -101,10 +101,10 @@ def test_the_first_demonstration_of_the_paper_through_fastrak_and_cyberglove(
     report = json.loads(out)
     assert (report["lost"], report["refused"], len(report["demonstrations"])) == (0, 0, 1), report
     assert report["received"] > SHOWN
-    (demonstration,) = service.demonstrations("devices")
-    assert demonstration["verdict"] == "clean"
-    trajectory = service.call("GET", f"/demonstrations/{demonstration['id']}/trajectory")
-    positions = np.array(trajectory["positions"])
+    (demonstration,) = service.station.demonstrations("devices")
+    assert demonstration.verdict == "clean"
+    trajectory = service.station.trajectory(demonstration.id)
+    positions = np.array(trajectory.positions)
     assert np.linalg.norm(positions[0] - START) < 0.01
     assert np.linalg.norm(positions[-1] - GOAL) < 0.02
-    assert np.ptp(np.array(trajectory["times"])) > 3.16 - 0.5  # transport time of the hand, and what the machine adds
+    assert np.ptp(np.array(trajectory.times)) > 3.16 - 0.5  # transport time of the hand, and what the machine adds

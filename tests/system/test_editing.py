@@ -2,11 +2,13 @@
 
 import re
 from collections.abc import Iterator
+from dataclasses import asdict
 from typing import Any
 
 import numpy as np
 import pytest
 
+from teachpath.io.documents import from_document
 from teachpath.nurbs import Curve
 from tests.system.access import grave
 from tests.system.editors import SLOW, Desk, U
@@ -22,9 +24,7 @@ TASK = "edited"
 def paths(service: Service) -> list[str]:
     """Learn the ways of a task, of which each test edits one."""
     record(service, TASK, 12, speed=8.0)
-    job = service.job(service.call("POST", f"/tasks/{TASK}/jobs", {"kind": "learn"})["id"], seconds=120)
-    run = service.call("GET", f"/tasks/{TASK}/runs/{job['outcome']}")["learned"]
-    return [path["id"] for path in run["paths"]]
+    return [path.id for path in service.station.learn(TASK).learned.paths]
 
 
 @pytest.fixture
@@ -52,7 +52,7 @@ def test_the_page_evaluates_a_curve_as_the_service_does(desks: Any, service: Ser
             "weights": rng.uniform(0.1, 10, count).tolist(),
         }
         u = [*U.tolist(), *inner.tolist()]
-        theirs = np.array(service.call("POST", "/curves/evaluate", {"curve": curve, "u": u}))
+        theirs = np.array(service.station.call("POST", "/curves/evaluate", {"curve": curve, "u": u}))
         assert np.abs(np.array(desk.page.evaluate(script, [curve, u])) - theirs).max() <= 1e-9
 
 
@@ -126,12 +126,9 @@ def same(one: Curve, other: Curve) -> bool:
 
 def stored(service: Service, path: str) -> list[tuple[str, str, Curve]]:
     """Branch, author and curve of every version of a path."""
-    versions = service.call("GET", f"/paths/{path}/versions")
-    curves = [service.call("GET", f"/paths/{path}/versions/{v['number']}")["path"]["curve"] for v in versions]
-    names = ("degree", "knots", "control_points", "weights")
-    return [
-        (v["branch"], v["author"], Curve(*(c[name] for name in names))) for v, c in zip(versions, curves, strict=True)
-    ]
+    versions = service.station.versions(path)
+    curves = [service.station.get_version(path, v.number).path.curve for v in versions]
+    return [(v.branch, v.author, from_document(Curve, asdict(c))) for v, c in zip(versions, curves, strict=True)]
 
 
 def test_the_second_of_two_editors_chooses_and_no_edit_is_lost(desks: Any, service: Service, paths: list[str]) -> None:

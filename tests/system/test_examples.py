@@ -6,7 +6,6 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 
-import httpx
 import pytest
 
 from teachpath.io.store.motions import read_motion
@@ -45,34 +44,33 @@ def driven(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Service]:
 def test_the_examples_show_a_task_learn_it_and_run_it_on_a_robot_of_their_own(driven: Service, tmp_path: Path) -> None:
     shown = example("01_publish_a_demonstration.py", "--endpoint", driven.endpoint, "--speed", "4")
     assert shown == "3 demonstrations of 600 samples, 0 lost\n"
-    assert [d["verdict"] for d in driven.demonstrations("arc")] == ["clean"] * 3
+    assert [d.verdict for d in driven.station.demonstrations("arc")] == ["clean"] * 3
 
     learned = example("02_learn_over_rest.py", "--url", driven.url)
     assert "way 1: " in learned
     assert all(f"  demonstration {number}: " in learned for number in (1, 2, 3))
     assert "control points, at most" in learned
 
-    wait_until(lambda: driven.call("GET", "/health")["executor"], seconds=60, what="the executor is there")
+    driven.station.wait_for_arm()
     ran = example("03_run_a_path.py", "--url", driven.url)
     assert "of a limit by joint" in ran
     assert "\nended: tracking error" in ran
-    (execution,) = driven.call("GET", "/executions")
-    assert execution["status"]["state"] == "ended"
-    assert execution["status"]["progress"] == 1.0
-    assert driven.call("GET", "/health")["processes"].keys() == {"executor"}
-    _judge(driven, execution["id"], tmp_path)
+    (execution,) = driven.station.executions()
+    assert execution.status.state == "ended"
+    assert execution.status.progress == 1.0
+    assert driven.station.health().processes.keys() == {"executor"}
+    _judge(driven, execution.id, tmp_path)
 
 
 def _judge(service: Service, execution: str, folder: Path) -> None:
     """Fetch what was executed, look at it as curves, and judge it; then a log that was tampered with."""
-    url = f"{service.url}/api/v1/executions/{execution}"
     ended = service.data / "executions" / f"{execution}.mcap"
     wait_until(ended.exists, seconds=10, what="the recording is whole")
-    drawn = service.call("GET", f"/executions/{execution}/series?points=100")
-    assert len(drawn["times"]) == 100
-    assert drawn["gripper_closed"].count(True) > 10
+    drawn = service.station.series(execution, points=100)
+    assert len(drawn.times) == 100
+    assert drawn.gripper_closed.count(True) > 10
     file = folder / "run.mcap"
-    file.write_bytes(httpx.get(f"{url}/recording", trust_env=False).content)
+    file.write_bytes(service.station.recorded_execution(execution))
     good = run("run", "--check", str(file), folder=folder)
     assert good.process.returncode == 0, good.out + good.err
     assert "run.mcap keeps every limit and the path" in good.out

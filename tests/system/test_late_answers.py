@@ -1,12 +1,14 @@
 """Whatever a person has entered or chosen in the page stays, also when the service answers late or out of turn."""
 
 from collections.abc import Callable, Iterator
+from dataclasses import asdict
 from typing import Any
 
 import numpy as np
 import pytest
 
 from teachpath_client import Link, Tracker
+from teachpath_client.models import Run
 from tests.system.answers import Late
 from tests.system.editors import Desk
 from tests.system.processes import Service
@@ -19,23 +21,21 @@ ANY = "[^/]*"
 
 
 @pytest.fixture(scope="module")
-def learned(service: Service) -> dict[str, Any]:
+def learned(service: Service) -> Run:
     """A run of a task with three ways; the first of them has a plan and a second version, the others are as learned."""
     record(service, TASK, 12, speed=8.0)
-    job = service.job(service.call("POST", f"/tasks/{TASK}/jobs", {"kind": "learn"})["id"], seconds=600)
-    run: dict[str, Any] = service.call("GET", f"/tasks/{TASK}/runs/{job['outcome']}")
-    first = run["learned"]["paths"][0]
-    service.job(service.call("POST", f"/paths/{first['id']}/plans")["id"], seconds=600)
+    run = service.station.learn(TASK)
+    service.station.plan(run.learned.paths[0].id)
     return run
 
 
 @pytest.fixture(scope="module")
-def paths(learned: dict[str, Any]) -> list[str]:
-    return [path["id"] for path in learned["learned"]["paths"]]
+def paths(learned: Run) -> list[str]:
+    return [path.id for path in learned.learned.paths]
 
 
 @pytest.fixture
-def desk(browser: Any, service: Service, learned: dict[str, Any]) -> Iterator[Desk]:
+def desk(browser: Any, service: Service, learned: Run) -> Iterator[Desk]:
     """A page of its own for every test, in which the task is chosen."""
     desk = Desk(browser, service.url)
     choose(desk, TASK)
@@ -53,11 +53,10 @@ def choose(desk: Desk, task: str) -> None:
 
 def store(service: Service, path: str) -> int:
     """Save another version of a path, as somebody else does; return its number."""
-    versions = service.call("GET", f"/paths/{path}/versions")
-    curve = service.call("GET", f"/paths/{path}/versions/{versions[-1]['number']}")["path"]["curve"]
+    newest = service.station.versions(path)[-1].number
+    curve = asdict(service.station.get_version(path, newest).path.curve)
     curve["control_points"][2][2] += 0.001
-    body = {"base": versions[-1]["number"], "curve": curve, "branch": "main", "author": "somebody"}
-    return int(service.call("POST", f"/paths/{path}/versions", body)["number"])
+    return service.station.save_version(path, curve, base=newest, branch="main", author="somebody").number
 
 
 # the task
@@ -94,7 +93,7 @@ def test_a_popover_that_was_left_opens_nothing_any_more(desk: Desk, service: Ser
 
 def test_a_new_task_stays_chosen_beside_a_list_from_before_it(desk: Desk, service: Service) -> None:
     lists = Late(desk, "tasks")
-    service.call("PUT", "/tasks/somebody-elses", {"scene": "paper"})
+    service.station.make_task("somebody-elses")
     lists.wait()
     desk.click("#new-task-button")
     desk.page.get_by_label("Name", exact=True).fill("mine")
@@ -107,7 +106,7 @@ def test_a_new_task_stays_chosen_beside_a_list_from_before_it(desk: Desk, servic
 
 
 def test_the_scene_that_is_drawn_is_that_of_the_task_that_is_chosen(browser: Any, service: Service) -> None:
-    service.call("PUT", "/tasks/bare", {"scene": "empty"})
+    service.station.make_task("bare", scene="empty")
     desk = Desk(browser, service.url)
     choose(desk, "bare")
     scenes = Late(desk, "scenes")
@@ -373,7 +372,7 @@ def test_the_calibration_of_a_live_hand_stays_chosen(desk: Desk, service: Servic
 
 
 def test_nothing_is_recorded_for_a_task_that_was_left(desk: Desk, service: Service) -> None:
-    service.call("PUT", "/tasks/bare", {"scene": "empty"})
+    service.station.make_task("bare", scene="empty")
     desk.page.wait_for_selector("#task option[value=bare]", state="attached")
     desk.click("#tab-demonstrate")
     task = Late(desk, f"tasks/{TASK}")
@@ -382,4 +381,4 @@ def test_nothing_is_recorded_for_a_task_that_was_left(desk: Desk, service: Servi
     desk.page.select_option("#task", "bare")
     task.over()
     desk.page.wait_for_selector("html[data-showing='']", state="attached")
-    assert service.call("GET", f"/tasks/{TASK}/recording") == service.call("GET", "/tasks/bare/recording") == []
+    assert service.station.recordings(TASK) == service.station.recordings("bare") == []

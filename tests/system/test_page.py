@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Iterator
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -9,7 +10,9 @@ import pytest
 from websockets.exceptions import InvalidStatus
 from websockets.sync.client import connect
 
+from teachpath.io.documents import from_document
 from teachpath.nurbs import Curve
+from teachpath_client.models import Run
 from tests.system.access import grave
 from tests.system.processes import Service, run
 from tests.system.test_station import record
@@ -23,16 +26,14 @@ SOCKETS = ("view", "events", "joints", "trackers/page-x/samples")
 
 
 @pytest.fixture(scope="module")
-def learned(service: Service) -> dict[str, Any]:
-    service.call("PUT", "/tasks/bare", {"scene": "paper"})  # with nothing in it; the page chooses the newest one
+def learned(service: Service) -> Run:
+    service.station.make_task("bare")  # with nothing in it; the page chooses the newest one
     record(service, TASK, 12, speed=8.0)
-    job = service.job(service.call("POST", f"/tasks/{TASK}/jobs", {"kind": "learn"})["id"], seconds=120)
-    run: dict[str, Any] = service.call("GET", f"/tasks/{TASK}/runs/{job['outcome']}")
-    return run["learned"] | {"id": run["id"]}
+    return service.station.learn(TASK)
 
 
 @pytest.fixture(scope="module")
-def visit(browser: Any, service: Service, learned: dict[str, Any]) -> Iterator[Visit]:
+def visit(browser: Any, service: Service, learned: Run) -> Iterator[Visit]:
     visit = Visit(browser, service.url)
     visit.page.set_viewport_size({"width": 1000, "height": 600})
     yield visit
@@ -74,7 +75,7 @@ def test_a_task_is_made_in_the_page_and_kept_through_a_reload(visit: Visit, serv
             assert "already" in page.locator("#message .error").inner_text()
             page.keyboard.press("Escape")
     visit.wait(lambda: page.locator("#task").input_value() == "another")
-    assert service.call("GET", "/tasks/another")["scene"] == "empty"
+    assert service.station.get_task("another").scene == "empty"
     page.select_option("#task", TASK)
     page.reload()
     page.wait_for_selector("html[data-scene=ready]", state="attached", timeout=30_000)
@@ -118,27 +119,27 @@ def test_a_page_from_elsewhere_gets_no_socket(service: Service, resource: str) -
         pass
 
 
-def test_what_is_pointed_at_in_a_table_stands_out_in_the_view_and_back(visit: Visit, learned: dict[str, Any]) -> None:
+def test_what_is_pointed_at_in_a_table_stands_out_in_the_view_and_back(visit: Visit, learned: Run) -> None:
     tab(visit, "ways")
-    one, other = learned["clusters"][0]["members"][0], learned["clusters"][1]["members"][0]
+    one, other = learned.learned.clusters[0].members[0], learned.learned.clusters[1].members[0]
     row = visit.page.locator(f"#selection tr[data-focus='demonstrations {one}']").first
     row.hover()
     opacity = "teachpath.opacity('/demonstrations/{}')"
     visit.wait(lambda: visit.page.evaluate(f"{opacity.format(one)} > {opacity.format(other)}"))
-    path = learned["paths"][2]
-    curve = Curve(*(path["curve"][name] for name in ("degree", "knots", "control_points", "weights")))
+    path = learned.learned.paths[2]
+    curve = from_document(Curve, asdict(path.curve))
     seen = visit.page.evaluate(f"teachpath.project({curve([0.6])[0].tolist()})")
     visit.page.locator("#tab-ways").hover()  # nothing is pointed at
     visit.wait(lambda: visit.page.evaluate(f"{opacity.format(one)} === {opacity.format(other)}"))
     visit.page.mouse.move(*seen)
-    card = f"#learned article[data-focus='paths {path['id']}'].here"
+    card = f"#learned article[data-focus='paths {path.id}'].here"
     visit.page.wait_for_selector(card)
     assert visit.page.locator(".card.here").count() == 1
     visit.page.mouse.click(*seen)
     visit.page.wait_for_selector(f"{card}.chosen")
 
 
-def test_the_cut_is_dragged_to_make_fewer_ways(visit: Visit, service: Service, learned: dict[str, Any]) -> None:
+def test_the_cut_is_dragged_to_make_fewer_ways(visit: Visit, service: Service, learned: Run) -> None:
     tab(visit, "ways")
     said = visit.page.locator("#cut output")
     assert said.inner_text().startswith("3 ways")
@@ -161,9 +162,9 @@ def test_the_cut_is_dragged_to_make_fewer_ways(visit: Visit, service: Service, l
     assert set(re.findall(r"way-\d", classes)) == {"way-0", "way-1"}
     visit.page.get_by_role("button", name="Make 2 ways").click()
     visit.wait(lambda: visit.page.locator("#learned article.card").count() == 2)
-    newest = service.call("GET", f"/tasks/{TASK}/runs")[0]["learned"]
-    assert sorted(len(cluster["members"]) for cluster in newest["clusters"])[-1] > max(
-        len(cluster["members"]) for cluster in learned["clusters"]
+    newest = service.station.runs(TASK)[0].learned
+    assert max(len(cluster.members) for cluster in newest.clusters) > max(
+        len(cluster.members) for cluster in learned.learned.clusters
     )
     assert visit.said == []
 
@@ -185,7 +186,7 @@ def test_after_a_restart_of_the_service_the_page_shows_the_truth_again(visit: Vi
     assert grave(visit.page, "an error is told") == []
     tab(visit, "run")
     with Service(service.data, ports=service.ports) as again:
-        again.call("PUT", "/tasks/made-meanwhile", {"scene": "paper"})
+        again.station.make_task("made-meanwhile")
         visit.page.wait_for_selector("html[data-connection=live][data-events=live]", state="attached", timeout=30_000)
         visit.page.wait_for_selector("#task option[value=made-meanwhile]", state="attached")
         assert visit.page.locator("#connection").inner_text() == "Connected"

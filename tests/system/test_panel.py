@@ -4,6 +4,7 @@ import dataclasses
 import json
 import time
 from collections.abc import Iterator
+from dataclasses import asdict
 from typing import Any
 
 import numpy as np
@@ -74,20 +75,20 @@ def test_every_demonstration_has_its_verdict_and_what_is_wrong_with_it(visit: Vi
     assert "clean" in oldest
     assert "reject" in newest
     assert "samples are faulty, " in newest.replace("\n", " ")
-    for said, row in zip((oldest, newest), service.demonstrations("judged"), strict=True):
-        facts = read_facts(service.data / "recordings" / row["recording"])
-        assert facts["verdict"] == row["verdict"]
-        assert row["verdict"] in said
+    for said, row in zip((oldest, newest), service.station.demonstrations("judged"), strict=True):
+        facts = read_facts(service.data / "recordings" / row.recording)
+        assert facts["verdict"] == row.verdict
+        assert row.verdict in said
         account = json.loads(facts["account"])
-        assert account == row["account"]
-        assert account["untracked"] == (39 if row["verdict"] == "reject" else 0)
+        assert account == json.loads(json.dumps(asdict(row.account)))
+        assert account["untracked"] == (39 if row.verdict == "reject" else 0)
     for mark in ("good", "bad", ""):
         visit.page.get_by_role("button", name=f"Mark demonstration 1 {mark or 'neither good nor bad'}").click()
         within(visit, 5, f"{text('demonstrations')}.includes('Marked {mark}') === {str(bool(mark)).lower()}")
-        assert [d["mark"] for d in service.demonstrations("judged")] == [mark, ""]
+        assert [d.mark for d in service.station.demonstrations("judged")] == [mark, ""]
     visit.page.get_by_role("button", name="Discard the last").click()
     within(visit, 5, "document.querySelectorAll('.takes li.discarded').length === 1")
-    assert [bool(d["discarded_ns"]) for d in service.demonstrations("judged")] == [False, True]
+    assert [bool(d.discarded_ns) for d in service.station.demonstrations("judged")] == [False, True]
     visit.page.get_by_role("button", name="Undo discard").click()
     within(visit, 5, "document.querySelectorAll('.takes li.discarded').length === 0")
     within(visit, 5, f"{text('demonstrations')}.includes('One demonstration so far; show it again.')")
@@ -118,7 +119,7 @@ def leader(visit: Visit, service: Service) -> Iterator[Leader]:
     """Somebody at the tab Run who leads the arm, and lets it go in the end."""
     visit.page.set_viewport_size({"width": 900, "height": 420})  # less to draw
     visit.page.locator("#tab-run").click()
-    leader = Leader(visit, service)
+    leader = Leader(visit, service.station)
     visit.page.locator("#leading").scroll_into_view_if_needed()
     yield leader
     visit.page.locator("#leading").get_by_role("button", name="Finish").click()

@@ -6,11 +6,11 @@ import subprocess
 import sys
 import threading
 import time
-from typing import Any
 
 import pytest
 
 from teachpath_client import ClientError, Link, Tracker
+from teachpath_client.models import RecordingReport
 from teachpath_proto import tracker_pb2
 from teachpath_proto.keys import Keys
 from tests.system.processes import Service, wait_until
@@ -22,7 +22,7 @@ KEYS = Keys()
 
 
 def names(service: Service) -> list[str]:
-    return [t["name"] for t in service.call("GET", "/health")["trackers"]]
+    return [t.name for t in service.station.health().trackers]
 
 
 def test_a_tracker_that_is_killed_in_mid_take_leaves_a_reject_that_says_so(service: Service) -> None:
@@ -34,9 +34,9 @@ def test_a_tracker_that_is_killed_in_mid_take_leaves_a_reject_that_says_so(servi
     try:
 
         def carries() -> bool:
-            known = {task["name"] for task in service.call("GET", "/tasks")}
-            running = service.call("GET", "/tasks/killed/recording") if "killed" in known else []
-            return any(report["phase"] == "transport" and report["received"] > 150 for report in running)
+            known = {task.name for task in service.station.tasks()}
+            running = service.station.recordings("killed") if "killed" in known else []
+            return any(report.phase == "transport" and report.received > 150 for report in running)
 
         wait_until(carries, seconds=20, what="the hand has carried for a second")
         assert "glove-killed" in names(service)
@@ -44,17 +44,17 @@ def test_a_tracker_that_is_killed_in_mid_take_leaves_a_reject_that_says_so(servi
         client.send_signal(signal.SIGKILL)
         client.wait(10)
     wait_until(lambda: "glove-killed" not in names(service), seconds=1.0, what="the tracker has gone")
-    wait_until(lambda: service.demonstrations("killed"), seconds=1.0, what="the take has ended")
-    (only,) = service.demonstrations("killed")
-    assert (only["verdict"], only["reasons"][0]) == ("reject", "the tracker has gone in mid-take")
-    (report,) = service.call("GET", "/tasks/killed/recording")
-    assert report["state"] == "lost"
+    wait_until(lambda: service.station.demonstrations("killed"), seconds=1.0, what="the take has ended")
+    (only,) = service.station.demonstrations("killed")
+    assert (only.verdict, only.reasons[0]) == ("reject", "the tracker has gone in mid-take")
+    (report,) = service.station.recordings("killed")
+    assert report.state == "lost"
     with Link(service.endpoint) as link:  # and the next client of that name may begin
         tracker = Tracker(link, "glove-killed")
         tracker.start("killed")
         tracker.publish(shown(1), speed=FAST)
         assert len(tracker.stop().demonstrations) == 1
-    assert [d["verdict"] for d in service.demonstrations("killed")] == ["reject", "clean"]
+    assert [d.verdict for d in service.station.demonstrations("killed")] == ["reject", "clean"]
 
 
 def test_a_tracker_whose_process_is_stopped_is_silent_within_a_second_and_its_take_ends(service: Service) -> None:
@@ -64,24 +64,24 @@ def test_a_tracker_whose_process_is_stopped_is_silent_within_a_second_and_its_ta
         stdout=subprocess.DEVNULL,
     )
 
-    def report() -> dict[str, Any]:
-        known = {task["name"] for task in service.call("GET", "/tasks")}
-        running = service.call("GET", "/tasks/stopped/recording") if "stopped" in known else []
-        return running[0] if running else {"phase": "", "received": 0, "state": ""}
+    def report() -> RecordingReport | None:
+        known = {task.name for task in service.station.tasks()}
+        running = service.station.recordings("stopped") if "stopped" in known else []
+        return running[0] if running else None
 
     def silent() -> bool:
-        trackers = {t["name"]: t for t in service.call("GET", "/health")["trackers"]}
-        return bool(trackers["glove-stopped"]["silence"] > 0.8)
+        trackers = {t.name: t for t in service.station.health().trackers}
+        return trackers["glove-stopped"].silence > 0.8
 
     try:
-        wait_until(lambda: report()["phase"] == "transport", seconds=20, what="the hand carries")
+        wait_until(lambda: (now := report()) and now.phase == "transport", seconds=20, what="the hand carries")
         client.send_signal(signal.SIGSTOP)
         wait_until(silent, seconds=1.2, what="the tracker is silent")
-        wait_until(lambda: service.demonstrations("stopped"), seconds=3.0, what="the take has ended")
-        (only,) = service.demonstrations("stopped")
-        assert (only["verdict"], only["reasons"][0]) == ("reject", "no sample came for 2 s in mid-take")
+        wait_until(lambda: service.station.demonstrations("stopped"), seconds=3.0, what="the take has ended")
+        (only,) = service.station.demonstrations("stopped")
+        assert (only.verdict, only.reasons[0]) == ("reject", "no sample came for 2 s in mid-take")
         client.send_signal(signal.SIGCONT)
-        wait_until(lambda: report()["state"] == "recording", seconds=5.0, what="it is recorded again")
+        wait_until(lambda: (now := report()) and now.state == "recording", seconds=5.0, what="it is recorded again")
         assert not silent()
     finally:
         client.send_signal(signal.SIGKILL)
@@ -132,7 +132,7 @@ def test_a_thousand_malformed_samples_are_counted_and_other_takes_are_untouched(
         fuzzed.publish(shown(1), speed=FAST)
         report = fuzzed.stop()
     assert (calm.received, calm.lost, len(calm.demonstrations)) == (2 * SHOWN, 0, 2)
-    assert [d["verdict"] for d in service.demonstrations("calm")] == ["clean", "clean"]
+    assert [d.verdict for d in service.station.demonstrations("calm")] == ["clean", "clean"]
     assert report.received + report.refused == 1000 + SHOWN
     assert report.refused > 800
     assert report.notes
@@ -161,7 +161,7 @@ def test_queries_that_are_malformed_or_misnamed_are_answered_with_a_sentence(ser
             for _ in range(20):
                 with pytest.raises(ClientError):
                     link.ask(key, chance.randbytes(chance.randrange(1, 60)))
-    assert service.call("GET", "/health")["notes"] == []
+    assert service.station.health().notes == []
 
 
 def test_two_trackers_of_one_name_are_told_and_their_take_is_not_trusted(service: Service) -> None:
@@ -177,7 +177,7 @@ def test_two_trackers_of_one_name_are_told_and_their_take_is_not_trusted(service
             thread.join()
         report = first.stop()
     assert any("two trackers share this name" in note for note in report.notes), report
-    assert all(d["verdict"] == "reject" for d in service.demonstrations("twins"))
+    assert all(d.verdict == "reject" for d in service.station.demonstrations("twins"))
 
 
 def test_a_client_that_stops_without_a_word_is_not_waited_for(service: Service) -> None:
@@ -186,8 +186,10 @@ def test_a_client_that_stops_without_a_word_is_not_waited_for(service: Service) 
         tracker.start("mute", scene="paper")
         tracker.publish(list(shown(1))[:200], speed=FAST)
         wait_until(
-            lambda: service.demonstrations("mute"), seconds=5.0, what="the take ends by itself while the client lives"
+            lambda: service.station.demonstrations("mute"),
+            seconds=5.0,
+            what="the take ends by itself while the client lives",
         )
-        (only,) = service.demonstrations("mute")
-        assert (only["verdict"], only["reasons"][0]) == ("reject", "no sample came for 2 s in mid-take")
+        (only,) = service.station.demonstrations("mute")
+        assert (only.verdict, only.reasons[0]) == ("reject", "no sample came for 2 s in mid-take")
         assert tracker.stop().lost == 0

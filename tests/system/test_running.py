@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from teachpath.motion.arm.kinematics import link_frames
+from teachpath_client.models import Plan
 from tests.system.access import grave
 from tests.system.carriers import HEADSET, START, begin, carry, carry_worn, move_hand, phase
 from tests.system.operators import PATIENT, RESTING, Leader, Operator, Status
@@ -50,7 +51,7 @@ def visit(browser: Any, service: Service) -> Iterator[Visit]:
     visit.page.close()
 
 
-Plans = list[dict[str, Any]]  # one a way, in the order in which the ways were shown: by mouse, by the headset's hand
+Plans = list[Plan]  # one a way, in the order in which the ways were shown: by mouse, by the headset's hand
 
 
 @pytest.fixture(scope="module")
@@ -59,32 +60,30 @@ def plans(visit: Visit, service: Service) -> Plans:
     visit.page.locator("#tab-ways").click()
     visit.page.get_by_role("button", name="Learn the ways").click()
     visit.page.wait_for_selector("#learned article.card", timeout=60_000)
-    learned = service.call("GET", f"/tasks/{TASK}/runs")[0]["learned"]
-    shown = [take["id"] for take in service.demonstrations(TASK)]
-    members = sorted((set(cluster["members"]) for cluster in learned["clusters"]), key=lambda m: shown[0] not in m)
+    learned = service.station.runs(TASK)[0].learned
+    shown = [take.id for take in service.station.demonstrations(TASK)]
+    members = sorted((set(cluster.members) for cluster in learned.clusters), key=lambda m: shown[0] not in m)
     assert members == [set(shown[:2]), set(shown[2:])]
     found = []
-    for path in sorted(
-        learned["paths"], key=lambda path: shown[0] not in learned["clusters"][path["cluster"] - 1]["members"]
-    ):
-        visit.page.get_by_role("button", name=f"Certify way {path['cluster']}").click()
-        visit.page.get_by_role("button", name=f"Run way {path['cluster']}").wait_for(timeout=60_000)
-        found += service.call("GET", f"/paths/{path['id']}/plans")[:1]
+    for path in sorted(learned.paths, key=lambda path: shown[0] not in learned.clusters[path.cluster - 1].members):
+        visit.page.get_by_role("button", name=f"Certify way {path.cluster}").click()
+        visit.page.get_by_role("button", name=f"Run way {path.cluster}").wait_for(timeout=60_000)
+        found += service.station.plans(path.id)[:1]
     return found
 
 
-def choose(visit: Visit, plan: dict[str, Any]) -> None:
+def choose(visit: Visit, plan: Plan) -> None:
     """Go to the tab Run with the way that a plan is of."""
     visit.page.locator("#tab-ways").click()
-    visit.page.locator(f"#learned [data-run='{plan['path']}']").click()
-    visit.wait(lambda: visit.page.evaluate("teachpath.state().plan?.id") == plan["id"])
+    visit.page.locator(f"#learned [data-run='{plan.path}']").click()
+    visit.wait(lambda: visit.page.evaluate("teachpath.state().plan?.id") == plan.id)
 
 
 @pytest.fixture
 def operator(visit: Visit, service: Service, plans: Plans) -> Operator:
     """Somebody at the tab Run, where the way shown by mouse is chosen."""
     choose(visit, plans[0])
-    return Operator(visit, service)
+    return Operator(visit, service.station)
 
 
 def ghost(visit: Visit) -> np.ndarray:
@@ -100,11 +99,11 @@ def test_the_preview_is_the_plan_and_moves_no_arm(
     visit: Visit, service: Service, operator: Operator, plans: Plans
 ) -> None:
     executions = operator.executions()
-    motion = service.call("GET", f"/plans/{plans[0]['id']}/motion")
+    motion = service.station.preview(plans[0].id)
     visit.page.get_by_role("button", name="Preview", exact=True).click()
     visit.page.get_by_role("button", name="Pause").click()
     before = visit.place("/robot/link6")
-    times, joints = np.array(motion["times"]), np.array(motion["joints"])
+    times, joints = np.array(motion.times), np.array(motion.joints)
     for k in (0, len(times) // 3, len(times) // 2, len(times) - 1):
         scrub(visit, float(times[k]))
         shown = float(visit.page.get_by_label("Instant of the motion").input_value())  # the slider has steps
@@ -179,20 +178,20 @@ def test_the_way_shown_by_a_headset_s_hand_is_run_to_its_goal(visit: Visit, oper
     operator.start()
     status = operator.until(lambda status: status["state"] in RESTING)
     assert (status["state"], status["progress"]) == ("ended", pytest.approx(1.0)), status["reason"]
-    assert operator.executions()[0]["plan"] == plans[1]["id"]
+    assert operator.executions()[0].plan == plans[1].id
     assert operator.said == []
 
 
 def test_a_past_execution_is_replayed_as_it_was(visit: Visit, service: Service, operator: Operator) -> None:
     last = operator.executions()[0]
-    assert last["status"]["state"] in RESTING
+    assert last.status.state in RESTING
     before = visit.place("/robot/link6")
     visit.page.locator("#replay li button").first.click()
     slider = visit.page.get_by_label("Instant of the execution")
     slider.wait_for()
-    series = service.call("GET", f"/executions/{last['id']}/series?points=1500")
-    times = np.array(series["times"]) - series["times"][0]
-    joints = np.array(series["positions"])
+    series = service.station.series(last.id, points=1500)
+    times = np.array(series.times) - series.times[0]
+    joints = np.array(series.positions)
     assert np.abs(joints[0] - joints[-1]).max() > 0.01
     for share in (0.0, 0.5, 1.0):
         slider.evaluate(f"s => {{ s.value = {share * times[-1]}; s.dispatchEvent(new Event('input')); }}")
@@ -202,7 +201,7 @@ def test_a_past_execution_is_replayed_as_it_was(visit: Visit, service: Service, 
         np.testing.assert_allclose(drawn, link_frames(q), atol=1e-6)
     assert visit.page.locator("#replay .u-over").count() == 4
     np.testing.assert_allclose(visit.place("/robot/link6"), before, atol=1e-5)
-    assert operator.executions()[0]["id"] == last["id"]
+    assert operator.executions()[0].id == last.id
     visit.page.get_by_role("button", name="Close replay").click()
     assert visit.page.evaluate("teachpath.replayed()") is None
     assert operator.said == []
@@ -212,10 +211,10 @@ def test_control_is_taken_and_given_back(visit: Visit, service: Service, operato
     visit.page.get_by_label("Your name").fill("anna")
     visit.page.get_by_role("button", name="Take control").click()
     visit.page.wait_for_selector("#arm button[data-word=release]")
-    assert service.call("GET", "/lease")["holder"] == "anna"
+    assert service.station.get_lease().holder == "anna"
     visit.page.get_by_role("button", name="Give it back").click()
     visit.page.wait_for_selector("#arm button[data-word=take]")
-    assert service.call("GET", "/lease")["holder"] == ""
+    assert service.station.get_lease().holder == ""
     assert operator.said == []
 
 
@@ -230,7 +229,7 @@ def test_the_joints_are_plotted_as_they_move(visit: Visit, operator: Operator) -
 def test_a_headset_s_right_hand_leads_the_arm_while_the_left_one_is_closed(
     visit: Visit, service: Service, operator: Operator
 ) -> None:
-    leader, above = Leader(visit, service), (START[0], START[1], START[2] + 0.05)
+    leader, above = Leader(visit, service.station), (START[0], START[1], START[2] + 0.05)
     visit.page.evaluate("headset.primaryInputMode = 'hand'; 0")
     leader.begin("a headset")
     visit.wait(lambda: visit.page.evaluate("teachpath.leading().placed"))

@@ -54,21 +54,21 @@ def test_takes_by_mouse_are_judged_at_once_discarded_and_brought_back(visit: Vis
     for _ in range(2):
         carry(visit)
         phase(visit, "ready")
-    takes = service.demonstrations("by-mouse")
-    words = [take["verdict"] for take in takes]
+    takes = service.station.demonstrations("by-mouse")
+    words = [take.verdict for take in takes]
     assert visit.page.locator("#show .takes li .verdict").all_inner_texts() == words
     for take in takes:  # a machine that is too busy for the declared rate makes it a repaired one
-        assert take["verdict"] in ("clean", "repaired"), take["reasons"]
+        assert take.verdict in ("clean", "repaired"), take.reasons
         assert has_no_gaps(take)
-    goal = service.call("GET", f"/demonstrations/{takes[0]['id']}/trajectory")["positions"][-1]
+    goal = service.station.trajectory(takes[0].id).positions[-1]
     assert math.dist(goal, GOAL) < 0.05
     visit.page.get_by_role("button", name="Discard the take").click()
     visit.page.wait_for_selector("#show .takes li.discarded")
-    assert [bool(take["discarded_ns"]) for take in service.demonstrations("by-mouse")] == [False, True]
+    assert [bool(take.discarded_ns) for take in service.station.demonstrations("by-mouse")] == [False, True]
     visit.page.get_by_role("button", name="Undo", exact=True).click()
     visit.page.wait_for_selector("#show .takes li.discarded", state="detached")
     assert "Recorded 2 demonstrations" in finish(visit)
-    assert service.call("GET", "/tasks/by-mouse/recording") == []
+    assert service.station.recordings("by-mouse") == []
     assert visit.said == []
 
 
@@ -88,10 +88,10 @@ def test_a_take_by_keyboard(visit: Visit, service: Service) -> None:
 
 
 def was_carried(service: Service, task: str) -> None:
-    (take,) = service.demonstrations(task)
-    assert take["verdict"] != "reject", take["reasons"]
+    (take,) = service.station.demonstrations(task)
+    assert take.verdict != "reject", take.reasons
     assert has_no_gaps(take)
-    ways = service.call("GET", f"/demonstrations/{take['id']}/trajectory")["positions"]
+    ways = service.station.trajectory(take.id).positions
     assert max(z for _, _, z in ways) > START[2] + 0.05
     assert math.dist(ways[-1][:2], START[:2]) > 0.05
 
@@ -147,8 +147,8 @@ def test_a_hidden_page_stops_and_throws_away_what_was_carried(visit: Visit, serv
     visit.page.evaluate(hide + "document.dispatchEvent(new Event('visibilitychange'))")
     visit.page.wait_for_selector("#message p.error")
     assert "The page was hidden" in visit.page.locator("#message").inner_text()
-    assert service.call("GET", "/tasks/hidden/recording") == []
-    assert service.demonstrations("hidden") == []
+    assert service.station.recordings("hidden") == []
+    assert service.station.demonstrations("hidden") == []
     visit.page.evaluate("delete document.hidden")
 
 
@@ -200,14 +200,14 @@ def test_takes_by_an_emulated_hand_and_a_controller_in_one_headset(worn: Visit, 
     worn.page.evaluate("teachpath.headset().end()")
     worn.page.get_by_role("button", name="Finish").click()
     worn.page.wait_for_selector("html[data-showing='']", state="attached")
-    by_hand, by_controller = service.demonstrations("by-headset")
+    by_hand, by_controller = service.station.demonstrations("by-headset")
     for take in (by_hand, by_controller):
         is_judged_by_its_frames(take, gaps)
         assert has_no_gaps(take)
-        ways = service.call("GET", f"/demonstrations/{take['id']}/trajectory")
-        assert len(ways["orientations"]) == len(ways["positions"])
-        assert math.dist(ways["positions"][0], START) < 1e-6
-        assert math.dist(ways["positions"][-1], GOAL) < 0.05
+        ways = service.station.trajectory(take.id)
+        assert len(ways.orientations or []) == len(ways.positions)
+        assert math.dist(ways.positions[0], START) < 1e-6
+        assert math.dist(ways.positions[-1], GOAL) < 0.05
     assert worn.said == []
 
 

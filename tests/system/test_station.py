@@ -42,8 +42,8 @@ def record(service: Service, task: str, count: int, *, speed: float = FAST) -> t
 
 
 def trajectory(service: Service, demonstration: str) -> tuple[np.ndarray, np.ndarray]:
-    document = service.call("GET", f"/demonstrations/{demonstration}/trajectory")
-    return np.array(document["times"]), np.array(document["positions"])
+    found = service.station.trajectory(demonstration)
+    return np.array(found.times), np.array(found.positions)
 
 
 def write_csv(file: Path, *, rows: int = 100, text: str = "") -> Path:
@@ -59,29 +59,28 @@ def write_csv(file: Path, *, rows: int = 100, text: str = "") -> Path:
 def test_a_take_over_zenoh_can_be_read_by_others_and_replayed(service: Service, tmp_path: Path) -> None:
     report = record(service, "carry", 2)
     assert (report.received, report.lost, report.refused) == (2 * SHOWN, 0, 0)
-    stored = service.demonstrations("carry")
-    assert [d["id"] for d in stored] == list(report.demonstrations)
-    assert [d["verdict"] for d in stored] == ["clean", "clean"]
+    stored = service.station.demonstrations("carry")
+    assert [d.id for d in stored] == list(report.demonstrations)
+    assert [d.verdict for d in stored] == ["clean", "clean"]
 
     sent = iter(shown(2))
     for demonstration in stored:
-        url = f"{service.url}/api/v1/demonstrations/{demonstration['id']}/recording"
-        content = httpx.get(url, trust_env=False).content
+        content = service.station.recorded_demonstration(demonstration.id)
         messages = [
             tracker_pb2.HandSample.FromString(message.data)
             for _, _, message in make_reader(io.BytesIO(content)).iter_messages(topics=["samples"])
         ]
-        assert len(messages) == demonstration["samples"]
+        assert len(messages) == demonstration.samples
         for message, reading in zip(messages, sent, strict=False):
             p = message.position
             assert (p.x, p.y, p.z) == reading.position
 
     again = run("replay", "carry", "--url", service.url, "--speed", str(FAST), folder=tmp_path)
     assert again.process.returncode == 0, again.err
-    replayed = service.demonstrations("carry-replayed")
-    assert [d["verdict"] for d in replayed] == ["clean", "clean"]
+    replayed = service.station.demonstrations("carry-replayed")
+    assert [d.verdict for d in replayed] == ["clean", "clean"]
     for one, other in zip(stored, replayed, strict=True):
-        (t, p), (s, q) = trajectory(service, one["id"]), trajectory(service, other["id"])
+        (t, p), (s, q) = trajectory(service, one.id), trajectory(service, other.id)
         np.testing.assert_allclose(q, p, rtol=0, atol=1e-9)
         np.testing.assert_allclose(s, t, rtol=0, atol=1e-6)
 
@@ -109,10 +108,10 @@ def test_rubbish_during_a_take_is_counted_and_harms_nothing(service: Service) ->
     assert (report.received, report.refused, report.duplicated, report.lost) == (SHOWN + 1, len(bad), 1, 0)
     assert any("not finite" in note for note in report.notes)
     assert any("10485760 bytes" in note for note in report.notes)
-    (demonstration,) = service.demonstrations("rubbish")
-    assert demonstration["verdict"] == "repaired"
-    assert len(trajectory(service, demonstration["id"])[0]) > 150
-    assert service.call("GET", "/health")["notes"] == []
+    (demonstration,) = service.station.demonstrations("rubbish")
+    assert demonstration.verdict == "repaired"
+    assert len(trajectory(service, demonstration.id)[0]) > 150
+    assert service.station.health().notes == []
 
 
 @pytest.mark.parametrize("name", ["a/b", "..", "../etc", "a..b", "x" * 65])
@@ -124,7 +123,7 @@ def test_names_that_could_leave_the_folder_are_refused(service: Service, name: s
         answer = http.put(f"/api/v1/tasks/{name.replace('/', '%2F').replace('..', '%2E%2E')}", json={})
     assert answer.status_code in (404, 405, 422)
     assert not [path for path in sorted(service.data.rglob("*")) if path not in before and path.is_dir()]
-    assert not [task for task in service.call("GET", "/tasks") if task["name"] == name]
+    assert not [task for task in service.station.tasks() if task.name == name]
 
 
 def test_a_flood_and_a_page_that_does_not_read_do_not_starve_a_take(service: Service) -> None:
@@ -155,7 +154,7 @@ def test_a_flood_and_a_page_that_does_not_read_do_not_starve_a_take(service: Ser
     assert next(sent) > 2 * SHOWN
     assert (report.received, report.lost, len(report.demonstrations)) == (2 * SHOWN, 0, 2)
     assert slowest < 1.0
-    assert [d["verdict"] for d in service.demonstrations("flooded")] == ["clean", "clean"]
+    assert [d.verdict for d in service.station.demonstrations("flooded")] == ["clean", "clean"]
 
 
 def test_answers_on_a_kept_connection_do_not_wait_for_acknowledgements(service: Service) -> None:
@@ -170,8 +169,8 @@ def test_files_are_imported_while_the_service_is_up(service: Service, tmp_path: 
     assert first.process.returncode == 0, first.err
     url = f"{service.url}/api/v1/tasks/files/demonstrations"
     assert httpx.post(url, content=whole.read_bytes(), trust_env=False).status_code == 201
-    assert [d["number"] for d in service.demonstrations("files")] == [1, 2]
-    one, other = (trajectory(service, d["id"]) for d in service.demonstrations("files"))
+    assert [d.number for d in service.station.demonstrations("files")] == [1, 2]
+    one, other = (trajectory(service, d.id) for d in service.station.demonstrations("files"))
     np.testing.assert_array_equal(one[1], other[1])
 
 
@@ -186,7 +185,7 @@ def test_a_data_folder_serves_one_service_only(service: Service, tmp_path: Path)
     doctor = run("doctor", "--data", str(service.data), folder=tmp_path)
     assert doctor.process.returncode == 1
     assert "stop it first" in doctor.err
-    assert service.call("GET", "/health")["notes"] == []
+    assert service.station.health().notes == []
 
 
 def test_a_taken_endpoint_is_said(service: Service, tmp_path: Path) -> None:
@@ -217,6 +216,6 @@ def test_a_file_that_cannot_be_used_is_refused_and_nothing_stored(
     answer = httpx.post(url, content=file.read_bytes(), trust_env=False)
     assert answer.status_code == 422
     assert sentence in answer.json()["detail"]
-    known = {task["name"] for task in service.call("GET", "/tasks")}
-    assert "broken" not in known or service.demonstrations("broken") == []
+    known = {task.name for task in service.station.tasks()}
+    assert "broken" not in known or service.station.demonstrations("broken") == []
     assert not list(service.data.rglob("*.part"))

@@ -4,7 +4,6 @@ import re
 from pathlib import Path
 from typing import Any
 
-import httpx
 import numpy as np
 import pytest
 
@@ -63,20 +62,20 @@ def tell(browser: Any, url: str, station: Station, tmp_path: Path) -> None:
     status = operator.until(lambda status: status["state"] in RESTING)
     assert (status["state"], status["progress"]) == ("ended", pytest.approx(1.0)), status["reason"]
     done = operator.executions()[0]
-    plan = station.call("GET", f"/plans/{done['plan']}")
-    assert (plan["path"], plan["path_version"]) == (path, 2)
-    desk.page.locator(f"#replay button[data-execution='{done['id']}']").click(timeout=SLOW)
+    plan = station.get_plan(done.plan or "")
+    assert (plan.path, plan.path_version) == (path, 2)
+    desk.page.locator(f"#replay button[data-execution='{done.id}']").click(timeout=SLOW)
     slider = desk.page.get_by_label("Instant of the execution")
     slider.wait_for()
     desk.until("teachpath.replayed() !== null")
-    series = station.call("GET", f"/executions/{done['id']}/series?points=1500")
+    series = station.series(done.id, points=1500)
     file = tmp_path / "execution.mcap"
-    file.write_bytes(httpx.get(f"{url}/api/v1/executions/{done['id']}/recording", trust_env=False).content)
+    file.write_bytes(station.recorded_execution(done.id))
     followed = np.array([setpoint.position for setpoint in read_motion(file).setpoints if setpoint.on_path])
     places, fine = tool_pose(followed)[:, :3, 3], edited(np.linspace(0, 1, 1001))
     apart = np.array([np.linalg.norm(fine - place, axis=1).min() for place in places])
     assert apart.max() < NEAR, apart.max()
     assert np.linalg.norm(places[[0, -1]] - fine[[0, -1]], axis=1).max() < NEAR
     shown = float(slider.get_attribute("max") or 0)  # what was written when it was opened
-    assert plan["duration"] < shown <= series["times"][-1] - series["times"][0] + 1e-6
+    assert plan.duration < shown <= series.times[-1] - series.times[0] + 1e-6
     desk.close()

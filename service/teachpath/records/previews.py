@@ -27,7 +27,7 @@ class MotionPreview:
         gripper_closed: (n,)
         object_position: (n, 3) centre of the carried object [m, world]; (0, 3) when the scene has none.
         object_orientation: (n, 4) w, x, y, z; (0, 4) when the scene has none.
-        stretches: what the arm does when.
+        segments: what the arm does when.
     """
 
     plan: str
@@ -37,4 +37,4 @@ class MotionPreview:
     gripper_closed: tuple[bool, ...]
     object_position: Matrix
     object_orientation: Matrix
-    stretches: tuple[SegmentInterval, ...]
+    segments: tuple[SegmentInterval, ...]

@@ -48,7 +48,7 @@ def preview_motion(plan: Plan, settings: MotionSettings, *, dwell: float, rate: 
         gripper_closed=tuple(parts[index].gripper_closed for index in which),
         object_position=positions,
         object_orientation=orientations,
-        stretches=tuple(
+        segments=tuple(
             SegmentInterval(part.name, float(a), float(b))
             for part, a, b in zip(parts, begins[:-1], begins[1:], strict=True)
         ),

@@ -79,7 +79,7 @@ def frames(motion: MotionPreview) -> dict[str, Any]:
     document = {
         "times": np.round(motion.times[at], 3).tolist(),
         "links": np.round(links.transpose(0, 1, 3, 2).reshape(len(at), -1, 16), 5).tolist(),
-        "segments": [{"name": s.name, "begin": round(s.begin, 3), "end": round(s.end, 3)} for s in motion.stretches],
+        "segments": [{"name": s.name, "begin": round(s.begin, 3), "end": round(s.end, 3)} for s in motion.segments],
     }
     if len(motion.object_position):
         poses = [

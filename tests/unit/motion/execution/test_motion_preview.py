@@ -45,20 +45,20 @@ def test_it_is_the_motion_of_the_execution(middle: Plan, motion: MotionPreview) 
 def test_it_begins_and_ends_at_home_without_a_jump(motion: MotionPreview) -> None:
     np.testing.assert_allclose(motion.joints[[0, -1]], [SETTINGS.home, SETTINGS.home], atol=1e-9)
     assert np.all(np.abs(np.diff(motion.joints, axis=0)) <= SPEED * motion.times[1] * (1 + 1e-9))
-    assert [s.name for s in motion.stretches][1:5] == [
+    assert [s.name for s in motion.segments][1:5] == [
         "on the way down",
         "closing the gripper",
         "on the path",
         "opening the gripper",
     ]
-    assert motion.stretches[-1].end == motion.times[-1]
+    assert motion.segments[-1].end == motion.times[-1]
 
 
 def test_the_object_goes_along_the_learned_path_and_stays_where_it_is_put(middle: Plan, motion: MotionPreview) -> None:
     carried = middle.scene.carried
     assert carried is not None
     path = way(MIDDLE).curve
-    on = next(s for s in motion.stretches if s.name == "on the path")
+    on = next(s for s in motion.segments if s.name == "on the path")
     before, behind = motion.times < on.begin, motion.times > on.end
     np.testing.assert_allclose(motion.object_position[before], np.tile(carried.position, (before.sum(), 1)), atol=1e-9)
     assert np.ptp(motion.object_position[behind], axis=0).max() < 1e-9
