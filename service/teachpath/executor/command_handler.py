@@ -1,6 +1,7 @@
-"""Judges what is asked of the executor: who may, and whether the arm can; the loop obeys in its next period.
+"""Checks every command to the executor: who may give it, and whether the arm can obey.
 
-Everything here runs on the bus's threads. A stop has a thread of its own, so that it waits for nothing.
+A command that passes is queued for the control loop, which obeys in its next period. Everything here runs on the bus's
+threads. A stop has a key and thread of its own, so that it waits for nothing.
 """
 
 from __future__ import annotations
@@ -18,32 +19,33 @@ from teachpath.errors import Conflict, TeachpathError, Unreachable, UnusableInpu
 from teachpath.executor.execution import Execution
 from teachpath.executor.joint_state_monitor import JointStateMonitor
 from teachpath.executor.lease import ControlLease
+from teachpath.executor.program_factory import ProgramFactory
 from teachpath.executor.settings import ExecutorSettings
-from teachpath.executor.teleop.program import TeleopProgram
 from teachpath.io import documents, wire
 from teachpath.io.bus import Bus, Handle
-from teachpath.motion.execution.motion_program import MotionProgram
-from teachpath.motion.execution.program import PlanProgram
-from teachpath.motion.settings import MotionSettings
-from teachpath.records import Array, Command, ExecutorStatus, JournalEntry, Plan, Scene, TeleopRequest
+from teachpath.records import Command, ExecutorStatus, JournalEntry
+from teachpath.time_source import TimeSource
 from teachpath_proto.control import CommandVerb, ExecutorState, LeaseAction
 from teachpath_proto.keys import Keys
 
-DEFAULT_OPERATOR = "somebody"  # who commands without a lease and without a name
-RESET_TIMEOUT = 10.0  # [s] that the simulated arm may take to build a scene
-LEASE_FREE_VERBS: Final = (CommandVerb.STOP, CommandVerb.REVOKE)  # verbs that need no lease
+DEFAULT_OPERATOR: Final = "somebody"  # name of a person who commands without a lease and without a name
+RESET_TIMEOUT: Final = 5.0  # [s] that the simulated arm may take to build a scene
+LEASE_FREE_VERBS: Final = (CommandVerb.STOP, CommandVerb.REVOKE)
 
 
 class CommandHandler:
-    """Keeps the execution that is under way and what it was told.
+    """Holds the current execution and the commands that wait for the control loop.
 
     Args:
         joint_states: monitor of the arm.
-        robot: name of the arm in its keys.
-        status: makes the status that is answered.
-        on_start: called before a new execution is moved.
-        clock: monotonic nanoseconds.
-        wall: nanoseconds since the Unix epoch.
+        programs: makes the program of a start command.
+        status: returns the status with which commands are answered.
+        on_start: called before a new execution moves the arm.
+
+    Attributes:
+        lease: who is in control.
+        current: the execution under way, or the one that ended last; None before the first.
+        pending: what the control loop does to the current execution in its next period.
     """
 
     def __init__(
@@ -51,26 +53,29 @@ class CommandHandler:
         bus: Bus,
         keys: Keys,
         settings: ExecutorSettings,
-        motion: MotionSettings,
         joint_states: JointStateMonitor,
+        programs: ProgramFactory,
         *,
-        robot: str,
+        time_source: TimeSource,
         status: Callable[[], ExecutorStatus],
         on_start: Callable[[], None],
-        clock: Callable[[], int],
-        wall: Callable[[], int],
     ) -> None:
-        self._bus, self._keys, self._settings, self._motion = bus, keys, settings, motion
-        self._joint_states, self._robot, self._status, self._on_start = joint_states, robot, status, on_start
-        self._clock, self._wall = clock, wall
-        self._starting = threading.Lock()
-        self._stops = 0
-        self.lease = ControlLease(clock)
+        self._bus = bus
+        self._keys = keys
+        self._settings = settings
+        self._joint_states = joint_states
+        self._programs = programs
+        self._time = time_source
+        self._status = status
+        self._on_start = on_start
+        self._start_lock = threading.Lock()
+        self._stop_count = 0
+        self.lease = ControlLease(time_source.monotonic_ns)
         self.current: Execution | None = None
-        self.pending: deque[Callable[[Execution], None]] = deque()  # for the loop
+        self.pending: deque[Callable[[Execution], None]] = deque()
 
     def serve(self) -> list[Handle]:
-        """Begin to answer."""
+        """Answer commands, stops and lease requests from now on."""
         return [
             self._bus.serve(self._keys.executor_command, self.answer),
             self._bus.serve(self._keys.executor_stop, self._answer_stop),
@@ -79,17 +84,17 @@ class CommandHandler:
 
     @property
     def is_resting(self) -> bool:
-        """Whether nothing is under way."""
+        """Whether no execution is under way."""
         return self.current is None or self.current.is_resting
 
     def write_journal(self, who: str, verb: str, answer: str) -> None:
-        """Tell the journal who did what."""
+        """Publish an entry of the journal: who did what, and the answer."""
         execution = self.current.id if self.current else ""
-        entry = JournalEntry(self._wall(), who, verb, execution, answer)
+        entry = JournalEntry(self._time.wall_ns(), who, verb, execution, answer)
         self._bus.publish(self._keys.executor_journal, wire.encode_entry(entry))
 
     def answer(self, payload: bytes) -> bytes:
-        """Answer a command with the status; raises what it is refused for."""
+        """Answer a command with the status; raise the reason when it is refused."""
         command = wire.decode_command(payload)
         who = self.lease.name_of(command.lease, command.who or DEFAULT_OPERATOR)
         try:
@@ -116,12 +121,10 @@ class CommandHandler:
         return wire.encode_lease(lease)
 
     def _dispatch(self, command: Command, who: str) -> None:
-        if command.verb == CommandVerb.START:
-            self._start(command, self._plan_program)
-        elif command.verb == CommandVerb.MIRROR:
-            self._start(command, self._teleop_program)
+        if command.verb in (CommandVerb.START, CommandVerb.MIRROR):
+            self._start(command)
         elif command.verb == CommandVerb.STOP:
-            self._stop_execution(command, who)
+            self._stop(command, who)
         elif command.verb == CommandVerb.REVOKE:
             self._revoke(command)
         else:
@@ -131,22 +134,18 @@ class CommandHandler:
             self._steer(current, command, who)
 
     def _steer(self, current: Execution, command: Command, who: str) -> None:
-        verb = command.verb
-        if verb == CommandVerb.OVERRIDE:
+        if command.verb == CommandVerb.OVERRIDE:
             self.pending.append(lambda execution: execution.set_override(command.override))
-        elif verb == CommandVerb.HOLD:
+        elif command.verb == CommandVerb.HOLD:
             reason = "held by the operator" if who == DEFAULT_OPERATOR else f"held by {who}"
             self.pending.append(lambda execution: execution.hold(reason))
-        elif verb in (CommandVerb.RESUME, CommandVerb.REVERSE, CommandVerb.STEP):
-            if current.revocation:
-                raise Conflict(current.revocation)
-            if verb == CommandVerb.STEP:
-                self._step(current, command)
-                return
-            self._return_to_path(current)
-            self.pending.append(Execution.resume if verb == CommandVerb.RESUME else Execution.reverse)
+        elif current.revocation:
+            raise Conflict(current.revocation)
+        elif command.verb == CommandVerb.STEP:
+            self._step(current, command)
         else:
-            raise UnusableInput(f"{verb} is not possible while a path is executed")
+            self._return_to_path(current)
+            self.pending.append(Execution.resume if command.verb == CommandVerb.RESUME else Execution.reverse)
 
     def _step(self, current: Execution, command: Command) -> None:
         if (command.length == 0.0) == (command.nodes == 0):
@@ -154,89 +153,63 @@ class CommandHandler:
         off = self._deviation(current)
         if off > self._settings.regain:
             raise Conflict(f"the arm is {off:.3f} rad off the path; resume brings it back, then hold it and step")
-        here = current.program.current_q
-        aside = current.program.plan_step(length=command.length, nodes=command.nodes)
-        self.pending.append(lambda execution: execution.start_detour(aside, here))
+        start_q = current.program.current_q
+        detour = current.program.plan_step(length=command.length, nodes=command.nodes)
+        self.pending.append(lambda execution: execution.start_detour(detour, start_q))
 
     def _deviation(self, current: Execution) -> float:
+        """Return how far the arm is from its newest setpoint [rad]."""
         return float(np.abs(self._joint_states.current().position - current.program.current_q).max())
 
     def _return_to_path(self, current: Execution) -> None:
-        """Let the arm go back to where it was held when it is elsewhere now."""
+        """Begin the way back to where the arm was held, if it is elsewhere now."""
         off = self._deviation(current)
         if off <= self._settings.regain:
             return
-        if not current.is_settled or not (
-            current.displacement or current.arm_has_stopped(self._joint_states.current())
-        ):
+        stopped = current.displacement or current.arm_has_stopped(self._joint_states.current())
+        if not (current.is_settled and stopped):
             raise Conflict(f"the arm is {off:.3f} rad off its setpoint and not at rest yet; hold it first, and wait")
-        here = self._resting_q()
-        aside = current.program.plan_return(here)
-        self.pending.append(lambda execution: execution.start_detour(aside, here))
+        start_q = self._joint_states.resting_q(self._settings.rest_speed)
+        detour = current.program.plan_return(start_q)
+        self.pending.append(lambda execution: execution.start_detour(detour, start_q))
 
-    def _stop_execution(self, command: Command, who: str) -> None:
-        self._stops += 1
-        current = self.current
-        if current is not None and command.execution in ("", current.id):
-            reason = "stopped by the operator" if who == DEFAULT_OPERATOR else f"stopped by {who}"
-            self.pending.append(
-                lambda execution: execution.end(ExecutorState.ENDED, reason) if execution is current else None
-            )
+    def _stop(self, command: Command, who: str) -> None:
+        self._stop_count += 1
+        stopped = self.current
+        if stopped is None or command.execution not in ("", stopped.id):
+            return
+        reason = "stopped by the operator" if who == DEFAULT_OPERATOR else f"stopped by {who}"
+
+        def end(execution: Execution) -> None:
+            if execution is stopped:  # and not one that began meanwhile
+                execution.end(ExecutorState.ENDED, reason)
+
+        self.pending.append(end)
 
     def _revoke(self, command: Command) -> None:
         if self.current is not None and self.current.plan == command.plan_id:
             self.pending.append(partial(Execution.revoke, reason=command.reason or "no reason was given"))
 
-    def _start(self, command: Command, make: Callable[[Command], tuple[MotionProgram, str, Scene]]) -> None:
-        stops = self._stops
-        with self._starting:
+    def _start(self, command: Command) -> None:
+        stops_before = self._stop_count
+        with self._start_lock:
             if self.current is not None and not self.current.is_resting:
                 raise Conflict(f"execution {self.current.id} is {self.current.state}; stop it first")
-            program, plan, scene = make(command)
+            prepared = self._programs.make(command)
             with suppress(Unreachable):  # only the simulated robot has a scene to put back
-                self._bus.ask(self._keys.reset(self._robot), documents.encode(scene), timeout=RESET_TIMEOUT)
-            if self._stops != stops:
-                program.close()
+                reset = self._keys.reset(self._joint_states.robot)
+                self._bus.ask(reset, documents.encode(prepared.scene), timeout=RESET_TIMEOUT)
+            if self._stop_count != stops_before:
+                prepared.program.close()
                 raise Conflict("it was stopped before it began")
             if self.current is not None:
                 self.current.program.close()
             self._on_start()
             self.pending.clear()
-            offset = self._wall() - self._clock()
-            self.current = Execution(command.execution, program, plan=plan, rate=self._settings.rate, offset=offset)
-
-    def _plan_program(self, command: Command) -> tuple[PlanProgram, str, Scene]:
-        plan = documents.decode(Plan, command.plan)
-        settings, period = self._settings, 1.0 / self._settings.rate
-        here, override = self._resting_q(), command.override
-        program = PlanProgram(plan, here, self._motion, override=override, dwell=settings.dwell, period=period)
-        return program, plan.id, plan.scene
-
-    def _teleop_program(self, command: Command) -> tuple[TeleopProgram, str, Scene]:
-        order = documents.decode(TeleopRequest, command.mirror)
-        if not (0.05 <= order.scale <= 5.0 and 0.05 <= order.share <= 1.0):
-            raise UnusableInput(
-                f"scale {order.scale:g} is outside 0.05 to 5, or share {order.share:g} outside 0.05 to 1"
+            self.current = Execution(
+                command.execution,
+                prepared.program,
+                plan=prepared.plan,
+                rate=self._settings.rate,
+                offset=self._time.wall_ns() - self._time.monotonic_ns(),
             )
-        period = 1.0 / self._settings.rate
-        here = self._resting_q()
-        hand = TeleopProgram(
-            self._bus,
-            self._keys,
-            order,
-            here,
-            self._motion,
-            joint_states=self._joint_states,
-            period=period,
-            silence=self._settings.hand_silence,
-            clock=self._clock,
-        )
-        return hand, "", order.scene
-
-    def _resting_q(self) -> Array:
-        """Return the arm's configuration (6,), at rest."""
-        arm = self._joint_states.current()
-        speed = float(np.abs(arm.velocity).max())
-        if speed > self._settings.rest_speed:
-            raise Conflict(f"the arm still moves at {speed:.2f} rad/s; wait until it rests")
-        return arm.position

@@ -1,4 +1,4 @@
-"""One execution under way: its program, its state in words, and what is measured on its setpoints."""
+"""One execution: its program, its state, and what is measured on its setpoints."""
 
 from __future__ import annotations
 
@@ -12,20 +12,26 @@ from teachpath.records import Array, ExecutorStatus, JointState, Setpoint
 from teachpath_proto.control import ExecutorState
 
 LATE_ARM_SUFFIX: Final = ", waiting for the arm, which is late"
-MAX_ARM_LAG: Final = 0.3  # s, by which an arm may play its setpoints late; a driver's delay and the way there are less
-CAUGHT_UP_LAG: Final = 0.25  # s, below which an arm that was late has caught up
-SETTLING_TIME: Final = 0.3  # s after which an arm that is held has come to rest
+MAX_ARM_LAG: Final = 0.3  # [s] by which an arm may play its setpoints late; a driver's delay and the bus take less
+CAUGHT_UP_LAG: Final = 0.25  # [s] below which an arm that was late has caught up
+SETTLING_TIME: Final = 0.3  # [s] after which an arm that is held has come to rest
 
 
 class Execution:
-    """Steps through a program and finds the state that belongs to what it does.
+    """Steps through a program, numbers and times its setpoints, and derives the state from what the program does.
 
     Args:
-        execution: its id.
-        program: what to run through.
-        plan: id of its plan; empty with a live hand.
+        execution: id of the execution.
+        program: what to run.
+        plan: id of the plan; empty with a live hand.
         rate: setpoints a second [Hz].
-        offset: added to the loop's clock to get nanoseconds since the Unix epoch.
+        offset: what turns the loop's clock into nanoseconds since the Unix epoch, when added [ns].
+
+    Attributes:
+        reason: why the execution is held, stopped or faulted, in words.
+        tracking_error: the largest that the arm has reported [rad].
+        revocation: why the certificate of the plan holds no longer; empty while it holds.
+        displacement: how far the arm was pushed away while it was held [rad]; while this is not 0, nothing is sent.
     """
 
     def __init__(self, execution: str, program: MotionProgram, *, plan: str, rate: float, offset: int) -> None:
@@ -35,32 +41,33 @@ class Execution:
         self.state = ExecutorState.APPROACHING
         self.reason = ""
         self.tracking_error = 0.0
-        self.revocation = ""  # why its certificate holds no longer
-        self.displacement = 0.0  # [rad] that the arm was pushed off while it was held; nothing is sent then
-        self._rate, self._epoch_offset = rate, offset
-        self._nominal_ns = 0  # [ns since the Unix epoch] of the newest setpoint
-        self._rest_setpoints = 0  # setpoints since the arm's nominal motion came to rest
-        self._moving_setpoints = 0  # setpoints since it began to move
-        self._final_state: ExecutorState | None = None  # the state to end in as soon as the arm stands
+        self.revocation = ""
+        self.displacement = 0.0
+        self._rate = rate
+        self._epoch_offset = offset
+        self._nominal_ns = 0  # of the newest setpoint, since the Unix epoch
+        self._rest_setpoints = 0  # sent since the nominal motion came to rest
+        self._moving_setpoints = 0  # sent since the nominal motion began
+        self._final_state: ExecutorState | None = None  # in which the execution ends as soon as it is at rest
         self._sent_count = 0
         self._meter = LimitMeter(rate, program.current_q)
 
     @property
     def is_resting(self) -> bool:
-        """Whether it is over."""
+        """Whether the execution is over."""
         return self.state.is_resting
 
     @property
     def is_settled(self) -> bool:
-        """Whether it is held for so long that the arm itself rests."""
+        """Whether the execution has been held for so long that the arm itself rests."""
         return self.state is ExecutorState.HELD and self._rest_setpoints > SETTLING_TIME * self._rate
 
     def arm_has_stopped(self, arm: JointState) -> bool:
-        """Tell whether the arm has taken up a setpoint of the standstill that it is held at."""
+        """Tell whether the arm has taken up a setpoint of the present standstill."""
         return arm.execution == self.id and arm.cycle >= self._sent_count - self._rest_setpoints
 
     def wait_for_late_arm(self, arm: JointState) -> None:
-        """Come to rest while the arm is late: behind the motion that waits to be played, a stop would wait too."""
+        """Come to rest while the arm is late, because a stop would queue behind the setpoints it has yet to play."""
         taken = arm.cycle if arm.execution == self.id else -1
         waiting = self._sent_count - 1 - taken
         if not self.program.waiting:
@@ -73,32 +80,36 @@ class Execution:
         self.program.set_override(share)
 
     def hold(self, reason: str) -> None:
-        """Come to rest on the path and wait there."""
+        """Come to rest on the path and stay there, unless the execution is being ended."""
         if not self._final_state and not self.program.hold_requested:
             self.reason = reason
             self.program.hold()
 
     def resume(self) -> None:
-        """Go on, unless it is being ended."""
+        """Go on, unless the execution is being ended."""
         if not self._final_state:
             self.reason = ""
             self.program.resume()
 
     def reverse(self) -> None:
-        """Go back to the beginning of this stretch, unless it is being ended."""
+        """Go back to the beginning of the segment, unless the execution is being ended."""
         if not self._final_state:
             self.reason = ""
             self.program.reverse()
 
     def revoke(self, reason: str) -> None:
-        """Hold for good: its certificate holds no longer."""
+        """Hold for good, because the certificate of the plan holds no longer."""
         self.revocation = f"the certificate of {self.plan} was revoked: {reason}; stop, and plan the path again"
         self.program.hold()
         if not self._final_state:
             self.reason = self.revocation
 
     def start_detour(self, detour: Detour, start_q: Array) -> None:
-        """Begin a step, or a way back from `here` (6,), unless it is being ended or moves already."""
+        """Begin a step or a way back, unless the execution is being ended or the nominal motion is not at rest.
+
+        Args:
+            start_q: (6,) where the detour begins [rad].
+        """
         if self._final_state or not self.program.at_rest:
             return
         if self.displacement:
@@ -107,7 +118,7 @@ class Execution:
         self.program.start_detour(detour)
 
     def end(self, state: ExecutorState, reason: str) -> None:
-        """Come to rest on the path and end there as `ended` or `faulted`."""
+        """Come to rest on the path and end there in `state`; the first end counts."""
         if not self._final_state:
             self._final_state, self.reason = state, reason
             self.program.hold()
@@ -117,7 +128,7 @@ class Execution:
         self.program.advance_planning()
 
     def skip_period(self) -> None:
-        """Let a period pass in which nothing is sent: the arm was pushed away and stays where it is."""
+        """Let a period pass without a setpoint, because the arm was pushed away and stays where it is."""
         self.state = self._current_state()
 
     def step(self, due: int, sent_ns: int) -> Setpoint:
@@ -127,39 +138,42 @@ class Execution:
             due: when the period began [ns of the loop's clock].
             sent_ns: now [ns since the Unix epoch].
         """
-        moment = self.program.step()
-        self._meter.add(moment.position, self.program)
-        self._nominal_ns = self._nominal_time(
-            due + self._epoch_offset, self._rest_setpoints > 1 and self.program.at_rest
-        )
-        self._rest_setpoints, self._moving_setpoints = (
-            (self._rest_setpoints + 1, 0) if self.program.at_rest else (0, self._moving_setpoints + 1)
-        )
+        motion = self.program.step()
+        at_rest = self.program.at_rest
+        self._meter.add(motion.position, self.program)
+        self._nominal_ns = self._nominal_time(due + self._epoch_offset, at_rest and self._rest_setpoints > 1)
+        self._rest_setpoints = self._rest_setpoints + 1 if at_rest else 0
+        self._moving_setpoints = 0 if at_rest else self._moving_setpoints + 1
         setpoint = Setpoint(
             cycle=self._sent_count,
             nominal_ns=self._nominal_ns,
             sent_ns=sent_ns,
-            position=moment.position,
-            velocity=moment.velocity,
-            acceleration=moment.acceleration,
-            gripper_closed=moment.gripper_closed,
+            position=motion.position,
+            velocity=motion.velocity,
+            acceleration=motion.acceleration,
+            gripper_closed=motion.gripper_closed,
             execution=self.id,
-            on_path=moment.on_path,
+            on_path=motion.on_path,
         )
         self._sent_count += 1
         self.state = self._current_state()
         return setpoint
 
     def _nominal_time(self, now: int, at_rest: bool) -> int:
-        """Return when this setpoint is due on the clock of the motion, which loses what the loop oversleeps.
+        """Return the nominal time stamp of this setpoint [ns since the Unix epoch].
 
-        So position, velocity and acceleration belong to their times whatever happens. At rest, once two setpoints have
-        told of it, the lost time is let go.
+        It advances by exactly one period per setpoint; time lost by an overslept loop is not made up. So position,
+        velocity and acceleration always belong to their times. At rest, after two setpoints of the standstill, the
+        stamp returns to the present.
+
+        Args:
+            now: present time [ns since the Unix epoch].
+            at_rest: whether two setpoints of the standstill were sent.
         """
         return now if at_rest or not self._sent_count else self._nominal_ns + round(1e9 / self._rate)
 
     def status(self, pacer: Pacer) -> ExecutorStatus:
-        """Tell where it stands, with the account of the loop that runs it."""
+        """Return the status, with the statistics of the loop that runs the execution."""
         late = pacer.lateness()
         latency_p50, latency_p99 = self.program.latency
         return ExecutorStatus(

@@ -1,4 +1,4 @@
-"""What the executor hears of the arm: its newest joint state, how long it has been silent, whether it obeys."""
+"""Monitors the arm: its newest joint state, how long it has been silent, and whether it takes up setpoints."""
 
 from __future__ import annotations
 
@@ -6,59 +6,79 @@ import logging
 from collections import deque
 from collections.abc import Callable
 
-from teachpath.errors import Unreachable, UnusableInput
+import numpy as np
+
+from teachpath.errors import Conflict, Unreachable, UnusableInput
 from teachpath.io import wire
-from teachpath.records import JointState
+from teachpath.records import Array, JointState
 
 log = logging.getLogger(__name__)
 
 
 class JointStateMonitor:
-    """Keeps the newest joint state.
+    """Keeps the newest joint state of one arm.
 
     Args:
         robot: name of the arm.
-        silence: after which it counts as gone [s].
-        clock: monotonic nanoseconds.
+        silence: without a joint state after which the arm counts as gone [s].
+        clock: returns monotonic nanoseconds.
     """
 
     def __init__(self, robot: str, silence: float, clock: Callable[[], int]) -> None:
-        self._robot, self._silence, self._clock = robot, silence, clock
+        self.robot = robot
+        self._silence = silence
+        self._clock = clock
         self._payloads: deque[tuple[int, bytes]] = deque(maxlen=1)
         self._latest: tuple[int, JointState] | None = None
 
     def receive(self, _: str, payload: bytes) -> None:
-        """Take a joint state from the bus; it is read by the loop, and by who asks where the arm is."""
+        """Take a message from the bus; `poll` decodes it, on the caller's thread."""
         self._payloads.append((self._clock(), payload))
 
     def poll(self) -> None:
-        """Read what came."""
+        """Decode the newest message, if one has come since the last call."""
         try:
-            when, payload = self._payloads.pop()
-            self._latest = (when, wire.decode_state(payload))
+            came_ns, payload = self._payloads.pop()
+            self._latest = (came_ns, wire.decode_state(payload))
         except IndexError:
             return
         except UnusableInput as error:
             log.warning("left out: %s", error)
 
     def latest(self, now: int) -> tuple[float, JointState] | None:
-        """Return how long the arm has been silent [s] and what it said last, or None when it never spoke."""
+        """Return the age of the newest joint state at `now` [s] and the state itself, or None when none ever came."""
         return None if self._latest is None else ((now - self._latest[0]) / 1e9, self._latest[1])
 
     def current(self) -> JointState:
-        """Return how the arm stands now; raises Unreachable when it is silent."""
+        """Return the arm's present joint state; raises Unreachable when the arm is silent."""
         self.poll()
-        heard = self.latest(self._clock())
-        if heard is None or heard[0] > self._silence:
-            raise Unreachable(f"no joint state from {self._robot}; is the simulator or the arm's driver running?")
-        return heard[1]
+        latest = self.latest(self._clock())
+        if latest is None or latest[0] > self._silence:
+            raise Unreachable(f"no joint state from {self.robot}; is the simulator or the arm's driver running?")
+        return latest[1]
+
+    def resting_q(self, max_speed: float) -> Array:
+        """Return the configuration (6,) in which the arm rests [rad].
+
+        Args:
+            max_speed: of a joint that counts as resting [rad/s].
+
+        Raises:
+            Conflict: the arm still moves.
+            Unreachable: the arm is silent.
+        """
+        arm = self.current()
+        speed = float(np.abs(arm.velocity).max())
+        if speed > max_speed:
+            raise Conflict(f"the arm still moves at {speed:.2f} rad/s; wait until it rests")
+        return arm.position
 
 
 class SetpointStallDetector:
-    """Notices an arm that speaks, but takes up no setpoints any more."""
+    """Notices an arm that publishes its state and yet takes up no setpoints any more."""
 
     def __init__(self) -> None:
-        self._newest = ("", -1)
+        self._newest = ("", -1)  # execution, and cycle of the newest setpoint that the arm has taken up
         self._since = 0
 
     def stall_duration(self, now: int, execution: str, arm: JointState) -> float:
@@ -69,5 +89,5 @@ class SetpointStallDetector:
         return (now - self._since) / 1e9
 
     def restart(self, now: int) -> None:
-        """Count from now on: nothing is sent to the arm."""
+        """Measure from `now` on; call it while no setpoints are sent."""
         self._since = now

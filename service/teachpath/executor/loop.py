@@ -1,7 +1,7 @@
-"""The executor: streams the setpoints of one plan at a time to the arm and obeys the operator meanwhile.
+"""The executor: streams the setpoints of one execution at a time to the arm, and obeys the operator meanwhile.
 
-It lives in a process of its own, in which nothing else runs. The loop never raises in mid-motion: whatever goes wrong
-brings the arm to rest on its path, with a reason in the status.
+It runs in a process of its own. The control loop never raises in mid-motion: whatever goes wrong brings the arm to rest
+on its path, with a reason in the status.
 """
 
 from __future__ import annotations
@@ -9,8 +9,6 @@ from __future__ import annotations
 import gc
 import logging
 import threading
-import time
-from collections.abc import Callable
 from dataclasses import replace
 from typing import Final
 
@@ -20,24 +18,28 @@ from teachpath.executor.command_handler import CommandHandler
 from teachpath.executor.execution import Execution
 from teachpath.executor.joint_state_monitor import JointStateMonitor, SetpointStallDetector
 from teachpath.executor.pacing import Pacer, request_realtime
+from teachpath.executor.program_factory import ProgramFactory
 from teachpath.executor.settings import ExecutorSettings
 from teachpath.io import wire
 from teachpath.io.bus import Bus
 from teachpath.motion.execution.governor import warm_up
 from teachpath.motion.settings import MotionSettings
-from teachpath.records import ExecutorStatus
+from teachpath.records import ExecutorStatus, JointState
+from teachpath.time_source import TimeSource
 from teachpath_proto.control import CommandVerb, ExecutorState
 from teachpath_proto.keys import Keys
 
 log = logging.getLogger(__name__)
 
-IDLE_PERIODS: Final = 5  # control periods between two looks while nothing is under way
+IDLE_PERIODS: Final = 5  # control periods in one cycle of the loop while no execution is under way
 STALL_TIMEOUT: Final = 0.5  # [s] that an arm may take up no setpoint; a driver plays them up to 0.05 s late
-IDLE_STATUS_RATE: Final = 4.0  # [Hz] statuses then, at most; the service takes an executor for gone after a second
+# [Hz] at which the status is published at most while no execution is under way. The service takes an executor for gone
+# after a second.
+IDLE_STATUS_RATE: Final = 4.0
 
 
 class Executor:
-    """Owns the control loop; `run` is its life."""
+    """Owns the control loop, which `run` runs."""
 
     def __init__(
         self,
@@ -47,42 +49,39 @@ class Executor:
         *,
         robot: str = "puma560",
         motion: MotionSettings | None = None,
-        clock: Callable[[], int] = time.monotonic_ns,
-        wall: Callable[[], int] = time.time_ns,
-        sleep: Callable[[float], object] = time.sleep,
+        time_source: TimeSource | None = None,
     ) -> None:
         """Prepare the executor; nothing runs before `run`.
 
         Args:
             robot: name of the arm in its keys.
-            clock: monotonic nanoseconds, by which the loop is paced.
-            wall: nanoseconds since the Unix epoch, for the stamps of setpoints.
-            sleep: waits for so many seconds.
+            time_source: paces the loop and stamps the setpoints; the machine's clocks by default.
         """
-        self._bus, self._keys, self._robot = bus, keys, robot
+        self._bus = bus
+        self._keys = keys
+        self._robot = robot
         self._settings = settings or ExecutorSettings()
-        self._wall = wall
+        self._time = time_source or TimeSource()
         self._period = 1.0 / self._settings.rate
-        self._pacer = Pacer(round(1e9 * self._period), clock=clock, sleep=sleep)
-        self._joint_states = JointStateMonitor(robot, self._settings.silence, clock)
+        self._pacer = Pacer(round(1e9 * self._period), self._time)
+        self._joint_states = JointStateMonitor(robot, self._settings.silence, self._time.monotonic_ns)
         self._stall_detector = SetpointStallDetector()
+        programs = ProgramFactory(bus, keys, self._settings, motion or MotionSettings(), self._joint_states, self._time)
         self._command_handler = CommandHandler(
             bus,
             keys,
             self._settings,
-            motion or MotionSettings(),
             self._joint_states,
-            robot=robot,
+            programs,
+            time_source=self._time,
             status=self._status,
             on_start=self._pacer.reset,
-            clock=clock,
-            wall=wall,
         )
         self._scheduling = "real-time scheduling was not asked for"
         self._published = ("", "", 0)  # execution, state and time of the newest status
 
     def run(self, stop: threading.Event) -> None:
-        """Stream until `stop` is set; then the arm is brought to rest on its path first."""
+        """Stream setpoints until `stop` is set; then bring the arm to rest on its path and return."""
         warm_up(self._period)
         handles = [
             self._bus.subscribe(self._keys.state(self._robot), self._joint_states.receive),
@@ -96,13 +95,13 @@ class Executor:
         gc.collect()
         gc.freeze()
         gc.disable()
-        controls = self._command_handler
+        handler = self._command_handler
         try:
-            self._cycle(self._pacer.wait(counted=False))  # says at once that it is there
-            while not (stop.is_set() and controls.is_resting):
-                if stop.is_set() and controls.current is not None:
-                    controls.current.end(ExecutorState.ENDED, "the executor was told to stop")
-                resting = controls.is_resting
+            self._cycle(self._pacer.wait(counted=False))  # publishes the first status at once
+            while not (stop.is_set() and handler.is_resting):
+                if stop.is_set() and handler.current is not None:
+                    handler.current.end(ExecutorState.ENDED, "the executor was told to stop")
+                resting = handler.is_resting
                 self._cycle(self._pacer.wait(IDLE_PERIODS if resting else 1, counted=not resting))
         finally:
             gc.enable()
@@ -114,14 +113,14 @@ class Executor:
         self._joint_states.poll()
         current = self._command_handler.current
         if current is not None and not current.is_resting:
-            orders = self._command_handler.pending
-            while orders:
-                orders.popleft()(current)
+            pending = self._command_handler.pending
+            while pending:
+                pending.popleft()(current)
             self._supervise(current, due)
             if current.displacement:
                 current.skip_period()
             else:
-                setpoint = current.step(due, self._wall())
+                setpoint = current.step(due, self._time.wall_ns())
                 self._bus.publish(self._keys.setpoint(self._robot), wire.encode_setpoint(setpoint))
                 current.advance_planning()
         self._publish_status(due)
@@ -130,18 +129,20 @@ class Executor:
         lost = self._command_handler.lease.pop_lost_holder()
         if lost:
             self._hold(current, f"nothing was heard of {lost}, who was in control; resume when somebody is there again")
-        heard = self._joint_states.latest(due)
-        if heard is None:
+        latest = self._joint_states.latest(due)
+        if latest is None:
             return
-        silent, arm = heard
-        if silent > self._settings.silence:
-            self._hold(
-                current, f"no joint state for {silent:.2f} s: is the arm's driver running? resume when it is back"
-            )
+        silence, arm = latest
+        if silence > self._settings.silence:
+            why = f"no joint state for {silence:.2f} s"
+            self._hold(current, f"{why}: is the arm's driver running? resume when it is back")
             return
+        self._supervise_arm(current, arm, due)
+
+    def _supervise_arm(self, current: Execution, arm: JointState, due: int) -> None:
         stalled = self._stall_detector.stall_duration(due, current.id, arm)
         if current.is_settled or current.displacement:
-            if current.arm_has_stopped(arm) or stalled > STALL_TIMEOUT:  # else it is late, and still on its way there
+            if current.arm_has_stopped(arm) or stalled > STALL_TIMEOUT:  # otherwise the arm is late, and still moves
                 off = float(np.abs(arm.position - current.program.current_q).max())
                 current.displacement = off if off > self._settings.regain else 0.0
             if current.displacement:
@@ -169,18 +170,18 @@ class Executor:
             )
 
     def _publish_status(self, due: int) -> None:
-        """Publish the status: at once when the state has changed, else now and then."""
+        """Publish the status: at once when the state has changed, otherwise at an even rate."""
         current = self._command_handler.current
-        status = (current.id, current.state) if current is not None else ("", ExecutorState.IDLE)
+        state = (current.id, current.state) if current is not None else ("", ExecutorState.IDLE)
         rate = self._settings.status_rate
         if self._command_handler.is_resting:
             rate = min(rate, IDLE_STATUS_RATE)
-        if status == self._published[:2] and due - self._published[2] < 1e9 / rate:
+        if state == self._published[:2] and due - self._published[2] < 1e9 / rate:
             return
-        self._published = (*status, due)
+        self._published = (*state, due)
         self._bus.publish(self._keys.executor_status, wire.encode_status(self._status()))
 
     def _status(self) -> ExecutorStatus:
         current, lease = self._command_handler.current, self._command_handler.lease.public_view()
-        told = current.status(self._pacer) if current is not None else ExecutorStatus()
-        return replace(told, operator=lease.holder, asking=lease.asking, scheduling=self._scheduling)
+        status = current.status(self._pacer) if current is not None else ExecutorStatus()
+        return replace(status, operator=lease.holder, asking=lease.asking, scheduling=self._scheduling)

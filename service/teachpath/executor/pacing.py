@@ -1,16 +1,16 @@
-"""Wakes a control loop at absolute deadlines and keeps account of how late it woke."""
+"""Wakes a control loop at absolute deadlines and keeps statistics of how late it woke."""
 
 from __future__ import annotations
 
 import os
-import time
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 
-MAX_COUNTED_LATENESS_US: Final = 20_000  # us, lateness above this counts as this
+from teachpath.time_source import TimeSource
+
+MAX_COUNTED_LATENESS_US: Final = 20_000  # a larger lateness counts as this one in the percentiles
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,55 +23,58 @@ class Lateness:
 
 
 class Pacer:
-    """Absolute deadlines, one a period: a cycle that took too long is left out, never made up for by a burst.
+    """Absolute deadlines, one a period: deadlines that a long cycle missed are skipped, never made up for by a burst.
 
     Args:
         period_ns: between two deadlines [ns].
-        clock: monotonic nanoseconds.
-        sleep: waits for so many seconds.
+
+    Attributes:
+        cycles: counted cycles.
+        late: counted cycles that woke later than half a period.
+        missed: deadlines that were skipped.
     """
 
-    def __init__(
-        self,
-        period_ns: int,
-        *,
-        clock: Callable[[], int] = time.monotonic_ns,
-        sleep: Callable[[float], object] = time.sleep,
-    ) -> None:
-        self._period, self._clock, self._sleep = period_ns, clock, sleep
-        self._due = clock()
+    def __init__(self, period_ns: int, time_source: TimeSource) -> None:
+        self._period = period_ns
+        self._clock = time_source.monotonic_ns
+        self._sleep = time_source.sleep
+        self._due = self._clock()
         self.reset()
 
     def reset(self) -> None:
-        """Begin the account anew."""
+        """Begin the statistics anew."""
         self.cycles = self.late = self.missed = 0
         self._largest = 0.0
         self._counts = np.zeros(MAX_COUNTED_LATENESS_US + 1, dtype=np.int64)  # one bin a microsecond
 
     def wait(self, periods: int = 1, *, counted: bool = True) -> int:
-        """Sleep until the deadline so many periods ahead and return it [ns of the clock]; `counted` or not."""
+        """Sleep until the deadline that lies `periods` ahead, and return it [ns of the clock].
+
+        Args:
+            counted: whether this cycle enters the statistics.
+        """
         self._due += periods * self._period
         ahead = self._due - self._clock()
         if ahead > 0:
             self._sleep(ahead / 1e9)
         behind = max(self._clock() - self._due, 0)
-        left_out = behind // self._period
-        self._due += left_out * self._period
+        skipped = behind // self._period
+        self._due += skipped * self._period
         if counted:
-            self._count(behind, left_out)
+            self._count(behind, skipped)
         return self._due
 
     def lateness(self) -> Lateness:
-        """Return the account since the last reset."""
+        """Return the lateness since the last reset."""
         if self.cycles == 0:
             return Lateness(0.0, 0.0, 0.0)
         below = np.cumsum(self._counts)
         p50, p99 = (float(np.searchsorted(below, share * self.cycles)) for share in (0.5, 0.99))
         return Lateness(p50, p99, self._largest)
 
-    def _count(self, behind: int, left_out: int) -> None:
+    def _count(self, behind: int, skipped: int) -> None:
         self.late += 2 * behind > self._period
-        self.missed += left_out
+        self.missed += skipped
         self.cycles += 1
         self._largest = max(self._largest, behind / 1e3)
         self._counts[min(behind // 1000, MAX_COUNTED_LATENESS_US)] += 1

@@ -13,6 +13,7 @@ from teachpath.io.documents import encode
 from teachpath.motion.arm.puma560 import ACCELERATION, JERK, SPEED
 from teachpath.motion.settings import MotionSettings
 from teachpath.records import Command, ExecutorStatus, JointState, JournalEntry, Lease, LeaseRequest, Plan, Setpoint
+from teachpath.time_source import TimeSource
 from teachpath_proto.control import CommandVerb, LeaseAction
 from teachpath_proto.keys import Keys
 
@@ -51,9 +52,7 @@ class Bench:
             self.bus,
             KEYS,
             ExecutorSettings(realtime=False),
-            clock=lambda: self.now,
-            wall=lambda: EPOCH + self.now,
-            sleep=self.sleep,
+            time_source=TimeSource(lambda: self.now, lambda: EPOCH + self.now, self.sleep),
         )
 
     def when(self, condition: Callable[[], bool], act: Callable[[], object]) -> None:

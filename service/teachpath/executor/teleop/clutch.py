@@ -1,4 +1,4 @@
-"""The clutch of a live hand: the arm follows only while it is pressed, and only after it was open once."""
+"""The clutch of a live hand: the arm follows only while it is pressed, and only after it was released once."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from teachpath.io.wire import decode_sample
 from teachpath.records import Sample
 from teachpath_proto.keys import Keys
 
-CLUTCH_BUTTON: Final = 4  # button that is pressed while the arm mirrors the hand
+CLUTCH_BUTTON: Final = 4  # mask of the button in a sample
 RELEASE_FIRST_HINT: Final = "let the clutch go, and press it again to move the arm"
 PRESS_HINT: Final = "press the clutch (button bit 2) to move the arm"
 
@@ -22,17 +22,18 @@ class Clutch:
 
     Attributes:
         engaged: whether the arm follows.
-        hold_requested: whether `hold` was asked for and not taken back.
-        reason: why the arm does not follow.
+        hold_requested: whether `hold` was called and not taken back.
+        reason: why the arm does not follow, in words.
     """
 
     def __init__(self) -> None:
-        self.engaged = self.hold_requested = False
+        self.engaged = False
+        self.hold_requested = False
         self.reason = PRESS_HINT
-        self._released = False  # the button was up since
+        self._released = False  # whether the button was up since the clutch was last engaged
 
     def update(self, pressed: bool) -> bool:
-        """Take whether the button is down; return whether the clutch has just closed."""
+        """Take whether the button is pressed; return whether the clutch has just engaged."""
         if not pressed:
             if self.engaged:
                 self.disengage(PRESS_HINT)
@@ -46,51 +47,53 @@ class Clutch:
         return False
 
     def disengage(self, reason: str) -> None:
-        """Open it, whatever the button does: it must be up once before the arm follows again."""
+        """Let the arm rest, whatever the button does: it must be released before the arm follows again."""
         self.engaged, self._released, self.reason = False, False, reason
 
     def hold(self) -> None:
-        """Open it until `resume`."""
+        """Disengage until `resume`."""
         self.hold_requested = True
         self.disengage("held")
 
     def resume(self) -> None:
-        """Let it be pressed again."""
+        """Let the clutch be pressed again."""
         self.hold_requested, self.reason = False, PRESS_HINT
 
 
 class RemoteClutch:
-    """Another tracker whose button is the clutch: somebody who looks on, while the hand has no button.
+    """The button of another tracker, which somebody who watches presses while the hand has none.
 
     Attributes:
-        pressed: whether the button was down in the newest tracked sample.
-        last_seen_ns: when that came [ns of the clock].
+        pressed: whether the button was pressed in the newest tracked sample.
+        last_seen_ns: when that sample came [ns of the clock].
     """
 
     def __init__(self, bus: Bus, keys: Keys, tracker: str, clock: Callable[[], int]) -> None:
-        self.pressed, self.last_seen_ns = False, 0
+        self.pressed = False
+        self.last_seen_ns = 0
         self._tracker = tracker
         self._newest: deque[tuple[int, bytes]] = deque(maxlen=1)
         self._handle = bus.subscribe(keys.samples(tracker), lambda _, payload: self._newest.append((clock(), payload)))
 
     def poll(self) -> None:
-        """Read what came."""
+        """Read the newest sample."""
         if not self._newest:
             return
-        when, payload = self._newest.pop()
-        sample = decode_tracked(self._tracker, payload, when)
+        came_ns, payload = self._newest.pop()
+        sample = decode_tracked(self._tracker, payload, came_ns)
         if sample is not None:
-            self.pressed, self.last_seen_ns = bool(sample.buttons & CLUTCH_BUTTON), when
+            self.pressed = bool(sample.buttons & CLUTCH_BUTTON)
+            self.last_seen_ns = came_ns
 
     def close(self) -> None:
         """Stop listening."""
         self._handle.close()
 
 
-def decode_tracked(tracker: str, payload: bytes, when: int) -> Sample | None:
+def decode_tracked(tracker: str, payload: bytes, came_ns: int) -> Sample | None:
     """Return a sample, or None when it cannot be used or the hand was not tracked in it."""
     try:
-        sample = decode_sample(tracker, payload, when)
+        sample = decode_sample(tracker, payload, came_ns)
     except UnusableSample:
         return None
     return sample if sample.tracked else None

@@ -1,4 +1,4 @@
-"""The gripper of an arm that mirrors a hand: it closes and opens with the hand, and what it holds is kept clear too."""
+"""The gripper of an arm that follows a hand: it closes and opens with the hand, and what it holds is kept clear."""
 
 from __future__ import annotations
 
@@ -12,39 +12,43 @@ from teachpath.recording.phases import hand_closure
 from teachpath.records import JointState, Sample
 
 CLOSING_THRESHOLD: Final = 0.6  # closure of the hand above which the gripper closes
-OPENING_THRESHOLD: Final = 0.4  # and below which it opens
-MAX_GRASP_DISTANCE: Final = 0.05  # m, from the grasp point to the object's centre: farther off it is not in the gripper
+OPENING_THRESHOLD: Final = 0.4  # closure of the hand below which the gripper opens
+MAX_GRASP_DISTANCE: Final = 0.05  # [m] from grasp point to object's centre; an object farther off is not in the gripper
 
 
 class GripperFollower:
-    """Follows how far a hand is closed, or its grasp button, while the clutch is pressed.
+    """Closes and opens the gripper with the hand, or with its grasp button, while the clutch is engaged.
 
-    Only a change counts: who lets the clutch go with the object in the gripper, and presses it again with the hand
-    closed or open, still has it.
+    Only a change of the hand counts. So the gripper keeps its object when the clutch is released and pressed again,
+    whether the hand is closed or open then.
+
+    Attributes:
+        closed: whether the gripper is to be closed.
     """
 
     def __init__(self, closed: bool) -> None:
-        """Begin with the gripper as it is."""
         self.closed = closed
-        self._hand_closed = closed  # whether the hand is
+        self._hand_closed = closed
 
     def engage(self, sample: Sample) -> None:
-        """Take the hand as it is now; what it does from here on counts."""
+        """Take the hand as it is now; only its changes from here on move the gripper."""
         self._hand_closed = hand_closure(sample) > (CLOSING_THRESHOLD + OPENING_THRESHOLD) / 2
 
     def follow(self, sample: Sample) -> None:
         """Close or open the gripper when the hand has closed or opened."""
-        how = hand_closure(sample)
-        if (self._hand_closed and how < OPENING_THRESHOLD) or (not self._hand_closed and how > CLOSING_THRESHOLD):
+        closure = hand_closure(sample)
+        opens = self._hand_closed and closure < OPENING_THRESHOLD
+        closes = not self._hand_closed and closure > CLOSING_THRESHOLD
+        if opens or closes:
             self._hand_closed = self.closed = not self._hand_closed
 
 
 def observed_load(arm: JointState, before: Load | None) -> Load | None:
-    """Return where the arm says that the object is: in its gripper, or in the world.
+    """Return where the object is by the arm's own account: in its gripper, or in the world.
 
     Args:
         arm: its newest joint state; an orientation of zeros says that it knows of no object.
-        before: what was known until now, and is still, when the arm knows of none.
+        before: returned when the arm knows of no object.
     """
     if not any(arm.object_orientation):
         return before

@@ -1,4 +1,4 @@
-"""A live hand that drives the arm: tool and gripper mirror it while the clutch is pressed, and rest otherwise."""
+"""Teleoperation: tool and gripper follow a live hand while its clutch is pressed, and rest otherwise."""
 
 from __future__ import annotations
 
@@ -10,31 +10,30 @@ import numpy as np
 
 from teachpath.errors import Conflict
 from teachpath.executor.joint_state_monitor import JointStateMonitor
-from teachpath.executor.teleop.clutch import CLUTCH_BUTTON, Clutch, RemoteClutch, decode_tracked
+from teachpath.executor.teleop.clutch import Clutch
 from teachpath.executor.teleop.gripper import GripperFollower, observed_load
-from teachpath.io.bus import Bus
+from teachpath.executor.teleop.hand_input import HandInput
 from teachpath.motion.collision.collision_model import CollisionModel, Load
 from teachpath.motion.execution.segments import Detour, MotionState
 from teachpath.motion.execution.teleop_follower import TeleopFollower
 from teachpath.motion.settings import MotionSettings
 from teachpath.recording.demonstration import to_world
 from teachpath.records import Array, Sample, TeleopRequest
-from teachpath_proto.keys import Keys
 
-MAX_LATENCIES: Final = 5000  # latencies
+MAX_LATENCIES: Final = 5000  # newest latencies of which the percentiles are taken
 LATE_ARM_HINT: Final = "the arm is late; let the clutch go and press it again"
 
 
 class TeleopProgram:
-    """Drives an execution by the samples of one tracker, as a program does.
+    """A motion program that one tracker's samples lead.
 
     Args:
-        order: tracker, who presses its clutch, calibration, scene and scale.
+        hand: samples of the tracker and state of its clutch; closed with the program.
+        request: tracker, calibration, scene and scale.
         start_q: (6,) where the arm rests [rad].
         joint_states: monitor of the arm, which says what its gripper does and where the object is.
         period: between two setpoints [s].
-        silence: after which the hand is lost, or who presses its clutch [s].
-        clock: monotonic nanoseconds.
+        clock: returns monotonic nanoseconds.
 
     Raises:
         PathRefused: the arm stands where it can follow nothing.
@@ -42,33 +41,30 @@ class TeleopProgram:
 
     def __init__(
         self,
-        bus: Bus,
-        keys: Keys,
-        order: TeleopRequest,
+        hand: HandInput,
+        request: TeleopRequest,
         start_q: Array,
         settings: MotionSettings,
         *,
         joint_states: JointStateMonitor,
         period: float,
-        silence: float,
         clock: Callable[[], int],
     ) -> None:
-        self._order, self._clock, self._joint_states = order, clock, joint_states
-        self._silence_ns = silence * 1e9  # [ns]
+        self._hand = hand
+        self._request = request
+        self._joint_states = joint_states
+        self._clock = clock
         self._gripper = GripperFollower(joint_states.current().gripper_closed)
-        model = CollisionModel(order.scene)
-        self._follower = TeleopFollower(model, start_q, settings, scale=order.scale, share=order.share, period=period)
-        if order.scene.carried is not None:
-            self._follower.load = Load(position=order.scene.carried.position)
-        still = np.zeros(6)
-        self._state = MotionState(np.array(start_q), still, still, self._gripper.closed)
-        self._newest: deque[tuple[int, bytes]] = deque(maxlen=1)
-        self._last_seen_ns = 0  # [ns of the clock] when the newest tracked sample came
+        model = CollisionModel(request.scene)
+        self._follower = TeleopFollower(
+            model, start_q, settings, scale=request.scale, share=request.share, period=period
+        )
+        if request.scene.carried is not None:
+            self._follower.load = Load(position=request.scene.carried.position)
+        self._state = MotionState(np.array(start_q), np.zeros(6), np.zeros(6), self._gripper.closed)
         self._clutch = Clutch()
-        self._remote_clutch = RemoteClutch(bus, keys, order.clutch, clock) if order.clutch else None
         self._latencies: deque[float] = deque(maxlen=MAX_LATENCIES)
         self._answered_stamp = 0
-        self._handle = bus.subscribe(keys.samples(order.tracker), self._receive)
 
     before_path = waiting = False
     finished = False
@@ -88,7 +84,7 @@ class TeleopProgram:
 
     @property
     def hold_requested(self) -> bool:
-        """Whether `hold` was asked for and not taken back."""
+        """Whether `hold` was called and not taken back."""
         return self._clutch.hold_requested
 
     @property
@@ -98,23 +94,24 @@ class TeleopProgram:
 
     @property
     def current_q(self) -> Array:
-        """The newest setpoint's configuration (6,) [rad]."""
+        """Configuration (6,) of the newest setpoint [rad]."""
         return self._state.position
 
     @property
     def activity(self) -> str:
-        """What it does, and why the tool is not where the hand is."""
-        following = f"mirroring {self._order.tracker}"
-        return f"{following}: {self._follower.reason}" if self._clutch.engaged and self._follower.reason else following
+        """What the arm does, and why the tool is not where the hand is."""
+        following = f"mirroring {self._request.tracker}"
+        hindered = self._clutch.engaged and self._follower.reason
+        return f"{following}: {self._follower.reason}" if hindered else following
 
     @property
     def location(self) -> str:
-        """Where it is, in words."""
-        return f"while mirroring {self._order.tracker}"
+        """Where the execution is, in words."""
+        return f"while mirroring {self._request.tracker}"
 
     @property
     def latency(self) -> tuple[float, float]:
-        """Median and 99th percentile of the time from a sample's coming to the setpoint that answers it [us]."""
+        """Median and 99th percentile of the time from a sample's arrival to the setpoint that answers it [us]."""
         if not self._latencies:
             return 0.0, 0.0
         p50, p99 = np.percentile(np.array(self._latencies), (50, 99))
@@ -123,10 +120,8 @@ class TeleopProgram:
     def step(self) -> MotionState:
         """Advance by one control period; never raises."""
         now = self._clock()
-        if self._remote_clutch is not None:
-            self._remote_clutch.poll()
-        if self._newest:
-            self._take_sample(*self._newest.pop())
+        if (newest := self._hand.poll()) is not None:
+            self._take_sample(*newest)
         if self._clutch.engaged:
             self._check_presence(now)
         position, velocity, acceleration = self._follower.step()
@@ -137,7 +132,7 @@ class TeleopProgram:
         return self._state
 
     def advance_planning(self) -> None:
-        """Do one piece of the work that leads to the next motion."""
+        """Do one slice of the planning of the next motion."""
         self._follower.advance_planning()
 
     def hold(self) -> None:
@@ -146,7 +141,7 @@ class TeleopProgram:
         self._follower.disengage()
 
     def set_waiting(self, waiting: bool) -> None:
-        """Open the clutch: the arm is late, and would be where the hand no longer is."""
+        """Open the clutch when the arm is late: it would go where the hand no longer is."""
         if waiting and self._clutch.engaged:
             self._clutch.disengage(LATE_ARM_HINT)
             self._follower.disengage()
@@ -156,7 +151,7 @@ class TeleopProgram:
         self._clutch.resume()
 
     def reverse(self) -> None:
-        """Hold: a hand's way is not kept."""
+        """Hold: the way of a hand is not kept."""
         self.hold()
 
     def set_override(self, share: float) -> None:
@@ -177,46 +172,30 @@ class TeleopProgram:
         """Do nothing: a live hand plans no detours."""
 
     def close(self) -> None:
-        """Stop listening to the tracker, and to who presses its clutch."""
-        self._handle.close()
-        if self._remote_clutch is not None:
-            self._remote_clutch.close()
-
-    def _receive(self, _: str, payload: bytes) -> None:
-        self._newest.append((self._clock(), payload))
+        """Stop listening to the hand."""
+        self._hand.close()
 
     def _check_presence(self, now: int) -> None:
-        """Open the clutch when nobody presses it any more, or nothing is heard of those whom the arm follows."""
-        presser, why = self._remote_clutch, ""
-        if now - self._last_seen_ns > self._silence_ns:
-            why = "the hand was lost; let the clutch go and press it again"
-        elif presser is not None and now - presser.last_seen_ns > self._silence_ns:
-            why = f"nothing was heard of {self._order.clutch}, who presses the clutch; press it again"
-        if why:
-            self._clutch.disengage(why)
-        elif presser is not None and not presser.pressed:
+        """Open the clutch when nobody presses it any more, or when the hand is lost."""
+        loss = self._hand.loss(now)
+        if loss:
+            self._clutch.disengage(loss)
+        elif self._hand.is_remote_clutch_released:
             self._clutch.update(False)
         if not self._clutch.engaged:
             self._follower.disengage()
 
-    def _take_sample(self, when: int, payload: bytes) -> None:
-        sample = decode_tracked(self._order.tracker, payload, when)
-        if sample is None:
-            return
-        self._last_seen_ns = when
-        arm = self._joint_states.latest(when)
-        if arm is not None and self._order.scene.carried is not None:
-            self._follower.load = observed_load(arm[1], self._follower.load)
-        followed = self._clutch.engaged
-        down = self._remote_clutch.pressed if self._remote_clutch is not None else bool(sample.buttons & CLUTCH_BUTTON)
-        if self._clutch.update(down):
+    def _take_sample(self, came_ns: int, sample: Sample) -> None:
+        latest = self._joint_states.latest(came_ns)
+        if latest is not None and self._request.scene.carried is not None:
+            self._follower.load = observed_load(latest[1], self._follower.load)
+        was_engaged = self._clutch.engaged
+        hand = to_world(self._request.calibration, np.array(sample.position))
+        if self._clutch.update(self._hand.is_clutch_pressed(sample)):
             self._gripper.engage(sample)
-            self._follower.engage(self._world(sample))
+            self._follower.engage(hand)
         elif self._clutch.engaged:
             self._gripper.follow(sample)
-            self._follower.set_hand(self._world(sample), when)
-        elif followed:
+            self._follower.set_hand(hand, came_ns)
+        elif was_engaged:
             self._follower.disengage()
-
-    def _world(self, sample: Sample) -> Array:
-        return to_world(self._order.calibration, np.array(sample.position))

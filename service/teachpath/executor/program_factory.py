@@ -1,0 +1,107 @@
+"""Makes the program of a command that starts something: a certified plan, or a live hand that leads the arm."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final
+
+from teachpath.errors import UnusableInput
+from teachpath.executor.joint_state_monitor import JointStateMonitor
+from teachpath.executor.settings import ExecutorSettings
+from teachpath.executor.teleop.hand_input import HandInput
+from teachpath.executor.teleop.program import TeleopProgram
+from teachpath.io import documents
+from teachpath.io.bus import Bus
+from teachpath.motion.execution.motion_program import MotionProgram
+from teachpath.motion.execution.program import PlanProgram
+from teachpath.motion.settings import MotionSettings
+from teachpath.records import Command, Plan, Scene, TeleopRequest
+from teachpath.time_source import TimeSource
+from teachpath_proto.control import CommandVerb
+from teachpath_proto.keys import Keys
+
+SCALE_RANGE: Final = (0.05, 5.0)  # of the tool's way over the hand's
+SHARE_RANGE: Final = (0.05, 1.0)  # of the joints' limits
+
+
+@dataclass(frozen=True)
+class PreparedProgram:
+    """A program that may start; `plan` is its plan's id, empty with a live hand."""
+
+    program: MotionProgram
+    plan: str
+    scene: Scene
+
+
+class ProgramFactory:
+    """Makes programs that begin where the arm rests.
+
+    Args:
+        motion: settings with which plans were made.
+        joint_states: monitor of the arm.
+    """
+
+    def __init__(
+        self,
+        bus: Bus,
+        keys: Keys,
+        settings: ExecutorSettings,
+        motion: MotionSettings,
+        joint_states: JointStateMonitor,
+        time_source: TimeSource,
+    ) -> None:
+        self._bus = bus
+        self._keys = keys
+        self._settings = settings
+        self._motion = motion
+        self._joint_states = joint_states
+        self._time = time_source
+
+    def make(self, command: Command) -> PreparedProgram:
+        """Return the program of a `start` or `mirror` command.
+
+        Raises:
+            UnusableInput: the command holds no plan or request, or one with values outside their ranges.
+            PathRefused: the certificate does not hold, or the way to the start is not free.
+            Conflict: the arm still moves.
+            Unreachable: the arm is silent.
+        """
+        return self._follow_plan(command) if command.verb == CommandVerb.START else self._follow_hand(command)
+
+    def _follow_plan(self, command: Command) -> PreparedProgram:
+        plan = documents.decode(Plan, command.plan)
+        program = PlanProgram(
+            plan,
+            self._joint_states.resting_q(self._settings.rest_speed),
+            self._motion,
+            override=command.override,
+            dwell=self._settings.dwell,
+            period=1.0 / self._settings.rate,
+        )
+        return PreparedProgram(program, plan.id, plan.scene)
+
+    def _follow_hand(self, command: Command) -> PreparedProgram:
+        request = documents.decode(TeleopRequest, command.mirror)
+        for name, value, (low, high) in (
+            ("scale", request.scale, SCALE_RANGE),
+            ("share", request.share, SHARE_RANGE),
+        ):
+            if not low <= value <= high:
+                raise UnusableInput(f"{name} {value:g} is outside {low:g} to {high:g}")
+        start_q = self._joint_states.resting_q(self._settings.rest_speed)
+        monotonic_ns = self._time.monotonic_ns
+        hand = HandInput(self._bus, self._keys, request, silence=self._settings.hand_silence, clock=monotonic_ns)
+        try:
+            program = TeleopProgram(
+                hand,
+                request,
+                start_q,
+                self._motion,
+                joint_states=self._joint_states,
+                period=1.0 / self._settings.rate,
+                clock=monotonic_ns,
+            )
+        except BaseException:
+            hand.close()
+            raise
+        return PreparedProgram(program, "", request.scene)
