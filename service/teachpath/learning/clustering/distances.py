@@ -13,7 +13,7 @@ Distances = NDArray[np.float64] | NDArray[np.float32]  # of all pairs [m], conde
 
 METRIC_CODES = {"arc": 0, "undersampled": 0, "frechet": 1, "dtw": 2}
 MAX_NUMPY_PATHS = (200, 24, 24)  # paths of each kind up to which numpy is done before the compiled kernels are loaded
-ROWS_PER_UPDATE = 64  # rows that a kernel does between two looks at progress
+PATHS_PER_UPDATE = 1024  # that a kernel assigns between two looks at progress
 PAIRS_PER_BATCH = 128  # pairs that are warped at a time
 PROGRESS_MESSAGE = "measuring the distances between demonstrations"
 
@@ -48,9 +48,9 @@ def nearest_paths(
     centre = paths.mean(axis=(0, 1))
     ours, theirs = _single(paths, centre), _single(chosen, centre)
     found = []
-    for begin in range(0, len(paths), 16 * ROWS_PER_UPDATE):
+    for begin in range(0, len(paths), PATHS_PER_UPDATE):
         progress(begin / len(paths), "assigning the others to the nearest of the sample")
-        found.append(kernels.nearest_paths(ours[begin : begin + 16 * ROWS_PER_UPDATE], theirs, METRIC_CODES[metric]))
+        found.append(kernels.nearest_paths(ours[begin : begin + PATHS_PER_UPDATE], theirs, METRIC_CODES[metric]))
     return np.concatenate([index for index, _ in found]), np.concatenate([apart for _, apart in found])
 
 
@@ -64,10 +64,11 @@ def _compiled(paths: Array, kind: int, progress: Progress) -> Distances:
 
     m = len(paths)
     single = _single(paths, paths.mean(axis=(0, 1)))
+    blocks = kernels.blocks_of(single)
     out = np.empty(m * (m - 1) // 2, dtype=np.float32)
-    for begin in range(0, m, ROWS_PER_UPDATE):
+    for begin in range(0, m, kernels.PATHS_PER_BLOCK):
         progress(1 - ((m - begin) / m) ** 2, PROGRESS_MESSAGE)
-        kernels.fill_rows(single, out, begin, kind)
+        kernels.fill_rows(single, blocks, out, begin, kind)
     return out
 
 

@@ -1,6 +1,9 @@
 """The door to numba: distances between thousands of paths, compiled, in single precision, on every core.
 
-Every pair is worked out by one thread in one order, so the number of threads does not change a bit.
+One thread computes each distance in an order that the source fixes. No kernel allows the compiler to reorder sums or
+to fuse products with sums (fastmath), because the compiler then chooses differently in different runs: a kernel from
+numba's cache is optimised once more than one that was compiled in the same process. So neither the number of threads
+nor the cache changes a bit.
 """
 
 from __future__ import annotations
@@ -18,6 +21,7 @@ F = TypeVar("F", bound=Callable[..., Any])
 
 Labels = NDArray[np.int64]
 Paths = NDArray[np.float32]  # (m, 3, n): one row a coordinate, so that the inner loops run along memory
+Blocks = NDArray[np.float32]  # (blocks, n, 3, 64): 64 paths beside one another, so that one instruction takes several
 
 PATHS_PER_BLOCK = 64  # paths compared with as many: both sets stay in the cache
 
@@ -34,14 +38,19 @@ def compiled(**options: Any) -> Callable[[F], F]:
     return compile_later
 
 
-@compiled(fastmath=True)
-def _mean_distance(a: Paths, b: Paths) -> np.float32:
-    # A total that started as a Python float would lift the whole loop to double precision.
-    total = np.float32(0)
-    for k in range(a.shape[1]):
-        x, y, z = a[0, k] - b[0, k], a[1, k] - b[1, k], a[2, k] - b[2, k]
-        total += np.sqrt(x * x + y * y + z * z)
-    return total / np.float32(a.shape[1])
+@compiled()
+def _mean_distances(path: Paths, block: Blocks, means: Paths) -> None:
+    n = path.shape[1]
+    for j in range(PATHS_PER_BLOCK):
+        means[j] = np.float32(0)
+    for k in range(n):
+        x, y, z = path[0, k], path[1, k], path[2, k]
+        xs, ys, zs = block[k, 0], block[k, 1], block[k, 2]
+        for j in range(PATHS_PER_BLOCK):
+            dx, dy, dz = xs[j] - x, ys[j] - y, zs[j] - z
+            means[j] += np.sqrt(dx * dx + dy * dy + dz * dz)
+    for j in range(PATHS_PER_BLOCK):
+        means[j] /= np.float32(n)
 
 
 @compiled()
@@ -70,29 +79,30 @@ def _warped_distance(a: Paths, b: Paths, widest: bool) -> np.float32:
 
 
 @compiled(parallel=True)
-def _fill(paths: Paths, out: NDArray[np.float32], begin: int, kind: int) -> None:
+def _fill(paths: Paths, blocks: Blocks, out: NDArray[np.float32], begin: int, kind: int) -> None:
     m = len(paths)
     end = min(begin + PATHS_PER_BLOCK, m)
-    for block in numba.prange((m - begin + PATHS_PER_BLOCK - 1) // PATHS_PER_BLOCK):
+    strip = begin // PATHS_PER_BLOCK
+    for block in numba.prange(len(blocks) - strip):
         first = begin + block * PATHS_PER_BLOCK
+        means = np.empty(PATHS_PER_BLOCK, dtype=np.float32)
         for i in range(begin, end):
             row = i * (2 * m - i - 1) // 2 - i - 1
+            if kind == 0:
+                _mean_distances(paths[i], blocks[strip + block], means)
             for j in range(max(first, i + 1), min(first + PATHS_PER_BLOCK, m)):
-                if kind == 0:
-                    out[row + j] = _mean_distance(paths[i], paths[j])
-                else:
-                    out[row + j] = _warped_distance(paths[i], paths[j], kind == 1)
+                out[row + j] = means[j - first] if kind == 0 else _warped_distance(paths[i], paths[j], kind == 1)
 
 
 @compiled(parallel=True)
-def _assign(paths: Paths, chosen: Paths, nearest: NDArray[np.int64], apart: Array, kind: int) -> None:
+def _assign(paths: Paths, chosen: Paths, blocks: Blocks, nearest: Labels, apart: Array, kind: int) -> None:
     for i in numba.prange(len(paths)):
         apart[i] = np.inf
+        means = np.empty(PATHS_PER_BLOCK, dtype=np.float32)
         for j in range(len(chosen)):
-            if kind == 0:
-                here = _mean_distance(paths[i], chosen[j])
-            else:
-                here = _warped_distance(paths[i], chosen[j], kind == 1)
+            if kind == 0 and j % PATHS_PER_BLOCK == 0:
+                _mean_distances(paths[i], blocks[j // PATHS_PER_BLOCK], means)
+            here = means[j % PATHS_PER_BLOCK] if kind == 0 else _warped_distance(paths[i], chosen[j], kind == 1)
             if here < apart[i]:
                 apart[i] = here
                 nearest[i] = j
@@ -153,22 +163,31 @@ def merge(apart: NDArray[np.float32], sizes: Labels, chain: Labels, state: Label
     _merge(apart, sizes, chain, state, merges, budget)
 
 
-def fill_rows(paths: Paths, out: NDArray[np.float32], begin: int, kind: int) -> None:
-    """Write the distances of paths `begin` to `begin` + 64 from all later ones into `out`, condensed in scipy's order.
+def blocks_of(paths: Paths) -> Blocks:
+    """Return paths (m, 3, n) in blocks of 64, the last block filled up with zeros: (blocks, n, 3, 64)."""
+    m, _, n = paths.shape
+    padded = np.zeros((-(-m // PATHS_PER_BLOCK) * PATHS_PER_BLOCK, 3, n), dtype=np.float32)
+    padded[:m] = paths
+    return np.ascontiguousarray(padded.reshape(-1, PATHS_PER_BLOCK, 3, n).transpose(0, 3, 2, 1))
+
+
+def fill_rows(paths: Paths, blocks: Blocks, out: NDArray[np.float32], begin: int, kind: int) -> None:
+    """Write the distances of paths `begin` to `begin` + 63 from all later ones into `out`, condensed in scipy's order.
 
     Args:
         paths: (m, 3, n) [m].
+        blocks: the same paths, see `blocks_of`.
         out: (m (m - 1) / 2,) [m].
-        begin: first row of the strip.
+        begin: first row of the strip, a multiple of 64.
         kind: 0 = mean distance of corresponding points (Aleotti & Caselli, eq. (1)), 1 = discrete Fréchet distance,
             2 = dynamic time warping, mean cost along the best matching.
     """
-    _fill(paths, out, begin, kind)
+    _fill(paths, blocks, out, begin, kind)
 
 
 def nearest_paths(paths: Paths, chosen: Paths, kind: int) -> tuple[NDArray[np.int64], Array]:
     """Return for every path the number of the nearest chosen one and its distance [m]; kinds as in `fill_rows`."""
     nearest = np.zeros(len(paths), dtype=np.int64)
     apart = np.empty(len(paths))
-    _assign(paths, chosen, nearest, apart, kind)
+    _assign(paths, chosen, blocks_of(chosen), nearest, apart, kind)
     return nearest, apart

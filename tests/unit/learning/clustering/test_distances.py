@@ -11,7 +11,7 @@ from scipy.spatial.distance import cdist, squareform
 
 from teachpath.errors import Cancelled
 from teachpath.learning.clustering import kernels
-from teachpath.learning.clustering.distances import ROWS_PER_UPDATE, frechet_distance, nearest_paths, pairwise_distances
+from teachpath.learning.clustering.distances import frechet_distance, nearest_paths, pairwise_distances
 from teachpath.records import Array
 
 KINDS = {"arc": 0, "frechet": 1, "dtw": 2}
@@ -81,9 +81,10 @@ def test_the_frechet_distance_of_two_paths_is_that_of_the_matrix() -> None:
 
 def compiled(paths: Array, kind: int) -> Array:
     single = np.ascontiguousarray(paths.transpose(0, 2, 1), dtype=np.float32)
-    out = np.empty(len(paths) * (len(paths) - 1) // 2)
-    for begin in range(0, len(paths), ROWS_PER_UPDATE):
-        kernels.fill_rows(single, out, begin, kind)
+    blocks = kernels.blocks_of(single)
+    out = np.empty(len(paths) * (len(paths) - 1) // 2, dtype=np.float32)
+    for begin in range(0, len(paths), kernels.PATHS_PER_BLOCK):
+        kernels.fill_rows(single, blocks, out, begin, kind)
     return out
 
 
