@@ -22,7 +22,7 @@ class Event:
     Attributes:
         sequence: counts up by one for each change.
         topic: a resource of the REST API (tasks, demonstrations, runs, paths, plans, jobs, executions), or station,
-            executor, trackers, recordings, coach; `all`: anything may have changed.
+            executor, trackers, recordings, guidance; `all`: anything may have changed.
         id: of the resource; empty: of the whole topic.
         now: how it stands, where the event says so.
         reason: of an event of topic `all`.

@@ -109,7 +109,7 @@ def calibrate_glove(settings: GloveSettings, prompt: Callable[[str], object]) ->
     for sentence in ("Open the hand, fingers straight", "Make a fist"):
         prompt(sentence)
         with connect(settings, GloveProtocol(settings, 0)) as connection:
-            taken = [connection.take(SAMPLE_TIMEOUT) for _ in range(CALIBRATION_SAMPLES)]
+            taken = [connection.next_record(SAMPLE_TIMEOUT) for _ in range(CALIBRATION_SAMPLES)]
         measured.append([sample for sample in map(_raw, taken) if sample is not None])
     return GloveCalibration.between(*measured)
 

@@ -376,7 +376,7 @@ class Health:
     backlog: int
     longest_backlog: int
     trackers: list[Tracker]
-    coach: Advice
+    guidance: Advice
     executor: ExecutorStatus | None
     notes: list[str]
 

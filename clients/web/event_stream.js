@@ -9,7 +9,7 @@ const ASK = 3000; // [ms] how often to ask while there is no WebSocket
 
 // What is read anew when a resource of a topic has changed.
 const READ = { tasks: ["tasks"], demonstrations: ["demonstrations"], runs: ["runs"], paths: ["runs"], plans: ["jobs"], jobs: ["jobs"], executions: ["executions"] };
-const STANDING = ["station", "executor", "trackers", "recordings", "coach"];
+const STANDING = ["station", "executor", "trackers", "recordings", "guidance"];
 const OF_TASK = ["demonstrations", "runs", "jobs"];
 
 export class Feed {
@@ -136,7 +136,7 @@ export class Feed {
       executor: () => things[""] ?? null,
       trackers: () => Object.entries(things).map(([name, tracker]) => ({ name, ...tracker })).sort((a, b) => a.name.localeCompare(b.name)),
       recordings: () => Object.values(things),
-      coach: () => Object.fromEntries(Object.entries(things).map(([task, { sentence }]) => [task, sentence])),
+      guidance: () => Object.fromEntries(Object.entries(things).map(([task, { sentence }]) => [task, sentence])),
     }[topic];
     if (now) this.store.set({ [topic]: now() });
   }

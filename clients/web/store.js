@@ -4,7 +4,7 @@
 // task         name of the chosen task, "" = none             demonstrations [demonstration] of the task
 // runs         [run] of the task, newest first                jobs           [job] of the task, oldest first
 // executions   [execution], newest first                      recordings     [report] of running recordings
-// trackers     [{name, announced}]                            coach          {task: sentence}
+// trackers     [{name, announced}]                            guidance       {task: sentence}
 // station      {version, notes} or null                       executor       status or null when it is silent
 // run          id of the run that is looked at, "" = the newest
 // plan         certified plan of the path that is looked at, or null
@@ -23,7 +23,7 @@ export const EMPTY = Object.freeze({
   executions: null,
   recordings: [],
   trackers: [],
-  coach: {},
+  guidance: {},
   station: null,
   executor: null,
   run: "",

@@ -175,7 +175,7 @@ class Station:
             backlog=self.recorder.backlog,
             longest_backlog=self.settings.recording.longest_backlog,
             trackers=tuple(self.recorder.trackers()),
-            coach=Advice(self._shown, self.guidance.advice(self._shown)),
+            guidance=Advice(self._shown, self.guidance.advice(self._shown)),
             executor=self.executions.status,
             notes=tuple(self.notes()),
         )
@@ -198,7 +198,7 @@ class Station:
             "trackers": lambda: {
                 t.name: {"announced": t.announced, "silent": t.is_silent} for t in self.recorder.trackers()
             },
-            "coach": lambda: {task: {"sentence": said} for task, said in self.guidance.all_advice().items()},
+            "guidance": lambda: {task: {"sentence": said} for task, said in self.guidance.all_advice().items()},
             "station": lambda: {"": {"version": __version__, "notes": self.notes()}},
             "executor": lambda: {"": asdict(status)} if (status := self.executions.status) else {},
         }

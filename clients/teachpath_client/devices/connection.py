@@ -85,7 +85,7 @@ class Connection(Generic[Record]):
         self._over.set()
         self._thread.join(JOIN_TIMEOUT)
 
-    def take(self, timeout: float) -> tuple[float, Record] | None:
+    def next_record(self, timeout: float) -> tuple[float, Record] | None:
         """Return the next record and its date [s] on `clock`; None after `timeout` [s]."""
         try:
             return self._records.get(timeout=timeout) if timeout > 0 else self._records.get_nowait()

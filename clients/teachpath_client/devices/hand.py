@@ -75,12 +75,12 @@ class HandSource:
         self._glove.touch(holding)
 
     def __iter__(self) -> Iterator[HandReading]:
-        pairing, start = Pairing(lambda: self._glove.take(0.0), self._oldest), None
+        pairing, start = Pairing(lambda: self._glove.next_reading(0.0), self._oldest), None
         while not self._over:
-            taken = self._fastrak.take(READ_TIMEOUT)
+            taken = self._fastrak.next_reading(READ_TIMEOUT)
             # While no pose comes, flexions that are too old for the next one are thrown away.
             date = taken[0] if taken else self._clock() - self._oldest
-            flexions = pairing.before(date)
+            flexions = pairing.flexions_at(date)
             if taken is None or flexions is None:
                 continue
             start = date if start is None else start
@@ -100,7 +100,7 @@ class Pairing:
         self._newest: tuple[float, HandReading] | None = None  # the last one before the pose
         self._following: tuple[float, HandReading] | None = None  # the first one after it
 
-    def before(self, date: float) -> tuple[float, ...] | None:
+    def flexions_at(self, date: float) -> tuple[float, ...] | None:
         """Return the flexions for a pose of `date` [s]; None when they are missing or too old. Dates must not fall."""
         self._following = self._following or self._take()
         while self._following is not None and self._following[0] <= date:

@@ -74,14 +74,14 @@ class LiveDevice(ABC, Generic[Record]):
     def __iter__(self) -> Iterator[HandReading]:
         start: float | None = None
         while not self._over:
-            if (taken := self.take(READ_TIMEOUT)) is not None:
+            if (taken := self.next_reading(READ_TIMEOUT)) is not None:
                 date, reading = taken
                 start = date if start is None else start
                 yield replace(reading, time=date - start)
 
-    def take(self, timeout: float) -> tuple[float, HandReading] | None:
+    def next_reading(self, timeout: float) -> tuple[float, HandReading] | None:
         """Return the next reading, its time not yet set, and its date [s] on the clock; None after `timeout` [s]."""
-        taken = self.connection.take(timeout)
+        taken = self.connection.next_record(timeout)
         reading = None if taken is None else self._reading(taken[1])
         return None if taken is None or reading is None else (taken[0], reading)
 

@@ -19,7 +19,7 @@ export function takes(place, { store, gallery, attempt }) {
   });
   return {
     update(state, changed) {
-      if (["demonstrations", "coach", "task", "tasks", "runs", "run", "courses"].some((name) => changed.has(name))) {
+      if (["demonstrations", "guidance", "task", "tasks", "runs", "run", "courses"].some((name) => changed.has(name))) {
         const list = place.querySelector(".takes");
         const scrolled = list?.scrollTop ?? 0;
         replace(place, content(state, gallery));
@@ -31,7 +31,7 @@ export function takes(place, { store, gallery, attempt }) {
 }
 
 function content(state, gallery) {
-  const { task, tasks, demonstrations, coach } = state;
+  const { task, tasks, demonstrations, guidance } = state;
   if (demonstrations === null && tasks === null) return hint("The demonstrations cannot be read yet: the service does not answer.");
   if (!demonstrations?.length) {
     return [hint("No demonstrations yet. Show the task with a tracker, or let a synthetic hand do it:"), command(`teachpath-client synthetic --task ${task || "demo"} --scene paper`)];
@@ -45,7 +45,7 @@ function content(state, gallery) {
   const small = (d) => courses.has(d.id) && thumbnail(courses.get(d.id), flat, ways.has(d.id) ? wayClass(ways.get(d.id)) : "");
   return [
     element("p", { class: "count" }, element("strong", {}, String(kept.length)), ` ${plural(kept.length, "demonstration")}`),
-    coach[task] && element("p", { class: "coach" }, `${sentence(coach[task])}.`),
+    guidance[task] && element("p", { class: "guidance" }, `${sentence(guidance[task])}.`),
     facts([
       ["Clean", String(count("clean"))],
       ["Repaired", count("repaired") && String(count("repaired"))],

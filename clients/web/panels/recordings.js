@@ -1,4 +1,4 @@
-// The recordings that run and the trackers that are there; what the coach thinks; what the station has to say.
+// The recordings that run and the trackers that are there; the guidance; what the station has to say.
 import { at, post } from "../api.js";
 import { element, hint, number, plural, replace, sentence } from "../elements.js";
 
@@ -12,7 +12,7 @@ export function recordings(place, { store, attempt }) {
   });
   return {
     update(state, changed) {
-      if (!["recordings", "trackers", "station", "coach", "task", "connection"].some((name) => changed.has(name))) return;
+      if (!["recordings", "trackers", "station", "guidance", "task", "connection"].some((name) => changed.has(name))) return;
       if (state.connection === "lost") {
         replace(place, hint("Not known: the service does not answer. What was recorded until then is kept."));
         return;

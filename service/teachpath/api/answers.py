@@ -20,7 +20,7 @@ from teachpath.io.documents import encode
 FIELD = re.compile(r"^ {4}(\w+): (.+(?:\n {8}.+)*)", re.MULTILINE)  # of the section Attributes of a docstring
 
 
-def sent(record: object, *, status: int = 200, headers: dict[str, str] | None = None) -> Response:
+def json_response(record: object, *, status: int = 200, headers: dict[str, str] | None = None) -> Response:
     """Return a record, or a list of them, as an answer; its route has `response_model=model_of(...)`.
 
     Nothing is validated again: large arrays go out as they are.

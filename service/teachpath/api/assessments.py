@@ -5,14 +5,14 @@ from __future__ import annotations
 from fastapi import APIRouter, Response
 from pydantic import Field
 
-from teachpath.api.answers import model_of, sent
-from teachpath.api.closed import Body
+from teachpath.api.answers import json_response, model_of
 from teachpath.api.curves import CurveBody
 from teachpath.api.parts import Parts
+from teachpath.api.strict_requests import Body
 from teachpath.records import Assessment
 
 
-class Edited(Body):
+class CurveToAssess(Body):
     """A curve that is being edited."""
 
     curve: CurveBody | None = Field(None, description="left out: that of the version")
@@ -25,15 +25,15 @@ def assessments_router(parts: Parts) -> APIRouter:
     store = parts.store
 
     @router.post("/paths/{path}/assessment", response_model=model_of(Assessment))
-    def assess_path(path: str, edited: Edited) -> Response:
+    def assess_path(path: str, wanted: CurveToAssess) -> Response:
         """Look quickly at a curve: reach, joint limits and clearance along it, what fails first and what to move.
 
         Nothing is stored and nothing certified: that is for a plan. When a newer curve of the same path comes while
         one still waits, the older one is refused with 409.
         """
-        stored = store.path(path) if edited.version is None else store.versions.get(path, edited.version)[1]
+        stored = store.path(path) if wanted.version is None else store.versions.get(path, wanted.version)[1]
         scene = parts.settings.scene(store.task(store.run(stored.run).task).scene)
-        curve = edited.curve.curve() if edited.curve else stored.curve
-        return sent(parts.assessor.assess(stored, scene, parts.settings.motion, curve=curve))
+        curve = wanted.curve.curve() if wanted.curve else stored.curve
+        return json_response(parts.assessor.assess(stored, scene, parts.settings.motion, curve=curve))
 
     return router

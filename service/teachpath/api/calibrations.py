@@ -7,33 +7,33 @@ from typing import Annotated
 from fastapi import APIRouter
 from pydantic import Field
 
-from teachpath.api.closed import Body
 from teachpath.api.parts import Parts
+from teachpath.api.strict_requests import Body
 from teachpath.errors import NotFound
 from teachpath.records import Demonstration, MeasuredCalibration, TaughtPoint
 
-MOST_POINTS = 1000
+MAX_POINTS = 1000
 Coordinate = Annotated[float, Field(allow_inf_nan=False)]
 Place = tuple[Coordinate, Coordinate, Coordinate]
 
 
-class Taught(Body):
+class PointPair(Body):
     """One place that was shown to the tracker."""
 
     tracker: Place = Field(description="where the tracker saw it [m]")
     world: Place = Field(description="where it is [m, world]")
 
 
-class Measured(Body):
+class NewCalibration(Body):
     """What a calibration is measured with."""
 
-    points: list[Taught] = Field(max_length=MOST_POINTS, description="three or more, not on one line")
+    points: list[PointPair] = Field(max_length=MAX_POINTS, description="three or more, not on one line")
     source: str = Field("", max_length=200, description="tracker that was shown the points")
     fit_scale: bool = Field(False, description="find the scale too; else it is 1, as for trackers in metres")
     keep: bool = Field(True, description="false: only say what the calibration and its residuals would be")
 
 
-class Converted(Body):
+class CalibrationChoice(Body):
     """Under which calibration demonstrations are put."""
 
     calibration: str = Field(
@@ -58,27 +58,27 @@ def calibrations_router(parts: Parts) -> APIRouter:
         return found or [MeasuredCalibration(calibrations.get(name))]
 
     @router.put("/calibrations/{name}")
-    def measure_calibration(name: str, measured: Measured) -> MeasuredCalibration:
+    def measure_calibration(name: str, new: NewCalibration) -> MeasuredCalibration:
         """Fit a calibration to taught points and keep it as the next version of its name.
 
         Demonstrations recorded before keep the version that they were recorded under.
         """
         return calibrations.measure(
             name,
-            [TaughtPoint(point.tracker, point.world) for point in measured.points],
-            source=measured.source,
-            fit_scale=measured.fit_scale,
-            keep=measured.keep,
+            [TaughtPoint(point.tracker, point.world) for point in new.points],
+            source=new.source,
+            fit_scale=new.fit_scale,
+            keep=new.keep,
         )
 
     @router.post("/tasks/{task}/calibration")
-    def convert_demonstrations(task: str, converted: Converted) -> list[Demonstration]:
+    def convert_demonstrations(task: str, choice: CalibrationChoice) -> list[Demonstration]:
         """Put all demonstrations of a task under a calibration as it is today and judge them again; can be undone."""
         stored = store.demonstrations(store.task(task).name)
         if not stored:
             raise NotFound(f"task {task} has no demonstrations yet")
-        on_change = calibrations.convert(stored, converted.calibration)
-        parts.recorder.annotations.on_change(on_change[-1])
-        return on_change
+        changed = calibrations.convert(stored, choice.calibration)
+        parts.recorder.annotations.on_change(changed[-1])
+        return changed
 
     return router

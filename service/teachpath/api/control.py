@@ -7,14 +7,14 @@ from typing import Annotated, Literal
 from fastapi import APIRouter, Query
 from pydantic import Field
 
-from teachpath.api.closed import Body
 from teachpath.api.executions import Token, Who
 from teachpath.api.parts import Parts
+from teachpath.api.strict_requests import Body
 from teachpath.records import JournalEntry, Lease, LeaseRequest
 from teachpath_proto.control import LeaseAction
 
 
-class Claim(Body):
+class LeaseClaim(Body):
     """A claim to control."""
 
     name: str = Field(min_length=1, max_length=64, description="shown to everybody")
@@ -22,7 +22,7 @@ class Claim(Body):
     hold_when_lost: bool = Field(False, description="hold a moving arm on its path when the beats stop")
 
 
-class Reason(Body):
+class Revocation(Body):
     """Why something is taken back."""
 
     reason: str = Field(min_length=1, max_length=500)
@@ -39,12 +39,12 @@ def control_router(parts: Parts) -> APIRouter:
         return executions.request_lease(LeaseRequest(LeaseAction.LOOK))
 
     @router.post("/lease", status_code=201)
-    def acquire_lease(claim: Claim) -> Lease:
+    def acquire_lease(claim: LeaseClaim) -> Lease:
         """Take control, when nobody has it; send `token` as header Teachpath-Lease from now on, and beats in time."""
         return executions.request_lease(_request(LeaseAction.ACQUIRE, claim))
 
     @router.post("/lease/ask")
-    def ask_for_lease(claim: Claim) -> Lease:
+    def ask_for_lease(claim: LeaseClaim) -> Lease:
         """Ask the holder for control; everybody sees who asks.
 
         Send beats with `token`: the answer says who holds control. A holder who says nothing loses it after
@@ -63,12 +63,12 @@ def control_router(parts: Parts) -> APIRouter:
         return store.journal.entries(execution=execution, limit=limit)
 
     @router.post("/plans/{plan}/revoke", status_code=204)
-    def revoke_plan(plan: str, why: Reason, who: Who = "") -> None:
+    def revoke_plan(plan: str, revocation: Revocation, who: Who = "") -> None:
         """Take back a plan's certificate: it never starts again, and an arm that follows it is held for good."""
-        executions.revoke(plan, reason=why.reason, who=who)
+        executions.revoke(plan, reason=revocation.reason, who=who)
 
     return router
 
 
-def _request(action: LeaseAction, claim: Claim) -> LeaseRequest:
+def _request(action: LeaseAction, claim: LeaseClaim) -> LeaseRequest:
     return LeaseRequest(action, claim.name, seconds=claim.seconds, hold_when_lost=claim.hold_when_lost)

@@ -7,15 +7,15 @@ from typing import Annotated, Any, Literal
 from fastapi import APIRouter, Response
 from pydantic import Field
 
-from teachpath.api.answers import model_of, sent
-from teachpath.api.closed import Body
+from teachpath.api.answers import json_response, model_of
 from teachpath.api.parts import Parts
+from teachpath.api.strict_requests import Body
 from teachpath.editing import MAX_CONTROL_POINTS, EditResult, check_editable, elevate_degree, insert_knot, remove_knot
 from teachpath.errors import UnusableInput
 from teachpath.exchange import SAME_SHAPE_TOLERANCE
 from teachpath.nurbs import Curve
 
-MOST_PARAMETERS = 2001
+MAX_PARAMETERS = 2001
 Point = tuple[float, float, float]
 
 
@@ -35,14 +35,14 @@ class CurveBody(Body):
         return check_editable(Curve(self.degree, self.knots, points, self.weights))  # type: ignore[arg-type]
 
 
-class Evaluation(Body):
+class CurveEvaluation(Body):
     """Where to evaluate a curve."""
 
     curve: CurveBody
-    u: list[Annotated[float, Field(ge=0.0, le=1.0)]] = Field(max_length=MOST_PARAMETERS, description="parameters")
+    u: list[Annotated[float, Field(ge=0.0, le=1.0)]] = Field(max_length=MAX_PARAMETERS, description="parameters")
 
 
-class Operation(Body):
+class CurveOperation(Body):
     """A curve to operate on."""
 
     curve: CurveBody
@@ -55,20 +55,20 @@ def curves_router(parts: Parts) -> APIRouter:
     router = APIRouter(tags=["curves"])
 
     @router.post("/curves/evaluate")
-    def evaluate_curve(evaluation: Evaluation) -> list[list[float]]:
+    def evaluate_curve(evaluation: CurveEvaluation) -> list[list[float]]:
         """Return the points of a curve [m] at parameters u."""
         points: list[list[float]] = evaluation.curve.curve()(evaluation.u).tolist() if evaluation.u else []  # type: ignore[arg-type]
         return points
 
     @router.post("/curves/{operation}", response_model=model_of(EditResult))
-    def operate(operation: Literal["insert-knot", "remove-knot", "elevate"], wanted: Operation) -> Response:
+    def operate(operation: Literal["insert-knot", "remove-knot", "elevate"], wanted: CurveOperation) -> Response:
         """Insert or remove a knot, or raise the degree, and leave the shape; `deviation` is how far it moved [m]."""
-        return sent(_operated(operation, wanted))
+        return json_response(_operated(operation, wanted))
 
     return router
 
 
-def _operated(operation: str, wanted: Operation) -> EditResult:
+def _operated(operation: str, wanted: CurveOperation) -> EditResult:
     curve = wanted.curve.curve()
     if operation == "elevate":
         return elevate_degree(curve)

@@ -8,13 +8,13 @@ from fastapi import APIRouter, Query, Response
 from fastapi.responses import FileResponse
 from pydantic import Field
 
-from teachpath.api.answers import model_of, sent
-from teachpath.api.closed import Body
+from teachpath.api.answers import json_response, model_of
 from teachpath.api.parts import Parts
+from teachpath.api.strict_requests import Body
 from teachpath.records import Amendment, Demonstration, Trajectory
 
 
-class Amended(Body):
+class DemonstrationChanges(Body):
     """What an operator says of a demonstration; what is left out stays as it is."""
 
     mark: Literal["", "good", "bad"] | None = Field(None, description="good, bad, or empty for none")
@@ -35,10 +35,10 @@ def demonstrations_router(parts: Parts) -> APIRouter:
         return store.demonstration(demonstration)
 
     @router.patch("/demonstrations/{demonstration}")
-    def amend_demonstration(demonstration: str, amended: Amended) -> Demonstration:
+    def amend_demonstration(demonstration: str, changes: DemonstrationChanges) -> Demonstration:
         """Mark, discard, restore or trim a demonstration; its recording and the recorder's own cut stay."""
         return parts.recorder.annotations.amend(
-            demonstration, Amendment(mark=amended.mark, discarded=amended.discarded, trim=amended.trim)
+            demonstration, Amendment(mark=changes.mark, discarded=changes.discarded, trim=changes.trim)
         )
 
     @router.get("/demonstrations/{demonstration}/trajectory", response_model=model_of(Trajectory))
@@ -47,7 +47,7 @@ def demonstrations_router(parts: Parts) -> APIRouter:
         most: Annotated[int, Query(ge=2, le=100_000, description="points; further ones are left out evenly")] = 100_000,
     ) -> Response:
         """Return the object's trajectory in its transport phase: times [s], positions [m], orientations, world."""
-        return sent(parts.trajectory(store.demonstration(demonstration)).thinned(most))
+        return json_response(parts.trajectory(store.demonstration(demonstration)).thinned(most))
 
     @router.get("/demonstrations/{demonstration}/recording", response_class=FileResponse)
     def get_recording(demonstration: str) -> FileResponse:

@@ -4,7 +4,7 @@ Each message is one JSON document: `{"sequence", "topic", "id"}` says that a res
 with `now` it carries a state (null: the thing has gone). The topic `all` means: read everything anew. It comes first,
 and again when a subscriber has fallen behind. Topics are the names of the resources (tasks, demonstrations, runs,
 paths, plans, jobs, executions), and, with `now`, `station`, `executor` (also who has control), `trackers`,
-`recordings` and `coach`.
+`recordings` and `guidance`.
 """
 
 from __future__ import annotations

@@ -8,10 +8,10 @@ from fastapi import APIRouter, Header, Query, Response
 from fastapi.responses import FileResponse
 from pydantic import Field
 
-from teachpath.api.answers import model_of, sent
-from teachpath.api.closed import Body
+from teachpath.api.answers import json_response, model_of
 from teachpath.api.names import TrackerName, TrackerNameOrEmpty
 from teachpath.api.parts import Parts
+from teachpath.api.strict_requests import Body
 from teachpath.errors import UnusableInput
 from teachpath.io.store.store import Execution
 from teachpath.motion.analysis.time_series import TimeSeries
@@ -49,7 +49,7 @@ class NewTeleoperation(Body):
     )
 
 
-class Speed(Body):
+class Override(Body):
     """A speed override."""
 
     override: float = Field(ge=0.0, le=1.0, description="share of the planned speed")
@@ -129,15 +129,15 @@ def _add_looks(router: APIRouter, parts: Parts) -> None:
 
         Joints, velocities, torques, tool and object, tracking error, and the lateness of setpoints; no peak is lost.
         """
-        return sent(executions.series(execution, points))
+        return json_response(executions.series(execution, points))
 
 
 def _add_steering(router: APIRouter, executions: Executions) -> None:
     @router.post("/executions/{execution}/override")
-    def set_override(execution: str, speed: Speed, lease: Token = "", who: Who = "") -> Execution:
+    def set_override(execution: str, wanted: Override, lease: Token = "", who: Who = "") -> Execution:
         """Change the speed while the arm moves; 0 is a hold on the path."""
         return executions.command(
-            execution, Command(CommandVerb.OVERRIDE, execution, override=speed.override, lease=lease, who=who)
+            execution, Command(CommandVerb.OVERRIDE, execution, override=wanted.override, lease=lease, who=who)
         )
 
     @router.post("/executions/{execution}/step")

@@ -11,7 +11,7 @@ from fastapi.responses import JSONResponse
 from pydantic import BaseModel, Field
 from starlette.exceptions import HTTPException
 
-from teachpath.api.closed import EXTRA, unknown_field
+from teachpath.api.strict_requests import EXTRA_FIELD, unknown_field
 from teachpath.errors import (
     Conflict,
     LearningFailed,
@@ -23,7 +23,7 @@ from teachpath.errors import (
 )
 from teachpath.records import Failure, Version
 
-MOST_FAULTS: Final = 20  # fields that a refusal lists
+MAX_FAULTS: Final = 20  # fields that a refusal lists
 
 STATUS: dict[type[TeachpathError], int] = {
     NotFound: 404,
@@ -81,7 +81,7 @@ def answer_errors(app: FastAPI) -> None:
     @app.exception_handler(RequestValidationError)
     async def name_fields(request: Request, error: RequestValidationError) -> JSONResponse:
         errors = error.errors()
-        faults = [_fault(request, e) for e in errors[:MOST_FAULTS]]
+        faults = [_fault(request, e) for e in errors[:MAX_FAULTS]]
         sentence = f"{faults[0].place}: {faults[0].fault}" + (f", and {len(errors) - 1} more" if errors[1:] else "")
         return _answer(422, sentence, "UnusableInput", faults)
 
@@ -116,7 +116,7 @@ def _fault(request: Request, error: dict[str, Any]) -> Fault:
     place = ".".join(str(piece) for piece in error["loc"])
     if error["type"] == "json_invalid":
         return Fault(place="body", fault=f"this is no JSON: {error['ctx']['error']} at character {error['loc'][-1]}")
-    if error["type"] == EXTRA:
+    if error["type"] == EXTRA_FIELD:
         return Fault(place=_printable(place), fault=_printable(unknown_field(request, error["loc"])))
     return Fault(place=_printable(place), fault=_printable(error["msg"]).replace("Input should", "it should"))
 

@@ -15,8 +15,8 @@ from teachpath.api.parts import Parts
 from teachpath.records import ExecutorStatus
 from teachpath.robot.joint_feed import JointFrame
 
-RATE: Final = 25.0  # [Hz] joint frames to a page, at most
-PULSE: Final = 1.0  # [s] between two frames of an arm at rest
+FRAME_RATE: Final = 25.0  # [Hz] joint frames to a page, at most
+MAX_SILENCE: Final = 1.0  # [s] between two frames of an arm at rest
 
 
 def joints_router(parts: Parts) -> APIRouter:
@@ -47,16 +47,16 @@ async def _listen(socket: WebSocket) -> None:
 async def _send(socket: WebSocket, parts: Parts) -> None:
     """Send the newest joint state, and the executor's status with it, when something has changed."""
     onlooker = parts.joints.subscribe()
-    before, told = dict[str, Any](), -PULSE
+    before, told = dict[str, Any](), -MAX_SILENCE
     try:
         while True:
             frame, now = onlooker.poll(), time.monotonic()
             if frame is not None:
                 document = _document(frame, parts.executions.status)
-                if document != before or now - told >= PULSE:
+                if document != before or now - told >= MAX_SILENCE:
                     await socket.send_text(json.dumps({"stamp_ns": frame.state.stamp_ns, **document}))
                     before, told = document, now
-            await asyncio.sleep(1.0 / RATE)
+            await asyncio.sleep(1.0 / FRAME_RATE)
     except (WebSocketDisconnect, RuntimeError):
         return
     finally:

@@ -48,7 +48,7 @@ class Health:
     backlog: int
     longest_backlog: int
     trackers: tuple[Tracker, ...]
-    coach: Advice
+    guidance: Advice
     executor: ExecutorStatus | None
     notes: tuple[str, ...]
 

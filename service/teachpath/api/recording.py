@@ -7,15 +7,15 @@ from dataclasses import dataclass
 from fastapi import APIRouter
 from pydantic import Field
 
-from teachpath.api.closed import Body
 from teachpath.api.parts import Parts
+from teachpath.api.strict_requests import Body
 from teachpath.errors import UnusableInput
 from teachpath.io.documents import from_document
 from teachpath.io.wire import recording_document
 from teachpath.records import Demonstration, RecordingRequest, RecordingStatus, Routine, StopRequest
 
 
-class Recording(Body):
+class NewRecording(Body):
     """A recording to start."""
 
     tracker: str = Field(description="name of the tracker that shows the task")
@@ -27,14 +27,14 @@ class Recording(Body):
     one_by_one: bool = Field(False, description="pause after each demonstration")
 
 
-class Ended(Body):
+class RecordingEnd(Body):
     """A recording to stop."""
 
     tracker: str = Field(description="name of the tracker that is recording the task")
     discard: bool = Field(False, description="throw away the demonstration that is still open")
 
 
-class Named(Body):
+class TrackerChoice(Body):
     """A tracker whose recording is meant."""
 
     tracker: str = Field(description="name of the tracker that is recording the task")
@@ -104,7 +104,7 @@ def recording_router(parts: Parts) -> APIRouter:
         return [_report(s) for s in recorder.statuses(with_statistics=True) if s.task == name]
 
     @router.post("/tasks/{task}/recording", status_code=201)
-    def start_recording(task: str, recording: Recording) -> RecordingReport:
+    def start_recording(task: str, recording: NewRecording) -> RecordingReport:
         """Start recording from a tracker; demonstrations are cut by themselves as the hand grasps and releases."""
         return _report(
             recorder.begin(
@@ -119,19 +119,19 @@ def recording_router(parts: Parts) -> APIRouter:
         )
 
     @router.post("/tasks/{task}/recording/stop")
-    def stop_recording(task: str, ended: Ended) -> RecordingReport:
+    def stop_recording(task: str, end: RecordingEnd) -> RecordingReport:
         """Stop recording and return the account of every sample."""
-        return _report(recorder.end(StopRequest(of_task(task, ended.tracker), discard=ended.discard)))
+        return _report(recorder.end(StopRequest(of_task(task, end.tracker), discard=end.discard)))
 
     @router.post("/tasks/{task}/recording/pause")
-    def pause_recording(task: str, named: Named) -> RecordingReport:
+    def pause_recording(task: str, choice: TrackerChoice) -> RecordingReport:
         """Record nothing until `resume`; what is carried now is recorded to its end first."""
-        return _report(recorder.pause(of_task(task, named.tracker)))
+        return _report(recorder.pause(of_task(task, choice.tracker)))
 
     @router.post("/tasks/{task}/recording/resume")
-    def resume_recording(task: str, named: Named) -> RecordingReport:
+    def resume_recording(task: str, choice: TrackerChoice) -> RecordingReport:
         """Record again."""
-        return _report(recorder.resume(of_task(task, named.tracker)))
+        return _report(recorder.resume(of_task(task, choice.tracker)))
 
     @router.post("/tasks/{task}/recording/discard")
     def discard_last(task: str) -> Demonstration:

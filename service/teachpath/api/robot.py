@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from fastapi import APIRouter, Response
 
-from teachpath.api.answers import model_of, sent
+from teachpath.api.answers import json_response, model_of
 from teachpath.api.parts import Parts
 from teachpath.motion.arm.puma560 import ACCELERATION, FINGER_TRAVEL, JERK, LOWER, SPEED, TOOL_LENGTH, TORQUE, UPPER
 from teachpath.motion.arm.variants import arm
@@ -62,7 +62,7 @@ def robot_router(parts: Parts) -> APIRouter:
     @router.get("/robot", response_model=model_of(Robot))
     def get_robot() -> Response:
         """Describe the arm: standard Denavit-Hartenberg links, joint limits, gripper, and where it waits."""
-        return sent(
+        return json_response(
             Robot(
                 name=parts.settings.bus.robot,
                 variant=arm().name,
@@ -90,6 +90,6 @@ def robot_router(parts: Parts) -> APIRouter:
         )
 
         stored = parts.store.plan(plan)
-        return sent(preview_motion(stored, parts.settings.motion, dwell=parts.settings.executor.dwell))
+        return json_response(preview_motion(stored, parts.settings.motion, dwell=parts.settings.executor.dwell))
 
     return router

@@ -11,11 +11,11 @@ from urllib.parse import urlsplit
 from fastapi import WebSocket, WebSocketDisconnect
 from starlette.websockets import WebSocketState
 
-from teachpath.api.closed import unknown
+from teachpath.api.strict_requests import unknown_name
 
 DONE: Final = 1000  # close codes: normal closure, and policy violation
 REFUSED: Final = 1008
-LONGEST_REASON: Final = 120  # bytes; the protocol allows 123
+MAX_REASON_LENGTH: Final = 120  # bytes; the protocol allows 123
 
 Message = TypeVar("Message", covariant=True)
 
@@ -46,7 +46,7 @@ async def admit(socket: WebSocket) -> bool:
         return False
     await socket.accept()
     for name in socket.query_params:
-        await close(socket, unknown("parameter", name, ()))
+        await close(socket, unknown_name("parameter", name, ()))
         return False
     return True
 
@@ -54,7 +54,7 @@ async def admit(socket: WebSocket) -> bool:
 async def close(socket: WebSocket, reason: str = "") -> None:
     """Close a WebSocket that is still open: with a reason as refused, else as done."""
     if socket.client_state is WebSocketState.CONNECTED and socket.application_state is WebSocketState.CONNECTED:
-        short = reason.encode(errors="replace")[:LONGEST_REASON].decode(errors="ignore")
+        short = reason.encode(errors="replace")[:MAX_REASON_LENGTH].decode(errors="ignore")
         await socket.close(REFUSED if reason else DONE, short)
 
 

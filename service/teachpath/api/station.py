@@ -8,18 +8,18 @@ from starlette.middleware.trustedhost import TrustedHostMiddleware
 from teachpath import __version__
 from teachpath.api.assessments import assessments_router
 from teachpath.api.calibrations import calibrations_router
-from teachpath.api.closed import refuse_unknown
 from teachpath.api.control import control_router
 from teachpath.api.curves import curves_router
 from teachpath.api.demonstrations import demonstrations_router
 from teachpath.api.executions import executions_router, stops_router
 from teachpath.api.exports import exports_router
 from teachpath.api.faults import REFUSALS, answer_errors
-from teachpath.api.guard import Guard
 from teachpath.api.joints import joints_router
+from teachpath.api.middleware import RequestLimits
 from teachpath.api.parts import Health, Parts
 from teachpath.api.recording import recording_router
 from teachpath.api.robot import robot_router
+from teachpath.api.strict_requests import refuse_unknown
 from teachpath.api.tasks import tasks_router
 from teachpath.api.trackers import trackers_router
 from teachpath.api.versions import versions_router
@@ -38,7 +38,7 @@ def build_api(parts: Parts, *pages: APIRouter) -> FastAPI:
     app = FastAPI(title="teachpath", version=__version__, description=DESCRIPTION, docs_url=None, redoc_url=None)
     # Another name for this address is how a foreign page would reach a loopback service (DNS rebinding).
     hosts = ["127.0.0.1", "localhost", "[::1]", parts.settings.web.host, *parts.settings.web.hosts]
-    app.add_middleware(Guard, largest_upload=parts.settings.web.largest_upload)
+    app.add_middleware(RequestLimits, largest_upload=parts.settings.web.largest_upload)
     app.add_middleware(TrustedHostMiddleware, allowed_hosts=hosts)
     answer_errors(app)
     routers = (

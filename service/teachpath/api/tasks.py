@@ -8,8 +8,8 @@ from fastapi import APIRouter, Query, Request
 from pydantic import Field
 from starlette.concurrency import run_in_threadpool
 
-from teachpath.api.closed import Body
 from teachpath.api.parts import Parts
+from teachpath.api.strict_requests import Body
 from teachpath.errors import UnusableInput
 from teachpath.offline.importing import Source, import_file
 from teachpath.records import Demonstration, Task

@@ -21,21 +21,21 @@ from fastapi import APIRouter, WebSocket, WebSocketDisconnect
 from starlette.concurrency import run_in_threadpool
 
 from teachpath.api import sockets
-from teachpath.api.closed import unknown
 from teachpath.api.parts import Parts
+from teachpath.api.strict_requests import unknown_name
 from teachpath.errors import TeachpathError, UnusableInput
 from teachpath.io.wire import MAX_SAMPLE_SIZE
 from teachpath.recorder.websocket_trackers import WebSocketTracker
 
-SILENCE: Final = 10.0  # [s] after which a page that says nothing, not even a ping, has gone
-LARGEST_PING: Final = 1e18  # what is no number, or infinite, could not be answered in JSON
+SILENCE_TIMEOUT: Final = 10.0  # [s] after which a page that says nothing, not even a ping, has gone
+MAX_PING: Final = 1e18  # what is no number, or infinite, could not be answered in JSON
 
-FIELDS: Final = {"sample": ("sample",), "ping": ("ping",), "end": ("end", "discard")}  # of each kind of message
+FIELDS_OF_KIND: Final = {"sample": ("sample",), "ping": ("ping",), "end": ("end", "discard")}  # of each kind of message
 
 Answer = dict[str, Any]
 
 
-def trackers_router(parts: Parts, *, silence: float = SILENCE) -> APIRouter:
+def trackers_router(parts: Parts, *, silence: float = SILENCE_TIMEOUT) -> APIRouter:
     """Return the WebSocket `/trackers/{name}/samples`."""
     router = APIRouter()
 
@@ -97,7 +97,7 @@ def _answer(tracker: WebSocketTracker, content: bytes | str) -> Answer:
     if isinstance(order.get("sample"), dict):
         return _refusal(tracker.publish(order["sample"]))
     ping, end = order.get("ping"), order.get("end")
-    if isinstance(ping, int | float) and abs(ping) < LARGEST_PING:
+    if isinstance(ping, int | float) and abs(ping) < MAX_PING:
         counts = {"passed": tracker.accepted, "refused": tracker.refused}
         return {"pong": ping, "service_ns": time.time_ns(), "samples": counts}
     if isinstance(end, int) and 0 <= end < 2**64:
@@ -118,9 +118,9 @@ def _parse(text: str) -> Answer:
 
 def _stray(order: Answer) -> str:
     """Say which field of a message has no meaning in it; empty when there is none."""
-    kind = next((kind for kind in FIELDS if kind in order), None)
-    known = FIELDS[kind] if kind else ()
-    return next((unknown("field", name, known) for name in order if kind and name not in known), "")
+    kind = next((kind for kind in FIELDS_OF_KIND if kind in order), None)
+    known = FIELDS_OF_KIND[kind] if kind else ()
+    return next((unknown_name("field", name, known) for name in order if kind and name not in known), "")
 
 
 def _refusal(sentence: str) -> Answer:

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 from fastapi import APIRouter, Response
 from pydantic import Field
 
-from teachpath.api.answers import model_of, sent
-from teachpath.api.closed import Body
+from teachpath.api.answers import json_response, model_of
 from teachpath.api.curves import CurveBody
 from teachpath.api.parts import Parts
+from teachpath.api.strict_requests import Body
 from teachpath.editing import difference
 from teachpath.io.store.versions import Edit
 from teachpath.records import Difference, LearnedPath, Version
@@ -53,7 +53,7 @@ def versions_router(parts: Parts) -> APIRouter:
     @router.get("/paths/{path}/versions/{number}", response_model=model_of(SavedVersion))
     def get_version(path: str, number: int) -> Response:
         """Return one version and its curve."""
-        return sent(SavedVersion(*versions.get(path, number)))
+        return json_response(SavedVersion(*versions.get(path, number)))
 
     @router.post("/paths/{path}/versions", status_code=201)
     def save_version(path: str, new: NewVersion, response: Response) -> Version:

@@ -8,16 +8,16 @@ from fastapi import APIRouter, Query, Response
 from pydantic import Field, model_validator
 from pydantic_core import PydanticCustomError
 
-from teachpath.api.answers import model_of, sent
-from teachpath.api.closed import Body, unknown
+from teachpath.api.answers import json_response, model_of
 from teachpath.api.parts import Parts
+from teachpath.api.strict_requests import Body, unknown_name
 from teachpath.errors import NotFound
 from teachpath.io.store.store import Run, Store
 from teachpath.learning.clustering.cuts import Dendrogram, dendrogram, recut_members
 from teachpath.records import Job, LearnedPath, Plan
 
 # The fields that each kind of job takes.
-FIELDS: Final = {
+FIELDS_OF_KIND: Final = {
     "learn": {"kind", "settings", "calibrations"},
     "recut": {"kind", "run", "threshold", "clusters", "calibrations"},
     "plan": {"kind", "path", "version"},
@@ -48,9 +48,10 @@ class NewJob(Body):
     @model_validator(mode="after")
     def refuse_fields_of_other_kinds(self) -> Self:
         """Refuse a field that has no meaning for this kind of job, as one that is unknown."""
-        for name in self.model_fields_set - FIELDS[self.kind]:
+        for name in self.model_fields_set - FIELDS_OF_KIND[self.kind]:
             raise PydanticCustomError(
-                "field_of_another_kind", unknown(f"field of a job {self.kind!r}", name, sorted(FIELDS[self.kind]))
+                "field_of_another_kind",
+                unknown_name(f"field of a job {self.kind!r}", name, sorted(FIELDS_OF_KIND[self.kind])),
             )
         return self
 
@@ -112,14 +113,14 @@ def results_router(parts: Parts) -> APIRouter:
     @router.get("/tasks/{task}/runs", response_model=model_of(list[Run]))
     def list_runs(task: str) -> Response:
         """List a task's learning runs, newest first: clusters, scores, dendrogram, convergence, paths."""
-        return sent(store.runs(store.task(task).name))
+        return json_response(store.runs(store.task(task).name))
 
     @router.get("/tasks/{task}/runs/{run}", response_model=model_of(Run))
     def get_run(task: str, run: str) -> Response:
         """Return one learning run."""
         stored = store.run(run)
         _of_task(store.task(task).name, stored.task, f"run {run!r}")
-        return sent(stored)
+        return json_response(stored)
 
     @router.get("/tasks/{task}/runs/{run}/dendrogram", response_model=model_of(Dendrogram))
     def get_dendrogram(
@@ -135,17 +136,17 @@ def results_router(parts: Parts) -> APIRouter:
         """
         stored = store.run(run)
         _of_task(store.task(task).name, stored.task, f"run {run!r}")
-        return sent(dendrogram(stored.learned, most))
+        return json_response(dendrogram(stored.learned, most))
 
     @router.get("/paths/{path}", response_model=model_of(LearnedPath))
     def get_path(path: str) -> Response:
         """Return the newest version of a learned path on its main branch: degree, knots, control points, weights."""
-        return sent(store.path(path))
+        return json_response(store.path(path))
 
     @router.get("/paths/{path}/plans", response_model=model_of(list[Plan]))
     def list_plans(path: str) -> Response:
         """List a path's plans, newest first."""
-        return sent(store.plans(store.path(path).id))
+        return json_response(store.plans(store.path(path).id))
 
     @router.post("/paths/{path}/plans", status_code=202)
     def begin_plan(path: str, response: Response, new: NewPlan | None = None) -> Job:
@@ -158,7 +159,7 @@ def results_router(parts: Parts) -> APIRouter:
     @router.get("/plans/{plan}", response_model=model_of(Plan))
     def get_plan(plan: str) -> Response:
         """Return one plan with its certificate."""
-        return sent(store.plan(plan))
+        return json_response(store.plan(plan))
 
     return router
 

@@ -1,4 +1,4 @@
-"""Whoever watches may stall: a page that sleeps, a coach that ponders. The recorder records on."""
+"""Whoever watches may stall: a page that sleeps, guidance that ponders. The recorder records on."""
 
 import threading
 
@@ -37,7 +37,7 @@ def test_a_page_that_takes_nothing_keeps_the_recorder_from_nothing(bench: Bench)
         assert viewer.pending < 100
 
 
-def test_a_coach_that_ponders_keeps_the_recorder_from_nothing(store: object) -> None:
+def test_guidance_that_ponders_keeps_the_recorder_from_nothing(store: object) -> None:
     ponders, asked = threading.Event(), threading.Event()
 
     def ponder(_: Demonstration) -> Trajectory:

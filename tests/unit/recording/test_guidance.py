@@ -33,7 +33,7 @@ LENGTH = 0.7  # m
         ),
     ],
 )
-def test_the_coach_says_what_agrees_and_what_to_show_again(ways: list[ClusterSummary], sentence: str) -> None:
+def test_the_guidance_says_what_agrees_and_what_to_show_again(ways: list[ClusterSummary], sentence: str) -> None:
     assert advise(ways, LENGTH) == sentence
 
 

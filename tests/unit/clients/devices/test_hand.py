@@ -112,7 +112,7 @@ def test_a_pose_has_the_last_flexions_before_it_that_have_arrived_and_none_that_
         now += step
         there = [k for k, date in enumerate(dates) if date <= now and arrivals[k] <= now]
         wanted = there[-1] if there and now - dates[there[-1]] <= oldest else None
-        assert pairing.before(now) == (None if wanted is None else (float(wanted),))
+        assert pairing.flexions_at(now) == (None if wanted is None else (float(wanted),))
 
 
 def test_the_flexions_of_a_pose_are_at_most_a_period_of_the_glove_old() -> None:
@@ -120,6 +120,6 @@ def test_the_flexions_of_a_pose_are_at_most_a_period_of_the_glove_old() -> None:
     pairing = Pairing(lambda: waiting.popleft() if waiting else None, 0.1)
     for k in range(1, 500):
         pose = k / 50.0 - 0.003
-        flexions = pairing.before(pose)
+        flexions = pairing.flexions_at(pose)
         assert flexions is not None
         assert 0.0 <= pose - flexions[0] / 100.0 < 0.01

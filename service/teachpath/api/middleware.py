@@ -11,11 +11,11 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from teachpath.api.sockets import same_origin
 
-LARGEST_DOCUMENT: Final = 1024 * 1024  # bytes of a request that is no upload
-SAFE: Final = ("GET", "HEAD", "OPTIONS")
+MAX_DOCUMENT_SIZE: Final = 1024 * 1024  # bytes of a request that is no upload
+SAFE_METHODS: Final = ("GET", "HEAD", "OPTIONS")
 
 
-class Guard:
+class RequestLimits:
     """Refuses a request that a page of another origin sent, or whose body is over the limit.
 
     Browsers send simple requests across origins without asking; their Origin header tells them apart.
@@ -30,11 +30,11 @@ class Guard:
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Pass the request on, or answer 403 or 413."""
-        if scope["type"] != "http" or scope["method"] in SAFE:
+        if scope["type"] != "http" or scope["method"] in SAFE_METHODS:
             await self._app(scope, receive, send)
             return
         headers = Headers(scope=scope)
-        limit = self._largest_upload if scope["path"].endswith("/demonstrations") else LARGEST_DOCUMENT
+        limit = self._largest_upload if scope["path"].endswith("/demonstrations") else MAX_DOCUMENT_SIZE
         announced = headers.get("content-length", "0")
         if not same_origin(headers):
             sentence = f"a page of {headers['origin']} may not give orders here; use the station's own address"

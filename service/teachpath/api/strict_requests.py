@@ -1,4 +1,4 @@
-"""Closed requests: what an operation does not know is refused by name, never dropped without a word."""
+"""Strict requests: what an operation does not know is refused by name, never dropped without a word."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from fastapi import Request
 from fastapi.exceptions import RequestValidationError
 from pydantic import BaseModel, ConfigDict
 
-EXTRA: Final = "extra_forbidden"  # pydantic's name of this fault
-EMPTY: Final = (b"", b"{}", b"null")  # bodies that say nothing
-LONGEST_SHOWN: Final = 80  # characters of an unknown name
+EXTRA_FIELD: Final = "extra_forbidden"  # pydantic's name of this fault
+EMPTY_BODIES: Final = (b"", b"{}", b"null")  # bodies that say nothing
+MAX_SHOWN_LENGTH: Final = 80  # characters of an unknown name
 
 
 class Body(BaseModel):
@@ -29,10 +29,12 @@ async def refuse_unknown(request: Request) -> None:
     """
     route = request.scope["route"]
     known = _parameters(request)
-    faults = [{"loc": ("query", name), "type": EXTRA, "msg": ""} for name in request.query_params if name not in known]
+    faults = [
+        {"loc": ("query", name), "type": EXTRA_FIELD, "msg": ""} for name in request.query_params if name not in known
+    ]
     takes_a_body = route.body_field is not None or "requestBody" in (route.openapi_extra or {})
-    if not takes_a_body and (await request.body()).strip() not in EMPTY:
-        faults.append({"loc": ("body",), "type": EXTRA, "msg": ""})
+    if not takes_a_body and (await request.body()).strip() not in EMPTY_BODIES:
+        faults.append({"loc": ("body",), "type": EXTRA_FIELD, "msg": ""})
     if faults:
         raise RequestValidationError(faults)
 
@@ -42,13 +44,13 @@ def unknown_field(request: Request, place: Sequence[str | int]) -> str:
     if place == ("body",):
         return f"{request.method} {request.url.path} takes none; send it without"
     if place[0] == "query":
-        return unknown("parameter", str(place[-1]), _parameters(request))
-    return unknown("field", str(place[-1]), _fields(request, place[1:-1]))
+        return unknown_name("parameter", str(place[-1]), _parameters(request))
+    return unknown_name("field", str(place[-1]), _fields(request, place[1:-1]))
 
 
-def unknown(kind: str, name: str, known: Collection[str]) -> str:
+def unknown_name(kind: str, name: str, known: Collection[str]) -> str:
     """Say that there is no `kind` of this name, which known name is nearest, and which names are known."""
-    name = name[:LONGEST_SHOWN]
+    name = name[:MAX_SHOWN_LENGTH]
     near = difflib.get_close_matches(name, known, 1)
     meant = f"did you mean {near[0]}? " if near else ""
     return f"there is no {kind} {name!r}; {meant}known here: {', '.join(known) or 'none'}"

@@ -1,4 +1,4 @@
-"""Closed requests: no operation and no WebSocket drops without a word what it does not know."""
+"""Strict requests: no operation and no WebSocket drops without a word what it does not know."""
 
 import json
 import re
