@@ -1,7 +1,7 @@
-"""The control lease: one holder of control at a time, whom everybody sees, and who can be asked for it.
+"""The control lease: at most one holder of control at a time, whom everybody sees.
 
-Without a lease everybody may command. A holder beats; when the beats stop the lease lapses. Who wants control asks: the
-holder releases it, or keeps it, or says nothing, and then the one who asked gets it.
+While nobody holds it, everybody may command. The holder sends beats, and the lease lapses when they stop. Somebody else
+may request control: the holder releases or keeps it, and a holder who does not answer in time loses it.
 """
 
 from __future__ import annotations
@@ -16,27 +16,27 @@ from teachpath.errors import Conflict
 from teachpath.records import Lease, LeaseRequest
 from teachpath_proto.control import LeaseAction
 
-DEFAULT_BEAT_INTERVAL: Final = 5.0  # [s] between two beats, unless the holder says otherwise
-GRANT_DELAY: Final = 10.0  # [s] that a holder has to answer the one who asks
+DEFAULT_BEAT_INTERVAL: Final = 5.0  # [s] between two beats at most, unless the holder chooses another
+GRANT_DELAY: Final = 10.0  # [s] that the holder has to answer a request
 
 
 @dataclass
 class _Claimant:
-    """Somebody who holds control, or asks for it."""
+    """Somebody who holds control, or requests it."""
 
     name: str
     token: str
     seconds: float
     hold_when_lost: bool
-    expires: float  # [s] of the clock, without another beat
+    expires: float  # [s of the clock], without another beat
 
 
 class ControlLease:
-    """Keeps who is in control; safe to use from several threads.
+    """Grants control; safe to use from several threads.
 
     Args:
-        clock: monotonic nanoseconds.
-        token: makes a secret.
+        clock: returns monotonic nanoseconds.
+        token: returns a new secret.
     """
 
     def __init__(self, clock: Callable[[], int], token: Callable[[], str] = lambda: secrets.token_hex(8)) -> None:
@@ -44,14 +44,14 @@ class ControlLease:
         self._lock = threading.Lock()
         self._holder: _Claimant | None = None
         self._requester: _Claimant | None = None
-        self._grant_time = 0.0  # [s] of the clock, when the one who asks gets it
+        self._grant_time = 0.0  # [s of the clock], when the requester gets control
         self._lost = ""
 
     def answer(self, request: LeaseRequest) -> Lease:
-        """Act on a word about control and return who is in control after it.
+        """Act on a request and return who is in control afterwards.
 
         Raises:
-            Conflict: somebody else is in control, asks already, or the token is out of date.
+            Conflict: somebody else is in control or requests it already, or the token is out of date.
         """
         with self._lock:
             now = self._update()
@@ -61,24 +61,24 @@ class ControlLease:
                 return self._view(now, self._ask(request, now))
             if request.action == LeaseAction.LOOK:
                 return self._view(now, None)
-            hand = self._claimant_of(request.token)
+            claimant = self._claimant_of(request.token)
             if request.action == LeaseAction.BEAT:
-                hand.expires = now + hand.seconds
-            elif request.action == LeaseAction.KEEP and hand is self._holder:
+                claimant.expires = now + claimant.seconds
+            elif request.action == LeaseAction.KEEP and claimant is self._holder:
                 self._requester = None
-            elif request.action == LeaseAction.RELEASE and hand is self._holder:
+            elif request.action == LeaseAction.RELEASE and claimant is self._holder:
                 self._holder = None
                 self._update()
             elif request.action == LeaseAction.RELEASE:
                 self._requester = None
-            return self._view(now, hand)
+            return self._view(now, claimant)
 
     def require(self, token: str, who: str) -> str:
-        """Return the name of the one who commands.
+        """Return the name under which a command may be given.
 
         Args:
             token: of the lease, or empty.
-            who: name that goes into the journal without a lease.
+            who: name for the journal of somebody without a lease.
 
         Raises:
             Conflict: somebody else is in control, or the token is out of date.
@@ -86,9 +86,9 @@ class ControlLease:
         with self._lock:
             now = self._update()
             if token:
-                hand = self._claimant_of(token)
-                if hand is self._holder:
-                    return hand.name
+                claimant = self._claimant_of(token)
+                if claimant is self._holder:
+                    return claimant.name
             if self._holder is not None:
                 raise Conflict(self._describe_holder(now))
             return who
@@ -101,29 +101,29 @@ class ControlLease:
             return known[0].name if known else who
 
     def public_view(self) -> Lease:
-        """Return who is in control, as everybody may see it."""
+        """Return who is in control, without any token."""
         with self._lock:
             return self._view(self._update(), None)
 
     def pop_lost_holder(self) -> str:
-        """Return once the name of a holder who was lost and wanted the arm held then, else nothing."""
+        """Return once the name of a holder whose beats stopped and who wanted the arm held then; otherwise nothing."""
         with self._lock:
             self._update()
             lost, self._lost = self._lost, ""
             return lost
 
     def _update(self) -> float:
-        """Let lapse what has lapsed, and grant what is due."""
+        """End claims without beats, grant a request that is due, and return the present time [s of the clock]."""
         now = self._clock() / 1e9
-        holder, asking = self._holder, self._requester
-        if asking is not None and now > asking.expires:
-            self._requester = asking = None
+        holder, requester = self._holder, self._requester
+        if requester is not None and now > requester.expires:
+            self._requester = requester = None
         if holder is not None and now > holder.expires:
             self._lost = holder.name if holder.hold_when_lost else ""
             self._holder = holder = None
-        if asking is not None and (holder is None or now >= self._grant_time):
-            asking.expires = now + asking.seconds
-            self._holder, self._requester = asking, None
+        if requester is not None and (holder is None or now >= self._grant_time):
+            requester.expires = now + requester.seconds
+            self._holder, self._requester = requester, None
         return now
 
     def _acquire(self, request: LeaseRequest, now: float) -> _Claimant:
@@ -145,9 +145,9 @@ class ControlLease:
         return _Claimant(request.name.strip(), self._token(), seconds, request.hold_when_lost, now + seconds)
 
     def _claimant_of(self, token: str) -> _Claimant:
-        for hand in (self._holder, self._requester):
-            if hand is not None and token == hand.token:
-                return hand
+        for claimant in (self._holder, self._requester):
+            if claimant is not None and token == claimant.token:
+                return claimant
         holder = f"{self._holder.name} is in control" if self._holder else "nobody is in control"
         raise Conflict(f"this hold on control is over: it lapsed, was handed over or kept ({holder}); acquire it again")
 
@@ -158,13 +158,13 @@ class ControlLease:
             f"lapses {self._holder.expires - now:.0f} s after its last beat. Stop is open to everybody"
         )
 
-    def _view(self, now: float, hand: _Claimant | None) -> Lease:
-        holder, asking = self._holder, self._requester
+    def _view(self, now: float, claimant: _Claimant | None) -> Lease:
+        holder, requester = self._holder, self._requester
         return Lease(
             holder=holder.name if holder else "",
             expires_in=holder.expires - now if holder else 0.0,
             hold_when_lost=holder.hold_when_lost if holder else False,
-            asking=asking.name if asking else "",
-            granted_in=max(self._grant_time - now, 0.0) if asking else 0.0,
-            token=hand.token if hand is not None and hand in (holder, asking) else "",
+            asking=requester.name if requester else "",
+            granted_in=max(self._grant_time - now, 0.0) if requester else 0.0,
+            token=claimant.token if claimant is not None and claimant in (holder, requester) else "",
         )

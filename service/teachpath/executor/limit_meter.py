@@ -1,4 +1,4 @@
-"""Measures, on the setpoints as they are sent, how much of the joints' limits they use."""
+"""Measures how much of the joints' limits the sent setpoints use."""
 
 from __future__ import annotations
 
@@ -15,30 +15,34 @@ _NAMES: Final = ("speed", "acceleration", "jerk")
 
 
 class HasLocation(Protocol):
-    """Something that can say in words where it is."""
+    """Something that can tell its location."""
 
     @property
     def location(self) -> str:
-        """Where it is."""
+        """Where it is, in words."""
 
 
 class LimitMeter:
-    """Re-differences setpoints: first, second and third difference against speed, acceleration and jerk limit.
+    """Compares first, second and third differences of setpoints with the limits of speed, acceleration and jerk.
 
     Args:
         rate: setpoints a second [Hz].
-        here: (6,) where the arm rests at the beginning [rad].
-        before: a meter whose largest use counts on; the arm was moved by hand since.
+        start_q: (6,) where the arm rests at the beginning [rad].
+        previous: a meter whose largest use is kept; used when the arm was moved by hand since.
+
+    Attributes:
+        max_use: largest share of a limit so far.
+        max_use_location: which limit that was, and where, in words.
     """
 
-    def __init__(self, rate: float, here: Array, before: LimitMeter | None = None) -> None:
+    def __init__(self, rate: float, start_q: Array, previous: LimitMeter | None = None) -> None:
         self._scale = np.array([rate, rate**2, rate**3])[:, None] / _LIMITS  # (3, 6)
-        self._last: deque[Array] = deque([here] * 3, maxlen=3)  # newest last
-        self.max_use: float = before.max_use if before else 0.0
-        self.max_use_location: str = before.max_use_location if before else ""
+        self._last: deque[Array] = deque([start_q] * 3, maxlen=3)  # newest last
+        self.max_use: float = previous.max_use if previous else 0.0
+        self.max_use_location: str = previous.max_use_location if previous else ""
 
     def add(self, position: Array, where: HasLocation) -> None:
-        """Measure the setpoint `position` (6,) [rad]; its place is asked of `where` when it is the largest."""
+        """Measure the setpoint `position` (6,) [rad]; when it uses most so far, keep the location of `where`."""
         third, second, first = self._last
         differences = np.stack(
             [position - first, position - 2 * first + second, position - 3 * first + 3 * second - third]

@@ -1,4 +1,4 @@
-"""The executions: sends plans and commands to the executor's process and keeps what it says of itself."""
+"""The executions: sends plans and commands to the executor's process, and stores its statuses and its journal."""
 
 from __future__ import annotations
 
@@ -16,24 +16,9 @@ from teachpath.io.bus import Bus, Handle
 from teachpath.io.documents import encode
 from teachpath.io.store.motions import MotionHeader, read_motion
 from teachpath.io.store.store import Execution, Store
-from teachpath.io.wire import (
-    decode_entry,
-    decode_lease,
-    decode_status,
-    encode_command,
-    encode_lease_request,
-)
+from teachpath.io.wire import decode_entry, decode_lease, decode_status, encode_command, encode_lease_request
 from teachpath.motion.analysis.time_series import TimeSeries, time_series
-from teachpath.records import (
-    Command,
-    ExecutorStatus,
-    JournalEntry,
-    Lease,
-    LeaseRequest,
-    Plan,
-    Scene,
-    TeleopRequest,
-)
+from teachpath.records import Command, ExecutorStatus, JournalEntry, Lease, LeaseRequest, Plan, Scene, TeleopRequest
 from teachpath.robot.motion_recorder import MotionRecorder
 from teachpath_proto.control import CommandVerb, ExecutorState
 from teachpath_proto.keys import Keys
@@ -49,15 +34,19 @@ STEERING_VERBS: Final = (
 
 
 class Executions:
-    """Starts and steers executions; one at a time.
+    """Starts and steers executions, one at a time.
 
     Args:
-        robot: name of the robot that is moved.
-        scene: returns the scene of a name as it is now; raises NotFound.
+        robot: name of the robot.
+        scene: returns the present scene of a name; raises NotFound.
     """
 
     def __init__(self, bus: Bus, keys: Keys, store: Store, *, robot: str, scene: Callable[[str], Scene]) -> None:
-        self._bus, self._keys, self._store, self._robot, self._scene = bus, keys, store, robot, scene
+        self._bus = bus
+        self._keys = keys
+        self._store = store
+        self._robot = robot
+        self._scene = scene
         self._recorder = MotionRecorder(bus, keys, store.motions, robot=robot)
         self._changed = threading.Condition()
         self._status: ExecutorStatus | None = None
@@ -68,7 +57,7 @@ class Executions:
         self._writer: threading.Thread | None = None
 
     def start(self) -> None:
-        """Begin to listen to the executor."""
+        """Receive the executor's statuses and journal from now on."""
         self._recorder.start()
         self._handles = [
             self._bus.subscribe(self._keys.executor_status, self._receive),
@@ -78,7 +67,7 @@ class Executions:
         self._writer.start()
 
     def stop(self) -> None:
-        """Stop listening."""
+        """Stop receiving; what came is stored first."""
         for handle in self._handles:
             handle.close()
         if self._writer is not None:
@@ -88,11 +77,14 @@ class Executions:
         self._recorder.stop()
 
     def faults(self) -> list[str]:
-        """Say why something is not recorded, for the operator."""
+        """Return why an execution is not recorded, in sentences for the operator."""
         return [self._recorder.fault] if self._recorder.fault else []
 
     def recording(self, execution: str) -> Path:
-        """Return the file of all that an execution sent and the arm did, whole once it is over; raises NotFound."""
+        """Return the file of an execution's setpoints, joint states, statuses and journal; raises NotFound.
+
+        Once the execution is over, the file is complete.
+        """
         row = self.get(execution)
         if row.status.state.is_resting:
             self._recorder.wait_for_file(row.id)
@@ -105,7 +97,7 @@ class Executions:
 
     @property
     def status(self) -> ExecutorStatus | None:
-        """What the executor said last, or None when it has been silent for over a second."""
+        """The executor's newest status, or None when the executor has been silent for over a second."""
         return self._status if time.monotonic() - self._last_seen < 1.0 else None
 
     def execute(self, plan: str, *, override: float = 1.0, lease: str = "", who: str = "") -> Execution:
@@ -114,8 +106,8 @@ class Executions:
         Args:
             plan: id of a stored plan.
             override: share of the planned speed.
-            lease: token of the one who holds control, when somebody does.
-            who: name for the journal without a lease.
+            lease: token of the control lease, when somebody holds it.
+            who: name for the journal, of somebody without a lease.
 
         Raises:
             NotFound: no such plan.
@@ -136,7 +128,7 @@ class Executions:
         return self._start_execution(command, MotionHeader(key, self._robot, stored, path))
 
     def teleoperate(self, order: TeleopRequest, *, lease: str = "", who: str = "") -> Execution:
-        """Let the robot mirror a live hand; steer and stop it as any execution.
+        """Let the robot follow a live hand; such an execution is steered and stopped like any other.
 
         Raises:
             UnusableInput: a scale or share outside its limits.
@@ -149,9 +141,9 @@ class Executions:
         return self._start_execution(command, MotionHeader(key, self._robot))
 
     def command(self, execution: str, command: Command) -> Execution:
-        """Steer an execution: override (speed, 0 to 1), hold, resume, step, reverse or stop.
+        """Steer an execution by one of `STEERING_VERBS`.
 
-        A stop is always answered: an execution that has ended is stopped.
+        A stop of an execution that has ended already is answered, too.
 
         Raises:
             UnusableInput: an unknown verb.
@@ -172,21 +164,21 @@ class Executions:
         return self.get(execution)
 
     def stop_all(self, *, lease: str = "", who: str = "") -> ExecutorStatus:
-        """Stop whatever moves; raises Unreachable when the executor does not answer."""
+        """Stop whatever execution is under way; raises Unreachable when the executor does not answer."""
         command = Command(CommandVerb.STOP, lease=lease, who=who)
         return decode_status(self._bus.ask(self._keys.executor_stop, encode_command(command)))
 
     def request_lease(self, request: LeaseRequest) -> Lease:
-        """Say a word about who is in control.
+        """Send a request about the control lease and return who is in control.
 
         Raises:
-            Conflict: somebody else is, or the token is out of date.
+            Conflict: somebody else is in control, or the token is out of date.
             Unreachable: the executor does not answer.
         """
         return decode_lease(self._bus.ask(self._keys.executor_lease, encode_lease_request(request)))
 
     def revoke(self, plan: str, *, reason: str, who: str = "") -> None:
-        """Take a plan's certificate back: it is never started again, and held for good where it moves the arm now.
+        """Revoke a plan's certificate: the plan never starts again, and an execution of it is held for good.
 
         Raises:
             NotFound: no such plan.
@@ -199,7 +191,7 @@ class Executions:
             self._bus.ask(self._keys.executor_command, encode_command(command))
 
     def get(self, execution: str) -> Execution:
-        """Return an execution as it stands now; raises NotFound."""
+        """Return an execution with its present status; raises NotFound."""
         row = self._store.execution(execution)
         status = self._status
         if status is not None and status.execution == execution:
@@ -264,7 +256,7 @@ class Executions:
             self._received.put(decode_entry(payload))
 
     def _write(self) -> None:
-        """Store what came; a thread of its own, because the bus's must not wait for the disk."""
+        """Store what was received, on a thread of its own: the bus's threads must not wait for the disk."""
         while (news := self._received.get()) is not None:
             if isinstance(news, JournalEntry):
                 self._store.journal.write(news)

@@ -1,4 +1,4 @@
-"""What the arm does, for those who look on: decimated and coalesced, so that no one who looks slows the arm down."""
+"""The arm's joint states for any number of viewers: decimated and coalesced, so that no viewer slows the arm down."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from teachpath.io.wire import decode_setpoint, decode_state
 from teachpath.records import JointState
 from teachpath_proto.keys import Keys
 
-MAX_QUEUED: Final = 512  # newest messages for one onlooker who does not ask
+MAX_QUEUED: Final = 512  # newest messages that wait for a subscriber which does not poll
 
 
 @dataclass(frozen=True, eq=False)
 class JointFrame:
-    """The newest joint state, and the worst since the frame before.
+    """The newest joint state, and the largest values since the frame before.
 
     Attributes:
         state: the newest joint state.
@@ -34,7 +34,7 @@ class JointFrame:
 
 
 class JointFeed:
-    """Follows one arm on the bus for any number of onlookers."""
+    """Receives one arm's joint states and setpoints for any number of subscribers."""
 
     def __init__(self, bus: Bus, keys: Keys, *, robot: str) -> None:
         self._bus, self._keys, self._robot = bus, keys, robot
@@ -44,29 +44,29 @@ class JointFeed:
         self._handles: list[Handle] = []
 
     def start(self) -> None:
-        """Follow the arm from now on."""
+        """Receive from now on."""
         self._handles = [
             self._bus.subscribe(self._keys.state(self._robot), self._receive_state),
             self._bus.subscribe(self._keys.setpoint(self._robot), self._receive_setpoint),
         ]
 
     def stop(self) -> None:
-        """Stop following; a second call does nothing."""
+        """Stop receiving; a second call does nothing."""
         for handle in self._handles:
             handle.close()
         self._handles.clear()
 
     def subscribe(self) -> JointStateSubscriber:
-        """Return an onlooker, who begins with the newest joint state."""
-        onlooker = JointStateSubscriber()
+        """Return a new subscriber, which begins with the newest joint state."""
+        subscriber = JointStateSubscriber()
         if self._last is not None:
-            onlooker.states.append(self._last)
+            subscriber.states.append(self._last)
         with self._lock:
-            self._subscribers = (*self._subscribers, onlooker)
-        return onlooker
+            self._subscribers = (*self._subscribers, subscriber)
+        return subscriber
 
     def unsubscribe(self, subscriber: JointStateSubscriber) -> None:
-        """Forget an onlooker who has gone."""
+        """Drop a subscriber that has gone."""
         with self._lock:
             self._subscribers = tuple(o for o in self._subscribers if o is not subscriber)
 
@@ -74,23 +74,23 @@ class JointFeed:
 
     def _receive_state(self, _: str, payload: bytes) -> None:
         self._last = payload
-        for onlooker in self._subscribers:
-            onlooker.states.append(payload)
+        for subscriber in self._subscribers:
+            subscriber.states.append(payload)
 
     def _receive_setpoint(self, _: str, payload: bytes) -> None:
-        for onlooker in self._subscribers:
-            onlooker.setpoints.append(payload)
+        for subscriber in self._subscribers:
+            subscriber.setpoints.append(payload)
 
 
 class JointStateSubscriber:
-    """One who looks at the arm, as often as it likes."""
+    """Collects what the arm does until it is polled."""
 
     def __init__(self) -> None:
         self.states: deque[bytes] = deque(maxlen=MAX_QUEUED)
         self.setpoints: deque[bytes] = deque(maxlen=MAX_QUEUED)
 
     def poll(self) -> JointFrame | None:
-        """Return what has happened since the last call, or None when no joint state has come."""
+        """Return the frame since the last call, or None when no joint state has come."""
         states = [state for payload in _drain(self.states) if (state := _state(payload)) is not None]
         lateness = [late for payload in _drain(self.setpoints) if (late := _lateness(payload)) is not None]
         if not states:

@@ -1,4 +1,4 @@
-"""Records everything that is executed: setpoints, joint states, statuses and journal, one file an execution."""
+"""Records every execution in a file of its own: setpoints, joint states, statuses and journal."""
 
 from __future__ import annotations
 
@@ -19,39 +19,46 @@ from teachpath_proto.keys import Keys
 
 log = logging.getLogger(__name__)
 
-POLL_INTERVAL: Final = 0.05  # [s] between two looks at what came
+POLL_INTERVAL: Final = 0.05  # [s] between two rounds of writing
 FLUSH_NS: Final = 1_000_000_000  # between two flushes
-SETTLING_NS: Final = 500_000_000  # behind the end of an execution, in which the arm still settles
+SETTLING_NS: Final = 500_000_000  # after the end of an execution, in which the arm still settles
 FILE_END_TIMEOUT: Final = 10.0  # [s] that somebody waits for the end of a file
 
 
 class MotionRecorder:
-    """Writes what is on the bus while an execution runs; start it, then `begin` each execution.
+    """Writes the messages of the bus while an execution runs; start it, then `begin` each execution.
 
     Args:
         robot: name of the arm in its keys.
-        clock: nanoseconds since the Unix epoch.
+        clock: returns nanoseconds since the Unix epoch.
+
+    Attributes:
+        fault: why nothing is recorded now, for the operator; empty while all is well.
     """
 
     def __init__(
         self, bus: Bus, keys: Keys, motions: Motions, *, robot: str, clock: Callable[[], int] = time.time_ns
     ) -> None:
-        self._bus, self._keys, self._motions, self._robot, self._clock = bus, keys, motions, robot, clock
+        self._bus = bus
+        self._keys = keys
+        self._motions = motions
+        self._robot = robot
+        self._clock = clock
         self._queue: deque[tuple[str, int, bytes]] = deque()
         self._lock = threading.Lock()
-        self._file_ended = threading.Condition(self._lock)  # a file is whole, or given up
+        self._file_ended = threading.Condition(self._lock)  # notified when a file is complete or given up
         self._take: MotionTake | None = None
         self._execution = ""
         self._setpoints = self._lost = 0
         self._last_cycle = -1
         self._flushed = 0
-        self._end_ns = 0  # [ns] when the file is ended; 0: not known yet
+        self._end_ns = 0  # when the file is to be ended; 0: not known yet
         self._handles: list[Handle] = []
         self._thread = PeriodicThread("motion recorder", POLL_INTERVAL, self.process_round)
-        self.fault = ""  # why nothing is recorded now, for the operator
+        self.fault = ""
 
     def start(self) -> None:
-        """Begin to listen; files that a crash cut off are made whole first."""
+        """Receive messages from now on; first complete the files that a crash cut off."""
         for part in self._motions.unfinished():
             try:
                 log.warning("made a whole recording of one that was cut off: %s", self._motions.mend(part).name)
@@ -67,7 +74,7 @@ class MotionRecorder:
         self._thread.start()
 
     def stop(self) -> None:
-        """End the recording that is under way, and stop."""
+        """Stop receiving, and end the recording that is under way."""
         for handle in self._handles:
             handle.close()
         self._handles.clear()
@@ -78,29 +85,31 @@ class MotionRecorder:
             self._finish()
 
     def begin(self, header: MotionHeader) -> None:
-        """Record an execution from now on; a disk that refuses is told in `fault` and keeps no arm from moving."""
+        """Record an execution from now on; a disk that refuses sets `fault` and does not keep the arm from moving."""
         with self._lock:
             self._finish()
             self._queue.clear()
-            self._execution, self._setpoints, self._lost, self._last_cycle = header.execution, 0, 0, -1
+            self._execution = header.execution
+            self._setpoints = self._lost = 0
+            self._last_cycle = -1
             try:
                 self._take, self.fault = self._motions.begin(header), ""
             except OSError as error:
                 self._fail(error)
 
     def abandon(self) -> None:
-        """End the recording of an execution that was refused before it began."""
+        """End the recording of an execution that was refused."""
         with self._lock:
             self._end_ns = self._end_ns or self._clock() + SETTLING_NS
 
     def wait_for_file(self, execution: str) -> None:
-        """Wait until the file of an execution that is over has its end."""
+        """Wait until the file of an execution that is over is complete, but no longer than `FILE_END_TIMEOUT`."""
         if self._thread.is_running:
             with self._file_ended:
                 self._file_ended.wait_for(lambda: self._take is None or self._execution != execution, FILE_END_TIMEOUT)
 
     def process_round(self) -> None:
-        """Write what came; the thread calls it all the time."""
+        """Write what was received; the thread calls this once an interval."""
         with self._lock:
             now = self._clock()
             while self._queue:

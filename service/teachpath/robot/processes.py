@@ -1,4 +1,4 @@
-"""The processes beside the service: executor and simulated robot, started with it and never outliving it."""
+"""The processes beside the service, executor and simulated arm: they start with it and never outlive it."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import sys
 import threading
 from collections import deque
 
-STOP_TIMEOUT = 1.5  # [s] to end by itself before it is killed
+STOP_TIMEOUT = 1.5  # [s] that a process may take to end before it is killed
 
 
 class WorkerProcess:

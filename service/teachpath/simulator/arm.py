@@ -15,7 +15,7 @@ from teachpath.records import Array, Quaternion, Scene, Vector
 from teachpath.simulator.settings import SimulatorSettings
 
 STEP_NS: Final = 1_000_000
-REST_SPEED: Final = 1e-3  # rad/s and m/s, below which a thing stands still
+REST_SPEED: Final = 1e-3  # [rad/s and m/s] below which a body stands still
 
 
 class SimulatedArm:
@@ -36,7 +36,7 @@ class SimulatedArm:
         self.reset()
 
     def reset(self) -> None:
-        """Put the arm to where it began, at rest and open, and the object to its start."""
+        """Put the arm where it began, at rest and with its gripper open, and the object at its start."""
         mujoco.mj_resetData(self._model, self.data)
         self.data.qpos[:6] = self._start
         mujoco.mj_forward(self._model, self.data)
@@ -70,9 +70,9 @@ class SimulatedArm:
         return (x, y, z), (w, i, j, k)
 
     def step(self, position: Array, velocity: Array, acceleration: Array) -> None:
-        """Follow the wanted motion for 1 ms by computed torque (Siciliano et al., Robotics, Springer 2009, 8.5.2).
+        """Follow a target motion for 1 ms by computed torque (Siciliano et al., Robotics, Springer 2009, 8.5.2).
 
-        Coulomb friction is compensated along the wanted velocity, so that the motors do not chatter at rest.
+        Coulomb friction is compensated along the target's velocity, so that the motors do not chatter at rest.
         """
         mujoco.mj_step1(self._model, self.data)
         w = self._settings.bandwidth
@@ -86,7 +86,7 @@ class SimulatedArm:
         mujoco.mj_step2(self._model, self.data)
 
     def grasp(self) -> bool:
-        """Take the object as it lies between the fingers; False when it is out of reach and the gripper is empty."""
+        """Grasp the object as it lies between the fingers; return False when it is out of reach."""
         if not self._carries:
             return False
         tool = self.data.site(TOOL_SITE).xpos

@@ -1,15 +1,14 @@
-"""The simulated arm: a dynamic Puma 560 that follows the setpoints on the bus and says what it does.
+"""The simulated arm: a dynamic Puma 560 that follows the setpoints on the bus and publishes its joint state.
 
-It speaks the two keys that a driver of a real arm would speak, and one query that puts the object back to its start.
+It uses the two keys that the driver of a real arm uses, and answers one query that puts the object back to its start.
 """
 
 from __future__ import annotations
 
 import logging
 import threading
-import time
 from collections import deque
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import Final
 
 import numpy as np
@@ -22,19 +21,21 @@ from teachpath.records import JointState, Scene
 from teachpath.simulator.arm import STEP_NS, SimulatedArm
 from teachpath.simulator.setpoint_player import SetpointPlayer
 from teachpath.simulator.settings import SimulatorSettings
+from teachpath.time_source import TimeSource
 from teachpath_proto.keys import Keys
 
 log = logging.getLogger(__name__)
 
 STEPS_PER_STATE: Final = 10  # steps between two joint states: 100 Hz
-REST_STEPS_BEFORE_IDLE: Final = 200  # steps of standstill after which the arm dozes
-IDLE_STATE_PERIOD: Final = 0.04  # [s] between two joint states of an arm that dozes: 25 Hz, the contract asks for 20
-# A starved process catches up, each setpoint played when it was due: on a busy machine the arm is late, not wrong.
+REST_STEPS_BEFORE_IDLE: Final = 200  # steps of standstill after which no physics is computed any more
+IDLE_STATE_PERIOD: Final = 0.04  # [s] between two joint states then: 25 Hz, where the contract asks for 20
+# Lag up to which a process that got no processor time catches up, step by step: on a busy machine the arm is late, but
+# its motion is right.
 MAX_LAG_NS: Final = 1_000_000_000
 
 
 class Simulator:
-    """The running arm; `run` is its life, `step` one millisecond of it."""
+    """The running arm: `run` advances it in real time, `step` by one millisecond."""
 
     def __init__(
         self,
@@ -45,9 +46,7 @@ class Simulator:
         *,
         robot: str = "puma560",
         home: Sequence[float] = MotionSettings().home,
-        clock: Callable[[], int] = time.time_ns,
-        sleep: Callable[[float], object] = time.sleep,
-        idle_wait: Callable[[threading.Event, float], object] = threading.Event.wait,
+        time_source: TimeSource | None = None,
     ) -> None:
         """Prepare the arm; nothing runs before `run`.
 
@@ -55,22 +54,23 @@ class Simulator:
             scene: what stands around the arm until a reset brings another one.
             robot: name of the arm in its keys.
             home: (6,) configuration in which the arm starts [rad].
-            clock: nanoseconds since the Unix epoch, the clock of the setpoints.
-            sleep: waits for so many seconds.
-            idle_wait: waits for so many seconds, or until the event is set.
+            time_source: the machine's clocks by default.
         """
-        self._bus, self._keys, self._robot = bus, keys, robot
+        self._bus = bus
+        self._keys = keys
+        self._robot = robot
         self._settings = settings or SimulatorSettings()
-        self._clock, self._sleep, self._idle_wait = clock, sleep, idle_wait
+        self._time = time_source or TimeSource()
+        self._clock = self._time.wall_ns  # the clock of the setpoints
         self._wake = threading.Event()
-        self._rest_steps = 0  # newest steps in which everything stood still
+        self._rest_steps = 0  # number of newest steps in which everything stood still
         self._lock = threading.Lock()
         self._setpoints: deque[bytes] = deque(maxlen=1000)
         self._statuses: deque[bytes] = deque(maxlen=100)
         self._build(scene, home)
 
     def run(self, stop: threading.Event) -> None:
-        """Live in real time until `stop` is set."""
+        """Advance in real time until `stop` is set."""
         robot = self._robot
         handles = [
             self._bus.subscribe(self._keys.setpoint(robot), self._receive),
@@ -90,19 +90,19 @@ class Simulator:
                 if abs(wait) > MAX_LAG_NS:
                     due = self._clock()
                 elif wait > 0:
-                    self._sleep(wait / 1e9)
+                    self._time.sleep(wait / 1e9)
         finally:
             for handle in handles:
                 handle.close()
 
     def reset(self, payload: bytes) -> bytes:
-        """Answer the reset query: the object to its start, in the scene given as JSON or the one there is.
+        """Put the object back to its start; the payload is a scene in JSON, or empty for the present scene.
 
-        The arm stays where it is, at rest, with its gripper open: no arm ever jumps. While an execution is under way
-        nothing around the arm may change, because its certificate is of this scene.
+        The arm stays where it is, at rest and with its gripper open, because no arm ever jumps. While an execution is
+        under way the scene must not change, because the certificate holds for this one.
 
         Returns:
-            The joint state after it, as published.
+            The message of the joint state afterwards.
 
         Raises:
             UnusableInput: the payload is no scene.
@@ -119,13 +119,13 @@ class Simulator:
             return wire.encode_state(self._state(self._clock()))
 
     def step(self, now: int) -> None:
-        """Advance by 1 ms from `now` [ns since the Unix epoch]; every tenth time a joint state is published."""
+        """Advance by 1 ms from `now` [ns since the Unix epoch]; publish a joint state in every tenth step."""
         with self._lock:
             self._read_setpoints(now)
-            wanted = self._player.target
-            self._tracking_error = float(np.max(np.abs(wanted.position - self._arm.position)))
+            target = self._player.target
+            self._tracking_error = float(np.max(np.abs(target.position - self._arm.position)))
             state = self._state(now) if self._steps % STEPS_PER_STATE == 0 else None
-            self._arm.step(wanted.position, wanted.velocity, wanted.acceleration)
+            self._arm.step(target.position, target.velocity, target.acceleration)
             self._steps += 1
             self._rest_steps = self._rest_steps + 1 if self._player.at_rest and self._arm.at_rest else 0
         if state is not None:
@@ -133,18 +133,18 @@ class Simulator:
 
     @property
     def _is_idle(self) -> bool:
-        """Whether arm and object have stood still for a while and nothing is there to change that."""
+        """Whether arm and object have stood still for a while and no setpoint has come."""
         return self._rest_steps >= REST_STEPS_BEFORE_IDLE and not self._setpoints
 
     def _idle(self, since: int) -> int:
-        """Let an arm at rest be until something comes, or its next joint state is due; returns when that was [ns].
+        """Wait for a setpoint or until the next joint state is due, and return the time then [ns since the Unix epoch].
 
-        Nothing is computed: what stands still under constant torques goes on standing still.
+        No physics is computed: what stands still under constant torques goes on standing still.
         """
         with self._lock:
             state = self._state(since)
         self._publish(state)
-        self._idle_wait(self._wake, IDLE_STATE_PERIOD)
+        self._time.wait(self._wake, IDLE_STATE_PERIOD)
         self._wake.clear()
         now = self._clock()
         with self._lock:
@@ -166,7 +166,7 @@ class Simulator:
         self._scene = scene
         self._player = SetpointPlayer(self._arm.position, delay=settings.delay, silence=settings.silence)
         self._setpoints.clear()
-        self._finished_execution = ""  # the execution that said that it has ended
+        self._finished_execution = ""  # id of the execution whose end the executor has published
         self._gripper_closed = False
         self._tracking_error = 0.0
         self._steps = 0
@@ -184,7 +184,7 @@ class Simulator:
             self._move_gripper(reached.gripper_closed)
 
     def _read_statuses(self) -> None:
-        """Read what the executor says of itself."""
+        """Read the executor's statuses."""
         try:
             while self._statuses:
                 status = wire.decode_status(self._statuses.popleft())
@@ -201,9 +201,9 @@ class Simulator:
         self._gripper_closed = closed
 
     def _state(self, now: int) -> JointState:
-        playback, newest = self._player, self._player.last_reached
-        holding = newest is not None and newest.execution != self._finished_execution and playback.holding
-        place, turn = self._arm.object_pose
+        player, newest = self._player, self._player.last_reached
+        holding = newest is not None and newest.execution != self._finished_execution and player.holding
+        position, orientation = self._arm.object_pose
         return JointState(
             stamp_ns=now,
             cycle=newest.cycle if newest is not None else 0,
@@ -211,11 +211,11 @@ class Simulator:
             velocity=self._arm.velocity,
             torque=self._arm.torque,
             tracking_error=self._tracking_error,
-            missed=playback.missed + (playback.overdue if holding else 0),
+            missed=player.missed + (player.overdue if holding else 0),
             holding=holding,
             gripper_closed=self._gripper_closed,
-            object_position=place,
-            object_orientation=turn,
+            object_position=position,
+            object_orientation=orientation,
             execution=newest.execution if newest is not None else "",
-            late=playback.late,
+            late=player.late,
         )

@@ -17,6 +17,7 @@ from teachpath.motion.settings import MotionSettings
 from teachpath.records import ExecutorStatus, JointState, Scene, Setpoint
 from teachpath.simulator.loop import Simulator
 from teachpath.simulator.settings import SimulatorSettings
+from teachpath.time_source import TimeSource
 from teachpath_proto.control import ExecutorState
 from teachpath_proto.keys import Keys
 
@@ -40,9 +41,7 @@ class Bench:
             KEYS,
             scene or empty_scene(),
             SETTINGS,
-            clock=lambda: self.now,
-            sleep=self._sleep,
-            idle_wait=self._doze,
+            time_source=TimeSource(wall_ns=lambda: self.now, sleep=self._sleep, wait=self._doze),
         )
         self.steps = 0  # of 1 ms that were computed
         self.bus.subscribe(KEYS.state("puma560"), lambda _, p: self.states.append(wire.decode_state(p)))
