@@ -18,14 +18,14 @@ def validate(demonstrations: Mapping[str, Trajectory]) -> None:
 
     Raises:
         LearningFailed: the set is empty, or a demonstration is misshapen, not finite, runs backwards in time, has
-            fewer than five distinct points or does not move; the message names it.
+            fewer than five distinct points or does not move; the error carries its id.
     """
     if not demonstrations:
         raise LearningFailed("there is no demonstration to learn from; record at least one")
     for name, trajectory in demonstrations.items():
         fault = _fault(trajectory)
         if fault:
-            raise LearningFailed(f"demonstration {name} {fault}; leave it out or record it again")
+            raise LearningFailed(f"demonstration {name} {fault}; leave it out or record it again", name)
 
 
 def _fault(trajectory: Trajectory) -> str:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import asdict, replace
-from functools import cache
 from importlib.metadata import version
 
 import numpy as np
@@ -17,14 +16,14 @@ from teachpath.learning.input_validation import validate
 from teachpath.learning.resampling import arc_lengths, at_equal_arc_length, smoothed, undersampled
 from teachpath.learning.selection.default_mode import select, step_count
 from teachpath.learning.selection.paper_mode import paper_step_count, select_as_paper
-from teachpath.learning.settings import LearningSettings, Progress, no_progress, step_counter, subprogress
+from teachpath.learning.settings import LearningSettings, Progress, StepCounter, Subprogress, no_progress
 from teachpath.learning.summary import ambiguities, fingerprint, representatives, tube_radius
 from teachpath.records import Array, Cluster, Learned, LearnedPath, Trajectory
 
 PATH_POINTS = 100  # at equal arc length, for the distance of two paths
 SELECTION_MESSAGE = "looking for inconsistent demonstrations"
-LIBRARIES = ("teachpath", "numpy", "scipy", "hmmlearn", "numba")
-_version = cache(version)  # reads a file
+# Read once, because each reads a file.
+LIBRARY_VERSIONS = tuple((name, version(name)) for name in ("teachpath", "numpy", "scipy", "hmmlearn", "numba"))
 
 
 def learn(
@@ -46,9 +45,9 @@ def learn(
     validate(demonstrations)
     progress(0.0, f"comparing {len(demonstrations)} demonstrations")
     metric = metric_of(settings)
-    courses, length = comparable_paths(demonstrations, metric, settings.seed, subprogress(progress, 0.0, 0.05))
-    grouping = cluster_paths(courses, settings, length=length, metric=metric, progress=subprogress(progress, 0.05, 0.2))
-    return learn_partition(demonstrations, courses, grouping, settings, subprogress(progress, 0.2, 1.0))
+    courses, length = comparable_paths(demonstrations, metric, settings.seed, Subprogress(progress, 0.0, 0.05))
+    grouping = cluster_paths(courses, settings, length=length, metric=metric, progress=Subprogress(progress, 0.05, 0.2))
+    return learn_partition(demonstrations, courses, grouping, settings, Subprogress(progress, 0.2, 1.0))
 
 
 def metric_of(settings: LearningSettings) -> str:
@@ -60,7 +59,7 @@ def comparable_paths(
     demonstrations: Mapping[str, Trajectory], metric: str, seed: int, progress: Progress = no_progress
 ) -> tuple[Array, float]:
     """Return what the demonstrations are compared by, (m, n, 3) [m], and the length of a typical path [m]."""
-    on_step = step_counter(progress, len(demonstrations), "smoothing the demonstrations")
+    on_step = StepCounter(progress, len(demonstrations), "smoothing the demonstrations")
     courses, lengths = [], []
     for trajectory in demonstrations.values():
         path = smoothed(trajectory)
@@ -92,18 +91,18 @@ def learn_partition(
     """
     names = tuple(demonstrations)
     ways = members_by_label(names, grouping.labels)
-    choosing = subprogress(progress, 0.0, 0.75)
+    choosing = Subprogress(progress, 0.0, 0.75)
     if settings.mode == "default":
-        on_step = step_counter(choosing, step_count([len(way) for way in ways], settings.repeats), SELECTION_MESSAGE)
+        on_step = StepCounter(choosing, step_count([len(way) for way in ways], settings.repeats), SELECTION_MESSAGE)
         clusters = tuple(
             select(index + 1, {name: demonstrations[name] for name in way}, settings, on_step=on_step)
             for index, way in enumerate(ways)
         )
     else:
-        on_step = step_counter(choosing, paper_step_count(len(ways), settings.repeats), SELECTION_MESSAGE)
+        on_step = StepCounter(choosing, paper_step_count(len(ways), settings.repeats), SELECTION_MESSAGE)
         clusters = select_as_paper(dict(zip(names, courses, strict=True)), ways, settings, on_step=on_step)
     central = representatives(courses, grouping.labels)
-    found = _fitted(clusters, demonstrations, settings, subprogress(progress, 0.75, 1.0))
+    found = _fitted(clusters, demonstrations, settings, Subprogress(progress, 0.75, 1.0))
     paths = tuple(path for path, _ in found)
     described = [
         replace(cluster, representative=names[member], spread=spread, ambiguous=doubt)
@@ -119,7 +118,7 @@ def learn_partition(
         paths=paths,
         notes=(grouping.note,) if grouping.note else (),
         settings=asdict(settings),
-        versions={name: _version(name) for name in LIBRARIES},
+        versions=dict(LIBRARY_VERSIONS),
         inputs={name: fingerprint(trajectory) for name, trajectory in demonstrations.items()},
     )
 
@@ -144,8 +143,8 @@ def _fitted(
     found = []
     for done, cluster in enumerate(clusters):
         selected = [demonstrations[score.demonstration] for score in cluster.scores if score.selected]
-        own = subprogress(progress, done / len(clusters), (done + 1) / len(clusters))
-        on_step = step_counter(own, 3 * len(selected), f"fitting the path of way {cluster.index}")
+        own = Subprogress(progress, done / len(clusters), (done + 1) / len(clusters))
+        on_step = StepCounter(own, 3 * len(selected), f"fitting the path of way {cluster.index}")
         path = fit(cluster.index, selected, settings, on_step=on_step)
         found.append((path, tube_radius(path.curve, selected, on_step=on_step)))
     return found

@@ -65,5 +65,5 @@ def _check_unchanged(learned: Learned, demonstrations: Mapping[str, Trajectory])
         if name not in demonstrations or (known and known != fingerprint(demonstrations[name])):
             told = "has changed" if name in demonstrations else "is no longer learned from"
             raise LearningFailed(
-                f"demonstration {name} {told} since that run: its dendrogram is out of date, learn anew"
+                f"demonstration {name} {told} since that run: its dendrogram is out of date, learn anew", name
             )

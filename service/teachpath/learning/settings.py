@@ -24,21 +24,32 @@ def no_progress(_fraction: float, _sentence: str) -> None:
     """Take no notice of progress."""
 
 
-def subprogress(progress: Progress, begin: float, end: float) -> Progress:
-    """Return the progress of a part of the work, from `begin` to `end` of the whole."""
-    return lambda fraction, sentence: progress(begin + fraction * (end - begin), sentence)
+@dataclass(frozen=True)
+class Subprogress:
+    """The progress of a part of the work, which goes from `begin` to `end` of the whole."""
+
+    progress: Progress
+    begin: float
+    end: float
+
+    def __call__(self, fraction: float, sentence: str) -> None:
+        """Report the fraction done of the part."""
+        self.progress(self.begin + fraction * (self.end - self.begin), sentence)
 
 
-def step_counter(progress: Progress, total: int, sentence: str) -> StepCallback:
-    """Return what tells the progress of work in `total` pieces."""
-    done = 0
+@dataclass
+class StepCounter:
+    """The progress of work in `total` steps, reported with one sentence."""
 
-    def on_step() -> None:
-        nonlocal done
-        done += 1
-        progress(min(done / max(total, 1), 1.0), sentence)
+    progress: Progress
+    total: int
+    sentence: str
+    done: int = 0
 
-    return on_step
+    def __call__(self) -> None:
+        """Report one more step done."""
+        self.done += 1
+        self.progress(min(self.done / max(self.total, 1), 1.0), self.sentence)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -81,8 +81,9 @@ def test_wildly_different_lengths_are_learned(settings: LearningSettings) -> Non
 
 @BOTH
 def test_an_empty_set_is_refused(settings: LearningSettings) -> None:
-    with pytest.raises(LearningFailed, match="no demonstration"):
+    with pytest.raises(LearningFailed, match="no demonstration") as refused:
         learn({}, settings)
+    assert refused.value.demonstration == ""
 
 
 def spoilt(kind: str) -> Trajectory:
@@ -126,5 +127,6 @@ def spoilt(kind: str) -> Trajectory:
     ],
 )
 def test_an_unusable_demonstration_is_named(settings: LearningSettings, kind: str, sentence: str) -> None:
-    with pytest.raises(LearningFailed, match=rf"take-7 .*{sentence}"):
+    with pytest.raises(LearningFailed, match=rf"take-7 .*{sentence}") as refused:
         learn({**synthetic.experiment_2(1), "take-7": spoilt(kind)}, settings)
+    assert refused.value.demonstration == "take-7"

@@ -10,7 +10,7 @@ from teachpath.learning.clustering.average_linkage import average_linkage
 from teachpath.learning.clustering.dendrogram import Labels, height_for_count, labels_at_height, labels_for_count
 from teachpath.learning.clustering.distances import Distances
 from teachpath.learning.clustering.silhouettes import Silhouettes
-from teachpath.learning.settings import LearningSettings, Progress, no_progress, subprogress
+from teachpath.learning.settings import LearningSettings, Progress, Subprogress, no_progress
 from teachpath.records import Array
 
 MAX_CLUSTERS = 10  # that the silhouette chooses among
@@ -102,14 +102,14 @@ def cut_by_silhouette(
     """
     if count == 1:
         return cut_into(np.empty((0, 4)), 1)
-    tree = average_linkage(condensed, count, subprogress(progress, 0.0, 0.6))
+    tree = average_linkage(condensed, count, Subprogress(progress, 0.0, 0.6))
     top = float(tree[-1, 2])
     wide = top > MIN_PAIR_SEPARATION * length
     if count == 2:
         threshold = top / 2 if wide else top
         return Partition(tree, threshold, labels_at_height(tree, threshold), _pair_note(top, wide), 1 if wide else 2)
     most = min(MAX_CLUSTERS, count - 1)
-    silhouettes = Silhouettes(condensed, tree, most, subprogress(progress, 0.6, 1.0))
+    silhouettes = Silhouettes(condensed, tree, most, Subprogress(progress, 0.6, 1.0))
     scores = {k: silhouettes.mean(k) for k in range(2, most + 1)}
     best = max(scores, key=lambda k: scores[k])
     if scores[best] < min_silhouette:

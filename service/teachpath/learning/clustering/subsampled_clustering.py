@@ -13,7 +13,7 @@ import numpy as np
 from teachpath.learning.clustering.dendrogram import extended_linkage, labels_at_height
 from teachpath.learning.clustering.distances import nearest_paths, pairwise_distances
 from teachpath.learning.clustering.partition import Partition, cluster_distances
-from teachpath.learning.settings import LearningSettings, Progress, no_progress, subprogress
+from teachpath.learning.settings import LearningSettings, Progress, Subprogress, no_progress
 from teachpath.records import Array
 
 MAX_EXACT_DEMONSTRATIONS = 20_000  # demonstrations above which not every pair is measured
@@ -36,7 +36,7 @@ def cluster_paths(
         progress: is told how far the work has come.
     """
     m = len(paths)
-    measure, cut = subprogress(progress, 0.0, 0.7), subprogress(progress, 0.7, 1.0)
+    measure, cut = Subprogress(progress, 0.0, 0.7), Subprogress(progress, 0.7, 1.0)
     if m <= MAX_EXACT_DEMONSTRATIONS:
         condensed = pairwise_distances(paths, metric, measure)
         return cluster_distances(condensed, m, settings, length=length, progress=cut)

@@ -5,7 +5,6 @@ Piegl & Tiller, The NURBS Book, section 9.4.1 (least squares with fixed end poin
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -73,27 +72,29 @@ def approximate(
 
 def distances_to_curve(curve: Curve, points: Array) -> Array:
     """Return the true nearest distance of every point from the curve: (n,) [m]."""
-    return distance_function(curve)(points)
+    return CurveDistance(curve)(points)
 
 
-def distance_function(curve: Curve) -> Callable[[Array], Array]:
-    """Return what `distances_to_curve` of this curve is, for many sets of points.
+class CurveDistance:
+    """The distance of points from one curve, for many sets of points.
 
-    The curve is sampled densely and taken for a polyline, whose segments beside the nearest sample are measured.
+    The curve is sampled densely and taken for a polyline; the two segments beside the nearest sample are measured.
     """
-    samples = curve(np.linspace(0.0, 1.0, max(CURVE_SAMPLES, 64 * len(curve.control_points)) + 1))
-    tree = cKDTree(samples)
 
-    def distances(points: Array) -> Array:
-        nearest = np.asarray(tree.query(points)[1])
+    def __init__(self, curve: Curve) -> None:
+        self._samples = curve(np.linspace(0.0, 1.0, max(CURVE_SAMPLES, 64 * len(curve.control_points)) + 1))
+        self._tree = cKDTree(self._samples)
+
+    def __call__(self, points: Array) -> Array:
+        """Return the distance of every point from the curve: (n,) [m]."""
+        samples = self._samples
+        nearest = np.asarray(self._tree.query(points)[1])
         before = np.maximum(nearest - 1, 0)
         after = np.minimum(nearest + 1, len(samples) - 1)
         return np.minimum(
             _to_segments(points, samples[before], samples[nearest]),
             _to_segments(points, samples[nearest], samples[after]),
         )
-
-    return distances
 
 
 class _Problem:

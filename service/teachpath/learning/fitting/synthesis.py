@@ -11,8 +11,8 @@ from teachpath.learning.clustering.distances import frechet_distance
 from teachpath.learning.fitting.nurbs_fit import (
     CURVE_SAMPLES,
     Approximation,
+    CurveDistance,
     approximate,
-    distance_function,
     distances_to_curve,
 )
 from teachpath.learning.fitting.orientation_fit import fit_orientations, mean_orientations
@@ -161,7 +161,7 @@ def _path(
     note: str,
     on_step: StepCallback,
 ) -> LearnedPath:
-    distances = distance_function(fit.curve)
+    distances = CurveDistance(fit.curve)
     apart = distances(fitted)
     course = mean_path([smoothed(trajectory) for trajectory in selected])
     tube = 0.0

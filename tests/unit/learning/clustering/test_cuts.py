@@ -101,8 +101,9 @@ def test_a_cut_where_it_was_changes_no_path(learned: Learned, twelve: dict[str, 
 
 def test_demonstrations_that_changed_or_went_are_named(learned: Learned, twelve: dict[str, Trajectory]) -> None:
     fewer = {name: each for name, each in twelve.items() if name != "7"}
-    with pytest.raises(LearningFailed, match=r"demonstration 7 is no longer learned from .* learn anew"):
+    with pytest.raises(LearningFailed, match=r"demonstration 7 is no longer learned from .* learn anew") as refused:
         relearn(learned, fewer, clusters=2)
+    assert refused.value.demonstration == "7"
     trimmed = fewer | {"7": Trajectory(twelve["7"].times[:-5], twelve["7"].positions[:-5])}
     with pytest.raises(LearningFailed, match=r"demonstration 7 has changed .* learn anew"):
         relearn(learned, trimmed, clusters=2)
