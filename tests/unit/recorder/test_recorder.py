@@ -172,7 +172,7 @@ def test_an_endless_reach_does_not_fill_the_disk(bench: Bench) -> None:
     assert report.received == len(resting) + 110
 
 
-def test_a_grasp_that_ends_a_take_is_the_first_sample_of_the_next_in_every_account(bench: Bench) -> None:
+def test_a_grasp_that_ends_a_take_is_the_first_sample_of_the_next_in_all_statistics(bench: Bench) -> None:
     bench.begin()
     carry = demonstration(transport=40)[20:75]  # no rest: the hand comes back and takes the object again
     stream = [

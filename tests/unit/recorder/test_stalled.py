@@ -1,4 +1,4 @@
-"""Whoever watches may stall: a page that sleeps, guidance that ponders. The recorder records on."""
+"""A page or the guidance may stall; the recorder goes on."""
 
 import threading
 
@@ -26,7 +26,7 @@ def record(bench: Bench) -> None:
     assert (report.received, report.lost, len(report.demonstrations)) == (TAKES * SHOWN, 0, TAKES)
 
 
-def test_a_page_that_takes_nothing_keeps_the_recorder_from_nothing(bench: Bench) -> None:
+def test_a_page_that_sleeps_does_not_delay_the_recorder(bench: Bench) -> None:
     view = Preview(
         bench.bus, KEYS, visual_solids(), robot="puma", home=np.zeros(6), statuses=bench.recorder.shown_statuses
     )
@@ -37,21 +37,21 @@ def test_a_page_that_takes_nothing_keeps_the_recorder_from_nothing(bench: Bench)
         assert viewer.pending < 100
 
 
-def test_guidance_that_ponders_keeps_the_recorder_from_nothing(store: object) -> None:
-    ponders, asked = threading.Event(), threading.Event()
+def test_guidance_that_stalls_does_not_delay_the_recorder(store: object) -> None:
+    go_on, asked = threading.Event(), threading.Event()
 
-    def ponder(_: Demonstration) -> Trajectory:
+    def stall(_: Demonstration) -> Trajectory:
         asked.set()
-        ponders.wait()
+        go_on.wait()
         raise UnusableRecording("nobody needs it any more")
 
     bench = Bench(store, recorded=lambda made, _: guidance.request(made.task))  # type: ignore[arg-type]
-    guidance = GuidanceThread(bench.store.demonstrations, ponder, LearningSettings())
+    guidance = GuidanceThread(bench.store.demonstrations, stall, LearningSettings())
     guidance.start()
     try:
         record(bench)
         assert asked.wait(HANG)
     finally:
-        ponders.set()
+        go_on.set()
         guidance.stop()
         bench.recorder.stop()

@@ -12,20 +12,20 @@ from tests.unit.recording.hands import demonstration, sample
 from tests.waiting import wait_until
 
 
-class Door:
-    """A gate on a bench, and what it told those who had to leave."""
+class Desk:
+    """WebSocket trackers on a bench, and the reasons why some were disconnected."""
 
     def __init__(self, bench: Bench) -> None:
-        self.bench, self.now, self.told = bench, 0.0, list[str]()
-        self.gate = WebSocketTrackers(bench.bus, KEYS, bench.recorder, clock=lambda: self.now)
+        self.bench, self.now, self.reasons = bench, 0.0, list[str]()
+        self.trackers = WebSocketTrackers(bench.bus, KEYS, bench.recorder, clock=lambda: self.now)
 
     def register(self, name: str = "page") -> WebSocketTracker:
-        return self.gate.register(name, self.told.append)
+        return self.trackers.register(name, self.reasons.append)
 
 
 @pytest.fixture
-def door(bench: Bench) -> Door:
-    return Door(bench)
+def desk(bench: Bench) -> Desk:
+    return Desk(bench)
 
 
 def as_json(s: Sample) -> dict[str, Any]:
@@ -34,11 +34,11 @@ def as_json(s: Sample) -> dict[str, Any]:
     return named | {"flexions": list(s.flexions), "tracked": s.tracked, "buttons": s.buttons}
 
 
-def test_a_demonstration_over_the_gate_gets_the_verdict_and_the_account_of_any_other(door: Door) -> None:
+def test_a_demonstration_over_a_websocket_gets_the_verdict_and_the_statistics_of_any_other(desk: Desk) -> None:
     stream = demonstration()
-    bench = door.bench
+    bench = desk.bench
     bench.begin("page")
-    page = door.register()
+    page = desk.register()
     for s in stream[:55]:
         assert page.publish(as_json(s)) == ""
     for s in stream[55:]:
@@ -73,10 +73,10 @@ def test_a_demonstration_over_the_gate_gets_the_verdict_and_the_account_of_any_o
     ],
 )
 def test_unsound_values_are_refused_with_a_sentence_and_counted_by_the_recorder_too(
-    door: Door, changes: dict[str, Any], sentence: str
+    desk: Desk, changes: dict[str, Any], sentence: str
 ) -> None:
-    door.bench.begin("page")
-    page = door.register()
+    desk.bench.begin("page")
+    page = desk.register()
     assert sentence in page.publish(as_json(sample(1, (0.5, 0.0, 0.5))) | changes)
     assert page.publish(as_json(sample(2, (0.5, 0.0, 0.5)))) == ""
     report = page.end_recording(2, discard=True)
@@ -99,73 +99,73 @@ def test_unsound_values_are_refused_with_a_sentence_and_counted_by_the_recorder_
         bytes(100_000),
     ],
 )
-def test_what_is_no_sample_is_refused_and_does_not_reach_the_bus(door: Door, content: Any) -> None:
+def test_what_is_no_sample_is_refused_and_does_not_reach_the_bus(desk: Desk, content: Any) -> None:
     seen: list[bytes] = []
-    door.bench.bus.subscribe(KEYS.all_samples, lambda _, payload: seen.append(payload))
-    page = door.register()
+    desk.bench.bus.subscribe(KEYS.all_samples, lambda _, payload: seen.append(payload))
+    page = desk.register()
     assert len(page.publish(content)) > 15
     assert (seen, page.refused) == ([], 1)
 
 
-def test_a_flood_has_to_leave_and_a_burst_after_a_pause_may_stay(door: Door) -> None:
-    page = door.register()
+def test_a_flood_has_to_leave_and_a_burst_after_a_pause_may_stay(desk: Desk) -> None:
+    page = desk.register()
     one = as_json(sample(1, (0.5, 0.0, 0.5)))
     for _ in range(int(websocket_trackers.RATE_BURST)):
         page.publish(one)
     with pytest.raises(UnusableInput, match="faster than 1000 a second"):
         page.publish(one)
-    door.now += 1.0
+    desk.now += 1.0
     for _ in range(int(websocket_trackers.RATE_LIMIT) - 1):
         page.publish(one)
 
 
-def test_one_that_never_makes_sense_has_to_leave(door: Door) -> None:
-    page = door.register()
+def test_one_that_never_makes_sense_has_to_leave(desk: Desk) -> None:
+    page = desk.register()
     for _ in range(websocket_trackers.MAX_CONSECUTIVE_REJECTS):
         page.refuse("nonsense")
     with pytest.raises(UnusableInput, match="101 messages in a row were refused; the last one: nonsense"):
         page.refuse("nonsense")
 
 
-def test_names_are_kept_apart(door: Door) -> None:
+def test_names_are_kept_apart(desk: Desk) -> None:
     with pytest.raises(UnusableInput, match="cannot name a tracker"):
-        door.register("../glove")
-    token = door.bench.bus.announce(KEYS.alive("tracker", "glove"))
-    door.bench.begin("glove")
-    wait_until(door.bench.recorder.trackers, "the tracker is there")
+        desk.register("../glove")
+    token = desk.bench.bus.announce(KEYS.alive("tracker", "glove"))
+    desk.bench.begin("glove")
+    wait_until(desk.bench.recorder.trackers, "the tracker is there")
     with pytest.raises(Conflict, match="a tracker glove is there already"):
-        door.register("glove")
+        desk.register("glove")
     token.close()
-    many = [door.register(f"page-{k}") for k in range(websocket_trackers.MAX_TRACKERS)]
+    many = [desk.register(f"page-{k}") for k in range(websocket_trackers.MAX_TRACKERS)]
     with pytest.raises(Conflict, match="close some"):
-        door.register("one-more")
-    door.gate.unregister(many[0])
-    door.gate.unregister(many[0])
-    door.register("one-more")
+        desk.register("one-more")
+    desk.trackers.unregister(many[0])
+    desk.trackers.unregister(many[0])
+    desk.register("one-more")
 
 
-def test_one_that_comes_back_at_once_is_not_taken_for_another(door: Door) -> None:
-    recorder = door.bench.recorder
-    page = door.register()
+def test_one_that_comes_back_at_once_is_not_taken_for_another(desk: Desk) -> None:
+    recorder = desk.bench.recorder
+    page = desk.register()
     wait_until(lambda: any(tracker.announced for tracker in recorder.trackers()), "the tracker is there")
-    other = door.bench.bus.announce(KEYS.alive("tracker", "page"))  # as if the bus still told of it
-    door.gate.unregister(page)
-    door.gate.unregister(door.register())
+    other = desk.bench.bus.announce(KEYS.alive("tracker", "page"))  # as if the bus still told of it
+    desk.trackers.unregister(page)
+    desk.trackers.unregister(desk.register())
     other.close()
-    door.now += websocket_trackers.REANNOUNCE_GRACE
-    door.bench.bus.announce(KEYS.alive("tracker", "page"))
+    desk.now += websocket_trackers.REANNOUNCE_GRACE
+    desk.bench.bus.announce(KEYS.alive("tracker", "page"))
     wait_until(lambda: any(tracker.announced for tracker in recorder.trackers()), "the tracker is there")
     with pytest.raises(Conflict):
-        door.register()
+        desk.register()
 
 
-def test_the_newest_page_of_a_name_wins_and_leaving_is_seen_on_the_bus(door: Door) -> None:
+def test_the_newest_page_of_a_name_wins_and_leaving_is_seen_on_the_bus(desk: Desk) -> None:
     alive: list[tuple[str, bool]] = []
-    door.bench.bus.watch(KEYS.all_trackers_alive, lambda key, there: alive.append((key.rsplit("/")[-1], there)))
-    first = door.register()
-    second = door.register()
-    assert door.told == ["another page came as page"]
-    door.gate.unregister(first)  # its connection ends later than the new one began
+    desk.bench.bus.watch(KEYS.all_trackers_alive, lambda key, there: alive.append((key.rsplit("/")[-1], there)))
+    first = desk.register()
+    second = desk.register()
+    assert desk.reasons == ["another page came as page"]
+    desk.trackers.unregister(first)  # its connection ends later than the new one began
     assert alive == [("page", True), ("page", False), ("page", True)]
-    door.gate.unregister(second)
+    desk.trackers.unregister(second)
     assert alive[-1] == ("page", False)

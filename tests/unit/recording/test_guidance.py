@@ -6,7 +6,7 @@ LENGTH = 0.7  # m
 
 
 @pytest.mark.parametrize(
-    ("ways", "sentence"),
+    ("clusters", "sentence"),
     [
         ([], ""),
         ([ClusterSummary(0, 0.0)], ""),
@@ -33,8 +33,8 @@ LENGTH = 0.7  # m
         ),
     ],
 )
-def test_the_guidance_says_what_agrees_and_what_to_show_again(ways: list[ClusterSummary], sentence: str) -> None:
-    assert advise(ways, LENGTH) == sentence
+def test_the_advice_says_what_agrees_and_what_to_show_again(clusters: list[ClusterSummary], sentence: str) -> None:
+    assert advise(clusters, LENGTH) == sentence
 
 
 @pytest.mark.parametrize("scale", [0.1, 1.0, 10.0])

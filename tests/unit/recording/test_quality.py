@@ -12,9 +12,9 @@ SETTINGS = RecordingSettings()
 CLEAN = StreamStatistics(received=100, declared_rate=50.0, seen_rate=50.0)
 
 
-def transport(account: StreamStatistics) -> PhaseStatistics:
+def transport(statistics: StreamStatistics) -> PhaseStatistics:
     """Return a take of which everything is learned."""
-    return PhaseStatistics(account, StreamStatistics(), account, StreamStatistics())
+    return PhaseStatistics(statistics, StreamStatistics(), statistics, StreamStatistics())
 
 
 @pytest.mark.parametrize(

@@ -6,7 +6,7 @@ from teachpath.recording.stream_statistics import StreamCounter
 from tests.unit.recording.hands import PERIOD_NS, START_NS, sample
 
 
-def account_of(sequences: list[int], expected: int | None = None) -> StreamCounter:
+def counter_of(sequences: list[int], expected: int | None = None) -> StreamCounter:
     statistics = StreamCounter()
     for sequence in sequences:
         statistics.observe(sample(sequence, (0.0, 0.0, 0.0)))
@@ -25,30 +25,30 @@ def test_every_sample_sent_is_received_or_lost(sent: int, kept: set[int], twice:
     arrived = [n for n in range(2, sent + 1) if n in kept]
     stream = arrived + [n for n in twice if n in arrived]
     order.shuffle(stream)
-    statistics = account_of([1, *stream], sent).statistics()
+    statistics = counter_of([1, *stream], sent).statistics()
     assert statistics.lost == sent - 1 - len(arrived)
     assert statistics.duplicated == len(stream) - len(arrived)
     assert statistics.received == 1 + len(stream)
 
 
 def test_order_decides_between_late_and_in_time() -> None:
-    statistics = account_of([1, 2, 5, 3, 4, 4, 6]).statistics()
+    statistics = counter_of([1, 2, 5, 3, 4, 4, 6]).statistics()
     assert (statistics.reordered, statistics.duplicated, statistics.lost) == (2, 1, 0)
 
 
 def test_a_restarted_device_is_noted_not_counted_as_a_million_lost() -> None:
-    statistics = account_of([1, 2, 5_000_000]).statistics()
+    statistics = counter_of([1, 2, 5_000_000]).statistics()
     assert statistics.lost == 0
     assert any("restarted" in note for note in statistics.notes)
 
 
 def test_nothing_came_is_said() -> None:
-    statistics = account_of([], 40).statistics()
+    statistics = counter_of([], 40).statistics()
     assert any("no sample came" in note for note in statistics.notes)
 
 
 def test_the_longest_gap_is_that_of_the_devices_clock() -> None:
-    assert account_of([1, 2, 6, 7]).statistics().longest_gap_ns == 4 * 20_000_000
+    assert counter_of([1, 2, 6, 7]).statistics().longest_gap_ns == 4 * 20_000_000
 
 
 def stream(*changes: dict[str, object], rate: float = 0.0) -> StreamCounter:
@@ -59,7 +59,7 @@ def stream(*changes: dict[str, object], rate: float = 0.0) -> StreamCounter:
 
 
 def test_gaps_are_stretches_of_numbers_and_a_late_sample_fills_its_own() -> None:
-    statistics = account_of([1, 2, 6, 7, 9])
+    statistics = counter_of([1, 2, 6, 7, 9])
     assert (statistics.statistics().gaps, statistics.statistics().lost) == (2, 4)
     statistics.observe(sample(4, (0.0, 0.0, 0.0)))
     assert (statistics.statistics().gaps, statistics.statistics().lost, statistics.statistics().reordered) == (3, 3, 1)
@@ -69,13 +69,13 @@ def test_gaps_are_stretches_of_numbers_and_a_late_sample_fills_its_own() -> None
 
 
 def test_a_hostile_stream_of_large_jumps_needs_no_more_room_than_its_samples() -> None:
-    statistics = account_of([i * 99_999 for i in range(500)])
+    statistics = counter_of([i * 99_999 for i in range(500)])
     assert statistics.statistics().gaps == 499
     assert statistics.statistics().lost == 499 * 99_998
 
 
 def test_the_seen_rate_is_that_of_the_device_and_loss_does_not_lower_it() -> None:
-    assert account_of([1, 2, 3, 8, 9]).statistics().seen_rate == pytest.approx(50.0)
+    assert counter_of([1, 2, 3, 8, 9]).statistics().seen_rate == pytest.approx(50.0)
 
 
 AT = START_NS + 3 * PERIOD_NS
@@ -111,7 +111,7 @@ def test_loss_at_many_times_real_time_is_no_clock_jump() -> None:
 
 
 def test_one_number_with_two_times_is_a_conflict() -> None:
-    statistics = account_of([1, 2, 3, 3])
+    statistics = counter_of([1, 2, 3, 3])
     assert (statistics.statistics().duplicated, statistics.statistics().conflicts) == (1, 0)
     statistics.observe(sample(3, (0.1, 0.0, 0.0), device_ns=START_NS + 3 * PERIOD_NS + 7))
     assert (statistics.statistics().duplicated, statistics.statistics().conflicts) == (2, 1)
@@ -119,7 +119,7 @@ def test_one_number_with_two_times_is_a_conflict() -> None:
 
 
 def test_a_thousand_conflicts_are_one_sentence_and_hide_no_other() -> None:
-    statistics = account_of(list(range(1, 200)))
+    statistics = counter_of(list(range(1, 200)))
     statistics.note("the lamp is green")
     for n in range(1, 200):
         statistics.observe(sample(n, (0.1, 0.0, 0.0), device_ns=START_NS + n * PERIOD_NS + 7))
@@ -130,7 +130,7 @@ def test_a_thousand_conflicts_are_one_sentence_and_hide_no_other() -> None:
 
 
 def test_a_device_that_counts_anew_is_told_from_late_samples() -> None:
-    statistics = account_of(list(range(1, 40)))
+    statistics = counter_of(list(range(1, 40)))
     for n in range(1, 11):
         assert not statistics.has_restarted
         statistics.observe(sample(n, (0.0, 0.0, 0.0), device_ns=START_NS + (100 + n) * PERIOD_NS))
@@ -139,7 +139,7 @@ def test_a_device_that_counts_anew_is_told_from_late_samples() -> None:
     assert statistics.observe(sample(11, (0.0, 0.0, 0.0), device_ns=START_NS + 111 * PERIOD_NS))
     assert not statistics.has_restarted
     assert any("counts anew" in note for note in statistics.statistics().notes)
-    again = account_of([*range(1, 40), *range(1, 30)])
+    again = counter_of([*range(1, 40), *range(1, 30)])
     assert not again.has_restarted
 
 
