@@ -7,7 +7,6 @@ import time
 from dataclasses import asdict
 from pathlib import Path
 from types import TracebackType
-from typing import Any
 
 import numpy as np
 from fastapi import FastAPI
@@ -18,15 +17,13 @@ from teachpath.api.parts import Advice, Health, Parts
 from teachpath.api.station import build_api
 from teachpath.api.view import view_router
 from teachpath.config import Settings, instructions
-from teachpath.errors import NotFound
 from teachpath.io.bus import Bus, listen_on_bus
-from teachpath.io.bus_access import prepare_access
+from teachpath.io.bus_access import BusAccess, prepare_access
 from teachpath.io.store.store import Store
 from teachpath.io.wire import recording_document
-from teachpath.jobs import worker
+from teachpath.job_kinds import JobKinds
 from teachpath.jobs.curve_assessor import CurveAssessor
-from teachpath.jobs.jobs import JobKind, Jobs
-from teachpath.learning.settings import LearningSettings
+from teachpath.jobs.jobs import Jobs
 from teachpath.live.event_hub import EventHub
 from teachpath.live.preview.preview import Preview
 from teachpath.live.state_poller import Poll, StatePoller
@@ -38,7 +35,7 @@ from teachpath.recorder.guidance import GuidanceThread
 from teachpath.recorder.queries import RecorderQueries
 from teachpath.recorder.recorder import DemonstrationCallbacks, Lookup, Recorder
 from teachpath.recorder.websocket_trackers import WebSocketTrackers
-from teachpath.records import Demonstration, Job, Learned, Plan, Trajectory
+from teachpath.records import Demonstration, Trajectory
 from teachpath.robot.executions import Executions
 from teachpath.robot.joint_feed import JointFeed
 from teachpath.robot.processes import WorkerProcess
@@ -74,47 +71,13 @@ class Station:
             self._lock.__exit__(None, None, None)
             raise
         self.keys = Keys(settings.bus.prefix)
-        self.event_hub = EventHub()
-        self.store = Store(settings.store, changed=self.event_hub.publish_change)
-        self.calibrations = Calibrations(self.store, settings.recording, settings.calibrations, settings.scene)
-        self.recorder = Recorder(
-            self.bus,
-            self.keys,
-            self.store,
-            settings.recording,
-            Lookup(scene=settings.scene, calibration=self.calibrations.get),
-            DemonstrationCallbacks(
-                added=lambda demonstration, trajectory: self._show_task(demonstration.task),
-                changed=lambda demonstration: self._show_task(demonstration.task),
-            ),
-        )
-        self._queries = RecorderQueries(self.bus, self.keys, self.recorder)
-        self.guidance = GuidanceThread(self.store.demonstrations, self.trajectory, settings.learning)
-        self.jobs = Jobs(self.bus, self.keys, self.store, settings.jobs, self._kinds())
-        self.assessor = CurveAssessor()
-        self.websocket_trackers = WebSocketTrackers(self.bus, self.keys, self.recorder)
-        self.joints = JointFeed(self.bus, self.keys, robot=settings.bus.robot)
-        self.executions = Executions(self.bus, self.keys, self.store, robot=settings.bus.robot, scene=settings.scene)
-        self.preview = Preview(
-            self.bus,
-            self.keys,
-            visual_solids(),
-            robot=settings.bus.robot,
-            home=np.array(settings.motion.home),
-            statuses=self.recorder.shown_statuses,
-            settings=settings.preview,
-        )
-        ours = {"simulator": Role.ROBOT, "executor": Role.EXECUTOR}
-        if not settings.simulator.start:
-            del ours["simulator"]
-        self.processes = [
-            WorkerProcess(name, instructions(settings, access.login(role) if access else None))
-            for name, role in ours.items()
-        ]
-        self.web: FastAPI = build_api(self._parts(), view_router(self.preview), events_router(self.event_hub))
-        self._state_poller = StatePoller(self.event_hub, self._polls())
         self._shown = ""
         self._started = time.monotonic()
+        self._open_recording()
+        self._open_work()
+        self._open_robot(access)
+        self.web: FastAPI = build_api(self._parts(), view_router(self.preview), events_router(self.event_hub))
+        self._state_poller = StatePoller(self.event_hub, self._polls())
 
     def __enter__(self) -> Station:
         unfinished = self.store.recordings.unfinished()
@@ -159,6 +122,55 @@ class Station:
         self.bus.close()
         self.store.close()
         self._lock.__exit__(None, None, None)
+
+    def _open_recording(self) -> None:
+        """Open the store and all that records into it."""
+        settings = self.settings
+        self.event_hub = EventHub()
+        self.store = Store(settings.store, changed=self.event_hub.publish_change)
+        self.calibrations = Calibrations(self.store, settings.recording, settings.calibrations, settings.scene)
+        self.recorder = Recorder(
+            self.bus,
+            self.keys,
+            self.store,
+            settings.recording,
+            Lookup(scene=settings.scene, calibration=self.calibrations.get),
+            DemonstrationCallbacks(
+                added=lambda demonstration, trajectory: self._show_task(demonstration.task),
+                changed=lambda demonstration: self._show_task(demonstration.task),
+            ),
+        )
+        self._queries = RecorderQueries(self.bus, self.keys, self.recorder)
+        self.guidance = GuidanceThread(self.store.demonstrations, self.trajectory, settings.learning)
+        self.websocket_trackers = WebSocketTrackers(self.bus, self.keys, self.recorder)
+
+    def _open_work(self) -> None:
+        """Open what learns, plans and looks at curves."""
+        kinds = JobKinds(self.store, self.settings, self.calibrations, self.trajectory).by_name()
+        self.jobs = Jobs(self.bus, self.keys, self.store, self.settings.jobs, kinds)
+        self.assessor = CurveAssessor()
+
+    def _open_robot(self, access: BusAccess | None) -> None:
+        """Open the service's side of the arm, its picture, and the processes that move it."""
+        settings, robot = self.settings, self.settings.bus.robot
+        self.joints = JointFeed(self.bus, self.keys, robot=robot)
+        self.executions = Executions(self.bus, self.keys, self.store, robot=robot, scene=settings.scene)
+        self.preview = Preview(
+            self.bus,
+            self.keys,
+            visual_solids(),
+            robot=robot,
+            home=np.array(settings.motion.home),
+            statuses=self.recorder.shown_statuses,
+            settings=settings.preview,
+        )
+        roles = {"simulator": Role.ROBOT, "executor": Role.EXECUTOR}
+        if not settings.simulator.start:
+            del roles["simulator"]
+        self.processes = [
+            WorkerProcess(name, instructions(settings, access.login(role) if access else None))
+            for name, role in roles.items()
+        ]
 
     def trajectory(self, demonstration: Demonstration) -> Trajectory:
         """Return the object's trajectory of a stored demonstration."""
@@ -205,58 +217,19 @@ class Station:
 
     def _parts(self) -> Parts:
         return Parts(
-            self.settings,
-            self.store,
-            self.recorder,
-            self.calibrations,
-            self.jobs,
-            self.assessor,
-            self.executions,
-            self.websocket_trackers,
-            self.joints,
-            self.trajectory,
-            self.health,
-            lambda demonstration, trajectory: self._show_task(demonstration.task),
+            settings=self.settings,
+            store=self.store,
+            recorder=self.recorder,
+            calibrations=self.calibrations,
+            jobs=self.jobs,
+            assessor=self.assessor,
+            executions=self.executions,
+            websocket_trackers=self.websocket_trackers,
+            joints=self.joints,
+            trajectory=self.trajectory,
+            health=self.health,
+            imported=lambda demonstration, trajectory: self._show_task(demonstration.task),
         )
-
-    def _kinds(self) -> dict[str, JobKind]:
-        return {
-            "learn": JobKind(self._prepare_learning, worker.learn_paths, self._finish_learning),
-            "recut": JobKind(self._prepare_recut, worker.recut_run, self._finish_learning),
-            "plan": JobKind(self._prepare_planning, worker.plan_path, self._finish_planning),
-        }
-
-    def _prepare_learning(self, job: Job) -> tuple[dict[str, Trajectory], LearningSettings]:
-        demonstrations = [d for d in self.store.demonstrations(job.task) if d.is_usable]
-        if not demonstrations:
-            raise NotFound(f"task {job.task} has no usable demonstrations yet; show it a few times first")
-        if job.request.get("calibrations") != "recorded":
-            self.calibrations.require_current(demonstrations)
-        wanted = job.request.get("settings")
-        settings = self.settings.learning_with(wanted if isinstance(wanted, dict) else {})
-        return {d.id: self.trajectory(d) for d in demonstrations}, settings
-
-    def _prepare_recut(self, job: Job) -> tuple[Any, ...]:
-        learned = self.store.run(str(job.request["run"])).learned
-        usable = {d.id: d for d in self.store.demonstrations(job.task) if d.is_usable}
-        chosen = {key: usable[key] for key in learned.demonstrations if key in usable}
-        if job.request.get("calibrations") != "recorded":
-            self.calibrations.require_current(list(chosen.values()), command="recut")
-        kept = {key: self.trajectory(d) for key, d in chosen.items()}
-        return learned, kept, job.request["threshold"], job.request["clusters"]
-
-    def _finish_learning(self, job: Job, learned: Learned) -> str:
-        return self.store.finish_learning(job.id, learned)
-
-    def _prepare_planning(self, job: Job) -> tuple[Any, ...]:
-        path, version = str(job.request["path"]), job.request.get("version")
-        learned = self.store.versions.get(path, version)[1] if isinstance(version, int) else self.store.path(path)
-        return learned, self.settings.scene(self.store.task(job.task).scene), self.settings.motion
-
-    def _finish_planning(self, job: Job, plan: Plan) -> str:
-        return self.store.finish_planning(job.id, plan)
-
-    # what the view shows
 
     def _show_task(self, task: str) -> None:
         """Show a task whose demonstrations have changed: in the guidance, and its object in the preview."""

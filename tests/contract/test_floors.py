@@ -20,7 +20,7 @@ FLOORS = [
     ["learning", "motion", "recording", "io"],
     ["recorder", "jobs", "executor", "simulator", "robot", "live"],
     ["offline", "config", "python_api"],
-    ["api"],
+    ["api", "job_kinds"],
     ["app"],
     ["commands"],
     ["__main__"],

@@ -12,6 +12,7 @@ from teachpath.api.strict_requests import Body
 from teachpath.errors import UnusableInput
 from teachpath.io.documents import from_document
 from teachpath.io.wire import recording_document
+from teachpath.recorder.recorder import Recorder
 from teachpath.records import Demonstration, RecordingRequest, RecordingStatus, Routine, StopRequest
 
 
@@ -95,6 +96,12 @@ class RecordingReport:
 def recording_router(parts: Parts) -> APIRouter:
     """Return the routes that start and stop recording; tracker clients do the same over Zenoh."""
     router = APIRouter(tags=["recording"])
+    _add_recordings(router, parts)
+    _add_newest(router, parts.recorder)
+    return router
+
+
+def _add_recordings(router: APIRouter, parts: Parts) -> None:
     recorder = parts.recorder
 
     @router.get("/tasks/{task}/recording")
@@ -133,6 +140,15 @@ def recording_router(parts: Parts) -> APIRouter:
         """Record again."""
         return _report(recorder.resume(of_task(task, choice.tracker)))
 
+    def of_task(task: str, tracker: str) -> str:
+        name = parts.store.task(task).name
+        running = {status.tracker for status in recorder.statuses() if status.task == name}
+        if tracker not in running:
+            raise UnusableInput(f"{tracker!r} is not recording {task}; running: {sorted(running) or 'none'}")
+        return tracker
+
+
+def _add_newest(router: APIRouter, recorder: Recorder) -> None:
     @router.post("/tasks/{task}/recording/discard")
     def discard_last(task: str) -> Demonstration:
         """Discard the newest demonstration that is kept; it is marked, not deleted."""
@@ -142,15 +158,6 @@ def recording_router(parts: Parts) -> APIRouter:
     def restore_last(task: str) -> Demonstration:
         """Bring back the demonstration that was discarded last."""
         return recorder.annotations.restore_last(task)
-
-    def of_task(task: str, tracker: str) -> str:
-        name = parts.store.task(task).name
-        running = {status.tracker for status in recorder.statuses() if status.task == name}
-        if tracker not in running:
-            raise UnusableInput(f"{tracker!r} is not recording {task}; running: {sorted(running) or 'none'}")
-        return tracker
-
-    return router
 
 
 def _report(status: RecordingStatus) -> RecordingReport:

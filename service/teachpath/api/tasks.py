@@ -31,6 +31,12 @@ class NewTask(Body):
 def tasks_router(parts: Parts) -> APIRouter:
     """Return the routes of tasks."""
     router = APIRouter(tags=["tasks"])
+    _add_tasks(router, parts)
+    _add_demonstrations(router, parts)
+    return router
+
+
+def _add_tasks(router: APIRouter, parts: Parts) -> None:
     store = parts.store
 
     @router.get("/tasks")
@@ -50,6 +56,10 @@ def tasks_router(parts: Parts) -> APIRouter:
     def get_task(task: str) -> Task:
         """Return one task."""
         return store.task(task)
+
+
+def _add_demonstrations(router: APIRouter, parts: Parts) -> None:
+    store = parts.store
 
     @router.get("/tasks/{task}/demonstrations")
     def list_demonstrations(task: str) -> list[Demonstration]:
@@ -81,5 +91,3 @@ def tasks_router(parts: Parts) -> APIRouter:
         for demonstration, trajectory in made:
             parts.imported(demonstration, trajectory)
         return [demonstration for demonstration, _ in made]
-
-    return router

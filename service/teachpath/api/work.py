@@ -108,8 +108,12 @@ def jobs_router(parts: Parts) -> APIRouter:
 def results_router(parts: Parts) -> APIRouter:
     """Return the routes of runs, paths and plans."""
     router = APIRouter(tags=["results"])
-    store, jobs = parts.store, parts.jobs
+    _add_runs(router, parts.store)
+    _add_paths(router, parts)
+    return router
 
+
+def _add_runs(router: APIRouter, store: Store) -> None:
     @router.get("/tasks/{task}/runs", response_model=model_of(list[Run]))
     def list_runs(task: str) -> Response:
         """List a task's learning runs, newest first: clusters, scores, dendrogram, convergence, paths."""
@@ -138,6 +142,10 @@ def results_router(parts: Parts) -> APIRouter:
         _of_task(store.task(task).name, stored.task, f"run {run!r}")
         return json_response(dendrogram(stored.learned, most))
 
+
+def _add_paths(router: APIRouter, parts: Parts) -> None:
+    store, jobs = parts.store, parts.jobs
+
     @router.get("/paths/{path}", response_model=model_of(LearnedPath))
     def get_path(path: str) -> Response:
         """Return the newest version of a learned path on its main branch: degree, knots, control points, weights."""
@@ -160,8 +168,6 @@ def results_router(parts: Parts) -> APIRouter:
     def get_plan(plan: str) -> Response:
         """Return one plan with its certificate."""
         return json_response(store.plan(plan))
-
-    return router
 
 
 def _versioned(store: Store, path: str, version: int | None) -> LearnedPath:

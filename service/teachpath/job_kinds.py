@@ -1,0 +1,71 @@
+"""The kinds of jobs: what each reads from the store, which function does the work, and where its outcome goes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from teachpath.config import Settings
+from teachpath.errors import NotFound
+from teachpath.io.store.store import Store
+from teachpath.jobs import worker
+from teachpath.jobs.jobs import JobKind
+from teachpath.learning.settings import LearningSettings
+from teachpath.recorder.calibrations import Calibrations
+from teachpath.records import Demonstration, Job, Learned, Plan, Trajectory
+
+
+@dataclass(frozen=True)
+class JobKinds:
+    """What jobs read and store.
+
+    Attributes:
+        store: of demonstrations, runs, paths and plans.
+        settings: of the station.
+        calibrations: that demonstrations have to be recorded under, in their present version.
+        trajectory: returns the object's trajectory of a demonstration.
+    """
+
+    store: Store
+    settings: Settings
+    calibrations: Calibrations
+    trajectory: Callable[[Demonstration], Trajectory]
+
+    def by_name(self) -> dict[str, JobKind]:
+        """Return the kinds of jobs by the names that REST gives them."""
+        return {
+            "learn": JobKind(self._learning_input, worker.learn_paths, self._store_run),
+            "recut": JobKind(self._recut_input, worker.recut_run, self._store_run),
+            "plan": JobKind(self._planning_input, worker.plan_path, self._store_plan),
+        }
+
+    def _learning_input(self, job: Job) -> tuple[dict[str, Trajectory], LearningSettings]:
+        demonstrations = [d for d in self.store.demonstrations(job.task) if d.is_usable]
+        if not demonstrations:
+            raise NotFound(f"task {job.task} has no usable demonstrations yet; show it a few times first")
+        if job.request.get("calibrations") != "recorded":
+            self.calibrations.require_current(demonstrations)
+        wanted = job.request.get("settings")
+        settings = self.settings.learning_with(wanted if isinstance(wanted, dict) else {})
+        return {d.id: self.trajectory(d) for d in demonstrations}, settings
+
+    def _recut_input(self, job: Job) -> tuple[Any, ...]:
+        learned = self.store.run(str(job.request["run"])).learned
+        usable = {d.id: d for d in self.store.demonstrations(job.task) if d.is_usable}
+        chosen = {key: usable[key] for key in learned.demonstrations if key in usable}
+        if job.request.get("calibrations") != "recorded":
+            self.calibrations.require_current(list(chosen.values()), command="recut")
+        kept = {key: self.trajectory(d) for key, d in chosen.items()}
+        return learned, kept, job.request["threshold"], job.request["clusters"]
+
+    def _planning_input(self, job: Job) -> tuple[Any, ...]:
+        path, version = str(job.request["path"]), job.request.get("version")
+        learned = self.store.versions.get(path, version)[1] if isinstance(version, int) else self.store.path(path)
+        return learned, self.settings.scene(self.store.task(job.task).scene), self.settings.motion
+
+    def _store_run(self, job: Job, learned: Learned) -> str:
+        return self.store.finish_learning(job.id, learned)
+
+    def _store_plan(self, job: Job, plan: Plan) -> str:
+        return self.store.finish_planning(job.id, plan)
