@@ -66,7 +66,7 @@ class Link:
         self._session.close()  # type: ignore[no-untyped-call]
 
     def publisher(self, key: str) -> Any:
-        """Return a publisher on `key` that blocks rather than drops, and sends again what a subscriber missed."""
+        """Return a publisher on `key` that blocks instead of dropping, and repeats samples that a subscriber missed."""
         publisher = zenoh.ext.declare_advanced_publisher(
             self._session,
             key,

@@ -24,7 +24,7 @@ SAMPLE_TIMEOUT = 5.0  # [s] without a sample
 
 @contextmanager
 def ended_by_signals(source: Source) -> Iterator[None]:
-    """Close the source at the first Ctrl-C or SIGTERM, so that the recording ends with its handshake."""
+    """Close the source at the first Ctrl-C or SIGTERM, so that the recording ends with a handshake."""
     numbers = (signal.SIGINT, signal.SIGTERM)
 
     def end(_number: int, _frame: FrameType | None) -> None:
@@ -52,10 +52,10 @@ def record_live(
     routine: Routine | None = None,
     reading_filter: Callable[[Iterator[HandReading]], Iterator[HandReading]] = lambda readings: readings,
 ) -> tracker_pb2.RecordingReport:
-    """Record `task` from a source until it ends, and return the station's account, whatever ended it.
+    """Record `task` from a source until the source ends, and return the station's report, whatever ended it.
 
-    `rate` [Hz] is declared to the station, which judges the takes by it (0: it is not); `reading_filter` may change
-    the readings.
+    `rate` [Hz] is declared to the station, which assesses the takes by it (0: nothing is declared);
+    `reading_filter` may change the readings.
     """
     tracker.start(task, scene=scene, calibration=calibration, rate=rate, routine=routine)
     try:
@@ -66,10 +66,10 @@ def record_live(
 
 
 class HapticFeedback:
-    """Lets the hand feel that it holds the object, as the station says; never longer than the station lives.
+    """Makes the glove vibrate while a living station reports that the hand holds the object.
 
     Args:
-        source: what is felt.
+        source: the device that vibrates.
         clock: [s] that never runs back.
     """
 
@@ -78,13 +78,13 @@ class HapticFeedback:
         self._until = float("inf")
 
     def on_feedback(self, payload: bytes) -> None:
-        """Follow a `HandFeedback`."""
+        """Start or stop the vibration as a `HandFeedback` says."""
         holding = tracker_pb2.HandFeedback.FromString(payload).holding
         self._until = self._clock() + HOLDING_TIMEOUT if holding else float("inf")
         self._source.touch(holding)
 
     def readings(self, readings: Iterator[HandReading]) -> Iterator[HandReading]:
-        """Pass readings on, and let go when the station has said nothing of it for long, or with the last."""
+        """Pass readings on; stop the vibration when the station is silent for too long, and after the last reading."""
         try:
             for reading in readings:
                 if self._clock() > self._until:
@@ -96,9 +96,9 @@ class HapticFeedback:
 
 
 def calibrate_glove(settings: GloveSettings, prompt: Callable[[str], object]) -> GloveCalibration:
-    """Measure the open hand and the fist with a glove; `tell` shows a sentence and returns when it was done.
+    """Measure the open hand and the fist with a glove; `prompt` shows an instruction and returns when it was followed.
 
-    The glove is connected anew for each, so that no sample of before is taken for one of now.
+    The glove is connected again for each measurement, so that no earlier sample is used.
 
     Raises:
         ClientError: the glove does not answer, falls silent, or cannot tell the two hands apart.

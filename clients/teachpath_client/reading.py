@@ -1,4 +1,4 @@
-"""One reading of a glove and a tracker, as every source gives it."""
+"""One reading of a glove and a tracker, in the form that every source yields."""
 
 from __future__ import annotations
 

@@ -31,7 +31,7 @@ STATE_TEXTS = {
 
 
 class Status:
-    """Shows a recording's feedback; may be told from any thread.
+    """Shows the feedback on a recording; its methods may be called from any thread.
 
     Args:
         out: where it is shown.
@@ -47,7 +47,7 @@ class Status:
         self._shown = self._newest = ""
 
     def on_feedback(self, payload: bytes) -> None:
-        """Show a `HandFeedback` as it came."""
+        """Show a `HandFeedback`."""
         feedback = tracker_pb2.HandFeedback.FromString(payload)
         with self._lock:
             self._heard = self._clock()
@@ -58,7 +58,7 @@ class Status:
             self._show(status_line(feedback), bell=feedback.state == "countdown")
 
     def readings(self, readings: Iterator[HandReading]) -> Iterator[HandReading]:
-        """Pass readings on, and say so when the station no longer speaks of them."""
+        """Pass readings on, and warn when the station has sent no feedback for too long."""
         with self._lock:
             self._heard = self._clock()
         for reading in readings:
@@ -68,7 +68,7 @@ class Status:
             yield reading
 
     def end(self) -> None:
-        """Leave the line."""
+        """End the line that was written over."""
         with self._lock:
             if self._live and self._shown:
                 self._out.write("\n")
@@ -87,13 +87,13 @@ class Status:
 
 
 def verdict_line(newest: tracker_pb2.DemonstrationReport) -> str:
-    """Return a line on a take that was made."""
+    """Return a line about a finished take."""
     reasons = f": {'; '.join(newest.reasons)}" if newest.reasons else ""
     return f"  {VERDICT_MARKS.get(newest.verdict, '?')} take {newest.number} {newest.verdict}{reasons}"
 
 
 def status_line(feedback: tracker_pb2.HandFeedback) -> str:
-    """Return the line on what is going on."""
+    """Return a line about the state of the recording."""
     if feedback.state == "countdown":
         doing = f"begins in {feedback.countdown_left:.0f} s"
     elif feedback.state in ("recording", "pausing") and feedback.phase != "reach":

@@ -1,4 +1,4 @@
-"""A tracker as the station sees it: publishes readings with their pace and ends with the handshake."""
+"""A tracker: it publishes readings at their pace and ends a recording with a handshake."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from teachpath_proto.keys import Keys, is_name, name_refusal
 
 @dataclass(frozen=True, slots=True)
 class Routine:
-    """How takes follow each other without a hand on the keyboard."""
+    """How a recording goes from one take to the next without a command of the operator."""
 
     armed: bool = False  # begin paused: the pedal, a fist or the page begins the first take
     countdown: float | None = None  # [s] before each take; None: as the station's settings say
@@ -30,7 +30,7 @@ class Tracker:
         link: the session with the station.
         name: of this tracker, unique at the station.
         prefix: of the station's keys.
-        clock, sleep: seconds that never run back, and the wait; passed in so that tests need not wait.
+        clock, sleep: monotonic clock [s] and its wait; tests pass their own.
 
     Raises:
         ClientError: the name cannot be one.

@@ -33,7 +33,7 @@ class Pair:
 def measure_points(
     make: Callable[[], Source], places: Sequence[Vector], prompt: Callable[[str], object], *, held: float = HOLD_TIME
 ) -> list[Pair]:
-    """Measure where the tracker sees each place; `tell` shows a sentence and returns when the tracker is held there.
+    """Measure where the tracker sees each place; `prompt` returns when the tracker is held there.
 
     It must be held for `held` [s] of its own time each; a point at which it moved, was not tracked or did not answer is
     asked for again. The source is connected anew for each point: however slow this computer is, no reading that waited
@@ -86,7 +86,7 @@ def read_points(file: Path) -> list[Pair]:
 
 
 def lines(measured: MeasuredCalibration) -> Iterator[str]:
-    """Yield what was measured, for the operator, and the same as a piece of a settings file."""
+    """Yield the measured calibration as lines for the operator, and as lines of a settings file."""
     calibration, points = measured.calibration, measured.points
     for number, point in enumerate(points, 1):
         x, y, z = point.world
@@ -102,7 +102,7 @@ def lines(measured: MeasuredCalibration) -> Iterator[str]:
 
 
 def _hold(source: Source, seconds: float) -> tuple[list[HandReading], str]:
-    """Return the readings of the device's next `seconds`, and what is wrong with them."""
+    """Return the readings of the next `seconds` on the device's clock, and a sentence about what is wrong with them."""
     held: list[HandReading] = []
     over = threading.Timer(READING_TIMEOUT, source.close)
     try:

@@ -1,7 +1,7 @@
-"""A connection with a device that comes back by itself: reads on a thread of its own and dates every record.
+"""A connection with a device that reconnects by itself; its thread reads records and stamps each with its time.
 
-The thread does nothing but read and date, so that neither a slow network nor the other device of a hand makes a date
-wrong. A device without a clock of its own is dated when the last byte of its record arrived.
+The thread does nothing else, so that neither a slow network nor the other device of a hand shifts a time stamp. The
+time of a record is that at which its last byte arrived.
 """
 
 from __future__ import annotations
@@ -34,16 +34,16 @@ class Parser(Protocol[Record]):
 
 
 class DeviceProtocol(Protocol[Record]):
-    """What is said to a device."""
+    """The commands that set a device up, poll it and shut it down."""
 
     def set_up(self, line: SerialLine) -> Parser[Record]:
         """Set the device up and return the parser of what it will send; raises ClientError when it does not answer."""
 
     def poll(self, line: SerialLine) -> float:
-        """Say what is due; return the seconds until the next time."""
+        """Send the commands that are due; return the seconds until the next one is."""
 
     def shut_down(self, line: SerialLine) -> None:
-        """Quiet the device."""
+        """Make the device stop sending."""
 
 
 class Connection(Generic[Record]):
@@ -54,7 +54,7 @@ class Connection(Generic[Record]):
 
     Args:
         line: where the device is.
-        protocol: what is said to it.
+        protocol: its commands.
         silence: [s] without a record after which it is set up again, as after a power cycle behind an adapter.
         clock: [s] that never runs back.
     """
@@ -86,7 +86,7 @@ class Connection(Generic[Record]):
         self._thread.join(JOIN_TIMEOUT)
 
     def next_record(self, timeout: float) -> tuple[float, Record] | None:
-        """Return the next record and its date [s] on `clock`; None after `timeout` [s]."""
+        """Return the time [s] on `clock` and the next record; None after `timeout` [s]."""
         try:
             return self._records.get(timeout=timeout) if timeout > 0 else self._records.get_nowait()
         except queue.Empty:

@@ -121,7 +121,7 @@ class GloveProtocol:
         return self._exchange(line, question, question, size)
 
     def _exchange(self, line: SerialLine, said: bytes, echo: bytes, size: int) -> bytes:
-        """Say something until the answer comes: the echo, `size` bytes, a zero; return the bytes."""
+        """Send a command until it is answered by its echo, `size` bytes and a zero; return the bytes."""
         for _ in range(ATTEMPTS):
             line.write(said)
             heard, end = b"", self._clock() + ANSWER_TIMEOUT
@@ -166,7 +166,7 @@ class GloveSource(LiveDevice[Raw]):
         )
 
     def touch(self, holding: bool) -> None:
-        """Let the hand feel that it holds the object, or no longer."""
+        """Start the vibration when the hand holds the object, or stop it."""
         self._protocol.amplitude = self.settings.amplitude if holding else 0
 
     def _reading(self, record: Raw) -> HandReading:

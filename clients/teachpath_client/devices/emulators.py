@@ -1,7 +1,7 @@
-"""Devices without hardware: a protocol simulator behind a pty that misbehaves when it is told to.
+"""Devices without hardware: a protocol simulator behind a pty that can be made to fail.
 
-Torn records, noise, pauses, unplugged and plugged in again, at a path like a real port's and a rate of its own. What
-the simulators do in memory, the emulator does to a driver that believes in a serial line.
+It tears records, adds noise, pauses, is unplugged and plugged in again, at the path of a port and at a rate of its own.
+A driver cannot tell it from a device on a serial line.
 """
 
 from __future__ import annotations
@@ -34,9 +34,9 @@ class Emulator:
         simulator: the device.
         link: path of the port: a link to the pty, which comes and goes as a real device node does.
         rate: [Hz] of its stream.
-        moving: what is to be played goes on whether the device streams or not, for one that is polled.
+        moving: advance through the readings also while the device does not stream, as for one that is polled.
         hold: when nothing is left to play, send the last reading again and again; otherwise be silent.
-        corrupt: what becomes of a record on the wire.
+        corrupt: changes the bytes of a record on the wire.
         clock: [s] that never runs back.
     """
 

@@ -71,7 +71,7 @@ class HandSource:
         self._over = True
 
     def touch(self, holding: bool) -> None:
-        """Let the hand feel that it holds the object, or no longer."""
+        """Start the vibration when the hand holds the object, or stop it."""
         self._glove.touch(holding)
 
     def __iter__(self) -> Iterator[HandReading]:
@@ -101,7 +101,7 @@ class Pairing:
         self._following: tuple[float, HandReading] | None = None  # the first one after it
 
     def flexions_at(self, date: float) -> tuple[float, ...] | None:
-        """Return the flexions for a pose of `date` [s]; None when they are missing or too old. Dates must not fall."""
+        """Return the flexions for a pose at time `date` [s], which never decreases; None without recent ones."""
         self._following = self._following or self._take()
         while self._following is not None and self._following[0] <= date:
             self._newest, self._following = self._following, self._take()

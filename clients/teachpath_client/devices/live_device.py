@@ -17,7 +17,7 @@ READ_TIMEOUT = 0.1  # [s] a read waits
 
 
 class Polling:
-    """Says when a device is to be asked again: `rate` times a second, without catching up after a pause.
+    """Decides when a device is polled: `rate` times a second, without catching up after a pause.
 
     Args:
         rate: [Hz].
@@ -30,7 +30,7 @@ class Polling:
 
     @property
     def is_due(self) -> bool:
-        """Whether to ask now; the next time is a step later."""
+        """Whether a poll is due now; if so, the next one is due a period later."""
         now = self._clock()
         if now < self._due:
             return False
@@ -44,7 +44,7 @@ class Polling:
 
 
 class LiveDevice(ABC, Generic[Record]):
-    """A source on one connection; a driver says what a record means.
+    """A source with one connection; a driver converts its records.
 
     Args:
         connection: with the device; made when the context is entered.
@@ -80,11 +80,11 @@ class LiveDevice(ABC, Generic[Record]):
                 yield replace(reading, time=date - start)
 
     def next_reading(self, timeout: float) -> tuple[float, HandReading] | None:
-        """Return the next reading, its time not yet set, and its date [s] on the clock; None after `timeout` [s]."""
+        """Return the time [s] on the clock and the next reading, its own time not set; None after `timeout` [s]."""
         taken = self.connection.next_record(timeout)
         reading = None if taken is None else self._reading(taken[1])
         return None if taken is None or reading is None else (taken[0], reading)
 
     @abstractmethod
     def _reading(self, record: Record) -> HandReading | None:
-        """Return what a record says of the hand; None when it says nothing of it."""
+        """Convert a record to a reading; None when the record is not about the hand."""

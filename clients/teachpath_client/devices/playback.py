@@ -52,7 +52,7 @@ def replay(**options: str) -> PlaybackSource:
 
 
 class PlaybackSource:
-    """Readings that are all there already."""
+    """Readings that are known from the start."""
 
     def __init__(self, readings: Sequence[HandReading], *, rate: float, sensors: int) -> None:
         self._readings, self._rate, self._sensors = readings, rate, sensors

@@ -65,10 +65,10 @@ class Source(Protocol):
 
 
 class TouchSource(Source, Protocol):
-    """A source that the hand can feel."""
+    """A source with a device that can vibrate."""
 
     def touch(self, holding: bool) -> None:
-        """Let the hand feel that it holds the object, or no longer."""
+        """Start the vibration when the hand holds the object, or stop it."""
 
 
 def open_source(name: str, options: Mapping[str, str]) -> Source:

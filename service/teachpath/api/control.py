@@ -1,4 +1,4 @@
-"""Control: who may move the arm, who did, and certificates taken back."""
+"""Control: the lease that allows to move the arm, the journal of commands, and revoked certificates."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from teachpath_proto.control import LeaseAction
 
 
 class LeaseClaim(Body):
-    """A claim to control."""
+    """A request for control of the arm."""
 
     name: str = Field(min_length=1, max_length=64, description="shown to everybody")
     seconds: float = Field(5.0, ge=0.5, le=60.0, description="between two beats at most; then the lease lapses")
@@ -23,7 +23,7 @@ class LeaseClaim(Body):
 
 
 class Revocation(Body):
-    """Why something is taken back."""
+    """Why a certificate is revoked."""
 
     reason: str = Field(min_length=1, max_length=500)
 

@@ -1,4 +1,4 @@
-"""Demonstrations: read them, say what one thinks of them, take their trajectory or their recording."""
+"""Demonstrations: read and annotate them, get their trajectories and recordings."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from teachpath.records import Amendment, Demonstration, Trajectory
 
 
 class DemonstrationChanges(Body):
-    """What an operator says of a demonstration; what is left out stays as it is."""
+    """What an operator changes of a demonstration; a field that is left out stays as it is."""
 
     mark: Literal["", "good", "bad"] | None = Field(None, description="good, bad, or empty for none")
     discarded: bool | None = Field(None, description="discarded ones are kept, but not learned from")

@@ -1,4 +1,4 @@
-"""Executions: move the arm along a certified plan, and steer it."""
+"""Executions: move the arm along a certified plan, and control the motion."""
 
 from __future__ import annotations
 
@@ -109,7 +109,7 @@ def _add_looks(router: APIRouter, parts: Parts) -> None:
 
     @router.get("/executions/{execution}")
     def get_execution(execution: str) -> Execution:
-        """Return how an execution stands."""
+        """Return one execution with its newest status."""
         return executions.get(execution)
 
     @router.get("/executions/{execution}/recording", response_class=FileResponse)
@@ -125,7 +125,7 @@ def _add_looks(router: APIRouter, parts: Parts) -> None:
     def get_series(
         execution: str, points: Annotated[int, Query(ge=2, le=20_000, description="at most")] = 500
     ) -> Response:
-        """Return what the arm did over time, for plots and for showing it again.
+        """Return what the arm did over time, for plots and for a replay.
 
         Joints, velocities, torques, tool and object, tracking error, and the lateness of setpoints; no peak is lost.
         """
@@ -142,7 +142,7 @@ def _add_steering(router: APIRouter, executions: Executions) -> None:
 
     @router.post("/executions/{execution}/step")
     def step(execution: str, wanted: Step, lease: Token = "", who: Who = "") -> Execution:
-        """Go a length or a number of nodes along the path from where the arm is held, and hold there."""
+        """Move the held arm by a length or a number of nodes along the path, and hold it there."""
         if (wanted.length is None) == (wanted.nodes is None):
             raise UnusableInput("a step has a length in metres or a number of nodes: one of the two")
         command = Command(
@@ -167,7 +167,7 @@ def stops_router(parts: Parts) -> APIRouter:
 
     @router.post("/executions/{execution}/stop")
     def stop(execution: str, lease: Token = "", who: Who = "") -> Execution:
-        """Stop and end an execution; open to everybody, and may be said twice.
+        """Stop and end an execution; everybody may do it, and more than once.
 
         A stop brings the arm to rest on its path: it is not an emergency stop. It is never refused for a field or
         parameter that it does not know.
@@ -176,7 +176,7 @@ def stops_router(parts: Parts) -> APIRouter:
 
     @router.post("/stop")
     def stop_whatever_moves(lease: Token = "", who: Who = "") -> ExecutorStatus:
-        """Stop whatever moves the arm, on its path; open to everybody. This is not an emergency stop."""
+        """Stop whatever moves the arm, on its path; everybody may do it. This is not an emergency stop."""
         return executions.stop_all(lease=lease, who=who)
 
     return router

@@ -1,4 +1,4 @@
-"""Demonstrations as files to take away: one of them, or a task's as a zip."""
+"""Demonstrations as files to download: one of them, or all of a task as a zip."""
 
 from __future__ import annotations
 

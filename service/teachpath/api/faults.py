@@ -1,4 +1,4 @@
-"""Errors as answers: the one table from the error tree to HTTP status codes, and one shape for every refusal."""
+"""Errors as answers: the table from the error tree to HTTP status codes, and the form of every refusal."""
 
 from __future__ import annotations
 

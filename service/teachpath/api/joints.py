@@ -1,4 +1,4 @@
-"""The joint states: a WebSocket that says what the arm does, and where its execution stands."""
+"""The joint states: a WebSocket that sends what the arm does and the status of its execution."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def joints_router(parts: Parts) -> APIRouter:
 
     @router.websocket("/joints")
     async def joints(socket: WebSocket) -> None:
-        """Tell what the arm does, whenever something has changed; a page of another origin is refused."""
+        """Send the joint state whenever it has changed; refuse a page of another origin."""
         if not await sockets.admit(socket):
             return
         listening, sending = asyncio.create_task(_listen(socket)), asyncio.create_task(_send(socket, parts))
@@ -38,14 +38,14 @@ def joints_router(parts: Parts) -> APIRouter:
 
 
 async def _listen(socket: WebSocket) -> None:
-    """Wait until the page leaves, or says something; nothing is expected of it."""
+    """Wait until the page leaves; close the socket when it sends anything."""
     message = await socket.receive()
     if message["type"] == "websocket.receive":
         await socket.close(1008, "nothing is expected here; give orders over REST")
 
 
 async def _send(socket: WebSocket, parts: Parts) -> None:
-    """Send the newest joint state, and the executor's status with it, when something has changed."""
+    """Send the newest joint state with the executor's status whenever one of them has changed."""
     onlooker = parts.joints.subscribe()
     before, told = dict[str, Any](), -MAX_SILENCE
     try:

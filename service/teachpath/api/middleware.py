@@ -1,4 +1,4 @@
-"""What is refused before any resource sees it: orders from foreign pages, and bodies that are too large."""
+"""Middleware: refuses commands from pages of another origin, and bodies that are too large."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class RequestLimits:
     Browsers send simple requests across origins without asking; their Origin header tells them apart.
 
     Args:
-        app: what it stands before.
+        app: receives what is not refused.
         largest_upload: bytes of a body sent to `.../demonstrations`; all others are documents.
     """
 
@@ -46,7 +46,7 @@ class RequestLimits:
 
 
 class _Counted:
-    """Counts a body of unknown length as it comes."""
+    """Counts the bytes of a body of unknown length while they are received."""
 
     def __init__(self, receive: Receive, limit: int) -> None:
         self._receive, self._limit, self._count = receive, limit, 0

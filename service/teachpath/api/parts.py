@@ -1,4 +1,4 @@
-"""The running parts that the resources speak to."""
+"""The running parts of a station, as the resources use them."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ class Health:
 
 @dataclass(frozen=True)
 class Parts:
-    """What a station consists of, for the resources."""
+    """The parts of a station that the resources use."""
 
     settings: Settings
     store: Store

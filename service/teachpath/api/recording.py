@@ -36,7 +36,7 @@ class RecordingEnd(Body):
 
 
 class TrackerChoice(Body):
-    """A tracker whose recording is meant."""
+    """The tracker whose recording is paused or resumed."""
 
     tracker: str = Field(description="name of the tracker that is recording the task")
 
@@ -132,12 +132,12 @@ def _add_recordings(router: APIRouter, parts: Parts) -> None:
 
     @router.post("/tasks/{task}/recording/pause")
     def pause_recording(task: str, choice: TrackerChoice) -> RecordingReport:
-        """Record nothing until `resume`; what is carried now is recorded to its end first."""
+        """Pause until `resume`; an object that is being carried is recorded until it is released."""
         return _report(recorder.pause(of_task(task, choice.tracker)))
 
     @router.post("/tasks/{task}/recording/resume")
     def resume_recording(task: str, choice: TrackerChoice) -> RecordingReport:
-        """Record again."""
+        """Resume a paused recording."""
         return _report(recorder.resume(of_task(task, choice.tracker)))
 
     def of_task(task: str, tracker: str) -> str:

@@ -1,4 +1,4 @@
-"""WebSockets: who may open one, and how the messages that wait for a page are sent to it."""
+"""WebSockets: which clients may open one, and how pending messages are sent."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ async def admit(socket: WebSocket) -> bool:
 
 
 async def close(socket: WebSocket, reason: str = "") -> None:
-    """Close a WebSocket that is still open: with a reason as refused, else as done."""
+    """Close a WebSocket that is still open; a reason makes it a refusal."""
     if socket.client_state is WebSocketState.CONNECTED and socket.application_state is WebSocketState.CONNECTED:
         short = reason.encode(errors="replace")[:MAX_REASON_LENGTH].decode(errors="ignore")
         await socket.close(REFUSED if reason else DONE, short)

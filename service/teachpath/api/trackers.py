@@ -69,7 +69,7 @@ def trackers_router(parts: Parts, *, silence: float = SILENCE_TIMEOUT) -> APIRou
 
 
 async def _listen(socket: WebSocket, tracker: WebSocketTracker, silence: float) -> str:
-    """Answer message after message; return why the tracker has to leave, or nothing when it left by itself."""
+    """Answer messages; return why the tracker must be disconnected, or an empty text when it has left."""
     try:
         while True:
             message = await asyncio.wait_for(socket.receive(), silence)
@@ -88,7 +88,7 @@ async def _listen(socket: WebSocket, tracker: WebSocketTracker, silence: float) 
 
 
 def _answer(tracker: WebSocketTracker, content: bytes | str) -> Answer:
-    """Do what a message asks for; raises UnusableInput when the tracker has to leave."""
+    """Handle a message and return the answer; raises UnusableInput when the tracker must be disconnected."""
     if isinstance(content, bytes):
         return _refusal(tracker.publish(content))
     order = _parse(content)
@@ -117,7 +117,7 @@ def _parse(text: str) -> Answer:
 
 
 def _stray(order: Answer) -> str:
-    """Say which field of a message has no meaning in it; empty when there is none."""
+    """Return a sentence about a field that this kind of message does not have; empty when there is none."""
     kind = next((kind for kind in FIELDS_OF_KIND if kind in order), None)
     known = FIELDS_OF_KIND[kind] if kind else ()
     return next((unknown_name("field", name, known) for name in order if kind and name not in known), "")

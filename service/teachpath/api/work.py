@@ -47,7 +47,7 @@ class NewJob(Body):
 
     @model_validator(mode="after")
     def refuse_fields_of_other_kinds(self) -> Self:
-        """Refuse a field that has no meaning for this kind of job, as one that is unknown."""
+        """Refuse a field that this kind of job does not take, like an unknown one."""
         for name in self.model_fields_set - FIELDS_OF_KIND[self.kind]:
             raise PydanticCustomError(
                 "field_of_another_kind",
@@ -135,8 +135,8 @@ def _add_runs(router: APIRouter, store: Store) -> None:
         """Return how the run's demonstrations merge, ready to be drawn, and what other cuts would leave.
 
         `leaves` are the demonstrations from left to right; the members of every cluster of every cut are neighbours
-        there, so `ways` of a cut are slices of it. `merges` are left, right, height [m] and members, numbered on from
-        the demonstrations, which are numbered as listed. A job of kind `recut` makes a new run of another cut.
+        there, so `leaf_ranges` of a cut are slices of it. `merges` are left, right, height [m] and members, numbered
+        on from the demonstrations, which are numbered as listed. A job of kind `recut` makes a new run of another cut.
         """
         stored = store.run(run)
         _of_task(store.task(task).name, stored.task, f"run {run!r}")

@@ -59,7 +59,7 @@ def demo(
         url = f"http://{settings.web.host}:{settings.web.port}"
         console.print(f"teachpath serves [bold]{url}[/bold]: open it to watch; API docs at {url}/docs", highlight=False)
         station = stack.enter_context(Station(url))
-        summary = _Story(station, settings, stop).tell(speed=speed, seed=seed, recordings=recordings)
+        summary = _Demonstration(station, settings, stop).run(speed=speed, seed=seed, recordings=recordings)
         if as_json or once:
             print(json.dumps(summary, indent=2), flush=True)
         if not once:
@@ -71,7 +71,7 @@ class _Stopped(TeachpathError):
     """The operator pressed Ctrl-C."""
 
 
-class _Story:
+class _Demonstration:
     """The steps of the demo, in order; each prints what it did."""
 
     def __init__(self, station: Station, settings: Settings, stop: Event) -> None:
@@ -79,8 +79,8 @@ class _Story:
         self._held = 0
         self._came = 0.0  # share of the path behind the arm
 
-    def tell(self, *, speed: float, seed: int, recordings: Path | None) -> dict[str, Any]:
-        """Tell the whole story and return its summary; raises TeachpathError at the step that failed."""
+    def run(self, *, speed: float, seed: int, recordings: Path | None) -> dict[str, Any]:
+        """Run all steps and return a summary; raises TeachpathError or ClientError at the step that failed."""
         if recordings is None:
             task, reports = self._show_experiment(speed, seed)
         else:
@@ -181,7 +181,7 @@ class _Story:
             return self._station.run(plan, on_change=show_unless_stopped)
 
     def _resume(self, execution: Execution) -> None:
-        """Go on as an operator would when the arm was held, e.g. because this machine was too busy for a moment."""
+        """Resume a held arm as an operator would, e.g. when this machine was too busy for a moment."""
         state = execution_state(execution)
         console.print(f"{state}; resuming", highlight=False)
         with suppress(ClientError):  # still silent, or off its place: the next round tries again

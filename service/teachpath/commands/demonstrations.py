@@ -1,4 +1,4 @@
-"""What an operator says of demonstrations: which are good or bad, where they begin and end, which do not count."""
+"""demonstrations and amend: list, mark, trim and discard what was shown."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from teachpath_client.station import Station
 
 
 class Mark(StrEnum):
-    """What an operator thinks of a demonstration."""
+    """The operator's opinion of a demonstration."""
 
     GOOD = "good"
     BAD = "bad"
@@ -28,7 +28,7 @@ MARKS: dict[Mark, Literal["", "good", "bad"]] = {Mark.GOOD: "good", Mark.BAD: "b
 
 
 def demonstrations(task: Task, url: Url = LOCAL) -> None:
-    """List the demonstrations of a task, with what is thought and said of them."""
+    """List the demonstrations of a task with their verdicts and marks."""
     with Station(url) as station:
         table = Table()
         for column in ("No.", "Verdict", "Transport [s]", "Lost", "Said", "Why"):

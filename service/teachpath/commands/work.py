@@ -1,4 +1,4 @@
-"""learn, plan, run and replay: what a running service is asked to do."""
+"""learn, plan, run and replay: commands for a running service."""
 
 from __future__ import annotations
 
