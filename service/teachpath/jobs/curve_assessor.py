@@ -1,30 +1,30 @@
-"""Quick looks at curves that are being edited, in a process of their own, so that nobody waits for anybody."""
+"""Quick assessments of curves that are being edited, in a process of their own, so that they wait for no job."""
 
 from __future__ import annotations
 
 import os
 import threading
-from concurrent.futures import ProcessPoolExecutor
+from concurrent.futures import CancelledError
 from concurrent.futures.process import BrokenProcessPool
-from multiprocessing import get_context
 from typing import Final
 
 from teachpath.errors import Conflict, Unreachable
 from teachpath.jobs import worker
+from teachpath.jobs.pool import KillablePool
 from teachpath.motion.arm.variants import choose
 from teachpath.motion.settings import MotionSettings
 from teachpath.nurbs import Curve
 from teachpath.records import Assessment, LearnedPath, Scene
 
-ASSESSMENT_TIMEOUT: Final = 60.0  # s, until a look counts as stuck; the first one has to load its libraries
-NICENESS: Final = 5  # added niceness, so that the control loop goes first
+ASSESSMENT_TIMEOUT: Final = 60.0  # [s] after which an assessment counts as stuck; the first one loads its libraries
+NICENESS: Final = 5  # of the process, so that the control loop goes first
 
 
 class CurveAssessor:
-    """Looks at one curve after another; of several that wait for the same path only the newest is looked at."""
+    """Assesses one curve after another; of those that wait for the same path only the newest is assessed."""
 
     def __init__(self) -> None:
-        self._pool: ProcessPoolExecutor | None = None
+        self._pool = KillablePool(_init_worker)
         self._lock = threading.Lock()
         self._newest: dict[str, object] = {}
 
@@ -40,29 +40,16 @@ class CurveAssessor:
         with self._lock:
             if self._newest[path.id] is not ticket:
                 raise Conflict(f"a newer curve of path {path.id} came meanwhile; this one was not looked at")
-            if self._pool is None:
-                self._pool = ProcessPoolExecutor(1, get_context("spawn"), initializer=_init_worker)
             try:
-                found = self._pool.submit(_assess, curve, scene, settings, path.orientation)
-                return found.result(timeout=ASSESSMENT_TIMEOUT)
-            except (BrokenProcessPool, TimeoutError):
-                self._end_process()
+                assessment = self._pool.submit(_assess, curve, scene, settings, path.orientation)
+                return assessment.result(timeout=ASSESSMENT_TIMEOUT)
+            except (BrokenProcessPool, CancelledError, TimeoutError):
+                self._pool.kill()
                 raise Unreachable("the process that assesses curves died or is stuck; try again") from None
 
     def stop(self) -> None:
-        """End the process."""
-        with self._lock:
-            self._end_process()
-
-    def _end_process(self) -> None:
-        pool, self._pool = self._pool, None
-        if pool is None:
-            return
-        processes = list((pool._processes or {}).values())  # there is no public way to end one that is stuck
-        pool.shutdown(wait=False, cancel_futures=True)
-        for process in processes:
-            process.kill()
-            process.join()
+        """End the process, even in the middle of an assessment; no other starts."""
+        self._pool.close()
 
 
 def _init_worker() -> None:
@@ -70,8 +57,8 @@ def _init_worker() -> None:
     os.nice(NICENESS)
 
 
-def _assess(curve: Curve, scene: Scene, settings: MotionSettings, turn: Curve | None) -> Assessment:
+def _assess(curve: Curve, scene: Scene, settings: MotionSettings, orientation: Curve | None) -> Assessment:
     from teachpath.motion.planning.assessment import assess  # loaded in the process that needs it, not in the service
 
     choose(settings.variant)
-    return assess(curve, scene, settings, orientation=turn)
+    return assess(curve, scene, settings, orientation=orientation)

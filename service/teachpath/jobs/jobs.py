@@ -1,4 +1,4 @@
-"""The jobs: learning and planning in a process of their own, in order, surviving a restart of the service."""
+"""The jobs: learning and planning in a process of their own, in order; unfinished ones survive a restart."""
 
 from __future__ import annotations
 
@@ -7,10 +7,10 @@ import threading
 import time
 import uuid
 from collections.abc import Callable
-from concurrent.futures import Future, ProcessPoolExecutor
+from concurrent.futures import Future
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
-from multiprocessing import active_children, get_context
+from multiprocessing import get_context
 from multiprocessing.synchronize import Event
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -20,6 +20,7 @@ from teachpath.errors import Cancelled, Conflict, LearningFailed, PathRefused, T
 from teachpath.io.documents import to_document
 from teachpath.io.wire import encode_progress
 from teachpath.jobs import worker
+from teachpath.jobs.pool import KillablePool
 from teachpath.records import Job, JobState
 from teachpath_proto.keys import Keys
 
@@ -27,8 +28,8 @@ if TYPE_CHECKING:  # the settings of jobs are read in processes that have no sto
     from teachpath.io.bus import Bus
     from teachpath.io.store.store import Store
 
-# What a kind of job does: `prepare` gathers its input from the store, `work` (a function of `desk`) runs in the other
-# process, `finish` stores the outcome and marks the job succeeded in one transaction.
+# A kind of job: `prepare` gathers its input from the store, `work` (a function of `worker`) runs in the other process,
+# and `finish` stores the outcome and marks the job succeeded in one transaction.
 Prepare = Callable[[Job], tuple[Any, ...]]
 Finish = Callable[[Job, Any], str]
 
@@ -54,7 +55,7 @@ class Jobs:
     """Runs the queued jobs of the store one after another.
 
     Args:
-        kinds: what can be done, by name.
+        kinds: kinds of jobs by their names.
         on_finished: called with each job that has ended.
     """
 
@@ -68,19 +69,23 @@ class Jobs:
         *,
         on_finished: Callable[[Job], None] = lambda job: None,
     ) -> None:
-        self._bus, self._keys, self._store, self._settings = bus, keys, store, settings
-        self._kinds, self._on_finished = kinds, on_finished
+        self._bus = bus
+        self._keys = keys
+        self._store = store
+        self._settings = settings
+        self._kinds = kinds
+        self._on_finished = on_finished
         self._queue: queue.SimpleQueue[str | None] = queue.SimpleQueue()
-        self._context = get_context("spawn")
-        self._progress = self._context.Queue()
-        self._cancel: Event = self._context.Event()
+        context = get_context("spawn")
+        self._progress = context.Queue()
+        self._cancel: Event = context.Event()
         self._stopping = threading.Event()
         self._running = ""
-        self._pool = self._open_pool()
+        self._pool = KillablePool(worker.init_worker, self._progress, self._cancel)
         self._threads: list[threading.Thread] = []
 
     def start(self) -> None:
-        """Begin; jobs that an earlier service left unfinished come first."""
+        """Begin to work; jobs that an earlier service left unfinished come first."""
         for job in self._store.jobs(unfinished=True):
             self._queue.put(job.id)
         for run, name in ((self._run, "jobs"), (self._pass_on_progress, "job progress")):
@@ -95,11 +100,7 @@ class Jobs:
         self._cancel.set()
         self._queue.put(None)
         self._progress.put(None)
-        processes = active_children()
-        self._pool.shutdown(wait=False, cancel_futures=True)
-        for process in processes:  # pure work: nothing is lost that would not be done again
-            process.kill()
-            process.join()
+        self._pool.close()
         for thread in self._threads:
             thread.join(timeout=10.0)
         self._progress.close()
@@ -119,14 +120,6 @@ class Jobs:
             self._cancel.set()
             return self._store.job(key)
         return self._finish(key, JobState.CANCELLED, "cancelled before it began")
-
-    def _open_pool(self) -> ProcessPoolExecutor:
-        return ProcessPoolExecutor(
-            max_workers=1,
-            mp_context=self._context,
-            initializer=worker.init_worker,
-            initargs=(self._progress, self._cancel),
-        )
 
     def _run(self) -> None:
         while (key := self._queue.get()) is not None and not self._stopping.is_set():
@@ -157,7 +150,7 @@ class Jobs:
             self._finish(key, JobState.FAILED, str(error), **_evidence(error))
         except BrokenProcessPool:
             if not self._stopping.is_set():
-                self._pool = self._open_pool()
+                self._pool.kill()
                 self._queue.put(key)
         finally:
             self._running = ""
@@ -173,9 +166,9 @@ class Jobs:
             self._on_finished(job)
 
     def _pass_on_progress(self) -> None:
-        """Pass on the progress that the working process reports."""
-        while (news := self._progress.get()) is not None:
-            key, fraction, message = news
+        """Store and publish the progress that the working process reports."""
+        while (report := self._progress.get()) is not None:
+            key, fraction, message = report
             try:
                 job = self._store.set_job(key, fraction=fraction, message=message)
             except Conflict:

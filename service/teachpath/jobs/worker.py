@@ -1,6 +1,6 @@
-"""What runs in the process of the jobs: the work itself, with progress out and cancel in.
+"""What runs in the process of the jobs: the work itself, which reports its progress and can be cancelled.
 
-The service only names these functions, so what they call is loaded where it runs: here, at the first job.
+The service only names these functions. What they call is loaded in this process, with the first job.
 """
 
 from __future__ import annotations
@@ -29,15 +29,15 @@ _progress_queue: Queue[tuple[str, float, str]] | None = None
 _cancel: Event | None = None
 
 
-def init_worker(news: Queue[tuple[str, float, str]], cancel: Event) -> None:
-    """Prepare this process: it ignores Ctrl-C, which its parent handles, and never outlives its parent."""
+def init_worker(progress: Queue[tuple[str, float, str]], cancel: Event) -> None:
+    """Prepare this process: it reports to `progress`, is cancelled by `cancel`, and ends with its parent."""
     global _progress_queue, _cancel
-    _progress_queue, _cancel = news, cancel
+    _progress_queue, _cancel = progress, cancel
     exit_with_parent()
 
 
 def exit_with_parent() -> None:
-    """Ignore Ctrl-C, which the parent handles, and never outlive it."""
+    """End this process with its parent; ignore Ctrl-C, which the parent handles."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     threading.Thread(target=_exit_with_parent, name="parent", daemon=True).start()
 
@@ -50,7 +50,7 @@ def _exit_with_parent() -> None:
 
 
 def warm_up() -> None:
-    """Load what the first job needs."""
+    """Load the libraries that the first job needs."""
     from teachpath.learning.relearn import relearn
     from teachpath.motion.planning.plan import plan
 
@@ -60,18 +60,19 @@ def warm_up() -> None:
 def work(key: str, function: Callable[..., Any], inputs: tuple[Any, ...]) -> Any:
     """Call `function(*inputs, progress=...)` for job `key`.
 
-    The work may tell its progress as often as it likes, and is cancelled there; what could be seen is passed on.
+    The work may report its progress as often as it likes, and is cancelled there. Only reports that a person could see
+    are passed on.
     """
-    told, due = "", 0.0
+    reported, due = "", 0.0
 
     def progress(fraction: float, sentence: str) -> None:
-        nonlocal told, due
+        nonlocal reported, due
         if _cancel is not None and _cancel.is_set():
             raise Cancelled("cancelled by the operator")
         now = time.monotonic()
-        if _progress_queue is not None and (sentence != told or now >= due or fraction >= 1.0):
+        if _progress_queue is not None and (sentence != reported or now >= due or fraction >= 1.0):
             _progress_queue.put((key, fraction, sentence))
-            told, due = sentence, now + PROGRESS_INTERVAL
+            reported, due = sentence, now + PROGRESS_INTERVAL
 
     return function(*inputs, progress=progress)
 

@@ -1,0 +1,88 @@
+import os
+import signal
+import time
+from collections.abc import Iterator
+from concurrent.futures import CancelledError
+from concurrent.futures.process import BrokenProcessPool
+from multiprocessing import active_children
+from pathlib import Path
+
+import pytest
+
+from teachpath.jobs.pool import KillablePool
+from tests.waiting import HANG, wait_until
+
+
+def name_process(name: str) -> None:
+    os.environ["POOL_NAME"] = name
+
+
+def process_name() -> str:
+    return os.environ["POOL_NAME"]
+
+
+def hang(begun: Path) -> None:
+    begun.touch()
+    time.sleep(HANG)
+
+
+def die() -> None:
+    os.kill(os.getpid(), signal.SIGKILL)
+
+
+@pytest.fixture
+def pool() -> Iterator[KillablePool]:
+    pool = KillablePool(name_process, "one")
+    yield pool
+    pool.close()
+
+
+def test_calls_run_in_one_process_that_was_initialized(pool: KillablePool) -> None:
+    pids = {pool.submit(os.getpid).result(HANG) for _ in range(3)}
+    assert len(pids) == 1
+    assert pids != {os.getpid()}
+    assert pool.submit(process_name).result(HANG) == "one"
+
+
+def test_a_stuck_call_is_killed_and_the_next_one_gets_another_process(pool: KillablePool, tmp_path: Path) -> None:
+    before = pool.submit(os.getpid).result(HANG)
+    begun = tmp_path / "begun"
+    stuck, waiting = pool.submit(hang, begun), [pool.submit(process_name) for _ in range(5)]
+    wait_until(begun.exists, "the call begins")
+    pool.kill()
+    with pytest.raises(BrokenProcessPool):
+        stuck.result(HANG)
+    with pytest.raises((BrokenProcessPool, CancelledError)):
+        waiting[-1].result(HANG)
+    assert pool.submit(os.getpid).result(HANG) != before
+    assert pool.submit(process_name).result(HANG) == "one"
+
+
+def test_after_its_process_died_a_pool_works_again_once_it_was_killed(pool: KillablePool) -> None:
+    with pytest.raises(BrokenProcessPool):
+        pool.submit(die).result(HANG)
+    pool.kill()
+    assert pool.submit(process_name).result(HANG) == "one"
+
+
+def test_a_closed_pool_starts_no_process(pool: KillablePool) -> None:
+    pid = pool.submit(os.getpid).result(HANG)
+    pool.close()
+    with pytest.raises(BrokenProcessPool, match="closed"):
+        pool.submit(process_name)
+    assert pid not in {child.pid for child in active_children()}
+
+
+def test_a_kill_spares_the_processes_of_others(pool: KillablePool) -> None:
+    other = KillablePool(name_process, "other")
+    try:
+        spared = other.submit(os.getpid).result(HANG)
+        killed = pool.submit(os.getpid).result(HANG)
+        pool.kill()
+        pool.kill()
+        alive = {child.pid for child in active_children()}
+        assert spared in alive
+        assert killed not in alive
+        assert other.submit(process_name).result(HANG) == "other"
+    finally:
+        other.kill()
