@@ -6,13 +6,13 @@ import json
 from collections.abc import Iterator
 from contextlib import ExitStack
 from dataclasses import dataclass
-from typing import Any, Self
-
-from websockets.exceptions import WebSocketException
-from websockets.sync.client import ClientConnection, connect
+from typing import TYPE_CHECKING, Any, Self
 
 from teachpath_client.errors import Unreachable
 from teachpath_client.structuring import structured
+
+if TYPE_CHECKING:  # loaded when somebody listens: the command line imports this module
+    from websockets.sync.client import ClientConnection
 
 
 @dataclass(frozen=True)
@@ -53,6 +53,9 @@ class Events:
         self._socket: ClientConnection
 
     def __enter__(self) -> Self:
+        from websockets.exceptions import WebSocketException
+        from websockets.sync.client import connect
+
         try:
             self._socket = self._stack.enter_context(connect(self._address, proxy=None))
         except (OSError, WebSocketException) as error:
@@ -70,6 +73,8 @@ class Events:
 
     def next(self, timeout: float | None) -> Event | None:
         """Return the next event; None when there is none within `timeout` [s]."""
+        from websockets.exceptions import WebSocketException
+
         try:
             return structured(Event, json.loads(self._socket.recv(timeout)))
         except TimeoutError:

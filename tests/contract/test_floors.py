@@ -138,7 +138,10 @@ def test_ruckigs_network_service_is_never_asked() -> None:
     ("module", "needless"),
     [
         ("teachpath", {"numpy", "teachpath.errors"}),
-        ("teachpath.__main__", {"scipy.linalg", "numba", "hmmlearn", "sqlalchemy", "fastapi", "mujoco", "meshcat"}),
+        (
+            "teachpath.__main__",
+            {"websockets", "scipy.linalg", "numba", "hmmlearn", "sqlalchemy", "fastapi", "mujoco", "meshcat"},
+        ),
         ("teachpath.simulator.loop", {"scipy.linalg", "numba", "hmmlearn", "sqlalchemy", "fastapi"}),
         ("teachpath.executor.loop", {"hmmlearn", "sqlalchemy", "fastapi", "meshcat"}),
         ("teachpath.app", {"numba", "hmmlearn", "mujoco"}),
