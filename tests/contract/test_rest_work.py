@@ -196,12 +196,14 @@ def test_without_an_executor_an_execution_is_503_and_kept_with_its_reason(desk: 
     assert desk.get(f"/executions/{newest['id']}").json() == newest
     for verb in ("hold", "resume", "reverse"):
         refused(desk.post(f"/executions/{newest['id']}/{verb}"), 409, "is not running")
-    for body in (None, {"overide": 0.2}):  # a stop is always answered, whatever comes with it
-        assert desk.post(f"/executions/{newest['id']}/stop?soon=1", body).json() == newest
+    for body, name in ((None, "Ada"), ({"overide": 0.2}, "A" * 1000), ([], "\x80")):  # whatever comes with it
+        headers = {"Teachpath-Operator": name.encode("latin-1"), "Teachpath-Lease": "t" * 1000}
+        stopped = desk.post(f"/executions/{newest['id']}/stop?soon=1", body, headers=headers)
+        assert stopped.json() == newest  # a stop is always answered
     refused(desk.post(f"/executions/{newest['id']}/step", {"nodes": 1}), 409, "is not running")
     refused(desk.post(f"/executions/{newest['id']}/step", {}), 422, "one of the two")
     refused(desk.post(f"/executions/{newest['id']}/step", {"nodes": 1, "length": 0.1}), 422, "one of the two")
-    refused(desk.post("/stop"), 503, "nobody answered")
+    refused(desk.post("/stop", headers={"Teachpath-Operator": "A" * 1000}), 503, "nobody answered")
     refused(desk.post(f"/executions/{newest['id']}/override", {"override": 0.5}), 409, "is not running")
     refused(
         desk.post(f"/executions/{newest['id']}/jump"),

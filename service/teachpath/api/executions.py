@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, Final, Literal
 
 from fastapi import APIRouter, Header, Query, Response
 from fastapi.responses import FileResponse
-from pydantic import Field
+from pydantic import AfterValidator, Field
 
 from teachpath.api.answers import json_response, model_of
 from teachpath.api.names import TrackerName, TrackerNameOrEmpty
@@ -19,13 +19,35 @@ from teachpath.records import Command, ExecutorStatus, TeleopRequest
 from teachpath.robot.executions import Executions
 from teachpath_proto.control import CommandVerb
 
+MAX_HEADER_LENGTH: Final = 64  # characters of a name or a token
 Token = Annotated[
     str,
-    Header(alias="Teachpath-Lease", max_length=64, description="token of POST /lease, when somebody holds control"),
+    Header(
+        alias="Teachpath-Lease",
+        max_length=MAX_HEADER_LENGTH,
+        description="token of POST /lease, when somebody holds control",
+    ),
 ]
 Who = Annotated[
     str,
-    Header(alias="Teachpath-Operator", max_length=64, description="your name, for the journal, without a lease"),
+    Header(
+        alias="Teachpath-Operator",
+        max_length=MAX_HEADER_LENGTH,
+        description="your name, for the journal, without a lease",
+    ),
+]
+
+
+# Of a stop, which is never refused for what comes with it: cut to what the journal can hold.
+AnyWho = Annotated[
+    str,
+    Header(alias="Teachpath-Operator", description="your name, for the journal, without a lease"),
+    AfterValidator(lambda name: "".join(filter(str.isprintable, name))[:MAX_HEADER_LENGTH]),
+]
+AnyToken = Annotated[
+    str,
+    Header(alias="Teachpath-Lease", description="token of POST /lease, when somebody holds control"),
+    AfterValidator(lambda token: token[:MAX_HEADER_LENGTH]),
 ]
 
 
@@ -166,7 +188,7 @@ def stops_router(parts: Parts) -> APIRouter:
     router, executions = APIRouter(tags=["executions"]), parts.executions
 
     @router.post("/executions/{execution}/stop")
-    def stop(execution: str, lease: Token = "", who: Who = "") -> Execution:
+    def stop(execution: str, lease: AnyToken = "", who: AnyWho = "") -> Execution:
         """Stop and end an execution; everybody may do it, and more than once.
 
         A stop brings the arm to rest on its path: it is not an emergency stop. It is never refused for a field or
@@ -175,7 +197,7 @@ def stops_router(parts: Parts) -> APIRouter:
         return executions.command(execution, Command(CommandVerb.STOP, execution, lease=lease, who=who))
 
     @router.post("/stop")
-    def stop_whatever_moves(lease: Token = "", who: Who = "") -> ExecutorStatus:
+    def stop_whatever_moves(lease: AnyToken = "", who: AnyWho = "") -> ExecutorStatus:
         """Stop whatever moves the arm, on its path; everybody may do it. This is not an emergency stop."""
         return executions.stop_all(lease=lease, who=who)
 
