@@ -1,8 +1,9 @@
-"""Runs plan time, live: any override, hold, resume and reverse, within all limits and never off the path.
+"""Advances plan time at a rate that the operator changes: override, hold, resume, reverse, within all limits.
 
-The state is always on a *ramp* of the rate that was judged setpoint by setpoint, together with the setpoints already
-sent, and that ends at a constant rate of at most 1, at which the plan itself keeps every limit. Another ramp takes its
-place only after it was judged as well. So nothing else is needed for safety, and nothing can fail in mid-motion.
+The governor always executes a verified ramp: its setpoints, joined to those already sent, were checked one by one
+against all limits, and it ends at a constant rate of at most 1, at which the plan is feasible. Another ramp replaces it
+only after it was verified in the same way. So no command can break a limit or lead off the path, and nothing can fail
+in mid-motion.
 """
 
 from __future__ import annotations
@@ -19,16 +20,16 @@ from teachpath.motion.timing import kernels
 from teachpath.motion.timing.joint_moves import straight_move
 from teachpath.motion.timing.timed_trajectory import TimedTrajectory
 
-MIN_OVERRIDE: Final = 0.01  # an override below this holds
-MAX_RAMPS_PER_PERIOD: Final = 20  # ramps judged in one period at most
-RUCKIG_MARGIN: Final = 1 + 1e-12
-DURATION_TOLERANCE: Final = 1e-6  # s, between the closed form of a ramp and Ruckig's
-MAX_REVERSE_RATE: Final = 0.96  # rate of the way back at most: a plan has its reserve on the other side (see `shares`)
+MIN_OVERRIDE: Final = 0.01  # a smaller override holds
+MAX_RAMPS_PER_PERIOD: Final = 20  # ramps verified in one control period at most
+RUCKIG_MARGIN: Final = 1 + 1e-12  # factor on Ruckig's limits, so that rounding makes no ramp infeasible
+DURATION_TOLERANCE: Final = 1e-6  # [s] between the closed form of a ramp and Ruckig's
+MAX_REVERSE_RATE: Final = 0.96  # of the way back: a plan has its margins on the other side (see `limit_margins`)
 
 
 @dataclass(frozen=True, slots=True)
 class PathProgress:
-    """Where the arm is: `s` [m], `rate` of plan time; `standing` at rest, `finished` at rest at the end."""
+    """How far the trajectory is done: length `s` [m], `rate` of plan time, whether at rest, and whether at its end."""
 
     s: float
     rate: float
@@ -37,19 +38,24 @@ class PathProgress:
 
 
 class Governor:
-    """Drives one track.
+    """Runs one timed trajectory from its beginning, where it is at rest.
 
     Args:
-        track: what to run through, from its beginning, at rest.
         dt: control period [s].
         override: share of the full speed, 0 to 1.
     """
 
-    def __init__(self, track: TimedTrajectory, dt: float, *, override: float = 1.0) -> None:
-        self._table, self._step, self._end, self._dt = track.table, track.step, track.duration, dt
-        limits = track.limits
+    def __init__(self, trajectory: TimedTrajectory, dt: float, *, override: float = 1.0) -> None:
+        self._table = trajectory.table
+        self._step = trajectory.step
+        self._end = trajectory.duration
+        self._dt = dt
+        limits = trajectory.limits
         self._limits = np.stack([limits.speed * dt, limits.acceleration * dt**2, limits.jerk * dt**3])
-        self._override, self._held, self._reversing, self._waiting = _share(override), False, False, False
+        self._override = _share(override)
+        self._held = False
+        self._reversing = False
+        self._waiting = False
         self._state = np.zeros(3)  # tau, its rate, the rate's derivative
         self._ramp = np.zeros(8)
         self._trial = np.zeros(8)
@@ -61,7 +67,7 @@ class Governor:
 
     @property
     def override(self) -> float:
-        """The share of the full speed now asked for, 0 to 1."""
+        """Share of the full speed that is asked for, 0 to 1."""
         return self._override
 
     @property
@@ -71,23 +77,23 @@ class Governor:
 
     @property
     def reversing(self) -> bool:
-        """Whether the way back was asked for."""
+        """Whether `reverse` was called and not taken back."""
         return self._reversing
 
     @property
     def motion(self) -> Array:
-        """The nominal motion now (3, 7): joints and length, their velocity and acceleration."""
+        """The present nominal motion (3, 7): joints and length, their velocity and acceleration."""
         return self._motion
 
     @property
     def progress(self) -> PathProgress:
-        """The present state."""
+        """How far the trajectory is done now."""
         tau, rate, slope = self._state
         standing = bool(rate == 0.0 and slope == 0.0)
         return PathProgress(float(self._motion[0, 6]), float(rate), standing, standing and bool(tau >= self._end))
 
     def set_override(self, share: float) -> None:
-        """Go at `share` of the full speed from now on, clipped to 0 to 1; zero holds."""
+        """Go at `share` of the full speed from now on, clipped to 0 to 1; a share under `MIN_OVERRIDE` holds."""
         self._override = _share(share)
 
     def hold(self) -> None:
@@ -95,7 +101,7 @@ class Governor:
         self._held = True
 
     def set_waiting(self, waiting: bool) -> None:
-        """Come to rest as for `hold`, or go on as is asked for; `held` does not tell of it."""
+        """Come to rest as `hold` does, or go on; `held` stays as it is."""
         self._waiting = waiting
 
     def resume(self) -> None:
@@ -103,11 +109,11 @@ class Governor:
         self._held = self._reversing = False
 
     def reverse(self) -> None:
-        """Go back along the path to its beginning, at 96 % of the full speed at most."""
+        """Go back along the path to its beginning, at `MAX_REVERSE_RATE` at most."""
         self._held, self._reversing = False, True
 
     def rest_at(self, tau: float) -> None:
-        """Stand at plan time `tau` [s], held; only for an arm that rests there already."""
+        """Set the plan time to `tau` [s], held; only for an arm that rests there already."""
         self._rest(min(max(tau, 0.0), self._end))
         kernels.evaluate_motion(self._table, self._step, self._state, self._motion)
         self._sent[:] = self._motion[0, :6]
@@ -120,44 +126,42 @@ class Governor:
 
     @property
     def state(self) -> Array:
-        """The present plan time [s], its rate and the rate's derivative [1/s] (3,)."""
+        """Plan time [s], its rate and the rate's derivative [1/s] (3,), at present."""
         return self._state.copy()
 
     @property
     def target_rate(self) -> float:
-        """The rate now asked for, negative on the way back."""
-        return (
-            0.0
-            if self.held or self._waiting
-            else (-min(self._override, MAX_REVERSE_RATE) if self._reversing else self._override)
-        )
+        """The rate that is asked for, negative on the way back."""
+        if self.held or self._waiting:
+            return 0.0
+        return -min(self._override, MAX_REVERSE_RATE) if self._reversing else self._override
 
     @property
     def ramp_end_rate(self) -> float:
-        """The rate in which the ramp now followed ends; it is `wish` as soon as that could be answered."""
+        """The rate at which the present ramp ends: `target_rate`, as soon as a ramp to that is verified."""
         return float(self._ramp[7])
 
     def step(self) -> PathProgress:
         """Advance by one control period; never raises."""
-        wish = self.target_rate
+        target = self.target_rate
         left = self._ramp[3] + self._ramp[4] + self._ramp[5] - self._elapsed
-        if self._ramp[7] != wish or left > 0.0:
-            self._change_rate(wish, left if self._ramp[7] == wish else np.inf)
+        if self._ramp[7] != target or left > 0.0:
+            self._change_rate(target, left if self._ramp[7] == target else np.inf)
         self._elapsed += self._dt
         state = self._state
         state[:] = kernels.evaluate_ramp(self._ramp, self._elapsed)
         if (state[0] >= self._end and state[1] >= 0.0) or (state[0] <= 0.0 and state[1] <= 0.0):
-            # The track begins and ends at rest, whatever the rate.
+            # The trajectory begins and ends at rest, whatever the rate.
             self._rest(0.0 if state[0] <= 0.0 else self._end)
         kernels.evaluate_motion(self._table, self._step, state, self._motion)
         self._sent[:2] = self._sent[1:]
         self._sent[2] = self._motion[0, :6]
         return self.progress
 
-    def _change_rate(self, wish: float, within: float) -> None:
+    def _change_rate(self, target: float, within: float) -> None:
         trial, state = self._trial, self._state
-        if (state[0] <= 0.0 and wish >= 0.0) or (state[0] >= self._end and wish <= 0.0):
-            trial[:] = (state[0], wish, 0.0, 0.0, 0.0, 0.0, 0.0, wish)
+        if (state[0] <= 0.0 and target >= 0.0) or (state[0] >= self._end and target <= 0.0):
+            trial[:] = (state[0], target, 0.0, 0.0, 0.0, 0.0, 0.0, target)
             kept = kernels.check_ramp(self._table, self._step, trial, self._sent, self._limits, self._dt)
             if kept[0] == kernels.KEPT:
                 self._accept_trial()
@@ -166,7 +170,7 @@ class Governor:
             self._table,
             self._step,
             state,
-            wish,
+            target,
             self._sent,
             self._limits,
             self._dt,
@@ -188,12 +192,12 @@ class Governor:
         self._elapsed = 0.0
 
     def _ruckig_agrees(self, peak: float) -> bool:
-        """Tell whether Ruckig finds the same ramp."""
+        """Tell whether Ruckig finds the ramp that is on trial."""
         trial, inputs = self._trial, self._inputs
         inputs.current_position, inputs.current_velocity = [float(trial[0])], [float(trial[1])]
         inputs.current_acceleration, inputs.target_velocity = [float(trial[2])], [float(trial[7])]
-        # Room for the present acceleration, on its side alone: without it Ruckig would brake first, and with as much
-        # on the other side it would go beyond the peak.
+        # The limit on the side of the present acceleration includes that acceleration: with a lower one Ruckig would
+        # brake first, and with the same limit on the other side it would go beyond the peak.
         along, against = peak * RUCKIG_MARGIN, max(peak, abs(float(trial[2]))) * RUCKIG_MARGIN
         upward, downward = (along, against) if trial[6] > 0.0 else (against, along)
         inputs.max_acceleration, inputs.min_acceleration = [upward], [-downward]

@@ -1,4 +1,4 @@
-"""A plan's whole motion against time, to be looked at before anything moves."""
+"""Computes the whole motion of a plan over time, so that somebody can look at it before anything moves."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ from teachpath.motion.planning.certificate import verify
 from teachpath.motion.settings import MotionSettings
 from teachpath.records import MotionPreview, Plan, SegmentInterval
 
-MAX_INSTANTS: Final = 6000  # instants; a plan that takes longer has them farther apart
+MAX_INSTANTS: Final = 6000  # a longer motion has its instants farther apart
 
 
 def preview_motion(plan: Plan, settings: MotionSettings, *, dwell: float, rate: float = 50.0) -> MotionPreview:
-    """Return the motion that an execution of `plan` makes at full speed; nothing is sent.
+    """Return the motion that an execution of `plan` makes at full speed from home; nothing is sent.
 
     Args:
         plan: certified; checked again here.
@@ -56,7 +56,7 @@ def preview_motion(plan: Plan, settings: MotionSettings, *, dwell: float, rate: 
 
 
 def _rows(parts: Sequence[Segment], begins: Array, times: Array, which: NDArray[np.intp], home: Array) -> Array:
-    """Return joints and length (n, 7) at times, each in the stretch `which` says (n,)."""
+    """Return joints and length (n, 7) at `times` (n,), each in the segment of the index `which` (n,)."""
     rows = np.zeros((len(times), 7))
     here = np.append(home, 0.0)
     for index, (part, begin) in enumerate(zip(parts, begins[:-1], strict=True)):
@@ -74,7 +74,7 @@ def _duration(part: Segment) -> float:
 
 
 def _object(plan: Plan, joints: Array, since: NDArray[np.intp]) -> tuple[Array, Array]:
-    """Find where the carried object is: `since` is under 0 before the path, 0 on it, over 0 behind it."""
+    """Return the carried object's positions and orientations; `since` (n,) is negative before the path, 0 on it."""
     if plan.scene.carried is None:
         return np.zeros((0, 3)), np.zeros((0, 4))
     away = since[:, None]

@@ -1,4 +1,4 @@
-"""One execution from where the arm is: approach, grasp, follow, release, retreat, each stretch under a governor."""
+"""The motion program of a certified plan: approach, grasp, follow, release, retreat, each segment under a governor."""
 
 from __future__ import annotations
 
@@ -18,22 +18,22 @@ from teachpath.motion.timing.jog import jog_trajectory, time_at_length
 from teachpath.motion.timing.timed_trajectory import TimedTrajectory
 from teachpath.records import Plan
 
-NODE_TOLERANCE: Final = 1e-5  # m, a node as near as this is where the arm is
+NODE_TOLERANCE: Final = 1e-5  # [m] within which the arm is at a node
 
 
 class PlanProgram:
-    """Runs through the stretches, one control period at a time.
+    """Runs the segments of an execution in order, one control period at a time.
 
     Args:
         plan: certified; checked again here.
-        start_q: (6,) where the arm really is, at rest [rad].
+        start_q: (6,) where the arm rests [rad].
         settings: as for planning.
         override: share of the full speed, 0 to 1.
         dwell: how long the gripper takes to close or open [s].
         period: between two setpoints [s].
 
     Raises:
-        PathRefused: the plan has changed since it was certified, or the way from here to its start is not free.
+        PathRefused: the plan has changed since it was certified, or the way from `start_q` to its start is not free.
     """
 
     def __init__(
@@ -47,28 +47,32 @@ class PlanProgram:
         period: float = 0.004,
     ) -> None:
         verify(plan)
-        self._plan, self._settings = plan, settings
+        self._plan = plan
+        self._settings = settings
         self._remaining: Iterator[Segment] = iter(plan_segments(plan, start_q, settings, dwell))
         self._length = float(plan.lengths[-1])
-        self._override, self._held, self._waiting, self._period = override, False, False, period
+        self._override = override
+        self._held = False
+        self._waiting = False
+        self._period = period
         self._elapsed = 0.0
         self._arc_length = 0.0
         still = np.zeros(6)
         self._state = MotionState(np.array(start_q, dtype=np.float64), still, still, False)
         self._segment: Segment | None = None
-        self._governor: Governor | None = None  # of the stretch
+        self._governor: Governor | None = None  # of the segment
         self._detour: Detour | None = None
         self._detour_governors: deque[Governor] = deque()
         self._advance()
 
     @property
     def before_path(self) -> bool:
-        """Whether what it does comes before the path is followed."""
+        """Whether the present segment comes before the path."""
         return self._segment is not None and self._segment.before_path
 
     @property
     def finished(self) -> bool:
-        """Whether all is done."""
+        """Whether all segments are done."""
         return self._segment is None
 
     @property
@@ -79,36 +83,36 @@ class PlanProgram:
 
     @property
     def held(self) -> bool:
-        """Whether rest was asked for, by `hold` or an override of zero, or nothing is left of the way back."""
+        """Whether the arm is to rest: after `hold`, at an override of zero, or at the end of the way back."""
         governor = self._active_governor
         returned = governor is not None and governor.reversing and governor.progress.at_rest and not self._waiting
         return self._held or self._override < MIN_OVERRIDE or returned
 
     @property
     def hold_reason(self) -> str:
-        """Why it stands without having been told to, in words."""
+        """Why the arm is held without a call of `hold`, in words."""
         if self._override < MIN_OVERRIDE:
             return f"the override is {self._override:g}"
         return "" if self._held else f"back at the beginning {self.location}; resume to go on"
 
     @property
     def hold_requested(self) -> bool:
-        """Whether `hold` was asked for and not taken back."""
+        """Whether `hold` was called and not taken back."""
         return self._held
 
     @property
     def waiting(self) -> bool:
-        """Whether it waits for an arm that is late."""
+        """Whether the program waits for an arm that is late."""
         return self._waiting
 
     @property
     def current_q(self) -> Array:
-        """The newest setpoint's configuration (6,) [rad]."""
+        """Configuration (6,) of the newest setpoint [rad]."""
         return self._state.position
 
     @property
     def override(self) -> float:
-        """Share of the full speed asked for."""
+        """Share of the full speed that is asked for."""
         return self._override
 
     @property
@@ -118,7 +122,7 @@ class PlanProgram:
 
     @property
     def arc_length(self) -> float:
-        """How far along the learned path it is [m]."""
+        """Arc length of the learned path that is done [m]."""
         return self._arc_length
 
     @property
@@ -128,7 +132,7 @@ class PlanProgram:
 
     @property
     def activity(self) -> str:
-        """What it does, in words."""
+        """What the arm does, in words."""
         if self._detour is not None and self._detour.name:
             return self._detour.name
         return self._segment.name if self._segment is not None else ""
@@ -147,19 +151,19 @@ class PlanProgram:
             governor.hold()
 
     def set_waiting(self, waiting: bool) -> None:
-        """Come to rest on the path until the arm has caught up, or go on as was asked for."""
+        """Come to rest on the path until the arm has caught up, or go on."""
         self._waiting = waiting
         for governor in self._governors():
             governor.set_waiting(waiting)
 
     def resume(self) -> None:
-        """Go on."""
+        """Go on to the end."""
         self._held = False
         for governor in self._governors():
             governor.resume()
 
     def reverse(self) -> None:
-        """Go back to the beginning of this stretch or step and wait there; between two stretches, wait."""
+        """Go back to the beginning of the segment or step, and hold there; without a motion under way, hold."""
         if self._governor is None:
             self.hold()
             return
@@ -178,17 +182,17 @@ class PlanProgram:
             governor.set_override(share)
 
     def plan_step(self, *, length: float = 0.0, nodes: int = 0) -> Detour:
-        """Work out a step from where the arm is held on the path; `take_aside` begins it.
+        """Plan a step from where the arm is held on the path; `start_detour` begins it.
 
         Args:
-            length: along the path [m], negative is back; a step beyond an end goes to the end.
-            nodes: the same in nodes of the plan, from the one where the arm is or just was.
+            length: along the path [m], negative is back; a step beyond an end of the path goes to that end.
+            nodes: the same in nodes of the plan, counted from the one where the arm is or has just been.
 
         Raises:
             Conflict: the arm is not held on the path, or the path ends there.
         """
-        stretch, governor = self._segment, self._governor
-        if stretch is None or stretch.trajectory is None or governor is None or not stretch.is_path:
+        segment, governor = self._segment, self._governor
+        if segment is None or segment.trajectory is None or governor is None or not segment.is_path:
             raise Conflict(
                 f"steps are taken on the path; the arm is {self.activity or 'at rest'}: resume, and hold it there"
             )
@@ -197,12 +201,12 @@ class PlanProgram:
         if not (self.held and self.at_rest):
             raise Conflict("the arm still moves; hold it first, then step")
         goal = self._node(nodes) if nodes else self._arc_length + length
-        landing = time_at_length(stretch.trajectory, min(max(goal, 0.0), self._length))
-        begin = governor.tau if self._detour is None else time_at_length(stretch.trajectory, self._arc_length)
-        return Detour("", (jog_trajectory(stretch.trajectory, begin, landing, 1.0 / self._period),), landing)
+        end_time = time_at_length(segment.trajectory, min(max(goal, 0.0), self._length))
+        begin = governor.tau if self._detour is None else time_at_length(segment.trajectory, self._arc_length)
+        return Detour("", (jog_trajectory(segment.trajectory, begin, end_time, 1.0 / self._period),), end_time)
 
     def _node(self, count: int) -> float:
-        """Return the length [m] of the node that is `count` nodes away; one that is reached already does not count."""
+        """Return the arc length [m] of the node that is `count` nodes away; a node where the arm is does not count."""
         lengths = self._plan.lengths
         if count > 0:
             node = int(np.searchsorted(lengths, self._arc_length + NODE_TOLERANCE, side="right")) + count - 1
@@ -211,7 +215,7 @@ class PlanProgram:
         return float(lengths[min(max(node, 0), len(lengths) - 1)])
 
     def plan_return(self, start_q: Array) -> Detour:
-        """Work out the way back from `here` (6,) to the point where the arm was held; `take_aside` begins it.
+        """Plan the way back from `start_q` (6,) to where the arm was held; `start_detour` begins it.
 
         Raises:
             PathRefused: the way is not free.
@@ -224,29 +228,29 @@ class PlanProgram:
         """Do nothing: all was planned before the start."""
 
     def start_detour(self, detour: Detour) -> None:
-        """Begin a step or a way back; the arm rests at its beginning."""
+        """Follow a step or a way back; the arm rests at its beginning."""
         self._detour = detour if detour.trajectories else None
         self._detour_governors = deque(self._governor_of(track) for track in detour.trajectories)
         self._held = False
 
     def step(self) -> MotionState:
         """Advance by one control period and return the nominal motion; never raises."""
-        stretch, governor = self._segment, self._active_governor
-        if stretch is None:
+        segment, governor = self._segment, self._active_governor
+        if segment is None:
             return self._state
         if governor is None:
             self._elapsed += 0.0 if self.held or self._waiting else self._period
-            if self._elapsed >= stretch.rest_time:
+            if self._elapsed >= segment.rest_time:
                 self._advance()
             return self._state
         state = governor.step()
-        on_path = stretch.is_path and self.activity == stretch.name
+        on_path = segment.is_path and self.activity == segment.name
         if on_path:
             self._arc_length = (
                 self._length if state.finished else state.s
             )  # the table ends within rounding of the length
         position, velocity, acceleration = governor.motion[:, :6].copy()
-        self._state = MotionState(position, velocity, acceleration, stretch.gripper_closed, on_path)
+        self._state = MotionState(position, velocity, acceleration, segment.gripper_closed, on_path)
         if state.finished and not self.held:
             self._finish()
         return self._state
@@ -267,16 +271,16 @@ class PlanProgram:
         return governor
 
     def _finish(self) -> None:
-        aside = self._detour
-        if aside is None:
+        detour = self._detour
+        if detour is None:
             self._advance()
             return
         self._detour_governors.popleft()
         if self._detour_governors:
             return
         self._detour = None
-        if aside.end_time is not None and self._governor is not None:
-            self._governor.rest_at(aside.end_time)
+        if detour.end_time is not None and self._governor is not None:
+            self._governor.rest_at(detour.end_time)
             self._held = True
 
     def _advance(self) -> None:

@@ -1,4 +1,4 @@
-"""What an execution does from where the arm is to its end: moves and rests, each checked against the scene."""
+"""The segments of an execution, from where the arm rests to its end: moves and rests, checked against the scene."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from teachpath.motion.timing.limit_margins import SYMMETRIC_MARGINS
 from teachpath.motion.timing.timed_trajectory import TimedTrajectory
 from teachpath.records import Plan
 
-MIN_MOVE: Final = 1e-9  # rad, a move shorter than this is none
+MIN_MOVE: Final = 1e-9  # [rad] below which there is nothing to move
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,12 +34,12 @@ class MotionState:
 
 @dataclass(frozen=True, eq=False)
 class Detour:
-    """Motion that is not the next stretch: a step on the path, or the way back to it.
+    """Motion that is no segment: a step along the path, or the way back to it.
 
     Attributes:
         name: in words, for the operator; empty on the path.
-        trajectories: one behind the other.
-        end_time: plan time [s] at which a step ends; None for a way back, behind which the program goes on.
+        trajectories: to be followed in order.
+        end_time: plan time [s] at which a step ends; None for a way back, after which the program goes on.
     """
 
     name: str
@@ -49,14 +49,14 @@ class Detour:
 
 @dataclass(frozen=True, eq=False)
 class Segment:
-    """A piece of an execution: motion along a track, or a rest when `track` is None.
+    """A part of an execution: motion along a trajectory, or a rest when there is none.
 
     Attributes:
         name: in words, for the operator.
-        before_path: whether it comes before the path is followed.
-        is_path: whether this is the learned path itself.
-        gripper_closed: while it lasts.
-        rest_time: how long a rest lasts [s].
+        before_path: whether it comes before the path.
+        is_path: whether it follows the learned path.
+        gripper_closed: whether the gripper is closed while it lasts.
+        rest_time: duration of a rest [s].
     """
 
     name: str
@@ -68,10 +68,10 @@ class Segment:
 
 
 def plan_segments(plan: Plan, start_q: Array, settings: MotionSettings, dwell: float) -> list[Segment]:
-    """Return what an execution does from `here` (6,) to its end.
+    """Return the segments of an execution that begins in the configuration `start_q` (6,).
 
     Raises:
-        PathRefused: the way from here to the start of the path, or home from its goal, is not free.
+        PathRefused: the way from there to the start of the path, or home from its goal, is not free.
     """
     carries = plan.scene.carried is not None
     load = Load(position=plan.scene.carried.position) if plan.scene.carried else None
@@ -94,7 +94,7 @@ def plan_segments(plan: Plan, start_q: Array, settings: MotionSettings, dwell: f
 def plan_return_path(
     plan: Plan, segment: Segment, start_q: Array, goal_q: Array, settings: MotionSettings
 ) -> list[TimedTrajectory]:
-    """Lead the arm from `here` (6,) back to the point `there` of a stretch at which it was held, slowly.
+    """Plan a slow way from `start_q` (6,) back to `goal_q` (6,), where the arm was held in a segment.
 
     Raises:
         PathRefused: the way is not free.

@@ -1,9 +1,9 @@
-"""Mirrors a hand: the tool follows it, scaled, within the joints' limits, on one branch, and clear of everything.
+"""Follows a hand with the tool: scaled, within the joints' limits, on one IK branch, and clear of the scene.
 
-What the arm follows is always a motion from its present state to rest that was checked to its end: Ruckig's, judged
-against the joints' ranges and the scene. Another takes its place only at an instant ahead for which it was worked out,
-after it was checked as well. So losing the hand, the clutch or the next thought leaves an arm that comes to rest where
-it is safe. The work is cut into pieces of a millisecond or two, so that a control loop can do one behind each setpoint.
+The arm always follows one of Ruckig's motions, from its present state to rest, that was checked to its end against the
+joints' ranges and the scene. The next motion is planned for an instant ahead and replaces the present one only if its
+check is done by then. So an arm that loses the hand, or whose planning fails, comes to rest where it is safe. Planning
+is cut into slices of a millisecond or two; the control loop does one after each setpoint.
 """
 
 from __future__ import annotations
@@ -22,33 +22,31 @@ from teachpath.motion.arm.puma560 import LOWER, UPPER, Array
 from teachpath.motion.collision.collision_model import CollisionModel, Load
 from teachpath.motion.settings import MotionSettings
 
-LEAD_PERIODS: Final = 6  # control periods between a thought and its motion
-CHECKS_PER_SLICE: Final = 3  # configurations that are checked in one piece of work
-MAX_JOINT_LEAD: Final = 0.25  # rad, that the arm is led ahead at once: more could not be checked in time
-MAX_SAMPLE_STEP: Final = 0.03  # rad, between two configurations that are checked
-POSES_PER_SOLVE: Final = 8  # places on the way to where the hand points that are solved at once
-MAX_TOOL_LEAD: Final = 0.2  # m, that the tool is led ahead at once
-MIN_SHARE: Final = 0.02  # share of the way that is tried at least
-MAX_JOINT_JUMP: Final = 0.6  # rad, a turn between two of them that would be another motion of the arm
-SAMPLING_CLEARANCE: Final = (
-    0.015  # m, kept clear besides `clearance_min`, for what lies between two checked configurations
-)
-BACKOFF_FACTOR: Final = 0.5  # share of the way that is tried after something was too near
-MIN_MOVE: Final = 1e-4  # rad, a way shorter than this is none
-REST_SPEED: Final = 1e-9  # rad/s
+LEAD_PERIODS: Final = 6  # control periods from the beginning of planning to the beginning of the motion
+CHECKS_PER_SLICE: Final = 3  # configurations that are checked in one slice of planning
+MAX_JOINT_LEAD: Final = 0.25  # [rad] of one motion: more could not be checked in time
+MAX_SAMPLE_STEP: Final = 0.03  # [rad] between two configurations that are checked
+POSES_PER_SOLVE: Final = 8  # poses on the way to the target for which inverse kinematics are solved at once
+MAX_TOOL_LEAD: Final = 0.2  # [m] of one motion
+MIN_SHARE: Final = 0.02  # of the way to the target that is tried at least
+MAX_JOINT_JUMP: Final = 0.6  # [rad] between two neighbouring poses; a larger turn would be another motion of the arm
+SAMPLING_CLEARANCE: Final = 0.015  # [m] besides `clearance_min`, for what lies between two checked configurations
+BACKOFF_FACTOR: Final = 0.5  # on the share of the way that is tried, after something was too near
+MIN_MOVE: Final = 1e-4  # [rad] below which there is nothing to move
+REST_SPEED: Final = 1e-9  # [rad/s]
 
 
 @dataclass(frozen=True, eq=False)
 class _PlannedMotion:
-    """A checked motion that begins in a given control period."""
+    """A checked motion that begins in the control period `cycle`; `stamp` names the sample that it answers."""
 
     cycle: int
     trajectory: Trajectory
-    stamp: int  # stamp of the hand's sample that it answers
+    stamp: int
 
 
 class TeleopFollower:
-    """Follows a hand with the tool; one per session.
+    """Leads the tool where a hand leads it.
 
     Args:
         model: of the scene.
@@ -59,7 +57,12 @@ class TeleopFollower:
         period: between two setpoints [s].
 
     Raises:
-        PathRefused: the arm stands where it can follow nothing: on no branch, or too near to something.
+        PathRefused: the arm cannot follow from where it stands: it is on no branch, or too near to something.
+
+    Attributes:
+        load: what is carried or stands in the way; None when there is no object.
+        reason: why the tool is not where the hand leads it, in words.
+        answered_stamp: stamp of the newest sample that the setpoints answer.
     """
 
     def __init__(
@@ -72,7 +75,10 @@ class TeleopFollower:
         share: float = 0.5,
         period: float = 0.004,
     ) -> None:
-        self._model, self._settings, self._scale, self._period = model, settings, scale, period
+        self._model = model
+        self._settings = settings
+        self._scale = scale
+        self._period = period
         self._limits: MotionLimits = ARM_LIMITS.scaled(share, share, share)
         pose = tool_pose(start_q)
         self._orientation = pose[:3, :3]
@@ -80,16 +86,17 @@ class TeleopFollower:
         self._ruckig = Ruckig(6)
         self._state: tuple[Array, Array, Array] = (np.array(start_q, dtype=np.float64), np.zeros(6), np.zeros(6))
         self._trajectory: Trajectory | None = None
-        self._elapsed, self._cycle = 0.0, 0
+        self._elapsed = 0.0  # [s] of the present motion
+        self._cycle = 0
         self._planned: _PlannedMotion | None = None
         self._planning: Iterator[None] | None = None
-        self._anchor: tuple[Array, Array] | None = None  # hand and tool when the clutch was pressed [m]
+        self._anchor: tuple[Array, Array] | None = None  # positions of hand and tool when following began [m]
         self._target: Array | None = None  # where the tool should be [m]
         self._target_stamp = 0
-        self._share = 1.0  # of the way to there that is tried
-        self.load: Load | None = None  # what is carried or stands in the way
-        self.reason = ""  # why the tool is not where the hand is
-        self.answered_stamp = 0  # stamp of the newest sample that the setpoints answer
+        self._share = 1.0  # of the way to the target that is tried
+        self.load: Load | None = None
+        self.reason = ""
+        self.answered_stamp = 0
         if self._model.clearances(start_q[None])[0].distance < settings.clearance_min:
             raise PathRefused("the arm stands too near to something; bring it nearer to its home first")
 
@@ -104,17 +111,17 @@ class TeleopFollower:
         return bool(np.all(np.abs(self._state[1]) < REST_SPEED)) and self._trajectory is None
 
     def engage(self, hand: Array) -> None:
-        """Close the clutch: from now on the tool goes as far from where it is as the hand does from `hand` (3,) [m]."""
+        """Begin to follow: the tool moves from where it is as the hand moves from `hand` (3,) [m, world]."""
         goal = self._end()
         self._anchor = (np.array(hand), tool_pose(goal)[:3, 3])
 
     def disengage(self) -> None:
-        """Open the clutch: the arm ends the motion that it follows, and rests."""
+        """Cease to follow: the arm finishes its present motion, and rests."""
         self._anchor = self._target = self._planning = self._planned = None
         self.reason = ""
 
     def set_hand(self, hand: Array, stamp: int) -> None:
-        """Take where the hand is now (3,) [m, world]; `stamp` names the sample. Nothing without the clutch."""
+        """Take where the hand is now (3,) [m, world], if it is followed; `stamp` names the sample."""
         if self._anchor is not None:
             began, tool = self._anchor
             self._target, self._target_stamp = tool + self._scale * (hand - began), stamp
@@ -135,7 +142,7 @@ class TeleopFollower:
         return self._state
 
     def advance_planning(self) -> None:
-        """Do one piece of the work that leads to the next motion; takes a millisecond or two."""
+        """Do one slice of the planning of the next motion; takes a millisecond or two."""
         if self._planning is None:
             if self._target is None or self._planned is not None:
                 return
@@ -143,10 +150,10 @@ class TeleopFollower:
         if next(self._planning, self) is self:
             self._planning = None
 
-    def _plan(self, wanted: Array, heard: int) -> Iterator[None]:
+    def _plan(self, target: Array, stamp: int) -> Iterator[None]:
         begins = self._cycle + LEAD_PERIODS
         state = self._after(LEAD_PERIODS - 1)
-        goal, reason = self._reachable_goal(wanted, state[0])
+        goal, reason = self._reachable_goal(target, state[0])
         yield
         if self.at_rest and np.abs(goal - state[0]).max() < MIN_MOVE:
             self.reason = reason
@@ -163,16 +170,16 @@ class TeleopFollower:
             yield
         if self._cycle < begins and self._anchor is not None:
             self.reason, self._share = reason, min(1.5 * self._share, 1.0)
-            self._planned = _PlannedMotion(begins, run, heard)
+            self._planned = _PlannedMotion(begins, run, stamp)
 
-    def _reachable_goal(self, wanted: Array, here: Array) -> tuple[Array, str]:
-        """Find the configuration on this branch, from `here` (6,), with the tool nearest to where the hand points."""
+    def _reachable_goal(self, target: Array, here: Array) -> tuple[Array, str]:
+        """Return the configuration nearest to the target that is reached from `here` (6,), and what is in the way."""
         begin = tool_pose(here)[:3, 3]
-        lead = min(1.0, MAX_TOOL_LEAD / max(float(np.linalg.norm(wanted - begin)), 1e-12))
+        lead = min(1.0, MAX_TOOL_LEAD / max(float(np.linalg.norm(target - begin)), 1e-12))
         shares = lead * self._share * np.arange(1, POSES_PER_SOLVE + 1) / POSES_PER_SOLVE
         poses = np.tile(np.eye(4), (POSES_PER_SOLVE, 1, 1))
         poses[:, :3, :3] = self._orientation
-        poses[:, :3, 3] = begin + shares[:, None] * (wanted - begin)
+        poses[:, :3, 3] = begin + shares[:, None] * (target - begin)
         solved = inverse_kinematics(poses, previous_q4=float(here[3]))
         joints = np.unwrap(np.concatenate([here[None], solved.joints[:, self._branch]]), axis=0)
         turns = np.abs(np.diff(joints, axis=0)).max(axis=1)
@@ -227,7 +234,7 @@ class TeleopFollower:
         return run if result == Result.Working and run.duration > 0.0 else None
 
     def _after(self, cycles: int) -> tuple[Array, Array, Array]:
-        """Return the state that many control periods ahead."""
+        """Return the state `cycles` control periods ahead."""
         if self._trajectory is None:
             return self._state
         t = self._elapsed + cycles * self._period
@@ -238,7 +245,7 @@ class TeleopFollower:
         )
 
     def _end(self) -> Array:
-        """Return the configuration (6,) in which the motion that is followed ends."""
+        """Return the configuration (6,) in which the present motion ends."""
         return self._state[0] if self._trajectory is None else _at(self._trajectory, self._trajectory.duration)[0]
 
 
@@ -248,7 +255,7 @@ def _at(run: Trajectory, t: float) -> tuple[Array, Array, Array]:
 
 
 def _samples(run: Trajectory) -> Array:
-    """Return configurations (n, 6) of a motion, no two neighbours farther apart than `APART`."""
+    """Return configurations (n, 6) of a motion, no two neighbours farther apart than `MAX_SAMPLE_STEP`."""
     times = np.linspace(0.0, run.duration, 33)[1:]
     fine = np.array([run.at_time(float(t))[0] for t in times])
     kept, last = [], fine[0]
