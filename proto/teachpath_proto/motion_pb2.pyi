@@ -8,7 +8,7 @@ from typing import ClassVar as _ClassVar, Optional as _Optional, Union as _Union
 DESCRIPTOR: _descriptor.FileDescriptor
 
 class Setpoint(_message.Message):
-    __slots__ = ("cycle", "nominal_ns", "sent_ns", "position", "velocity", "acceleration", "gripper_closed", "execution", "on_path")
+    __slots__ = ("cycle", "nominal_ns", "sent_ns", "position", "velocity", "acceleration", "gripper_closed", "execution", "on_path", "way_to_rest")
     CYCLE_FIELD_NUMBER: _ClassVar[int]
     NOMINAL_NS_FIELD_NUMBER: _ClassVar[int]
     SENT_NS_FIELD_NUMBER: _ClassVar[int]
@@ -18,6 +18,7 @@ class Setpoint(_message.Message):
     GRIPPER_CLOSED_FIELD_NUMBER: _ClassVar[int]
     EXECUTION_FIELD_NUMBER: _ClassVar[int]
     ON_PATH_FIELD_NUMBER: _ClassVar[int]
+    WAY_TO_REST_FIELD_NUMBER: _ClassVar[int]
     cycle: int
     nominal_ns: int
     sent_ns: int
@@ -27,10 +28,11 @@ class Setpoint(_message.Message):
     gripper_closed: bool
     execution: str
     on_path: bool
-    def __init__(self, cycle: _Optional[int] = ..., nominal_ns: _Optional[int] = ..., sent_ns: _Optional[int] = ..., position: _Optional[_Iterable[float]] = ..., velocity: _Optional[_Iterable[float]] = ..., acceleration: _Optional[_Iterable[float]] = ..., gripper_closed: _Optional[bool] = ..., execution: _Optional[str] = ..., on_path: _Optional[bool] = ...) -> None: ...
+    way_to_rest: bytes
+    def __init__(self, cycle: _Optional[int] = ..., nominal_ns: _Optional[int] = ..., sent_ns: _Optional[int] = ..., position: _Optional[_Iterable[float]] = ..., velocity: _Optional[_Iterable[float]] = ..., acceleration: _Optional[_Iterable[float]] = ..., gripper_closed: _Optional[bool] = ..., execution: _Optional[str] = ..., on_path: _Optional[bool] = ..., way_to_rest: _Optional[bytes] = ...) -> None: ...
 
 class JointState(_message.Message):
-    __slots__ = ("stamp_ns", "cycle", "position", "velocity", "torque", "tracking_error", "missed", "holding", "gripper_closed", "object_position", "object_orientation", "execution", "late")
+    __slots__ = ("stamp_ns", "cycle", "position", "velocity", "torque", "tracking_error", "missed", "holding", "gripper_closed", "object_position", "object_orientation", "execution", "late", "stopped")
     STAMP_NS_FIELD_NUMBER: _ClassVar[int]
     CYCLE_FIELD_NUMBER: _ClassVar[int]
     POSITION_FIELD_NUMBER: _ClassVar[int]
@@ -44,6 +46,7 @@ class JointState(_message.Message):
     OBJECT_ORIENTATION_FIELD_NUMBER: _ClassVar[int]
     EXECUTION_FIELD_NUMBER: _ClassVar[int]
     LATE_FIELD_NUMBER: _ClassVar[int]
+    STOPPED_FIELD_NUMBER: _ClassVar[int]
     stamp_ns: int
     cycle: int
     position: _containers.RepeatedScalarFieldContainer[float]
@@ -57,7 +60,8 @@ class JointState(_message.Message):
     object_orientation: _containers.RepeatedScalarFieldContainer[float]
     execution: str
     late: int
-    def __init__(self, stamp_ns: _Optional[int] = ..., cycle: _Optional[int] = ..., position: _Optional[_Iterable[float]] = ..., velocity: _Optional[_Iterable[float]] = ..., torque: _Optional[_Iterable[float]] = ..., tracking_error: _Optional[float] = ..., missed: _Optional[int] = ..., holding: _Optional[bool] = ..., gripper_closed: _Optional[bool] = ..., object_position: _Optional[_Iterable[float]] = ..., object_orientation: _Optional[_Iterable[float]] = ..., execution: _Optional[str] = ..., late: _Optional[int] = ...) -> None: ...
+    stopped: bool
+    def __init__(self, stamp_ns: _Optional[int] = ..., cycle: _Optional[int] = ..., position: _Optional[_Iterable[float]] = ..., velocity: _Optional[_Iterable[float]] = ..., torque: _Optional[_Iterable[float]] = ..., tracking_error: _Optional[float] = ..., missed: _Optional[int] = ..., holding: _Optional[bool] = ..., gripper_closed: _Optional[bool] = ..., object_position: _Optional[_Iterable[float]] = ..., object_orientation: _Optional[_Iterable[float]] = ..., execution: _Optional[str] = ..., late: _Optional[int] = ..., stopped: _Optional[bool] = ...) -> None: ...
 
 class ExecutorCommand(_message.Message):
     __slots__ = ("verb", "execution", "plan", "override", "length", "nodes", "lease", "who", "plan_id", "reason", "mirror")

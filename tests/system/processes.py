@@ -86,7 +86,7 @@ class Command:
 
     def relatives(self) -> list[str]:
         """Return the command lines of all running processes that it or its children started, itself included."""
-        return [command for _, command in _family(self.family)]
+        return [command for _, command in family(self.family)]
 
     def wait_gone(self, seconds: float) -> None:
         """Fail unless it and everything it started has ended within `seconds`."""
@@ -94,16 +94,17 @@ class Command:
 
     def clean_up(self) -> None:
         """Kill what is left of it, so that a failed test harms no other."""
-        for pid, _ in _family(self.family):
+        for pid, _ in family(self.family):
             os.kill(pid, signal.SIGKILL)
         self.process.wait(10)
 
 
-def _family(family: str) -> list[tuple[int, str]]:
+def family(name: str) -> list[tuple[int, str]]:
+    """Return process ids and command lines of all that belong to a command."""
     found = []
     for folder in Path("/proc").glob("[0-9]*"):
         try:
-            if f"{FAMILY}={family}".encode() in (folder / "environ").read_bytes().split(b"\0"):
+            if f"{FAMILY}={name}".encode() in (folder / "environ").read_bytes().split(b"\0"):
                 found.append((int(folder.name), (folder / "cmdline").read_bytes().replace(b"\0", b" ").decode()))
         except OSError:  # it ended meanwhile, or belongs to somebody else
             continue

@@ -2,18 +2,22 @@
 
 from __future__ import annotations
 
+from collections import deque
 from typing import Final
 
 from teachpath.executor.limit_meter import LimitMeter
 from teachpath.executor.pacing import Pacer
 from teachpath.motion.execution.motion_program import MotionProgram
-from teachpath.motion.execution.segments import Detour
+from teachpath.motion.execution.segments import Detour, RestPoint
 from teachpath.records import Array, ExecutorStatus, JointState, Setpoint
 from teachpath_proto.control import ExecutorState
 
 LATE_ARM_SUFFIX: Final = ", waiting for the arm, which is late"
 MAX_ARM_LAG: Final = 0.3  # [s] by which an arm may play its setpoints late; a driver's delay and the bus take less
 CAUGHT_UP_LAG: Final = 0.25  # [s] below which an arm that was late has caught up
+REST_POINT_AGE: Final = 4.0  # [s] for which the executor knows where the ways to rest of its setpoints end
+STANDSTILL_SETPOINTS: Final = 3  # sent at rest before an arm moves: one may be lost
+RESTART_TIMEOUT_NS: Final = 500_000_000  # [ns] within which an arm takes up setpoints that begin where it rests
 SETTLING_TIME: Final = 0.3  # [s] after which an arm that is held has come to rest
 
 
@@ -32,6 +36,7 @@ class Execution:
         tracking_error: the largest that the arm has reported [rad].
         revocation: why the certificate of the plan holds no longer; empty while it holds.
         displacement: how far the arm was pushed away while it was held [rad]; while this is not 0, nothing is sent.
+        arm_stops: whether the arm follows a way to rest, because setpoints were late; nothing is sent meanwhile.
     """
 
     def __init__(self, execution: str, program: MotionProgram, *, plan: str, rate: float, offset: int) -> None:
@@ -43,6 +48,7 @@ class Execution:
         self.tracking_error = 0.0
         self.revocation = ""
         self.displacement = 0.0
+        self.arm_stops = False
         self._rate = rate
         self._epoch_offset = offset
         self._nominal_ns = 0  # of the newest setpoint, since the Unix epoch
@@ -50,6 +56,9 @@ class Execution:
         self._moving_setpoints = 0  # sent since the nominal motion began
         self._final_state: ExecutorState | None = None  # in which the execution ends as soon as it is at rest
         self._sent_count = 0
+        self._rest_points: deque[tuple[int, RestPoint]] = deque(maxlen=round(REST_POINT_AGE * rate))
+        self._restarted = (-1, 0)  # from which setpoint's rest it went on, and when [ns of the loop's clock]
+        self._standstill_left = STANDSTILL_SETPOINTS  # at rest, still to be sent: the arm takes up a stream from there
         self._meter = LimitMeter(rate, program.current_q)
 
     @property
@@ -74,6 +83,31 @@ class Execution:
             self.program.set_waiting(min(waiting, self._moving_setpoints) > MAX_ARM_LAG * self._rate)
         elif waiting < CAUGHT_UP_LAG * self._rate or self.arm_has_stopped(arm):
             self.program.set_waiting(False)
+
+    def restart(self, cycle: int, due: int) -> bool:
+        """Go on from where the arm rests that has followed the way to rest of a setpoint.
+
+        Args:
+            cycle: of that setpoint.
+            due: now [ns of the loop's clock].
+
+        Returns:
+            Whether that is possible; else the arm has to be brought back to the path.
+        """
+        point = next((point for number, point in self._rest_points if number == cycle), None)
+        if point is None or not self.program.restart(point):
+            return False
+        self._restarted = (cycle, due)
+        self._standstill_left = STANDSTILL_SETPOINTS
+        self._rest_setpoints = self._moving_setpoints = 0
+        self.arm_stops = False
+        self._meter = LimitMeter(self._rate, self.program.current_q, self._meter)
+        return True
+
+    def has_restarted(self, cycle: int, due: int) -> bool:
+        """Tell whether it went on from the rest of that setpoint just now, so that the arm may not know yet."""
+        before, at = self._restarted
+        return before == cycle and due - at < RESTART_TIMEOUT_NS
 
     def set_override(self, share: float) -> None:
         """Go at `share` of the full speed."""
@@ -138,7 +172,10 @@ class Execution:
             due: when the period began [ns of the loop's clock].
             sent_ns: now [ns since the Unix epoch].
         """
-        motion = self.program.step()
+        motion = self.program.step() if not self._standstill_left else self.program.state
+        self._standstill_left = max(self._standstill_left - 1, 0)
+        way_to_rest, point = self.program.way_to_rest()
+        self._rest_points.append((self._sent_count, point))
         at_rest = self.program.at_rest
         self._meter.add(motion.position, self.program)
         self._nominal_ns = self._nominal_time(due + self._epoch_offset, at_rest and self._rest_setpoints > 1)
@@ -154,6 +191,7 @@ class Execution:
             gripper_closed=motion.gripper_closed,
             execution=self.id,
             on_path=motion.on_path,
+            way_to_rest=way_to_rest,
         )
         self._sent_count += 1
         self.state = self._current_state()

@@ -117,7 +117,7 @@ class Executor:
             while pending:
                 pending.popleft()(current)
             self._supervise(current, due)
-            if current.displacement:
+            if current.displacement or current.arm_stops:
                 current.skip_period()
             else:
                 setpoint = current.step(due, self._time.wall_ns())
@@ -140,6 +140,8 @@ class Executor:
         self._supervise_arm(current, arm, due)
 
     def _supervise_arm(self, current: Execution, arm: JointState, due: int) -> None:
+        if self._follows_way_to_rest(current, arm, due):
+            return
         stalled = self._stall_detector.stall_duration(due, current.id, arm)
         if current.is_settled or current.displacement:
             if current.arm_has_stopped(arm) or stalled > STALL_TIMEOUT:  # otherwise the arm is late, and still moves
@@ -154,6 +156,26 @@ class Executor:
         current.wait_for_late_arm(arm)
         if arm.execution == current.id:
             self._judge_tracking(current, arm.tracking_error)
+
+    def _follows_way_to_rest(self, current: Execution, arm: JointState, due: int) -> bool:
+        """Wait for an arm that comes to rest because setpoints were late, and go on from where it rests."""
+        holds = arm.holding and arm.execution == current.id and not current.displacement
+        if not holds or current.has_restarted(arm.cycle, due):
+            current.arm_stops = False
+            return False
+        current.arm_stops = True
+        if not arm.stopped:
+            return True
+        self._stall_detector.restart(due)
+        if current.restart(arm.cycle, due):
+            reason = f"setpoints were late {current.program.location}: the arm came to rest, and goes on from there"
+            self._command_handler.write_journal("the arm", CommandVerb.HOLD, reason)
+        else:
+            current.arm_stops = False
+            off = float(np.abs(arm.position - current.program.current_q).max())
+            current.hold("setpoints were late, and the arm came to rest where nothing leads on; resume brings it back")
+            current.displacement = max(off, self._settings.regain)
+        return True
 
     def _hold(self, current: Execution, reason: str) -> None:
         if not current.program.hold_requested:

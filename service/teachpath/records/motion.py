@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+
+import numpy as np
 
 from teachpath.records.arrays import Array, Matrix, Quaternion, Vector
 from teachpath_proto.control import ExecutorState
@@ -109,11 +111,16 @@ class Setpoint:
     gripper_closed: bool
     execution: str
     on_path: bool = False
+    # (n, 6) [rad], one control period apart, the first one period behind this setpoint; checked against all limits
+    way_to_rest: Array = field(default_factory=lambda: np.empty((0, 6)))
 
 
 @dataclass(frozen=True, eq=False)
 class JointState:
-    """What the arm does; joint arrays are (6,), `tracking_error` is the largest over the joints [rad]."""
+    """What the arm does; joint arrays are (6,), `tracking_error` is the largest over the joints [rad].
+
+    An arm that is `holding` follows the way to rest of setpoint `cycle`; once it is `stopped`, it rests at its end.
+    """
 
     stamp_ns: int
     cycle: int
@@ -128,6 +135,7 @@ class JointState:
     object_orientation: Quaternion
     execution: str = ""
     late: int = 0
+    stopped: bool = False
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,7 +13,7 @@ from typing import Final
 from teachpath.errors import TeachpathError, UnusableInput
 from teachpath.io.bus import Bus, Handle
 from teachpath.io.store.motions import MotionHeader, Motions, MotionTake
-from teachpath.io.wire import decode_setpoint, decode_status
+from teachpath.io.wire import decode_setpoint, decode_status, without_way_to_rest
 from teachpath.periodic_thread import PeriodicThread
 from teachpath_proto.keys import Keys
 
@@ -140,6 +140,7 @@ class MotionRecorder:
                 self._setpoints += 1
                 self._lost += max(setpoint.cycle - self._last_cycle - 1, 0)
                 self._last_cycle = setpoint.cycle
+                payload = without_way_to_rest(payload)
             elif topic == "statuses":
                 status = decode_status(payload)
                 if status.execution != self._execution:

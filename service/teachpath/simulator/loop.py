@@ -19,9 +19,9 @@ from teachpath.io.bus import Bus
 from teachpath.motion.settings import MotionSettings
 from teachpath.records import JointState, Scene
 from teachpath.simulator.arm import STEP_NS, SimulatedArm
-from teachpath.simulator.setpoint_player import SetpointPlayer
 from teachpath.simulator.settings import SimulatorSettings
 from teachpath.time_source import TimeSource
+from teachpath_client.driver import PlayerState, SetpointPlayer
 from teachpath_proto.keys import Keys
 
 log = logging.getLogger(__name__)
@@ -32,6 +32,7 @@ IDLE_STATE_PERIOD: Final = 0.04  # [s] between two joint states then: 25 Hz, whe
 # Lag up to which a process that got no processor time catches up, step by step: on a busy machine the arm is late, but
 # its motion is right.
 MAX_LAG_NS: Final = 1_000_000_000
+ABANDONED_NS: Final = 200_000_000  # [ns] without setpoints, after which an arm at rest is nobody's
 
 
 class Simulator:
@@ -112,7 +113,7 @@ class Simulator:
         with self._lock:
             self._read_statuses()
             moving = self._player.execution
-            if moving not in ("", self._finished_execution) and not self._player.holding:
+            if moving not in ("", self._finished_execution) and not self._is_abandoned(self._time.wall_ns()):
                 raise Conflict(f"execution {moving} is under way in scene {self._scene.name}; stop it first")
             self._build(scene, self._arm.position.tolist())
             self._wake.set()
@@ -164,7 +165,8 @@ class Simulator:
         settings = self._settings
         self._arm = SimulatedArm(scene, settings, position)
         self._scene = scene
-        self._player = SetpointPlayer(self._arm.position, delay=settings.delay, silence=settings.silence)
+        self._last_setpoint_ns = 0
+        self._player = SetpointPlayer(self._arm.position, delay=settings.delay)
         self._setpoints.clear()
         self._finished_execution = ""  # id of the execution whose end the executor has published
         self._gripper_closed = False
@@ -176,6 +178,7 @@ class Simulator:
         try:
             while self._setpoints:
                 self._player.add(wire.decode_setpoint(self._setpoints.popleft()), now)
+                self._last_setpoint_ns = now
         except UnusableInput as error:
             log.warning("left out: %s", error)
         self._read_statuses()
@@ -200,9 +203,18 @@ class Simulator:
             self._arm.release()
         self._gripper_closed = closed
 
+    def _is_abandoned(self, now: int) -> bool:
+        """Whether the arm rests and its executor has sent nothing for a while: it may have died."""
+        return self._player.at_rest and now - self._last_setpoint_ns > ABANDONED_NS
+
+    @property
+    def _holds(self) -> bool:
+        """Whether the arm follows a way to rest, or rests at its end."""
+        return self._player.state in (PlayerState.STOPPING, PlayerState.STOPPED)
+
     def _state(self, now: int) -> JointState:
         player, newest = self._player, self._player.last_reached
-        holding = newest is not None and newest.execution != self._finished_execution and player.holding
+        holding = newest is not None and newest.execution != self._finished_execution and self._holds
         position, orientation = self._arm.object_pose
         return JointState(
             stamp_ns=now,
@@ -211,11 +223,12 @@ class Simulator:
             velocity=self._arm.velocity,
             torque=self._arm.torque,
             tracking_error=self._tracking_error,
-            missed=player.missed + (player.overdue if holding else 0),
+            missed=player.missed,
             holding=holding,
             gripper_closed=self._gripper_closed,
             object_position=position,
             object_orientation=orientation,
             execution=newest.execution if newest is not None else "",
             late=player.late,
+            stopped=holding and player.state is PlayerState.STOPPED,
         )

@@ -18,7 +18,5 @@ class SimulatorSettings:
     bandwidth: Annotated[float, Gt(0), Le(150)] = 60.0
     # [s] that setpoints wait before they are played, so that one that was held up on its way still comes in time
     delay: Annotated[float, Ge(0.004), Le(0.2)] = 0.03
-    # [s] that the arm goes on beyond its newest setpoint before it says that it holds
-    silence: Annotated[float, Gt(0), Le(1)] = 0.02
     # [m] between grasp point and object's centre, up to which a closing gripper takes the object
     reach: Annotated[float, Ge(0), Le(0.2)] = 0.03

@@ -14,7 +14,7 @@ from teachpath.executor.teleop.clutch import Clutch
 from teachpath.executor.teleop.gripper import GripperFollower, observed_load
 from teachpath.executor.teleop.hand_input import HandInput
 from teachpath.motion.collision.collision_model import CollisionModel, Load
-from teachpath.motion.execution.segments import Detour, MotionState
+from teachpath.motion.execution.segments import Detour, MotionState, RestPoint
 from teachpath.motion.execution.teleop_follower import TeleopFollower
 from teachpath.motion.settings import MotionSettings
 from teachpath.recording.demonstration import to_world
@@ -130,6 +130,26 @@ class TeleopProgram:
             self._latencies.append((now - self._answered_stamp) / 1e3)
         self._state = MotionState(position, velocity, acceleration, self._gripper.closed)
         return self._state
+
+    @property
+    def state(self) -> MotionState:
+        """The motion of the newest setpoint."""
+        return self._state
+
+    def way_to_rest(self) -> tuple[Array, RestPoint]:
+        """Return the positions (n, 6) of the way to rest from the newest setpoint, and where it ends."""
+        way = self._follower.way_to_rest()
+        return way, RestPoint(way[-1] if len(way) else self._state.position)
+
+    def restart(self, point: RestPoint) -> bool:
+        """Stand where the arm rests, with the clutch open: the hand is elsewhere by now."""
+        if self._clutch.engaged:
+            self._clutch.disengage(LATE_ARM_HINT)
+        self._follower.disengage()
+        self._follower.rest_at(point.position)
+        still = np.zeros(6)
+        self._state = MotionState(point.position, still, still, self._gripper.closed)
+        return True
 
     def advance_planning(self) -> None:
         """Do one slice of the planning of the next motion."""

@@ -18,6 +18,7 @@ from teachpath.io.wire.motion import (
     encode_setpoint,
     encode_state,
     encode_status,
+    without_way_to_rest,
 )
 from teachpath.io.wire.recording import (
     decode_amendment,
@@ -70,4 +71,5 @@ __all__ = [
     "encode_status",
     "recording_document",
     "sample_payload",
+    "without_way_to_rest",
 ]

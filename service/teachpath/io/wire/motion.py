@@ -25,6 +25,7 @@ def encode_setpoint(setpoint: Setpoint) -> bytes:
         gripper_closed=setpoint.gripper_closed,
         execution=setpoint.execution,
         on_path=setpoint.on_path,
+        way_to_rest=np.ascontiguousarray(setpoint.way_to_rest, dtype="<f8").tobytes(),
     ).SerializeToString()
 
 
@@ -42,7 +43,19 @@ def decode_setpoint(payload: bytes) -> Setpoint:
         gripper_closed=m.gripper_closed,
         execution=m.execution,
         on_path=m.on_path,
+        way_to_rest=_way(m.way_to_rest, where),
     )
+
+
+def without_way_to_rest(payload: bytes) -> bytes:
+    """Return a setpoint's message as it is kept: without its way to rest, which is forty times its size.
+
+    Raises:
+        UnusableInput: it is malformed.
+    """
+    message = parse(motion_pb2.Setpoint, payload)
+    message.ClearField("way_to_rest")
+    return message.SerializeToString()
 
 
 def encode_state(state: JointState) -> bytes:
@@ -61,6 +74,7 @@ def encode_state(state: JointState) -> bytes:
         object_orientation=state.object_orientation,
         execution=state.execution,
         late=state.late,
+        stopped=state.stopped,
     ).SerializeToString()
 
 
@@ -86,6 +100,7 @@ def decode_state(payload: bytes) -> JointState:
         object_orientation=(w, i, j, k),
         execution=m.execution,
         late=m.late,
+        stopped=m.stopped,
     )
 
 
@@ -94,6 +109,15 @@ def _joints(values: Iterable[float], where: str) -> Array:
     if joints.shape != (6,) or not np.all(np.isfinite(joints)):
         raise UnusableInput(f"{where}: needs 6 finite numbers a joint array, got {joints.tolist()}")
     return joints
+
+
+def _way(content: bytes, where: str) -> Array:
+    if len(content) % 48:
+        raise UnusableInput(f"{where}: its way to rest has {len(content)} bytes, no multiple of 48 (six 64-bit floats)")
+    way = np.frombuffer(content, dtype="<f8").reshape(-1, 6)
+    if not np.all(np.isfinite(way)):
+        raise UnusableInput(f"{where}: its way to rest is not finite")
+    return way
 
 
 def encode_status(status: ExecutorStatus) -> bytes:

@@ -25,6 +25,10 @@ MAX_RAMPS_PER_PERIOD: Final = 20  # ramps verified in one control period at most
 RUCKIG_MARGIN: Final = 1 + 1e-12  # factor on Ruckig's limits, so that rounding makes no ramp infeasible
 DURATION_TOLERANCE: Final = 1e-6  # [s] between the closed form of a ramp and Ruckig's
 MAX_REVERSE_RATE: Final = 0.96  # of the way back: a plan has its margins on the other side (see `limit_margins`)
+MAX_STOP_RAMPS: Final = 12  # ramps to rest judged behind a setpoint at most
+MAX_STOP_TIME: Final = 2.0  # s, of a ramp to rest; with none so short the present motion goes on for a while
+STOP_LEADS: Final = (0, 1, 2, 4, 8, 16, 32, 64)  # periods for which it goes on
+MAX_STOP_PERIODS: Final = 5000  # of a way to rest, where nothing but the end of the track is one
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,6 +39,19 @@ class PathProgress:
     rate: float
     at_rest: bool
     finished: bool
+
+
+@dataclass(frozen=True, eq=False)
+class WayToRest:
+    """How the arm comes to rest from the newest setpoint without another one.
+
+    Attributes:
+        positions: (n, 6) one control period apart, the first one period ahead [rad]; empty at rest.
+        tau: plan time at which it rests [s].
+    """
+
+    positions: Array
+    tau: float
 
 
 class Governor:
@@ -158,6 +175,38 @@ class Governor:
         self._sent[2] = self._motion[0, :6]
         return self.progress
 
+    def way_to_rest(self) -> WayToRest:
+        """Find the way to rest from here, judged against all limits together with the setpoints already sent.
+
+        Where no ramp to rest keeps them from here, the present ramp goes on for some periods; at worst it goes on to
+        the end of the track, where the motion rests.
+        """
+        if self.progress.at_rest:
+            return WayToRest(np.empty((0, 6)), self.tau)
+        trial = np.zeros(8)
+        for lead in STOP_LEADS:
+            sent, state = self._sent.copy(), self._state.copy()
+            ended = kernels.lead_along(self._table, self._step, self._ramp, self._elapsed, self._dt, lead, sent, state)
+            if ended:
+                return self._sampled(lead, np.zeros(8))
+            peak = kernels.find_ramp(
+                self._table, self._step, state, 0.0, sent, self._limits, self._dt, MAX_STOP_TIME, MAX_STOP_RAMPS, trial
+            )
+            if peak >= 0.0:
+                return self._sampled(lead, trial)
+        return self._sampled(int(self._end / self._dt / MIN_OVERRIDE), np.zeros(8))
+
+    def _sampled(self, lead: int, ramp: Array) -> WayToRest:
+        count = min(lead + int(np.ceil(ramp[3:6].sum() / self._dt)), MAX_STOP_PERIODS)
+        out = np.empty((count, 6))
+        count = kernels.sample_stop(self._table, self._step, self._ramp, self._elapsed, lead, ramp, self._dt, out)
+        tau = (
+            kernels.evaluate_ramp(ramp, (count - lead) * self._dt)[0]
+            if count > lead
+            else (kernels.evaluate_ramp(self._ramp, self._elapsed + count * self._dt)[0])
+        )
+        return WayToRest(out[:count], min(max(float(tau), 0.0), self._end))
+
     def _change_rate(self, target: float, within: float) -> None:
         trial, state = self._trial, self._state
         if (state[0] <= 0.0 and target >= 0.0) or (state[0] >= self._end and target <= 0.0):
@@ -214,7 +263,7 @@ def warm_up(dt: float) -> None:
     """Compile the kernels, or load them from disk, so that the first motion does not wait for them."""
     turn = np.array([0.01, 0.0, 0.0, 0.0, 0.0, 0.0])
     governor = Governor(straight_move(np.zeros(6), turn, ARM_LIMITS, margins=(0.5, 0.5, 0.5)), dt)
-    for act in (governor.step, governor.hold, governor.step, governor.reverse, governor.step):
+    for act in (governor.step, governor.way_to_rest, governor.hold, governor.step, governor.reverse, governor.step):
         act()
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Protocol
 
 from teachpath.motion.arm.puma560 import Array
-from teachpath.motion.execution.segments import Detour, MotionState
+from teachpath.motion.execution.segments import Detour, MotionState, RestPoint
 
 
 class MotionProgram(Protocol):
@@ -69,6 +69,16 @@ class MotionProgram(Protocol):
 
     def step(self) -> MotionState:
         """Advance by one control period and return the nominal motion; never raises."""
+
+    @property
+    def state(self) -> MotionState:
+        """The motion of the newest setpoint."""
+
+    def way_to_rest(self) -> tuple[Array, RestPoint]:
+        """Return the positions (n, 6) of the way to rest from the newest setpoint [rad], and where it ends."""
+
+    def restart(self, point: RestPoint) -> bool:
+        """Go on from where the arm rests at the end of a way to rest; False when nothing leads on from there."""
 
     def advance_planning(self) -> None:
         """Do one slice of the planning, in the time that is left behind a setpoint."""

@@ -10,14 +10,15 @@ import numpy as np
 
 from teachpath.errors import Conflict
 from teachpath.motion.arm.puma560 import Array
-from teachpath.motion.execution.governor import MIN_OVERRIDE, Governor
-from teachpath.motion.execution.segments import Detour, MotionState, Segment, plan_return_path, plan_segments
+from teachpath.motion.execution.governor import MIN_OVERRIDE, Governor, WayToRest
+from teachpath.motion.execution.segments import Detour, MotionState, RestPoint, Segment, plan_return_path, plan_segments
 from teachpath.motion.planning.certificate import verify
 from teachpath.motion.settings import MotionSettings
 from teachpath.motion.timing.jog import jog_trajectory, time_at_length
 from teachpath.motion.timing.timed_trajectory import TimedTrajectory
 from teachpath.records import Plan
 
+SAME_PLACE: Final = 1e-9  # [rad] within which two rests are one
 NODE_TOLERANCE: Final = 1e-5  # [m] within which the arm is at a node
 
 
@@ -257,6 +258,34 @@ class PlanProgram:
 
     def close(self) -> None:
         """Do nothing: a plan holds nothing that must be freed."""
+
+    @property
+    def state(self) -> MotionState:
+        """The motion of the newest setpoint."""
+        return self._state
+
+    def way_to_rest(self) -> tuple[Array, RestPoint]:
+        """Return the positions (n, 6) of the way to rest from the newest setpoint, and where it ends."""
+        governor = self._active_governor
+        way = governor.way_to_rest() if governor is not None else WayToRest(np.empty((0, 6)), 0.0)
+        end = way.positions[-1] if len(way.positions) else self._state.position
+        return way.positions, RestPoint(end, governor, way.tau)
+
+    def restart(self, point: RestPoint) -> bool:
+        """Go on from where the arm rests; returns False when the program has left that motion since."""
+        governor = self._active_governor
+        if governor is None or point.governor is not governor:
+            return bool(self.at_rest and np.abs(point.position - self._state.position).max() <= SAME_PLACE)
+        backward = governor.reversing
+        governor.rest_at(point.tau)
+        if not self._held:
+            governor.reverse() if backward else governor.resume()
+        if self._state.on_path:
+            self._arc_length = float(governor.motion[0, 6])
+        still = np.zeros(6)
+        position = governor.motion[0, :6].copy()
+        self._state = MotionState(position, still, still, self._state.gripper_closed, self._state.on_path)
+        return True
 
     @property
     def _active_governor(self) -> Governor | None:

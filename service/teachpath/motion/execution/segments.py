@@ -11,6 +11,7 @@ import numpy as np
 from teachpath.motion.arm.joint_path import ARM_LIMITS
 from teachpath.motion.arm.puma560 import Array
 from teachpath.motion.collision.collision_model import CollisionModel, Load, grasped_load
+from teachpath.motion.execution.governor import Governor
 from teachpath.motion.planning.certificate import plan_trajectory
 from teachpath.motion.settings import MotionSettings
 from teachpath.motion.timing.joint_moves import joint_waypoints, placed_load, straight_move, waypoints_home
@@ -30,6 +31,21 @@ class MotionState:
     acceleration: Array
     gripper_closed: bool
     on_path: bool = False
+
+
+@dataclass(frozen=True, eq=False)
+class RestPoint:
+    """Where an arm rests that has followed the way to rest of one setpoint.
+
+    Attributes:
+        position: (6,) [rad].
+        governor: of the motion that it rests in; None where there is none.
+        tau: plan time at which it rests [s].
+    """
+
+    position: Array
+    governor: Governor | None = None
+    tau: float = 0.0
 
 
 @dataclass(frozen=True, eq=False)

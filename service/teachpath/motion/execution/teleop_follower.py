@@ -86,6 +86,7 @@ class TeleopFollower:
         self._ruckig = Ruckig(6)
         self._state: tuple[Array, Array, Array] = (np.array(start_q, dtype=np.float64), np.zeros(6), np.zeros(6))
         self._trajectory: Trajectory | None = None
+        self._positions = np.empty((0, 6))  # of the trajectory, one period apart [rad]
         self._elapsed = 0.0  # [s] of the present motion
         self._cycle = 0
         self._planned: _PlannedMotion | None = None
@@ -135,11 +136,23 @@ class TeleopFollower:
                 self._trajectory, self._elapsed, self.answered_stamp = following.trajectory, 0.0, following.stamp
             self._planned = None
         self._elapsed += self._period
+        if self._trajectory is not None and self._elapsed == self._period:
+            count = int(np.ceil(self._trajectory.duration / self._period))
+            self._positions = np.array([_at(self._trajectory, (k + 1) * self._period)[0] for k in range(count)])
         if self._trajectory is not None:
             self._state = _at(self._trajectory, self._elapsed)
             if self._elapsed >= self._trajectory.duration:
                 self._state, self._trajectory = (self._state[0], np.zeros(6), np.zeros(6)), None
         return self._state
+
+    def way_to_rest(self) -> Array:
+        """Return the positions (n, 6) that are left of the motion that is followed; it ends at rest [rad]."""
+        return self._positions[round(self._elapsed / self._period) :] if self._trajectory else np.empty((0, 6))
+
+    def rest_at(self, position: Array) -> None:
+        """Stand at a configuration (6,) at once; only for an arm that rests there already."""
+        self._state = (position, np.zeros(6), np.zeros(6))
+        self._trajectory = self._planned = self._planning = None
 
     def advance_planning(self) -> None:
         """Do one slice of the planning of the next motion; takes a millisecond or two."""

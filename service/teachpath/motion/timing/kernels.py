@@ -191,3 +191,49 @@ def evaluate_motion(table: Array, step: float, state: Array, out: Array) -> None
         second = table[row, 2, i] + ahead * table[row, 3, i]
         out[1, i] = first * state[1]
         out[2, i] = second * state[1] ** 2 + first * state[2]
+
+
+@compiled
+def lead_along(
+    table: Array, step: float, ramp: Array, elapsed: float, dt: float, periods: int, sent: Array, state: Array
+) -> bool:
+    """Go on along a ramp in thought: write the newest setpoints (3, 6) and the state (3,) after some periods.
+
+    Returns:
+        Whether the motion has come to an end of the table, where it rests.
+    """
+    end = (table.shape[0] - 1) * step
+    q = np.empty(7)
+    for k in range(1, periods + 1):
+        state[0], state[1], state[2] = evaluate_ramp(ramp, elapsed + k * dt)
+        evaluate_table(table, step, state[0], q)
+        for i in range(6):
+            sent[0, i], sent[1, i], sent[2, i] = sent[1, i], sent[2, i], q[i]
+        if (state[0] >= end and state[1] >= 0.0) or (state[0] <= 0.0 and state[1] <= 0.0):
+            state[0], state[1], state[2] = min(max(state[0], 0.0), end), 0.0, 0.0
+            return True
+    return False
+
+
+@compiled
+def sample_stop(
+    table: Array, step: float, ramp: Array, elapsed: float, periods: int, stop: Array, dt: float, out: Array
+) -> int:
+    """Write the joints (n, 6) of a way to rest: some periods along a ramp, then along a ramp to rest; return n.
+
+    Args:
+        out: (m, 6) with room for it; the last row that is written rests.
+    """
+    end = (table.shape[0] - 1) * step
+    q = np.empty(7)
+    count: int = periods + ceil((stop[3] + stop[4] + stop[5]) / dt)
+    for k in range(1, count + 1):
+        if k <= periods:
+            tau, rate, _ = evaluate_ramp(ramp, elapsed + k * dt)
+        else:
+            tau, rate, _ = evaluate_ramp(stop, (k - periods) * dt)
+        evaluate_table(table, step, tau, q)
+        out[k - 1] = q[:6]
+        if k == out.shape[0] or (tau >= end and rate >= 0.0) or (tau <= 0.0 and rate <= 0.0):
+            return k
+    return count

@@ -1,0 +1,73 @@
+"""Setpoints off the wire, and the joint state that a driver answers with."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from teachpath_client.driver.interpolation import Array
+from teachpath_client.driver.player import PlayerState, SetpointPlayer
+from teachpath_proto.motion_pb2 import JointState
+from teachpath_proto.motion_pb2 import Setpoint as SetpointMessage
+
+
+@dataclass(frozen=True, eq=False)
+class Setpoint:
+    """One control period; joint arrays are (6,) in rad, rad/s, rad/s^2, `way_to_rest` (n, 6) in rad."""
+
+    cycle: int
+    nominal_ns: int
+    position: Array
+    velocity: Array
+    acceleration: Array
+    gripper_closed: bool
+    execution: str
+    way_to_rest: Array
+
+
+def decode_setpoint(payload: bytes) -> Setpoint:
+    """Read a setpoint.
+
+    Raises:
+        ValueError: it is malformed or not finite; a driver leaves it out.
+    """
+    try:
+        m = SetpointMessage.FromString(payload)
+        arrays = [np.array(values, dtype=np.float64) for values in (m.position, m.velocity, m.acceleration)]
+        way = np.frombuffer(m.way_to_rest, dtype="<f8").reshape(-1, 6)
+    except Exception as error:
+        raise ValueError(f"no setpoint: {error}") from None
+    if any(array.shape != (6,) for array in arrays) or not all(np.isfinite(array).all() for array in (*arrays, way)):
+        raise ValueError(f"setpoint {m.cycle} needs 6 finite numbers a joint array")
+    position, velocity, acceleration = arrays
+    return Setpoint(m.cycle, m.nominal_ns, position, velocity, acceleration, m.gripper_closed, m.execution, way)
+
+
+def joint_state(player: SetpointPlayer, position: Sequence[float], velocity: Sequence[float]) -> bytes:
+    """Return the joint state of an arm that plays setpoints and measures neither torques nor an object.
+
+    Args:
+        player: what it plays.
+        position: (6,) measured [rad].
+        velocity: (6,) measured [rad/s].
+    """
+    newest = player.last_reached
+    return JointState(
+        stamp_ns=time.time_ns(),
+        cycle=newest.cycle if newest else 0,
+        execution=newest.execution if newest else "",
+        position=position,
+        velocity=velocity,
+        torque=[0.0] * 6,
+        tracking_error=float(np.abs(player.target.position - np.asarray(position)).max()),
+        missed=player.missed,
+        late=player.late,
+        holding=player.state in (PlayerState.STOPPING, PlayerState.STOPPED),
+        stopped=player.state is PlayerState.STOPPED,
+        gripper_closed=newest.gripper_closed if newest else False,
+        object_position=[0.0] * 3,
+        object_orientation=[0.0] * 4,
+    ).SerializeToString()

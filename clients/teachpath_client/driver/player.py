@@ -1,0 +1,254 @@
+"""The player of a driver: what an arm should do now, from the setpoints that have come.
+
+Every setpoint carries the way to rest from there: positions one control period apart that the executor has checked
+against all limits. The player plays setpoints a fixed delay behind their nominal time. When the next one is not there
+in time, it follows the way to rest of the last one, says so, and takes nothing up until setpoints begin where the arm
+rests. So a setpoint that is late, lost or doubled, a burst of them, or an executor that dies, stops the arm on its path
+and never makes it jump or run faster than the plan.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import Final, Protocol
+
+import numpy as np
+
+from teachpath_client.driver.interpolation import BLEND_TIME, Array, Quintic, WayToRest, blended
+
+MAX_QUEUE: Final = 2000  # setpoints that wait at most; with more the sender's clock is wrong
+MAX_CLOCK_ERROR: Final = 1.0  # s, of a clock that is so far off that its times cannot be meant
+AT_PLACE: Final = 1e-6  # rad, between the arm's rest and setpoints that begin there
+BLEND_DISTANCE: Final = 0.02  # rad, up to which another execution may begin off the commanded position
+MAX_GAP: Final = 3  # periods between two setpoints over which the player goes on; a longer gap is a stream that stopped
+
+
+class SetpointLike(Protocol):
+    """What the player reads of a setpoint; `Setpoint` of the wire, decoded to arrays, has all of it."""
+
+    @property
+    def cycle(self) -> int:
+        """Number of its control period in the execution."""
+
+    @property
+    def nominal_ns(self) -> int:
+        """When it is due on the clock of the motion [ns]."""
+
+    @property
+    def position(self) -> Array:
+        """(6,) [rad]."""
+
+    @property
+    def velocity(self) -> Array:
+        """(6,) [rad/s]."""
+
+    @property
+    def acceleration(self) -> Array:
+        """(6,) [rad/s^2]."""
+
+    @property
+    def gripper_closed(self) -> bool:
+        """Whether the gripper is to be closed."""
+
+    @property
+    def execution(self) -> str:
+        """Id of its execution."""
+
+    @property
+    def way_to_rest(self) -> Array:
+        """(n, 6) positions one period apart, the first one period behind it, to rest [rad]; empty at rest."""
+
+
+class PlayerState(StrEnum):
+    """What the player does."""
+
+    IDLE = "idle"  # there was no setpoint yet
+    PLAYING = "playing"
+    STOPPING = "stopping"  # follows the way to rest
+    STOPPED = "stopped"  # rests at its end, until setpoints begin there
+
+
+@dataclass(frozen=True, eq=False)
+class TargetMotion:
+    """What the arm should do now: (6,) in rad, rad/s, rad/s^2."""
+
+    position: Array
+    velocity: Array
+    acceleration: Array
+
+
+class SetpointPlayer:
+    """Plays the setpoints of one arm.
+
+    Args:
+        position: (6,) where the arm rests [rad].
+        delay: between a setpoint's nominal time and its playing [s].
+        period: between two setpoints, until two have come [s].
+    """
+
+    def __init__(self, position: Array | Sequence[float], *, delay: float = 0.03, period: float = 0.004) -> None:
+        still = np.zeros(6)
+        self.state = PlayerState.IDLE
+        self.target = TargetMotion(np.array(position, dtype=np.float64), still, still)
+        self.missed = 0  # setpoints that never came since the execution began
+        self.late = 0  # setpoints that came after they should have been played
+        self.stops = 0  # ways to rest that were followed since the execution began
+        self.last_reached: SetpointLike | None = None  # the newest setpoint that was played
+        self._delay, self._period = delay, period
+        self._queue: deque[SetpointLike] = deque()
+        self._newest = -1  # cycle of the newest setpoint that was taken
+        self._begin_ns = 0  # nominal time from which `_played` counts
+        self._played = 0.0  # s
+        self._zero_ns = 0  # real time at which `_played` would be 0 without any lateness
+        self._piece: Quintic | None = None
+        self._way: WayToRest | None = None
+        self._blend: tuple[Array, float] = (still, BLEND_TIME)  # what is left to take up, and since when [s]
+
+    @property
+    def execution(self) -> str:
+        """The execution that is played, or waits to be; empty when there was none."""
+        newest = self._queue[-1] if self._queue else self.last_reached
+        return newest.execution if newest is not None else ""
+
+    @property
+    def at_rest(self) -> bool:
+        """Whether nothing waits to be played and the arm is to stand still."""
+        return not (self._queue or self.target.velocity.any() or self.target.acceleration.any())
+
+    def add(self, setpoint: SetpointLike, now_ns: int) -> bool:
+        """Take a setpoint that came at `now_ns`; returns whether it is to be played.
+
+        One that is older than those before changes nothing; one that does not begin where the arm rests is late.
+        """
+        if self.execution != setpoint.execution:
+            return self._begin(setpoint, now_ns)
+        if setpoint.cycle <= self._newest:
+            return False
+        if self.state in (PlayerState.STOPPING, PlayerState.STOPPED):
+            return self._begin_again(setpoint, now_ns)
+        newest = self._queue[-1] if self._queue else self.last_reached
+        if newest is None or setpoint.nominal_ns <= newest.nominal_ns:
+            return False
+        ahead = setpoint.cycle - self._newest
+        if self._time_of(setpoint) <= self._played:
+            self.late += 1
+        if len(self._queue) >= MAX_QUEUE:
+            return False
+        self.missed += ahead - 1
+        if not _is_still(setpoint):  # the clock of the motion may leap at a standstill
+            self._period = (setpoint.nominal_ns - newest.nominal_ns) / 1e9 / ahead
+        self._newest = setpoint.cycle
+        self._queue.append(setpoint)
+        return True
+
+    def advance(self, dt: float, now_ns: int) -> SetpointLike | None:
+        """Go on by `dt` [s] of real time to `now_ns`; returns the newest setpoint that was reached, if any."""
+        if self.state is PlayerState.IDLE:
+            return None
+        self._played += dt
+        reached = None
+        if self.state is PlayerState.PLAYING:
+            while self._queue and self._time_of(self._queue[0]) <= self._played and self._follows(self._queue[0]):
+                self.last_reached = reached = self._queue.popleft()
+            reached = self._skip_standstill(now_ns) or reached
+            if not self._queue or not self._follows(self._queue[0]):
+                self._stop_if_due()
+        self._aim(dt)
+        return reached
+
+    def _begin(self, setpoint: SetpointLike, now_ns: int) -> bool:
+        """Begin another execution; the arm rests, and so does its first setpoint, where the arm is."""
+        off = self.target.position - setpoint.position
+        moves = self.target.velocity.any() and self.state is not PlayerState.IDLE
+        if moves or not _is_still(setpoint) or np.abs(off).max() > BLEND_DISTANCE:
+            return False
+        self.missed = self.late = self.stops = 0
+        self._blend = (off, 0.0)
+        self._restart(setpoint, now_ns)
+        return True
+
+    def _begin_again(self, setpoint: SetpointLike, now_ns: int) -> bool:
+        """Take the execution up again where the arm rests; whatever else comes is late."""
+        at_place = np.abs(self.target.position - setpoint.position).max() <= AT_PLACE
+        if self.state is not PlayerState.STOPPED or not (_is_still(setpoint) and at_place):
+            self._newest = setpoint.cycle
+            self.late += 1
+            return False
+        self._restart(setpoint, now_ns)
+        return True
+
+    def _restart(self, setpoint: SetpointLike, now_ns: int) -> None:
+        self._queue.clear()
+        self._queue.append(setpoint)
+        self._begin_ns, self._newest = setpoint.nominal_ns, setpoint.cycle
+        waited = (now_ns - setpoint.nominal_ns) / 1e9
+        self._played = (waited if 0.0 <= waited <= MAX_CLOCK_ERROR else 0.0) - self._delay
+        self._zero_ns = now_ns - round((self._played + self._delay) * 1e9)
+        self.last_reached, self._way, self._piece = None, None, None
+        self.state = PlayerState.PLAYING
+
+    def _time_of(self, setpoint: SetpointLike) -> float:
+        return (setpoint.nominal_ns - self._begin_ns) / 1e9
+
+    def _follows(self, setpoint: SetpointLike) -> bool:
+        """Tell whether the arm may go on to this setpoint from the one that was reached."""
+        last = self.last_reached
+        near = last is None or setpoint.cycle - last.cycle <= MAX_GAP
+        return near or (last is not None and _is_still(last) and _is_still(setpoint))
+
+    def _skip_standstill(self, now_ns: int) -> SetpointLike | None:
+        """Skip what waits of a standstill and was due: a player whose machine was busy has lost only time there."""
+        reached, due = None, (now_ns - self._zero_ns) / 1e9 - self._delay
+        while len(self._queue) > 1 and self._time_of(self._queue[0]) <= due and self._waits_in_same_rest():
+            self.last_reached = reached = self._queue.popleft()
+            self._played = self._time_of(reached)
+        return reached
+
+    def _waits_in_same_rest(self) -> bool:
+        last = self.last_reached
+        return last is not None and all(
+            _is_still(each)
+            and np.array_equal(each.position, last.position)
+            and each.gripper_closed == last.gripper_closed
+            for each in (last, self._queue[0], self._queue[1])
+        )
+
+    def _stop_if_due(self) -> None:
+        """Follow the way to rest of the last setpoint, since the next one is not there."""
+        last = self.last_reached
+        if last is None or (_is_still(last) and not self._queue) or self._time_of(last) > self._played:
+            return
+        self.stops += 1
+        self.late += len(self._queue)
+        self._queue.clear()
+        self._way = WayToRest(last, self._period)
+        self.state = PlayerState.STOPPING
+
+    def _aim(self, dt: float) -> None:
+        last = self.last_reached
+        if last is None:
+            return
+        still = np.zeros(6)
+        if self._way is not None:
+            since = self._played - self._time_of(last)
+            p, v, a = self._way(since)
+            if since >= self._way.duration:
+                self.state = PlayerState.STOPPED
+        elif self._queue:
+            if self._piece is None or self._piece.one is not last or self._piece.two is not self._queue[0]:
+                self._piece = Quintic(last, self._queue[0])
+            p, v, a = self._piece(self._played - self._time_of(last))
+        else:
+            p, v, a = last.position, still, still
+        off, since = self._blend
+        if since < BLEND_TIME:
+            p, v, a = (value + part for value, part in zip((p, v, a), blended(off, since), strict=True))
+            self._blend = (off, since + dt)
+        self.target = TargetMotion(p, v, a)
+
+
+def _is_still(setpoint: SetpointLike) -> bool:
+    return not (setpoint.velocity.any() or setpoint.acceleration.any())
