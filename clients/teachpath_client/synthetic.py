@@ -32,7 +32,7 @@ EXPERIMENT_1 = ("near", "between", "far", "far", "between", "near", "far", "near
 
 
 @dataclass(frozen=True)
-class Hand:
+class SyntheticHand:
     """How steady the synthetic hand is."""
 
     spread: float = 0.008  # [m] of the way from one demonstration to the next
@@ -43,19 +43,19 @@ class Hand:
     wiggle: float = 0.0  # [m], 1.5 to 3 Hz
 
 
-def experiment_1(seed: int = 1, hand: Hand | None = None) -> Iterator[HandReading]:
+def experiment_1(seed: int = 1, hand: SyntheticHand | None = None) -> Iterator[HandReading]:
     """Yield twelve demonstrations of three ways around a box and a cylinder (5, 3 and 4), in the paper's order."""
-    hand = hand or Hand()
+    hand = hand or SyntheticHand()
     return _session([(way, hand) for way in EXPERIMENT_1], seed)
 
 
 def experiment_2(seed: int = 1, wiggle: float = 0.025) -> Iterator[HandReading]:
     """Yield five demonstrations of one way; the fifth has strong wiggles."""
-    steady, shaky = Hand(transport=3.98), Hand(transport=3.98, wiggle=wiggle)
+    steady, shaky = SyntheticHand(transport=3.98), SyntheticHand(transport=3.98, wiggle=wiggle)
     return _session([("between", steady)] * 4 + [("between", shaky)], seed)
 
 
-def _session(demonstrations: list[tuple[str, Hand]], seed: int) -> Iterator[HandReading]:
+def _session(demonstrations: list[tuple[str, SyntheticHand]], seed: int) -> Iterator[HandReading]:
     random = np.random.default_rng(seed)
     ticks = itertools.count()
     for way, hand in demonstrations:
@@ -70,7 +70,7 @@ def _session(demonstrations: list[tuple[str, Hand]], seed: int) -> Iterator[Hand
             yield HandReading(next(ticks) / RATE, (x, y, z), _tilted(tilt), tuple(flexions.tolist()))
 
 
-def _demonstration(way: str, hand: Hand, random: np.random.Generator) -> tuple[Array, Array]:
+def _demonstration(way: str, hand: SyntheticHand, random: np.random.Generator) -> tuple[Array, Array]:
     """Return hand positions (n, 3) and closures (n,), without tremor."""
     transport = hand.transport * (1.0 + random.uniform(-1, 1) * hand.duration_spread)
     pieces = [
@@ -86,7 +86,7 @@ def _demonstration(way: str, hand: Hand, random: np.random.Generator) -> tuple[A
     return np.concatenate([points for points, _, _ in pieces]), np.concatenate(closures)
 
 
-def _carry(way: str, hand: Hand, duration: float, random: np.random.Generator) -> Array:
+def _carry(way: str, hand: SyntheticHand, duration: float, random: np.random.Generator) -> Array:
     across, lift = WAYS[way]
     across += random.normal(0.0, hand.spread)
     lift += random.normal(0.0, hand.spread)

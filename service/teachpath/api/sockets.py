@@ -13,8 +13,8 @@ from starlette.websockets import WebSocketState
 
 from teachpath.api.strict_requests import unknown_name
 
-DONE: Final = 1000  # close codes: normal closure, and policy violation
-REFUSED: Final = 1008
+NORMAL_CLOSURE: Final = 1000  # close codes: normal closure, and policy violation
+POLICY_VIOLATION: Final = 1008
 MAX_REASON_LENGTH: Final = 120  # bytes; the protocol allows 123
 
 Message = TypeVar("Message", covariant=True)
@@ -55,7 +55,7 @@ async def close(socket: WebSocket, reason: str = "") -> None:
     """Close a WebSocket that is still open; a reason makes it a refusal."""
     if socket.client_state is WebSocketState.CONNECTED and socket.application_state is WebSocketState.CONNECTED:
         short = reason.encode(errors="replace")[:MAX_REASON_LENGTH].decode(errors="ignore")
-        await socket.close(REFUSED if reason else DONE, short)
+        await socket.close(POLICY_VIOLATION if reason else NORMAL_CLOSURE, short)
 
 
 async def serve(

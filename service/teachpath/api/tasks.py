@@ -15,7 +15,7 @@ from teachpath.offline.importing import Source, import_file
 from teachpath.records import Demonstration, Task
 from teachpath_proto.keys import is_name, name_refusal
 
-FILE: Final = {
+FILE_BODY: Final = {
     "required": True,
     "content": {"application/octet-stream": {"schema": {"type": "string", "format": "binary"}}},
 }
@@ -66,7 +66,7 @@ def _add_demonstrations(router: APIRouter, parts: Parts) -> None:
         """List a task's demonstrations in their order, each with its verdict and account."""
         return store.demonstrations(store.task(task).name)
 
-    @router.post("/tasks/{task}/demonstrations", status_code=201, openapi_extra={"requestBody": FILE})
+    @router.post("/tasks/{task}/demonstrations", status_code=201, openapi_extra={"requestBody": FILE_BODY})
     async def import_demonstrations(
         task: str,
         request: Request,

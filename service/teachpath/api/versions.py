@@ -15,8 +15,8 @@ from teachpath.editing import difference
 from teachpath.io.store.versions import Edit
 from teachpath.records import Difference, LearnedPath, Version
 
-TEXT = r"^[^\x00-\x1f\x7f]*$"  # one line
-BRANCH = r"^([^\W_][\w .-]*)?$"
+LINE_PATTERN = r"^[^\x00-\x1f\x7f]*$"  # one line
+BRANCH_PATTERN = r"^([^\W_][\w .-]*)?$"
 
 
 class NewVersion(Body):
@@ -25,10 +25,10 @@ class NewVersion(Body):
     base: int = Field(description="number of the version that was edited")
     curve: CurveBody
     branch: str = Field(
-        "", max_length=64, pattern=BRANCH, description="to continue or to begin; empty: the branch of the base"
+        "", max_length=64, pattern=BRANCH_PATTERN, description="to continue or to begin; empty: the branch of the base"
     )
-    name: str = Field("", max_length=80, pattern=TEXT, description="what to call it")
-    author: str = Field("", max_length=80, pattern=TEXT, description="who edited it")
+    name: str = Field("", max_length=80, pattern=LINE_PATTERN, description="what to call it")
+    author: str = Field("", max_length=80, pattern=LINE_PATTERN, description="who edited it")
     note: str = Field("", max_length=2000, description="why")
 
 

@@ -19,7 +19,7 @@ from teachpath.nurbs import Curve
 from teachpath_client.models import LearnedPath
 from teachpath_client.station import Station
 
-LARGEST = 1024 * 1024  # bytes of a file with one curve
+MAX_FILE_SIZE = 1024 * 1024  # bytes of a file with one curve
 
 app = typer.Typer(help="Versions of a learned path: list, export, import, compare.", no_args_is_help=True)
 
@@ -93,8 +93,8 @@ def _version(station: Station, path: str, number: int | None) -> LearnedPath:
 
 def _text(file: Path) -> str:
     try:
-        if file.stat().st_size > LARGEST:
-            raise UnusableInput(f"{file} has {file.stat().st_size} bytes, limit {LARGEST}; is it one curve?")
+        if file.stat().st_size > MAX_FILE_SIZE:
+            raise UnusableInput(f"{file} has {file.stat().st_size} bytes, limit {MAX_FILE_SIZE}; is it one curve?")
         return file.read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError) as error:
         raise UnusableInput(f"cannot read {file}: {error}") from None

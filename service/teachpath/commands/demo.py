@@ -26,9 +26,9 @@ from teachpath_client.errors import ClientError, JobFailed
 from teachpath_client.models import Demonstration, Execution, Plan, Run
 from teachpath_client.station import Station
 
-READY = 60.0  # [s] for executor and simulated arm to appear
-HOLDS = 20  # tries to go on after the arm was held in one place
-LEAVE = 10.0  # [s] for the tracker client to end its recording, before it is killed
+READY_TIMEOUT = 60.0  # [s] for executor and simulated arm to appear
+MAX_RESUMES = 20  # tries to go on after the arm was held in one place
+TERMINATE_TIMEOUT = 10.0  # [s] for the tracker client to end its recording, before it is killed
 console = Console(stderr=True)
 
 
@@ -88,7 +88,7 @@ class _Demonstration:
         run = self._learn(task)
         plan = self._plan(task, run)
         # as late as possible: executor and arm come up while the hand shows
-        self._station.wait_for_arm(lambda _: self._pause(0.0), timeout=READY)
+        self._station.wait_for_arm(lambda _: self._pause(0.0), timeout=READY_TIMEOUT)
         execution = self._execute(plan.id)
         return _summary(reports, run, plan, execution)
 
@@ -187,8 +187,8 @@ class _Demonstration:
         with suppress(ClientError):  # still silent, or off its place: the next round tries again
             self._station.steer(execution.id, "resume")
         self._held += 1
-        if self._held > HOLDS:
-            raise Unreachable(f"the arm was held {HOLDS} times: {state}")
+        if self._held > MAX_RESUMES:
+            raise Unreachable(f"the arm was held {MAX_RESUMES} times: {state}")
         self._pause(0.5)
 
     def _pause(self, seconds: float = 0.2) -> None:
@@ -205,7 +205,7 @@ def _client(command: list[str]) -> Iterator[subprocess.Popen[str]]:
         if process.poll() is None:
             process.terminate()
             try:
-                process.wait(LEAVE)
+                process.wait(TERMINATE_TIMEOUT)
             except subprocess.TimeoutExpired:
                 process.kill()
                 process.wait()

@@ -21,7 +21,7 @@ from teachpath.errors import NotFound, UnusableRecording
 from teachpath.records import Cluster, Learned, Trajectory
 from teachpath_client.station import Station
 
-ENDINGS = {"csv": ".csv", "robottasks": ".npy"}
+SUFFIXES = {"csv": ".csv", "robottasks": ".npy"}
 UNITS = {"csv": "m", "robottasks": "cm"}
 
 
@@ -96,14 +96,14 @@ def read_groups(folder: Path, format: str, *, units: str, rate: float) -> dict[s
 
     if not folder.is_dir():
         raise UnusableRecording(f"{folder} is not a folder")
-    if format and format not in ENDINGS:
-        raise UnusableRecording(f"format {format!r} is unknown; known: {', '.join(ENDINGS)}")
-    files = {kind: sorted(folder.rglob(f"*{ending}")) for kind, ending in ENDINGS.items()}
-    kinds = [format] if format else [kind for kind in ENDINGS if files[kind]]
+    if format and format not in SUFFIXES:
+        raise UnusableRecording(f"format {format!r} is unknown; known: {', '.join(SUFFIXES)}")
+    files = {kind: sorted(folder.rglob(f"*{ending}")) for kind, ending in SUFFIXES.items()}
+    kinds = [format] if format else [kind for kind in SUFFIXES if files[kind]]
     if len(kinds) > 1:
         raise UnusableRecording(f"{folder} holds {' and '.join(kinds)} files; say which with --format")
     if not kinds or not files[kinds[0]]:
-        raise UnusableRecording(f"{folder} holds no {' or '.join(ENDINGS[kind] for kind in kinds or ENDINGS)} files")
+        raise UnusableRecording(f"{folder} holds no {' or '.join(SUFFIXES[kind] for kind in kinds or SUFFIXES)} files")
     grouped: dict[str, list[Trajectory]] = {}
     for file in files[kinds[0]]:
         first = file.relative_to(folder).parts[0]
