@@ -1,4 +1,4 @@
-"""Editing a curve: what may come in, operations that leave its shape, and how far two curves lie apart.
+"""Editing of curves: validation, operations that preserve the shape, and the difference between two curves.
 
 Piegl & Tiller, The NURBS Book, chapter 5: knot insertion, knot removal and degree elevation.
 """
@@ -22,14 +22,14 @@ WEIGHT_LIMITS: Final = (1e-3, 1e3)
 MAX_CONTROL_POINTS: Final = 500
 MAX_DEGREE: Final = 7
 MAX_REMOVAL_TOLERANCE: Final = 0.1  # m, that a removed knot may be allowed to move the curve
-MIN_KNOT_SPACING: Final = 1e-6  # two knots are at least; a new one nearer to another is that one again
+MIN_KNOT_SPACING: Final = 1e-6  # between knots; a new knot nearer to another one raises its multiplicity
 MIN_CHANGE: Final = 1e-9  # m, by which a control point counts as moved
-MEASURED_INTERVALS: Final = 400  # of a curve when it is measured
+MEASURED_INTERVALS: Final = 400  # of the parameter, at which two curves are compared
 
 
 @dataclass(frozen=True, eq=False)
 class EditResult:
-    """A curve after an operation, and how far it lies from the one before [m], measured at 401 parameters."""
+    """A curve after an operation, and its largest distance [m] from the curve before, measured at 401 parameters."""
 
     curve: Curve
     deviation: float
@@ -116,7 +116,7 @@ def elevate_degree(curve: Curve) -> EditResult:
 
 
 def difference(first: Curve, second: Curve) -> Difference:
-    """Measure how far two curves lie apart, as ways through space whatever their parameters, and what was moved."""
+    """Measure the distance of two curves as sets of points, and list the control points that differ."""
     one, _ = _evenly(first)
     two, s_two = _evenly(second)
     there, back = _distances(two, one), _distances(one, two)

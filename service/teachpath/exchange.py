@@ -1,4 +1,4 @@
-"""The door to geomdl: knots into and out of a curve without changing its shape, and its JSON exchange format.
+"""The door to geomdl: knot insertion and removal that preserve the shape, and geomdl's JSON exchange format.
 
 Piegl & Tiller, The NURBS Book, section 5.2 (knot insertion) and 5.4 (knot removal).
 """
@@ -77,7 +77,7 @@ def remove_knot(curve: Curve, u: float, *, tolerance: float = SAME_SHAPE_TOLERAN
 
 
 def _without(curve: Curve, u: float) -> Curve:
-    """Return the curve with one knot less, of which the given one is nearest to a refinement; its ends stay.
+    """Return the curve without the knot `u`, by least squares; its ends stay.
 
     geomdl's own removal changes the shape even of a knot just inserted (NURBS-Python issue 188), so insertion, which
     is linear in the homogeneous control points, is inverted by least squares.

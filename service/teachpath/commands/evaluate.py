@@ -1,4 +1,4 @@
-"""evaluate and diff: how right learning is on recordings of known grouping, and why two runs differ."""
+"""Commands evaluate and diff: the accuracy of learning on recordings of known groups; why two runs differ."""
 
 from __future__ import annotations
 
@@ -35,10 +35,10 @@ def evaluate(
     as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object instead of tables.")] = False,
     config: Config = None,
 ) -> None:
-    """Learn from recordings of known grouping and say how right it is.
+    """Learn from recordings of known groups and say how accurate the result is.
 
-    All groups are pooled and learned from as if they were one task; the clusters found are held against the groups.
-    Neither a service nor a data folder is needed.
+    All groups are learned as if they were one task; the clusters found are compared with the groups. The command needs
+    neither a service nor a data folder.
     """
     from teachpath.learning.learn import learn
 
@@ -128,7 +128,7 @@ def adjusted_rand_index(one: Sequence[str | int], other: Sequence[str | int]) ->
 
 
 def evaluation(learned: Learned) -> dict[str, Any]:
-    """Return what was learned beside what was known, ready for JSON; ids of demonstrations are `group/number`."""
+    """Compare what was learned with the known groups, ready for JSON; ids of demonstrations are `group/number`."""
     truth = {name: name.rsplit("/", 1)[0] for name in learned.demonstrations}
     found = {name: cluster.index for cluster in learned.clusters for name in cluster.members}
     names = learned.demonstrations

@@ -1,4 +1,4 @@
-"""Why two learning runs differ, in sentences: inputs, settings, versions, clusters, selection, paths."""
+"""Differences between two learning runs, in sentences: inputs, settings, versions, clusters, selection, paths."""
 
 from __future__ import annotations
 
@@ -10,17 +10,17 @@ from teachpath.learning.clustering.distances import frechet_distance
 from teachpath.learning.resampling import at_equal_arc_length
 from teachpath.records import Array, Cluster, Fit, Learned, LearnedPath
 
-PATH_POINTS = 200  # of a path when two are compared
+PATH_POINTS = 200  # at which two paths are compared
 CURVE_SAMPLES = 1000
-SAME_PATH_TOLERANCE = 1e-6  # m, distance of paths that are the same but for rounding
-MAX_NAMES = 6  # demonstrations that a sentence names; more are counted
+SAME_PATH_TOLERANCE = 1e-6  # m, between paths that differ by rounding only
+MAX_NAMES = 6  # of demonstrations in a sentence; more are only counted
 
 
 def compare(a: Learned, b: Learned) -> tuple[str, ...]:
-    """Say what differs between two runs, causes before consequences: nothing when they are the same.
+    """Describe what differs between two runs, causes before effects; empty when nothing differs.
 
-    Ways are matched by the demonstrations they share. Two runs of the same inputs, settings and versions are the same
-    to the last bit, so paths that changed without a cause are said to be unexplained.
+    Clusters are matched by the demonstrations they share. Two runs with the same inputs, settings and versions agree to
+    the last bit, so a change without such a cause is reported as unexplained.
     """
     causes = (
         *_inputs(a, b),
@@ -28,7 +28,7 @@ def compare(a: Learned, b: Learned) -> tuple[str, ...]:
         *_changes("version of", a.versions, b.versions),
     )
     pairs = _matched(a, b)
-    effects = (*_ways(a, b, pairs), *_selections(pairs, a, b), *_paths(pairs, a, b))
+    effects = (*_clusters(a, b, pairs), *_selections(pairs, a, b), *_paths(pairs, a, b))
     if effects and not causes and a.inputs and b.inputs:
         return (*effects, "inputs, settings and versions are the same: the difference is unexplained")
     return (*causes, *effects)
@@ -60,7 +60,7 @@ def _changes(what: str, a: Mapping[str, object], b: Mapping[str, object]) -> Ite
 
 
 def _matched(a: Learned, b: Learned) -> ClusterPairs:
-    """Return the clusters of both runs that belong together, those that share most demonstrations first."""
+    """Pair the clusters of both runs, those that share most demonstrations first."""
     candidates = [(one, other) for one in a.clusters for other in b.clusters]
     candidates.sort(key=lambda pair: -len(set(pair[0].members) & set(pair[1].members)))
     pairs: ClusterPairs = []
@@ -71,22 +71,22 @@ def _matched(a: Learned, b: Learned) -> ClusterPairs:
     return sorted(pairs, key=lambda pair: pair[0].index)
 
 
-def _ways(a: Learned, b: Learned, pairs: ClusterPairs) -> Iterator[str]:
+def _clusters(a: Learned, b: Learned, pairs: ClusterPairs) -> Iterator[str]:
     if len(a.clusters) != len(b.clusters):
         heights = f"{a.threshold * 100:.2f} and {b.threshold * 100:.2f} cm"
-        yield f"{len(a.clusters)} ways became {len(b.clusters)}, cut at {heights}"
+        yield f"{len(a.clusters)} clusters became {len(b.clusters)}, cut at {heights}"
     both = set(a.demonstrations) & set(b.demonstrations)
     for one, other in pairs:
         if one.index != other.index:
-            yield f"way {one.index} is now number {other.index}"
+            yield f"cluster {one.index} is now number {other.index}"
         left = sorted((set(one.members) - set(other.members)) & both)
         if left:
-            yield f"way {one.index}: {_named(left)} now in another way"
+            yield f"cluster {one.index}: {_named(left)} now in another cluster"
     for learned, index, told in ((a, 0, "is gone"), (b, 1, "is new")):
         known = {pair[index].index for pair in pairs}
         for cluster in learned.clusters:
             if cluster.index not in known:
-                yield f"way {cluster.index} of {len(cluster.members)} demonstrations {told}"
+                yield f"cluster {cluster.index} of {len(cluster.members)} demonstrations {told}"
 
 
 def _selections(pairs: ClusterPairs, a: Learned, b: Learned) -> Iterator[str]:
@@ -94,9 +94,9 @@ def _selections(pairs: ClusterPairs, a: Learned, b: Learned) -> Iterator[str]:
     for one, other in pairs:
         before, after = ({s.demonstration for s in cluster.scores if s.selected} for cluster in (one, other))
         if dropped := sorted((before - after) & both & set(other.members)):
-            yield f"way {one.index}: {_named(dropped)} no longer selected"
+            yield f"cluster {one.index}: {_named(dropped)} no longer selected"
         if added := sorted((after - before) & both & set(one.members)):
-            yield f"way {one.index}: {_named(added)} now selected"
+            yield f"cluster {one.index}: {_named(added)} now selected"
 
 
 def _paths(pairs: ClusterPairs, a: Learned, b: Learned) -> Iterator[str]:
@@ -110,7 +110,7 @@ def _paths(pairs: ClusterPairs, a: Learned, b: Learned) -> Iterator[str]:
         if moved <= SAME_PATH_TOLERANCE and shapes[0] == shapes[1]:
             continue
         bends = "" if shapes[0] == shapes[1] else f", degree and control points {shapes[0]} became {shapes[1]}"
-        yield f"way {one.index}: the path moved by up to {moved * 1e3:.3g} mm{bends}{_fits(before.fit, after.fit)}"
+        yield f"cluster {one.index}: the path moved by up to {moved * 1e3:.3g} mm{bends}{_fits(before.fit, after.fit)}"
 
 
 def _fits(before: Fit | None, after: Fit | None) -> str:

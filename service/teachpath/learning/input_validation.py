@@ -1,4 +1,4 @@
-"""What cannot be learned from is named here, before any arithmetic."""
+"""Input validation: refuses demonstrations that no path can be learned from."""
 
 from __future__ import annotations
 

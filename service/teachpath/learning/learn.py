@@ -1,4 +1,4 @@
-"""The whole of learning on one screen: cluster, select, fit."""
+"""Learning from demonstrations: cluster, select, fit."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ LIBRARY_VERSIONS = tuple((name, version(name)) for name in ("teachpath", "numpy"
 def learn(
     demonstrations: Mapping[str, Trajectory], settings: LearningSettings, *, progress: Progress = no_progress
 ) -> Learned:
-    """Learn a path for every way in which a task was demonstrated.
+    """Learn one path for every cluster of demonstrations.
 
     The same demonstrations, settings and library versions give the same result to the last bit. Clusters are
     numbered from 1 in the order of their first members; paths come in the order of the clusters, without id and run.
@@ -37,7 +37,7 @@ def learn(
     Args:
         demonstrations: id -> trajectory, in listed order.
         settings: see `LearningSettings`.
-        progress: told the fraction done and a sentence; what it raises passes through.
+        progress: receives the fraction done and a sentence; what it raises passes through.
 
     Raises:
         LearningFailed: a demonstration cannot be used, or a path cannot keep the error bound.
@@ -51,14 +51,14 @@ def learn(
 
 
 def metric_of(settings: LearningSettings) -> str:
-    """Return by which distance demonstrations are compared."""
+    """Return the distance by which demonstrations are compared: in modes paper and repaired the published one."""
     return settings.metric if settings.mode == "default" else "undersampled"
 
 
 def comparable_paths(
     demonstrations: Mapping[str, Trajectory], metric: str, seed: int, progress: Progress = no_progress
 ) -> tuple[Array, float]:
-    """Return what the demonstrations are compared by, (m, n, 3) [m], and the length of a typical path [m]."""
+    """Resample demonstrations so that their points correspond: (m, n, 3) [m], and the median length of a path [m]."""
     on_step = StepCounter(progress, len(demonstrations), "smoothing the demonstrations")
     courses, lengths = [], []
     for trajectory in demonstrations.values():
@@ -77,30 +77,30 @@ def learn_partition(
     settings: LearningSettings,
     progress: Progress,
 ) -> Learned:
-    """Select and fit in the clusters of a grouping.
+    """Select and fit in the clusters of a partition.
 
     Args:
         demonstrations: id -> trajectory, in listed order.
-        courses: what they were compared by, see `comparable_paths`.
-        grouping: of them.
+        courses: (m, n, 3) [m], see `comparable_paths`.
+        grouping: partition of the demonstrations.
         settings: see `LearningSettings`.
-        progress: told the fraction done and a sentence.
+        progress: receives the fraction done and a sentence.
 
     Raises:
         LearningFailed: a path cannot keep the error bound.
     """
     names = tuple(demonstrations)
-    ways = members_by_label(names, grouping.labels)
+    members = members_by_label(names, grouping.labels)
     choosing = Subprogress(progress, 0.0, 0.75)
     if settings.mode == "default":
-        on_step = StepCounter(choosing, step_count([len(way) for way in ways], settings.repeats), SELECTION_MESSAGE)
+        on_step = StepCounter(choosing, step_count([len(ids) for ids in members], settings.repeats), SELECTION_MESSAGE)
         clusters = tuple(
-            select(index + 1, {name: demonstrations[name] for name in way}, settings, on_step=on_step)
-            for index, way in enumerate(ways)
+            select(index + 1, {name: demonstrations[name] for name in ids}, settings, on_step=on_step)
+            for index, ids in enumerate(members)
         )
     else:
-        on_step = StepCounter(choosing, paper_step_count(len(ways), settings.repeats), SELECTION_MESSAGE)
-        clusters = select_as_paper(dict(zip(names, courses, strict=True)), ways, settings, on_step=on_step)
+        on_step = StepCounter(choosing, paper_step_count(len(members), settings.repeats), SELECTION_MESSAGE)
+        clusters = select_as_paper(dict(zip(names, courses, strict=True)), members, settings, on_step=on_step)
     central = representatives(courses, grouping.labels)
     found = _fitted(clusters, demonstrations, settings, Subprogress(progress, 0.75, 1.0))
     paths = tuple(path for path, _ in found)
@@ -127,7 +127,7 @@ def _equalised(demonstrations: Mapping[str, Trajectory], seed: int) -> Array:
     """Undersample all demonstrations to the length of the shortest (Aleotti & Caselli, III-A): (m, N, 3) [m]."""
     rng = np.random.default_rng(seed)
     shortest = min(len(trajectory) for trajectory in demonstrations.values())
-    # Drawn in the order of the ids, so that the order in which they are listed changes nothing.
+    # The draws follow the order of the ids, so the order in which demonstrations are listed changes nothing.
     drawn = {name: undersampled(demonstrations[name].positions, shortest, rng) for name in sorted(demonstrations)}
     return np.stack([drawn[name] for name in demonstrations])
 
@@ -138,7 +138,7 @@ def _fitted(
     settings: LearningSettings,
     progress: Progress,
 ) -> list[tuple[LearnedPath, Array]]:
-    """Return the path of every cluster, and the radius of the tube around it."""
+    """Fit the path of every cluster and measure the tube around it."""
     fit = fit_mean_path if settings.mode == "default" else fit_pooled_points
     found = []
     for done, cluster in enumerate(clusters):

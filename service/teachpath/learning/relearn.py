@@ -1,4 +1,4 @@
-"""A run cut elsewhere: its dendrogram and settings are kept, selection and fitting are done anew."""
+"""Another cut of a run: its dendrogram and settings stay, selection and fitting are repeated."""
 
 from __future__ import annotations
 
@@ -23,15 +23,15 @@ def relearn(
     clusters: int | None = None,
     progress: Progress = no_progress,
 ) -> Learned:
-    """Cut the dendrogram of a run elsewhere, then select and fit anew with the run's own settings.
+    """Cut the dendrogram of a run elsewhere, then select and fit with the settings of the run.
 
-    The settings of the result name the cut, so that learning with them from the beginning gives the same.
+    The settings of the result hold the new cut, so learning with them from the beginning gives the same result.
 
     Args:
-        learned: the run; its distances are not needed again.
-        demonstrations: id -> trajectory, those it was learned from.
-        threshold: height of the cut [m].
-        clusters: or their number.
+        learned: the run.
+        demonstrations: id -> trajectory; the run was learned from them.
+        threshold: height of the cut [m], or
+        clusters: number of clusters.
         progress: as in `learn`.
 
     Raises:

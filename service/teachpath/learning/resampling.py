@@ -1,4 +1,4 @@
-"""Trajectories made comparable: smoothed, at equal arc length, at equal times, or undersampled at random."""
+"""Smoothing and resampling of trajectories: at equal arc length, at equal times, or at random."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ SMOOTHING_WINDOW = 0.18  # s, width of the moving average: nine samples of a 50 
 
 
 def smoothed(trajectory: Trajectory) -> Array:
-    """Average a trajectory over a short moving window; the first and last position stay.
+    """Average a trajectory over a short moving window; the first and the last position stay exact.
 
     Returns:
         (n, 3) [m].
@@ -20,13 +20,13 @@ def smoothed(trajectory: Trajectory) -> Array:
 
 
 def smoothed_orientations(times: Array, orientations: Array) -> Array:
-    """Average orientations over the same window, neighbours on one half of the sphere: (n, 4) unit quaternions."""
+    """Average orientations over the same window: (n, 4) unit quaternions, neighbours on one half of the sphere."""
     averaged = _averaged(sign_aligned(orientations), times)
     return np.asarray(averaged / np.linalg.norm(averaged, axis=1, keepdims=True))
 
 
 def sign_aligned(orientations: Array) -> Array:
-    """Return the same orientations with signs such that neighbours lie on one half of the sphere."""
+    """Flip the signs of quaternions so that neighbours lie on one half of the sphere; the rotations stay the same."""
     turns = np.where((orientations[1:] * orientations[:-1]).sum(axis=1) < 0, -1.0, 1.0)
     return np.asarray(orientations * np.concatenate([[1.0], np.cumprod(turns)])[:, None])
 
@@ -44,7 +44,7 @@ def at_equal_arc_length(path: Array, count: int) -> Array:
 
 
 def at_equal_times(trajectory: Trajectory, count: int, positions: Array | None = None) -> Array:
-    """Return the positions (or others given for the same times) at `count` equal times: (count, 3) [m]."""
+    """Interpolate the positions, or other values at the same times, at `count` equal times: (count, 3) [m]."""
     times = trajectory.times
     values = trajectory.positions if positions is None else positions
     return _interpolated(np.linspace(times[0], times[-1], count), times, values)
@@ -56,12 +56,12 @@ def undersampled(positions: Array, count: int, rng: np.random.Generator) -> Arra
 
 
 def _averaged(values: Array, times: Array) -> Array:
-    # The quarter keeps whole rates away from the edge of two windows, between which rounding would choose.
+    # Without the quarter, rounding would choose between two windows at whole sampling rates.
     half = int(SMOOTHING_WINDOW / float(np.median(np.diff(times))) / 2 + 0.25)
     half = min(half, (len(values) - 1) // 2)
     if half == 0:
         return values
-    # An odd reflection about each end point keeps that point and the direction there.
+    # An odd reflection about each end point preserves the point and the direction of motion there.
     before = 2 * values[0] - values[half:0:-1]
     after = 2 * values[-1] - values[-2 : -half - 2 : -1]
     extended = np.concatenate([before, values, after])

@@ -15,13 +15,11 @@ MODES = ("default", "paper", "repaired")
 METRICS = ("arc", "frechet", "dtw", "undersampled")
 
 Progress = Callable[[float, str], None]
-StepCallback = Callable[
-    [], None
-]  # called after a piece of work; what it raises, as when the work is cancelled, passes through
+StepCallback = Callable[[], None]  # called after each step of the work; it may raise to cancel the work
 
 
 def no_progress(_fraction: float, _sentence: str) -> None:
-    """Take no notice of progress."""
+    """Ignore progress."""
 
 
 @dataclass(frozen=True)

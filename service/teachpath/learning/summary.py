@@ -1,4 +1,4 @@
-"""What a run says about its clusters and inputs beside scores and paths: doubts, tubes, fingerprints."""
+"""Summary of the clusters and inputs of a run: ambiguities, representatives, tubes, fingerprints."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ CURVE_SAMPLES = 1000  # points of the polyline that stands for a curve
 
 
 def ambiguities(grouping: Partition) -> list[str]:
-    """Return for every cluster what the next best cut would do with it, empty where that is nothing."""
+    """Describe for every cluster what the next best cut would change; empty where it would change nothing."""
     labels = grouping.labels
     count = int(labels.max())
     if grouping.alternative is None:
@@ -41,10 +41,10 @@ def ambiguities(grouping: Partition) -> list[str]:
 
 
 def representatives(courses: Array, labels: Labels) -> Labels:
-    """Return for every cluster 1, 2, ... the member that is nearest to the mean of its members.
+    """Return for every cluster 1, 2, ... the member nearest to the mean of the members.
 
     Args:
-        courses: (m, n, 3) [m], what the demonstrations are compared by.
+        courses: (m, n, 3) [m], see `learn.comparable_paths`.
         labels: (m,).
     """
     found = []
@@ -52,21 +52,21 @@ def representatives(courses: Array, labels: Labels) -> Labels:
         members = np.flatnonzero(labels == label)
         own = courses[members]
         apart = np.linalg.norm(own - own.mean(axis=0), axis=2).mean(axis=1)
-        # The first of those equal but for rounding, as the two of a pair are.
+        # Of members that differ by rounding only, as the two of a pair do, the first one is taken.
         found.append(members[np.argmax(apart <= apart.min() * (1 + 1e-9))])
     return np.array(found)
 
 
 def tube_radius(curve: Curve, selected: Sequence[Trajectory], *, on_step: StepCallback) -> Array:
-    """Return how far the selected demonstrations are from the path across its direction, at equal arc length.
+    """Measure how far the selected demonstrations lie beside the path, perpendicular to it.
 
     Args:
         curve: the learned path.
-        selected: what it was learned from.
-        on_step: called once for each of them.
+        selected: demonstrations that the path was learned from.
+        on_step: called once for each demonstration.
 
     Returns:
-        (50,) [m], the largest distance at each place.
+        (50,) [m] largest distance at equal arc lengths.
     """
     course = at_equal_arc_length(curve(np.linspace(0.0, 1.0, CURVE_SAMPLES)), TUBE_POINTS)
     along = np.gradient(course, axis=0)

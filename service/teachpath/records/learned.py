@@ -10,26 +10,25 @@ from teachpath.records.arrays import Array, Matrix
 
 @dataclass(frozen=True, slots=True)
 class Deviation:
-    """Where and how a demonstration differs most from the others of its cluster."""
+    """Where and how a demonstration deviates most from the others of its cluster."""
 
-    share: tuple[float, float]  # of the length of its path, from and to
-    seconds: tuple[float, float]  # since its first sample, from and to
+    share: tuple[float, float]  # begin and end as shares of the arc length
+    seconds: tuple[float, float]  # begin and end since the first sample
     sentence: str
 
 
 @dataclass(frozen=True, slots=True)
 class Score:
-    """How one demonstration fares in the selection of its cluster.
+    """The score of one demonstration in the selection of its cluster.
 
     Attributes:
-        log_likelihood: of its observations under the model that judges it.
+        log_likelihood: of its observations under the models that score it.
         rank: 1 = most consistent.
         note: why it was not selected, or not scored.
-        margin: by how much it is better than the next in rank: robust z in mode default, else log-likelihood; None for
-            the last.
-        z: robust z score of its consistency, 0 = like the others or better; None when not scored.
-        stability: share of repetitions in which it was selected; None when there were none.
-        deviation: where it differs most; None when it is consistent.
+        margin: distance to the next in rank, in robust z in mode default, else in log-likelihood; None for the last.
+        z: sum of its robust z scores, each at most 0; 0 = consistent, None = not scored.
+        stability: share of the repetitions in which it was selected; None when there were none.
+        deviation: where it deviates most; None when it is consistent.
     """
 
     demonstration: str
@@ -45,7 +44,7 @@ class Score:
 
 @dataclass(frozen=True, eq=False)
 class Cluster:
-    """One way of doing the task.
+    """Demonstrations that do the task alike, with their scores.
 
     Attributes:
         members: ids, most consistent first.
@@ -53,9 +52,9 @@ class Cluster:
         convergence: log-likelihood of the model after each training iteration (Fig. 4).
         note: why selection was skipped or is unreliable; empty when neither.
         representative: id of the member nearest to the mean of all; empty in runs of earlier versions.
-        spread: (50,) radius [m] at equal arc length of the tube around the learned path in which the selected
-            demonstrations lie.
-        ambiguous: what the next best cut would do with it, when the choice was close; else empty.
+        spread: (50,) radius [m], at equal arc lengths, of the tube around the learned path that holds the selected
+            demonstrations.
+        ambiguous: a sentence about what the next best cut would change, when the choice was close; else empty.
     """
 
     index: int
@@ -70,24 +69,24 @@ class Cluster:
 
 @dataclass(frozen=True, slots=True)
 class Fit:
-    """How closely a learned path follows what it was fitted to: distances [m]."""
+    """Distances [m] of a learned path from the points that it was fitted to, and from the demonstrations."""
 
     bound: float
     largest: float
     rms: float
     tube: float  # largest distance of a selected demonstration from the path
-    frechet: float | None = None  # distance when both are walked along in order
-    turn: float | None = None  # largest angle of the orientations from what they were fitted to [rad]
+    frechet: float | None = None  # discrete Fréchet distance from the mean path
+    turn: float | None = None  # largest angle [rad] of the orientations from the mean orientations
 
 
 @dataclass(frozen=True, eq=False)
 class LearnedPath:
-    """The NURBS of one cluster: the way of the object's centre in the world.
+    """The NURBS of one cluster: the path of the object's centre in the world.
 
     Attributes:
-        version: see `Version`; what was learned is version 1.
+        version: see `Version`; the learned path itself is version 1.
         curve: positions [m].
-        fit: None for an edited version: it follows an operator's wish, no demonstrations.
+        fit: None for an edited version, which follows no demonstrations.
         orientation: quaternions at the same parameter, which `nurbs.unit_quaternions` brings to unit length; None when
             not all selected demonstrations carry orientations.
     """
@@ -110,7 +109,7 @@ class Learned:
         linkage: (m - 1, 4) merges as scipy writes them: left, right, height [m], size; leaves in the order of
             `demonstrations`.
         threshold: height of the cut [m].
-        versions: library versions that made it.
+        versions: of the libraries that computed the run.
         inputs: SHA-256 of every demonstration's times, positions and orientations, by id.
     """
 

@@ -1,4 +1,4 @@
-"""What is kept of an edited path: its versions, and how two of them differ."""
+"""Versions of an edited path, and the difference between two of them."""
 
 from __future__ import annotations
 
@@ -9,13 +9,13 @@ MAIN_BRANCH = "main"  # the branch that a learned path begins on
 
 @dataclass(frozen=True, slots=True)
 class Version:
-    """Who saved what when; the curve is the learned path of the same number.
+    """One saved version of a path; the curve is the `LearnedPath` with the same number.
 
     Attributes:
         path: id of the learned path.
-        number: from 1, in the order in which the versions of a path were saved, over all branches.
-        parent: number of the version that was edited; None for the one that was learned.
-        branch: line of versions that this one continues.
+        number: from 1, in the order of saving, over all branches of a path.
+        parent: number of the version that was edited; None for the learned path.
+        branch: line of versions that this version continues.
     """
 
     path: str
@@ -30,11 +30,11 @@ class Version:
 
 @dataclass(frozen=True, slots=True)
 class ControlPointChange:
-    """One control point that differs.
+    """One control point that differs between two curves.
 
     Attributes:
         number: in the second curve, from 1.
-        distance: by which it moved [m].
+        distance: between both positions [m].
         weights: before and after.
     """
 
@@ -45,14 +45,14 @@ class ControlPointChange:
 
 @dataclass(frozen=True, slots=True)
 class Difference:
-    """How far the second of two curves lies from the first.
+    """The difference between two curves.
 
     Attributes:
-        largest: distance of a point of one from the other, the larger of both ways (Hausdorff) [m].
-        mean: over both ways, along the arc lengths [m].
-        s: arc length on the second curve where it is farthest from the first [m].
-        moved: control points that differ, on the second curve's knots; None when they have no counterparts.
-        sentence: all of it in words.
+        largest: Hausdorff distance of the curves [m].
+        mean: distance of the points of each curve from the other curve, averaged over both curves [m].
+        s: arc length on the second curve at the largest distance [m].
+        moved: control points that differ, on the second curve's knots; None when they cannot be matched.
+        sentence: the difference in words.
     """
 
     largest: float

@@ -28,8 +28,8 @@ def test_a_new_and_a_missing_demonstration_are_named(run: Learned, twelve: dict[
     there, back = compare(run, fewer), compare(fewer, run)
     assert there[0] == "demonstration 7 is no longer learned from"
     assert back[0] == "demonstration 7 is new"
-    assert any("way 3: the path moved by up to" in sentence for sentence in there)
-    assert not any("way 1" in sentence or "way 2" in sentence for sentence in there)
+    assert any("cluster 3: the path moved by up to" in sentence for sentence in there)
+    assert not any("cluster 1" in sentence or "cluster 2" in sentence for sentence in there)
 
 
 def test_changed_samples_are_found_by_their_fingerprint(run: Learned, twelve: dict[str, Trajectory]) -> None:
@@ -46,7 +46,7 @@ def test_changed_settings_are_shown_with_both_values(run: Learned, twelve: dict[
 
 def test_merged_ways_are_told(run: Learned, twelve: dict[str, Trajectory]) -> None:
     sentences = compare(run, learn(twelve, replace(SETTINGS, clusters=2)))
-    assert any(sentence.startswith("3 ways became 2") for sentence in sentences)
+    assert any(sentence.startswith("3 clusters became 2") for sentence in sentences)
     assert any("is gone" in sentence for sentence in sentences)
 
 
@@ -64,7 +64,7 @@ def test_a_path_that_moved_without_a_cause_is_called_unexplained(run: Learned) -
     curve = run.paths[0].curve
     moved = replace(run.paths[0], curve=replace(curve, control_points=curve.control_points + 0.01))
     sentences = compare(run, replace(run, paths=(moved, *run.paths[1:])))
-    assert "way 1: the path moved by up to 17.3 mm" in sentences[0]
+    assert "cluster 1: the path moved by up to 17.3 mm" in sentences[0]
     assert sentences[-1].endswith("unexplained")
 
 

@@ -1,1 +1,1 @@
-"""Clustering: the different ways of doing a task."""
+"""Clustering: demonstrations grouped by the distance of their paths."""

@@ -1,4 +1,4 @@
-"""Average linkage: the dendrogram of all pairs' distances."""
+"""Average linkage: the dendrogram of demonstrations from the distances of all pairs."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from teachpath.learning.clustering.distances import Distances
 from teachpath.learning.settings import Progress, no_progress
 from teachpath.records import Array
 
-MAX_SCIPY_DEMONSTRATIONS = 200  # demonstrations up to which scipy is done before the compiled kernel is loaded
-MERGES_PER_UPDATE = 64  # merges between two looks at progress
+MAX_SCIPY_DEMONSTRATIONS = 200  # up to which scipy finishes before the compiled kernel would be loaded
+MERGES_PER_UPDATE = 64  # between two reports of progress
 
 
 def average_linkage(condensed: Distances, count: int, progress: Progress = no_progress) -> Array:
@@ -20,7 +20,7 @@ def average_linkage(condensed: Distances, count: int, progress: Progress = no_pr
     Args:
         condensed: distances of all pairs [m], in scipy's order.
         count: number m of demonstrations.
-        progress: is told how far the work has come; what it raises passes through.
+        progress: receives the fraction done and a sentence; what it raises passes through.
 
     Returns:
         (m - 1, 4) merges as scipy writes them.

@@ -1,4 +1,4 @@
-"""The cuts of a run's dendrogram: where it can be cut elsewhere, and into what. No distance is needed again."""
+"""The possible cuts of the dendrogram of a run; no distance has to be measured again."""
 
 from __future__ import annotations
 
@@ -20,10 +20,10 @@ class Cut:
 
     Attributes:
         clusters: their number.
-        lowest, highest: heights [m] between which a cut leaves so many; None = without end.
-        height: one of them, halfway.
-        leaf_ranges: of each cluster the first and the one behind the last of its members in the dendrogram's `leaves`;
-            clusters in the order in which a run numbers them.
+        lowest, highest: heights [m] between which a cut leaves that many; None = no upper end.
+        height: halfway between them [m].
+        leaf_ranges: for each cluster, in the order of its number, the begin and end of its members in the dendrogram's
+            `leaves`; the end is excluded.
     """
 
     clusters: int
@@ -35,15 +35,15 @@ class Cut:
 
 @dataclass(frozen=True, slots=True)
 class Dendrogram:
-    """The tree of merges of a run, as it is drawn.
+    """The dendrogram of a run, ready to be drawn.
 
     Attributes:
-        demonstrations: ids, as they are numbered in `merges`: 0 to m - 1.
-        leaves: ids from left to right, so that no merge crosses another and every cluster's members are neighbours.
-        merges: left, right, height [m] and members of each, as scipy writes them; merge i is numbered m + i.
+        demonstrations: ids in the order of their numbers in `merges`, 0 to m - 1.
+        leaves: ids from left to right; no merge crosses another, and the members of every cluster are neighbours.
+        merges: left, right, height [m] and number of members, as scipy writes them; merge i has the number m + i.
         threshold: height of the run's own cut [m].
-        clusters: that it left.
-        cuts: the possible ones, from one cluster on.
+        clusters: number of clusters of the run's own cut.
+        cuts: the possible cuts, from one cluster on.
     """
 
     demonstrations: tuple[str, ...]
@@ -84,12 +84,12 @@ def dendrogram(learned: Learned, most: int) -> Dendrogram:
 def recut_members(
     learned: Learned, *, threshold: float | None = None, clusters: int | None = None
 ) -> tuple[tuple[str, ...], ...]:
-    """Return the members of every cluster when the dendrogram of a run is cut somewhere else.
+    """Return the members of every cluster for another cut of a run's dendrogram.
 
     Args:
-        learned: a run; its distances are not needed again.
-        threshold: height of the cut [m].
-        clusters: or their number.
+        learned: the run.
+        threshold: height of the cut [m], or
+        clusters: their number.
 
     Returns:
         for every cluster its demonstrations in listed order; clusters in the order of their first members.
@@ -101,10 +101,10 @@ def recut_members(
 
 
 def recut_partition(learned: Learned, threshold: float | None, clusters: int | None) -> Partition:
-    """Return the grouping of a run's demonstrations by another cut.
+    """Return the partition of a run's demonstrations by another cut.
 
     Raises:
-        UnusableSettings: neither or both are given, or one is outside what the dendrogram allows.
+        UnusableSettings: neither or both are given, or the dendrogram does not allow the cut.
     """
     if threshold is not None and clusters is None:
         if not 0 < threshold < float("inf"):

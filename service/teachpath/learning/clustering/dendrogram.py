@@ -1,4 +1,4 @@
-"""The tree of merges that clustering leaves behind, and its cuts: no distance is needed to move a cut."""
+"""Dendrograms as scipy writes them, and their cuts: moving a cut needs no distances."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ def members_by_label(names: Sequence[str], labels: Labels) -> tuple[tuple[str, .
 
 
 def labels_at_height(linkage: Array, threshold: float) -> Labels:
-    """Return the clusters (m,) of a cut at a height [m]: all merges up to it are made."""
+    """Return the labels (m,) of a cut at a height [m]: all merges up to that height are made."""
     return _after(linkage, int(np.searchsorted(linkage[:, 2], threshold, side="right")))
 
 
 def labels_for_count(linkage: Array, count: int) -> Labels:
-    """Return the clusters (m,) of the cut that leaves `count` of them."""
+    """Return the labels (m,) of the cut that leaves `count` clusters."""
     return _after(linkage, len(linkage) + 1 - count)
 
 
@@ -41,13 +41,13 @@ def height_for_count(linkage: Array, count: int) -> float:
 
 
 def extended_linkage(linkage: Array, sample: Labels, joins: Labels, heights: Array) -> Array:
-    """Return the dendrogram of all demonstrations from that of a sample, the others joining one of the sample each.
+    """Extend the dendrogram of a sample to all demonstrations: each of the others joins one of the sample.
 
     Args:
         linkage: of the sample.
-        sample: (s,) which demonstrations it consists of.
-        joins: (m,) the demonstration of the sample that each one joins; its own number for those of the sample.
-        heights: (m,) at which height [m].
+        sample: (s,) demonstrations of the sample.
+        joins: (m,) the demonstration that each one joins; those of the sample join themselves.
+        heights: (m,) [m] at which they join.
 
     Returns:
         (m - 1, 4) merges as scipy writes them.
@@ -63,10 +63,10 @@ def extended_linkage(linkage: Array, sample: Labels, joins: Labels, heights: Arr
 
 
 def scipy_linkage(merges: Sequence[tuple[float, int, int]], count: int) -> Array:
-    """Return merges of clusters, each named by any member, as scipy writes them.
+    """Write merges of clusters, each cluster named by any of its members, as scipy does.
 
     Args:
-        merges: height [m], a member of one and a member of the other, by height.
+        merges: height [m], a member of one cluster and a member of the other; sorted by height.
         count: number m of demonstrations.
 
     Returns:
@@ -84,8 +84,10 @@ def scipy_linkage(merges: Sequence[tuple[float, int, int]], count: int) -> Array
 
 
 def leaf_order(linkage: Array) -> Labels:
-    """Return the demonstrations (m,) in the order that draws the merges without a crossing, so that the members of
-    every cluster of every cut are neighbours; of two merged clusters the one that has the first member comes first.
+    """Return the demonstrations (m,) in an order that draws the dendrogram without crossings.
+
+    The members of every cluster of every cut are neighbours in it. Of two merged clusters the one with the first
+    member comes first.
     """
     m = len(linkage) + 1
     first = np.arange(2 * m - 1)
@@ -102,7 +104,7 @@ def leaf_order(linkage: Array) -> Labels:
 
 
 def _after(linkage: Array, merges: int) -> Labels:
-    """Return labels 1, 2, ... in the order of first members after so many merges."""
+    """Return the labels after so many merges: 1, 2, ... in the order of the clusters' first members."""
     m = len(linkage) + 1
     parent = np.arange(m + merges)
     for row in range(merges):

@@ -1,4 +1,4 @@
-"""How far apart two demonstrations are: the distances of all pairs of paths, for clustering."""
+"""Distances between the paths of demonstrations, for clustering."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ from teachpath.records import Array
 Distances = NDArray[np.float64] | NDArray[np.float32]  # of all pairs [m], condensed in scipy's order
 
 METRIC_CODES = {"arc": 0, "undersampled": 0, "frechet": 1, "dtw": 2}
-MAX_NUMPY_PATHS = (200, 24, 24)  # paths of each kind up to which numpy is done before the compiled kernels are loaded
-PATHS_PER_UPDATE = 1024  # that a kernel assigns between two looks at progress
-PAIRS_PER_BATCH = 128  # pairs that are warped at a time
+MAX_NUMPY_PATHS = (200, 24, 24)  # of each metric code; numpy finishes so many before the kernels would be loaded
+PATHS_PER_UPDATE = 1024  # that are assigned between two reports of progress
+PAIRS_PER_BATCH = 128  # that are warped together
 PROGRESS_MESSAGE = "measuring the distances between demonstrations"
 
 
@@ -28,7 +28,7 @@ def pairwise_distances(paths: Array, metric: str = "arc", progress: Progress = n
     Args:
         paths: (m, n, 3) [m].
         metric: one of the four.
-        progress: is told how far the work has come; what it raises passes through.
+        progress: receives the fraction done and a sentence; what it raises passes through.
 
     Returns:
         (m (m - 1) / 2,) [m], condensed in scipy's order, those of large sets in single precision.
@@ -73,7 +73,7 @@ def _compiled(paths: Array, kind: int, progress: Progress) -> Distances:
 
 
 def _single(paths: Array, centre: Array) -> NDArray[np.float32]:
-    # Single precision is spent on the differences between paths, not on where in the world they are.
+    # Without the common centre, single precision serves the differences between paths, not their place in the world.
     return np.ascontiguousarray((paths - centre).transpose(0, 2, 1), dtype=np.float32)
 
 
@@ -98,7 +98,7 @@ def _warped(paths: Array, kind: int, progress: Progress) -> Array:
 
 
 def _widest(apart: Array) -> Array:
-    """Return the discrete Fréchet distances of pairs: the leash, along the diagonals of the table."""
+    """Return the discrete Fréchet distances of pairs, computed along the diagonals of the table (pairs, n, n)."""
     pairs, n, _ = apart.shape
     flat, stride = apart.reshape(pairs, -1), max(n - 1, 1)  # from one to the next of a diagonal
     last, before = np.full((2, pairs, n + 1), np.inf)  # column i + 1 is row i of the table
@@ -114,7 +114,7 @@ def _widest(apart: Array) -> Array:
 
 
 def _cheapest(apart: Array) -> Array:
-    """Return the mean distances along the cheapest monotone matchings of pairs, along the diagonals of the table."""
+    """Return the mean distances along the cheapest monotone matchings of pairs, from their table (pairs, n, n)."""
     pairs, n, _ = apart.shape
     last, before = np.full((2, pairs, n + 1, 2), np.inf)  # cost and steps; column i + 1 is row i of the table
     before[:, 0] = 0.0

@@ -150,15 +150,15 @@ def _merge(apart: NDArray[np.float32], sizes: Labels, chain: Labels, state: Labe
 def merge(apart: NDArray[np.float32], sizes: Labels, chain: Labels, state: Labels, merges: Array, budget: int) -> None:
     """Make the next `budget` merges of average linkage along chains of nearest neighbours (Murtagh 1983).
 
-    Merges come in no order of height, and name clusters by one of their members.
+    The merges are not sorted by height; they name a cluster by one of its members.
 
     Args:
-        apart: (m (m - 1) / 2,) distances, condensed in scipy's order; overwritten by those of clusters.
-        sizes: (m,) of the clusters, at first 1; 0 of those that are gone.
-        chain: (m,) the chain that is being followed.
-        state: its length, and the merges made; at first 0 and 0.
-        merges: (m - 1, 4) is filled with two members, and the height.
-        budget: merges to make.
+        apart: (m (m - 1) / 2,) distances, condensed in scipy's order; overwritten by the distances of clusters.
+        sizes: (m,) of the clusters, at first 1; 0 for a cluster that was merged into another.
+        chain: (m,) the chain of nearest neighbours.
+        state: length of the chain and number of merges made; at first 0 and 0.
+        merges: (m - 1, 4), filled with two members and the height.
+        budget: number of merges to make.
     """
     _merge(apart, sizes, chain, state, merges, budget)
 

@@ -1,4 +1,4 @@
-"""The different ways of doing a task: hierarchical clustering of demonstrations by the distance of their paths."""
+"""Hierarchical clustering of demonstrations by the distance of their paths, and the choice of where to cut."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ from teachpath.learning.clustering.silhouettes import Silhouettes
 from teachpath.learning.settings import LearningSettings, Progress, Subprogress, no_progress
 from teachpath.records import Array
 
-MAX_CLUSTERS = 10  # that the silhouette chooses among
-MIN_PAIR_SEPARATION = 0.1  # share of the path length: two demonstrations farther apart are two ways
+MAX_CLUSTERS = 10  # among which the silhouette chooses
+MIN_PAIR_SEPARATION = 0.1  # share of the path length; two demonstrations farther apart are two clusters
 SMALL_CLUSTER_PENALTY = (
-    0.5  # divided by its members, added to the least silhouette of a cluster: few fall apart by chance
+    0.5  # divided by the members of a cluster, added to its least silhouette: few members fall apart by chance
 )
 SILHOUETTE_MARGIN = 0.08  # of the silhouette
 AMBIGUOUS_HEIGHT_RATIO = 1.1  # ratio of a merge's height to that of the cut
@@ -30,7 +30,7 @@ class Partition:
         linkage: (m - 1, 4) merges as scipy writes them, heights in metres.
         threshold: height of the cut [m].
         labels: (m,) cluster of each demonstration, 1, 2, ... in the order of their first members.
-        note: what is doubtful about it, or empty.
+        note: a sentence about what is doubtful, or empty.
         rival: number of clusters of the next best cut when the choice was close, else None.
     """
 
@@ -51,7 +51,7 @@ def cluster_distances(
         count: number m of demonstrations.
         settings: `clusters`, else `threshold`, else `min_silhouette` decide.
         length: of a typical path [m].
-        progress: is told how far the work has come.
+        progress: receives the fraction done and a sentence.
     """
     if settings.clusters is not None and settings.mode == "default":
         return cut_into(average_linkage(condensed, count, progress), settings.clusters)
@@ -88,17 +88,17 @@ def cut_by_silhouette(
 ) -> Partition:
     """Merge by average link and cut where the mean silhouette is best (Rousseeuw 1987).
 
-    A silhouette is not defined for one single cluster, so below `min_silhouette` the demonstrations count as one way.
-    The best cut of all favours coarse ones when some ways are far apart; it is lowered while the cluster that splits
-    next, taken alone, would be more than one way too. One demonstration is one way; two are one way when their
-    distance is at most a tenth of the path length.
+    A silhouette is not defined for a single cluster, so below `min_silhouette` all demonstrations form one cluster.
+    When some clusters lie far apart, the best mean silhouette favours too few clusters; so the cut is lowered while
+    the cluster that splits next would be more than one cluster by itself. Two demonstrations form one cluster when
+    their distance is at most a tenth of the path length.
 
     Args:
         condensed: distances of all pairs [m].
         count: number m of demonstrations.
         min_silhouette: least mean silhouette for more than one cluster.
-        length: of a typical path [m], the yardstick for two demonstrations and for doubts.
-        progress: is told how far the work has come.
+        length: of a typical path [m], to which the distance of two demonstrations is compared.
+        progress: receives the fraction done and a sentence.
     """
     if count == 1:
         return cut_into(np.empty((0, 4)), 1)
@@ -126,7 +126,7 @@ def cut_by_silhouette(
 
 
 def _next_merge(tree: Array, clusters: int, height: float) -> int | None:
-    """Return the number of clusters on the other side of the nearest merge, when that is close to the cut."""
+    """Return the number of clusters on the other side of the merge nearest to the cut, if that merge is close."""
     near: list[tuple[float, int]] = []
     if not height > 0:
         return None
@@ -139,7 +139,7 @@ def _next_merge(tree: Array, clusters: int, height: float) -> int | None:
 
 
 def _rivals(scores: dict[int, float], best: int, min_silhouette: float) -> list[int]:
-    """Return the cuts that would do nearly as well, the best of them first."""
+    """Return the numbers of clusters with nearly the best silhouette, the best of them first."""
     close = [k for k, score in scores.items() if k != best and score > scores[best] - SILHOUETTE_MARGIN]
     close.sort(key=lambda k: -scores[k])
     return close + ([1] if scores[best] < min_silhouette + SILHOUETTE_MARGIN else [])

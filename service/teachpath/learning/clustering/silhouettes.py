@@ -1,4 +1,4 @@
-"""How well a partition holds together: mean silhouettes of all cuts of one dendrogram (Rousseeuw 1987)."""
+"""Mean silhouettes of all cuts of one dendrogram (Rousseeuw 1987)."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ from teachpath.records import Array
 class Silhouettes:
     """The mean silhouettes of the cuts of one dendrogram into 2 to `most` clusters.
 
-    Only the sums of distances from every demonstration to every cluster of the finest cut are kept; those of the
-    coarser cuts follow by addition.
+    The sums of the distances from every demonstration to every cluster of the finest cut are kept; the sums of coarser
+    cuts follow by addition.
 
     Args:
         condensed: distances of all pairs, in scipy's order.
         linkage: the dendrogram, m - 1 merges.
         most: clusters, at most m.
-        progress: is told how far the work has come.
+        progress: receives the fraction done and a sentence.
     """
 
     def __init__(self, condensed: Distances, linkage: Array, most: int, progress: Progress = no_progress) -> None:
@@ -34,10 +34,10 @@ class Silhouettes:
         return float(_values(sums, labels).mean())
 
     def mean_of_split(self, count: int) -> tuple[float, int]:
-        """Return the mean silhouette of the one cluster that the cut into `count` + 1 splits, as if it were alone.
+        """Find the cluster that the cut into `count` + 1 splits, and its mean silhouette as if it were alone.
 
         Returns:
-            it and the number of its members.
+            the mean silhouette and the number of members.
         """
         coarse, (fine, sums) = self._cut(count)[0], self._cut(count + 1)
         for label in range(count):
@@ -63,7 +63,7 @@ def distance_sums(condensed: Distances, labels: Labels, count: int, progress: Pr
         condensed: distances of all pairs, in scipy's order.
         labels: (m,) cluster of each demonstration, 0 to `count` - 1.
         count: number of clusters.
-        progress: is told how far the work has come.
+        progress: receives the fraction done and a sentence.
     """
     m = len(labels)
     sums = np.zeros((m, count))
@@ -79,7 +79,7 @@ def distance_sums(condensed: Distances, labels: Labels, count: int, progress: Pr
 
 
 def _values(sums: Array, labels: Labels) -> Array:
-    """Return the silhouette of every demonstration; one alone in its cluster counts 0."""
+    """Return the silhouette of every demonstration; a demonstration alone in its cluster counts 0."""
     sizes = np.bincount(labels, minlength=sums.shape[1])
     rows = np.arange(len(labels))
     within = sums[rows, labels] / np.maximum(sizes[labels] - 1, 1)

@@ -1,7 +1,7 @@
-"""Clustering of very many demonstrations: a random sample is clustered, every other one joins its nearest there.
+"""Clustering of very many demonstrations: a random sample is clustered, and each other one joins the nearest of it.
 
-The distances of all pairs grow with the square of their number; those to a sample do not. A way that is shown less
-often than once in a sample's worth of demonstrations may be missed.
+The number of pairs grows with the square of the number of demonstrations, the number of distances to a sample only in
+proportion. A cluster may be missed when it has fewer members than one in the size of the sample.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from teachpath.learning.clustering.partition import Partition, cluster_distances
 from teachpath.learning.settings import LearningSettings, Progress, Subprogress, no_progress
 from teachpath.records import Array
 
-MAX_EXACT_DEMONSTRATIONS = 20_000  # demonstrations above which not every pair is measured
+MAX_EXACT_DEMONSTRATIONS = 20_000  # above which only distances to a sample are measured
 SAMPLE_SIZE = 2000
 
 
@@ -25,15 +25,15 @@ def cluster_paths(
 ) -> Partition:
     """Cluster paths, by all pairs or from 20,000 on by a sample of 2000.
 
-    With a threshold set, those farther than it from all of the sample stay alone; else the cut is found on the
-    sample and everybody belongs to the cluster of its nearest.
+    Every path outside the sample belongs to the cluster of its nearest path in the sample. With a threshold set, a path
+    farther than the threshold from the whole sample is a cluster by itself.
 
     Args:
         paths: (m, n, 3) [m].
         settings: see `clustering.cluster_distances`; `seed` draws the sample.
         length: of a typical path [m].
         metric: see `distances.pairwise_distances`.
-        progress: is told how far the work has come.
+        progress: receives the fraction done and a sentence.
     """
     m = len(paths)
     measure, cut = Subprogress(progress, 0.0, 0.7), Subprogress(progress, 0.7, 1.0)

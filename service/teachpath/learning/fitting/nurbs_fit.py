@@ -1,6 +1,7 @@
-"""The NURBS that follows a list of points within a bound: least squares, knots where the error asks for them.
+"""Least-squares fit of a NURBS to points within an error bound, with knots where the error requires them.
 
-Piegl & Tiller, The NURBS Book, section 9.4.1 (least squares with fixed end points); weights are 1, to be edited later.
+Piegl & Tiller, The NURBS Book, section 9.4.1 (least squares with fixed end points). All weights are 1; an operator may
+change them later.
 """
 
 from __future__ import annotations
@@ -16,15 +17,17 @@ from teachpath.learning.resampling import arc_lengths
 from teachpath.nurbs import Curve
 from teachpath.records import Array
 
-MIN_POINTS_PER_SPAN = 4  # least, so that the data decide every control point (Schoenberg & Whitney)
-HALF_SHARE = 0.5 - 1e-6  # so that rounding does not decide where a symmetric span is halved
-MAX_POINTS_FOR_REMOVAL = 5000  # points above which knots are not tried for removal
-CURVE_SAMPLES = 2000  # points of the polyline that stands for a curve when distances are measured
+MIN_POINTS_PER_SPAN = 4  # so that the points determine every control point (Schoenberg & Whitney)
+HALF_SHARE = (
+    0.5 - 1e-6
+)  # of the error of a span, at which it is split; not exactly 0.5, where rounding would decide for symmetric paths
+MAX_POINTS_FOR_REMOVAL = 5000  # above which no knot is removed
+CURVE_SAMPLES = 2000  # points of the polyline that represents a curve while distances are measured
 
 
 @dataclass(frozen=True, eq=False)
 class Approximation:
-    """A curve and how far the points are from the curve at their own parameters [m]."""
+    """A curve, and the largest distance [m] of a fitted point from the curve at the parameter of the point."""
 
     curve: Curve
     largest: float
@@ -35,17 +38,17 @@ def approximate(
 ) -> Approximation:
     """Fit a NURBS to ordered points, with as few knots as the bound allows.
 
-    Starts without interior knots, halves every span that holds a point beyond the bound, and in the end takes out
-    each knot that is not needed. When `most` control points or `span` points per knot span are reached first, the
-    approximation returned is the last one, beyond the bound.
+    The fit starts without interior knots, splits every span that holds a point beyond the bound, and finally removes
+    each knot that is not needed. It stops beyond the bound when it reaches `most` control points or `span` points per
+    knot span.
 
     Args:
         points: (n, d) [m] in the order of the path; the curve begins and ends exactly on the first and last.
         bound: largest distance of a point from the curve [m].
         degree: of the curve; lowered when there are too few points for it.
-        most: control points.
-        span: least points in a knot span.
-        at: (n,) parameters of the points, from 0 to 1; None = their share of the arc length.
+        most: largest number of control points.
+        span: least number of points in a knot span.
+        at: (n,) parameters of the points, from 0 to 1; None = shares of the arc length.
     """
     s = arc_lengths(points) if at is None else at
     forward = np.concatenate([[True], np.diff(s) > 1e-12 * s[-1]])
@@ -71,7 +74,7 @@ def approximate(
 
 
 def distances_to_curve(curve: Curve, points: Array) -> Array:
-    """Return the true nearest distance of every point from the curve: (n,) [m]."""
+    """Return the distance of every point from the nearest point of the curve: (n,) [m]."""
     return CurveDistance(curve)(points)
 
 
@@ -98,7 +101,7 @@ class CurveDistance:
 
 
 class _Problem:
-    """Least squares for one list of points, solved again and again with other knots."""
+    """The least-squares problem of one list of points, to be solved with different knots."""
 
     def __init__(self, points: Array, u: Array, degree: int) -> None:
         self.points = points
@@ -122,7 +125,7 @@ def _normal_equations(gram: Array, right: Array) -> Array:
     try:
         solution = np.asarray(cho_solve(cho_factor(gram), right))
     except LinAlgError:
-        # Too few points under some basis function: the smallest solution keeps it harmless.
+        # Too few points under some basis function: the minimum-norm solution stays bounded.
         solution = np.asarray(np.linalg.lstsq(gram, right, rcond=1e-10)[0])
     return solution
 
@@ -132,7 +135,7 @@ def _clamped(interior: Array, degree: int) -> Array:
 
 
 def _splits(u: Array, interior: Array, errors: Array, bound: float, span: int) -> list[float]:
-    """Return a knot for every span that breaks the bound, worst span first, at its error-weighted median."""
+    """Return a knot for every span beyond the bound, at the span's error-weighted median; worst span first."""
     edges = np.concatenate([[0.0], interior, [1.0]])
     begins = np.searchsorted(u, edges[:-1], side="left")
     ends = np.append(begins[1:], len(u))
@@ -149,11 +152,11 @@ def _splits(u: Array, interior: Array, errors: Array, bound: float, span: int) -
 
 
 def _pruned(problem: _Problem, interior: Array, bound: float) -> Array:
-    """Take out knots one at a time while the bound holds, the least missed one first."""
+    """Remove knots one at a time while the bound holds, the one that costs least first."""
     while len(interior):
         fewer = [np.delete(interior, k) for k in range(len(interior))]
         largest = np.array([problem.solve(knots)[1].max() for knots in fewer])
-        # The first of those equal but for rounding, so that a symmetric path is pruned alike in every frame.
+        # Of errors that differ by rounding only the first is taken: a symmetric path gives the same in every frame.
         best = int(np.argmax(largest <= largest.min() * (1 + 1e-6)))
         if largest[best] > bound:
             break

@@ -1,4 +1,4 @@
-"""How the object is turned along a learned path: a curve of quaternions with the parameter of the positions."""
+"""Orientation along a learned path: a curve of quaternions over the parameter of the position curve."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ from teachpath.records import Array, Trajectory
 def mean_orientations(selected: Sequence[Trajectory], count: int) -> Array | None:
     """Average orientations at equal arc length.
 
-    The mean is the principal axis of the quaternions' outer products, to which signs do not matter (Markley et al.
-    2007). Turning on the spot has no arc length: it is kept only as the difference of neighbours.
+    The mean is the principal axis of the sum of the quaternions' outer products, which does not depend on their signs
+    (Markley et al. 2007). A rotation on the spot has no arc length; only its start and end remain, as a step.
 
     Args:
         selected: the trajectories.
@@ -45,7 +45,7 @@ def fit_orientations(
     """Fit a curve of quaternions within `turn_bound`.
 
     Args:
-        cluster: its number, for the message.
+        cluster: number of the cluster, for the error message.
         mean: (n, 4) unit quaternions, neighbours on one half of the sphere.
         at: (n,) their parameters on the position curve.
         degree: of the curve.
@@ -71,7 +71,7 @@ def fit_orientations(
 
 
 def rotation_angles(one: Array, other: Array) -> Array:
-    """Return the angles between unit quaternions as rotations: (n,) [rad], whatever their signs."""
+    """Return the rotation angles between unit quaternions, independent of their signs: (n,) [rad]."""
     signs = np.where((one * other).sum(axis=1) < 0, -1.0, 1.0)[:, None]
     return np.asarray(4 * np.arcsin(np.clip(np.linalg.norm(one - signs * other, axis=1) / 2, 0.0, 1.0)))
 

@@ -21,13 +21,13 @@ from teachpath.learning.settings import LearningSettings, StepCallback
 from teachpath.records import Array, Fit, LearnedPath, Trajectory
 
 MEAN_PATH_POINTS = 200
-REFINEMENT_FACTOR = 4  # times as many, where those are too few for the bound
-MIN_BOUND_TO_NOISE = 4.5  # standard deviations that a bound on the largest of hundreds of errors has to allow noise
-MIN_LENGTH_SHARE = 0.05  # of the mean path, as share of the longest that went into it
-QUINTIC_ALLOWANCE = 3  # more control points that degree 5 may take than degree 3
+REFINEMENT_FACTOR = 4  # on the number of points, where they are too few for the bound
+MIN_BOUND_TO_NOISE = 4.5  # a bound below so many standard deviations of the noise would follow the noise
+MIN_LENGTH_SHARE = 0.05  # of the mean path, of the longest demonstration
+QUINTIC_ALLOWANCE = 3  # control points that degree 5 may need more than degree 3, less one
 PAPER_DEGREE = 3
-MAX_POOLED_CONTROL_POINTS = 12  # control points on a pooled list: more follow its zigzag and come no closer
-MAX_RETREAT_SHARE = 0.05  # share of the way that may lead back towards the start unmentioned
+MAX_POOLED_CONTROL_POINTS = 12  # more would follow the zigzag of the pooled list and come no closer
+MAX_RETREAT_SHARE = 0.05  # of the path that may lead back towards the start without a note
 
 
 def mean_path(paths: Sequence[Array], count: int = MEAN_PATH_POINTS) -> Array:
@@ -40,14 +40,14 @@ def fit_mean_path(
 ) -> LearnedPath:
     """Fit the consensus of the selected demonstrations within the error bound (mode default).
 
-    A mean that is too wiggly for the bound, though not by noise, is followed as closely as `most_control_points` can,
-    and the note says how closely.
+    When the mean path wiggles too much for the bound, and not because of noise, the fit uses all `most_control_points`
+    and the note tells the distance reached.
 
     Args:
         cluster: its number.
         selected: demonstrations.
         settings: `error_bound`, `most_control_points` and `degree`.
-        on_step: called twice for each of them.
+        on_step: called twice for each demonstration.
 
     Raises:
         LearningFailed: the bound is below what noise leaves in the mean, or the demonstrations cancel out.
@@ -75,7 +75,7 @@ def fit_mean_path(
             )
         course = mean_path(paths, REFINEMENT_FACTOR * MEAN_PATH_POINTS)
         best = best_fit(course, settings)
-    # The fit measures at its own parameters, the nearest distances are what the operator gets.
+    # The fit measures at its own parameters; the nearest distances are what matters to the operator.
     if best.largest > bound and (nearest := float(distances_to_curve(best.curve, course).max())) > bound:
         note = (
             f"the demonstrations wiggle: their mean is followed within {nearest * 1e3:.3g} mm only, not "
@@ -90,8 +90,8 @@ def fit_pooled_points(
 ) -> LearnedPath:
     """Pool the points of the selected, sort them by distance to the start and approximate (Aleotti & Caselli, III-C).
 
-    The global approximation of The NURBS Book returns more control points than points when such a list zigzags
-    more than the bound; the number of control points is limited here and the note says when the bound is not met.
+    When such a list zigzags by more than the bound, the global approximation of The NURBS Book returns more control
+    points than points. The number of control points is therefore limited, and the note says when the bound is not met.
     """
     start = np.mean([trajectory.positions[0] for trajectory in selected], axis=0)
     pooled = np.concatenate([trajectory.positions for trajectory in selected])
@@ -115,12 +115,12 @@ def fit_pooled_points(
 
 
 def residual_noise(selected: Sequence[Trajectory]) -> float:
-    """Return the noise [m] that smoothing and averaging leave in the mean, as read off the third differences."""
+    """Estimate the noise [m] that smoothing and averaging leave in the mean path, from third differences."""
     squares = []
     for trajectory in selected:
         roughness = float(np.median(np.square(np.diff(trajectory.positions, 3, axis=0)).sum(axis=1)))
         width = max(SMOOTHING_WINDOW / float(np.median(np.diff(trajectory.times))), 1.0)
-        # The squares of 1, -3, 3, -1 are 20 together.
+        # The squares of the coefficients 1, -3, 3, -1 of a third difference sum to 20.
         squares.append(roughness / 20 / width)
     return float(np.sqrt(np.mean(squares) / len(squares)))
 
@@ -130,10 +130,10 @@ def _length(path: Array) -> float:
 
 
 def best_fit(course: Array, settings: LearningSettings) -> Approximation:
-    """Return the fit of a mean path (n, 3) [m] that keeps the bound at the least cost, or comes nearest to it.
+    """Fit a mean path (n, 3) [m] with the fewest control points within the bound, or else as closely as possible.
 
-    Degree 5 is taken where it costs at most two control points more than degree 3: it bends less sharply, and where a
-    path turns back the arm is faster along it (`make experiments`).
+    Degree 5 is preferred when it needs at most two control points more than degree 3: its curvature changes less
+    sharply, and where a path turns back the arm follows it faster (`make experiments`).
     """
     degrees = (3, 5) if settings.degree is None else (settings.degree,)
     bound, most = settings.error_bound, settings.most_control_points
@@ -147,7 +147,7 @@ def _cost(fit: Approximation) -> int:
 
 
 def _retreat(path: Array) -> float:
-    """Return the share of the length over which the distance to the start decreases by more than noise."""
+    """Return the share of the path on which the distance to the start decreases by more than noise."""
     even = at_equal_arc_length(path, 50)
     return float(np.mean(np.diff(np.linalg.norm(even - even[0], axis=1)) < -0.25 * _length(even) / 49))
 

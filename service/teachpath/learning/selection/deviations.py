@@ -1,4 +1,4 @@
-"""Where and how a demonstration differs from the others, in words for the one who showed it."""
+"""Where and how a demonstration deviates from the others, in words for the person who showed it."""
 
 from __future__ import annotations
 
@@ -12,18 +12,18 @@ from teachpath.learning.resampling import arc_lengths, at_equal_arc_length, smoo
 from teachpath.learning.selection.features import Feature
 from teachpath.records import Array, Deviation, Trajectory
 
-MIN_DEFICIT_SHARE = 0.25  # share of the largest deficit that a frame must have to be odd too
-MAX_BRIDGED_FRAMES = 2  # frames between odd ones that count as odd
+MIN_DEFICIT_SHARE = 0.25  # of the largest deficit, from which on a frame deviates too
+MAX_BRIDGED_FRAMES = 2  # between deviating frames, that count as deviating
 PATH_POINTS = 100  # of the paths that are compared
-MIN_JUMP = 0.01  # m, of one sample from its neighbours
-MIN_REPEATED_READINGS = 5  # equal readings in a row
-REST_SPEED_SHARE = 0.15  # share of the mean speed
-MIN_STOP_DURATION = 0.2  # s, that needs no mention
-MOTION_WINDOW = 0.8  # s, over which an intended motion is nearly a cubic
-MIN_SHAKING_RATE = 1.0  # Hz, of shaking
-MIN_SHAKING_SHARE = 0.4  # share of the distance from the others that is shaking, not a detour
+MIN_JUMP = 0.01  # m, distance of one sample from its neighbours
+MIN_REPEATED_READINGS = 5  # in a row
+REST_SPEED_SHARE = 0.15  # of the mean speed, below which the hand rests
+MIN_STOP_DURATION = 0.2  # s, up to which a stop is not mentioned
+MOTION_WINDOW = 0.8  # s, within which an intended motion is nearly a cubic polynomial
+MIN_SHAKING_RATE = 1.0  # Hz
+MIN_SHAKING_SHARE = 0.4  # of the distance from the others, above which the deviation is shaking and no detour
 MIN_TREMOR_RATE = 8  # Hz
-SPAN_MARGIN = 0.4  # s, around the span that is looked at
+SPAN_MARGIN = 0.4  # s, looked at before and after the span
 
 
 def describe_deviation(
@@ -35,21 +35,21 @@ def describe_deviation(
     times: Array,
     usual: float,
 ) -> Deviation:
-    """Return where a demonstration is unlikeliest and what is odd about it there.
+    """Find where a demonstration is least likely, and describe how it deviates there.
 
     Args:
         trajectory: of the demonstration.
-        others: of the other members of its cluster.
+        others: trajectories of the other members of its cluster.
         feature: in which it differs most.
         profile: (frames,) log-likelihoods of its frames in that feature.
-        times: (frames,) [s] of these frames, since the first sample.
-        usual: log-likelihood of a frame of the others.
+        times: (frames,) [s] since the first sample.
+        usual: median log-likelihood of a frame of the others.
     """
     since = trajectory.times - trajectory.times[0]
     s = arc_lengths(smoothed(trajectory))
     away, within = _beside(trajectory, others)
     if feature in (Feature.SHAPE, Feature.BENDING) and np.any(away > within):
-        # A bow taken off a path with a detour is spread along all of it; the distance says where the detour is.
+        # Subtracting the large-scale form spreads a detour along the whole path; the distance tells where it is.
         profile, usual = within - away, 0.0
         times = np.interp(np.linspace(0.0, s[-1], PATH_POINTS), s, since)
     begin, end = _span(profile, times, usual)
@@ -60,7 +60,7 @@ def describe_deviation(
 
 
 def _span(profile: Array, times: Array, usual: float) -> tuple[float, float]:
-    """Return between which times [s] the frames are clearly less likely than usual, around the unlikeliest."""
+    """Return the times [s] between which frames are clearly less likely than usual, around the least likely one."""
     deficit = usual - profile
     worst = int(np.argmax(deficit))
     odd = binary_closing(
@@ -120,7 +120,7 @@ def _told(
 
 
 def _beside(trajectory: Trajectory, others: Sequence[Trajectory]) -> tuple[Array, Array]:
-    """Return how far it is from the mean of the others, and the farthest of them, at equal arc length (100,) [m]."""
+    """Return the distances of a demonstration and of the farthest other from the others' mean: (100,) [m] each."""
     courses = np.stack([at_equal_arc_length(smoothed(other), PATH_POINTS) for other in others])
     mean = courses.mean(axis=0)
     away = np.linalg.norm(at_equal_arc_length(smoothed(trajectory), PATH_POINTS) - mean, axis=1)
@@ -134,7 +134,7 @@ def _worst(away: Array, within: Array, share: tuple[float, float]) -> tuple[floa
 
 
 def _shaking(positions: Array, since: Array, inside: Array | None = None) -> tuple[float, float]:
-    """Return amplitude [m] and rate [Hz] of the quick part of a motion: what no cubic follows over 0.8 s."""
+    """Return amplitude [m] and rate [Hz] of the part of a motion that no cubic polynomial follows over 0.8 s."""
     step = float(np.median(np.diff(since)))
     width = min(round(MOTION_WINDOW / step), len(positions) - 1) // 2 * 2 + 1
     quick = positions - savgol_filter(positions, max(width, 5), 3, axis=0)
@@ -146,6 +146,6 @@ def _shaking(positions: Array, since: Array, inside: Array | None = None) -> tup
 
 
 def _longest(flags: Array) -> int:
-    """Return the length of the longest run of true ones."""
+    """Return the length of the longest run of true values."""
     edges = np.flatnonzero(np.diff(np.concatenate([[0], np.asarray(flags, dtype=int), [0]])))
     return int(np.max(edges[1::2] - edges[::2], initial=0))

@@ -1,4 +1,4 @@
-"""The hidden Markov model of mode default: Gaussians with one diagonal covariance that cannot collapse."""
+"""The hidden Markov model of mode default: Gaussians that share one diagonal covariance, with a floor."""
 
 from __future__ import annotations
 
@@ -55,10 +55,10 @@ class TiedGaussianHmm(LeftRightHmm):
         self.floor = floor
 
     def widen(self, sequences: int) -> None:
-        """Widen the variance to what a new sequence shows against means that were estimated from so few.
+        """Widen the variance to that of a new sequence about means that were estimated from so few sequences.
 
-        The variance about the estimated means is too small by (n - 1) / n, that of a new sequence larger than the true
-        one by (n + 1) / n.
+        With n sequences, the variance about the estimated means is too small by the factor (n - 1) / n, and that of a
+        new sequence about them is larger than the true variance by (n + 1) / n.
         """
         self.variance_ *= (sequences + 1) / (sequences - 1) if sequences > 1 else SINGLE_SEQUENCE_FACTOR
 
@@ -73,7 +73,7 @@ class TiedGaussianHmm(LeftRightHmm):
 
     def _maximise(self, frames: Array, posteriors: Array) -> None:
         weight = posteriors.sum(axis=0)[:, None]
-        # No matrix product: its rounding depends on the number of threads.
+        # A matrix product would round differently with another number of threads.
         first = np.einsum("tq,td->qd", posteriors, frames)
         self.means_ = np.where(weight > 1e-8, first / np.maximum(weight, 1e-8), self.means_)
         squares = np.einsum("tq,tqd->d", posteriors, np.square(frames[:, None, :] - self.means_))

@@ -20,24 +20,24 @@ from scipy.special import logsumexp
 from teachpath.records import Array
 
 Statistics = dict[str, Any]
-# Of one sequence: its log-likelihood, how probable each state is in each frame (frames, Q) but for a factor a frame,
-# and how often each transition is expected (Q, Q).
+# Of one sequence: its log-likelihood, the probability of each state in each frame (frames, Q) up to a factor per frame,
+# and the expected number of each transition (Q, Q).
 ForwardBackward = tuple[float, Array, Array]
 
 LOG_2PI = float(np.log(2 * np.pi))
-# Nats by which the best way through the chain may be behind the best state of every frame, for numbers instead of their
-# logarithms to do: what rounds to nought there is at least 45 nats less likely than that way.
+# Nats, relative to the best state of every frame. Above it the recursions on densities are exact enough: what they
+# round to 0 is at least 45 nats less likely than the best path through the chain. Below it logarithms are used.
 MIN_SCALED_LOG_LIKELIHOOD = -700.0
 
 
 class LeftRightHmm(BaseHMM):  # type: ignore[misc]
-    """A chain of states that may only be kept or left for the next, begun in the first.
+    """A left-right hidden Markov model: it starts in the first state, and stays in a state or goes to the next one.
 
-    Subclasses give the emission of a state. Training starts from equal slices of time, one per state.
+    Subclasses define the emissions. Training starts from equal slices of time, one per state.
 
     Args:
         states: number Q of states; fewer are used when a training sequence is shorter.
-        iterations: most iterations of Baum-Welch.
+        iterations: of Baum-Welch, at most.
         tolerance: training stops when the log-likelihood changes by less than this share of it.
         pseudo_count: added to every allowed transition in the M-step.
     """
@@ -64,9 +64,9 @@ class LeftRightHmm(BaseHMM):  # type: ignore[misc]
         self.fit(np.concatenate(sequences), [len(sequence) for sequence in sequences])
 
     def fit(self, X: Array, lengths: Sequence[int] | None = None) -> LeftRightHmm:
-        """Fit the model to concatenated sequences (frames, features) by Baum-Welch; what `train` calls.
+        """Fit the model to concatenated sequences (frames, features) by Baum-Welch; `train` calls it.
 
-        hmmlearn's own checks its input and itself again in every call, which takes longer than such small models do.
+        hmmlearn's own method checks its input in every call, which takes longer than the training of such small models.
         """
         lengths = [len(X)] if lengths is None else lengths
         self._init(X, lengths)
@@ -96,11 +96,11 @@ class LeftRightHmm(BaseHMM):  # type: ignore[misc]
 
     @abstractmethod
     def _begin(self, owners: NDArray[np.int64], frames: Array) -> None:
-        """Set the emissions from frames (n, features) that are in the time slice of a state: its number (n,)."""
+        """Initialise the emissions from frames (n, features); `owners` (n,) are the states of their time slices."""
 
     @abstractmethod
     def _maximise(self, frames: Array, posteriors: Array) -> None:
-        """Set the emissions to the likeliest for frames (n, features) that are in each state as often as (n, Q)."""
+        """Maximise the likelihood of frames (n, features) whose state probabilities are `posteriors` (n, Q)."""
 
     def _init(self, X: Array, lengths: Sequence[int]) -> None:
         states = self.n_components
@@ -114,7 +114,7 @@ class LeftRightHmm(BaseHMM):  # type: ignore[misc]
     def _do_estep(self, X: Array, lengths: Sequence[int]) -> tuple[Statistics, float]:
         lattice = self._compute_log_likelihood(X)
         best = lattice.max(axis=1)
-        # Each frame's largest is 1. hmmlearn's recursions on densities are 20 times as fast as on their logarithms.
+        # The largest density of each frame is 1. hmmlearn's recursions are 20 times as fast on them as on logarithms.
         densities = np.exp(lattice - best[:, None])
         gamma, often, total = np.empty_like(lattice), np.zeros_like(self.transmat_), float(best.sum())
         for begin, end in pairwise(accumulate(lengths, initial=0)):
@@ -127,7 +127,7 @@ class LeftRightHmm(BaseHMM):  # type: ignore[misc]
         return {"frames": X, "posteriors": gamma, "trans": often}, total
 
     def _scaled_passes(self, densities: Array) -> ForwardBackward | None:
-        """Run forward and backward over one sequence; None where numbers are too small for it."""
+        """Run forward and backward over one sequence on densities; None where they underflow."""
         start, moves = self.startprob_, self.transmat_
         try:
             total, forward, scales = _hmmc.forward_scaling(start, moves, densities)
@@ -154,7 +154,7 @@ class LeftRightHmm(BaseHMM):  # type: ignore[misc]
 
 
 class _RelativeChange(ConvergenceMonitor):  # type: ignore[misc]
-    """Stops at a relative change of the log-likelihood; a regularised M-step may lower it a little."""
+    """Stops when the log-likelihood changes little, up or down: a regularised M-step may lower it slightly."""
 
     def report(self, log_prob: float) -> None:
         self.history.append(log_prob)

@@ -21,30 +21,30 @@ KMEANS_ITERATIONS = 5
 class MixtureHmm(LeftRightHmm):
     """A mixture of Gaussians with full covariances per state (Aleotti & Caselli 2005, eq. (3)).
 
-    As in Murphy's HMM Toolbox, which the paper used, the Gaussians start from k-means over the frames of all states
-    and are dealt to the states in no order, with random weights. `in_time` starts each state from its slice of time
-    instead.
+    As in Murphy's HMM Toolbox, which the paper used, the Gaussians start from k-means over the frames of all states and
+    are assigned to the states in arbitrary order, with random weights. With `time_sliced`, each state starts from its
+    slice of time instead.
 
     Args:
         mixtures: number M of Gaussians per state.
         ridge: added to the diagonal of every covariance in every M-step.
-        rng: of the start.
-        in_time: whether states begin in the order of time.
+        rng: draws the start.
+        in_time: whether each state starts from its slice of time.
         options: see `LeftRightHmm`.
     """
 
     def __init__(
-        self, mixtures: int, ridge: float, rng: np.random.Generator, *, in_time: bool = False, **options: Any
+        self, mixtures: int, ridge: float, rng: np.random.Generator, *, time_sliced: bool = False, **options: Any
     ) -> None:
         super().__init__(**options)
         self.mixtures = mixtures
         self.ridge = ridge
         self.rng = rng
-        self.in_time = in_time
+        self.time_sliced = time_sliced
 
     def _begin(self, owners: NDArray[np.int64], frames: Array) -> None:
         shape = (self.n_components, self.mixtures)
-        if self.in_time:
+        if self.time_sliced:
             slices = [frames[owners == state] for state in range(self.n_components)]
             picks = [self.rng.choice(len(part), self.mixtures, replace=len(part) < self.mixtures) for part in slices]
             means = np.stack([part[pick] for part, pick in zip(slices, picks, strict=True)])  # (Q, M, d)

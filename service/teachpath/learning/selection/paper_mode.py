@@ -1,4 +1,4 @@
-"""Selection as Aleotti & Caselli 2005 describe it, and repaired where the description leads to chance.
+"""Selection as Aleotti & Caselli 2005 describe it, and mode repaired, which mends what leads to random choices.
 
 Symbols are codeword numbers of short-time spectra; one hidden Markov model is trained on all members of a cluster,
 which are then scored by it (section III-B).
@@ -24,30 +24,35 @@ REPAIRED_STATES, REPAIRED_MIXTURES = 5, 1
 
 
 def select_as_paper(
-    equalised: Mapping[str, Array], ways: Sequence[Sequence[str]], settings: LearningSettings, *, on_step: StepCallback
+    equalised: Mapping[str, Array],
+    members: Sequence[Sequence[str]],
+    settings: LearningSettings,
+    *,
+    on_step: StepCallback,
 ) -> tuple[Cluster, ...]:
     """Score the members of every cluster by the cluster's own model and keep the n best.
 
-    Mode repaired numbers the codewords in the order of their first principal component, starts the states from
-    slices of time, and has fewer of them with one Gaussian each. With `repeats`, all is done again from other seeds.
+    Mode repaired numbers the codewords in the order of their first principal component, starts the states from slices
+    of time, and has fewer states with one Gaussian each. With `repeats`, everything is repeated with other seeds, which
+    gives the stability.
 
     Args:
         equalised: id -> positions (n, 3) [m], all of one length.
-        ways: the members of every cluster.
-        settings: `keep` members are kept; with fewer members selection is skipped.
+        members: the members of every cluster.
+        settings: the `keep` best members are selected; with fewer members selection is skipped.
         on_step: called once per model trained.
     """
     shortest = min(len(positions) for positions in equalised.values())
     if shortest < WINDOW:
         note = "selection skipped: a demonstration is shorter than the analysis window"
-        return tuple(unscored(index + 1, way, note) for index, way in enumerate(ways))
+        return tuple(unscored(index + 1, ids, note) for index, ids in enumerate(members))
     names = sorted(equalised)
-    heard = [spectra(equalised[name]) for name in names]
-    first = _once(names, heard, ways, settings, np.random.default_rng(settings.seed), on_step)
+    all_spectra = [spectra(equalised[name]) for name in names]
+    first = _once(names, all_spectra, members, settings, np.random.default_rng(settings.seed), on_step)
     kept = dict.fromkeys(equalised, 0)
     for repeat in range(settings.repeats):
         rng = np.random.default_rng([settings.seed, repeat + 1])
-        for cluster in _once(names, heard, ways, settings, rng, on_step):
+        for cluster in _once(names, all_spectra, members, settings, rng, on_step):
             for score in cluster.scores:
                 kept[score.demonstration] += score.selected
     if settings.repeats == 0:
@@ -59,29 +64,29 @@ def select_as_paper(
 
 
 def unscored(index: int, names: Sequence[str], note: str) -> Cluster:
-    """Return a cluster all of which is kept without a score, and why."""
+    """Return a cluster whose members are all selected without a score; the note says why."""
     scores = tuple(Score(name, 0.0, rank + 1, True, "not scored") for rank, name in enumerate(names))
     return Cluster(index, tuple(names), scores, (), note)
 
 
-def paper_step_count(ways: int, repeats: int) -> int:
-    """Return how often `select_as_paper` ticks."""
-    return ways * (1 + repeats)
+def paper_step_count(clusters: int, repeats: int) -> int:
+    """Return how many steps `select_as_paper` reports."""
+    return clusters * (1 + repeats)
 
 
 def _once(
     names: list[str],
-    heard: list[Array],
-    ways: Sequence[Sequence[str]],
+    all_spectra: list[Array],
+    members: Sequence[Sequence[str]],
     settings: LearningSettings,
     rng: np.random.Generator,
     on_step: StepCallback,
 ) -> tuple[Cluster, ...]:
-    words = symbol_sequences(heard, settings.codebook, rng, ordered=settings.mode == "repaired")
-    symbols = dict(zip(names, words, strict=True))
+    sequences = symbol_sequences(all_spectra, settings.codebook, rng, ordered=settings.mode == "repaired")
+    symbols = dict(zip(names, sequences, strict=True))
     clusters = []
-    for index, way in enumerate(ways):
-        clusters.append(_selected(index + 1, {name: symbols[name] for name in sorted(way)}, settings, rng))
+    for index, ids in enumerate(members):
+        clusters.append(_selected(index + 1, {name: symbols[name] for name in sorted(ids)}, settings, rng))
         on_step()
     return tuple(clusters)
 
@@ -97,7 +102,7 @@ def _selected(
         REPAIRED_MIXTURES if repaired else settings.mixtures,
         RIDGE,
         rng,
-        in_time=repaired,
+        time_sliced=repaired,
         states=REPAIRED_STATES if repaired else settings.states,
         iterations=ITERATIONS,
         tolerance=TOLERANCE,

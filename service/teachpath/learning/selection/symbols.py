@@ -34,16 +34,16 @@ def spectra(positions: Array) -> Array:
 def symbol_sequences(
     all_spectra: Sequence[Array], size: int, rng: np.random.Generator, *, ordered: bool = False
 ) -> list[Array]:
-    """Quantise spectra axis by axis, each axis with a codebook of its own trained on all demonstrations.
+    """Quantise spectra axis by axis; each axis has its own codebook, trained on all demonstrations.
 
-    The number of a codeword means nothing, for the codebook starts from randomly drawn vectors; when `ordered`,
-    codewords are numbered along their first principal component, so that near numbers are near spectra.
+    The number of a codeword is arbitrary, because the codebook starts from randomly drawn vectors. With `ordered`, the
+    codewords are numbered along their first principal component, so that near numbers stand for similar spectra.
 
     Args:
         all_spectra: for each demonstration (frames, 3, 16).
         size: codewords per axis; at most as many as there are vectors.
         rng: draws the first codewords.
-        ordered: whether the codewords are put in order.
+        ordered: whether the codewords are numbered in that order.
 
     Returns:
         for each demonstration (frames, 3) codeword numbers 1, 2, ...

@@ -125,12 +125,12 @@ def test_the_order_of_training_sequences_does_not_matter() -> None:
     np.testing.assert_allclose(forward.history, backward.history, rtol=1e-10)
 
 
-@pytest.mark.parametrize("in_time", [False, True])
-def test_a_start_in_time_puts_the_states_in_order(in_time: bool) -> None:
-    model = mixture(states=5, iterations=1, in_time=in_time)
+@pytest.mark.parametrize("time_sliced", [False, True])
+def test_a_start_in_time_puts_the_states_in_order(time_sliced: bool) -> None:
+    model = mixture(states=5, iterations=1, time_sliced=time_sliced)
     model.train([np.linspace(0.0, 50.0, 40)[:, None] + np.zeros((40, 3)) for _ in range(3)])
     ordered = bool(np.all(np.diff(model.means_[:, :, 0].mean(axis=1)) > 0))
-    assert ordered == in_time
+    assert ordered == time_sliced
 
 
 @pytest.mark.parametrize("count", [2, 3, 8])
