@@ -55,7 +55,7 @@ def test_a_run_survives_storing_and_one_stored_before_is_still_read(learned: Lea
         for name in ("representative", "spread", "ambiguous"):
             del cluster[name]
         for score in cluster["scores"]:
-            for name in ("margin", "z", "stability", "departure"):
+            for name in ("margin", "z", "stability", "deviation"):
                 del score[name]
     for path in document["paths"]:
         del path["orientation"], path["fit"]["frechet"], path["fit"]["turn"]
