@@ -3,18 +3,18 @@
 // An element with attributes and children; attributes and children that are false, null or "" are left out.
 export function element(tag, attributes, ...children) {
   const made = document.createElement(tag);
-  fill(made, attributes, children);
+  fillElement(made, attributes, children);
   return made;
 }
 
 // The same for drawings.
-export function drawing(tag, attributes, ...children) {
+export function svgElement(tag, attributes, ...children) {
   const made = document.createElementNS("http://www.w3.org/2000/svg", tag);
-  fill(made, attributes, children);
+  fillElement(made, attributes, children);
   return made;
 }
 
-function fill(made, attributes, children) {
+function fillElement(made, attributes, children) {
   for (const [name, value] of Object.entries(attributes)) {
     if (value !== false && value !== null && value !== undefined) made.setAttribute(name, value);
   }
@@ -24,56 +24,67 @@ function fill(made, attributes, children) {
 // Make what is in `parent` look like `children`, and change only what differs: selections, scroll positions and the
 // focus survive, and a button that is pressed while the figures beside it change is still the one that is let go.
 // What has another tag or data-key is another thing.
-export function replace(parent, ...children) {
+export function patchChildren(parent, ...children) {
   const fresh = document.createElement("div");
   fresh.append(...children.flat(3).filter(Boolean));
   const key = parent.contains(document.activeElement) && document.activeElement.dataset.key;
-  settle(parent, fresh);
-  if (key && document.activeElement?.dataset.key !== key) parent.querySelector(`[data-key="${CSS.escape(key)}"]`)?.focus();
+  patchNodes(parent, fresh);
+  if (key && document.activeElement?.dataset.key !== key)
+    parent.querySelector(`[data-key="${CSS.escape(key)}"]`)?.focus();
 }
 
-function settle(parent, fresh) {
+function patchNodes(parent, fresh) {
   const wanted = [...fresh.childNodes];
   wanted.forEach((want, i) => {
     const here = parent.childNodes[i];
     if (!here) parent.append(want);
-    else if (!here.isEqualNode(want)) adapt(here, want);
+    else if (!here.isEqualNode(want)) patchNode(here, want);
   });
   while (parent.childNodes.length > wanted.length) parent.lastChild.remove();
 }
 
-function adapt(here, want) {
+function patchNode(here, want) {
   const same = here.nodeName === want.nodeName && here.dataset?.key === want.dataset?.key;
-  if (!same || here.nodeName === "SELECT") return here.replaceWith(want); // what a list has chosen is no attribute
-  if (here.nodeType === Node.TEXT_NODE) return (here.data = want.data);
-  for (const { name } of [...here.attributes]) if (!want.hasAttribute(name)) here.removeAttribute(name);
-  for (const { name, value } of want.attributes) if (here.getAttribute(name) !== value) here.setAttribute(name, value);
-  return settle(here, want);
+  if (!same || here.nodeName === "SELECT") {
+    here.replaceWith(want); // what a list has chosen is no attribute
+  } else if (here.nodeType === Node.TEXT_NODE) {
+    here.data = want.data;
+  } else {
+    for (const { name } of [...here.attributes]) if (!want.hasAttribute(name)) here.removeAttribute(name);
+    for (const { name, value } of want.attributes)
+      if (here.getAttribute(name) !== value) here.setAttribute(name, value);
+    patchNodes(here, want);
+  }
 }
 
-export function number(value, digits, unit = "") {
-  return `${value.toLocaleString("en", { minimumFractionDigits: digits, maximumFractionDigits: digits, signDisplay: "negative" })}${unit && "\u202f" + unit}`;
+export function formatNumber(value, digits, unit = "") {
+  const figures = { minimumFractionDigits: digits, maximumFractionDigits: digits, signDisplay: "negative" };
+  return `${value.toLocaleString("en", figures)}${unit && `\u202f${unit}`}`;
 }
 
-export function percent(share) {
+export function formatPercent(share) {
   return `${Math.round(100 * (share ?? 0))}\u202f%`;
 }
 
-export function plural(count, word) {
+export function pluralize(count, word) {
   return count === 1 ? word : `${word}s`;
 }
 
-export function sentence(words) {
+export function capitalize(words) {
   return words ? words[0].toUpperCase() + words.slice(1) : "";
 }
 
 // Names with their values; a pair without a value is left out, and what is no pair.
-export function facts(pairs) {
-  const shown = pairs.filter((pair) => pair && pair[1]);
-  return element("dl", {}, shown.map(([name, value]) => [element("dt", {}, name), element("dd", {}, value)]));
+export function definitionList(pairs) {
+  const shown = pairs.filter((pair) => pair?.[1]);
+  return element(
+    "dl",
+    {},
+    shown.map(([name, value]) => [element("dt", {}, name), element("dd", {}, value)]),
+  );
 }
 
-export function bar(share, label) {
+export function progressBar(share, label) {
   return element("progress", { max: "1", value: String(share ?? 0), "aria-label": label });
 }
 
@@ -82,11 +93,15 @@ export function hint(text) {
 }
 
 // A button that opens another tab: the next step of who is in the wrong one.
-export function next(tab, text) {
-  return element("p", { class: "orders" }, element("button", { type: "button", class: "primary", "data-open": tab, "data-key": `open ${tab}` }, text));
+export function tabButton(tab, text) {
+  return element(
+    "p",
+    { class: "buttons" },
+    element("button", { type: "button", class: "primary", "data-open": tab, "data-key": `open ${tab}` }, text),
+  );
 }
 
-export function command(text) {
+export function codeBlock(text) {
   return element("pre", {}, element("code", {}, text));
 }
 

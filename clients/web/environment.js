@@ -1,17 +1,17 @@
-// The stage: background, light, floor grid and camera; what belongs to the page and not to the scene.
+// The view's environment: background, light, floor grid and camera; it belongs to the page and not to the scene.
 const THEMES = {
   light: { background: 0xe9edf1, grid: 0xc3ccd5, ground: 0.16, light: 1 },
   dark: { background: 0x171b20, grid: 0x333c46, ground: 0.45, light: 0.78 },
 };
 
-// Dress meshcat's viewer; returns {look()} which puts the camera to its home.
-export function dress(viewer) {
+// Add it to meshcat's viewer; returns {fitCamera()}, which puts the camera to its home.
+export function createEnvironment(viewer) {
   const { THREE } = globalThis.MeshCat;
   for (const name of ["Lights", "Grid", "Axes"]) viewer.set_property([name], "visible", false);
   const group = new THREE.Group();
   viewer.scene.add(group);
   const lights = addLights(THREE, group);
-  const grid = makeGrid(THREE);
+  const grid = createGrid(THREE);
   const ground = new THREE.Mesh(new THREE.PlaneGeometry(8, 8), new THREE.ShadowMaterial());
   ground.receiveShadow = true;
   ground.position.z = 0.001;
@@ -30,7 +30,7 @@ export function dress(viewer) {
   };
   dark.addEventListener("change", paint);
   paint();
-  return { look: () => look(THREE, viewer) };
+  return { fitCamera: () => fitCamera(THREE, viewer) };
 }
 
 // Returns [light, intensity in the light theme] of each.
@@ -55,7 +55,7 @@ function addLights(THREE, group) {
 }
 
 // One segment a cell: long lines that pass behind the camera vanish in some software renderers.
-function makeGrid(THREE, cells = 16, size = 0.25) {
+function createGrid(THREE, cells = 16, size = 0.25) {
   const points = [];
   const half = (cells * size) / 2;
   for (let i = 0; i <= cells; i++) {
@@ -70,10 +70,11 @@ function makeGrid(THREE, cells = 16, size = 0.25) {
 }
 
 // Fit the scene and the arm's workspace into the picture, seen from the free side of the table, a little from above.
-function look(THREE, viewer) {
+function fitCamera(THREE, viewer) {
   const corners = [];
   const add = (box) => {
-    for (let i = 0; i < 8; i++) corners.push(new THREE.Vector3(...["x", "y", "z"].map((axis, k) => box[i & (1 << k) ? "max" : "min"][axis])));
+    for (let i = 0; i < 8; i++)
+      corners.push(new THREE.Vector3(...["x", "y", "z"].map((axis, k) => box[i & (1 << k) ? "max" : "min"][axis])));
   };
   // The arm's own box would jump with its pose: a column of its usual height stands for it.
   add(new THREE.Box3(new THREE.Vector3(-0.25, 0, -0.25), new THREE.Vector3(0.25, 1.15, 0.25)));
@@ -93,7 +94,9 @@ function look(THREE, viewer) {
   const target = new THREE.Vector3();
   let distance = 0;
   for (let round = 0; round < 4; round++) {
-    const seen = corners.map((corner) => corner.clone().sub(target)).map((p) => ({ x: p.dot(right), y: p.dot(up), z: p.dot(ahead) }));
+    const seen = corners
+      .map((corner) => corner.clone().sub(target))
+      .map((p) => ({ x: p.dot(right), y: p.dot(up), z: p.dot(ahead) }));
     distance = 1.05 * Math.max(...seen.map((p) => p.z + Math.max(Math.abs(p.x) / wide, Math.abs(p.y) / tall)));
     const middle = (axis) => {
       const shares = seen.map((p) => p[axis] / (distance - p.z));

@@ -1,13 +1,13 @@
-// The events: what has happened since the page was opened, newest first, whoever did it.
-import { element, hint, plural, replace, sentence } from "./elements.js";
-import { DOING } from "./panels/jobs.js";
-import { WORDS } from "./panels/arm_controls.js";
+// The log of what has happened since the page was opened, newest first, whoever did it.
+import { capitalize, element, hint, patchChildren, pluralize } from "./elements.js";
+import { STATE_LABELS } from "./panels/arm_controls.js";
+import { JOB_LABELS } from "./panels/jobs.js";
 
-const KEPT = 100;
-const ENDS = { succeeded: "succeeded", failed: "failed", cancelled: "was cancelled" };
+const MAX_ENTRIES = 100;
+const JOB_OUTCOMES = { succeeded: "succeeded", failed: "failed", cancelled: "was cancelled" };
 
 // `place` is a popover that `button` opens.
-export function journal(place, button, store) {
+export function eventLog(place, button, store) {
   const list = element("ol", { class: "events", "aria-label": "events, newest first" });
   place.append(element("h2", {}, "What has happened"), list);
   let before = store.state;
@@ -21,17 +21,21 @@ export function journal(place, button, store) {
     return [away ? "The service does not answer any more" : "The service answers again"];
   };
   const paint = () => {
-    const nothing = element("li", {}, hint("Nothing since this page was opened. Recordings, learning, plans and what the arm does are noted here."));
-    replace(list, entries.length ? entries.map(line) : nothing);
-    replace(button, unseen ? `Events (${unseen})` : "Events");
+    const nothing = element(
+      "li",
+      {},
+      hint("Nothing since this page was opened. Recordings, learning, plans and what the arm does are noted here."),
+    );
+    patchChildren(list, entries.length ? entries.map(entryRow) : nothing);
+    patchChildren(button, unseen ? `Events (${unseen})` : "Events");
   };
   store.subscribe((state) => {
-    const texts = [...link(state), ...happened(before, state)];
+    const texts = [...link(state), ...changesBetween(before, state)];
     before = state;
     if (!texts.length) return;
     const at = new Date().toLocaleTimeString("en-GB");
-    entries = [...texts.reverse().map((text) => ({ at, text })), ...entries].slice(0, KEPT);
-    unseen = place.matches(":popover-open") ? 0 : Math.min(KEPT, unseen + texts.length);
+    entries = [...texts.reverse().map((text) => ({ at, text })), ...entries].slice(0, MAX_ENTRIES);
+    unseen = place.matches(":popover-open") ? 0 : Math.min(MAX_ENTRIES, unseen + texts.length);
     paint();
   });
   place.addEventListener("toggle", () => {
@@ -41,61 +45,74 @@ export function journal(place, button, store) {
   paint();
 }
 
-const line = ({ at, text }) => element("li", {}, element("time", {}, at), element("span", {}, text));
+const entryRow = ({ at, text }) => element("li", {}, element("time", {}, at), element("span", {}, text));
 
 // Sentences about how two states differ, in the order of the work.
-function happened(before, now) {
+function changesBetween(before, now) {
   const same = before.task === now.task;
   return [
-    ...pairs(before, now, "tasks", "name").map(([old, task]) => !old && `Task ${task.name} was made`),
-    ...moves(before.trackers, now.trackers, "name").map(([name, here]) => `Tracker ${name} ${here ? "is here" : "has left"}`),
-    ...moves(before.recordings, now.recordings, "tracker").map(([name, here]) => `Recording from ${name} ${here ? "began" : "ended"}`),
-    ...(same ? ofTask(before, now) : []),
-    ...arm(before.executor ?? {}, now.executor ?? {}),
-    ...(now.station?.notes ?? []).map((note) => !before.station?.notes.includes(note) && sentence(note)),
+    ...pairWithPrevious(before, now, "tasks", "name").map(([old, task]) => !old && `Task ${task.name} was made`),
+    ...membershipChanges(before.trackers, now.trackers, "name").map(
+      ([name, here]) => `Tracker ${name} ${here ? "is here" : "has left"}`,
+    ),
+    ...membershipChanges(before.recordings, now.recordings, "tracker").map(
+      ([name, here]) => `Recording from ${name} ${here ? "began" : "ended"}`,
+    ),
+    ...(same ? taskChanges(before, now) : []),
+    ...armChanges(before.executor ?? {}, now.executor ?? {}),
+    ...(now.station?.notes ?? []).map((note) => !before.station?.notes.includes(note) && capitalize(note)),
   ].filter(Boolean);
 }
 
-function ofTask(before, now) {
-  const ways = ({ learned: { clusters, demonstrations } }) => `${clusters.length} ${plural(clusters.length, "way")} from ${demonstrations.length} ${plural(demonstrations.length, "demonstration")}`;
+function taskChanges(before, now) {
+  const ways = ({ learned: { clusters, demonstrations } }) =>
+    `${clusters.length} ${pluralize(clusters.length, "way")} from ${demonstrations.length} ${pluralize(demonstrations.length, "demonstration")}`;
   return [
-    ...pairs(before, now, "demonstrations").map(([old, one]) => demonstration(old, one)),
-    ...pairs(before, now, "runs").map(([old, run]) => !old && `Learned: ${ways(run)}`),
-    ...pairs(before, now, "jobs").map(([old, job]) => old?.state !== job.state && work(job)),
+    ...pairWithPrevious(before, now, "demonstrations").map(([old, one]) => demonstrationChange(old, one)),
+    ...pairWithPrevious(before, now, "runs").map(([old, run]) => !old && `Learned: ${ways(run)}`),
+    ...pairWithPrevious(before, now, "jobs").map(([old, job]) => old?.state !== job.state && jobChange(job)),
   ];
 }
 
-function demonstration(old, one) {
+function demonstrationChange(old, one) {
   const why = one.reasons?.length ? `, ${one.reasons.join("; ")}` : "";
-  if (!old || old.verdict !== one.verdict) return `Demonstration ${one.number} ${old ? "was judged again" : "was recorded"}: ${one.verdict}${why}`;
+  if (!old || old.verdict !== one.verdict)
+    return `Demonstration ${one.number} ${old ? "was judged again" : "was recorded"}: ${one.verdict}${why}`;
   if (Boolean(old.discarded_ns) === Boolean(one.discarded_ns)) return "";
   return `Demonstration ${one.number} was ${one.discarded_ns ? "discarded" : "restored"}`;
 }
 
-function work({ kind, state, message }) {
-  const name = DOING[kind] ?? sentence(kind);
-  return `${name} ${ENDS[state] ?? "began"}${state === "failed" ? `: ${message}` : ""}`;
+function jobChange({ kind, state, message }) {
+  const name = JOB_LABELS[kind] ?? capitalize(kind);
+  return `${name} ${JOB_OUTCOMES[state] ?? "began"}${state === "failed" ? `: ${message}` : ""}`;
 }
 
-function arm(old, status) {
+function armChanges(old, status) {
   const { operator, asking, state, reason } = status;
   return [
-    operator !== old.operator && (operator ? `${operator} has control of the arm` : old.operator && `${old.operator} gave control back`),
+    operator !== old.operator &&
+      (operator ? `${operator} has control of the arm` : old.operator && `${old.operator} gave control back`),
     asking && asking !== old.asking && `${asking} asks for control of the arm`,
-    old.state && state && state !== old.state && `Arm: ${(WORDS[state] ?? state).toLowerCase()}${reason ? `, ${reason}` : ""}`,
+    old.state &&
+      state &&
+      state !== old.state &&
+      `Arm: ${(STATE_LABELS[state] ?? state).toLowerCase()}${reason ? `, ${reason}` : ""}`,
   ];
 }
 
 // [[former, present]] of a list that had been read before, so that a first reading is no news.
-function pairs(before, now, name, key = "id") {
+function pairWithPrevious(before, now, name, key = "id") {
   if (before[name] === now[name] || !before[name] || !now[name]) return [];
   const former = new Map(before[name].map((one) => [one[key], one]));
   return now[name].map((one) => [former.get(one[key]), one]);
 }
 
 // [[name, whether it is here]] of what has come and gone.
-function moves(before, now, key) {
+function membershipChanges(before, now, key) {
   if (before === now) return [];
   const [old, fresh] = [before, now].map((list) => list.map((one) => one[key]));
-  return [...fresh.filter((name) => !old.includes(name)).map((name) => [name, true]), ...old.filter((name) => !fresh.includes(name)).map((name) => [name, false])];
+  return [
+    ...fresh.filter((name) => !old.includes(name)).map((name) => [name, true]),
+    ...old.filter((name) => !fresh.includes(name)).map((name) => [name, false]),
+  ];
 }

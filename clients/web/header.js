@@ -1,13 +1,13 @@
 // The header: which task, who holds control, and the stop button.
 import { element } from "./elements.js";
-import { moving } from "./store.js";
+import { activeExecution } from "./store.js";
 
 export function header({ store }, { task, stop, control }) {
   task.addEventListener("change", () => store.set({ task: task.value }));
   store.subscribe((state, changed) => {
     if (changed.has("tasks") || changed.has("task")) choose(task, state);
     if (!changed.has("executor")) return;
-    stop.disabled = !moving(state);
+    stop.disabled = !activeExecution(state);
     const { operator, asking } = state.executor ?? {};
     control.hidden = !operator;
     control.textContent = operator ? `${operator} has control${asking ? `, ${asking} asks for it` : ""}` : "";

@@ -1,7 +1,7 @@
 // The message line: every error with what to do, every outcome worth a word; read aloud by screen readers.
 import { element } from "./elements.js";
 
-const LASTS = 6000; // [ms] of a note; an error stays until it is closed or another attempt succeeds
+const NOTE_DURATION = 6000; // [ms] of a note; an error stays until it is closed or another attempt succeeds
 
 export class Messages {
   #said = 0; // sentences so far
@@ -10,7 +10,7 @@ export class Messages {
     this.place = place;
   }
 
-  say(text, kind = "note") {
+  show(text, kind = "note") {
     clearTimeout(this.timer);
     this.#said += 1;
     const close = element("button", { type: "button", class: "close", "aria-label": "Close this message" }, "×");
@@ -19,7 +19,7 @@ export class Messages {
     this.place.setAttribute("role", kind === "error" ? "alert" : "status");
     this.place.replaceChildren(element("p", { class: kind }, text), close);
     this.place.hidden = false;
-    if (kind === "note") this.timer = setTimeout(() => this.clear(), LASTS);
+    if (kind === "note") this.timer = setTimeout(() => this.clear(), NOTE_DURATION);
   }
 
   clear() {
@@ -36,7 +36,7 @@ export class Messages {
       if (this.#said === before) this.clear();
       return outcome;
     } catch (error) {
-      this.say(error.message, "error");
+      this.show(error.message, "error");
       if (error.name === "TypeError" || error.name === "ReferenceError") throw error; // a fault of ours
       return undefined;
     }

@@ -1,27 +1,36 @@
 // A new task: its name and the scene that it is done in, in a popover of the header.
-import { at, get, put } from "./api.js";
+import { get, put, resourcePath } from "./api.js";
 import { element, hint } from "./elements.js";
+import { isName, nameRefusal } from "./names.js";
 
-export function newTask(place, { store, feed, attempt, open }) {
-  const name = element("input", { type: "text", id: "new-name", required: "", maxlength: "64", pattern: "[A-Za-z0-9._\\-]+", title: "letters, digits, '.', '_' or '-'", autocomplete: "off" });
+export function newTaskDialog(place, { store, eventStream, attempt, open }) {
+  const name = element("input", { type: "text", id: "new-name", required: "", autocomplete: "off" });
   const scene = element("select", { id: "new-scene" });
   const form = element(
     "form",
     {},
     element("h2", {}, "New task"),
-    hint("What is shown from now on for another purpose is learned on its own. The scene says what stands around the arm."),
+    hint(
+      "What is shown from now on for another purpose is learned on its own. The scene says what stands around the arm.",
+    ),
     element("p", { class: "field" }, element("label", { for: "new-name" }, "Name"), name),
     element("p", { class: "field" }, element("label", { for: "new-scene" }, "Scene"), scene),
-    element("p", { class: "orders" }, element("button", { type: "submit", class: "primary" }, "Make the task")),
+    element("p", { class: "buttons" }, element("button", { type: "submit", class: "primary" }, "Make the task")),
   );
   place.append(form);
+  name.addEventListener("input", () => {
+    const wanted = name.value.trim();
+    name.setCustomValidity(wanted === "" || isName(wanted) ? "" : nameRefusal("task", wanted));
+  });
   let chosen = ""; // by the person, since the popover was opened; whatever comes later leaves it
   const offer = (scenes) => {
     const used = store.state.tasks?.find((task) => task.name === store.state.task)?.scene;
     scene.replaceChildren(...scenes.map((one) => element("option", { value: one.name }, one.name)));
     scene.value = [chosen, used].find((one) => scenes.some((other) => other.name === one)) ?? scenes[0]?.name ?? "";
   };
-  scene.addEventListener("change", () => (chosen = scene.value));
+  scene.addEventListener("change", () => {
+    chosen = scene.value;
+  });
   place.addEventListener("toggle", async (event) => {
     if (event.newState !== "open") return;
     chosen = "";
@@ -33,9 +42,10 @@ export function newTask(place, { store, feed, attempt, open }) {
     event.preventDefault();
     attempt(async () => {
       const wanted = name.value.trim();
-      if (store.state.tasks?.some((task) => task.name === wanted)) throw new Error(`There is a task ${wanted} already: choose it above, or give another name.`);
-      await put(at("tasks", wanted), { scene: scene.value });
-      await feed.read("tasks");
+      if (store.state.tasks?.some((task) => task.name === wanted))
+        throw new Error(`There is a task ${wanted} already: choose it above, or give another name.`);
+      await put(resourcePath("tasks", wanted), { scene: scene.value });
+      await eventStream.read("tasks");
       if (name.value.trim() !== wanted) return; // another one is named meanwhile
       name.value = "";
       if (!place.matches(":popover-open")) return; // it was left meanwhile

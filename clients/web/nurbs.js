@@ -2,7 +2,7 @@
 // Piegl & Tiller, The NURBS Book: algorithms A2.1 (span), A2.2 (basis functions), eq. (4.1).
 
 // The basis functions at parameters u: computed once, as long as degree and knots stay.
-export class Basis {
+export class BasisFunctions {
   constructor(degree, knots, u) {
     this.degree = degree;
     this.knots = knots;
@@ -10,21 +10,26 @@ export class Basis {
     this.first = new Int32Array(u.length); // the first control point that counts at each parameter
     this.values = new Float64Array(u.length * (degree + 1));
     u.forEach((at, i) => {
-      const span = spanOf(degree, knots, at);
+      const span = findSpan(degree, knots, at);
       this.first[i] = span - degree;
-      this.values.set(basisAt(degree, knots, span, at), i * (degree + 1));
+      this.values.set(basisValues(degree, knots, span, at), i * (degree + 1));
     });
   }
 
-  fits({ degree, knots }) {
-    return degree === this.degree && knots.length === this.knots.length && knots.every((knot, i) => knot === this.knots[i]);
+  matches({ degree, knots }) {
+    return (
+      degree === this.degree && knots.length === this.knots.length && knots.every((knot, i) => knot === this.knots[i])
+    );
   }
 
   // Points of a curve of these knots: x, y, z after x, y, z, written into `out` [m].
-  points({ control_points, weights }, out = new Float64Array(3 * this.count)) {
+  evaluate({ control_points, weights }, out = new Float64Array(3 * this.count)) {
     const order = this.degree + 1;
     for (let i = 0; i < this.count; i++) {
-      let x = 0, y = 0, z = 0, w = 0;
+      let x = 0,
+        y = 0,
+        z = 0,
+        w = 0;
       for (let j = 0; j < order; j++) {
         const k = this.first[i] + j;
         const share = this.values[i * order + j] * weights[k];
@@ -43,15 +48,15 @@ export class Basis {
 }
 
 // Points [[x, y, z], ...] of a curve at parameters u.
-export function evaluate(curve, u) {
-  const flat = new Basis(curve.degree, curve.knots, u).points(curve);
+export function evaluateCurve(curve, u) {
+  const flat = new BasisFunctions(curve.degree, curve.knots, u).evaluate(curve);
   return u.map((_, i) => [...flat.subarray(3 * i, 3 * i + 3)]);
 }
 
-export const evenly = (count) => Array.from({ length: count }, (_, i) => i / (count - 1));
+export const linspace = (count) => Array.from({ length: count }, (_, i) => i / (count - 1));
 
 // The knot span [knots[span], knots[span + 1]) of a parameter; the last one holds its end.
-export function spanOf(degree, knots, u) {
+export function findSpan(degree, knots, u) {
   let low = degree;
   let high = knots.length - degree - 1;
   if (u >= knots[high]) {
@@ -66,7 +71,7 @@ export function spanOf(degree, knots, u) {
   return low;
 }
 
-function basisAt(degree, knots, span, u) {
+function basisValues(degree, knots, span, u) {
   const values = new Float64Array(degree + 1);
   const left = new Float64Array(degree + 1);
   const right = new Float64Array(degree + 1);

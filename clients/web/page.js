@@ -5,42 +5,42 @@
 //             mount(element, context)   called once; element is the panel's own, empty
 //             update(state, changed)    called after every change of the state; changed is the Set of names (store.js)
 //             show(), hide() }          optional: its tab was chosen, or another one
-// context = { store, feed, view, gallery, easel, messages,
+// context = { store, eventStream, view, sceneLayers, overlay, messages,
 //             attempt(order)            do an order; an error becomes a sentence in the message line
 //             open(id) }                choose another tab
 // A panel reads context.store.state, changes it with context.store.set(), and speaks REST through api.js.
-import { at, post } from "./api.js";
-import { Feed } from "./event_stream.js";
-import { Gallery } from "./scene_layers.js";
+import { post, resourcePath } from "./api.js";
+import { eventLog } from "./event_log.js";
+import { EventStream } from "./event_stream.js";
 import { header } from "./header.js";
-import { journal } from "./event_log.js";
 import { Messages } from "./messages.js";
-import { newTask } from "./new_task.js";
+import { newTaskDialog } from "./new_task.js";
 import { panel as demonstrate } from "./panels/demonstrate.js";
 import { panel as edit } from "./panels/edit.js";
 import { panel as run } from "./panels/run.js";
 import { panel as ways } from "./panels/ways.js";
-import { point } from "./path_picking.js";
-import { Store, moving } from "./store.js";
+import { enablePathPicking } from "./path_picking.js";
+import { SceneLayers } from "./scene_layers.js";
+import { activeExecution, Store } from "./store.js";
 import { Tabs } from "./tabs.js";
 import { View } from "./view.js";
 
 const root = document.documentElement;
 const byId = (id) => document.getElementById(id);
 const store = new Store();
-const feed = new Feed(store);
+const eventStream = new EventStream(store);
 const messages = new Messages(byId("message"));
 const view = new View(byId("view"), {
-  connected: (state, seconds) => connected("connection", state, seconds),
-  ready() {
-    if (gallery.settled) root.dataset.scene = "ready";
+  onConnection: (state, details) => showConnection("connection", state, details),
+  onReady() {
+    if (sceneLayers.isComplete) root.dataset.scene = "ready";
   },
 });
-const gallery = new Gallery(view, store);
-point(view, store, gallery);
+const sceneLayers = new SceneLayers(view, store);
+enablePathPicking(view, store, sceneLayers);
 
 // The page is live when both of its WebSockets are; either may come back first.
-function connected(which, state, seconds = 0) {
+function showConnection(which, state, { delay = 0 }) {
   root.dataset[which] = state;
   const states = [root.dataset.connection, root.dataset.events];
   const all = states.includes("lost") ? "lost" : states.includes("connecting") ? "connecting" : "live";
@@ -48,7 +48,7 @@ function connected(which, state, seconds = 0) {
   byId("connection").textContent = {
     live: "Connected",
     connecting: "Connecting to the service …",
-    lost: `No connection to the service; trying again in ${Math.max(1, Math.round(seconds))} s`,
+    lost: `No connection to the service; trying again in ${Math.max(1, Math.round(delay))} s`,
   }[all];
 }
 
@@ -57,38 +57,43 @@ const tabs = new Tabs(byId("tabs"), byId("panels"), (id) => {
 });
 const context = {
   store,
-  feed,
+  eventStream,
   view,
-  gallery,
-  easel: view.easel,
+  sceneLayers,
+  overlay: view.overlay,
   messages,
   attempt: (order) => messages.attempt(order),
-  open: (id) => tabs.choose(id),
+  open: (id) => tabs.select(id),
 };
 const panels = [demonstrate, ways, edit, run];
 for (const panel of panels) panel.mount(tabs.add(panel.id, panel.title), context);
-newTask(byId("new-task"), context);
-journal(byId("events"), byId("events-button"), store);
+newTaskDialog(byId("new-task"), context);
+eventLog(byId("events"), byId("events-button"), store);
 header(context, { task: byId("task"), stop: byId("stop"), control: byId("control") });
 store.subscribe((state, changed) => {
   for (const panel of panels) panel.update(state, changed);
-  gallery.update(state, changed);
+  sceneLayers.update(state, changed);
 });
 for (const panel of panels) panel.update(store.state, new Set(Object.keys(store.state)));
 
 byId("panels").addEventListener("click", (event) => {
   const { open } = event.target.closest("[data-open]")?.dataset ?? {};
-  if (open) tabs.choose(open);
+  if (open) tabs.select(open);
 });
 for (const box of document.querySelectorAll("[data-layer]")) {
-  box.addEventListener("change", () => view.show(box.dataset.layer, box.checked));
+  box.addEventListener("change", () => view.setLayerVisible(box.dataset.layer, box.checked));
 }
-byId("home").addEventListener("click", () => view.home());
+byId("home").addEventListener("click", () => view.resetCamera());
 // The space bar stops the arm wherever the focus is, but in a text field.
 addEventListener(
   "keydown",
   (event) => {
-    if (event.code !== "Space" || event.target.matches("input[type=text], input[type=number], textarea") || !moving(store.state)) return;
+    if (
+      event.code !== "Space" ||
+      event.target.matches("input[type=text], input[type=number], textarea") ||
+      !activeExecution(store.state)
+    )
+      return;
     event.preventDefault();
     event.stopPropagation();
     if (!event.repeat) stop();
@@ -98,25 +103,25 @@ addEventListener(
 byId("stop").addEventListener("click", () => stop());
 
 function stop() {
-  const status = moving(store.state);
-  if (status) context.attempt(() => post(`${at("executions", status.execution)}/stop`));
+  const status = activeExecution(store.state);
+  if (status) context.attempt(() => post(`${resourcePath("executions", status.execution)}/stop`));
 }
 
-feed.start((state, seconds) => connected("events", state, seconds));
+eventStream.start((state, details) => showConnection("events", state, details));
 view.connect();
 
 // What the browser tests, and the curious, may ask: the state, paths drawn, where they are, how often the view was drawn.
 globalThis.teachpath = {
   state: () => store.state,
-  paths: () => view.paths(),
-  place: (path) => view.place(path),
-  project: (point) => view.easel.project(point),
+  objectPaths: () => view.objectPaths(),
+  worldMatrix: (path) => view.worldMatrix(path),
+  project: (point) => view.overlay.project(point),
   opacity: (path) => view.opacity(path),
-  ghost: () => run.ghost(),
-  replayed: () => run.replayed(),
-  leading: () => run.leading(),
+  previewGhost: () => run.previewGhost(),
+  replayGhost: () => run.replayGhost(),
+  teleop: () => run.teleop(),
   headset: () => demonstrate.headset(),
-  unproject: (x, y, plane) => view.easel.unproject(x, y, plane),
+  unproject: (x, y, plane) => view.overlay.unproject(x, y, plane),
   get editor() {
     return edit.editor;
   },

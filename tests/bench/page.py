@@ -67,7 +67,7 @@ def _open(page: Any, path: str) -> None:
     page.locator("#tab-edit").click()
     page.locator(f"#edit-path [data-path='{path}']").click()
     _until(page, f"editor.draft?.path === '{path}' && editor.draft.curve.control_points.length === {POINTS}")
-    _until(page, "editor.verdict?.assessment")
+    _until(page, "editor.feasibility?.assessment")
 
 
 def _drag(page: Any, drags: int) -> dict[str, Any]:
@@ -82,12 +82,12 @@ def _drag(page: Any, drags: int) -> dict[str, Any]:
             page.mouse.move(x + side * step, y - step / 2)
             page.wait_for_timeout(16)
         page.mouse.up()
-        _until(page, "editor.verdict.curve === editor.draft.curve && !editor.verdict.waiting")
+        _until(page, "editor.feasibility.curve === editor.draft.curve && !editor.feasibility.pending")
         page.locator("#edit-undo").click()
-        _until(page, "editor.verdict.curve === editor.draft.curve && !editor.verdict.waiting")
+        _until(page, "editor.feasibility.curve === editor.draft.curve && !editor.feasibility.pending")
         if k == 0:  # the first one compiles
-            page.evaluate("teachpath.editor.stopwatch.reset()")
-    figures: dict[str, Any] = page.evaluate("teachpath.editor.stopwatch.figures")
+            page.evaluate("teachpath.editor.timings.reset()")
+    figures: dict[str, Any] = page.evaluate("teachpath.editor.timings.summary")
     return figures
 
 
@@ -103,7 +103,7 @@ def _figures(seen: dict[str, Any]) -> list[Figure]:
         for what, values, share in shares
     ]
     drawn = "handing the scene to a graphics card, which is software here"
-    figures += [Figure(f"{drawn}, {share}", (seen["rendering"][share],), "ms") for share in ("p50", "p95")]
+    figures += [Figure(f"{drawn}, {share}", (seen["renderTime"][share],), "ms") for share in ("p50", "p95")]
     figures.append(Figure("dragged frames measured", (float(seen["frames"]),), "frames"))
     return figures
 

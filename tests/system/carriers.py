@@ -14,7 +14,7 @@ OVER = 0.62  # [m] height at which it is carried between the obstacles
 
 
 def phase(visit: Visit, name: str, seconds: float = 15.0) -> None:
-    visit.page.wait_for_selector(f"html[data-showing={name}]", state="attached", timeout=1000 * seconds)
+    visit.page.wait_for_selector(f"html[data-session={name}]", state="attached", timeout=1000 * seconds)
 
 
 def begin(visit: Visit, service: Service, task: str, button: str = "Show it here") -> None:
@@ -62,7 +62,7 @@ def seen(visit: Visit, point: tuple[float, float, float], off: list[float]) -> t
 def finish(visit: Visit) -> str:
     """End the sitting; return what the page says of it."""
     visit.page.get_by_role("button", name="Finish").click()
-    visit.page.wait_for_selector("html[data-showing='']", state="attached")
+    visit.page.wait_for_selector("html[data-session='']", state="attached")
     visit.page.wait_for_selector("#message p")
     said: str = visit.page.locator("#message").inner_text()
     return said
@@ -130,11 +130,11 @@ NEXT = """async () => {
 HEAR = """
 (() => {
   const hand = teachpath.headset();
-  const { hear } = hand;
+  const { onSample } = hand;
   globalThis.heard = [];
-  hand.hear = (sample) => {
-    heard.push([sample.ms, document.documentElement.dataset.showing === "carrying", hand.rig.drawn]);
-    hear(sample);
+  hand.onSample = (sample) => {
+    heard.push([sample.ms, document.documentElement.dataset.session === "carrying", hand.rig.framesDrawn]);
+    onSample(sample);
   };
 })()
 """

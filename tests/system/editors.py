@@ -54,8 +54,8 @@ class Desk(Visit):
 
     def pull(self, handle: str, along: tuple[float, float, float]) -> None:
         """Drag a handle of the gizmo, X to Z or two of them for a plane, which lies that way from its middle."""
-        x, y = self.ask("teachpath.project(editor.middle)")
-        ahead = self.ask(f"teachpath.project(editor.middle.map((value, i) => value + {list(along)}[i]))")
+        x, y = self.ask("teachpath.project(editor.selectionCenter)")
+        ahead = self.ask(f"teachpath.project(editor.selectionCenter.map((value, i) => value + {list(along)}[i]))")
         way = np.subtract(ahead, (x, y))
         way /= np.linalg.norm(way)
         mouse = self.page.mouse

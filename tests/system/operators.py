@@ -105,8 +105,8 @@ class Leader(Operator):
 
     def begin(self, hand: str = "this page") -> None:
         """Let the arm follow a hand, once its clutch is held."""
-        self.page.locator(f"#lead-hand option[value='{hand}']").wait_for(state="attached")
-        self.page.select_option("#lead-hand", hand)
+        self.page.locator(f"#teleop-hand option[value='{hand}']").wait_for(state="attached")
+        self.page.select_option("#teleop-hand", hand)
         self.page.get_by_role("button", name="Lead the arm").click()
         self.wait_ready()
 

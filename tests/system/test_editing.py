@@ -42,7 +42,7 @@ def desks(browser: Any, service: Service) -> Iterator[Any]:
 
 def test_the_page_evaluates_a_curve_as_the_service_does(desks: Any, service: Service, paths: list[str]) -> None:
     desk, rng = desks(paths[0]), np.random.default_rng(5)
-    script = "async ([curve, u]) => (await import('/web/nurbs.js')).evaluate(curve, u)"
+    script = "async ([curve, u]) => (await import('/web/nurbs.js')).evaluateCurve(curve, u)"
     for degree, count in ((1, 2), (2, 9), (3, 20), (5, 8), (7, 30)):
         inner = np.sort(rng.choice(np.repeat(np.linspace(0.1, 0.9, 17), degree), count - degree - 1, replace=False))
         curve = {
@@ -66,8 +66,8 @@ def test_a_control_point_is_dragged_taken_back_and_dragged_again(desks: Any, pat
     assert moved.tolist() == [i == 2 for i in range(len(moved))]
     there = desk.ask("teachpath.project(editor.draft.curve.control_points[2])")
     assert np.allclose(np.subtract(there, at), (40, -30), atol=0.5)  # it follows the pointer in the picture's plane
-    desk.until("editor.verdict.assessment || editor.verdict.refusal")
-    assert "looking" not in desk.page.inner_text("#edit-verdict")
+    desk.until("editor.feasibility.assessment || editor.feasibility.error")
+    assert "assessing" not in desk.page.inner_text("#edit-feasibility")
 
     desk.page.locator("#view").focus()
     desk.page.keyboard.press("Control+z")
@@ -98,7 +98,7 @@ def test_every_edit_can_be_made_by_keyboard_and_in_numbers(desks: Any, paths: li
     )
     desk.page.keyboard.press("]")
     desk.page.keyboard.press("[")
-    assert desk.ask("editor.draft.chosen") == [3]
+    assert desk.ask("editor.draft.selected") == [3]
     desk.page.keyboard.press("ArrowRight")
     step = desk.curve().control_points[3] - before[3] - [0, 0, 0.011]
     assert np.count_nonzero(np.abs(step) > 1e-9) == 1
@@ -142,7 +142,7 @@ def test_the_second_of_two_editors_chooses_and_no_edit_is_lost(desks: Any, servi
     mine = ben.curve()
     ben.save()
     ben.page.wait_for_selector("#conflict[open]", timeout=SLOW)
-    assert "anna" in ben.page.inner_text("#conflict-told")
+    assert "anna" in ben.page.inner_text("#conflict-status")
     assert grave(ben.page, "conflict") == []
     ben.click("#conflict button[value=theirs]")
     ben.until("editor.draft.base.number === 2")
@@ -175,7 +175,7 @@ def test_several_points_are_chosen_and_pulled_along_an_axis_and_in_a_plane(desks
     last = len(begin.control_points) - 1
     desk.page.select_option("#edit-points", "2")
     desk.toggle(3)
-    assert desk.ask("editor.draft.chosen") == [2, 3]
+    assert desk.ask("editor.draft.selected") == [2, 3]
     desk.pull("Z", (0, 0, 0.05))
     moved = moves(desk, begin)
     np.testing.assert_allclose(moved[[2, 3]], np.tile([0, 0, moved[2, 2]], (2, 1)), atol=1e-9)
@@ -198,7 +198,7 @@ def test_several_points_are_chosen_and_pulled_along_an_axis_and_in_a_plane(desks
         desk.page.mouse.down()
         desk.page.mouse.move(box["x"] + box["width"] - 2, box["y"] + box["height"] - 2, steps=3)
         desk.page.mouse.up()
-    assert desk.ask("editor.draft.chosen") == list(range(last + 1))
+    assert desk.ask("editor.draft.selected") == list(range(last + 1))
     desk.page.locator("#view").focus()
     desk.page.keyboard.press("PageUp")
     assert moves(desk, begin)[:, 2] == pytest.approx([0, *[0.001] * (last - 1), 0])  # start and goal are pinned

@@ -155,7 +155,7 @@ def test_a_card_shows_the_newest_version_of_a_path(desk: Desk, service: Service,
     known.wait(2)
     known.let_go(-1)
     known.over()
-    assert desk.page.evaluate(f"teachpath.state().newest['{paths[2]}'].version") == newest
+    assert desk.page.evaluate(f"teachpath.state().latestVersions['{paths[2]}'].version") == newest
 
 
 # edit
@@ -282,7 +282,7 @@ def test_a_preview_of_a_tab_that_was_left_does_not_open(desk: Desk) -> None:
     motion.wait()
     desk.click("#tab-ways")
     motion.let_go()
-    assert desk.page.evaluate("teachpath.ghost()") is None
+    assert desk.page.evaluate("teachpath.previewGhost()") is None
 
 
 def series(height: float) -> dict[str, Any]:
@@ -313,7 +313,7 @@ def test_the_execution_that_was_chosen_last_is_shown_again(desk: Desk) -> None:
         desk.wait(lambda count=count: len(asked) == count)
     for route in reversed(asked):
         route.fulfill(json=series(0.5 if "/a/" in route.request.url else 1.0))
-        desk.wait(lambda: desk.page.evaluate("teachpath.replayed() !== null"))
+        desk.wait(lambda: desk.page.evaluate("teachpath.replayGhost() !== null"))
     desk.page.evaluate("fetch('/api/v1/station').then(() => new Promise(requestAnimationFrame))")
     assert desk.page.locator("#replay [data-execution=b]").get_attribute("aria-pressed") == "true"
 
@@ -356,15 +356,15 @@ def test_the_calibration_of_a_live_hand_stays_chosen(desk: Desk, service: Servic
     desk.page.route("**/api/v1/calibrations", measured("lab"))
     with Link(service.endpoint) as link:
         first = Tracker(link, "glove-a")
-        desk.page.locator("#lead-hand option[value='glove-a']").wait_for(state="attached")
-        desk.page.select_option("#lead-hand", "glove-a")
-        desk.page.locator("#lead-calibration option[value=lab]").wait_for(state="attached")
-        desk.page.select_option("#lead-calibration", "lab")
+        desk.page.locator("#teleop-hand option[value='glove-a']").wait_for(state="attached")
+        desk.page.select_option("#teleop-hand", "glove-a")
+        desk.page.locator("#teleop-calibration option[value=lab]").wait_for(state="attached")
+        desk.page.select_option("#teleop-calibration", "lab")
         desk.page.unroute("**/api/v1/calibrations")
         desk.page.route("**/api/v1/calibrations", measured("bench", "lab"))
         second = Tracker(link, "glove-b")
-        desk.page.locator("#lead-calibration option[value=bench]").wait_for(state="attached")
-        assert desk.page.input_value("#lead-calibration") == "lab"
+        desk.page.locator("#teleop-calibration option[value=bench]").wait_for(state="attached")
+        assert desk.page.input_value("#teleop-calibration") == "lab"
         del first, second
 
 
@@ -380,5 +380,5 @@ def test_nothing_is_recorded_for_a_task_that_was_left(desk: Desk, service: Servi
     task.wait()
     desk.page.select_option("#task", "bare")
     task.over()
-    desk.page.wait_for_selector("html[data-showing='']", state="attached")
-    assert service.station.recordings(TASK) == service.station.recordings("bare") == []
+    desk.page.wait_for_selector("html[data-session='']", state="attached")
+    assert service.call("GET", f"/tasks/{TASK}/recording") == service.call("GET", "/tasks/bare/recording") == []

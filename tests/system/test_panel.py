@@ -70,8 +70,8 @@ def test_every_demonstration_has_its_verdict_and_what_is_wrong_with_it(visit: Vi
         tracker.stop()
     visit.page.wait_for_selector("#task option[value=judged]", state="attached")
     visit.page.select_option("#task", "judged")
-    within(visit, 5, "document.querySelectorAll('.takes li').length === 2")
-    newest, oldest = visit.page.locator(".takes li").all_inner_texts()
+    within(visit, 5, "document.querySelectorAll('#demonstrations .demonstration-list li').length === 2")
+    newest, oldest = visit.page.locator(".demonstration-list li").all_inner_texts()
     assert "clean" in oldest
     assert "reject" in newest
     assert "samples are faulty, " in newest.replace("\n", " ")
@@ -87,10 +87,10 @@ def test_every_demonstration_has_its_verdict_and_what_is_wrong_with_it(visit: Vi
         within(visit, 5, f"{text('demonstrations')}.includes('Marked {mark}') === {str(bool(mark)).lower()}")
         assert [d.mark for d in service.station.demonstrations("judged")] == [mark, ""]
     visit.page.get_by_role("button", name="Discard the last").click()
-    within(visit, 5, "document.querySelectorAll('.takes li.discarded').length === 1")
-    assert [bool(d.discarded_ns) for d in service.station.demonstrations("judged")] == [False, True]
+    within(visit, 5, "document.querySelectorAll('#demonstrations .demonstration-list li.discarded').length === 1")
+    assert [bool(d["discarded_ns"]) for d in service.demonstrations("judged")] == [False, True]
     visit.page.get_by_role("button", name="Undo discard").click()
-    within(visit, 5, "document.querySelectorAll('.takes li.discarded').length === 0")
+    within(visit, 5, "document.querySelectorAll('#demonstrations .demonstration-list li.discarded').length === 0")
     within(visit, 5, f"{text('demonstrations')}.includes('One demonstration so far; show it again.')")
     assert visit.said == []
 
@@ -119,10 +119,10 @@ def leader(visit: Visit, service: Service) -> Iterator[Leader]:
     """Somebody at the tab Run who leads the arm, and lets it go in the end."""
     visit.page.set_viewport_size({"width": 900, "height": 420})  # less to draw
     visit.page.locator("#tab-run").click()
-    leader = Leader(visit, service.station)
-    visit.page.locator("#leading").scroll_into_view_if_needed()
+    leader = Leader(visit, service)
+    visit.page.locator("#teleop").scroll_into_view_if_needed()
     yield leader
-    visit.page.locator("#leading").get_by_role("button", name="Finish").click()
+    visit.page.locator("#teleop").get_by_role("button", name="Finish").click()
     leader.until(lambda status: status["state"] == "ended")
     assert leader.said == []
 
@@ -135,20 +135,20 @@ def test_the_arm_follows_the_page_s_hand_while_the_clutch_is_held_and_says_what_
     begin = leader.tool()
 
     def ball() -> np.ndarray:
-        return np.array(visit.page.evaluate("teachpath.leading().carry.position"))
+        return np.array(visit.page.evaluate("teachpath.teleop().handModel.position"))
 
     def press() -> None:
-        mouse.move(*visit.page.evaluate("teachpath.project(teachpath.leading().carry.position)"))
+        mouse.move(*visit.page.evaluate("teachpath.project(teachpath.teleop().handModel.position)"))
         mouse.down()
 
     def drag() -> None:
-        x, y = visit.page.evaluate("teachpath.project(teachpath.leading().carry.position)")
+        x, y = visit.page.evaluate("teachpath.project(teachpath.teleop().handModel.position)")
         mouse.move(x - 9, y + 6, steps=3)
 
     def there() -> bool:
         return np.linalg.norm(ball() - begin) > 0.03 and np.linalg.norm(leader.tool() - ball()) < 0.002
 
-    visit.wait(lambda: visit.page.evaluate("teachpath.leading().placed"))
+    visit.wait(lambda: visit.page.evaluate("teachpath.teleop().isPositioned"))
     assert grave(visit.page, "leading the arm") == []
     leader.lead(press, drag, mouse.up, there)
     after = leader.tool()
@@ -164,16 +164,16 @@ def test_the_arm_follows_the_page_s_hand_while_the_clutch_is_held_and_says_what_
         keys.up("PageDown")
         keys.up("Enter")
 
-    says = visit.page.locator("#leading .says")
+    says = visit.page.locator("#teleop .session-status")
     leader.lead(hold, lambda: keys.down("PageDown"), let_go, lambda: "move the hand back" in says.inner_text())
     assert leader.tool()[2] < after[2] - 0.1
-    gripped = "teachpath.leading().gripped"
+    gripped = "teachpath.teleop().gripperClosed"
     leader.lead(hold, lambda: keys.press("g"), let_go, lambda: visit.page.evaluate(gripped))
     visit.page.get_by_role("button", name="Open the gripper").wait_for()
 
 
 def test_the_page_holds_the_clutch_for_a_tracker_that_has_none(visit: Visit, service: Service, leader: Leader) -> None:
-    button = visit.page.locator("#leading").get_by_role("button", name="Clutch")
+    button = visit.page.locator("#teleop").get_by_role("button", name="Clutch")
     with Link(service.endpoint) as link, Shown(link, "glove-led") as hand:
         leader.begin("glove-led")
         begin = np.zeros(3)

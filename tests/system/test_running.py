@@ -45,7 +45,7 @@ def visit(browser: Any, service: Service) -> Iterator[Visit]:
             phase(visit, "ready")
         visit.page.evaluate("teachpath.headset()?.end()")
         visit.page.get_by_role("button", name="Finish").click()
-        visit.page.wait_for_selector("html[data-showing='']", state="attached")
+        visit.page.wait_for_selector("html[data-session='']", state="attached")
     visit.page.set_viewport_size(small)
     yield visit
     visit.page.close()
@@ -87,7 +87,7 @@ def operator(visit: Visit, service: Service, plans: Plans) -> Operator:
 
 
 def ghost(visit: Visit) -> np.ndarray:
-    return np.array(visit.page.evaluate("teachpath.ghost()")).reshape(7, 4, 4).transpose(0, 2, 1)
+    return np.array(visit.page.evaluate("teachpath.previewGhost()")).reshape(7, 4, 4).transpose(0, 2, 1)
 
 
 def scrub(visit: Visit, seconds: float) -> None:
@@ -114,7 +114,7 @@ def test_the_preview_is_the_plan_and_moves_no_arm(
     np.testing.assert_allclose(visit.place("/robot/link6"), before, atol=1e-5)
     assert operator.executions() == executions
     visit.page.get_by_role("button", name="Close preview").click()
-    assert visit.page.evaluate("teachpath.ghost()") is None
+    assert visit.page.evaluate("teachpath.previewGhost()") is None
     assert operator.said == []
 
 
@@ -197,13 +197,13 @@ def test_a_past_execution_is_replayed_as_it_was(visit: Visit, service: Service, 
         slider.evaluate(f"s => {{ s.value = {share * times[-1]}; s.dispatchEvent(new Event('input')); }}")
         shown = min(float(slider.input_value()), times[-1])
         q = np.array([np.interp(shown, times, column) for column in joints.T])
-        drawn = np.array(visit.page.evaluate("teachpath.replayed()")).reshape(7, 4, 4).transpose(0, 2, 1)
+        drawn = np.array(visit.page.evaluate("teachpath.replayGhost()")).reshape(7, 4, 4).transpose(0, 2, 1)
         np.testing.assert_allclose(drawn, link_frames(q), atol=1e-6)
     assert visit.page.locator("#replay .u-over").count() == 4
     np.testing.assert_allclose(visit.place("/robot/link6"), before, atol=1e-5)
     assert operator.executions()[0].id == last.id
     visit.page.get_by_role("button", name="Close replay").click()
-    assert visit.page.evaluate("teachpath.replayed()") is None
+    assert visit.page.evaluate("teachpath.replayGhost()") is None
     assert operator.said == []
 
 
@@ -232,7 +232,7 @@ def test_a_headset_s_right_hand_leads_the_arm_while_the_left_one_is_closed(
     leader, above = Leader(visit, service.station), (START[0], START[1], START[2] + 0.05)
     visit.page.evaluate("headset.primaryInputMode = 'hand'; 0")
     leader.begin("a headset")
-    visit.wait(lambda: visit.page.evaluate("teachpath.leading().placed"))
+    visit.wait(lambda: visit.page.evaluate("teachpath.teleop().isPositioned"))
     begin = np.zeros(3)
 
     def clutch(closed: int) -> None:
@@ -248,6 +248,6 @@ def test_a_headset_s_right_hand_leads_the_arm_while_the_left_one_is_closed(
         return bool(np.linalg.norm(leader.tool() - begin - [0, 0, 0.05]) < 0.002)
 
     leader.lead(press, lambda: move_hand(visit, above, 0), lambda: clutch(0), led)
-    visit.page.locator("#leading").get_by_role("button", name="Finish").evaluate("button => button.click()")
+    visit.page.locator("#teleop").get_by_role("button", name="Finish").evaluate("button => button.click()")
     leader.until(lambda status: status["state"] == "ended")
     assert operator.said == []

@@ -54,19 +54,19 @@ def test_takes_by_mouse_are_judged_at_once_discarded_and_brought_back(visit: Vis
     for _ in range(2):
         carry(visit)
         phase(visit, "ready")
-    takes = service.station.demonstrations("by-mouse")
-    words = [take.verdict for take in takes]
-    assert visit.page.locator("#show .takes li .verdict").all_inner_texts() == words
+    takes = service.demonstrations("by-mouse")
+    words = [take["verdict"] for take in takes]
+    assert visit.page.locator("#demonstration-session .demonstration-list li .verdict").all_inner_texts() == words
     for take in takes:  # a machine that is too busy for the declared rate makes it a repaired one
         assert take.verdict in ("clean", "repaired"), take.reasons
         assert has_no_gaps(take)
     goal = service.station.trajectory(takes[0].id).positions[-1]
     assert math.dist(goal, GOAL) < 0.05
     visit.page.get_by_role("button", name="Discard the take").click()
-    visit.page.wait_for_selector("#show .takes li.discarded")
-    assert [bool(take.discarded_ns) for take in service.station.demonstrations("by-mouse")] == [False, True]
+    visit.page.wait_for_selector("#demonstration-session .demonstration-list li.discarded")
+    assert [bool(take["discarded_ns"]) for take in service.demonstrations("by-mouse")] == [False, True]
     visit.page.get_by_role("button", name="Undo", exact=True).click()
-    visit.page.wait_for_selector("#show .takes li.discarded", state="detached")
+    visit.page.wait_for_selector("#demonstration-session .demonstration-list li.discarded", state="detached")
     assert "Recorded 2 demonstrations" in finish(visit)
     assert service.station.recordings("by-mouse") == []
     assert visit.said == []
@@ -162,12 +162,12 @@ def worn(browser: Any, service: Service) -> Iterator[Visit]:
 
 
 PICTURES = """async ([cost, frames]) => {
-  const { Pictures } = await import("/web/hand/frame_skipping.js");
-  const pictures = new Pictures();
+  const { FrameSkipper } = await import("/web/hand/frame_skipping.js");
+  const pictures = new FrameSkipper();
   let [time, drawn] = [0, false];
   return frames.map((busy) => {
     time += drawn ? cost : 11;
-    drawn = pictures.affords(time, busy);
+    drawn = pictures.shouldRender(time, busy);
     return [time, drawn];
   });
 }"""
@@ -199,8 +199,8 @@ def test_takes_by_an_emulated_hand_and_a_controller_in_one_headset(worn: Visit, 
     gaps = gaps_of(np.array(worn.page.evaluate("heard"), dtype=float))
     worn.page.evaluate("teachpath.headset().end()")
     worn.page.get_by_role("button", name="Finish").click()
-    worn.page.wait_for_selector("html[data-showing='']", state="attached")
-    by_hand, by_controller = service.station.demonstrations("by-headset")
+    worn.page.wait_for_selector("html[data-session='']", state="attached")
+    by_hand, by_controller = service.demonstrations("by-headset")
     for take in (by_hand, by_controller):
         is_judged_by_its_frames(take, gaps)
         assert has_no_gaps(take)
@@ -213,4 +213,4 @@ def test_takes_by_an_emulated_hand_and_a_controller_in_one_headset(worn: Visit, 
 
 def test_without_a_headset_the_page_says_why(visit: Visit) -> None:
     assert visit.page.get_by_role("button", name="In a headset").is_disabled()
-    assert "No headset is connected" in visit.page.locator("#show").inner_text()
+    assert "No headset is connected" in visit.page.locator("#demonstration-session").inner_text()

@@ -47,8 +47,8 @@ def tell(browser: Any, url: str, station: Station, tmp_path: Path) -> None:
     desk.until("editor.draft && teachpath.state().path === editor.draft.path")
     path = desk.ask("editor.draft.path")
     desk.drag(3, 6, -6)
-    desk.until("editor.verdict.assessment && editor.verdict.curve === editor.draft.curve")
-    assert desk.page.locator("#edit-verdict .good").count() == 1
+    desk.until("editor.feasibility.assessment && editor.feasibility.curve === editor.draft.curve")
+    assert desk.page.locator("#edit-feasibility .good").count() == 1
     desk.save()
     desk.until("editor.draft.base.number === 2")
     edited = desk.curve()
@@ -67,8 +67,8 @@ def tell(browser: Any, url: str, station: Station, tmp_path: Path) -> None:
     desk.page.locator(f"#replay button[data-execution='{done.id}']").click(timeout=SLOW)
     slider = desk.page.get_by_label("Instant of the execution")
     slider.wait_for()
-    desk.until("teachpath.replayed() !== null")
-    series = station.series(done.id, points=1500)
+    desk.until("teachpath.replayGhost() !== null")
+    series = station.call("GET", f"/executions/{done['id']}/series?points=1500")
     file = tmp_path / "execution.mcap"
     file.write_bytes(station.recorded_execution(done.id))
     followed = np.array([setpoint.position for setpoint in read_motion(file).setpoints if setpoint.on_path])

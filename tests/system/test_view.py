@@ -154,12 +154,12 @@ class Visit:
         self.page.wait_for_selector("html[data-scene=ready]", state="attached", timeout=30_000)
 
     def paths(self) -> list[str]:
-        return list(self.page.evaluate("teachpath.paths()"))
+        return list(self.page.evaluate("teachpath.objectPaths()"))
 
     def place(self, path: str) -> np.ndarray:
         """Pose of a path in the world; the page gives three.js's frame, y up."""
         up = np.array([[1, 0, 0, 0], [0, 0, -1, 0], [0, 1, 0, 0], [0, 0, 0, 1.0]])
-        return up @ np.reshape(self.page.evaluate(f"teachpath.place('{path}')"), (4, 4)).T
+        return up @ np.reshape(self.page.evaluate(f"teachpath.worldMatrix('{path}')"), (4, 4)).T
 
     def wait(self, true: Callable[[], bool]) -> None:
         wait_until(true, pause=lambda seconds: self.page.wait_for_timeout(1000 * seconds))

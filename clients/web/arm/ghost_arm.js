@@ -1,55 +1,61 @@
-// The ghost: a pale copy of the drawn arm and of what it carries, placed by the page alone. Nothing of it is sent.
-import { solid } from "../hand/carried_object.js";
+// A ghost arm: a pale copy of the drawn arm and of what it carries, posed by the page alone.
+import { shapeGeometry } from "../meshes.js";
 import { linkFrames } from "./kinematics.js";
 
 const COLOR = 0x2f7fb5;
 
-export class Ghost {
+export class GhostArm {
   #links = [];
   #fingers = [];
 
   // `arm` as GET /robot gives it; `carried` is the scene's object, or null.
-  constructor(easel, view, arm, carried) {
-    const { THREE } = easel;
-    Object.assign(this, { easel, arm });
+  constructor(overlay, view, arm, carried) {
+    const { THREE } = overlay;
+    Object.assign(this, { overlay, arm });
     const behind = { polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 4 }; // the arm, where both are in one place
-    this.material = new THREE.MeshLambertMaterial({ color: COLOR, transparent: true, opacity: 0.34, depthWrite: false, ...behind });
+    this.material = new THREE.MeshLambertMaterial({
+      color: COLOR,
+      transparent: true,
+      opacity: 0.34,
+      depthWrite: false,
+      ...behind,
+    });
     this.group = new THREE.Group();
     const robot = view.viewer.scene_tree.children.robot?.children ?? {};
     for (let i = 0; i <= arm.links.length; i++) this.#links.push(this.#copy(robot[`link${i}`]));
     if (carried) {
-      this.object = new THREE.Mesh(solid(THREE, carried), this.material);
+      this.object = new THREE.Mesh(shapeGeometry(carried), this.material);
       this.group.add(this.object);
     }
-    easel.group.add(this.group);
+    overlay.group.add(this.group);
   }
 
   // Show the arm at configuration `q` [rad], its gripper open or closed, and the object at its pose, if there is one.
-  place(q, { closed, position, orientation }) {
-    linkFrames(this.arm.links, q).forEach((frame, i) => this.#links[i].matrix.fromArray(frame));
+  setPose(q, { closed, position, orientation }) {
+    for (const [i, frame] of linkFrames(this.arm.links, q).entries()) this.#links[i].matrix.fromArray(frame);
     for (const finger of this.#fingers) finger.node.position.y = closed ? 0 : finger.side * this.arm.finger_travel;
     if (this.object && position) {
       this.object.position.set(...position);
       const [w, x, y, z] = orientation;
       this.object.quaternion.set(x, y, z, w);
     }
-    this.easel.dirty();
+    this.overlay.requestDraw();
   }
 
   // Poses of the links as they are drawn, column by column, robot coordinates: for tests, and the curious.
-  frames() {
+  linkMatrices() {
     return this.#links.map((link) => link.matrix.toArray());
   }
 
   remove() {
-    this.easel.group.remove(this.group);
+    this.overlay.group.remove(this.group);
     this.object?.geometry.dispose();
     this.material.dispose(); // the other shapes belong to the view
-    this.easel.dirty();
+    this.overlay.requestDraw();
   }
 
   #copy(node) {
-    const link = new this.easel.THREE.Group();
+    const link = new this.overlay.THREE.Group();
     link.matrixAutoUpdate = false;
     for (const [name, part] of Object.entries(node?.children ?? {})) {
       const copy = part.object.clone(true);
@@ -57,7 +63,7 @@ export class Ghost {
         if (mesh.isMesh) Object.assign(mesh, { material: this.material, castShadow: false, receiveShadow: false });
       });
       const side = { "left-finger": 1, "right-finger": -1 }[name];
-      const holder = new this.easel.THREE.Group();
+      const holder = new this.overlay.THREE.Group();
       if (side) {
         copy.position.y = 0; // the view's own gripper may be open now
         copy.matrixAutoUpdate = true;

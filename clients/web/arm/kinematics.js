@@ -3,11 +3,11 @@
 // `links` as GET /robot gives them, `q` in rad -> 7 poses, each 16 numbers column by column, as three.js wants them.
 export function linkFrames(links, q) {
   const frames = [identity()];
-  links.forEach((link, i) => frames.push(product(frames[i], linkMatrix(q[i], link))));
+  for (const [i, link] of links.entries()) frames.push(multiply(frames[i], denavitHartenberg(q[i], link)));
   return frames;
 }
 
-function linkMatrix(angle, { d, a, alpha }) {
+function denavitHartenberg(angle, { d, a, alpha }) {
   const [c, s, ca, sa] = [Math.cos(angle), Math.sin(angle), Math.cos(alpha), Math.sin(alpha)];
   return [c, s, 0, 0, -s * ca, c * ca, sa, 0, s * sa, -c * sa, ca, 0, a * c, a * s, d, 1];
 }
@@ -16,7 +16,7 @@ function identity() {
   return [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1];
 }
 
-function product(left, right) {
+function multiply(left, right) {
   const made = new Array(16);
   for (let column = 0; column < 4; column++) {
     for (let row = 0; row < 4; row++) {

@@ -1,9 +1,9 @@
 // Control of the arm: taken, kept with beats, given back. Whoever holds it alone gives orders; everybody may stop.
 import { post } from "../api.js";
 
-const SECONDS = 6; // [s] that the service waits for a beat
-const BEAT = 2000; // [ms]
-const HEADER = "Teachpath-Lease";
+const LEASE_DURATION = 6; // [s] that the service waits for a beat
+const HEARTBEAT_INTERVAL = 2000; // [ms]
+const LEASE_HEADER = "Teachpath-Lease";
 
 class ControlLease {
   token = "";
@@ -17,17 +17,17 @@ class ControlLease {
 
   // Headers of an order; without control they are none, which suffices while nobody holds it.
   get headers() {
-    return this.token ? { [HEADER]: this.token } : {};
+    return this.token ? { [LEASE_HEADER]: this.token } : {};
   }
 
   async take(name) {
     this.name = name;
-    this.#begin(await post("lease", { name, seconds: SECONDS }));
+    this.#begin(await post("lease", { name, seconds: LEASE_DURATION }));
   }
 
   // Ask the holder; who says nothing loses control after a while.
   async ask(name) {
-    const lease = await post("lease/ask", { name, seconds: SECONDS });
+    const lease = await post("lease/ask", { name, seconds: LEASE_DURATION });
     this.name = name;
     this.waiting = true;
     this.#begin(lease);
@@ -46,11 +46,11 @@ class ControlLease {
   #begin(lease) {
     this.token = lease.token;
     clearInterval(this.timer);
-    this.timer = setInterval(() => this.#beat(), BEAT);
+    this.timer = setInterval(() => this.#heartbeat(), HEARTBEAT_INTERVAL);
     this.changed();
   }
 
-  async #beat() {
+  async #heartbeat() {
     const { token } = this;
     try {
       const lease = await post("lease/beat", {}, this.headers);

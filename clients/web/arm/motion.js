@@ -1,4 +1,4 @@
-// A motion against time, a plan's or that of a past execution: where the arm is at any instant, and playing it.
+// A motion over time, that of a plan or of a past execution: where the arm is at any instant.
 
 // {times, joints, gripper_closed?, object_position?, object_orientation?, segments?} as the service gives it.
 export class Motion {
@@ -10,24 +10,31 @@ export class Motion {
     return this.rows.times.at(-1) - this.rows.times[0];
   }
 
-  // What the arm does at `seconds` from the beginning: {q, closed, position, orientation, words}.
-  at(seconds) {
-    const { times, joints, gripper_closed: closed, object_position: places, object_orientation: turns, segments } = this.rows;
+  // What the arm does at `seconds` from the beginning: {q, closed, position, orientation, segment}.
+  sample(seconds) {
+    const {
+      times,
+      joints,
+      gripper_closed: closed,
+      object_position: places,
+      object_orientation: turns,
+      stretches,
+    } = this.rows;
     const time = times[0] + Math.max(0, Math.min(seconds, this.duration));
-    const [low, share] = between(times, time);
+    const [low, share] = findInterval(times, time);
     const high = Math.min(low + 1, times.length - 1);
-    const mixed = (rows) => rows[low].map((value, i) => value + share * (rows[high][i] - value));
+    const interpolated = (rows) => rows[low].map((value, i) => value + share * (rows[high][i] - value));
     return {
-      q: mixed(joints),
+      q: interpolated(joints),
       closed: closed?.[low] ?? false,
-      position: places?.length ? mixed(places) : null,
-      orientation: turns?.length ? unit(mixed(turns)) : null,
-      words: segments?.findLast((segment) => segment.begin <= time)?.name ?? "",
+      position: places?.length ? interpolated(places) : null,
+      orientation: turns?.length ? normalize(interpolated(turns)) : null,
+      segment: stretches?.findLast((stretch) => stretch.begin <= time)?.name ?? "",
     };
   }
 }
 
-function between(times, time) {
+function findInterval(times, time) {
   let [low, high] = [0, times.length - 1];
   while (high - low > 1) {
     const middle = (low + high) >> 1;
@@ -38,7 +45,7 @@ function between(times, time) {
   return [low, span > 0 ? (time - times[low]) / span : 0];
 }
 
-function unit(quaternion) {
+function normalize(quaternion) {
   const length = Math.hypot(...quaternion) || 1;
   return quaternion.map((value) => value / length);
 }

@@ -1,32 +1,46 @@
-// A motion as a ghost in the view: played in real time, or looked at at any instant.
-import { element, number } from "../elements.js";
+// Shows a motion by a ghost arm in the view: played in real time, or at the instant of the slider.
+import { element, formatNumber } from "../elements.js";
 
-export class Player {
+export class MotionPlayer {
   motion = null; // as in motion.js, while it is open
   ghost = null;
-  #stop = null; // what ends the playing
+  #animation = null; // the requested frame while it plays
 
-  // `instant` names the slider, `shut` the button that closes; `more`: further elements below them. `shown(seconds)` is
-  // called with every instant and returns further words about it; `closed()` when it was open.
-  constructor({ instant, shut, more = [], shown = () => "", closed = () => {} }) {
-    Object.assign(this, { shown, closed });
-    this.scrub = element("input", { type: "range", min: "0", max: "1", step: "0.01", value: "0", "aria-label": instant });
-    this.words = element("output", { class: "words" });
+  // `children`: further elements below the slider. `describe(seconds, sample)` is called with every instant and returns
+  // further words about it; `onClose()` is called when it was open.
+  constructor({ sliderLabel, closeLabel, children = [], describe = () => "", onClose = () => {} }) {
+    Object.assign(this, { describe, onClose });
+    this.slider = element("input", {
+      type: "range",
+      min: "0",
+      max: "1",
+      step: "0.01",
+      value: "0",
+      "aria-label": sliderLabel,
+    });
+    this.output = element("output", { class: "words" });
     this.play = element("button", { type: "button" }, "Play");
-    const close = element("button", { type: "button" }, shut);
-    this.element = element("div", { class: "scrub", hidden: "" }, this.scrub, this.words, element("p", { class: "orders" }, this.play, close), more);
+    const close = element("button", { type: "button" }, closeLabel);
+    this.element = element(
+      "div",
+      { class: "player", hidden: "" },
+      this.slider,
+      this.output,
+      element("p", { class: "buttons" }, this.play, close),
+      children,
+    );
     close.addEventListener("click", () => this.close());
-    this.play.addEventListener("click", () => (this.#stop ? this.pause() : this.start()));
-    this.scrub.addEventListener("input", () => {
+    this.play.addEventListener("click", () => (this.#animation ? this.pause() : this.start()));
+    this.slider.addEventListener("input", () => {
       this.pause();
-      this.show(Number(this.scrub.value));
+      this.show(Number(this.slider.value));
     });
   }
 
   open(motion, ghost) {
     this.close();
     Object.assign(this, { motion, ghost });
-    this.scrub.max = String(motion.duration);
+    this.slider.max = String(motion.duration);
     this.element.hidden = false;
   }
 
@@ -36,37 +50,37 @@ export class Player {
     this.ghost.remove();
     this.ghost = this.motion = null;
     this.element.hidden = true;
-    this.closed();
+    this.onClose();
   }
 
   // From where the slider is, or from the beginning when it is at the end.
   start() {
     const { duration } = this.motion;
-    const from = Number(this.scrub.value) >= duration - 0.01 ? 0 : Number(this.scrub.value);
+    const from = Number(this.slider.value) >= duration - 0.01 ? 0 : Number(this.slider.value);
     const began = performance.now() - 1000 * from;
     const next = () => {
       const seconds = Math.min((performance.now() - began) / 1000, duration);
       this.show(seconds);
-      if (seconds < duration) this.#stop = requestAnimationFrame(next);
+      if (seconds < duration) this.#animation = requestAnimationFrame(next);
       else this.pause();
     };
-    this.#stop = requestAnimationFrame(next);
+    this.#animation = requestAnimationFrame(next);
     this.play.textContent = "Pause";
   }
 
   pause() {
-    cancelAnimationFrame(this.#stop);
-    this.#stop = null;
+    cancelAnimationFrame(this.#animation);
+    this.#animation = null;
     this.play.textContent = "Play";
   }
 
   show(seconds) {
-    const here = this.motion.at(seconds);
-    this.ghost.place(here.q, here);
-    this.scrub.value = String(seconds);
-    const more = this.shown(seconds, here);
-    const words = `${number(seconds, 1, "s")} of ${number(this.motion.duration, 1, "s")}${more && `: ${more}`}`;
-    this.scrub.setAttribute("aria-valuetext", words);
-    this.words.textContent = words;
+    const sample = this.motion.sample(seconds);
+    this.ghost.setPose(sample.q, sample);
+    this.slider.value = String(seconds);
+    const description = this.describe(seconds, sample);
+    const text = `${formatNumber(seconds, 1, "s")} of ${formatNumber(this.motion.duration, 1, "s")}${description && `: ${description}`}`;
+    this.slider.setAttribute("aria-valuetext", text);
+    this.output.textContent = text;
   }
 }

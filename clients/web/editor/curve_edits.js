@@ -1,27 +1,33 @@
 // The edited curve as a plain value {degree, knots, control_points, weights}; it is never changed in place.
-import { spanOf } from "../nurbs.js";
+import { findSpan } from "../nurbs.js";
 
-export function sameCurve(a, b) {
-  return JSON.stringify([a.degree, a.knots, a.control_points, a.weights]) === JSON.stringify([b.degree, b.knots, b.control_points, b.weights]);
+export function curvesEqual(a, b) {
+  return (
+    JSON.stringify([a.degree, a.knots, a.control_points, a.weights]) ===
+    JSON.stringify([b.degree, b.knots, b.control_points, b.weights])
+  );
 }
 
 // The curve with some control points moved by `by` [m].
-export function movedBy(curve, indices, by) {
+export function movePoints(curve, indices, by) {
   const chosen = new Set(indices);
-  return { ...curve, control_points: curve.control_points.map((p, i) => (chosen.has(i) ? p.map((value, axis) => value + by[axis]) : p)) };
+  return {
+    ...curve,
+    control_points: curve.control_points.map((p, i) => (chosen.has(i) ? p.map((value, axis) => value + by[axis]) : p)),
+  };
 }
 
-export function withPoint(curve, index, point) {
+export function setPoint(curve, index, point) {
   return { ...curve, control_points: curve.control_points.map((p, i) => (i === index ? point : p)) };
 }
 
-export function withWeights(curve, indices, weight) {
+export function setWeights(curve, indices, weight) {
   const chosen = new Set(indices);
   return { ...curve, weights: curve.weights.map((w, i) => (chosen.has(i) ? weight : w)) };
 }
 
 // The parameter around which a control point pulls most: its Greville abscissa.
-export function grevilleOf({ degree, knots }, index) {
+export function grevilleAbscissa({ degree, knots }, index) {
   let sum = 0;
   for (let i = 1; i <= degree; i++) sum += knots[index + i];
   return sum / degree;
@@ -38,7 +44,7 @@ export function innerKnots({ degree, knots }) {
 }
 
 // Where a new knot helps most near a parameter: the middle of its span.
-export function middleOfSpan({ degree, knots }, u) {
-  const span = spanOf(degree, knots, u);
+export function spanMidpoint({ degree, knots }, u) {
+  const span = findSpan(degree, knots, u);
   return (knots[span] + knots[span + 1]) / 2;
 }

@@ -1,34 +1,34 @@
-// The draft: the curve as it is edited, what it began from, which control points are chosen, and every step back.
+// The draft: the curve as it is edited, the version it began from, the selected control points, and the steps of undo.
 //
 // A draft lives in this tab: it survives a reload (sessionStorage), and the service knows nothing of it before it is saved.
-import { sameCurve } from "./curve_edits.js";
+import { curvesEqual } from "./curve_edits.js";
 
-const KEY = "teachpath.draft/";
-const LARGEST = 1_500_000; // characters that the storage is asked to hold; older steps are left out beyond
+const STORAGE_KEY = "teachpath.draft/";
+const MAX_STORED_CHARACTERS = 1_500_000; // beyond, the older steps are left out
 
 export class Draft {
   #past = [];
   #future = [];
-  #held = null; // the curve when the present gesture began
+  #beforeDrag = null; // the curve when the present drag began
 
-  // `base` = {number, branch}: the version that is edited; `original`: its curve.
-  constructor(path, base, original) {
-    Object.assign(this, { path, base, original, curve: original, unlocked: false, chosen: [] });
+  // `base` = {number, branch}: the version that is edited; `original`: its curve; `storage` keeps the draft.
+  constructor(path, base, original, storage = sessionStorage) {
+    Object.assign(this, { path, base, original, storage, curve: original, unlocked: false, selected: [] });
   }
 
   get edited() {
-    return !sameCurve(this.curve, this.original);
+    return !curvesEqual(this.curve, this.original);
   }
 
   get last() {
     return this.curve.control_points.length - 1;
   }
 
-  get undoable() {
+  get undoLabel() {
     return this.#past.at(-1)?.what ?? "";
   }
 
-  get redoable() {
+  get redoLabel() {
     return this.#future.at(-1)?.what ?? "";
   }
 
@@ -36,44 +36,44 @@ export class Draft {
     return !this.unlocked && (index === 0 || index === this.last);
   }
 
-  // The chosen control points that may be moved.
+  // The selected control points that may be moved.
   get movable() {
-    return this.chosen.filter((index) => !this.isPinned(index));
+    return this.selected.filter((index) => !this.isPinned(index));
   }
 
-  choose(indices) {
-    this.chosen = [...new Set(indices)].filter((i) => i >= 0 && i <= this.last).sort((a, b) => a - b);
+  select(indices) {
+    this.selected = [...new Set(indices)].filter((i) => i >= 0 && i <= this.last).sort((a, b) => a - b);
   }
 
-  // One step: `what` says it in words, for undo and redo.
+  // One step; `what` names it for undo and redo.
   change(curve, what) {
-    if (sameCurve(curve, this.curve)) return;
+    if (curvesEqual(curve, this.curve)) return;
     this.#past.push({ curve: this.curve, what });
     this.#future = [];
-    this.#take(curve);
-    this.keep();
+    this.#setCurve(curve);
+    this.persist();
   }
 
-  // A gesture: any number of curves between begin() and end() are one step.
-  begin() {
-    this.#held = this.curve;
+  // A drag: any number of curves between beginDrag() and endDrag() are one step.
+  beginDrag() {
+    this.#beforeDrag = this.curve;
   }
 
   preview(curve) {
     this.curve = curve;
   }
 
-  end(what) {
-    if (!this.#held) return;
+  endDrag(what) {
+    if (!this.#beforeDrag) return;
     const curve = this.curve;
-    this.curve = this.#held;
-    this.#held = null;
+    this.curve = this.#beforeDrag;
+    this.#beforeDrag = null;
     this.change(curve, what);
   }
 
-  abandon() {
-    if (this.#held) this.curve = this.#held;
-    this.#held = null;
+  cancelDrag() {
+    if (this.#beforeDrag) this.curve = this.#beforeDrag;
+    this.#beforeDrag = null;
   }
 
   undo() {
@@ -89,33 +89,33 @@ export class Draft {
     this.base = base;
     this.original = original;
     this.change(original, what);
-    this.keep();
+    this.persist();
   }
 
   // A curve has been saved as this version; the draft may be a step further by now.
   saved(base, curve) {
     this.base = base;
     this.original = curve;
-    this.keep();
+    this.persist();
   }
 
-  keep() {
+  persist() {
     const { path, base, original, curve, unlocked } = this;
     let [past, future] = [this.#past, this.#future];
     let text = JSON.stringify({ base, original, curve, unlocked, past, future });
-    while (text.length > LARGEST && past.length > 1) {
+    while (text.length > MAX_STORED_CHARACTERS && past.length > 1) {
       past = past.slice(Math.ceil(past.length / 2));
       future = [];
       text = JSON.stringify({ base, original, curve, unlocked, past, future });
     }
-    sessionStorage.setItem(KEY + path, text);
+    this.storage.setItem(STORAGE_KEY + path, text);
   }
 
   // The draft of a path that this tab has begun earlier, or null.
-  static of(path) {
+  static restore(path, storage = sessionStorage) {
     try {
-      const { base, original, curve, unlocked, past, future } = JSON.parse(sessionStorage.getItem(KEY + path));
-      const draft = new Draft(path, base, original);
+      const { base, original, curve, unlocked, past, future } = JSON.parse(storage.getItem(STORAGE_KEY + path));
+      const draft = new Draft(path, base, original, storage);
       Object.assign(draft, { curve, unlocked });
       draft.#past = past;
       draft.#future = future;
@@ -128,14 +128,14 @@ export class Draft {
   #step(from, to) {
     const step = from.pop();
     if (!step) return;
-    this.abandon();
+    this.cancelDrag();
     to.push({ curve: this.curve, what: step.what });
-    this.#take(step.curve);
-    this.keep();
+    this.#setCurve(step.curve);
+    this.persist();
   }
 
-  #take(curve) {
+  #setCurve(curve) {
     this.curve = curve;
-    this.choose(this.chosen);
+    this.select(this.selected);
   }
 }

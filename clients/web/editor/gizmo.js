@@ -1,29 +1,29 @@
-// Arrows and plane handles on the chosen control points: three's TransformControls, in the robot's axes.
+// Arrows and plane handles on the selected control points: three's TransformControls, in the robot's axes.
 import { TransformControls } from "../vendor/three/TransformControls.js";
 
 export class Gizmo {
-  // begin(), drag([dx, dy, dz]) since the beginning [m], end().
-  constructor(easel, { begin, drag, end }) {
-    const { THREE, viewer } = easel;
-    this.easel = easel;
+  // beginDrag(), drag([dx, dy, dz]) since the beginning [m], endDrag().
+  constructor(overlay, { beginDrag, drag, endDrag }) {
+    const { THREE, viewer } = overlay;
+    this.overlay = overlay;
     this.anchor = new THREE.Object3D();
-    easel.group.add(this.anchor);
+    overlay.group.add(this.anchor);
     this.controls = new TransformControls(viewer.camera, viewer.renderer.domElement);
     this.controls.setSpace("local"); // the anchor's axes are the robot's
     this.controls.setSize(0.75);
-    easel.gizmos.add(this.controls);
+    overlay.worldGroup.add(this.controls);
     const start = new THREE.Vector3();
     this.controls.addEventListener("dragging-changed", ({ value }) => {
-      easel.hold(value);
+      overlay.lockCamera(value);
       if (value) start.copy(this.anchor.position);
-      (value ? begin : end)();
+      (value ? beginDrag : endDrag)();
     });
     this.controls.addEventListener("objectChange", () => drag(this.anchor.position.clone().sub(start).toArray()));
-    this.controls.addEventListener("change", () => easel.dirty());
+    this.controls.addEventListener("change", () => overlay.requestDraw());
   }
 
   // Whether the pointer is on a handle.
-  get engaged() {
+  get isHovered() {
     return this.controls.object !== undefined && this.controls.axis !== null;
   }
 
@@ -31,13 +31,13 @@ export class Gizmo {
     return this.controls.dragging;
   }
 
-  // Stand at a point; null: be gone.
-  place(point) {
+  // Show the handles at a point; null: hide them.
+  attachTo(point) {
     if (this.dragging) return;
     if (point) {
       this.anchor.position.set(...point);
       this.controls.attach(this.anchor);
     } else this.controls.detach();
-    this.easel.dirty();
+    this.overlay.requestDraw();
   }
 }

@@ -1,40 +1,47 @@
-// The keyboard on the 3-D view: arrows move what is chosen along the robot's axes as they lie in the picture.
+// The keyboard on the 3-D view: arrows move the selected control points along the robot's axes as they lie in the picture.
 //
 // Arrows 1 mm, with Shift 10 mm, with Alt 0.1 mm; Page Up and Page Down along z; [ and ] choose the neighbour; Ctrl+A all;
 // Escape none. Ctrl+Z and Ctrl+Shift+Z or Ctrl+Y, wherever the focus is but in a text field, undo and redo.
 const STEP = 0.001; // [m]
-const AXES = [[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0]];
+const AXES = [
+  [1, 0, 0],
+  [-1, 0, 0],
+  [0, 1, 0],
+  [0, -1, 0],
+];
 
-export const HELP = "Arrow keys move what is chosen by 1 mm, Page Up and Page Down along z; with Shift 10 mm, with Alt 0.1 mm. [ and ] choose the neighbour.";
+export const KEYBOARD_HELP =
+  "Arrow keys move what is chosen by 1 mm, Page Up and Page Down along z; with Shift 10 mm, with Alt 0.1 mm. [ and ] choose the neighbour.";
 
-export function keys(editor, easel) {
-  const view = easel.element;
+export function bindKeyboard(editor, overlay) {
+  const view = overlay.element;
   let moving = null; // {key, by} while an arrow is held
 
   const finish = () => {
     if (!moving) return;
     moving = null;
-    editor.end();
+    editor.endDrag();
   };
   view.addEventListener("keydown", (event) => {
     if (!editor.active) return;
-    const by = direction(event.key, editor, easel);
+    const by = arrowDirection(event.key, editor, overlay);
     if (by) {
       event.preventDefault();
       const step = STEP * (event.shiftKey ? 10 : event.altKey ? 0.1 : 1);
       if (moving?.key !== event.key) {
         finish();
-        if (!editor.begin()) return;
+        if (!editor.beginDrag()) return;
         moving = { key: event.key, by: [0, 0, 0] };
       }
       moving.by = moving.by.map((value, axis) => value + step * by[axis]);
       editor.drag(moving.by);
-    } else if (choice(event, editor)) event.preventDefault();
+    } else if (applySelectionKey(event, editor)) event.preventDefault();
   });
   view.addEventListener("keyup", (event) => event.key === moving?.key && finish());
   view.addEventListener("blur", finish);
   addEventListener("keydown", (event) => {
-    if (!editor.active || !(event.ctrlKey || event.metaKey) || event.target.matches("input, textarea, dialog *")) return;
+    if (!editor.active || !(event.ctrlKey || event.metaKey) || event.target.matches("input, textarea, dialog *"))
+      return;
     const key = event.key.toLowerCase();
     if (key !== "z" && key !== "y") return;
     event.preventDefault();
@@ -44,27 +51,28 @@ export function keys(editor, easel) {
 }
 
 // The robot's direction that an arrow means: the horizontal axis that points most nearly there in the picture.
-function direction(key, editor, easel) {
+function arrowDirection(key, editor, overlay) {
   if (key === "PageUp" || key === "PageDown") return [0, 0, key === "PageUp" ? 1 : -1];
   const wanted = { ArrowRight: [1, 0], ArrowLeft: [-1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] }[key];
   if (!wanted) return null;
-  const from = editor.middle ?? [0, 0, 0];
-  const here = easel.project(from);
-  const likeness = (axis) => {
-    const there = easel.project(from.map((value, k) => value + 0.01 * axis[k]));
+  const from = editor.selectionCenter ?? [0, 0, 0];
+  const here = overlay.project(from);
+  const alignment = (axis) => {
+    const there = overlay.project(from.map((value, k) => value + 0.01 * axis[k]));
     if (!here || !there) return 0;
     const [dx, dy] = [there[0] - here[0], there[1] - here[1]];
     return (dx * wanted[0] + dy * wanted[1]) / (Math.hypot(dx, dy) || 1);
   };
-  return AXES.reduce((best, axis) => (likeness(axis) > likeness(best) ? axis : best));
+  return AXES.reduce((best, axis) => (alignment(axis) > alignment(best) ? axis : best));
 }
 
-function choice(event, editor) {
-  const { chosen, last } = editor.draft;
-  if (event.key === "Escape") editor.choose([]);
-  else if (event.key === "]") editor.choose([chosen.length ? Math.min(last, chosen.at(-1) + 1) : 0]);
-  else if (event.key === "[") editor.choose([chosen.length ? Math.max(0, chosen[0] - 1) : last]);
-  else if (event.key.toLowerCase() === "a" && (event.ctrlKey || event.metaKey)) editor.choose([...Array(last + 1).keys()]);
+function applySelectionKey(event, editor) {
+  const { selected, last } = editor.draft;
+  if (event.key === "Escape") editor.select([]);
+  else if (event.key === "]") editor.select([selected.length ? Math.min(last, selected.at(-1) + 1) : 0]);
+  else if (event.key === "[") editor.select([selected.length ? Math.max(0, selected[0] - 1) : last]);
+  else if (event.key.toLowerCase() === "a" && (event.ctrlKey || event.metaKey))
+    editor.select([...Array(last + 1).keys()]);
   else return false;
   return true;
 }

@@ -1,53 +1,90 @@
 // Knots: more of them for finer edits, fewer for a calmer curve, a higher degree; the shape stays.
-import { element, number } from "../elements.js";
-import { grevilleOf, innerKnots, middleOfSpan } from "./curve_edits.js";
+import { element, formatNumber } from "../elements.js";
+import { grevilleAbscissa, innerKnots, spanMidpoint } from "./curve_edits.js";
 
-export function knots(place, editor) {
-  const u = element("input", { type: "number", id: "edit-u", min: "0", max: "1", step: "any", title: "place of the new knot, from 0 at the start to 1 at the goal" });
+export function knotsSection(place, editor) {
+  const u = element("input", {
+    type: "number",
+    id: "edit-u",
+    min: "0",
+    max: "1",
+    step: "any",
+    title: "place of the new knot, from 0 at the start to 1 at the goal",
+  });
   const insert = element("button", { type: "button", id: "edit-insert" }, "Insert knot");
   const choice = element("select", { id: "edit-knot", title: "knots inside the curve" });
-  const allowed = element("input", { type: "number", id: "edit-allowed", min: "0.001", max: "100", step: "any", value: "0.001", title: "how far the curve may move" });
+  const allowed = element("input", {
+    type: "number",
+    id: "edit-allowed",
+    min: "0.001",
+    max: "100",
+    step: "any",
+    value: "0.001",
+    title: "how far the curve may move",
+  });
   const remove = element("button", { type: "button", id: "edit-remove" }, "Remove knot");
   const elevate = element("button", { type: "button", id: "edit-elevate" }, "Raise degree");
   const about = element("p", { class: "note", id: "edit-curve" });
   place.append(
     about,
-    element("p", { class: "note" }, "More knots make room for finer edits, fewer make a calmer curve. Inserting and raising the degree never change the shape."),
+    element(
+      "p",
+      { class: "note" },
+      "More knots make room for finer edits, fewer make a calmer curve. Inserting and raising the degree never change the shape.",
+    ),
     element("div", { class: "row" }, element("label", {}, "At u ", u), insert, elevate),
-    element("div", { class: "row" }, element("label", {}, "Knot ", choice), element("label", {}, "off by (mm) ", allowed), remove),
+    element(
+      "div",
+      { class: "row" },
+      element("label", {}, "Knot ", choice),
+      element("label", {}, "off by (mm) ", allowed),
+      remove,
+    ),
   );
   const operate = (operation, more, what) =>
     editor.context.attempt(async () => {
-      const done = await editor.operate(operation, more, what);
-      if (done) editor.context.messages.say(`${what}: the curve moved by ${inWords(done.deviation)}.`);
+      const done = await editor.applyOperation(operation, more, what);
+      if (done) editor.context.messages.show(`${what}: the curve moved by ${formatDistance(done.deviation)}.`);
     });
-  insert.addEventListener("click", () => operate("insert-knot", { u: Number(u.value) }, `Knot inserted at u = ${Number(u.value)}`));
-  remove.addEventListener("click", () => operate("remove-knot", { u: Number(choice.value), tolerance: Number(allowed.value) / 1000 }, `Knot removed at u = ${Number(Number(choice.value).toPrecision(4))}`));
+  insert.addEventListener("click", () =>
+    operate("insert-knot", { u: Number(u.value) }, `Knot inserted at u = ${Number(u.value)}`),
+  );
+  remove.addEventListener("click", () =>
+    operate(
+      "remove-knot",
+      { u: Number(choice.value), tolerance: Number(allowed.value) / 1000 },
+      `Knot removed at u = ${Number(Number(choice.value).toPrecision(4))}`,
+    ),
+  );
   elevate.addEventListener("click", () => operate("elevate", {}, `Degree raised to ${editor.draft.curve.degree + 1}`));
 
   let proposed = {}; // {value, of}: what was proposed for u, and for which choice of control points
 
   return {
     update({ draft }, what) {
-      if (!draft || what === "drag" || what === "verdict" || what === "versions") return;
+      if (!draft || what === "drag" || what === "feasibility" || what === "versions") return;
       const { curve } = draft;
       const inner = innerKnots(curve);
       about.textContent = `Degree ${curve.degree}, ${curve.control_points.length} control points, ${inner.length} inner ${inner.length === 1 ? "knot" : "knots"}.`;
       const kept = choice.value;
-      choice.replaceChildren(...inner.map(({ u, times }) => element("option", { value: String(u) }, number(u, 4) + (times > 1 ? ` ×${times}` : ""))));
+      choice.replaceChildren(
+        ...inner.map(({ u, times }) =>
+          element("option", { value: String(u) }, formatNumber(u, 4) + (times > 1 ? ` ×${times}` : "")),
+        ),
+      );
       if ([...choice.options].some((option) => option.value === kept)) choice.value = kept;
       remove.disabled = choice.disabled = !inner.length;
       elevate.disabled = curve.degree >= 7;
-      const around = draft.chosen.length === 1 ? grevilleOf(curve, draft.chosen[0]) : 0.5;
+      const around = draft.selected.length === 1 ? grevilleAbscissa(curve, draft.selected[0]) : 0.5;
       // What was typed stays until other points are chosen.
-      const of = `${draft.path} ${draft.chosen}`;
+      const of = `${draft.path} ${draft.selected}`;
       if (document.activeElement === u || (u.value !== proposed.value && of === proposed.of)) return;
-      u.value = String(Number(middleOfSpan(curve, around).toFixed(6)));
+      u.value = String(Number(spanMidpoint(curve, around).toFixed(6)));
       proposed = { value: u.value, of };
     },
   };
 }
 
-function inWords(metres) {
+function formatDistance(metres) {
   return metres < 1e-8 ? "less than 0.00001 mm" : `${Number((1000 * metres).toPrecision(2))} mm`;
 }

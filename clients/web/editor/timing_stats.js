@@ -1,28 +1,34 @@
-// How long the page takes to redraw a dragged curve, and the service to look at it: measured where it happens.
-const KEPT = 600;
+// How long the page takes to redraw a dragged curve, and the service to assess it.
+const MAX_SAMPLES = 600;
 
-export class Stopwatch {
+export class TimingStats {
   #frames = []; // [ms] of work a frame: the curve, the buffers, the numbers beside the view
   #renderings = []; // [ms] that handing the scene to the graphics card takes; without one it is drawn meanwhile
   #intervals = []; // [ms] between two frames of one drag
-  #answers = []; // [ms] from release to verdict
+  #answers = []; // [ms] from release to assessment
   #before = 0;
 
-  time(work, view) {
+  measureFrame(work, view) {
     const began = performance.now();
     work();
-    add(this.#frames, performance.now() - began);
-    add(this.#renderings, view.rendering);
-    if (began - this.#before < 1000) add(this.#intervals, began - this.#before);
+    append(this.#frames, performance.now() - began);
+    append(this.#renderings, view.renderTime);
+    if (began - this.#before < 1000) append(this.#intervals, began - this.#before);
     this.#before = began;
   }
 
-  answered(ms) {
-    add(this.#answers, ms);
+  addAnswer(ms) {
+    append(this.#answers, ms);
   }
 
-  get figures() {
-    return { frames: this.#frames.length, work: shares(this.#frames), rendering: shares(this.#renderings), interval: shares(this.#intervals), answer: shares(this.#answers) };
+  get summary() {
+    return {
+      frames: this.#frames.length,
+      work: percentiles(this.#frames),
+      renderTime: percentiles(this.#renderings),
+      interval: percentiles(this.#intervals),
+      answer: percentiles(this.#answers),
+    };
   }
 
   reset() {
@@ -30,12 +36,12 @@ export class Stopwatch {
   }
 }
 
-function add(list, value) {
+function append(list, value) {
   list.push(value);
-  if (list.length > KEPT) list.shift();
+  if (list.length > MAX_SAMPLES) list.shift();
 }
 
-function shares(list) {
+function percentiles(list) {
   const sorted = [...list].sort((a, b) => a - b);
   const share = (p) => sorted[Math.min(sorted.length - 1, Math.floor(p * sorted.length))] ?? null;
   return { p50: share(0.5), p95: share(0.95), max: sorted.at(-1) ?? null };

@@ -1,21 +1,23 @@
 // The versions of the path: which there are, which one is edited, and how two of them differ.
-import { at, get } from "../api.js";
-import { element, replace } from "../elements.js";
+import { get, resourcePath } from "../api.js";
+import { element, patchChildren } from "../elements.js";
 
-export function versions(place, editor) {
+export function versionsSection(place, editor) {
   const table = element("div", { class: "versions" });
-  const [first, second] = ["first", "second"].map((id) => element("select", { id: `edit-${id}`, "aria-label": `${id} version to compare` }));
+  const [first, second] = ["first", "second"].map((id) =>
+    element("select", { id: `edit-${id}`, "aria-label": `${id} version to compare` }),
+  );
   const compare = element("button", { type: "button", id: "edit-compare" }, "Compare");
-  const told = element("p", { class: "note", id: "edit-difference", role: "status" });
-  place.append(table, element("div", { class: "row compare" }, first, " with ", second, compare), told);
+  const status = element("p", { class: "note", id: "edit-difference", role: "status" });
+  place.append(table, element("div", { class: "row compare" }, first, " with ", second, compare), status);
   table.addEventListener("click", (event) => {
     const number = event.target.closest("button")?.dataset.version;
-    if (number) editor.context.attempt(() => editor.take(Number(number)));
+    if (number) editor.context.attempt(() => editor.loadVersion(Number(number)));
   });
   let turn = 0; // the newest comparison is the one that is shown
   const difference = () => {
     const mine = ++turn;
-    return show(editor, Number(first.value), Number(second.value), told, () => mine === turn);
+    return compareVersions(editor, Number(first.value), Number(second.value), status, () => mine === turn);
   };
   compare.addEventListener("click", () => editor.context.attempt(difference));
   const chosen = new Map(); // select -> number of a version, as a person chose it
@@ -32,13 +34,20 @@ export function versions(place, editor) {
       }
       if (what === "draft") {
         turn += 1;
-        editor.sketch.compare(null, null);
-        told.textContent = "";
+        editor.curveOverlay.setComparison(null, null);
+        status.textContent = "";
       }
-      replace(table, content(editor));
+      patchChildren(table, content(editor));
       const numbers = editor.versions.map(({ number }) => String(number));
-      for (const [select, usual] of [[first, "1"], [second, numbers.at(-1)]]) {
-        select.replaceChildren(...editor.versions.map((version) => element("option", { value: String(version.number) }, title(version))));
+      for (const [select, usual] of [
+        [first, "1"],
+        [second, numbers.at(-1)],
+      ]) {
+        select.replaceChildren(
+          ...editor.versions.map((version) =>
+            element("option", { value: String(version.number) }, versionTitle(version)),
+          ),
+        );
         select.value = chosen.get(select) ?? usual;
       }
       compare.disabled = numbers.length < 2;
@@ -46,37 +55,69 @@ export function versions(place, editor) {
   };
 }
 
-export const title = ({ number, name }) => (name ? `${number} ${name}` : `${number}`);
+export const versionTitle = ({ number, name }) => (name ? `${number} ${name}` : `${number}`);
 
 function content({ draft, versions }) {
-  const head = element("thead", {}, element("tr", {}, ["", "Version", "Branch", "Saved", ""].map((text) => element(text ? "th" : "td", text ? { scope: "col" } : {}, text))));
+  const head = element(
+    "thead",
+    {},
+    element(
+      "tr",
+      {},
+      ["", "Version", "Branch", "Saved", ""].map((text) =>
+        element(text ? "th" : "td", text ? { scope: "col" } : {}, text),
+      ),
+    ),
+  );
   const rows = versions.toReversed().map((version) => {
     const here = version.number === draft.base.number;
     return element(
       "tr",
       { class: here ? "selected" : "", title: version.note || false },
       element("td", {}, here && element("span", { class: "tick", role: "img", "aria-label": "edited now" }, "✎")),
-      element("td", {}, title(version), version.parent && element("small", {}, ` from ${version.parent}`)),
+      element("td", {}, versionTitle(version), version.parent && element("small", {}, ` from ${version.parent}`)),
       element("td", {}, version.branch),
       element("td", {}, [version.author, when(version.created_ns)].filter(Boolean).join(", ")),
-      element("td", {}, element("button", { type: "button", "data-version": String(version.number), "data-key": `take-${version.number}`, "aria-label": `edit version ${version.number}` }, "Edit")),
+      element(
+        "td",
+        {},
+        element(
+          "button",
+          {
+            type: "button",
+            "data-version": String(version.number),
+            "data-key": `take-${version.number}`,
+            "aria-label": `edit version ${version.number}`,
+          },
+          "Edit",
+        ),
+      ),
     );
   });
   return element("table", {}, head, element("tbody", {}, rows));
 }
 
-async function show(editor, a, b, told, newest) {
+async function compareVersions(editor, a, b, status, newest) {
   const { path } = editor.draft;
-  const read = (number) => get(at("paths", path, "versions", number));
-  const [difference, one, other] = await Promise.all([get(at("paths", path, "versions", a, "difference", b)), read(a), read(b)]);
+  const read = (number) => get(resourcePath("paths", path, "versions", number));
+  const [difference, one, other] = await Promise.all([
+    get(resourcePath("paths", path, "versions", a, "difference", b)),
+    read(a),
+    read(b),
+  ]);
   if (path !== editor.draft?.path || !newest()) return;
-  editor.sketch.compare(one.path.curve, other.path.curve);
-  told.textContent = `Version ${a} (orange) and version ${b} (pink): ${difference.sentence}.`;
-  told.scrollIntoView({ block: "nearest" });
+  editor.curveOverlay.setComparison(one.path.curve, other.path.curve);
+  status.textContent = `Version ${a} (orange) and version ${b} (pink): ${difference.sentence}.`;
+  status.scrollIntoView({ block: "nearest" });
 }
 
 function when(ns) {
   const date = new Date(ns / 1e6);
   const today = date.toDateString() === new Date().toDateString();
-  return date.toLocaleString("en-GB", today ? { hour: "2-digit", minute: "2-digit" } : { day: "numeric", month: "short", hour: "2-digit", minute: "2-digit" });
+  return date.toLocaleString(
+    "en-GB",
+    today
+      ? { hour: "2-digit", minute: "2-digit" }
+      : { day: "numeric", month: "short", hour: "2-digit", minute: "2-digit" },
+  );
 }

@@ -1,56 +1,53 @@
-// What the operator carries, drawn: the object, its shadow on what lies below, and a stem between the two that makes
-// the height readable.
-const FREE = 0xe8c547;
-const HELD = 0xe08a00;
-const WRONG = 0xb3391f;
+// Draws what the operator carries: the object, its shadow on what lies below, and a line between the two that shows the
+// height.
+import { shapeGeometry } from "../meshes.js";
 
-export class Prop {
-  // `easel` as in overlay.js; `shape` the carried object of the scene.
-  constructor(easel, shape) {
-    const { THREE } = easel;
-    this.easel = easel;
+const COLOR_FREE = 0xe8c547;
+const COLOR_GRASPED = 0xe08a00;
+const COLOR_COLLIDING = 0xb3391f;
+
+export class CarriedObject {
+  // `overlay` as in overlay.js; `shape`: the carried object of the scene.
+  constructor(overlay, shape) {
+    const { THREE } = overlay;
+    this.overlay = overlay;
     this.group = new THREE.Group();
-    const material = new THREE.MeshLambertMaterial({ color: FREE });
-    this.body = new THREE.Mesh(solid(THREE, shape), material);
+    const material = new THREE.MeshLambertMaterial({ color: COLOR_FREE });
+    this.body = new THREE.Mesh(shapeGeometry(shape), material);
     this.body.castShadow = true;
     const dark = { color: 0x101418, transparent: true, depthWrite: false };
-    this.disc = new THREE.Mesh(new THREE.CircleGeometry(Math.max(...shape.size) * 0.75, 32), new THREE.MeshBasicMaterial({ ...dark, opacity: 0.35 }));
+    this.disc = new THREE.Mesh(
+      new THREE.CircleGeometry(Math.max(...shape.size) * 0.75, 32),
+      new THREE.MeshBasicMaterial({ ...dark, opacity: 0.35 }),
+    );
     const line = new THREE.BufferGeometry().setFromPoints([new THREE.Vector3(), new THREE.Vector3(0, 0, 1)]);
     this.stem = new THREE.Line(line, new THREE.LineBasicMaterial({ color: 0x5a6672 }));
     this.group.add(this.body, this.disc, this.stem);
-    easel.group.add(this.group);
+    overlay.group.add(this.group);
   }
 
-  // Show it at a place above `below` [m]; `wrong` when it is in an obstacle.
-  place([x, y, z], below, { grasped, wrong }) {
+  // Show it at a position above `floor` [m], in the colour of its state.
+  setPosition([x, y, z], floor, { grasped, colliding }) {
     this.body.position.set(x, y, z);
-    this.disc.position.set(x, y, below + 0.002);
-    this.stem.position.set(x, y, below);
-    this.stem.scale.z = Math.max(1e-4, z - below);
-    this.body.material.color.setHex(wrong ? WRONG : grasped ? HELD : FREE);
-    this.easel.dirty();
+    this.disc.position.set(x, y, floor + 0.002);
+    this.stem.position.set(x, y, floor);
+    this.stem.scale.z = Math.max(1e-4, z - floor);
+    this.body.material.color.setHex(colliding ? COLOR_COLLIDING : grasped ? COLOR_GRASPED : COLOR_FREE);
+    this.overlay.requestDraw();
   }
 
-  // Turn it as the hand that holds it has turned, {position, turn}; null: upright. Returns the position.
-  turn(held) {
-    this.body.quaternion.copy(held?.turn ?? new this.easel.THREE.Quaternion());
+  // Turn it as the hand that holds it, {position, turn}; null: upright. Returns the position.
+  setOrientation(held) {
+    this.body.quaternion.copy(held?.turn ?? new this.overlay.THREE.Quaternion());
     return held?.position;
   }
 
   remove() {
-    this.easel.group.remove(this.group);
+    this.overlay.group.remove(this.group);
     for (const mesh of [this.body, this.disc, this.stem]) {
       mesh.geometry.dispose();
       mesh.material.dispose();
     }
-    this.easel.dirty();
+    this.overlay.requestDraw();
   }
-}
-
-export function solid(THREE, { kind, size }) {
-  if (kind === "sphere") return new THREE.SphereGeometry(size[0], 24, 16);
-  if (kind !== "cylinder") return new THREE.BoxGeometry(...size);
-  const upright = new THREE.CylinderGeometry(size[0], size[0], size[1], 32);
-  upright.rotateX(Math.PI / 2);
-  return upright;
 }

@@ -1,14 +1,14 @@
-// Calls `take(seconds)` at an even rate whatever is drawn: a timer whose drift is corrected, never a frame.
-export const RATE = 60; // [Hz]
+// Calls `callback(seconds)` at a fixed rate, independent of drawing: a timer whose drift is corrected.
+export const SAMPLE_RATE = 60; // [Hz]
 
-export class Sampler {
+export class FixedRateTimer {
   #timer = 0;
   #due = 0;
   #before = 0;
 
-  // `late(ms)` is told how far apart two calls were when that was more than it should be.
-  constructor(take, { rate = RATE, late = () => {} } = {}) {
-    Object.assign(this, { take, late });
+  // `onLate(ms)`: how far elapsed two calls were, when that was more than two periods.
+  constructor(callback, { rate = SAMPLE_RATE, onLate = () => {} } = {}) {
+    Object.assign(this, { callback, onLate });
     this.period = 1000 / rate;
   }
 
@@ -19,7 +19,7 @@ export class Sampler {
   start() {
     if (this.running) return;
     this.#due = this.#before = performance.now();
-    this.#plan();
+    this.#schedule();
   }
 
   stop() {
@@ -27,7 +27,7 @@ export class Sampler {
     this.#timer = 0;
   }
 
-  #plan() {
+  #schedule() {
     this.#due += this.period;
     // After a stall the missed ones are not made up: a sample says where the hand is, not where it was.
     const now = performance.now();
@@ -37,10 +37,10 @@ export class Sampler {
 
   #tick() {
     const now = performance.now();
-    this.#plan(); // first, so that a fault in `take` does not end the sampling
-    const apart = now - this.#before;
+    this.#schedule(); // first, so that an error in `callback` does not end the sampling
+    const elapsed = now - this.#before;
     this.#before = now;
-    this.take(apart / 1000);
-    if (apart > 2 * this.period) this.late(apart);
+    this.callback(elapsed / 1000);
+    if (elapsed > 2 * this.period) this.onLate(elapsed);
   }
 }

@@ -1,25 +1,25 @@
-// Whether a headset's frame is drawn. Samples come with the frames, and a frame waits for the picture before it: where
-// drawing is slow, samples come first, and no picture tears a hole into a take.
-const LATE = 40; // [ms] between two frames that no headset has by itself
-const HOLE = 90; // [ms] without a sample; a take of which a picture may cost that much gets none
-const SELDOM = 10_000; // [ms] between two pictures where each tears such a hole
-const SPARING = 4; // times what a picture costs lie between two of them, where they make frames late
-const FORGET = 0.995; // with every frame in time
+// Decides whether a headset's frame is drawn. Samples come with the frames, and a frame waits until the one before is drawn:
+// where drawing is slow, samples come first, and drawing leaves no gap in a demonstration.
+const LATE_FRAME = 40; // [ms] between two frames; more than any headset has by itself
+const MAX_SAMPLE_GAP = 90; // [ms] without a sample; where drawing costs more, nothing is drawn during a demonstration
+const MAX_FRAME_INTERVAL = 10_000; // [ms] between two drawn frames where each costs more than that
+const COST_FACTOR = 4; // where drawing makes frames late, drawn frames are this many times its cost elapsed
+const COST_DECAY = 0.995; // per frame that came in time
 
-export class Pictures {
-  #before = null; // [ms] the frame before
-  #drawn = -Infinity; // [ms] the newest picture
-  cost = 0; // [ms] what a picture seems to cost
+export class FrameSkipper {
+  #before = null; // [ms] of the frame before
+  #drawn = -Infinity; // [ms] of the newest drawn frame
+  cost = 0; // [ms] that drawing seems to cost
 
-  // `time` of the frame [ms]; `busy`: a take is under way or may begin at any moment.
-  affords(time, busy) {
-    const apart = time - (this.#before ?? time);
+  // `time` of the frame [ms]; `busy`: a demonstration is under way or may begin at any moment.
+  shouldRender(time, busy) {
+    const elapsed = time - (this.#before ?? time);
     this.#before = time;
-    if (apart > LATE) this.cost = Math.max(apart, this.cost);
-    else if (!busy) this.cost *= FORGET; // what was dear before the take stays dear to its end
-    const dear = this.cost > HOLE;
-    const least = dear ? SELDOM : this.cost > LATE ? SPARING * this.cost : 0;
-    if ((dear && busy) || time - this.#drawn < least) return false;
+    if (elapsed > LATE_FRAME) this.cost = Math.max(elapsed, this.cost);
+    else if (!busy) this.cost *= COST_DECAY; // a cost before a demonstration stays until its end
+    const costly = this.cost > MAX_SAMPLE_GAP;
+    const interval = costly ? MAX_FRAME_INTERVAL : this.cost > LATE_FRAME ? COST_FACTOR * this.cost : 0;
+    if ((costly && busy) || time - this.#drawn < interval) return false;
     this.#drawn = time;
     return true;
   }

@@ -1,10 +1,10 @@
-// The hand as the page moves it: it follows what the operator points at, never faster than a hand, never into the table.
-const FASTEST = 1.2; // [m/s] a recorder takes a faster step for a jump of the tracker
-const LONGEST = 0.03; // [s] that one step makes good after a stall: more would be a leap
-const LAG = 0.04; // [s] in which the hand follows, so that the steps of a mouse are no corners of the path
-const NEAR = 0.004; // [m] at which it counts as arrived
+// The hand as the page moves it: it follows its target, never faster than a hand and never into the table.
+const MAX_SPEED = 1.2; // [m/s] the recorder takes anything faster for a jump of the tracker
+const MAX_STEP = 0.03; // [s] that one step covers after a stall
+const TIME_CONSTANT = 0.04; // [s] of the low-pass filter that smooths the steps of a mouse
+const ARRIVAL_TOLERANCE = 0.004; // [m]
 
-export class Carry {
+export class HandModel {
   grasped = false;
   tracked = true;
 
@@ -14,57 +14,57 @@ export class Carry {
     this.home = [...scene.carried.position];
     this.position = [...this.home];
     this.target = [...this.home];
-    this.half = halfHeight(scene.carried);
+    this.halfHeight = halfHeight(scene.carried);
   }
 
-  get isHome() {
-    return distance(this.position, this.home) < NEAR;
+  get isAtHome() {
+    return distance(this.position, this.home) < ARRIVAL_TOLERANCE;
   }
 
-  get travelled() {
-    return distance(this.position, this.home);
+  // Set where the hand goes; z stays above the table.
+  setTarget([x, y, z]) {
+    const clamp = (value, limit) => Math.min(limit, Math.max(-limit, value));
+    const [u, v] = [clamp(x, 1.4), clamp(y, 1.4)];
+    this.target = [u, v, Math.min(2, Math.max(z, this.supportHeight([u, v]) + this.halfHeight))];
   }
 
-  // Point at a place; z stays above what is below it.
-  aim([x, y, z]) {
-    const reach = (value, limit) => Math.min(limit, Math.max(-limit, value));
-    const [u, v] = [reach(x, 1.4), reach(y, 1.4)];
-    this.target = [u, v, Math.min(2, Math.max(z, this.support([u, v]) + this.half))];
-  }
-
-  goHome() {
+  returnHome() {
     this.grasped = false;
     this.target = [...this.home];
   }
 
   // Advance by the seconds since the last step; true when the hand has moved.
   step(elapsed) {
-    const seconds = Math.min(elapsed, LONGEST);
-    const share = 1 - Math.exp(-seconds / LAG);
-    const wish = this.target.map((value, i) => (value - this.position[i]) * share);
-    const far = Math.hypot(...wish);
-    const scale = far > FASTEST * seconds ? (FASTEST * seconds) / far : 1;
-    this.position = this.position.map((value, i) => value + wish[i] * scale);
-    return far > 1e-6;
+    const seconds = Math.min(elapsed, MAX_STEP);
+    const share = 1 - Math.exp(-seconds / TIME_CONSTANT);
+    const offset = this.target.map((value, i) => (value - this.position[i]) * share);
+    const length = Math.hypot(...offset);
+    const scale = length > MAX_SPEED * seconds ? (MAX_SPEED * seconds) / length : 1;
+    this.position = this.position.map((value, i) => value + offset[i] * scale);
+    return length > 1e-6;
   }
 
   // Height of the table under a place, or of the floor: what the object cannot be pushed into.
-  support([x, y]) {
+  supportHeight([x, y]) {
     const table = this.scene.obstacles.find((shape) => shape.name === "table");
     return table && covers(table, x, y) ? top(table) : 0;
   }
 
   // Height of whatever lies under the object, for its shadow.
-  below([x, y, z]) {
+  heightBelow([x, y, z]) {
     const under = this.scene.obstacles.filter((shape) => covers(shape, x, y) && top(shape) <= z + 0.001);
     return Math.max(0, ...under.map(top));
   }
 
   // Name of the obstacle that the object is in, or "".
-  touches([x, y, z]) {
+  collidingObstacle([x, y, z]) {
     const side = this.scene.carried.size[0] / 2;
     const hit = this.scene.obstacles.find(
-      (shape) => shape.name !== "table" && covers(shape, x, y, side) && z - this.half < top(shape) && z + this.half > bottom(shape),
+      (shape) =>
+        shape.name !== "table" &&
+        covers(shape, x, y, side) &&
+        z - this.halfHeight < top(shape) &&
+        z + this.halfHeight > bottom(shape),
     );
     return hit?.name ?? "";
   }

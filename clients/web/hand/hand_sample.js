@@ -1,21 +1,21 @@
 // A hand sample as the tracker's protobuf message (proto/teachpath_proto/tracker.proto, HandSample).
-export const GRASP = 1; // button bit: grasp held
-export const CLUTCH = 4; // button bit: the arm follows the hand
+export const GRASP_BUTTON = 1; // button bit: grasp held
+export const CLUTCH_BUTTON = 4; // button bit: the arm follows the hand
 
 // {sequence, ms, position: [x, y, z], orientation: [w, x, y, z] or null, tracked, grasp, clutch} -> Uint8Array
 // `ms` is the device's clock in milliseconds since the Unix epoch; microseconds are kept.
-export function encode({ sequence, ms, position, orientation, tracked, grasp, clutch }) {
-  const out = new Writer();
+export function encodeHandSample({ sequence, ms, position, orientation, tracked, grasp, clutch }) {
+  const out = new ProtobufWriter();
   out.varint(1, BigInt(sequence));
   out.varint(2, BigInt(Math.round(ms * 1000)) * 1000n);
   out.doubles(3, position);
   if (orientation) out.doubles(4, orientation);
   if (tracked) out.varint(6, 1n);
-  if (grasp || clutch) out.varint(7, BigInt((grasp ? GRASP : 0) | (clutch ? CLUTCH : 0)));
+  if (grasp || clutch) out.varint(7, BigInt((grasp ? GRASP_BUTTON : 0) | (clutch ? CLUTCH_BUTTON : 0)));
   return out.bytes();
 }
 
-class Writer {
+class ProtobufWriter {
   #view = new DataView(new ArrayBuffer(128));
   #at = 0;
 

@@ -1,82 +1,82 @@
-// Takes the hand's samples to the service from a thread of its own (sample_worker.js): a page that draws, or waits for its turn on a
-// busy machine, tears no gap into them.
-const STANDING = { live: false, offset: null, leftOut: 0, sequence: 0 };
+// Sends the hand's samples from a web worker (sample_worker.js), so that neither drawing nor a busy machine leaves gaps.
+const INITIAL_STATUS = { live: false, offset: null, dropped: 0, sequence: 0 };
 
-export class Courier {
-  #standing = STANDING; // as HandLink says it
+export class SampleSender {
+  #status = INITIAL_STATUS; // of the worker's TrackerSocket
   #worker;
-  #answers = new Map(); // number of a question -> {resolve, reject}
-  #asked = 0;
+  #requests = new Map(); // number of a request -> {resolve, reject}
+  #requestCount = 0;
 
-  // As of HandLink.
-  constructor(name, { changed, refused }) {
-    Object.assign(this, { changed, refused });
+  // Callbacks as of TrackerSocket.
+  constructor(name, { onChange, onRejected }) {
+    Object.assign(this, { onChange, onRejected });
     this.#worker = new Worker(new URL("./sample_worker.js", import.meta.url), { type: "module" });
-    this.#worker.onmessage = ({ data }) => this.#hear(data);
-    this.#worker.onerror = () => this.#break(new Error("The page's own thread for samples does not run. Load the page again."));
+    this.#worker.onmessage = ({ data }) => this.#handleMessage(data);
+    this.#worker.onerror = () =>
+      this.#rejectAll(new Error("The page's own thread for samples does not run. Load the page again."));
     this.#worker.postMessage({ name });
   }
 
   get live() {
-    return this.#standing.live;
+    return this.#status.live;
   }
 
   get offset() {
-    return this.#standing.offset;
+    return this.#status.offset;
   }
 
-  get leftOut() {
-    return this.#standing.leftOut;
+  get dropped() {
+    return this.#status.dropped;
   }
 
   get sequence() {
-    return this.#standing.sequence;
+    return this.#status.sequence;
   }
 
   connect() {
-    return this.#ask({ order: "connect" });
+    return this.#request({ order: "connect" });
   }
 
-  // The account of the recording.
+  // End the recording; resolves to its report.
   end({ discard = false } = {}) {
-    return this.#ask({ order: "end", discard });
+    return this.#request({ order: "end", discard });
   }
 
-  // Where the hand is now: it is sampled there, at an even rate, until it is said to be elsewhere.
-  pose(hand) {
+  // Where the hand is now: it is sampled there, at a fixed rate, until the next pose.
+  setPose(hand) {
     this.#worker.postMessage({ pose: hand });
   }
 
-  // A sample that has its own time, as a headset's frame has; nothing else is sampled meanwhile.
+  // Send a sample that has its own time, as a headset's frame has; sampling at a fixed rate stops.
   send(sample) {
     this.#worker.postMessage({ sample });
   }
 
   close() {
     this.#worker.postMessage({ order: "close" });
-    this.#break(new Error("The connection was closed."));
+    this.#rejectAll(new Error("The connection was closed."));
   }
 
-  #ask(question) {
-    this.#asked += 1;
-    const answer = new Promise((resolve, reject) => this.#answers.set(this.#asked, { resolve, reject }));
-    this.#worker.postMessage({ ...question, number: this.#asked });
+  #request(message) {
+    this.#requestCount += 1;
+    const answer = new Promise((resolve, reject) => this.#requests.set(this.#requestCount, { resolve, reject }));
+    this.#worker.postMessage({ ...message, number: this.#requestCount });
     return answer;
   }
 
-  #hear({ standing, state, sentence, refused, number, value, error }) {
-    if (standing) this.#standing = standing;
-    if (state) this.changed(state, sentence);
-    if (refused) this.refused(refused);
+  #handleMessage({ status, state, sentence, rejected, number, value, error }) {
+    if (status) this.#status = status;
+    if (state) this.onChange(state, sentence);
+    if (rejected) this.onRejected(rejected);
     if (!number) return;
-    const { resolve, reject } = this.#answers.get(number) ?? {};
-    this.#answers.delete(number);
+    const { resolve, reject } = this.#requests.get(number) ?? {};
+    this.#requests.delete(number);
     if (error) reject?.(new Error(error));
     else resolve?.(value);
   }
 
-  #break(error) {
-    for (const { reject } of this.#answers.values()) reject(error);
-    this.#answers.clear();
+  #rejectAll(error) {
+    for (const { reject } of this.#requests.values()) reject(error);
+    this.#requests.clear();
   }
 }

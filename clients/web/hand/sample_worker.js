@@ -1,68 +1,77 @@
-// The thread of sample_sender.js: samples the hand where the page last said it to be, evenly whatever the page is doing, and
-// sends it.
-import { HandLink, clock } from "./tracker_socket.js";
-import { Sampler } from "./fixed_rate_timer.js";
+// The web worker of sample_sender.js: samples the hand at the pose that the page posted last, at a fixed rate whatever the
+// page is doing, and sends the samples.
 
-const STALE = 2000; // [ms] without news of the page, after which its hand counts as lost: until then it stands still
-const STRIDE = 0.036; // [m] between two samples: more would be taken for a jump of the tracker
-const TELL = 15; // samples between two accounts to the page
+import { FixedRateTimer } from "./fixed_rate_timer.js";
+import { clock, TrackerSocket } from "./tracker_socket.js";
 
-let link = null;
-let hand = null; // {position, orientation, tracked, grasp, clutch} as the page last said it
-let heard = 0; // [ms] when it said so
-let newest = null; // of which the last sample was
+const POSE_TIMEOUT = 2000; // [ms] without a pose, after which the hand counts as not tracked; until then it stands still
+const MAX_STEP = 0.036; // [m] between two samples; the recorder takes more for a jump of the tracker
+const STATUS_EVERY = 15; // samples between two messages about the status
 
-const sampler = new Sampler(() => {
-  newest = follow(newest ?? hand, hand);
-  send({ ...newest, tracked: hand.tracked && performance.now() - heard < STALE, ms: clock() });
+let socket = null;
+let hand = null; // {position, orientation, tracked, grasp, clutch} as the page last posted it
+let posted = 0; // [ms] when that was
+let newest = null; // of the last sample
+
+const timer = new FixedRateTimer(() => {
+  newest = stepTowards(newest ?? hand, hand);
+  send({ ...newest, tracked: hand.tracked && performance.now() - posted < POSE_TIMEOUT, ms: clock() });
 });
 
-// One stride of the hand after where the page is with it; what it holds, it holds until it is there, but for the clutch.
-function follow(from, to) {
-  const way = to.position.map((value, i) => value - from.position[i]);
-  const far = Math.hypot(...way);
-  if (far <= STRIDE) return to;
-  return { ...from, clutch: from.clutch && to.clutch, position: from.position.map((value, i) => value + (way[i] * STRIDE) / far) };
+// A step of at most MAX_STEP towards the page's pose; grasp and release wait for its end, releasing the clutch does not.
+function stepTowards(from, to) {
+  const offset = to.position.map((value, i) => value - from.position[i]);
+  const length = Math.hypot(...offset);
+  if (length <= MAX_STEP) return to;
+  return {
+    ...from,
+    clutch: from.clutch && to.clutch,
+    position: from.position.map((value, i) => value + (offset[i] * MAX_STEP) / length),
+  };
 }
 
-onmessage = async ({ data }) => {
+addEventListener("message", async ({ data }) => {
   const { name, pose, sample, order, number } = data;
-  if (name) link = new HandLink(name, { changed: (state, sentence) => tell({ state, sentence }), refused: (refused) => tell({ refused }) });
+  if (name)
+    socket = new TrackerSocket(name, {
+      onChange: (state, sentence) => postStatus({ state, sentence }),
+      onRejected: (rejected) => postStatus({ rejected }),
+    });
   if (pose) {
-    [hand, heard] = [pose, performance.now()];
-    sampler.start();
+    [hand, posted] = [pose, performance.now()];
+    timer.start();
   }
   if (sample) {
-    sampler.stop();
+    timer.stop();
     newest = null;
     send(sample);
   }
   if (order === "close") {
-    link.close();
+    socket.close();
     close();
-  } else if (order) await answer(number, order === "connect" ? () => link.connect() : () => end(data));
-};
+  } else if (order) await answer(number, order === "connect" ? () => socket.connect() : () => end(data));
+});
 
-// Nothing more is sampled: the account's last number is the last that was sent.
+// Sampling stops first: the report's last number is the last that was sent.
 function end({ discard }) {
-  sampler.stop();
-  return link.end({ discard });
+  timer.stop();
+  return socket.end({ discard });
 }
 
 function send(sample) {
-  link.send(sample);
-  if (link.sequence % TELL === 0) tell({});
+  socket.send(sample);
+  if (socket.sequence % STATUS_EVERY === 0) postStatus({});
 }
 
-function tell(news) {
-  const { live, offset, leftOut, sequence } = link;
-  postMessage({ ...news, standing: { live, offset, leftOut, sequence } });
+function postStatus(message) {
+  const { live, offset, dropped, sequence } = socket;
+  postMessage({ ...message, status: { live, offset, dropped, sequence } });
 }
 
 async function answer(number, order) {
   try {
-    tell({ number, value: await order() });
+    postStatus({ number, value: await order() });
   } catch (error) {
-    tell({ number, error: error.message });
+    postStatus({ number, error: error.message });
   }
 }

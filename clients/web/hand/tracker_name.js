@@ -1,2 +1,2 @@
-// The name under which this page is a tracker.
-export const name = `page-${Math.random().toString(36).slice(2, 8)}`;
+// This page's name as a tracker.
+export const TRACKER_NAME = `page-${Math.random().toString(36).slice(2, 8)}`;

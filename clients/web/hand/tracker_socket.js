@@ -1,33 +1,40 @@
 // The page as a tracker: numbered, stamped samples over a WebSocket, and the offset of the page's clock.
-import { socketAddress } from "../api.js";
-import { encode } from "./hand_sample.js";
+import { resourcePath } from "../api.js";
+import { ReconnectingSocket } from "../reconnecting_socket.js";
+import { encodeHandSample } from "./hand_sample.js";
 
-const FULL = 64 * 1024; // bytes waiting in the socket, over which samples are left out, but counted
-const PING = 1000; // [ms]
-const PINGS = 30; // newest ones, of which the fastest tells the offset
-const PATIENCE = 30_000; // [ms] for the account at the end
-const SHORTEST = 250; // [ms] pause before connecting again
-const LONGEST = 2000;
+const MAX_BUFFERED_BYTES = 64 * 1024; // waiting in the socket, above which samples are dropped, but counted
+const PING_INTERVAL = 1000; // [ms]
+const FIRST_PINGS = 10; // sent ten times as often
+const PINGS_KEPT = 30; // the fastest of them gives the offset
+const REPORT_TIMEOUT = 30_000; // [ms] for the report at the end
+const REFUSED = 1008; // close code of a service that does not take this tracker
 
 // The page's clock: milliseconds since the Unix epoch that never run back.
 export const clock = () => performance.timeOrigin + performance.now();
 
-export class HandLink {
-  sequence = 0; // of the newest sample, sent or left out
-  leftOut = 0;
-  #socket = null;
+export class TrackerSocket {
+  sequence = 0; // of the newest sample, sent or dropped
+  dropped = 0;
   #pings = [];
-  #report = null;
-  #pause = SHORTEST;
-  #closed = false;
+  #pingTimer = 0;
+  #connecting = null; // {resolve, reject} of connect()
+  #report = null; // {resolve, reject} of end()
 
-  // `changed(state, sentence)`: "live", "lost" (it connects again) or "refused" (it does not).
-  constructor(name, { changed, refused }) {
-    Object.assign(this, { name, changed, refused });
+  // `onChange(state, sentence)`: "live", "lost" (it connects again) or "refused" (it does not); `onRejected(sentence)`: the
+  // service did not take a message.
+  constructor(name, { onChange, onRejected }) {
+    Object.assign(this, { onChange, onRejected });
+    this.socket = new ReconnectingSocket(`${resourcePath("trackers", name)}/samples`, {
+      onOpen: () => this.#ping(),
+      onMessage: (text) => this.#handleMessage(JSON.parse(text)),
+      onState: (state, { reason }) => this.#handleState(state, reason),
+      isRefusal: (code) => code === REFUSED,
+    });
   }
 
   get live() {
-    return this.#socket?.readyState === WebSocket.OPEN;
+    return this.socket.isOpen;
   }
 
   // Service clock minus page clock [ms], by the fastest of the last pings, and how far off it may be; or null.
@@ -40,89 +47,76 @@ export class HandLink {
   // Resolves when connected, rejects with the service's reason.
   connect() {
     return new Promise((resolve, reject) => {
-      const socket = new WebSocket(socketAddress(`trackers/${encodeURIComponent(this.name)}/samples`));
-      this.#socket = socket;
-      socket.onopen = () => {
-        this.#ping();
-      };
-      socket.onmessage = ({ data }) => {
-        // The first answer says that the gate let us in.
-        if (!socket.admitted) {
-          socket.admitted = true;
-          this.#pause = SHORTEST;
-          this.changed("live", "");
-          resolve();
-        }
-        this.#hear(JSON.parse(data));
-      };
-      socket.onclose = ({ code, reason }) => {
-        clearTimeout(this.timer);
-        this.#report?.reject(new Error("The connection broke off before the account came."));
-        this.#report = null;
-        if (this.#closed) return;
-        if (code === 1008) {
-          this.changed("refused", reason);
-          reject(new Error(reason));
-          return;
-        }
-        this.changed("lost", "The connection to the service broke off; connecting again.");
-        this.again = setTimeout(() => this.connect().then(resolve, reject), this.#pause);
-        this.#pause = Math.min(LONGEST, 2 * this.#pause);
-      };
+      this.#connecting = { resolve, reject };
+      this.socket.open();
     });
   }
 
-  // Count one sample and send it, unless the socket is full or away: it is then missing, and the account says so.
+  // Number one sample and send it, unless the socket is full or closed: then it is dropped, and the report counts it as lost.
   send(sample) {
     this.sequence += 1;
-    if (!this.live || this.#socket.bufferedAmount > FULL) {
-      this.leftOut += 1;
-      return;
-    }
-    this.#socket.send(encode({ ...sample, sequence: this.sequence }));
+    if (this.live && this.socket.bufferedAmount <= MAX_BUFFERED_BYTES)
+      this.socket.send(encodeHandSample({ ...sample, sequence: this.sequence }));
+    else this.dropped += 1;
   }
 
-  // End the recording with the handshake; resolves to its account.
+  // End the recording with the handshake; resolves to its report.
   end({ discard = false } = {}) {
     return new Promise((resolve, reject) => {
       if (!this.live) {
         reject(new Error("There is no connection; the service ends the recording by itself."));
         return;
       }
-      const timer = setTimeout(() => reject(new Error("The service has not sent the account of the recording.")), PATIENCE);
-      const over = (finish) => (value) => {
+      const timer = setTimeout(
+        () => reject(new Error("The service has not sent the report of the recording.")),
+        REPORT_TIMEOUT,
+      );
+      const finish = (settle) => (value) => {
         clearTimeout(timer);
         this.#report = null;
-        finish(value);
+        settle(value);
       };
-      this.#report = { resolve: over(resolve), reject: over(reject) };
-      this.#socket.send(JSON.stringify({ end: this.sequence, discard }));
+      this.#report = { resolve: finish(resolve), reject: finish(reject) };
+      this.socket.send(JSON.stringify({ end: this.sequence, discard }));
     });
   }
 
   close() {
-    this.#closed = true;
-    clearTimeout(this.timer);
-    clearTimeout(this.again);
-    this.#socket?.close();
+    clearTimeout(this.#pingTimer);
+    this.socket.close();
+  }
+
+  #handleState(state, reason) {
+    if (state === "connecting") return;
+    if (state === "live") {
+      this.#connecting?.resolve();
+      this.onChange("live", "");
+      return;
+    }
+    clearTimeout(this.#pingTimer);
+    this.#report?.reject(new Error("The connection broke off before the report came."));
+    if (state === "refused") this.#connecting?.reject(new Error(reason));
+    this.onChange(state, state === "refused" ? reason : "The connection to the service broke off; connecting again.");
   }
 
   #ping() {
-    if (!this.live) return;
-    this.#socket.send(JSON.stringify({ ping: clock() }));
-    this.timer = setTimeout(() => this.#ping(), this.#pings.length < 10 ? PING / 10 : PING);
+    this.socket.send(JSON.stringify({ ping: clock() }));
+    this.#pingTimer = setTimeout(
+      () => this.#ping(),
+      this.#pings.length < FIRST_PINGS ? PING_INTERVAL / 10 : PING_INTERVAL,
+    );
   }
 
-  #hear(answer) {
-    if ("pong" in answer) {
+  #handleMessage(message) {
+    if ("pong" in message) {
       const now = clock();
-      this.#pings.push({ trip: now - answer.pong, offset: answer.service_ns / 1e6 - (answer.pong + now) / 2 });
-      if (this.#pings.length > PINGS) this.#pings.shift();
-    } else if ("report" in answer) {
-      this.#report?.resolve(answer.report);
-    } else if ("refused" in answer) {
-      if (this.#report) this.#report.reject(new Error(answer.refused));
-      else this.refused(answer.refused);
+      this.#pings.push({ trip: now - message.pong, offset: message.service_ns / 1e6 - (message.pong + now) / 2 });
+      if (this.#pings.length > PINGS_KEPT) this.#pings.shift();
+    } else if ("report" in message) {
+      this.#report?.resolve(message.report);
+    } else if ("refused" in message) {
+      if (this.#report) this.#report.reject(new Error(message.refused));
+      else this.onRejected(message.refused);
     }
   }
 }

@@ -1,39 +1,40 @@
-// A headset as the hand: pinch, or hold a controller's trigger, at the object and carry it. Samples are taken inside the
-// session's own frames, before anything is drawn.
+// A headset's hand: a pinch, or a controller's trigger, grasps. Samples are taken in the session's own frames, before
+// anything is drawn.
 import { clock } from "./tracker_socket.js";
-import { Rig } from "./xr_rig.js";
+import { XrRig } from "./xr_rig.js";
 
-const PINCHED = 0.02; // [m] between the tips of thumb and index finger
-const OPENED = 0.035; // [m] at which a pinch ends: between the two it stays as it is
-const FEATURES = { requiredFeatures: ["local-floor"], optionalFeatures: ["hand-tracking"] };
+const PINCH_START = 0.02; // [m] between the tips of thumb and index finger
+const PINCH_END = 0.035; // [m] at which a pinch ends: between the two it stays as it is
+const SESSION_FEATURES = { requiredFeatures: ["local-floor"], optionalFeatures: ["hand-tracking"] };
 
 // Why a headset cannot be used, or "" when it can.
-export async function unavailable() {
+export async function xrUnavailableReason() {
   if (!isSecureContext) return "A headset needs a secure page: open this one at localhost, or behind https.";
-  if (!navigator.xr) return "This browser has no WebXR. Open the page in the headset's own browser, or in Chrome with a headset connected.";
+  if (!navigator.xr)
+    return "This browser has no WebXR. Open the page in the headset's own browser, or in Chrome with a headset connected.";
   const able = await navigator.xr.isSessionSupported("immersive-vr").catch(() => false);
   return able ? "" : "No headset is connected. Connect one, or open this page in the headset's own browser.";
 }
 
-export class HeadsetHand {
+export class XrHand {
   closed = false;
   frames = 0;
   samples = 0;
 
-  // `hear({position, orientation, tracked, grasp, clutch, ms, seconds})` is called once a frame with the hand in robot
-  // coordinates; `clutch`: the other hand is closed. `ended()` when the session is over, whoever ended it. `only`: the side
-  // of the hand that counts; "": whichever closes.
-  constructor(viewer, { hear, ended, failed, only = "" }) {
-    Object.assign(this, { viewer, hear, ended, failed, only });
+  // `onSample({position, orientation, tracked, grasp, clutch, ms, seconds})` is called once a frame with the hand in robot
+  // coordinates; `clutch`: the other hand is closed. `onEnd()`: the session is over, whoever ended it. `handedness`: the
+  // hand that counts; "": whichever closes.
+  constructor(viewer, { onSample, onEnd, onError, handedness = "" }) {
+    Object.assign(this, { viewer, onSample, onEnd, onError, handedness });
   }
 
   // Must be called from a click.
   async start() {
-    const session = await navigator.xr.requestSession("immersive-vr", FEATURES);
+    const session = await navigator.xr.requestSession("immersive-vr", SESSION_FEATURES);
     this.session = session;
-    session.addEventListener("end", () => this.#over());
+    session.addEventListener("end", () => this.#onSessionEnd());
     try {
-      this.rig = new Rig(this.viewer);
+      this.rig = new XrRig(this.viewer);
       await this.rig.present(session, (time, frame) => this.#frame(time, frame));
     } catch (error) {
       await session.end();
@@ -54,9 +55,9 @@ export class HeadsetHand {
       // The frame's time is that of the pose; a runtime that gives none, or another clock's, is not believed.
       const ms = Math.abs(performance.now() - time) < 1000 ? performance.timeOrigin + time : clock();
       this.samples += 1;
-      this.hear({ ...hand, ms, seconds });
+      this.onSample({ ...hand, ms, seconds });
     } catch (error) {
-      this.failed(`The headset's hand cannot be read: ${error.message}`);
+      this.onError(`The headset's hand cannot be read: ${error.message}`);
     }
   }
 
@@ -64,29 +65,47 @@ export class HeadsetHand {
   #read(frame) {
     const space = this.rig.space;
     const hands = [...this.session.inputSources].map((source) => this.#pose(frame, source, space)).filter(Boolean);
-    const chosen = this.only ? hands.find((hand) => hand.side === this.only) : this.#choose(hands);
-    if (!chosen) return { ...(this.last ?? { position: [0, 0, 1], orientation: null }), tracked: false, grasp: this.closed, clutch: false };
+    const chosen = this.handedness ? hands.find((hand) => hand.side === this.handedness) : this.#choose(hands);
+    if (!chosen)
+      return {
+        ...(this.last ?? { position: [0, 0, 1], orientation: null }),
+        tracked: false,
+        grasp: this.closed,
+        clutch: false,
+      };
     this.closed = chosen.grasp;
     this.side = this.closed ? chosen.side : "";
     const placed = this.rig.toRobot(chosen.position, chosen.orientation);
     this.last = placed;
-    return { ...placed, tracked: chosen.tracked, grasp: this.closed, clutch: hands.some((hand) => hand !== chosen && hand.grasp) };
+    return {
+      ...placed,
+      tracked: chosen.tracked,
+      grasp: this.closed,
+      clutch: hands.some((hand) => hand !== chosen && hand.grasp),
+    };
   }
 
   #choose(hands) {
-    return hands.find((hand) => hand.side === this.side) ?? hands.find((hand) => hand.grasp) ?? hands.find((hand) => hand.side === "right") ?? hands[0];
+    return (
+      hands.find((hand) => hand.side === this.side) ??
+      hands.find((hand) => hand.grasp) ??
+      hands.find((hand) => hand.side === "right") ??
+      hands[0]
+    );
   }
 
   #pose(frame, source, space) {
     if (source.hand) {
-      const [wrist, thumb, index] = ["wrist", "thumb-tip", "index-finger-tip"].map((joint) => source.hand.get(joint) && frame.getJointPose(source.hand.get(joint), space));
+      const [wrist, thumb, index] = ["wrist", "thumb-tip", "index-finger-tip"].map(
+        (joint) => source.hand.get(joint) && frame.getJointPose(source.hand.get(joint), space),
+      );
       if (!wrist || !thumb || !index) return null;
       const [a, b] = [thumb.transform.position, index.transform.position];
       const gap = Math.hypot(a.x - b.x, a.y - b.y, a.z - b.z);
       const held = this.closed && this.side === source.handedness;
       return {
         side: source.handedness,
-        grasp: gap < (held ? OPENED : PINCHED),
+        grasp: gap < (held ? PINCH_END : PINCH_START),
         position: [(a.x + b.x) / 2, (a.y + b.y) / 2, (a.z + b.z) / 2],
         orientation: wrist.transform.orientation,
         tracked: true,
@@ -96,11 +115,17 @@ export class HeadsetHand {
     if (!pose) return null;
     const { x, y, z } = pose.transform.position;
     const grasp = Boolean(source.gamepad?.buttons[0]?.pressed || source.gamepad?.buttons[1]?.pressed);
-    return { side: source.handedness, grasp, position: [x, y, z], orientation: pose.transform.orientation, tracked: true };
+    return {
+      side: source.handedness,
+      grasp,
+      position: [x, y, z],
+      orientation: pose.transform.orientation,
+      tracked: true,
+    };
   }
 
-  #over() {
-    this.rig?.leave();
-    this.ended();
+  #onSessionEnd() {
+    this.rig?.dispose();
+    this.onEnd();
   }
 }

@@ -1,44 +1,47 @@
-// Where the operator of a headset stands: at the free side of the table, facing the arm. Draws the view's own scene with
-// a renderer and a camera of its own, so that the view on the page stays as it is.
-import { Pictures } from "./frame_skipping.js";
+// Places the operator of a headset at the free side of the table, facing the arm, and draws the view's scene with a renderer
+// and a camera of its own, so that the view on the page stays as it is.
+import { FrameSkipper } from "./frame_skipping.js";
 
-const STAND = [1.25, 0, 0]; // [m] robot coordinates, on the floor
+const OPERATOR_POSITION = [1.25, 0, 0]; // [m] robot coordinates, on the floor
 
-export class Rig {
+export class XrRig {
   constructor(viewer) {
     const { THREE } = globalThis.MeshCat;
     Object.assign(this, { viewer, THREE });
-    this.pictures = new Pictures();
-    this.drawn = 0; // pictures
-    this.busy = false; // a take is under way, or may begin at any moment
+    this.frameSkipper = new FrameSkipper();
+    this.framesDrawn = 0;
+    this.busy = false; // a demonstration is under way, or may begin at any moment
     this.renderer = new THREE.WebGLRenderer({ antialias: true }); // without it three of this age fails on some headsets
     this.renderer.xr.enabled = true;
     this.camera = new THREE.PerspectiveCamera(70, 1, 0.02, 30);
     // The room of the headset: x right, y up, -z ahead; turned so that ahead is against the robot's x.
     this.room = new THREE.Group();
-    const [x, y, z] = STAND;
+    const [x, y, z] = OPERATOR_POSITION;
     this.room.position.set(x, z, -y);
     this.room.rotation.y = Math.PI / 2;
     this.room.add(this.camera);
     this.room.updateMatrixWorld(true);
-    this.marker = new THREE.Mesh(new THREE.SphereGeometry(0.012, 20, 14), new THREE.MeshLambertMaterial({ color: 0x3f7fbf }));
+    this.marker = new THREE.Mesh(
+      new THREE.SphereGeometry(0.012, 20, 14),
+      new THREE.MeshLambertMaterial({ color: 0x3f7fbf }),
+    );
     viewer.scene.add(this.marker);
-    this.board = new Board(THREE);
-    viewer.scene.add(this.board.sprite);
+    this.textPanel = new TextPanel(THREE);
+    viewer.scene.add(this.textPanel.sprite);
   }
 
-  say(text) {
-    this.board.say(text);
+  setText(text) {
+    this.textPanel.setText(text);
   }
 
   // `frame(time, XRFrame)` is called before each frame is drawn.
   async present(session, frame) {
     this.renderer.setAnimationLoop((time, xr) => {
       if (!xr) return;
-      if (!this.placed) this.#place(xr);
+      if (!this.placed) this.#placeOperator(xr);
       frame(time, xr);
-      if (!this.pictures.affords(time, this.busy)) return;
-      this.drawn += 1;
+      if (!this.frameSkipper.shouldRender(time, this.busy)) return;
+      this.framesDrawn += 1;
       this.renderer.render(this.viewer.scene, this.camera);
     });
     this.renderer.xr.setReferenceSpaceType("local-floor");
@@ -46,8 +49,8 @@ export class Rig {
     this.space = this.renderer.xr.getReferenceSpace();
   }
 
-  // The head's first place becomes the stand at the table, wherever in the room the operator is.
-  #place(xr) {
+  // The head's first position becomes the place at the table, wherever in the room the operator is.
+  #placeOperator(xr) {
     const head = xr.getViewerPose(this.space);
     if (!head) return;
     const { x, z } = head.transform.position;
@@ -55,7 +58,11 @@ export class Rig {
     const yaw = Math.atan2(2 * (w * b + a * c), 1 - 2 * (b * b + a * a)); // about y, to the left
     this.room.rotation.y = Math.PI / 2 - yaw;
     const [cos, sin] = [Math.cos(this.room.rotation.y), Math.sin(this.room.rotation.y)];
-    this.room.position.set(STAND[0] - (x * cos + z * sin), STAND[2], -STAND[1] + x * sin - z * cos);
+    this.room.position.set(
+      OPERATOR_POSITION[0] - (x * cos + z * sin),
+      OPERATOR_POSITION[2],
+      -OPERATOR_POSITION[1] + x * sin - z * cos,
+    );
     this.room.updateMatrixWorld(true);
     this.placed = true;
   }
@@ -74,19 +81,19 @@ export class Rig {
     return { position: place.toArray(), orientation: [turn.w, turn.x, turn.y, turn.z] };
   }
 
-  leave() {
+  dispose() {
     this.renderer.setAnimationLoop(null);
-    this.viewer.scene.remove(this.marker, this.board.sprite);
+    this.viewer.scene.remove(this.marker, this.textPanel.sprite);
     this.marker.geometry.dispose();
     this.marker.material.dispose();
-    this.board.dispose();
+    this.textPanel.dispose();
     this.renderer.dispose();
     this.viewer.set_dirty();
   }
 }
 
-// A sentence behind the table, for eyes that cannot see the page.
-class Board {
+// A sentence behind the table, for an operator who cannot see the page.
+class TextPanel {
   constructor(THREE) {
     this.canvas = Object.assign(document.createElement("canvas"), { width: 1024, height: 128 });
     this.texture = new THREE.CanvasTexture(this.canvas);
@@ -95,17 +102,17 @@ class Board {
     this.sprite.scale.set(1.2, 0.15, 1);
   }
 
-  say(text) {
+  setText(text) {
     if (text === this.text) return;
     this.text = text;
-    const pen = this.canvas.getContext("2d");
-    pen.fillStyle = "#1d242c";
-    pen.fillRect(0, 0, 1024, 128);
-    pen.fillStyle = "#ffffff";
-    pen.font = "44px system-ui, sans-serif";
-    pen.textAlign = "center";
-    pen.textBaseline = "middle";
-    pen.fillText(text, 512, 64, 990);
+    const context = this.canvas.getContext("2d");
+    context.fillStyle = "#1d242c";
+    context.fillRect(0, 0, 1024, 128);
+    context.fillStyle = "#ffffff";
+    context.font = "44px system-ui, sans-serif";
+    context.textAlign = "center";
+    context.textBaseline = "middle";
+    context.fillText(text, 512, 64, 990);
     this.texture.needsUpdate = true;
   }
 

@@ -1,20 +1,25 @@
-// Run: preview as a ghost, then the arm itself, by a plan or by a live hand, its joints, and what was executed before.
-import { control } from "./arm_controls.js";
-import { leading } from "./teleop_panel.js";
-import { live } from "./live_joints.js";
-import { composed } from "./sectioned_panel.js";
-import { preview } from "./plan_preview.js";
-import { replay } from "./execution_replay.js";
+// Run: a preview by a ghost arm, then the arm itself, by a plan or by a live hand, its joints, and past executions.
+import { armControls } from "./arm_controls.js";
+import { executionReplay } from "./execution_replay.js";
+import { liveJoints } from "./live_joints.js";
+import { planPreview } from "./plan_preview.js";
+import { sectionedPanel } from "./sectioned_panel.js";
+import { teleopPanel } from "./teleop_panel.js";
 
-const run = composed("run", "Run", [
-  ["preview", "Preview", preview],
-  ["arm", "Arm", control],
-  ["leading", "Live hand", leading],
-  ["joints", "Joints", live],
-  ["replay", "Past executions", replay],
+const run = sectionedPanel("run", "Run", [
+  ["preview", "Preview", planPreview],
+  ["arm", "Arm", armControls],
+  ["teleop", "Live hand", teleopPanel],
+  ["joints", "Joints", liveJoints],
+  ["replay", "Past executions", executionReplay],
 ]);
-const drawn = (name) => run.part(name).player.ghost?.frames() ?? null;
+const ghostPose = (name) => run.section(name).player.ghost?.linkMatrices() ?? null;
 
-// ghost(), replayed(): poses of the links of the two ghosts as drawn, or null; leading(): the sitting with a live hand, or
-// null. For tests, and the curious.
-export const panel = { ...run, ghost: () => drawn("preview"), replayed: () => drawn("replay"), leading: () => run.part("leading").sitting() };
+// previewGhost(), replayGhost(): poses of the links of the two ghost arms as drawn, or null; teleop(): the session with a live
+// hand, or null. For tests.
+export const panel = {
+  ...run,
+  previewGhost: () => ghostPose("preview"),
+  replayGhost: () => ghostPose("replay"),
+  teleop: () => run.section("teleop").session(),
+};

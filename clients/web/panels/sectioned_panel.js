@@ -1,22 +1,23 @@
-// A panel that is made of parts, one below the other under titles of their own.
+// A panel that is made of sections, one below the other under titles of their own.
 import { section } from "../elements.js";
 
-// `make`: [[id, title, part]], each part a function (place, context) that returns {update(state, changed), show?, hide?}.
-// Returns the panel, and `part(id)` for what a part has returned.
-export function composed(id, title, make) {
-  const parts = new Map();
-  const tell = (verb, ...what) => {
-    for (const part of parts.values()) part[verb]?.(...what);
+// `definitions`: [[id, title, create]], where create(place, context) returns {update(state, changed), show?, hide?}.
+// Returns the panel; its `section(id)` is what `create` has returned.
+export function sectionedPanel(id, title, definitions) {
+  const sections = new Map();
+  const call = (method, ...values) => {
+    for (const one of sections.values()) one[method]?.(...values);
   };
   return {
     id,
     title,
     mount(place, context) {
-      for (const [name, words, part] of make) parts.set(name, part(section(place, name, words), context));
+      for (const [name, heading, create] of definitions)
+        sections.set(name, create(section(place, name, heading), context));
     },
-    update: (state, changed) => tell("update", state, changed),
-    show: () => tell("show"),
-    hide: () => tell("hide"),
-    part: (name) => parts.get(name),
+    update: (state, changed) => call("update", state, changed),
+    show: () => call("show"),
+    hide: () => call("hide"),
+    section: (name) => sections.get(name),
   };
 }

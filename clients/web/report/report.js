@@ -45,11 +45,14 @@
     const at = Math.min(last, Math.max(0, share * last));
     const [low, high, part] = [Math.floor(at), Math.min(last, Math.floor(at) + 1), at % 1];
     const between = (a, b) => a.map((value, i) => value + part * (b[i] - value));
-    motion.links[low].forEach((pose, i) => viewer.set_transform(["robot", `link${i}`], between(pose, motion.links[high][i])));
+    for (const [i, pose] of motion.links[low].entries()) {
+      viewer.set_transform(["robot", `link${i}`], between(pose, motion.links[high][i]));
+    }
     if (motion.object) viewer.set_transform(["object"], between(motion.object[low], motion.object[high]));
     const now = motion.times[low] + part * (motion.times[high] - motion.times[low]);
-    const stretch = motion.segments.find((one) => now >= one.begin && now <= one.end);
-    byId("said").textContent = `${now.toFixed(2)} of ${motion.times[last].toFixed(2)} s${stretch ? `, ${stretch.name}` : ""}`;
+    const stretch = motion.stretches.find((one) => now >= one.begin && now <= one.end);
+    byId("said").textContent =
+      `${now.toFixed(2)} of ${motion.times[last].toFixed(2)} s${stretch ? `, ${stretch.name}` : ""}`;
     byId("time").value = String(share);
     viewer.set_dirty();
   };

@@ -241,6 +241,6 @@ def test_stops_listening_when_stopped() -> None:
 def test_the_page_uses_the_same_colours_everywhere() -> None:
     web = Path(__file__).parents[3] / "clients" / "web"
     style = dict(re.findall(r"--way-(\d): #([0-9a-f]{6});", (web / "style.css").read_text()))
-    (drawn,) = re.findall(r"WAYS = \[(.*?)\]", (web / "meshes.js").read_text())
+    (drawn,) = re.findall(r"WAY_COLORS = \[(.*?)\]", (web / "way_colors.js").read_text())
     assert [int(style[str(i)], 16) for i in range(len(CLUSTER_COLORS))] == list(CLUSTER_COLORS)
     assert [int(colour, 16) for colour in drawn.split(",")] == list(CLUSTER_COLORS)
