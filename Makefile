@@ -20,7 +20,7 @@ READY   := .venv/.ready
 # Every file is checked against its hash, and nothing is installed that requirements/ does not name.
 PINNED  := --no-deps --require-hashes -r requirements
 
-.PHONY: demo serve test check bench experiments proto pins clean setup browser
+.PHONY: demo serve test check check-page bench experiments pins proto clean setup browser
 .DEFAULT_GOAL := help
 
 help:
@@ -59,10 +59,21 @@ demo: $(SERVICE)
 serve: $(SERVICE)
 	@$(BIN)/teachpath serve $(ARGS)
 
-check: $(READY)
+check: $(READY) check-page
 	$(BIN)/ruff format --check .
 	$(BIN)/ruff check .
 	$(BIN)/mypy
+
+# The page's tools are npm packages; node and npm come with the dev extra.
+PAGE_TOOLS := tools/page/node_modules/.package-lock.json
+NPM        := PATH="$(CURDIR)/$(BIN):$$PATH" npm --prefix tools/page
+
+$(PAGE_TOOLS): tools/page/package-lock.json | $(READY)
+	@$(NPM) ci --silent
+	@touch $@
+
+check-page: $(PAGE_TOOLS)
+	@$(NPM) run --silent check
 
 # The browser tests need Chromium: found, installed where that is allowed, or named.
 browser:
@@ -94,5 +105,5 @@ proto: $(READY)
 	cd proto && ../$(BIN)/python -m grpc_tools.protoc -I . --python_out=. --pyi_out=. teachpath_proto/tracker.proto teachpath_proto/motion.proto teachpath_proto/job.proto
 
 clean:
-	rm -rf .venv .venv.log .mypy_cache .ruff_cache .pytest_cache .hypothesis build dist
+	rm -rf .venv tools/page/node_modules .venv.log .mypy_cache .ruff_cache .pytest_cache .hypothesis build dist
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +
