@@ -16,7 +16,7 @@ const RESOURCES_BY_TOPIC = {
   jobs: ["jobs"],
   executions: ["executions"],
 };
-const STATE_TOPICS = ["station", "executor", "trackers", "recordings", "coach"];
+const STATE_TOPICS = ["station", "executor", "trackers", "recordings", "guidance"];
 const TASK_RESOURCES = ["demonstrations", "runs", "jobs"];
 
 export class EventStream {

@@ -18,7 +18,7 @@ export class Motion {
       gripper_closed: closed,
       object_position: places,
       object_orientation: turns,
-      stretches,
+      segments,
     } = this.rows;
     const time = times[0] + Math.max(0, Math.min(seconds, this.duration));
     const [low, share] = findInterval(times, time);
@@ -29,7 +29,7 @@ export class Motion {
       closed: closed?.[low] ?? false,
       position: places?.length ? interpolated(places) : null,
       orientation: turns?.length ? normalize(interpolated(turns)) : null,
-      segment: stretches?.findLast((stretch) => stretch.begin <= time)?.name ?? "",
+      segment: segments?.findLast((one) => one.begin <= time)?.name ?? "",
     };
   }
 }

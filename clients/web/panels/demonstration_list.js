@@ -31,7 +31,7 @@ export function demonstrationList(place, { store, sceneLayers, attempt }) {
   return {
     update(state, changed) {
       if (
-        ["demonstrations", "coach", "task", "tasks", "runs", "run", "trajectoriesLoaded"].some((name) =>
+        ["demonstrations", "guidance", "task", "tasks", "runs", "run", "trajectoriesLoaded"].some((name) =>
           changed.has(name),
         )
       ) {
@@ -46,7 +46,7 @@ export function demonstrationList(place, { store, sceneLayers, attempt }) {
 }
 
 function content(state, sceneLayers) {
-  const { task, tasks, demonstrations, coach } = state;
+  const { task, tasks, demonstrations, guidance } = state;
   if (demonstrations === null && tasks === null)
     return hint("The demonstrations cannot be read yet: the service does not answer.");
   if (!demonstrations?.length) {
@@ -74,7 +74,7 @@ function content(state, sceneLayers) {
       element("strong", {}, String(kept.length)),
       ` ${pluralize(kept.length, "demonstration")}`,
     ),
-    coach[task] && element("p", { class: "coach" }, `${capitalize(coach[task])}.`),
+    guidance[task] && element("p", { class: "guidance" }, `${capitalize(guidance[task])}.`),
     definitionList([
       ["Clean", String(count("clean"))],
       ["Repaired", count("repaired") && String(count("repaired"))],

@@ -1,4 +1,4 @@
-// The recordings that run and the trackers that are there; what the coach thinks; what the station has to say.
+// The recordings that run and the trackers that are there; the guidance; what the station has to say.
 import { post, resourcePath } from "../api.js";
 import { capitalize, element, formatNumber, hint, patchChildren, pluralize } from "../elements.js";
 
@@ -18,7 +18,7 @@ export function recordingList(place, { store, attempt }) {
   });
   return {
     update(state, changed) {
-      if (!["recordings", "trackers", "station", "coach", "task", "connection"].some((name) => changed.has(name)))
+      if (!["recordings", "trackers", "station", "guidance", "task", "connection"].some((name) => changed.has(name)))
         return;
       if (state.connection === "lost") {
         patchChildren(place, hint("Not known: the service does not answer. What was recorded until then is kept."));

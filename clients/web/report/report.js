@@ -50,9 +50,9 @@
     }
     if (motion.object) viewer.set_transform(["object"], between(motion.object[low], motion.object[high]));
     const now = motion.times[low] + part * (motion.times[high] - motion.times[low]);
-    const stretch = motion.stretches.find((one) => now >= one.begin && now <= one.end);
+    const segment = motion.segments.find((one) => now >= one.begin && now <= one.end);
     byId("said").textContent =
-      `${now.toFixed(2)} of ${motion.times[last].toFixed(2)} s${stretch ? `, ${stretch.name}` : ""}`;
+      `${now.toFixed(2)} of ${motion.times[last].toFixed(2)} s${segment ? `, ${segment.name}` : ""}`;
     byId("time").value = String(share);
     viewer.set_dirty();
   };
