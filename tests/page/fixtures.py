@@ -52,7 +52,9 @@ def _curve(chance: np.random.Generator, degree: int, inner: tuple[float, ...]) -
 def link_poses() -> list[dict[str, Any]]:
     """Poses of all links of every published arm, at several configurations; column by column, as three.js has them."""
     chance = np.random.default_rng(2)
-    return [_link_poses(variant, chance.uniform(-math.pi, math.pi, 6)) for variant in VARIANTS.values() for _ in range(3)]
+    return [
+        _link_poses(variant, chance.uniform(-math.pi, math.pi, 6)) for variant in VARIANTS.values() for _ in range(3)
+    ]
 
 
 def _link_poses(variant: Any, q: np.ndarray) -> dict[str, Any]:
