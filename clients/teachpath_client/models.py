@@ -113,7 +113,7 @@ class Clock:
 
 @dataclass(frozen=True)
 class Cluster:
-    """One way of doing the task.
+    """Demonstrations that do the task alike, with their scores.
 
     Attributes:
         members: ids, most consistent first.
@@ -121,9 +121,9 @@ class Cluster:
         convergence: log-likelihood of the model after each training iteration (Fig. 4).
         note: why selection was skipped or is unreliable; empty when neither.
         representative: id of the member nearest to the mean of all; empty in runs of earlier versions.
-        spread: (50,) radius [m] at equal arc length of the tube around the learned path in which the selected
-            demonstrations lie.
-        ambiguous: what the next best cut would do with it, when the choice was close; else empty.
+        spread: (50,) radius [m], at equal arc lengths, of the tube around the learned path that holds the
+            selected demonstrations.
+        ambiguous: a sentence about what the next best cut would change, when the choice was close; else empty.
     """
 
     index: int
@@ -138,11 +138,11 @@ class Cluster:
 
 @dataclass(frozen=True)
 class ControlPointChange:
-    """One control point that differs.
+    """One control point that differs between two curves.
 
     Attributes:
         number: in the second curve, from 1.
-        distance: by which it moved [m].
+        distance: between both positions [m].
         weights: before and after.
     """
 
@@ -174,10 +174,10 @@ class Cut:
 
     Attributes:
         clusters: their number.
-        lowest, highest: heights [m] between which a cut leaves so many; None = without end.
-        height: one of them, halfway.
-        leaf_ranges: of each cluster the first and the one behind the last of its members in the dendrogram's `leaves`;
-            clusters in the order in which a run numbers them.
+        lowest, highest: heights [m] between which a cut leaves that many; None = no upper end.
+        height: halfway between them [m].
+        leaf_ranges: for each cluster, in the order of its number, the begin and end of its members in the dendrogram's
+            `leaves`; the end is excluded.
     """
 
     clusters: int
@@ -217,15 +217,15 @@ class Demonstration:
 
 @dataclass(frozen=True)
 class Dendrogram:
-    """The tree of merges of a run, as it is drawn.
+    """The dendrogram of a run, ready to be drawn.
 
     Attributes:
-        demonstrations: ids, as they are numbered in `merges`: 0 to m - 1.
-        leaves: ids from left to right, so that no merge crosses another and every cluster's members are neighbours.
-        merges: left, right, height [m] and members of each, as scipy writes them; merge i is numbered m + i.
+        demonstrations: ids in the order of their numbers in `merges`, 0 to m - 1.
+        leaves: ids from left to right; no merge crosses another, and the members of every cluster are neighbours.
+        merges: left, right, height [m] and number of members, as scipy writes them; merge i has the number m + i.
         threshold: height of the run's own cut [m].
-        clusters: that it left.
-        cuts: the possible ones, from one cluster on.
+        clusters: number of clusters of the run's own cut.
+        cuts: the possible cuts, from one cluster on.
     """
 
     demonstrations: list[str]
@@ -238,7 +238,7 @@ class Dendrogram:
 
 @dataclass(frozen=True)
 class Deviation:
-    """Where and how a demonstration differs most from the others of its cluster."""
+    """Where and how a demonstration deviates most from the others of its cluster."""
 
     share: tuple[float, float]
     seconds: tuple[float, float]
@@ -247,14 +247,14 @@ class Deviation:
 
 @dataclass(frozen=True)
 class Difference:
-    """How far the second of two curves lies from the first.
+    """The difference between two curves.
 
     Attributes:
-        largest: distance of a point of one from the other, the larger of both ways (Hausdorff) [m].
-        mean: over both ways, along the arc lengths [m].
-        s: arc length on the second curve where it is farthest from the first [m].
-        moved: control points that differ, on the second curve's knots; None when they have no counterparts.
-        sentence: all of it in words.
+        largest: Hausdorff distance of the curves [m].
+        mean: distance of the points of each curve from the other curve, averaged over both curves [m].
+        s: arc length on the second curve at the largest distance [m].
+        moved: control points that differ, on the second curve's knots; None when they cannot be matched.
+        sentence: the difference in words.
     """
 
     largest: float
@@ -266,7 +266,7 @@ class Difference:
 
 @dataclass(frozen=True)
 class EditResult:
-    """A curve after an operation, and how far it lies from the one before [m], measured at 401 parameters."""
+    """A curve after an operation, and its largest distance [m] from the curve before, measured at 401 parameters."""
 
     curve: Curve
     deviation: float
@@ -345,7 +345,7 @@ class Fault:
 
 @dataclass(frozen=True)
 class Fit:
-    """How closely a learned path follows what it was fitted to: distances [m]."""
+    """Distances [m] of a learned path from the points that it was fitted to, and from the demonstrations."""
 
     bound: float
     largest: float
@@ -426,7 +426,7 @@ class Learned:
         linkage: (m - 1, 4) merges as scipy writes them: left, right, height [m], size; leaves in the order of
             `demonstrations`.
         threshold: height of the cut [m].
-        versions: library versions that made it.
+        versions: of the libraries that computed the run.
         inputs: SHA-256 of every demonstration's times, positions and orientations, by id.
     """
 
@@ -444,12 +444,12 @@ class Learned:
 
 @dataclass(frozen=True)
 class LearnedPath:
-    """The NURBS of one cluster: the way of the object's centre in the world.
+    """The NURBS of one cluster: the path of the object's centre in the world.
 
     Attributes:
-        version: see `Version`; what was learned is version 1.
+        version: see `Version`; the learned path itself is version 1.
         curve: positions [m].
-        fit: None for an edited version: it follows an operator's wish, no demonstrations.
+        fit: None for an edited version, which follows no demonstrations.
         orientation: quaternions at the same parameter, which `nurbs.unit_quaternions` brings to unit length;
             None when not all selected demonstrations carry orientations.
     """
@@ -694,17 +694,16 @@ class Scene:
 
 @dataclass(frozen=True)
 class Score:
-    """How one demonstration fares in the selection of its cluster.
+    """The score of one demonstration in the selection of its cluster.
 
     Attributes:
-        log_likelihood: of its observations under the model that judges it.
+        log_likelihood: of its observations under the models that score it.
         rank: 1 = most consistent.
         note: why it was not selected, or not scored.
-        margin: by how much it is better than the next in rank: robust z in mode default, else log-likelihood; None for
-            the last.
-        z: robust z score of its consistency, 0 = like the others or better; None when not scored.
-        stability: share of repetitions in which it was selected; None when there were none.
-        deviation: where it differs most; None when it is consistent.
+        margin: distance to the next in rank, in robust z in mode default, else in log-likelihood; None for the last.
+        z: sum of its robust z scores, each at most 0; 0 = consistent, None = not scored.
+        stability: share of the repetitions in which it was selected; None when there were none.
+        deviation: where it deviates most; None when it is consistent.
     """
 
     demonstration: str
@@ -859,13 +858,13 @@ class Trajectory:
 
 @dataclass(frozen=True)
 class Version:
-    """Who saved what when; the curve is the learned path of the same number.
+    """One saved version of a path; the curve is the `LearnedPath` with the same number.
 
     Attributes:
         path: id of the learned path.
-        number: from 1, in the order in which the versions of a path were saved, over all branches.
-        parent: number of the version that was edited; None for the one that was learned.
-        branch: line of versions that this one continues.
+        number: from 1, in the order of saving, over all branches of a path.
+        parent: number of the version that was edited; None for the learned path.
+        branch: line of versions that this version continues.
     """
 
     path: str
