@@ -381,4 +381,4 @@ def test_nothing_is_recorded_for_a_task_that_was_left(desk: Desk, service: Servi
     desk.page.select_option("#task", "bare")
     task.over()
     desk.page.wait_for_selector("html[data-session='']", state="attached")
-    assert service.call("GET", f"/tasks/{TASK}/recording") == service.call("GET", "/tasks/bare/recording") == []
+    assert service.station.recordings(TASK) == service.station.recordings("bare") == []

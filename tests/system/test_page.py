@@ -132,7 +132,7 @@ def test_what_is_pointed_at_in_a_table_stands_out_in_the_view_and_back(visit: Vi
     visit.page.locator("#tab-ways").hover()  # nothing is pointed at
     visit.wait(lambda: visit.page.evaluate(f"{opacity.format(one)} === {opacity.format(other)}"))
     visit.page.mouse.move(*seen)
-    card = f"#learned article[data-focus='paths {path['id']}'].focused"
+    card = f"#learned article[data-focus='paths {path.id}'].focused"
     visit.page.wait_for_selector(card)
     assert visit.page.locator(".card.focused").count() == 1
     visit.page.mouse.click(*seen)

@@ -88,7 +88,7 @@ def test_every_demonstration_has_its_verdict_and_what_is_wrong_with_it(visit: Vi
         assert [d.mark for d in service.station.demonstrations("judged")] == [mark, ""]
     visit.page.get_by_role("button", name="Discard the last").click()
     within(visit, 5, "document.querySelectorAll('#demonstrations .demonstration-list li.discarded').length === 1")
-    assert [bool(d["discarded_ns"]) for d in service.demonstrations("judged")] == [False, True]
+    assert [bool(d.discarded_ns) for d in service.station.demonstrations("judged")] == [False, True]
     visit.page.get_by_role("button", name="Undo discard").click()
     within(visit, 5, "document.querySelectorAll('#demonstrations .demonstration-list li.discarded').length === 0")
     within(visit, 5, f"{text('demonstrations')}.includes('One demonstration so far; show it again.')")

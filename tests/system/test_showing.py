@@ -54,8 +54,8 @@ def test_takes_by_mouse_are_judged_at_once_discarded_and_brought_back(visit: Vis
     for _ in range(2):
         carry(visit)
         phase(visit, "ready")
-    takes = service.demonstrations("by-mouse")
-    words = [take["verdict"] for take in takes]
+    takes = service.station.demonstrations("by-mouse")
+    words = [take.verdict for take in takes]
     assert visit.page.locator("#demonstration-session .demonstration-list li .verdict").all_inner_texts() == words
     for take in takes:  # a machine that is too busy for the declared rate makes it a repaired one
         assert take.verdict in ("clean", "repaired"), take.reasons
@@ -64,7 +64,7 @@ def test_takes_by_mouse_are_judged_at_once_discarded_and_brought_back(visit: Vis
     assert math.dist(goal, GOAL) < 0.05
     visit.page.get_by_role("button", name="Discard the take").click()
     visit.page.wait_for_selector("#demonstration-session .demonstration-list li.discarded")
-    assert [bool(take["discarded_ns"]) for take in service.demonstrations("by-mouse")] == [False, True]
+    assert [bool(take.discarded_ns) for take in service.station.demonstrations("by-mouse")] == [False, True]
     visit.page.get_by_role("button", name="Undo", exact=True).click()
     visit.page.wait_for_selector("#demonstration-session .demonstration-list li.discarded", state="detached")
     assert "Recorded 2 demonstrations" in finish(visit)
@@ -200,7 +200,7 @@ def test_takes_by_an_emulated_hand_and_a_controller_in_one_headset(worn: Visit, 
     worn.page.evaluate("teachpath.headset().end()")
     worn.page.get_by_role("button", name="Finish").click()
     worn.page.wait_for_selector("html[data-session='']", state="attached")
-    by_hand, by_controller = service.demonstrations("by-headset")
+    by_hand, by_controller = service.station.demonstrations("by-headset")
     for take in (by_hand, by_controller):
         is_judged_by_its_frames(take, gaps)
         assert has_no_gaps(take)
