@@ -68,7 +68,7 @@ def tell(browser: Any, url: str, station: Station, tmp_path: Path) -> None:
     slider = desk.page.get_by_label("Instant of the execution")
     slider.wait_for()
     desk.until("teachpath.replayGhost() !== null")
-    series = station.call("GET", f"/executions/{done.id}/series?points=1500")
+    series = station.series(done.id, points=1500)
     file = tmp_path / "execution.mcap"
     file.write_bytes(station.recorded_execution(done.id))
     followed = np.array([setpoint.position for setpoint in read_motion(file).setpoints if setpoint.on_path])
