@@ -9,6 +9,7 @@ wherever it was sent. Start the service without the simulated arm, `TEACHPATH_SI
 import argparse
 import time
 from collections import deque
+from contextlib import suppress
 
 from teachpath_client import Link
 from teachpath_client.driver import SetpointPlayer, TargetMotion, decode_setpoint, joint_state
@@ -39,7 +40,8 @@ def main() -> None:
         publisher, alive = link.publisher(keys.state("puma560")), link.announce(keys.alive("robot", "puma560"))
         while alive:
             while came:
-                player.add(decode_setpoint(came.popleft()), time.time_ns())
+                with suppress(ValueError):  # a malformed setpoint is left out
+                    player.add(decode_setpoint(came.popleft()), time.time_ns())
             now, steps = time.time_ns(), steps + 1
             player.advance((now - before) / 1e9, now)
             before = now

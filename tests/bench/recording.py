@@ -17,7 +17,8 @@ import zenoh
 from report import Figure, against
 
 from teachpath.commands.serving import free_port
-from teachpath.io.bus import Bus, BusSettings, MemoryBus, listen_on_bus
+from teachpath.io.bus import Bus, BusSettings, listen_on_bus
+from teachpath.io.memory_bus import MemoryBus
 from teachpath.io.store.settings import StoreSettings
 from teachpath.io.store.store import Store
 from teachpath.motion.collision.builtin_scenes import paper_scene

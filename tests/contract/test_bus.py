@@ -9,7 +9,8 @@ from contextlib import suppress
 import pytest
 
 from teachpath.errors import Conflict, TeachpathError, Unreachable
-from teachpath.io.bus import Bus, BusSettings, MemoryBus, listen_on_bus, open_bus
+from teachpath.io.bus import Bus, BusSettings, listen_on_bus, open_bus
+from teachpath.io.memory_bus import MemoryBus
 from teachpath_client import Link
 from tests.waiting import HANG, wait_until
 

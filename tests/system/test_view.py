@@ -20,8 +20,8 @@ from websockets.sync.client import connect
 from teachpath.api.events import events_router
 from teachpath.api.view import view_router
 from teachpath.io import wire
-from teachpath.io.bus import MemoryBus
 from teachpath.io.documents import to_document
+from teachpath.io.memory_bus import MemoryBus
 from teachpath.learning.clustering.cuts import dendrogram
 from teachpath.live.event_hub import EventHub
 from teachpath.live.preview.preview import Preview

@@ -12,7 +12,7 @@ import sys
 import time
 from pathlib import Path
 
-from teachpath.io.bus import MemoryBus
+from teachpath.io.memory_bus import MemoryBus
 from teachpath.io.store.settings import StoreSettings
 from teachpath.io.store.store import Store
 from teachpath.io.wire import encode_sample

@@ -21,7 +21,8 @@ from teachpath_client.driver.interpolation import BLEND_TIME, Array, Quintic, Wa
 
 MAX_QUEUE: Final = 2000  # setpoints that wait at most; with more the sender's clock is wrong
 MAX_CLOCK_ERROR: Final = 1.0  # s, of a clock that is so far off that its times cannot be meant
-AT_PLACE: Final = 1e-6  # rad, between the arm's rest and setpoints that begin there
+AT_PLACE: Final = 1e-6  # rad, within which two rests are at one place
+RESTART_DISTANCE: Final = 2e-3  # rad, from the arm's rest, up to which setpoints begin where it rests
 BLEND_DISTANCE: Final = 0.02  # rad, up to which another execution may begin off the commanded position
 MAX_GAP: Final = 3  # periods between two setpoints over which the player goes on; a longer gap is a stream that stopped
 
@@ -132,6 +133,8 @@ class SetpointPlayer:
         newest = self._queue[-1] if self._queue else self.last_reached
         if newest is None or setpoint.nominal_ns <= newest.nominal_ns:
             return False
+        if not self._queue and _is_still(newest) and _is_still(setpoint) and not _same_place(newest, setpoint):
+            return self._begin_elsewhere(setpoint, now_ns)
         ahead = setpoint.cycle - self._newest
         if self._time_of(setpoint) <= self._played:
             self.late += 1
@@ -156,29 +159,46 @@ class SetpointPlayer:
             reached = self._skip_standstill(now_ns) or reached
             if not self._queue or not self._follows(self._queue[0]):
                 self._stop_if_due()
+            self._wait_at_rest()
         self._aim(dt)
         return reached
 
     def _begin(self, setpoint: SetpointLike, now_ns: int) -> bool:
         """Begin another execution; the arm rests, and so does its first setpoint, where the arm is."""
-        off = self.target.position - setpoint.position
-        moves = self.target.velocity.any() and self.state is not PlayerState.IDLE
-        if moves or not _is_still(setpoint) or np.abs(off).max() > BLEND_DISTANCE:
+        if self.target.velocity.any() or not _is_still(setpoint) or not self._begin_elsewhere(setpoint, now_ns):
             return False
         self.missed = self.late = self.stops = 0
-        self._blend = (off, 0.0)
-        self._restart(setpoint, now_ns)
         return True
 
     def _begin_again(self, setpoint: SetpointLike, now_ns: int) -> bool:
         """Take the execution up again where the arm rests; whatever else comes is late."""
-        at_place = np.abs(self.target.position - setpoint.position).max() <= AT_PLACE
-        if self.state is not PlayerState.STOPPED or not (_is_still(setpoint) and at_place):
+        off = float(np.abs(self.target.position - setpoint.position).max())
+        if self.state is not PlayerState.STOPPED or not _is_still(setpoint) or off > RESTART_DISTANCE:
             self._newest = setpoint.cycle
             self.late += 1
             return False
+        return self._begin_elsewhere(setpoint, now_ns)
+
+    def _begin_elsewhere(self, setpoint: SetpointLike, now_ns: int) -> bool:
+        """Go on within an execution from another place of rest, if it is near: somebody has pushed the arm."""
+        off = self.target.position - setpoint.position
+        if np.abs(off).max() > BLEND_DISTANCE:
+            return False
+        self._blend = (off, 0.0)
         self._restart(setpoint, now_ns)
         return True
+
+    def rest_at(self, position: Array | Sequence[float]) -> None:
+        """Rest at a measured configuration (6,) [rad]: somebody has moved the arm while nothing was played.
+
+        Raises:
+            ValueError: the player is in motion.
+        """
+        if not self.at_rest:
+            raise ValueError("the player is in motion; it rests where it comes to rest")
+        still = np.zeros(6)
+        self.target = TargetMotion(np.array(position, dtype=np.float64), still, still)
+        self.last_reached, self._way, self.state = None, None, PlayerState.IDLE
 
     def _restart(self, setpoint: SetpointLike, now_ns: int) -> None:
         self._queue.clear()
@@ -202,19 +222,26 @@ class SetpointPlayer:
     def _skip_standstill(self, now_ns: int) -> SetpointLike | None:
         """Skip what waits of a standstill and was due: a player whose machine was busy has lost only time there."""
         reached, due = None, (now_ns - self._zero_ns) / 1e9 - self._delay
-        while len(self._queue) > 1 and self._time_of(self._queue[0]) <= due and self._waits_in_same_rest():
+        while self._queue and self._time_of(self._queue[0]) <= due and self._next_is_the_same_rest():
             self.last_reached = reached = self._queue.popleft()
             self._played = self._time_of(reached)
         return reached
 
-    def _waits_in_same_rest(self) -> bool:
-        last = self.last_reached
-        return last is not None and all(
-            _is_still(each)
-            and np.array_equal(each.position, last.position)
-            and each.gripper_closed == last.gripper_closed
-            for each in (last, self._queue[0], self._queue[1])
+    def _next_is_the_same_rest(self) -> bool:
+        last, following = self.last_reached, self._queue[0]
+        return (
+            last is not None
+            and _is_still(last)
+            and _is_still(following)
+            and np.array_equal(last.position, following.position)
+            and last.gripper_closed == following.gripper_closed
         )
+
+    def _wait_at_rest(self) -> None:
+        """Let no time of the stream pass while the arm rests and nothing waits: what comes late begins from here."""
+        last = self.last_reached
+        if last is not None and not self._queue and _is_still(last):
+            self._played = min(self._played, self._time_of(last))
 
     def _stop_if_due(self) -> None:
         """Follow the way to rest of the last setpoint, since the next one is not there."""
@@ -248,6 +275,10 @@ class SetpointPlayer:
             p, v, a = (value + part for value, part in zip((p, v, a), blended(off, since), strict=True))
             self._blend = (off, since + dt)
         self.target = TargetMotion(p, v, a)
+
+
+def _same_place(one: SetpointLike, two: SetpointLike) -> bool:
+    return bool(np.abs(one.position - two.position).max() <= AT_PLACE)
 
 
 def _is_still(setpoint: SetpointLike) -> bool:

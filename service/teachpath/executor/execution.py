@@ -57,6 +57,7 @@ class Execution:
         self._final_state: ExecutorState | None = None  # in which the execution ends as soon as it is at rest
         self._sent_count = 0
         self._rest_points: deque[tuple[int, RestPoint]] = deque(maxlen=round(REST_POINT_AGE * rate))
+        self._standstill_is_kept = False  # the first setpoint of a standstill stands for all of them
         self._restarted = (-1, 0)  # from which setpoint's rest it went on, and when [ns of the loop's clock]
         self._standstill_left = STANDSTILL_SETPOINTS  # at rest, still to be sent: the arm takes up a stream from there
         self._meter = LimitMeter(rate, program.current_q)
@@ -75,10 +76,13 @@ class Execution:
         """Tell whether the arm has taken up a setpoint of the present standstill."""
         return arm.execution == self.id and arm.cycle >= self._sent_count - self._rest_setpoints
 
+    def untaken(self, arm: JointState) -> int:
+        """Return how many setpoints were sent that the arm has not taken up yet."""
+        return self._sent_count - 1 - (arm.cycle if arm.execution == self.id else -1)
+
     def wait_for_late_arm(self, arm: JointState) -> None:
         """Come to rest while the arm is late, because a stop would queue behind the setpoints it has yet to play."""
-        taken = arm.cycle if arm.execution == self.id else -1
-        waiting = self._sent_count - 1 - taken
+        waiting = self.untaken(arm)
         if not self.program.waiting:
             self.program.set_waiting(min(waiting, self._moving_setpoints) > MAX_ARM_LAG * self._rate)
         elif waiting < CAUGHT_UP_LAG * self._rate or self.arm_has_stopped(arm):
@@ -92,14 +96,16 @@ class Execution:
             due: now [ns of the loop's clock].
 
         Returns:
-            Whether that is possible; else the arm has to be brought back to the path.
+            Whether it is known where that is.
         """
-        point = next((point for number, point in self._rest_points if number == cycle), None)
-        if point is None or not self.program.restart(point):
+        point = next((point for number, point in reversed(self._rest_points) if number <= cycle), None)
+        if point is None:
             return False
+        self.program.restart(point)
         self._restarted = (cycle, due)
         self._standstill_left = STANDSTILL_SETPOINTS
-        self._rest_setpoints = self._moving_setpoints = 0
+        self._rest_setpoints = 2  # the arm knows that it rests, so the time that was lost is let go
+        self._moving_setpoints = 0
         self.arm_stops = False
         self._meter = LimitMeter(self._rate, self.program.current_q, self._meter)
         return True
@@ -175,7 +181,9 @@ class Execution:
         motion = self.program.step() if not self._standstill_left else self.program.state
         self._standstill_left = max(self._standstill_left - 1, 0)
         way_to_rest, point = self.program.way_to_rest()
-        self._rest_points.append((self._sent_count, point))
+        if len(way_to_rest) or not self._standstill_is_kept:
+            self._rest_points.append((self._sent_count, point))
+        self._standstill_is_kept = not len(way_to_rest)
         at_rest = self.program.at_rest
         self._meter.add(motion.position, self.program)
         self._nominal_ns = self._nominal_time(due + self._epoch_offset, at_rest and self._rest_setpoints > 1)

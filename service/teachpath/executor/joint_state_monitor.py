@@ -81,12 +81,17 @@ class SetpointStallDetector:
         self._newest = ("", -1)  # execution, and cycle of the newest setpoint that the arm has taken up
         self._since = 0
 
-    def stall_duration(self, now: int, execution: str, arm: JointState) -> float:
-        """Return for how long the arm has taken up no further setpoint of an execution [s]."""
+    def stall_duration(self, now: int, execution: str, arm: JointState, untaken: float) -> float:
+        """Return for how long the arm has taken up no further setpoint of an execution [s].
+
+        Args:
+            untaken: time for which setpoints were sent that it has not taken up [s]; while this executor oversleeps it
+                sends none, and the arm can take none up.
+        """
         newest = (execution, arm.cycle if arm.execution == execution else -1)
         if newest != self._newest:
             self._newest, self._since = newest, now
-        return (now - self._since) / 1e9
+        return min((now - self._since) / 1e9, untaken)
 
     def restart(self, now: int) -> None:
         """Measure from `now` on; call it while no setpoints are sent."""

@@ -142,7 +142,8 @@ class Executor:
     def _supervise_arm(self, current: Execution, arm: JointState, due: int) -> None:
         if self._follows_way_to_rest(current, arm, due):
             return
-        stalled = self._stall_detector.stall_duration(due, current.id, arm)
+        untaken = current.untaken(arm) / self._settings.rate
+        stalled = self._stall_detector.stall_duration(due, current.id, arm, untaken)
         if current.is_settled or current.displacement:
             if current.arm_has_stopped(arm) or stalled > STALL_TIMEOUT:  # otherwise the arm is late, and still moves
                 off = float(np.abs(arm.position - current.program.current_q).max())
@@ -166,15 +167,13 @@ class Executor:
         current.arm_stops = True
         if not arm.stopped:
             return True
-        self._stall_detector.restart(due)
-        if current.restart(arm.cycle, due):
-            reason = f"setpoints were late {current.program.location}: the arm came to rest, and goes on from there"
-            self._command_handler.write_journal("the arm", CommandVerb.HOLD, reason)
-        else:
+        if not current.restart(arm.cycle, due):  # it is so long ago that the arm has to be brought back
             current.arm_stops = False
-            off = float(np.abs(arm.position - current.program.current_q).max())
-            current.hold("setpoints were late, and the arm came to rest where nothing leads on; resume brings it back")
-            current.displacement = max(off, self._settings.regain)
+            self._hold(current, "setpoints were late, and the arm came to rest; resume brings it back to the path")
+            return False
+        self._stall_detector.restart(due)
+        reason = f"setpoints were late {current.program.location}: the arm came to rest, and goes on from there"
+        self._command_handler.write_journal("the arm", CommandVerb.HOLD, reason)
         return True
 
     def _hold(self, current: Execution, reason: str) -> None:

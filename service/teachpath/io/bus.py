@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import json
 import queue
-import re
 import threading
 from collections.abc import Callable, Mapping
 from contextlib import AbstractContextManager, nullcontext
@@ -147,7 +146,7 @@ class ZenohBus:
             receive(str(sample.key_expr), sample.payload.to_bytes())
 
         if missed is None:
-            return self._keep(_Undeclare(self._session.declare_subscriber(key, callback).undeclare))
+            return self._keep(Declaration(self._session.declare_subscriber(key, callback).undeclare))
         recovery = zenoh.ext.RecoveryConfig(periodic_queries=None, heartbeat=True)
         subscriber = zenoh.ext.declare_advanced_subscriber(self._session, key, callback, recovery=recovery)
         listener = subscriber.sample_miss_listener(lambda miss: missed(miss.nb))
@@ -156,7 +155,7 @@ class ZenohBus:
             listener.undeclare()  # type: ignore[no-untyped-call]
             subscriber.undeclare()  # type: ignore[no-untyped-call]
 
-        return self._keep(_Undeclare(undeclare))
+        return self._keep(Declaration(undeclare))
 
     def serve(self, key: str, answer: Answer) -> Handle:
         return self._keep(_Server(self._session, key, answer))
@@ -170,13 +169,13 @@ class ZenohBus:
         raise Unreachable(f"nobody answered {key} within {timeout:g} s; is that part of the service running?")
 
     def announce(self, key: str) -> Handle:
-        return self._keep(_Undeclare(self._session.liveliness().declare_token(key).undeclare))
+        return self._keep(Declaration(self._session.liveliness().declare_token(key).undeclare))
 
     def watch(self, key: str, changed: Changed) -> Handle:
         subscriber = self._session.liveliness().declare_subscriber(
             key, lambda s: changed(str(s.key_expr), s.kind == zenoh.SampleKind.PUT), history=True
         )
-        return self._keep(_Undeclare(subscriber.undeclare))
+        return self._keep(Declaration(subscriber.undeclare))
 
     def close(self) -> None:
         # A session that closes before an advanced subscriber is undeclared may keep the process from ending.
@@ -205,7 +204,9 @@ def _session_config(settings: BusSettings, *, listen: bool) -> dict[str, object]
     }
 
 
-class _Undeclare:
+class Declaration:
+    """A handle that calls a function once, when it is closed."""
+
     def __init__(self, undeclare: Callable[[], object]) -> None:
         self._undeclare: Callable[[], object] | None = undeclare
 
@@ -256,71 +257,3 @@ def _raise_again(payload: bytes, key: str) -> None:
     except (ValueError, KeyError, TypeError, AttributeError):
         raise Unreachable(f"{key} answered with an error: {payload[:200]!r}") from None
     raise kind(message)
-
-
-class MemoryBus:
-    """The bus within one process: delivers in the publisher's thread, in order."""
-
-    def __init__(self) -> None:
-        self._lock = threading.RLock()
-        self._receivers: dict[_Undeclare, tuple[re.Pattern[str], Receive]] = {}
-        self._answers: dict[str, Answer] = {}
-        self._tokens: list[str] = []
-        self._watchers: dict[_Undeclare, tuple[re.Pattern[str], Changed]] = {}
-
-    def publish(self, key: str, payload: bytes) -> None:
-        with self._lock:
-            receivers = [receive for pattern, receive in self._receivers.values() if pattern.fullmatch(key)]
-        for receive in receivers:
-            receive(key, payload)
-
-    def subscribe(self, key: str, receive: Receive, *, missed: Missed | None = None) -> Handle:
-        handle = _Undeclare(lambda: self._receivers.pop(handle, None))
-        with self._lock:
-            self._receivers[handle] = (_pattern(key), receive)
-        return handle
-
-    def serve(self, key: str, answer: Answer) -> Handle:
-        self._answers[key] = answer
-        return _Undeclare(lambda: self._answers.pop(key, None))
-
-    def ask(self, key: str, payload: bytes = b"", *, timeout: float = 10.0) -> bytes:
-        answer = self._answers.get(key)
-        if answer is None:
-            raise Unreachable(f"nobody answered {key} within {timeout:g} s; is that part of the service running?")
-        return answer(payload)
-
-    def announce(self, key: str) -> Handle:
-        self._tokens.append(key)
-        self._tell(key, True)
-
-        def withdraw() -> None:
-            self._tokens.remove(key)
-            self._tell(key, False)
-
-        return _Undeclare(withdraw)
-
-    def watch(self, key: str, changed: Changed) -> Handle:
-        handle = _Undeclare(lambda: self._watchers.pop(handle, None))
-        pattern = _pattern(key)
-        self._watchers[handle] = (pattern, changed)
-        for token in self._tokens:
-            if pattern.fullmatch(token):
-                changed(token, True)
-        return handle
-
-    def close(self) -> None:
-        self._receivers.clear()
-        self._answers.clear()
-        self._watchers.clear()
-
-    def _tell(self, key: str, alive: bool) -> None:
-        for pattern, changed in list(self._watchers.values()):
-            if pattern.fullmatch(key):
-                changed(key, alive)
-
-
-def _pattern(key: str) -> re.Pattern[str]:
-    """Compile a Zenoh key expression: `**` is any number of segments, `*` is one."""
-    segments = [".*" if s == "**" else re.escape(s).replace(r"\*", "[^/]*") for s in key.split("/")]
-    return re.compile("/".join(segments).replace("/.*", "(?:/.*)?"))

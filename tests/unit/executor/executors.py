@@ -8,8 +8,8 @@ import numpy as np
 from teachpath.executor.loop import Executor
 from teachpath.executor.settings import ExecutorSettings
 from teachpath.io import wire
-from teachpath.io.bus import MemoryBus
 from teachpath.io.documents import encode
+from teachpath.io.memory_bus import MemoryBus
 from teachpath.motion.arm.puma560 import ACCELERATION, JERK, SPEED
 from teachpath.motion.settings import MotionSettings
 from teachpath.records import Command, ExecutorStatus, JointState, JournalEntry, Lease, LeaseRequest, Plan, Setpoint

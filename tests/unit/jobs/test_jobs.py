@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from teachpath.errors import Conflict, LearningFailed, PathRefused
-from teachpath.io.bus import MemoryBus
+from teachpath.io.memory_bus import MemoryBus
 from teachpath.io.store.store import Store
 from teachpath.jobs.jobs import JobKind, Jobs, JobSettings
 from teachpath.records import Failure, Job, JobState, Suggestion

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from teachpath.io import wire
-from teachpath.io.bus import MemoryBus
+from teachpath.io.memory_bus import MemoryBus
 from teachpath.live.preview.commands import CLUSTER_COLORS
 from teachpath.live.preview.preview import Preview
 from teachpath.live.preview.scene_tree import Viewer

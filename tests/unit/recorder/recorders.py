@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from typing import Any
 
-from teachpath.io.bus import MemoryBus
+from teachpath.io.memory_bus import MemoryBus
 from teachpath.io.store.store import Store
 from teachpath.io.wire import encode_sample
 from teachpath.recorder.queries import RecorderQueries

@@ -1,6 +1,6 @@
 """Feedback to a hand: at once, once, and never on the recording thread."""
 
-from teachpath.io.bus import MemoryBus
+from teachpath.io.memory_bus import MemoryBus
 from teachpath.recorder.feedback import REPEAT_INTERVAL, FeedbackPublisher
 from teachpath.records import Phase, RecordingState, RecordingStatus
 from teachpath_proto import tracker_pb2

@@ -3,7 +3,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from teachpath.io.bus import MemoryBus
+from teachpath.io.memory_bus import MemoryBus
 from teachpath.io.wire import encode_setpoint, encode_state
 from teachpath.records import JointState, Setpoint
 from teachpath.robot.joint_feed import MAX_QUEUED, JointFeed

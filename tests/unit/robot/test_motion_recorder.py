@@ -9,7 +9,7 @@ import pytest
 
 from teachpath.errors import NotFound
 from teachpath.io import wire
-from teachpath.io.bus import MemoryBus
+from teachpath.io.memory_bus import MemoryBus
 from teachpath.io.store.motions import MotionHeader, Motions, read_motion
 from teachpath.motion.analysis.time_series import time_series
 from teachpath.records import ExecutorStatus, JournalEntry, Plan, Setpoint

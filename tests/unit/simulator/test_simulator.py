@@ -9,7 +9,7 @@ import pytest
 
 from teachpath.errors import Conflict, UnusableInput
 from teachpath.io import documents, wire
-from teachpath.io.bus import MemoryBus
+from teachpath.io.memory_bus import MemoryBus
 from teachpath.motion.arm.kinematics import downward_poses, inverse_kinematics, link_frames, tool_pose
 from teachpath.motion.arm.puma560 import LOWER, TORQUE, UPPER
 from teachpath.motion.collision.builtin_scenes import empty_scene, paper_scene

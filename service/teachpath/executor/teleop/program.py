@@ -141,7 +141,7 @@ class TeleopProgram:
         way = self._follower.way_to_rest()
         return way, RestPoint(way[-1] if len(way) else self._state.position)
 
-    def restart(self, point: RestPoint) -> bool:
+    def restart(self, point: RestPoint) -> None:
         """Stand where the arm rests, with the clutch open: the hand is elsewhere by now."""
         if self._clutch.engaged:
             self._clutch.disengage(LATE_ARM_HINT)
@@ -149,7 +149,6 @@ class TeleopProgram:
         self._follower.rest_at(point.position)
         still = np.zeros(6)
         self._state = MotionState(point.position, still, still, self._gripper.closed)
-        return True
 
     def advance_planning(self) -> None:
         """Do one slice of the planning of the next motion."""

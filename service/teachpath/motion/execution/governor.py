@@ -27,6 +27,7 @@ DURATION_TOLERANCE: Final = 1e-6  # [s] between the closed form of a ramp and Ru
 MAX_REVERSE_RATE: Final = 0.96  # of the way back: a plan has its margins on the other side (see `limit_margins`)
 MAX_STOP_RAMPS: Final = 12  # ramps to rest judged behind a setpoint at most
 MAX_STOP_TIME: Final = 2.0  # s, of a ramp to rest; with none so short the present motion goes on for a while
+STOP_JERK_SHARE: Final = 0.93  # of the jerk limit that a way to rest may use at its positions
 STOP_LEADS: Final = (0, 1, 2, 4, 8, 16, 32, 64)  # periods for which it goes on
 MAX_STOP_PERIODS: Final = 5000  # of a way to rest, where nothing but the end of the track is one
 
@@ -69,6 +70,8 @@ class Governor:
         self._dt = dt
         limits = trajectory.limits
         self._limits = np.stack([limits.speed * dt, limits.acceleration * dt**2, limits.jerk * dt**3])
+        # A player reads a way to rest between its positions too, where the jerk is a little larger than at them.
+        self._stop_limits = self._limits * np.array([[1.0], [1.0], [STOP_JERK_SHARE]])
         self._override = _share(override)
         self._held = False
         self._reversing = False
@@ -136,6 +139,12 @@ class Governor:
         self._sent[:] = self._motion[0, :6]
         self._held, self._reversing = True, False
 
+    def restart_at(self, tau: float, *, held: bool) -> None:
+        """Go on from plan time `tau` [s], in the direction as before, or stay held; the arm rests there already."""
+        reversing = self._reversing
+        self.rest_at(tau)
+        self._held, self._reversing = held, reversing and not held
+
     @property
     def tau(self) -> float:
         """The present plan time [s]."""
@@ -190,7 +199,16 @@ class Governor:
             if ended:
                 return self._sampled(lead, np.zeros(8))
             peak = kernels.find_ramp(
-                self._table, self._step, state, 0.0, sent, self._limits, self._dt, MAX_STOP_TIME, MAX_STOP_RAMPS, trial
+                self._table,
+                self._step,
+                state,
+                0.0,
+                sent,
+                self._stop_limits,
+                self._dt,
+                MAX_STOP_TIME,
+                MAX_STOP_RAMPS,
+                trial,
             )
             if peak >= 0.0:
                 return self._sampled(lead, trial)

@@ -77,8 +77,8 @@ class MotionProgram(Protocol):
     def way_to_rest(self) -> tuple[Array, RestPoint]:
         """Return the positions (n, 6) of the way to rest from the newest setpoint [rad], and where it ends."""
 
-    def restart(self, point: RestPoint) -> bool:
-        """Go on from where the arm rests at the end of a way to rest; False when nothing leads on from there."""
+    def restart(self, point: RestPoint) -> None:
+        """Go on from where the arm rests at the end of a way to rest."""
 
     def advance_planning(self) -> None:
         """Do one slice of the planning, in the time that is left behind a setpoint."""

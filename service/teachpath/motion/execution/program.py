@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Iterator
-from typing import Final
+from dataclasses import replace
 
 import numpy as np
 
@@ -14,12 +13,9 @@ from teachpath.motion.execution.governor import MIN_OVERRIDE, Governor, WayToRes
 from teachpath.motion.execution.segments import Detour, MotionState, RestPoint, Segment, plan_return_path, plan_segments
 from teachpath.motion.planning.certificate import verify
 from teachpath.motion.settings import MotionSettings
-from teachpath.motion.timing.jog import jog_trajectory, time_at_length
+from teachpath.motion.timing.jog import jog_trajectory, node_length, time_at_length
 from teachpath.motion.timing.timed_trajectory import TimedTrajectory
 from teachpath.records import Plan
-
-SAME_PLACE: Final = 1e-9  # [rad] within which two rests are one
-NODE_TOLERANCE: Final = 1e-5  # [m] within which the arm is at a node
 
 
 class PlanProgram:
@@ -50,7 +46,8 @@ class PlanProgram:
         verify(plan)
         self._plan = plan
         self._settings = settings
-        self._remaining: Iterator[Segment] = iter(plan_segments(plan, start_q, settings, dwell))
+        self._segments = plan_segments(plan, start_q, settings, dwell)
+        self._next = 0  # index of the segment behind the present one
         self._length = float(plan.lengths[-1])
         self._override = override
         self._held = False
@@ -183,44 +180,27 @@ class PlanProgram:
             governor.set_override(share)
 
     def plan_step(self, *, length: float = 0.0, nodes: int = 0) -> Detour:
-        """Plan a step from where the arm is held on the path; `start_detour` begins it.
-
-        Args:
-            length: along the path [m], negative is back; a step beyond an end of the path goes to that end.
-            nodes: the same in nodes of the plan, counted from the one where the arm is or has just been.
+        """Plan a step along the path by a length [m] or by nodes of the plan, at most to an end of the path.
 
         Raises:
             Conflict: the arm is not held on the path, or the path ends there.
         """
         segment, governor = self._segment, self._governor
         if segment is None or segment.trajectory is None or governor is None or not segment.is_path:
-            raise Conflict(
-                f"steps are taken on the path; the arm is {self.activity or 'at rest'}: resume, and hold it there"
-            )
+            activity = self.activity or "at rest"
+            raise Conflict(f"steps are taken on the path; the arm is {activity}: resume, and hold it there")
         if self._detour is not None and self._detour.end_time is None:
             raise Conflict(f"the arm is {self.activity}; resume, and hold it on the path")
         if not (self.held and self.at_rest):
             raise Conflict("the arm still moves; hold it first, then step")
-        goal = self._node(nodes) if nodes else self._arc_length + length
+        done = self._arc_length
+        goal = node_length(self._plan.lengths, done, nodes) if nodes else done + length
         end_time = time_at_length(segment.trajectory, min(max(goal, 0.0), self._length))
-        begin = governor.tau if self._detour is None else time_at_length(segment.trajectory, self._arc_length)
+        begin = governor.tau if self._detour is None else time_at_length(segment.trajectory, done)
         return Detour("", (jog_trajectory(segment.trajectory, begin, end_time, 1.0 / self._period),), end_time)
 
-    def _node(self, count: int) -> float:
-        """Return the arc length [m] of the node that is `count` nodes away; a node where the arm is does not count."""
-        lengths = self._plan.lengths
-        if count > 0:
-            node = int(np.searchsorted(lengths, self._arc_length + NODE_TOLERANCE, side="right")) + count - 1
-        else:
-            node = int(np.searchsorted(lengths, self._arc_length - NODE_TOLERANCE, side="left")) + count
-        return float(lengths[min(max(node, 0), len(lengths) - 1)])
-
     def plan_return(self, start_q: Array) -> Detour:
-        """Plan the way back from `start_q` (6,) to where the arm was held; `start_detour` begins it.
-
-        Raises:
-            PathRefused: the way is not free.
-        """
+        """Plan the way back from `start_q` (6,) to where the arm was held; raises PathRefused when it is not free."""
         assert self._segment is not None
         tracks = plan_return_path(self._plan, self._segment, start_q, self.current_q, self._settings)
         return Detour("on the way back to the path", tuple(tracks))
@@ -247,9 +227,7 @@ class PlanProgram:
         state = governor.step()
         on_path = segment.is_path and self.activity == segment.name
         if on_path:
-            self._arc_length = (
-                self._length if state.finished else state.s
-            )  # the table ends within rounding of the length
+            self._arc_length = self._length if state.finished else state.s  # the table ends a last bit away from it
         position, velocity, acceleration = governor.motion[:, :6].copy()
         self._state = MotionState(position, velocity, acceleration, segment.gripper_closed, on_path)
         if state.finished and not self.held:
@@ -266,26 +244,26 @@ class PlanProgram:
 
     def way_to_rest(self) -> tuple[Array, RestPoint]:
         """Return the positions (n, 6) of the way to rest from the newest setpoint, and where it ends."""
-        governor = self._active_governor
-        way = governor.way_to_rest() if governor is not None else WayToRest(np.empty((0, 6)), 0.0)
+        active = self._active_governor
+        way = active.way_to_rest() if active is not None else WayToRest(np.empty((0, 6)), 0.0)
         end = way.positions[-1] if len(way.positions) else self._state.position
-        return way.positions, RestPoint(end, governor, way.tau)
+        taus = tuple((governor, way.tau if governor is active else governor.tau) for governor in self._governors())
+        return way.positions, RestPoint(end, self._next - 1, self._detour, taus, self._elapsed, self._state.on_path)
 
-    def restart(self, point: RestPoint) -> bool:
-        """Go on from where the arm rests; returns False when the program has left that motion since."""
-        governor = self._active_governor
-        if governor is None or point.governor is not governor:
-            return bool(self.at_rest and np.abs(point.position - self._state.position).max() <= SAME_PLACE)
-        backward = governor.reversing
-        governor.rest_at(point.tau)
-        if not self._held:
-            governor.reverse() if backward else governor.resume()
-        if self._state.on_path:
-            self._arc_length = float(governor.motion[0, 6])
-        still = np.zeros(6)
-        position = governor.motion[0, :6].copy()
-        self._state = MotionState(position, still, still, self._state.gripper_closed, self._state.on_path)
-        return True
+    def restart(self, point: RestPoint) -> None:
+        """Go on from where the arm rests, as the program was at that setpoint, whatever it has done since."""
+        self._next = point.segment
+        self._advance()
+        self._elapsed, self._detour = point.elapsed, point.detour
+        for governor, tau in point.governors:
+            governor.restart_at(tau, held=self._held)
+        governors = deque(governor for governor, _ in point.governors)
+        if self._governor is not None:
+            self._governor = governors.pop()
+        self._detour_governors = governors
+        self._state = replace(self._state, position=point.position, on_path=point.on_path)
+        if point.on_path and self._governor is not None:
+            self._arc_length = float(self._governor.motion[0, 6])
 
     @property
     def _active_governor(self) -> Governor | None:
@@ -300,25 +278,24 @@ class PlanProgram:
         return governor
 
     def _finish(self) -> None:
-        detour = self._detour
-        if detour is None:
+        if self._detour is None:
             self._advance()
             return
         self._detour_governors.popleft()
         if self._detour_governors:
             return
-        self._detour = None
-        if detour.end_time is not None and self._governor is not None:
-            self._governor.rest_at(detour.end_time)
+        end_time, self._detour = self._detour.end_time, None
+        if end_time is not None and self._governor is not None:
+            self._governor.rest_at(end_time)
             self._held = True
 
     def _advance(self) -> None:
-        self._segment = next(self._remaining, None)
+        self._segment = self._segments[self._next] if self._next < len(self._segments) else None
+        self._next += 1
         self._elapsed, self._governor = 0.0, None
         if self._segment is None:
             return
-        closed = self._segment.gripper_closed
-        self._state = MotionState(self._state.position, np.zeros(6), np.zeros(6), closed)
+        self._state = MotionState(self._state.position, np.zeros(6), np.zeros(6), self._segment.gripper_closed)
         if self._segment.trajectory is not None:
             self._governor = self._governor_of(self._segment.trajectory)
             if self._held:

@@ -34,21 +34,6 @@ class MotionState:
 
 
 @dataclass(frozen=True, eq=False)
-class RestPoint:
-    """Where an arm rests that has followed the way to rest of one setpoint.
-
-    Attributes:
-        position: (6,) [rad].
-        governor: of the motion that it rests in; None where there is none.
-        tau: plan time at which it rests [s].
-    """
-
-    position: Array
-    governor: Governor | None = None
-    tau: float = 0.0
-
-
-@dataclass(frozen=True, eq=False)
 class Detour:
     """Motion that is no segment: a step along the path, or the way back to it.
 
@@ -61,6 +46,28 @@ class Detour:
     name: str
     trajectories: tuple[TimedTrajectory, ...]
     end_time: float | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class RestPoint:
+    """Where an arm rests that has followed the way to rest of one setpoint.
+
+    Attributes:
+        position: (6,) [rad].
+        segment: index of the segment of that setpoint.
+        detour: that was followed, if any.
+        governors: of the detour and of the segment in order, with their plan times [s]; that of the one which moves is
+            where the way to rest ends.
+        elapsed: of the segment's rest [s].
+        on_path: whether that setpoint was on the learned path.
+    """
+
+    position: Array
+    segment: int = 0
+    detour: Detour | None = None
+    governors: tuple[tuple[Governor, float], ...] = ()
+    elapsed: float = 0.0
+    on_path: bool = False
 
 
 @dataclass(frozen=True, eq=False)

@@ -12,6 +12,7 @@ from teachpath.motion.timing.joint_moves import rest_to_rest
 from teachpath.motion.timing.limit_margins import SYMMETRIC_MARGINS, limit_uses
 from teachpath.motion.timing.timed_trajectory import MAX_TABLE_STEP, TimedTrajectory, apply_chain_rule
 
+NODE_TOLERANCE: Final = 1e-5  # [m] within which the arm is at a node
 MIN_JOG: Final = 1e-6  # s of plan time or m of path, a step shorter than this is none
 MAX_SLOWDOWNS: Final = 4  # times that a step is slowed down at most
 MAX_TIME_ACCELERATION: Final = 1e3  # 1/s, second derivative of plan time where the joints hardly move
@@ -26,6 +27,15 @@ def time_at_length(trajectory: TimedTrajectory, s: float) -> float:
             s, np.maximum.accumulate(trajectory.table[:, 0, 6]), np.arange(len(trajectory.table)) * trajectory.step
         )
     )
+
+
+def node_length(lengths: Array, at: float, count: int) -> float:
+    """Return the length [m] of the node that is `count` nodes away from length `at`; a node there does not count."""
+    if count > 0:
+        node = int(np.searchsorted(lengths, at + NODE_TOLERANCE, side="right")) + count - 1
+    else:
+        node = int(np.searchsorted(lengths, at - NODE_TOLERANCE, side="left")) + count
+    return float(lengths[min(max(node, 0), len(lengths) - 1)])
 
 
 def jog_trajectory(trajectory: TimedTrajectory, begin: float, end: float, rate: float) -> TimedTrajectory:

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from teachpath.io.bus import MemoryBus
+from teachpath.io.memory_bus import MemoryBus
 from teachpath.live.preview import commands
 from teachpath.live.preview.commands import CLUSTER_COLORS
 from teachpath.live.preview.preview import Preview

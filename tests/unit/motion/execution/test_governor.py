@@ -102,6 +102,50 @@ def test_no_sequence_of_commands_breaks_a_limit(tracks: dict[str, TimedTrajector
 
 
 @pytest.mark.parametrize("name", ["line", *CURVES])
+def test_every_setpoint_has_a_way_to_rest_on_the_track_within_all_limits(
+    tracks: dict[str, TimedTrajectory], name: str
+) -> None:
+    fine = tracks[name](np.linspace(0.0, tracks[name].duration, 4001))[:, :6]
+    for seed in range(3):
+        rng = np.random.default_rng(seed)
+        log = Log(Governor(tracks[name], DT, override=rng.uniform(0.05, 1.0)))
+        for cycle in range(600):
+            if rng.random() < 0.05:
+                command(log.governor, rng)
+            log.step()
+            way = log.governor.way_to_rest()
+            if not len(way.positions):
+                assert log.governor.progress.at_rest
+                continue
+            np.testing.assert_allclose(way.positions[-1], tracks[name](np.array([way.tau]))[0, :6], atol=1e-9)
+            sent = np.array(log.sent[-3:])[:, :6]
+            rows = np.vstack([sent, way.positions, np.repeat(way.positions[-1:], 3, axis=0)])
+            uses = [np.abs(np.diff(rows, k, axis=0)) / DT**k for k in (1, 2, 3)]
+            for use, limit in zip(uses, (ARM_LIMITS.speed, ARM_LIMITS.acceleration, ARM_LIMITS.jerk), strict=True):
+                assert np.all(use <= limit * LIMIT)
+            if cycle % 60 == 0:
+                off = np.abs(way.positions[:, None] - fine).max(axis=2).min(axis=1)
+                assert off.max() <= np.abs(np.diff(fine, axis=0)).max()
+
+
+def test_it_goes_on_from_the_end_of_a_way_to_rest_in_its_direction(tracks: dict[str, TimedTrajectory]) -> None:
+    for reverse in (False, True):
+        log = Log(Governor(tracks["near"], DT))
+        log.until(lambda log=log: log.governor.tau > 0.5 * tracks["near"].duration, within=2000)
+        if reverse:
+            log.governor.reverse()
+            log.until(lambda log=log: log.governor.state[1] < -0.3, within=2000)
+        way = log.governor.way_to_rest()
+        log.governor.restart_at(way.tau, held=False)
+        np.testing.assert_allclose(log.governor.motion[0, :6], way.positions[-1], atol=1e-12)
+        assert log.governor.reversing is reverse
+        log.until(lambda log=log: log.governor.progress.at_rest, within=10)  # it begins from rest
+        for _ in range(50):
+            log.step()
+        assert (log.governor.tau < way.tau) is reverse
+
+
+@pytest.mark.parametrize("name", ["line", *CURVES])
 def test_a_hold_from_any_place_at_full_speed_stands_soon(tracks: dict[str, TimedTrajectory], name: str) -> None:
     track = tracks[name]
     stops = []

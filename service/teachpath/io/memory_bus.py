@@ -1,0 +1,77 @@
+"""The bus within one process, the twin of the Zenoh bus: it delivers in the thread of the publisher, in order."""
+
+from __future__ import annotations
+
+import re
+import threading
+
+from teachpath.errors import Unreachable
+from teachpath.io.bus import Answer, Changed, Declaration, Handle, Missed, Receive
+
+
+class MemoryBus:
+    """The bus within one process: delivers in the publisher's thread, in order."""
+
+    def __init__(self) -> None:
+        self._lock = threading.RLock()
+        self._receivers: dict[Declaration, tuple[re.Pattern[str], Receive]] = {}
+        self._answers: dict[str, Answer] = {}
+        self._tokens: list[str] = []
+        self._watchers: dict[Declaration, tuple[re.Pattern[str], Changed]] = {}
+
+    def publish(self, key: str, payload: bytes) -> None:
+        with self._lock:
+            receivers = [receive for pattern, receive in self._receivers.values() if pattern.fullmatch(key)]
+        for receive in receivers:
+            receive(key, payload)
+
+    def subscribe(self, key: str, receive: Receive, *, missed: Missed | None = None) -> Handle:
+        handle = Declaration(lambda: self._receivers.pop(handle, None))
+        with self._lock:
+            self._receivers[handle] = (_pattern(key), receive)
+        return handle
+
+    def serve(self, key: str, answer: Answer) -> Handle:
+        self._answers[key] = answer
+        return Declaration(lambda: self._answers.pop(key, None))
+
+    def ask(self, key: str, payload: bytes = b"", *, timeout: float = 10.0) -> bytes:
+        answer = self._answers.get(key)
+        if answer is None:
+            raise Unreachable(f"nobody answered {key} within {timeout:g} s; is that part of the service running?")
+        return answer(payload)
+
+    def announce(self, key: str) -> Handle:
+        self._tokens.append(key)
+        self._tell(key, True)
+
+        def withdraw() -> None:
+            self._tokens.remove(key)
+            self._tell(key, False)
+
+        return Declaration(withdraw)
+
+    def watch(self, key: str, changed: Changed) -> Handle:
+        handle = Declaration(lambda: self._watchers.pop(handle, None))
+        pattern = _pattern(key)
+        self._watchers[handle] = (pattern, changed)
+        for token in self._tokens:
+            if pattern.fullmatch(token):
+                changed(token, True)
+        return handle
+
+    def close(self) -> None:
+        self._receivers.clear()
+        self._answers.clear()
+        self._watchers.clear()
+
+    def _tell(self, key: str, alive: bool) -> None:
+        for pattern, changed in list(self._watchers.values()):
+            if pattern.fullmatch(key):
+                changed(key, alive)
+
+
+def _pattern(key: str) -> re.Pattern[str]:
+    """Compile a Zenoh key expression: `**` is any number of segments, `*` is one."""
+    segments = [".*" if s == "**" else re.escape(s).replace(r"\*", "[^/]*") for s in key.split("/")]
+    return re.compile("/".join(segments).replace("/.*", "(?:/.*)?"))
