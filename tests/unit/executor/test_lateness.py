@@ -176,11 +176,23 @@ def test_an_executor_that_is_gone_leaves_the_arm_at_rest_on_its_path(middle: Pla
 
 def test_a_stop_while_the_arm_comes_to_rest_ends_there(middle: Plan, path: np.ndarray) -> None:
     bench = PlayedBench()
-    bench.oversleep = {500: 300_000_000}
     bench.start(middle)
+    bench.when(
+        lambda: bench.state == "following" and bench.statuses[-1].progress > 0.2,
+        lambda: bench.oversleep.update({len(bench.setpoints) + 1: 300_000_000}),
+    )
     bench.when(lambda: bench.player.stops == 1, lambda: bench.command("stop"))
     bench.when(lambda: bench.state == "ended", bench.stop.set)
     bench.run()
     assert bench.statuses[-1].progress < 1.0
     assert off_path(np.array(bench.played), path) <= OFF_PATH
     assert is_within_limits(np.array(bench.played))
+
+
+def test_an_arm_that_rests_in_a_segment_that_is_over_is_taken_up_there(middle: Plan, path: np.ndarray) -> None:
+    for begin in range(20, 1200, 90):  # its setpoints get lost for a while, and the program goes on without it
+        bench = PlayedBench(lambda cycle, begin=begin: [] if begin <= cycle < begin + 40 else [0.0])
+        played = bench.run_whole(middle)
+        assert off_path(played, path) <= OFF_PATH
+        assert is_within_limits(played), largest_uses(played)
+        np.testing.assert_allclose(tool_pose(played[-1:])[0, :3, 3], path[-1], atol=1e-9)

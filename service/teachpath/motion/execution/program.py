@@ -50,11 +50,9 @@ class PlanProgram:
         self._next = 0  # index of the segment behind the present one
         self._length = float(plan.lengths[-1])
         self._override = override
-        self._held = False
-        self._waiting = False
+        self._held = self._waiting = False
         self._period = period
-        self._elapsed = 0.0
-        self._arc_length = 0.0
+        self._elapsed = self._arc_length = 0.0
         still = np.zeros(6)
         self._state = MotionState(np.array(start_q, dtype=np.float64), still, still, False)
         self._segment: Segment | None = None
