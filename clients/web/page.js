@@ -110,9 +110,11 @@ function stop() {
 eventStream.start((state, details) => showConnection("events", state, details));
 view.connect();
 
-// What the browser tests, and the curious, may ask: the state, paths drawn, where they are, how often the view was drawn.
+// What the browser tests, and the curious, may ask: the state, whether all of the task is drawn, paths drawn, where they
+// are, how often the view was drawn.
 globalThis.teachpath = {
   state: () => store.state,
+  settled: () => sceneLayers.isComplete,
   objectPaths: () => view.objectPaths(),
   worldMatrix: (path) => view.worldMatrix(path),
   project: (point) => view.overlay.project(point),
@@ -121,6 +123,7 @@ globalThis.teachpath = {
   replayGhost: () => run.replayGhost(),
   teleop: () => run.teleop(),
   headset: () => demonstrate.headset(),
+  session: () => demonstrate.session(),
   unproject: (x, y, plane) => view.overlay.unproject(x, y, plane),
   get editor() {
     return edit.editor;

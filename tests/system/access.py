@@ -8,7 +8,7 @@ AXE = (Path(__file__).parent / "assets" / "axe" / "axe.min.js").read_text()
 
 def grave(page: Any, where: str) -> list[tuple[str, str, str]]:
     """Return (where, rule, first element) of every serious or critical finding on the page as it looks now."""
-    page.wait_for_timeout(300)  # what fades has faded
+    page.evaluate("Promise.all(document.getAnimations().map((one) => one.finished.catch(() => {})))")  # what fades
     page.evaluate(f"{AXE};0")
     result = page.evaluate("axe.run(document, {resultTypes: ['violations']})")
     assert len(result["passes"]) > 10  # it has looked

@@ -4,7 +4,7 @@ from pathlib import Path
 import pytest
 
 from tests.system.demos import Start
-from tests.system.processes import Command, Service, free_ports
+from tests.system.processes import BUSY, Command, Service, free_ports
 
 
 @pytest.fixture(scope="module")
@@ -20,7 +20,7 @@ def start(tmp_path: Path) -> Iterator[Start]:
 
     def demo(*arguments: str, port: int | None = None) -> Command:
         web, bus = free_ports(2)
-        environment = {"TEACHPATH_BUS__ENDPOINT": f"tcp/127.0.0.1:{bus}"}
+        environment = {**BUSY, "TEACHPATH_BUS__ENDPOINT": f"tcp/127.0.0.1:{bus}"}
         words = ("demo", "--port", str(port or web), *arguments)
         started.append(Command(*words, folder=tmp_path, environment=environment))
         return started[-1]

@@ -9,12 +9,9 @@ from tests.system.processes import Command
 
 Start = Callable[..., Command]
 
-STORY = 90.0  # [s] for the whole story on a busy machine
-LEAVE = 3.0  # [s] after Ctrl-C
 
-
-def assert_nothing_left(command: Command, *, seconds: float) -> None:
-    command.wait_gone(seconds)
+def assert_nothing_left(command: Command) -> None:
+    command.wait_gone()
     assert list(command.temporary.iterdir()) == []
 
 

@@ -10,7 +10,6 @@ from teachpath.nurbs import Curve
 from tests.system.test_view import Visit
 
 U = np.linspace(0, 1, 301)
-SLOW = 60_000  # [ms] a busy machine draws a frame in seconds
 
 
 class Desk(Visit):
@@ -32,9 +31,7 @@ class Desk(Visit):
         self.until(f"editor.draft?.path === '{path}'")
 
     def until(self, condition: str) -> None:
-        self.page.wait_for_function(
-            f"() => {{ const editor = teachpath.editor; return {condition}; }}", timeout=SLOW, polling=50
-        )
+        self.page.wait_for_function(f"() => {{ const editor = teachpath.editor; return {condition}; }}", polling=50)
 
     def ask(self, expression: str) -> Any:
         return self.page.evaluate(f"() => {{ const editor = teachpath.editor; return {expression}; }}")
@@ -85,4 +82,4 @@ class Desk(Visit):
         self.click("#edit-save")
 
     def click(self, selector: str) -> None:
-        self.page.locator(selector).click(timeout=SLOW)
+        self.page.locator(selector).click()

@@ -7,7 +7,6 @@ import hashlib
 import json
 import subprocess
 import sys
-import time
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -23,6 +22,7 @@ from teachpath.recording.settings import RecordingSettings
 from teachpath.records import Calibration, RecordingRequest, RecordingStatus, Sample, StopRequest
 from teachpath_proto.keys import Keys
 from tests.unit.recording.hands import demonstration
+from tests.waiting import wait_until
 
 KEYS = Keys("disk")
 SHOWN = 110
@@ -71,13 +71,11 @@ class Trial:
         return {"faults": faults, "demonstrations": len(self.status().demonstrations), "files": self.files()}
 
     def send(self, samples: list[Sample]) -> None:
-        for s in samples:
-            self.bus.publish(KEYS.samples("glove"), encode_sample(s))
-        deadline = time.monotonic() + 10.0
-        while self.statistics().received < samples[-1].sequence and time.monotonic() < deadline:
-            time.sleep(0.01)
-        self.now += 1.0  # a flush is due
-        time.sleep(0.2)
+        for some in (samples[:-1], samples[-1:]):
+            for s in some:
+                self.bus.publish(KEYS.samples("glove"), encode_sample(s))
+            wait_until(lambda some=some: self.statistics().received >= some[-1].sequence, "all is recorded")
+            self.now += 1.0  # with the last one a flush is due
 
     def status(self) -> RecordingStatus:
         (status,) = self.recorder.statuses(with_statistics=True)

@@ -19,8 +19,9 @@ from teachpath.records import Calibration, RecordingRequest, RecordingStatus, Sa
 from teachpath_client import Link
 from teachpath_proto import tracker_pb2
 from teachpath_proto.keys import Keys
-from tests.system.processes import free_ports, wait_until
+from tests.system.processes import free_ports
 from tests.system.proxy import Proxy
+from tests.waiting import wait_until
 
 KEYS = Keys("line")
 SCENE = Scene("table", (), Shape("block", "box", (0.04, 0.04, 0.04), (0.5, 0.0, 0.5)))
@@ -51,19 +52,12 @@ class Desk:
     def end(self, tracker: str, last: int | None = None) -> Report:
         return report_of(self.recorder.end(StopRequest(tracker, last)))
 
-    def received(self, tracker: str, count: int, seconds: float = 20.0) -> None:
-        wait_until(
-            lambda: self.report(tracker).received >= count,
-            seconds=seconds,
-            what=f"{count} samples of {tracker} are recorded, {self.report(tracker).received} are",
-        )
+    def received(self, tracker: str, count: int) -> None:
+        wait_until(lambda: self.report(tracker).received >= count, f"{count} samples of {tracker} are recorded")
 
-    def refused_or_received(self, tracker: str, count: int, seconds: float = 20.0) -> None:
-        wait_until(
-            lambda: self.report(tracker).received + self.report(tracker).refused >= count,
-            seconds=seconds,
-            what=f"{count} payloads of {tracker} are counted",
-        )
+    def refused_or_received(self, tracker: str, count: int) -> None:
+        counted = lambda: self.report(tracker).received + self.report(tracker).refused >= count  # noqa: E731
+        wait_until(counted, f"{count} payloads of {tracker} are counted")
 
     def close(self) -> None:
         self.recorder.stop()
@@ -73,7 +67,8 @@ class Desk:
 
 @contextmanager
 def desk(folder: Path, **settings: Any) -> Iterator[Desk]:
-    opened = Desk(folder, RecordingSettings(**settings))
+    """A recorder with patience: no tracker is lost because the machine was slow."""
+    opened = Desk(folder, RecordingSettings(**{"longest_silence": 60.0, "handshake_timeout": 20.0, **settings}))
     try:
         yield opened
     finally:

@@ -12,18 +12,13 @@ from teachpath_client import HandReading, Link, Station, Tracker
 from teachpath_client.models import Execution
 from teachpath_proto.control import ExecutorState
 from teachpath_proto.keys import Keys
-from tests.system.test_view import Visit, wait_until
+from tests.system.test_view import Visit
+from tests.waiting import wait_until
 
 RESTING = frozenset(state for state in ExecutorState if state.is_resting)
 # Why the executor holds the arm by itself when the arm's own process gets no turn: an operator then says it again.
 STARVED = ("no joint state", "the arm has taken up no setpoint")
 AGAIN = "let the clutch go"  # what the executor asks for when the clutch is held though the arm does not follow
-# Settings of a station for a machine that is too busy for its arm, and has no graphics card.
-PATIENT = {
-    "TEACHPATH_RECORDING__LONGEST_GAP": "2",
-    "TEACHPATH_EXECUTOR__SILENCE": "5",
-    "TEACHPATH_EXECUTOR__HAND_SILENCE": "5",
-}
 
 Status = dict[str, Any]
 Done = Callable[[], bool]
@@ -63,25 +58,25 @@ class Operator:
         """Click an order; nothing happens where the page does not offer it now."""
         self.page.get_by_role("button", name=name, exact=True).click(force=True)
 
-    def hold_start(self, milliseconds: int) -> None:
-        """Press the button that starts the arm for so long."""
-        button = self.page.get_by_role("button", name="Hold to start the arm")
-        button.scroll_into_view_if_needed()
-        box = button.bounding_box()
-        assert box is not None
-        self.page.mouse.move(box["x"] + 20, box["y"] + box["height"] / 2)
-        self.page.mouse.down()
-        self.page.wait_for_timeout(milliseconds)
-        self.page.mouse.up()
-
     def start(self) -> None:
         """Hold the start until the arm begins."""
         before = [one.id for one in self.executions()]
-        self.page.wait_for_selector("button.hold:not([disabled])")
-        self.hold_start(1000)
+
+        def begun() -> bool:
+            button = self.page.locator("#arm button.hold:not([disabled])")
+            button.scroll_into_view_if_needed()
+            box = button.bounding_box()
+            assert box is not None
+            with self.page.expect_response(lambda answer: answer.url.endswith("/executions")) as answer:
+                self.page.mouse.move(box["x"] + 20, box["y"] + box["height"] / 2)
+                self.page.mouse.down()
+            self.page.mouse.up()
+            return bool(answer.value.request.method == "POST" and answer.value.ok)
+
+        self._visit.wait(begun)
         self._visit.wait(lambda: self.status().get("execution", "") not in ("", *before))
 
-    def until(self, true: Callable[[Status], bool], *, seconds: float = 60.0, again: str = "Resume") -> Status:
+    def until(self, true: Callable[[Status], bool], *, again: str = "Resume") -> Status:
         """Wait until the status is such; press `again` whenever the arm was held because its process got no turn."""
         seen: list[Status] = []
 
@@ -94,9 +89,9 @@ class Operator:
             return False
 
         try:
-            wait_until(done, seconds, lambda pause: self.page.wait_for_timeout(1000 * pause))
+            self._visit.wait(done)
         except AssertionError:
-            raise AssertionError(f"not within {seconds:g} s; {seen[-1]}") from None
+            raise AssertionError(f"it never was so; {seen[-1]}") from None
         return seen[-1]
 
 
@@ -133,7 +128,7 @@ class Leader(Operator):
             let_go()
             return reached
 
-        wait_until(led, 90.0)
+        wait_until(led, "the arm is led there")
         self.wait_ready()
 
 

@@ -5,20 +5,24 @@ import signal
 import socket
 import subprocess
 import sys
-import time
 import uuid
-from collections.abc import Callable
 from pathlib import Path
 from types import TracebackType
-from typing import Any
 
 import httpx
 
 from teachpath_client.station import Station
+from tests.waiting import HANG, wait_until
 
+# What is judged elsewhere: that a tracker, an arm or a hand which gets no turn on a busy machine counts as silent.
+BUSY = {
+    "TEACHPATH_RECORDING__LONGEST_GAP": "60",
+    "TEACHPATH_RECORDING__LONGEST_SILENCE": "60",
+    "TEACHPATH_RECORDING__HANDSHAKE_TIMEOUT": "20",
+    "TEACHPATH_EXECUTOR__SILENCE": "5",
+    "TEACHPATH_EXECUTOR__HAND_SILENCE": "5",
+}
 FAMILY = "SYSTEM_TEST_FAMILY"  # in the environment of a command and of all that it starts
-READY = 90.0  # [s] for a service to answer, on a busy machine
-OUTLIVED = 10.0  # [s] for the processes of a killed service to leave: they load, find it gone, and have a grace of 1.5
 
 
 def free_ports(count: int) -> list[int]:
@@ -28,15 +32,6 @@ def free_ports(count: int) -> list[int]:
     for probe in probes:
         probe.close()
     return ports
-
-
-def wait_until(true: Callable[[], Any], *, seconds: float, what: str) -> Any:
-    """Return what `true` returns as soon as that is true; fails after `seconds`."""
-    deadline = time.monotonic() + seconds
-    while not (result := true()):
-        assert time.monotonic() < deadline, f"not within {seconds:g} s: {what}"
-        time.sleep(0.01)
-    return result
 
 
 class Command:
@@ -77,26 +72,30 @@ class Command:
         """Press Ctrl-C: the terminal sends SIGINT to the whole foreground group."""
         os.killpg(self.process.pid, signal.SIGINT)
 
-    def wait(self, seconds: float) -> int:
-        """Return the exit status; fails when it does not end in time."""
+    def wait(self) -> int:
+        """Return the exit status as soon as it has ended."""
         try:
-            return self.process.wait(seconds)
+            return self.process.wait(HANG)
         except subprocess.TimeoutExpired:
-            raise AssertionError(f"still running after {seconds:g} s: {self.err[-2000:]}") from None
+            raise AssertionError(f"still running after {HANG:g} s: {self.err[-2000:]}") from None
 
     def relatives(self) -> list[str]:
         """Return the command lines of all running processes that it or its children started, itself included."""
         return [command for _, command in family(self.family)]
 
-    def wait_gone(self, seconds: float) -> None:
-        """Fail unless it and everything it started has ended within `seconds`."""
-        wait_until(lambda: not self.relatives(), seconds=seconds, what=f"all ended, but for {self.relatives()}")
+    def find(self, words: str) -> list[int]:
+        """Return the ids of the processes that it started and whose command line holds `words`."""
+        return [pid for pid, command in family(self.family) if words in command]
+
+    def wait_gone(self) -> None:
+        """Wait until it and everything it started has ended."""
+        wait_until(lambda: not self.relatives(), f"all ended, but for {self.relatives()}")
 
     def clean_up(self) -> None:
         """Kill what is left of it, so that a failed test harms no other."""
         for pid, _ in family(self.family):
             os.kill(pid, signal.SIGKILL)
-        self.process.wait(10)
+        self.process.wait(HANG)
 
 
 def family(name: str) -> list[tuple[int, str]]:
@@ -111,11 +110,11 @@ def family(name: str) -> list[tuple[int, str]]:
     return found
 
 
-def run(*arguments: str, folder: Path, seconds: float = 30.0) -> Command:
+def run(*arguments: str, folder: Path) -> Command:
     """Run a command to its end and return it."""
     command = Command(*arguments, folder=folder)
     try:
-        command.wait(seconds)
+        command.wait()
     finally:
         command.clean_up()
     return command
@@ -127,7 +126,7 @@ class Service(Command):
     Args:
         data: its data folder.
         ports: of web and bus, to stand where another one stood; None: free ones.
-        settings: further TEACHPATH_* variables.
+        settings: further TEACHPATH_* variables; else it has the patience of a busy machine.
 
     Attributes:
         station: the typed client of its REST API.
@@ -137,13 +136,13 @@ class Service(Command):
         self.data = data
         web, bus = self.ports = ports or free_ports(2)
         self.url, self.endpoint = f"http://127.0.0.1:{web}", f"tcp/127.0.0.1:{bus}"
-        environment = {"TEACHPATH_BUS__ENDPOINT": self.endpoint, **settings}
+        environment = {"TEACHPATH_BUS__ENDPOINT": self.endpoint, **BUSY, **settings}
         super().__init__("serve", "--data", str(data), "--port", str(web), folder=data.parent, environment=environment)
-        self.station = Station(self.url)
+        self.station = Station(self.url, timeout=HANG)
 
     def __enter__(self) -> "Service":
         try:
-            wait_until(self._answers, seconds=READY, what=f"the service answers; it says {self.err}")
+            wait_until(self._answers, f"the service answers; it says {self.err}")
         except BaseException:
             self.clean_up()
             raise
@@ -156,8 +155,8 @@ class Service(Command):
         try:
             if self.process.poll() is None:
                 self.process.terminate()
-                assert self.wait(10.0) == 0
-            self.wait_gone(OUTLIVED)
+                assert self.wait() == 0
+            self.wait_gone()
             assert "Traceback" not in self.err, self.err
         finally:
             self.clean_up()
@@ -165,11 +164,11 @@ class Service(Command):
     def kill(self) -> None:
         """End the service as a crash does; its other processes must leave by themselves."""
         self.process.kill()
-        self.process.wait(10)
+        self.process.wait(HANG)
 
     def _answers(self) -> bool:
         assert self.process.poll() is None, self.err
         try:
-            return httpx.get(f"{self.url}/api/v1/health", trust_env=False).is_success
+            return httpx.get(f"{self.url}/api/v1/health", timeout=HANG, trust_env=False).is_success
         except httpx.TransportError:
             return False

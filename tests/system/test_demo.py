@@ -2,39 +2,38 @@
 
 import signal
 import socket
-import time
 from pathlib import Path
 
 import pytest
 
 from teachpath_client import ClientError
 from teachpath_client.station import Station
-from tests.system.demos import LEAVE, STORY, Start, assert_nothing_left, assert_story
-from tests.system.processes import Command, free_ports, wait_until
+from tests.system.demos import Start, assert_nothing_left, assert_story
+from tests.system.processes import Command, free_ports
+from tests.waiting import wait_until
 
 pytestmark = pytest.mark.system
 
 
 def test_tells_the_whole_story_once_and_leaves_nothing(start: Start) -> None:
     demo = start("--once", "--speed", "10")
-    assert demo.wait(STORY) == 0, demo.err
+    assert demo.wait() == 0, demo.err
     assert_story(demo.out)
     assert "Traceback" not in demo.err
-    assert_nothing_left(demo, seconds=1.0)
+    assert_nothing_left(demo)
 
 
 @pytest.mark.parametrize("signalled", ["Ctrl-C in a terminal", "SIGINT to the command alone"])
 def test_ctrl_c_in_the_middle_of_recording_ends_everything(start: Start, signalled: str) -> None:
     demo = start("--speed", "4", port=(port := free_ports(1)[0]))
-    wait_until(lambda: demo.process.poll() or recorded(port), seconds=30, what="a demonstration is recorded")
+    wait_until(lambda: demo.process.poll() or recorded(port), "a demonstration is recorded")
     assert any("teachpath_client" in line for line in demo.relatives())
-    asked = time.monotonic()
     if signalled == "Ctrl-C in a terminal":
         demo.interrupt()
     else:
         demo.process.send_signal(signal.SIGINT)
-    assert demo.wait(LEAVE) == 1
-    assert_nothing_left(demo, seconds=asked + LEAVE - time.monotonic())
+    assert demo.wait() == 1
+    assert_nothing_left(demo)
     assert "stopped by the operator" in demo.err
     assert "Traceback" not in demo.err
 
@@ -49,12 +48,12 @@ def recorded(port: int) -> int:
 
 
 def assert_refused(demo: Command, sentence: str) -> None:
-    assert demo.wait(30) == 1
+    assert demo.wait() == 1
     assert demo.out == ""
     assert demo.err.splitlines()[-1].startswith("teachpath: ")
     assert sentence in demo.err
     assert "Traceback" not in demo.err
-    assert_nothing_left(demo, seconds=3.0)
+    assert_nothing_left(demo)
 
 
 def test_a_taken_web_port_is_said(start: Start) -> None:

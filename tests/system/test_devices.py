@@ -20,21 +20,14 @@ from teachpath_client.devices.protocol_simulators import FastrakSimulator, Glove
 from teachpath_client.synthetic import GOAL, RATE, START, experiment_1
 from teachpath_proto import tracker_pb2
 from teachpath_proto.keys import Keys
-from tests.system.processes import Service, wait_until
+from tests.system.processes import Service
+from tests.waiting import HANG, wait_until
 
 pytestmark = pytest.mark.system
 
 SHOWN = 353  # samples that the synthetic hand needs for one demonstration
 GLOVE = GloveCalibration((60.0,) * 22, (1 / 120,) * 22)
 TRACKER = "paper-hand"
-
-
-@pytest.fixture
-def service(tmp_path: Path) -> Iterator[Service]:
-    """A service that takes the pauses of a busy machine, which show as gaps of the devices, for no fault of theirs."""
-    limits = {"TEACHPATH_RECORDING__LONGEST_GAP": "60", "TEACHPATH_RECORDING__LONGEST_SILENCE": "60"}
-    with Service(tmp_path / "data", **limits) as service:
-        yield service
 
 
 @pytest.fixture
@@ -75,19 +68,18 @@ def test_the_first_demonstration_of_the_paper_through_fastrak_and_cyberglove(
     try:
         wait_until(
             lambda: (report := recording(service)) and report.received > 5,
-            seconds=30,
-            what=f"the station receives; the client ended with {client.poll()}",
+            f"the station receives; the client ended with {client.poll()}",
         )
         for device in devices:
             device.play(shown)
         for device in devices:
-            assert device.played.wait(30)
-        wait_until(lambda: (report := recording(service)) and report.demonstrations, seconds=10, what="it was cut")
+            assert device.played.wait(HANG)
+        wait_until(lambda: (report := recording(service)) and report.demonstrations, "it was cut")
         os.kill(client.pid, signal.SIGINT)
-        out, err = client.communicate(timeout=20)
+        out, err = client.communicate(timeout=HANG)
     finally:
         client.kill()
-        client.wait(10)
+        client.wait(HANG)
     assert client.returncode == 0, err
     assert "Ctrl-C ends it" in err
     assert "Traceback" not in err

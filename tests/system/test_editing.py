@@ -11,7 +11,7 @@ import pytest
 from teachpath.io.documents import from_document
 from teachpath.nurbs import Curve
 from tests.system.access import grave
-from tests.system.editors import SLOW, Desk, U
+from tests.system.editors import Desk, U
 from tests.system.processes import Service
 from tests.system.test_station import record
 
@@ -79,7 +79,7 @@ def test_a_control_point_is_dragged_taken_back_and_dragged_again(desks: Any, pat
     assert "pinned" in desk.page.inner_text("#message")
 
     desk.page.reload()
-    desk.page.wait_for_selector("html[data-scene=ready]", state="attached", timeout=SLOW)
+    desk.page.wait_for_selector("html[data-scene=ready]", state="attached")
     desk.open(paths[0])
     assert desk.curve().control_points.tobytes() == after.control_points.tobytes()
     desk.click("#edit-undo")
@@ -141,7 +141,7 @@ def test_the_second_of_two_editors_chooses_and_no_edit_is_lost(desks: Any, servi
     ben.drag(3, -30, -20)
     mine = ben.curve()
     ben.save()
-    ben.page.wait_for_selector("#conflict[open]", timeout=SLOW)
+    ben.page.wait_for_selector("#conflict[open]")
     assert "anna" in ben.page.inner_text("#conflict-status")
     assert grave(ben.page, "conflict") == []
     ben.click("#conflict button[value=theirs]")
@@ -154,7 +154,7 @@ def test_the_second_of_two_editors_chooses_and_no_edit_is_lost(desks: Any, servi
     anna.save()
     anna.until("editor.draft.base.number === 3")
     ben.save()
-    ben.page.wait_for_selector("#conflict[open]", timeout=SLOW)
+    ben.page.wait_for_selector("#conflict[open]")
     ben.page.fill("#conflict-branch", "bens")
     ben.click("#conflict button[value=mine]")
     ben.until("editor.draft.base.number === 4")

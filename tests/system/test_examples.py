@@ -3,27 +3,41 @@
 import os
 import subprocess
 import sys
-from collections.abc import Iterator
+import tempfile
+from collections.abc import Callable, Iterator
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
 
 from teachpath.io.store.motions import read_motion
-from tests.system.processes import Service, run, wait_until
+from teachpath_client import ClientError
+from tests.system.operators import STARVED
+from tests.system.processes import Service, run
+from tests.waiting import HANG, wait_until
 
 pytestmark = pytest.mark.system
 
 EXAMPLES = Path(__file__).parents[2] / "clients" / "examples"
 
 
-def example(name: str, *arguments: str) -> str:
-    """Run an example to its end and return what it printed."""
+def example(name: str, *arguments: str, meanwhile: Callable[[], object] = lambda: None) -> str:
+    """Run an example to its end and return what it printed; do something again and again meanwhile."""
     command = [sys.executable, "-W", "error", str(EXAMPLES / name), "--task", "arc", *arguments]
     clean = {key: value for key, value in os.environ.items() if not key.startswith("TEACHPATH_")}
-    ended = subprocess.run(command, env=clean, capture_output=True, text=True, timeout=60)
-    assert ended.returncode == 0, ended.stdout + ended.stderr
-    assert ended.stderr == ""
-    return ended.stdout
+    with tempfile.TemporaryFile("w+") as out, tempfile.TemporaryFile("w+") as err:
+        running = subprocess.Popen(command, env=clean, stdout=out, stderr=err)
+        try:
+            wait_until(lambda: (meanwhile(), running.poll() is not None)[1], f"{name} ends")
+        finally:
+            running.kill()
+            running.wait()
+        for stream in (out, err):
+            stream.seek(0)
+        printed, said = out.read(), err.read()
+    assert running.returncode == 0, printed + said
+    assert said == ""
+    return printed
 
 
 @pytest.fixture(scope="module")
@@ -51,8 +65,15 @@ def test_the_examples_show_a_task_learn_it_and_run_it_on_a_robot_of_their_own(dr
     assert all(f"  demonstration {number}: " in learned for number in (1, 2, 3))
     assert "control points, at most" in learned
 
-    driven.station.wait_for_arm()
-    ran = example("03_run_a_path.py", "--url", driven.url)
+    driven.station.wait_for_arm(timeout=HANG)
+
+    def resume_when_starved() -> None:
+        for execution in driven.station.executions():
+            if execution.status.state == "held" and execution.status.reason.startswith(STARVED):
+                with suppress(ClientError):
+                    driven.station.steer(execution.id, "resume")
+
+    ran = example("03_run_a_path.py", "--url", driven.url, meanwhile=resume_when_starved)
     assert "of a limit by joint" in ran
     assert "\nended: tracking error" in ran
     (execution,) = driven.station.executions()
@@ -65,7 +86,7 @@ def test_the_examples_show_a_task_learn_it_and_run_it_on_a_robot_of_their_own(dr
 def _judge(service: Service, execution: str, folder: Path) -> None:
     """Fetch what was executed, look at it as curves, and judge it; then a log that was tampered with."""
     ended = service.data / "executions" / f"{execution}.mcap"
-    wait_until(ended.exists, seconds=10, what="the recording is whole")
+    wait_until(ended.exists, "the recording is whole")
     drawn = service.station.series(execution, points=100)
     assert len(drawn.times) == 100
     assert drawn.gripper_closed.count(True) > 10
@@ -96,7 +117,7 @@ def test_an_example_is_short_and_says_what_it_is_for(file: Path) -> None:
 
 def test_an_example_without_a_service_says_what_is_missing() -> None:
     command = [sys.executable, str(EXAMPLES / "02_learn_over_rest.py"), "--url", "http://127.0.0.1:9"]
-    ended = subprocess.run(command, capture_output=True, text=True, timeout=60)
+    ended = subprocess.run(command, capture_output=True, text=True, timeout=HANG)
     assert ended.returncode == 1
     assert "start it with: teachpath serve" in ended.stderr
     assert "Traceback" not in ended.stderr

@@ -31,7 +31,8 @@ def endpoint(tmp_path: Path) -> Iterator[str]:
     endpoint = f"tcp/127.0.0.1:{port}"
     bus, store = listen_on_bus(BusSettings(endpoint=endpoint)), Store(StoreSettings(data_dir=str(tmp_path)))
     lookup = Lookup(scene=lambda _: paper_scene(), calibration=Calibration)
-    recorder = Recorder(bus, Keys(), store, RecordingSettings(), lookup)
+    settings = RecordingSettings(longest_silence=60.0, handshake_timeout=20.0)  # of a busy machine
+    recorder = Recorder(bus, Keys(), store, settings, lookup)
     queries = RecorderQueries(bus, Keys(), recorder)
     recorder.start()
     queries.start()
@@ -43,7 +44,7 @@ def endpoint(tmp_path: Path) -> Iterator[str]:
 
 
 def test_a_series_of_takes_is_followed_on_the_terminal(endpoint: str, capsys: pytest.CaptureFixture[str]) -> None:
-    tracker = ["tracker", "--source", "synthetic", "--endpoint", endpoint, "--speed", "20", "--takes", "2"]
+    tracker = ["tracker", "--source", "synthetic", "--endpoint", endpoint, "--speed", "5", "--takes", "2"]
     main([*tracker, "--task", "series", "--scene", "paper"])
     lines = capsys.readouterr().err.splitlines()
     takes = [line for line in lines if line.startswith("  ")]

@@ -18,6 +18,7 @@ pytestmark = pytest.mark.system
 
 TASK = "late"
 ANY = "[^/]*"
+A_WHILE = 1000  # [ms] in which what must not happen would show, on most machines; where it does not, nothing fails
 
 
 @pytest.fixture(scope="module")
@@ -200,9 +201,10 @@ def test_a_version_that_is_taken_is_taken_into_its_own_path(desk: Desk, paths: l
     version.wait()
     desk.page.locator(f"#edit-path [data-path='{paths[1]}']").click()
     desk.until(f"editor.draft.path === '{paths[1]}'")
+    before = desk.curve()
     version.let_go()
     assert desk.ask("editor.draft.path") == paths[1]
-    assert not desk.ask("editor.draft.edited")
+    assert desk.curve().control_points.tobytes() == before.control_points.tobytes()
 
 
 def test_what_is_edited_and_typed_while_a_version_is_saved_is_kept(desk: Desk, paths: list[str]) -> None:
@@ -343,9 +345,10 @@ def test_no_arm_is_led_for_a_tab_that_was_left(desk: Desk) -> None:
     robot.wait(2)  # the plots ask too
     desk.click("#tab-ways")
     robot.over()
+    desk.page.wait_for_timeout(A_WHILE)
+    assert orders == []
     desk.click("#tab-run")
     desk.wait(desk.page.get_by_role("button", name="Lead the arm").is_enabled)
-    assert orders == []
 
 
 def test_the_calibration_of_a_live_hand_stays_chosen(desk: Desk, service: Service) -> None:
@@ -380,5 +383,6 @@ def test_nothing_is_recorded_for_a_task_that_was_left(desk: Desk, service: Servi
     task.wait()
     desk.page.select_option("#task", "bare")
     task.over()
-    desk.page.wait_for_selector("html[data-session='']", state="attached")
+    desk.page.wait_for_timeout(A_WHILE)
+    assert desk.page.locator("html").get_attribute("data-session") == ""
     assert service.station.recordings(TASK) == service.station.recordings("bare") == []

@@ -17,6 +17,7 @@ from tests.system.access import grave
 from tests.system.processes import Service, run
 from tests.system.test_station import record
 from tests.system.test_view import Visit
+from tests.waiting import HANG
 
 pytestmark = pytest.mark.system
 
@@ -25,19 +26,34 @@ TABS = ("demonstrate", "ways", "edit", "run")
 SOCKETS = ("view", "events", "joints", "trackers/page-x/samples")
 
 
+def learn(service: Service, task: str) -> Run:
+    """Show the paper's first experiment, learn it, and return the run."""
+    record(service, task, 12, speed=8.0)
+    return service.station.learn(task)
+
+
 @pytest.fixture(scope="module")
 def learned(service: Service) -> Run:
-    service.station.make_task("bare")  # with nothing in it; the page chooses the newest one
-    record(service, TASK, 12, speed=8.0)
-    return service.station.learn(TASK)
+    service.station.make_task("bare")  # with nothing in it
+    return learn(service, TASK)
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture
 def visit(browser: Any, service: Service, learned: Run) -> Iterator[Visit]:
+    """A page of its own for every test, in which the task is chosen."""
     visit = Visit(browser, service.url)
     visit.page.set_viewport_size({"width": 1000, "height": 600})
+    choose(visit, TASK)
     yield visit
     visit.page.close()
+
+
+def choose(visit: Visit, task: str) -> None:
+    """Choose a task, and wait until all of it is drawn."""
+    visit.page.wait_for_selector(f"#task option[value={task}]", state="attached")
+    visit.page.select_option("#task", task)
+    shown = f"teachpath.state().task === '{task}' && teachpath.state().runs !== null && teachpath.settled()"
+    visit.page.wait_for_function(f"() => {shown}")
 
 
 def tab(visit: Visit, name: str) -> None:
@@ -50,8 +66,7 @@ def test_nothing_serious_keeps_anybody_from_the_page(visit: Visit, scheme: Any) 
     page.emulate_media(color_scheme=scheme)
     found = []
     for task in (TASK, "bare"):
-        page.wait_for_selector(f"#task option[value={task}]", state="attached")
-        page.select_option("#task", task)
+        choose(visit, task)
         for name in TABS:
             tab(visit, name)
             found += grave(page, f"{task}, {name}")
@@ -59,8 +74,6 @@ def test_nothing_serious_keeps_anybody_from_the_page(visit: Visit, scheme: Any) 
         page.locator(f"#{name}-button").click()
         found += grave(page, name)
         page.keyboard.press("Escape")
-    page.select_option("#task", TASK)
-    page.emulate_media(color_scheme="light")
     assert found == []
 
 
@@ -72,13 +85,13 @@ def test_a_task_is_made_in_the_page_and_kept_through_a_reload(visit: Visit, serv
         page.get_by_label("Scene", exact=True).select_option("empty")
         page.get_by_role("button", name="Make the task").click()
         if name == TASK:
-            assert "already" in page.locator("#message .error").inner_text()
+            page.wait_for_selector("#message .error:has-text('already')")
             page.keyboard.press("Escape")
     visit.wait(lambda: page.locator("#task").input_value() == "another")
     assert service.station.get_task("another").scene == "empty"
     page.select_option("#task", TASK)
     page.reload()
-    page.wait_for_selector("html[data-scene=ready]", state="attached", timeout=30_000)
+    page.wait_for_selector("html[data-scene=ready]", state="attached")
     assert page.locator("#task").input_value() == TASK
 
 
@@ -87,25 +100,23 @@ def test_no_request_leaves_the_machine(visit: Visit, service: Service) -> None:
     visit.page.on("request", lambda request: asked.append(request.url))
     visit.page.on("websocket", lambda socket: asked.append(socket.url))
     visit.page.reload()
-    visit.page.wait_for_selector("html[data-scene=ready]", state="attached", timeout=30_000)
+    visit.page.wait_for_selector("html[data-scene=ready]", state="attached")
     for name in TABS:
         tab(visit, name)
-        visit.page.wait_for_timeout(200)
+    visit.wait(lambda: len(asked) > 60)
     assert visit.said == []
-    assert len(asked) > 60
     host = service.url.partition("//")[2]
     places = {url.partition("//")[2].partition("/")[0] for url in asked if not url.startswith(("data:", "blob:"))}
     assert places == {host}
     # and where a script would ask, the policy does not let it
     blocked = "fetch('http://127.0.0.2:9/').then(() => 'sent', (error) => error.message)"
     assert visit.page.evaluate(blocked) == "Failed to fetch"
-    assert "violates" in " ".join(visit.said)
+    visit.wait(lambda: "violates" in " ".join(visit.said))
     inline = (
         "const s = document.createElement('script'); s.textContent = 'globalThis.ran = true'; document.head.append(s);"
     )
     visit.page.evaluate(f"(() => {{ {inline} }})()")
     assert visit.page.evaluate("globalThis.ran === undefined")
-    visit.said.clear()
 
 
 @pytest.mark.parametrize("resource", SOCKETS)
@@ -139,10 +150,12 @@ def test_what_is_pointed_at_in_a_table_stands_out_in_the_view_and_back(visit: Vi
     visit.page.wait_for_selector(f"{card}.chosen")
 
 
-def test_the_cut_is_dragged_to_make_fewer_ways(visit: Visit, service: Service, learned: Run) -> None:
+def test_the_cut_is_dragged_to_make_fewer_ways(visit: Visit, service: Service) -> None:
+    learned = learn(service, "cut")
+    choose(visit, "cut")
     tab(visit, "ways")
     said = visit.page.locator("#cut output")
-    assert said.inner_text().startswith("3 ways")
+    visit.wait(lambda: said.inner_text().startswith("3 ways"))
     handle = visit.page.locator("#cut .cut-handle")
     handle.scroll_into_view_if_needed()
     tree, box = visit.page.locator("#cut .tree svg").bounding_box(), handle.bounding_box()
@@ -162,50 +175,58 @@ def test_the_cut_is_dragged_to_make_fewer_ways(visit: Visit, service: Service, l
     assert set(re.findall(r"way-\d", classes)) == {"way-0", "way-1"}
     visit.page.get_by_role("button", name="Make 2 ways").click()
     visit.wait(lambda: visit.page.locator("#learned article.card").count() == 2)
-    newest = service.station.runs(TASK)[0].learned
+    newest = service.station.runs("cut")[0].learned
     assert max(len(cluster.members) for cluster in newest.clusters) > max(
         len(cluster.members) for cluster in learned.learned.clusters
     )
     assert visit.said == []
 
 
-def test_after_a_restart_of_the_service_the_page_shows_the_truth_again(visit: Visit, service: Service) -> None:
-    service.process.terminate()
-    assert service.wait(10) == 0
-    visit.page.wait_for_selector("html[data-connection=lost][data-events=lost]", state="attached")
-    assert "No connection to the service" in visit.page.locator("#connection").inner_text()
+def test_after_a_restart_of_the_service_the_page_shows_the_truth_again(browser: Any, tmp_path: Path) -> None:
+    with Service(tmp_path / "data") as service:
+        learn(service, TASK)
+        visit = Visit(browser, service.url)
+        choose(visit, TASK)
+        service.process.terminate()
+        assert service.wait() == 0
+    page = visit.page
+    page.wait_for_selector("html[data-connection=lost][data-events=lost]", state="attached")
+    visit.wait(lambda: "No connection to the service" in page.locator("#connection").inner_text())
     for name in TABS:
         tab(visit, name)
-        assert grave(visit.page, f"without the service, {name}") == []
-    assert "the arm holds" in visit.page.locator("#arm .state").inner_text()
+        assert grave(page, f"without the service, {name}") == []
+    assert "the arm holds" in page.locator("#arm .state").inner_text()
     tab(visit, "demonstrate")
-    assert "Not known" in visit.page.locator("#recordings").inner_text()
+    assert "Not known" in page.locator("#recordings").inner_text()
     tab(visit, "ways")
-    visit.page.get_by_role("button", name="Learn anew").click()
-    assert "Is it running?" in visit.page.locator("#message .error").inner_text()
-    assert grave(visit.page, "an error is told") == []
+    page.get_by_role("button", name="Learn anew").click()
+    page.wait_for_selector("#message .error:has-text('Is it running?')")
+    assert grave(page, "an error is told") == []
     tab(visit, "run")
     with Service(service.data, ports=service.ports) as again:
         again.station.make_task("made-meanwhile")
-        visit.page.wait_for_selector("html[data-connection=live][data-events=live]", state="attached", timeout=30_000)
-        visit.page.wait_for_selector("#task option[value=made-meanwhile]", state="attached")
-        assert visit.page.locator("#connection").inner_text() == "Connected"
-        assert "At rest" in visit.page.locator("#arm .state").inner_text()
-        visit.page.locator("#events-button").click()
-        said = visit.page.locator("#events").inner_text()
+        page.wait_for_selector("html[data-connection=live][data-events=live]", state="attached")
+        page.wait_for_selector("#task option[value=made-meanwhile]", state="attached")
+        assert page.locator("#connection").inner_text() == "Connected"
+        visit.wait(lambda: "At rest" in page.locator("#arm .state").inner_text())
+        page.locator("#events-button").click()
+        said = page.locator("#events").inner_text()
         assert said.index("The service answers again") < said.index("The service does not answer any more")
+        page.close()
 
 
-def test_the_review_package_opens_without_the_service(browser: Any, service: Service, tmp_path: Path) -> None:
+def test_the_review_package_opens_without_the_service(
+    browser: Any, service: Service, learned: Run, tmp_path: Path
+) -> None:
     data = ("--data", str(service.data))
-    out = run("export", "--report", TASK, "--into", str(tmp_path), *data, folder=tmp_path, seconds=90)
+    out = run("export", "--report", TASK, "--into", str(tmp_path), *data, folder=tmp_path)
     assert out.process.returncode == 0, out.err
     assert str(tmp_path / f"{TASK}.html") in out.out
     page, asked, said = browser.new_page(), [], []
     page.on("request", lambda request: asked.append(request.url))
     page.on("console", lambda message: said.append(message.text))
     page.goto(f"file://{tmp_path / TASK}.html")
-    page.wait_for_selector("html[data-report=ready]", state="attached", timeout=60_000)
+    page.wait_for_selector("html[data-report=ready]", state="attached", timeout=1000 * HANG)
     found = grave(page, "review package")
     page.close()
     assert [url for url in asked if not url.startswith(("file:", "data:", "blob:"))] == []

@@ -6,6 +6,7 @@ import subprocess
 import sys
 import threading
 import time
+from collections.abc import Iterator
 
 import pytest
 
@@ -13,12 +14,22 @@ from teachpath_client import ClientError, Link, Tracker
 from teachpath_client.models import RecordingReport
 from teachpath_proto import tracker_pb2
 from teachpath_proto.keys import Keys
-from tests.system.processes import Service, wait_until
+from tests.system.processes import Service
 from tests.system.test_station import FAST, SHOWN, record, shown
+from tests.waiting import HANG, wait_until
 
 pytestmark = pytest.mark.system
 
 KEYS = Keys()
+SILENCE = 5  # [s] more than a client that is alive gets no turn
+
+
+@pytest.fixture(scope="module")
+def impatient(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Service]:
+    """A service that waits for no tracker that is silent."""
+    folder = tmp_path_factory.mktemp("impatient")
+    with Service(folder / "data", TEACHPATH_RECORDING__LONGEST_SILENCE=str(SILENCE)) as service:
+        yield service
 
 
 def names(service: Service) -> list[str]:
@@ -38,13 +49,13 @@ def test_a_tracker_that_is_killed_in_mid_take_leaves_a_reject_that_says_so(servi
             running = service.station.recordings("killed") if "killed" in known else []
             return any(report.phase == "transport" and report.received > 150 for report in running)
 
-        wait_until(carries, seconds=20, what="the hand has carried for a second")
+        wait_until(carries, "the hand has carried for a second")
         assert "glove-killed" in names(service)
     finally:
         client.send_signal(signal.SIGKILL)
-        client.wait(10)
-    wait_until(lambda: "glove-killed" not in names(service), seconds=1.0, what="the tracker has gone")
-    wait_until(lambda: service.station.demonstrations("killed"), seconds=1.0, what="the take has ended")
+        client.wait(HANG)
+    wait_until(lambda: "glove-killed" not in names(service), "the tracker has gone")
+    wait_until(lambda: service.station.demonstrations("killed"), "the take has ended")
     (only,) = service.station.demonstrations("killed")
     assert (only.verdict, only.reasons[0]) == ("reject", "the tracker has gone in mid-take")
     (report,) = service.station.recordings("killed")
@@ -57,7 +68,8 @@ def test_a_tracker_that_is_killed_in_mid_take_leaves_a_reject_that_says_so(servi
     assert [d.verdict for d in service.station.demonstrations("killed")] == ["reject", "clean"]
 
 
-def test_a_tracker_whose_process_is_stopped_is_silent_within_a_second_and_its_take_ends(service: Service) -> None:
+def test_a_tracker_whose_process_is_stopped_is_silent_and_its_take_ends(impatient: Service) -> None:
+    service = impatient
     words = ["synthetic", "--task", "stopped", "--scene", "paper", "--tracker", "glove-stopped"]
     client = subprocess.Popen(
         [sys.executable, "-m", "teachpath_client", *words, "--endpoint", service.endpoint, "--speed", "1"],
@@ -74,18 +86,18 @@ def test_a_tracker_whose_process_is_stopped_is_silent_within_a_second_and_its_ta
         return trackers["glove-stopped"].silence > 0.8
 
     try:
-        wait_until(lambda: (now := report()) and now.phase == "transport", seconds=20, what="the hand carries")
+        wait_until(lambda: (now := report()) and now.phase == "transport", "the hand carries")
         client.send_signal(signal.SIGSTOP)
-        wait_until(silent, seconds=1.2, what="the tracker is silent")
-        wait_until(lambda: service.station.demonstrations("stopped"), seconds=3.0, what="the take has ended")
+        wait_until(silent, "the tracker is silent")
+        wait_until(lambda: service.station.demonstrations("stopped"), "the take has ended")
         (only,) = service.station.demonstrations("stopped")
-        assert (only.verdict, only.reasons[0]) == ("reject", "no sample came for 2 s in mid-take")
+        assert (only.verdict, only.reasons[0]) == ("reject", f"no sample came for {SILENCE} s in mid-take")
         client.send_signal(signal.SIGCONT)
-        wait_until(lambda: (now := report()) and now.state == "recording", seconds=5.0, what="it is recorded again")
+        wait_until(lambda: (now := report()) and now.state == "recording", "it is recorded again")
         assert not silent()
     finally:
         client.send_signal(signal.SIGKILL)
-        client.wait(10)
+        client.wait(HANG)
 
 
 def malformed(chance: random.Random) -> bytes:
@@ -180,16 +192,13 @@ def test_two_trackers_of_one_name_are_told_and_their_take_is_not_trusted(service
     assert all(d.verdict == "reject" for d in service.station.demonstrations("twins"))
 
 
-def test_a_client_that_stops_without_a_word_is_not_waited_for(service: Service) -> None:
+def test_a_client_that_stops_without_a_word_is_not_waited_for(impatient: Service) -> None:
+    service = impatient
     with Link(service.endpoint) as link:
         tracker = Tracker(link, "glove-mute")
         tracker.start("mute", scene="paper")
         tracker.publish(list(shown(1))[:200], speed=FAST)
-        wait_until(
-            lambda: service.station.demonstrations("mute"),
-            seconds=5.0,
-            what="the take ends by itself while the client lives",
-        )
+        wait_until(lambda: service.station.demonstrations("mute"), "the take ends by itself while the client lives")
         (only,) = service.station.demonstrations("mute")
-        assert (only.verdict, only.reasons[0]) == ("reject", "no sample came for 2 s in mid-take")
+        assert (only.verdict, only.reasons[0]) == ("reject", f"no sample came for {SILENCE} s in mid-take")
         assert tracker.stop().lost == 0

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from tests.system.carriers import (
+    ARRIVED,
     GOAL,
     HEADSET,
     HEAR,
@@ -17,16 +18,17 @@ from tests.system.carriers import (
     carry,
     carry_worn,
     finish,
-    gaps_of,
     has_no_gaps,
     is_judged_by_its_frames,
     move_controller,
     move_hand,
     phase,
+    until_box,
 )
 from tests.system.processes import Service
 from tests.system.test_view import Visit
 
+LOW = START[2] + 0.05  # [m]
 ASSETS = Path(__file__).parent / "assets"
 
 pytestmark = pytest.mark.system
@@ -38,13 +40,11 @@ navigator.getGamepads = () => [pad];
 """
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture
 def visit(browser: Any, service: Service) -> Iterator[Visit]:
-    """One page for the tests; each of them finishes its sitting."""
     visit = Visit(browser, service.url, script=GAMEPAD)
     # Without a graphics card every pixel costs: a small view leaves the machine to the sampling.
     visit.page.set_viewport_size({"width": 900, "height": 420})
-    visit.page.wait_for_timeout(300)
     yield visit
     visit.page.close()
 
@@ -77,9 +77,10 @@ def test_a_take_by_keyboard(visit: Visit, service: Service) -> None:
     keys = visit.page.keyboard
     keys.press("Enter")
     phase(visit, "carrying")
-    for key in ("PageUp", "ArrowLeft", "PageDown"):
+    far = f"Math.hypot(at[0] - {START[0]}, at[1] - {START[1]}) > 0.1"
+    for key, there in (("PageUp", f"at[2] > {START[2] + 0.1}"), ("ArrowLeft", far), ("PageDown", f"at[2] < {LOW}")):
         keys.down(key)
-        visit.page.wait_for_timeout(500)
+        until_box(visit, there)
         keys.up(key)
     keys.press("Enter")
     phase(visit, "ready")
@@ -100,9 +101,11 @@ def test_a_take_by_gamepad(visit: Visit, service: Service) -> None:
     begin(visit, service, "by-pad")
     visit.page.evaluate("pad.connected = true; pad.buttons[0].pressed = true; 0")
     phase(visit, "carrying")
-    for axes in ("0, 0, 0, -1", "-1, 0.1, 0, 0"):  # the right stick up, then the left one to the left
+    far = f"Math.hypot(at[0] - {START[0]}, at[1] - {START[1]}) > 0.1"
+    # the right stick up, then the left one to the left
+    for axes, there in (("0, 0, 0, -1", f"at[2] > {START[2] + 0.1}"), ("-1, 0.1, 0, 0", far)):
         visit.page.evaluate(f"pad.axes = [{axes}]; 0")
-        visit.page.wait_for_timeout(500)
+        until_box(visit, there)
     visit.page.evaluate("pad.axes = [0, 0, 0, 0]; pad.buttons[0].pressed = false; 0")
     phase(visit, "ready")
     visit.page.evaluate("pad.connected = false; 0")
@@ -125,13 +128,12 @@ def test_a_take_by_touch_with_a_second_finger_for_the_height(visit: Visit, servi
     touch("touchStart", (x, y), second)
     for k in range(1, 5):
         touch("touchMove", (x, y), (second[0], second[1] - 30 * k))
-        visit.page.wait_for_timeout(60)
+    until_box(visit, f"at[2] > {START[2] + 0.1} && {ARRIVED}")
     for k in range(1, 6):
         touch(
             "touchMove", (x + 12 * k, y - 4 * k)
         )  # without the second finger, which is lifted; the first still carries
-        visit.page.wait_for_timeout(60)
-    visit.page.wait_for_timeout(200)
+    until_box(visit, f"Math.hypot(at[0] - {START[0]}, at[1] - {START[1]}) > 0.06 && {ARRIVED}")
     touch("touchEnd")
     phase(visit, "ready")
     finish(visit)
@@ -142,7 +144,8 @@ def test_a_hidden_page_stops_and_throws_away_what_was_carried(visit: Visit, serv
     begin(visit, service, "hidden")
     visit.page.keyboard.press("Enter")
     phase(visit, "carrying")
-    visit.page.wait_for_timeout(600)
+    sent = visit.page.evaluate("teachpath.session().link.sequence")
+    visit.wait(lambda: visit.page.evaluate("teachpath.session().link.sequence") > sent + 30)
     hide = "Object.defineProperty(document, 'hidden', {value: true, configurable: true});"
     visit.page.evaluate(hide + "document.dispatchEvent(new Event('visibilitychange'))")
     visit.page.wait_for_selector("#message p.error")
@@ -196,13 +199,13 @@ def test_takes_by_an_emulated_hand_and_a_controller_in_one_headset(worn: Visit, 
     phase(worn, "ready")
     frames, samples = worn.page.evaluate("[teachpath.headset().frames, teachpath.headset().samples]")
     assert frames == samples > 100
-    gaps = gaps_of(np.array(worn.page.evaluate("heard"), dtype=float))
+    heard = np.array(worn.page.evaluate("heard"), dtype=float)
     worn.page.evaluate("teachpath.headset().end()")
     worn.page.get_by_role("button", name="Finish").click()
     worn.page.wait_for_selector("html[data-session='']", state="attached")
     by_hand, by_controller = service.station.demonstrations("by-headset")
     for take in (by_hand, by_controller):
-        is_judged_by_its_frames(take, gaps)
+        is_judged_by_its_frames(take, heard)
         assert has_no_gaps(take)
         ways = service.station.trajectory(take.id)
         assert len(ways.orientations or []) == len(ways.positions)

@@ -7,7 +7,6 @@ import math
 import threading
 from collections.abc import Iterable
 from pathlib import Path
-from statistics import median
 
 import httpx
 import numpy as np
@@ -19,7 +18,8 @@ from teachpath_client import ClientError, HandReading, Link, Tracker
 from teachpath_client.synthetic import experiment_1
 from teachpath_proto import tracker_pb2
 from teachpath_proto.keys import Keys
-from tests.system.processes import Service, run, wait_until
+from tests.system.processes import Service, run
+from tests.waiting import HANG, wait_until
 
 pytestmark = pytest.mark.system
 
@@ -119,7 +119,7 @@ def test_names_that_could_leave_the_folder_are_refused(service: Service, name: s
     before = sorted(service.data.rglob("*"))
     with Link(service.endpoint) as link, pytest.raises(ClientError, match="cannot name a task"):
         Tracker(link, "glove-names").start(name, scene="paper")
-    with httpx.Client(base_url=service.url, trust_env=False) as http:
+    with httpx.Client(base_url=service.url, timeout=HANG, trust_env=False) as http:
         answer = http.put(f"/api/v1/tasks/{name.replace('/', '%2F').replace('..', '%2E%2E')}", json={})
     assert answer.status_code in (404, 405, 422)
     assert not [path for path in sorted(service.data.rglob("*")) if path not in before and path.is_dir()]
@@ -143,24 +143,15 @@ def test_a_flood_and_a_page_that_does_not_read_do_not_starve_a_take(service: Ser
     with connect(f"ws://{service.url.removeprefix('http://')}/api/v1/view", max_queue=1, close_timeout=0.1):
         flooding.start()
         try:
-            wait_until(lambda: next(sent) > 200, seconds=10, what="the flood runs")
+            wait_until(lambda: next(sent) > 200, "the flood runs")
             report = record(service, "flooded", 2, speed=8.0)
-            slowest = max(
-                httpx.get(f"{service.url}/api/v1/health", trust_env=False).elapsed.total_seconds() for _ in range(5)
-            )
+            assert service.station.health().notes == []
         finally:
             over.set()
             flooding.join()
     assert next(sent) > 2 * SHOWN
     assert (report.received, report.lost, len(report.demonstrations)) == (2 * SHOWN, 0, 2)
-    assert slowest < 1.0
     assert [d.verdict for d in service.station.demonstrations("flooded")] == ["clean", "clean"]
-
-
-def test_answers_on_a_kept_connection_do_not_wait_for_acknowledgements(service: Service) -> None:
-    with httpx.Client(base_url=service.url, trust_env=False) as http:
-        seconds = [http.get("/api/v1/tasks").elapsed.total_seconds() for _ in range(21)]
-    assert median(seconds) < 0.03  # a delayed acknowledgement takes 0.04 s
 
 
 def test_files_are_imported_while_the_service_is_up(service: Service, tmp_path: Path) -> None:
@@ -168,7 +159,7 @@ def test_files_are_imported_while_the_service_is_up(service: Service, tmp_path: 
     first = run("import", "files", str(whole), "--data", str(service.data), folder=tmp_path)
     assert first.process.returncode == 0, first.err
     url = f"{service.url}/api/v1/tasks/files/demonstrations"
-    assert httpx.post(url, content=whole.read_bytes(), trust_env=False).status_code == 201
+    assert httpx.post(url, content=whole.read_bytes(), timeout=HANG, trust_env=False).status_code == 201
     assert [d.number for d in service.station.demonstrations("files")] == [1, 2]
     one, other = (trajectory(service, d.id) for d in service.station.demonstrations("files"))
     np.testing.assert_array_equal(one[1], other[1])
@@ -177,7 +168,7 @@ def test_files_are_imported_while_the_service_is_up(service: Service, tmp_path: 
 def test_a_data_folder_serves_one_service_only(service: Service, tmp_path: Path) -> None:
     second = Service(service.data)
     try:
-        assert second.wait(20) == 1
+        assert second.wait() == 1
     finally:
         second.clean_up()
     assert f"a teachpath service is using {service.data}" in second.err
@@ -191,7 +182,7 @@ def test_a_data_folder_serves_one_service_only(service: Service, tmp_path: Path)
 def test_a_taken_endpoint_is_said(service: Service, tmp_path: Path) -> None:
     second = Service(tmp_path / "data", TEACHPATH_BUS__ENDPOINT=service.endpoint)
     try:
-        assert second.wait(20) == 1
+        assert second.wait() == 1
     finally:
         second.clean_up()
     assert f"no Zenoh session at {service.endpoint}: is it taken by another service?" in second.err
@@ -213,7 +204,7 @@ def test_a_file_that_cannot_be_used_is_refused_and_nothing_stored(
 ) -> None:
     file = write_csv(tmp_path / "broken.csv", text=text)
     url = f"{service.url}/api/v1/tasks/broken/demonstrations?name=broken.csv"
-    answer = httpx.post(url, content=file.read_bytes(), trust_env=False)
+    answer = httpx.post(url, content=file.read_bytes(), timeout=HANG, trust_env=False)
     assert answer.status_code == 422
     assert sentence in answer.json()["detail"]
     known = {task.name for task in service.station.tasks()}

@@ -10,10 +10,10 @@ import pytest
 from teachpath.io.store.motions import read_motion
 from teachpath.motion.arm.kinematics import tool_pose
 from teachpath_client.station import Station
-from tests.system.demos import LEAVE, STORY, Start, assert_nothing_left, assert_story
-from tests.system.editors import SLOW, Desk
+from tests.system.demos import Start, assert_nothing_left, assert_story
+from tests.system.editors import Desk
 from tests.system.operators import RESTING, Operator
-from tests.system.processes import wait_until
+from tests.waiting import wait_until
 
 pytestmark = pytest.mark.system
 
@@ -24,7 +24,7 @@ def test_what_the_demo_has_learned_is_edited_certified_run_and_replayed(
     browser: Any, start: Start, tmp_path: Path
 ) -> None:
     demo = start("--json", "--speed", "20")
-    wait_until(lambda: "stays up" in demo.err or demo.process.poll(), seconds=STORY, what="the story ends")
+    wait_until(lambda: "stays up" in demo.err or demo.process.poll(), "the story ends")
     assert_story(demo.out)
     found = re.search(r"serves (http://[0-9.]+:[0-9]+)", demo.err)
     assert found is not None, demo.err
@@ -32,18 +32,18 @@ def test_what_the_demo_has_learned_is_edited_certified_run_and_replayed(
         tell(browser, found[1], station, tmp_path)
     assert any("executor" in line for line in demo.relatives())
     demo.interrupt()
-    assert demo.wait(LEAVE) == 0
+    assert demo.wait() == 0
     assert "Traceback" not in demo.err
-    assert_nothing_left(demo, seconds=1.0)
+    assert_nothing_left(demo)
 
 
 def tell(browser: Any, url: str, station: Station, tmp_path: Path) -> None:
     """Go through the page as its user does."""
     desk = Desk(browser, url)
     desk.click("#tab-ways")
-    desk.page.wait_for_selector("#learned article.card >> nth=2", timeout=SLOW)
+    desk.page.wait_for_selector("#learned article.card >> nth=2")
     assert desk.page.locator("#learned article.card").count() == 3
-    desk.page.get_by_role("button", name="Edit way 2").click(timeout=SLOW)
+    desk.page.get_by_role("button", name="Edit way 2").click()
     desk.until("editor.draft && teachpath.state().path === editor.draft.path")
     path = desk.ask("editor.draft.path")
     desk.drag(3, 6, -6)
@@ -53,18 +53,18 @@ def tell(browser: Any, url: str, station: Station, tmp_path: Path) -> None:
     desk.until("editor.draft.base.number === 2")
     edited = desk.curve()
     desk.click("#edit-certify")
-    desk.page.wait_for_selector("#edit-run", timeout=SLOW)
+    desk.page.wait_for_selector("#edit-run")
     assert "Version 2 is certified" in desk.page.inner_text("#edit-certified")
     desk.click("#edit-run")
-    desk.page.wait_for_selector("#preview:has-text('Way 2, version 2')", timeout=SLOW)
+    desk.page.wait_for_selector("#preview:has-text('Way 2, version 2')")
     operator = Operator(desk, station)
     operator.start()
     status = operator.until(lambda status: status["state"] in RESTING)
-    assert (status["state"], status["progress"]) == ("ended", pytest.approx(1.0)), status["reason"]
+    assert (status["state"], status["progress"]) == ("ended", 1.0), status["reason"]
     done = operator.executions()[0]
     plan = station.get_plan(done.plan or "")
     assert (plan.path, plan.path_version) == (path, 2)
-    desk.page.locator(f"#replay button[data-execution='{done.id}']").click(timeout=SLOW)
+    desk.page.locator(f"#replay button[data-execution='{done.id}']").click()
     slider = desk.page.get_by_label("Instant of the execution")
     slider.wait_for()
     desk.until("teachpath.replayGhost() !== null")

@@ -3,7 +3,6 @@
 import io
 import socket
 import threading
-import time
 from collections.abc import Callable, Iterator
 from typing import Any
 
@@ -34,12 +33,19 @@ from teachpath.nurbs import Curve
 from teachpath.records import Cluster, Fit, JointState, Learned, LearnedPath, Task, Trajectory
 from teachpath_proto.keys import Keys
 from tests.contract.rows import demonstration
+from tests.waiting import HANG, wait_until
 
 pytestmark = pytest.mark.system
 
 KEYS = Keys()
 HOME = np.array(MotionSettings().home)
 ROBOT = "puma560"
+# How often the view had been drawn ten frames ago, and now.
+TEN_FRAMES = """async () => {
+  const before = teachpath.draws;
+  for (let i = 0; i < 10; i++) await new Promise(requestAnimationFrame);
+  return [before, teachpath.draws];
+}"""
 VERSION = {"number": 1, "branch": "main", "name": "learned", "author": "", "note": "", "parent": None, "created_ns": 1}
 
 
@@ -66,11 +72,11 @@ class Server:
         self._server = uvicorn.Server(config)
         self._thread = threading.Thread(target=self._server.run, daemon=True)
         self._thread.start()
-        wait_until(lambda: self._server.started)
+        wait_until(lambda: self._server.started, "the server has started")
 
     def stop(self) -> None:
         self._server.should_exit = True
-        self._thread.join(10)
+        self._thread.join(HANG)
         assert not self._thread.is_alive()
         self.preview.stop()
 
@@ -124,13 +130,6 @@ def way(cluster: int) -> LearnedPath:
     return LearnedPath(f"p{cluster}", "run", cluster, 1, curve, Fit(0.0, 0.0, 0.0, 0.0))
 
 
-def wait_until(true: Callable[[], bool], seconds: float = 15.0, pause: Callable[[float], None] = time.sleep) -> None:
-    deadline = time.monotonic() + seconds
-    while not true():
-        assert time.monotonic() < deadline, "it did not happen in time"
-        pause(0.05)
-
-
 @pytest.fixture
 def server() -> Iterator[Server]:
     server = Server()
@@ -144,6 +143,7 @@ class Visit:
 
     def __init__(self, browser: Any, address: str, *, script: str = "") -> None:
         self.page = browser.new_page(viewport={"width": 1280, "height": 800})
+        self.page.set_default_timeout(1000 * HANG)
         if script:
             self.page.add_init_script(script)
         self.said: list[str] = []
@@ -151,7 +151,7 @@ class Visit:
         self.page.on("response", lambda answer: answer.ok or self.said.append(f"{answer.status}: {answer.url}"))
         self.page.on("pageerror", lambda error: self.said.append(f"error: {error}"))
         self.page.goto(address)
-        self.page.wait_for_selector("html[data-scene=ready]", state="attached", timeout=30_000)
+        self.page.wait_for_selector("html[data-scene=ready]", state="attached")
 
     def paths(self) -> list[str]:
         return list(self.page.evaluate("teachpath.objectPaths()"))
@@ -161,8 +161,19 @@ class Visit:
         up = np.array([[1, 0, 0, 0], [0, 0, -1, 0], [0, 1, 0, 0], [0, 0, 0, 1.0]])
         return up @ np.reshape(self.page.evaluate(f"teachpath.worldMatrix('{path}')"), (4, 4)).T
 
-    def wait(self, true: Callable[[], bool]) -> None:
-        wait_until(true, pause=lambda seconds: self.page.wait_for_timeout(1000 * seconds))
+    def wait(self, true: Callable[[], bool], what: str = "the page shows it") -> None:
+        wait_until(true, what, pause=lambda seconds: self.page.wait_for_timeout(5000 * seconds))
+
+    def draws_when_at_rest(self) -> int:
+        """How often the view was drawn, once it has not been drawn for ten frames of the browser."""
+        counts: list[tuple[int, int]] = [(0, -1)]
+
+        def rests() -> bool:
+            counts.append(tuple(self.page.evaluate(TEN_FRAMES)))
+            return counts[-1][0] == counts[-1][1]
+
+        self.wait(rests, "the view is not drawn any more")
+        return counts[-1][1]
 
 
 @pytest.fixture
@@ -193,15 +204,7 @@ def test_the_arm_and_what_it_carries_move_and_then_the_page_rests(visit: Visit, 
         visit.page.wait_for_timeout(20)
     visit.wait(lambda: np.allclose(visit.place("/robot/link6"), link_frames(goal)[6], atol=1e-4))
     assert np.allclose(visit.place("/object")[:3, 3], (0.4, 0.1, 0.6), atol=1e-4)
-    counts = [-1]
-
-    def rests() -> bool:
-        counts.append(visit.page.evaluate("teachpath.draws"))
-        visit.page.wait_for_timeout(500)
-        return counts[-1] == counts[-2]
-
-    visit.wait(rests)
-    drawn = visit.page.evaluate("teachpath.draws")
+    drawn = visit.draws_when_at_rest()
     for _ in range(20):
         server.publish_state(goal, (0.4, 0.1, 0.6))
         visit.page.wait_for_timeout(20)
@@ -212,7 +215,7 @@ def test_comes_back_after_a_restart_and_shows_the_truth(visit: Visit, server: Se
     server.stop()
     visit.page.wait_for_selector("html[data-connection=lost]", state="attached")
     server.start(demonstrations=3)
-    visit.page.wait_for_selector("html[data-connection=live][data-events=live]", state="attached", timeout=30_000)
+    visit.page.wait_for_selector("html[data-connection=live][data-events=live]", state="attached")
     visit.wait(lambda: len([p for p in visit.paths() if p.startswith("/demonstrations/")]) == 3)
     assert len([p for p in visit.paths() if p.startswith("/robot/link")]) == len(visual_solids())
 
@@ -232,24 +235,24 @@ def test_a_foreign_page_is_refused(server: Server) -> None:
             connect(address, origin=origin)  # type: ignore[arg-type]
         assert refused.value.response.status_code == 403
     with connect(address, origin=server.address) as own, connect(address) as program:  # type: ignore[arg-type]
-        assert isinstance(own.recv(timeout=5), bytes)
-        assert isinstance(program.recv(timeout=5), bytes)
+        assert isinstance(own.recv(timeout=HANG), bytes)
+        assert isinstance(program.recv(timeout=HANG), bytes)
 
 
 def test_a_page_that_talks_nonsense_is_closed_and_the_others_stay(server: Server) -> None:
     address = f"ws://127.0.0.1:{server.port}/api/v1/view"
     with connect(address) as good, connect(address) as bad:
-        good.recv(timeout=5)
-        bad.recv(timeout=5)
+        good.recv(timeout=HANG)
+        bad.recv(timeout=HANG)
         bad.send(b"\xff")
-        wait_until(lambda: bad.state.name == "CLOSED")
+        wait_until(lambda: bad.state.name == "CLOSED", "the page is closed")
         good.send("1")
         server.preview.clear("/object")
-        assert isinstance(good.recv(timeout=5), bytes)
+        assert isinstance(good.recv(timeout=HANG), bytes)
 
 
 def test_files_come_with_a_strict_policy_and_nothing_else_comes(server: Server) -> None:
-    with httpx.Client(base_url=server.address) as client:
+    with httpx.Client(base_url=server.address, timeout=HANG) as client:
         page = client.get("/")
         policy = page.headers["content-security-policy"]
         assert "default-src 'none'" in policy

@@ -18,8 +18,9 @@ export const panel = {
     ];
   },
 
-  // The headset that is worn now, or null: for tests.
+  // The headset that is worn now, or null, and the demonstration session, or null: for tests.
   headset: () => sections[0].headset(),
+  session: () => sections[0].session(),
 
   update(state, changed) {
     for (const one of sections) one.update(state, changed);

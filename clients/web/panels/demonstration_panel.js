@@ -23,7 +23,11 @@ const HELP = [
 
 export function demonstrationPanel(place, context) {
   const panel = new DemonstrationPanel(place, context);
-  return { update: (state, changed) => panel.update(state, changed), headset: () => panel.hand };
+  return {
+    update: (state, changed) => panel.update(state, changed),
+    headset: () => panel.hand,
+    session: () => panel.session ?? null,
+  };
 }
 
 class DemonstrationPanel {

@@ -31,7 +31,7 @@ def serving(settings: Settings) -> Iterator[Station]:
     from teachpath.app import Station
 
     web = settings.web
-    listener = _listen(web.host, web.port)
+    listener = listen(web.host, web.port)
     try:
         with Station(settings) as station:
             config = uvicorn.Config(
@@ -49,7 +49,8 @@ def serving(settings: Settings) -> Iterator[Station]:
         listener.close()
 
 
-def _listen(host: str, port: int) -> socket.socket:
+def listen(host: str, port: int) -> socket.socket:
+    """Listen on a TCP port; raises Unreachable when that cannot be."""
     try:
         listener = socket.create_server((host, port), backlog=128)
     except OSError as error:

@@ -1,0 +1,20 @@
+"""The web port: what listens there."""
+
+import socket
+
+import pytest
+
+from teachpath.commands.serving import free_port, listen
+from teachpath.errors import Unreachable
+
+
+def test_answers_on_a_kept_connection_do_not_wait_for_acknowledgements() -> None:
+    with listen("127.0.0.1", free_port()) as listener, socket.create_connection(listener.getsockname()):
+        connection, _ = listener.accept()
+        with connection:
+            assert connection.getsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY)
+
+
+def test_a_port_that_is_taken_is_said() -> None:
+    with socket.create_server(("127.0.0.1", 0)) as taken, pytest.raises(Unreachable, match="Choose another: --port"):
+        listen("127.0.0.1", taken.getsockname()[1])
