@@ -1,5 +1,6 @@
 """The page's tab Run as an operator uses it, on a machine that may be too busy for the arm."""
 
+import itertools
 import threading
 import time
 from collections.abc import Callable
@@ -58,6 +59,12 @@ class Operator:
         """Click an order; nothing happens where the page does not offer it now."""
         self.page.get_by_role("button", name=name, exact=True).click(force=True)
 
+    def answer_to(self, resource: str) -> Any:
+        """Expect the answer to a POST."""
+        return self.page.expect_response(
+            lambda answer: answer.request.method == "POST" and answer.url.endswith(f"/{resource}")
+        )
+
     def start(self) -> None:
         """Hold the start until the arm begins."""
         before = [one.id for one in self.executions()]
@@ -67,11 +74,11 @@ class Operator:
             button.scroll_into_view_if_needed()
             box = button.bounding_box()
             assert box is not None
-            with self.page.expect_response(lambda answer: answer.url.endswith("/executions")) as answer:
+            with self.answer_to("executions") as answer:
                 self.page.mouse.move(box["x"] + 20, box["y"] + box["height"] / 2)
                 self.page.mouse.down()
             self.page.mouse.up()
-            return bool(answer.value.request.method == "POST" and answer.value.ok)
+            return bool(answer.value.ok)
 
         self._visit.wait(begun)
         self._visit.wait(lambda: self.status().get("execution", "") not in ("", *before))
@@ -102,7 +109,14 @@ class Leader(Operator):
         """Let the arm follow a hand, once its clutch is held."""
         self.page.locator(f"#teleop-hand option[value='{hand}']").wait_for(state="attached")
         self.page.select_option("#teleop-hand", hand)
-        self.page.get_by_role("button", name="Lead the arm").click()
+
+        def begun() -> bool:
+            with self.answer_to("teleoperation") as answer:
+                self.page.get_by_role("button", name="Lead the arm").click()
+            return bool(answer.value.ok)
+
+        self._visit.wait(lambda: self.status()["state"] != "silent")
+        self._visit.wait(begun)
         self.wait_ready()
 
     def wait_ready(self) -> None:
@@ -115,15 +129,37 @@ class Leader(Operator):
         tool: np.ndarray = pose[:3, 3] + TOOL_LENGTH * pose[:3, 2]
         return tool
 
+    def tool_at_rest(self) -> np.ndarray:
+        """Where the grasp point is drawn, once it has been there for five looks."""
+        seen = [self.tool()]
+
+        def rests() -> bool:
+            self.page.wait_for_timeout(100)
+            seen.append(self.tool())
+            return len(seen) > 5 and bool(np.ptp(seen[-5:], axis=0).max() < 1e-4)
+
+        self._visit.wait(rests)
+        return seen[-1]
+
+    @property
+    def _pressed(self) -> bool:
+        return bool(self.page.evaluate("teachpath.leading()?.pressed"))
+
+    @property
+    def _follows(self) -> bool:
+        return bool(self.status()["state"] == "following")
+
     def lead(self, press: Callable[[], None], move: Callable[[], None], let_go: Callable[[], None], done: Done) -> None:
         """Hold the clutch, move, and wait for what is expected; then let go, and wait until the arm is held."""
 
         def led() -> bool:
             self.wait_ready()
             press()
-            self._visit.wait(lambda: self.status()["state"] == "following" or self.status()["reason"].startswith(AGAIN))
+            looks = itertools.count()
+            self._visit.wait(lambda: self._pressed or next(looks) > 40)  # a press beside the ball is none
+            self._visit.wait(lambda: self._follows or not self._pressed or self.status()["reason"].startswith(AGAIN))
             move()
-            self._visit.wait(lambda: done() or self.status()["state"] != "following")
+            self._visit.wait(lambda: done() or not self._follows)
             reached = done()
             let_go()
             return reached

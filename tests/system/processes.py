@@ -14,10 +14,12 @@ import httpx
 from teachpath_client.station import Station
 from tests.waiting import HANG, wait_until
 
-# What is judged elsewhere: that a tracker, an arm or a hand which gets no turn on a busy machine counts as silent.
+# What is judged elsewhere: a tracker, an arm or a hand that gets no turn on a busy machine is silent or irregular.
 BUSY = {
     "TEACHPATH_RECORDING__LONGEST_GAP": "60",
     "TEACHPATH_RECORDING__LONGEST_SILENCE": "60",
+    "TEACHPATH_RECORDING__LARGEST_CLOCK_STEP": "60",
+    "TEACHPATH_RECORDING__RATE_TOLERANCE": "1",
     "TEACHPATH_RECORDING__HANDSHAKE_TIMEOUT": "20",
     "TEACHPATH_EXECUTOR__SILENCE": "5",
     "TEACHPATH_EXECUTOR__HAND_SILENCE": "5",

@@ -138,10 +138,9 @@ def test_the_arm_follows_the_page_s_hand_while_the_clutch_is_held_and_says_what_
     visit.wait(lambda: visit.page.evaluate("teachpath.teleop().isPositioned"))
     assert grave(visit.page, "leading the arm") == []
     leader.lead(press, drag, mouse.up, there)
-    after = leader.tool()
+    after = leader.tool_at_rest()
     mouse.move(500, 300, steps=3)  # nobody holds the clutch
-    visit.draws_when_at_rest()
-    np.testing.assert_allclose(leader.tool(), after, atol=0.002)  # a busy arm is still settling
+    np.testing.assert_allclose(leader.tool_at_rest(), after, atol=0.002)
 
     def hold() -> None:
         visit.page.locator("#view").focus()
@@ -175,7 +174,6 @@ def test_the_page_holds_the_clutch_for_a_tracker_that_has_none(visit: Visit, ser
             hand.place = (0.0, 0.0, 0.05)
 
         leader.lead(press, move, visit.page.mouse.up, lambda: abs(leader.tool()[2] - begin[2] - 0.05) < 0.002)
-        after = leader.tool()
+        after = leader.tool_at_rest()
         hand.place = (0.0, 0.0, 0.0)
-        visit.draws_when_at_rest()
-        np.testing.assert_allclose(leader.tool(), after, atol=0.002)  # a busy arm is still settling
+        np.testing.assert_allclose(leader.tool_at_rest(), after, atol=0.002)

@@ -144,8 +144,8 @@ def test_a_hidden_page_stops_and_throws_away_what_was_carried(visit: Visit, serv
     begin(visit, service, "hidden")
     visit.page.keyboard.press("Enter")
     phase(visit, "carrying")
-    sent = visit.page.evaluate("teachpath.session().link.sequence")
-    visit.wait(lambda: visit.page.evaluate("teachpath.session().link.sequence") > sent + 30)
+    sent = visit.page.evaluate("teachpath.session().sender.sequence")
+    visit.wait(lambda: visit.page.evaluate("teachpath.session().sender.sequence") > sent + 30)
     hide = "Object.defineProperty(document, 'hidden', {value: true, configurable: true});"
     visit.page.evaluate(hide + "document.dispatchEvent(new Event('visibilitychange'))")
     visit.page.wait_for_selector("#message p.error")
