@@ -16,8 +16,9 @@ from teachpath.motion.arm.kinematics import tool_pose
 from teachpath.motion.arm.puma560 import SPEED, TORQUE
 from teachpath_client.errors import JobFailed
 from teachpath_client.models import Plan
-from tests.system.processes import Service, family, wait_until
+from tests.system.processes import Service, family
 from tests.system.test_station import record
+from tests.waiting import HANG, wait_until
 
 pytestmark = pytest.mark.system
 
@@ -90,7 +91,7 @@ def test_an_executor_that_oversleeps_leaves_the_arm_on_its_path(
         os.kill(pid, signal.SIGSTOP)
         time.sleep(pause)
         os.kill(pid, signal.SIGCONT)
-    ended = station.wait(execution, timeout=60.0)
+    ended = station.wait(execution, timeout=HANG)
     assert (ended.status.state, ended.status.reason) == ("ended", "")
     motion = motion_of(service, execution.id)
     assert off_path(motion, path) <= OFF_PATH
@@ -104,7 +105,7 @@ def test_an_executor_that_dies_leaves_the_arm_at_rest_on_its_path(
     station = service.station
     station.wait_for_arm()
     execution = station.begin_execution(plan.id)
-    wait_until(lambda: station.get_execution(execution.id).status.progress > 0.1, seconds=60.0, what="it is on its way")
+    wait_until(lambda: station.get_execution(execution.id).status.progress > 0.1, "it follows")
     os.kill(executor(service), signal.SIGKILL)
     time.sleep(1.5)
     states = motion_of(service, execution.id).states
