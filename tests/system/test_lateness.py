@@ -105,10 +105,8 @@ def test_an_executor_that_dies_leaves_the_arm_at_rest_on_its_path(
     station = service.station
     station.wait_for_arm()
     execution = station.begin_execution(plan.id)
-    wait_until(lambda: station.get_execution(execution.id).status.progress > 0.1, "it follows")
+    wait_until(lambda: station.get_execution(execution.id).status.progress > 0.1, "it is on its way")
     os.kill(executor(service), signal.SIGKILL)
-    time.sleep(1.5)
-    states = motion_of(service, execution.id).states
-    assert not np.any(np.abs(states[-1].velocity) > 0.01)
-    assert states[-1].stopped
+    wait_until(lambda: motion_of(service, execution.id).states[-1].stopped, "the arm follows its way to rest")
+    wait_until(lambda: np.abs(motion_of(service, execution.id).states[-1].velocity).max() < 0.01, "the arm stands")
     assert off_path(motion_of(service, execution.id), path) <= OFF_PATH
