@@ -4,14 +4,17 @@ const THEMES = {
   dark: { background: 0x171b20, grid: 0x333c46, ground: 0.45, light: 0.78 },
 };
 
-// Add it to meshcat's viewer; returns {fitCamera()}, which puts the camera to its home.
+/**
+ * Add it to meshcat's viewer; returns {fitCamera()}, which puts the camera to its home.
+ * @param {MeshCatViewer} viewer
+ */
 export function createEnvironment(viewer) {
   const { THREE } = globalThis.MeshCat;
   for (const name of ["Lights", "Grid", "Axes"]) viewer.set_property([name], "visible", false);
   const group = new THREE.Group();
   viewer.scene.add(group);
-  const lights = addLights(THREE, group);
-  const grid = createGrid(THREE);
+  const lights = addLights(group);
+  const grid = createGrid();
   const ground = new THREE.Mesh(new THREE.PlaneGeometry(8, 8), new THREE.ShadowMaterial());
   ground.receiveShadow = true;
   ground.position.z = 0.001;
@@ -20,7 +23,6 @@ export function createEnvironment(viewer) {
   const dark = matchMedia("(prefers-color-scheme: dark)");
   const paint = () => {
     const theme = THEMES[dark.matches ? "dark" : "light"];
-    viewer.scene.background?.dispose?.();
     viewer.scene.background = new THREE.Color(theme.background);
     viewer.scene.fog = new THREE.Fog(theme.background, 5, 12);
     for (const [light, intensity] of lights) light.intensity = intensity * theme.light;
@@ -30,11 +32,16 @@ export function createEnvironment(viewer) {
   };
   dark.addEventListener("change", paint);
   paint();
-  return { fitCamera: () => fitCamera(THREE, viewer) };
+  return { fitCamera: () => fitCamera(viewer) };
 }
 
-// Returns [light, intensity in the light theme] of each.
-function addLights(THREE, group) {
+/**
+ * Returns [light, intensity in the light theme] of each.
+ * @param {THREE.Group} group
+ * @returns {[THREE.Light, number][]}
+ */
+function addLights(group) {
+  const { THREE } = globalThis.MeshCat;
   const sky = new THREE.HemisphereLight(0xffffff, 0xb9c0c8);
   const sun = new THREE.DirectionalLight(0xffffff);
   const fill = new THREE.DirectionalLight(0xdfe8ff);
@@ -55,7 +62,9 @@ function addLights(THREE, group) {
 }
 
 // One segment a cell: long lines that pass behind the camera vanish in some software renderers.
-function createGrid(THREE, cells = 16, size = 0.25) {
+function createGrid(cells = 16, size = 0.25) {
+  const { THREE } = globalThis.MeshCat;
+  /** @type {number[]} */
   const points = [];
   const half = (cells * size) / 2;
   for (let i = 0; i <= cells; i++) {
@@ -69,22 +78,13 @@ function createGrid(THREE, cells = 16, size = 0.25) {
   return new THREE.LineSegments(geometry, new THREE.LineBasicMaterial());
 }
 
-// Fit the scene and the arm's workspace into the picture, seen from the free side of the table, a little from above.
-function fitCamera(THREE, viewer) {
-  const corners = [];
-  const add = (box) => {
-    for (let i = 0; i < 8; i++)
-      corners.push(new THREE.Vector3(...["x", "y", "z"].map((axis, k) => box[i & (1 << k) ? "max" : "min"][axis])));
-  };
-  // The arm's own box would jump with its pose: a column of its usual height stands for it.
-  add(new THREE.Box3(new THREE.Vector3(-0.25, 0, -0.25), new THREE.Vector3(0.25, 1.15, 0.25)));
-  for (const name of ["scene", "paths"]) {
-    const box = new THREE.Box3();
-    const node = viewer.scene_tree.children[name];
-    if (node) box.expandByObject(node.object);
-    if (!box.isEmpty()) add(box);
-  }
-  const camera = viewer.camera;
+/**
+ * Fit the scene and the arm's workspace into the view, seen from the free side of the table, a little from above.
+ * @param {MeshCatViewer} viewer
+ */
+function fitCamera(viewer) {
+  const { THREE } = globalThis.MeshCat;
+  const { camera } = viewer;
   camera.fov = 30;
   const tall = Math.tan((camera.fov * Math.PI) / 360);
   const wide = tall * camera.aspect;
@@ -92,17 +92,14 @@ function fitCamera(THREE, viewer) {
   const right = new THREE.Vector3(0, 1, 0).cross(ahead).normalize();
   const up = ahead.clone().cross(right);
   const target = new THREE.Vector3();
+  const corners = boxes(viewer).flatMap((box) => cornersOf(box));
   let distance = 0;
   for (let round = 0; round < 4; round++) {
-    const seen = corners
-      .map((corner) => corner.clone().sub(target))
-      .map((p) => ({ x: p.dot(right), y: p.dot(up), z: p.dot(ahead) }));
+    const relative = corners.map((corner) => corner.clone().sub(target));
+    const seen = relative.map((p) => ({ x: p.dot(right), y: p.dot(up), z: p.dot(ahead) }));
     distance = 1.05 * Math.max(...seen.map((p) => p.z + Math.max(Math.abs(p.x) / wide, Math.abs(p.y) / tall)));
-    const middle = (axis) => {
-      const shares = seen.map((p) => p[axis] / (distance - p.z));
-      return ((Math.max(...shares) + Math.min(...shares)) / 2) * distance;
-    };
-    target.addScaledVector(right, middle("x")).addScaledVector(up, middle("y"));
+    const [x, y] = [middle(seen.map((p) => p.x / (distance - p.z))), middle(seen.map((p) => p.y / (distance - p.z)))];
+    target.addScaledVector(right, x * distance).addScaledVector(up, y * distance);
   }
   camera.position.copy(target).addScaledVector(ahead, distance);
   viewer.controls.target.copy(target);
@@ -110,3 +107,34 @@ function fitCamera(THREE, viewer) {
   camera.updateProjectionMatrix();
   viewer.set_dirty();
 }
+
+/**
+ * What the camera is fitted to, in three's frame. The arm's own box would jump with its pose: a column of its usual height
+ * stands for it.
+ * @param {MeshCatViewer} viewer
+ */
+function boxes(viewer) {
+  const { THREE } = globalThis.MeshCat;
+  const found = [new THREE.Box3(new THREE.Vector3(-0.25, 0, -0.25), new THREE.Vector3(0.25, 1.15, 0.25))];
+  for (const name of ["scene", "paths"]) {
+    const box = new THREE.Box3();
+    const node = viewer.scene_tree.children[name];
+    if (node) box.expandByObject(node.object);
+    if (!box.isEmpty()) found.push(box);
+  }
+  return found;
+}
+
+/** @param {THREE.Box3} box */
+function cornersOf({ min, max }) {
+  const { THREE } = globalThis.MeshCat;
+  const [xs, ys, zs] = [
+    [min.x, max.x],
+    [min.y, max.y],
+    [min.z, max.z],
+  ];
+  return xs.flatMap((x) => ys.flatMap((y) => zs.map((z) => new THREE.Vector3(x, y, z))));
+}
+
+/** @param {number[]} values */
+const middle = (values) => (Math.max(...values) + Math.min(...values)) / 2;

@@ -1,118 +1,163 @@
 // The log of what has happened since the page was opened, newest first, whoever did it.
-import { capitalize, element, hint, patchChildren, pluralize } from "./elements.js";
-import { STATE_LABELS } from "./panels/arm_controls.js";
+import { element, hint } from "./elements.js";
+import { STATE_LABELS } from "./panels/arm_state.js";
 import { JOB_LABELS } from "./panels/jobs.js";
+import { patchChildren } from "./patch_children.js";
+import { capitalize, pluralize } from "./texts.js";
 
 const MAX_ENTRIES = 100;
-const JOB_OUTCOMES = { succeeded: "succeeded", failed: "failed", cancelled: "was cancelled" };
 
-// `place` is a popover that `button` opens.
+/** @type {Record<string, string>} */
+const JOB_OUTCOMES = { succeeded: "succeeded", failed: "failed", cancelled: "was cancelled" };
+const NOTHING = "Nothing since this page was opened. Recordings, learning, plans and what the arm does are noted here.";
+
+/**
+ * @param {HTMLElement} place a popover that `button` opens
+ * @param {HTMLElement} button
+ * @param {import("./store.js").Store} store
+ */
 export function eventLog(place, button, store) {
   const list = element("ol", { class: "events", "aria-label": "events, newest first" });
   place.append(element("h2", {}, "What has happened"), list);
   let before = store.state;
   let unseen = 0;
+  /** @type {{at: string, text: string}[]} */
   let entries = [];
-  let away = false;
-  // Between lost and live it connects, perhaps several times.
-  const link = ({ connection }) => {
-    if (connection !== (away ? "live" : "lost")) return [];
-    away = !away;
-    return [away ? "The service does not answer any more" : "The service answers again"];
-  };
-  const paint = () => {
-    const nothing = element(
-      "li",
-      {},
-      hint("Nothing since this page was opened. Recordings, learning, plans and what the arm does are noted here."),
-    );
-    patchChildren(list, entries.length ? entries.map(entryRow) : nothing);
+  const connectionChanges = connectionWatcher();
+  const render = () => {
+    patchChildren(list, entries.length ? entries.map(entryRow) : element("li", {}, hint(NOTHING)));
     patchChildren(button, unseen ? `Events (${unseen})` : "Events");
   };
   store.subscribe((state) => {
-    const texts = [...link(state), ...changesBetween(before, state)];
+    const texts = [...connectionChanges(state), ...changesBetween(before, state)];
     before = state;
     if (!texts.length) return;
     const at = new Date().toLocaleTimeString("en-GB");
     entries = [...texts.reverse().map((text) => ({ at, text })), ...entries].slice(0, MAX_ENTRIES);
     unseen = place.matches(":popover-open") ? 0 : Math.min(MAX_ENTRIES, unseen + texts.length);
-    paint();
+    render();
   });
   place.addEventListener("toggle", () => {
     unseen = 0;
-    paint();
+    render();
   });
-  paint();
+  render();
 }
 
+/** @param {{at: string, text: string}} entry */
 const entryRow = ({ at, text }) => element("li", {}, element("time", {}, at), element("span", {}, text));
 
-// Sentences about how two states differ, in the order of the work.
+/** Returns what says that the service is away or back: between lost and live it connects, perhaps several times. */
+function connectionWatcher() {
+  let away = false;
+  /** @param {State} state */
+  return ({ connection }) => {
+    if (connection !== (away ? "live" : "lost")) return [];
+    away = !away;
+    return [away ? "The service does not answer any more" : "The service answers again"];
+  };
+}
+
+/**
+ * Sentences about how two states differ, in the order of the work.
+ * @param {State} before
+ * @param {State} now
+ */
 function changesBetween(before, now) {
-  const same = before.task === now.task;
+  const notes = (now.station?.notes ?? []).filter((note) => !before.station?.notes.includes(note));
   return [
-    ...pairWithPrevious(before, now, "tasks", "name").map(([old, task]) => !old && `Task ${task.name} was made`),
-    ...membershipChanges(before.trackers, now.trackers, "name").map(
+    ...newEntries(before.tasks, now.tasks, (task) => task.name).map(([, task]) => `Task ${task.name} was made`),
+    ...membershipChanges(before.trackers, now.trackers, ({ name }) => name).map(
       ([name, here]) => `Tracker ${name} ${here ? "is here" : "has left"}`,
     ),
-    ...membershipChanges(before.recordings, now.recordings, "tracker").map(
+    ...membershipChanges(before.recordings, now.recordings, ({ tracker }) => tracker).map(
       ([name, here]) => `Recording from ${name} ${here ? "began" : "ended"}`,
     ),
-    ...(same ? taskChanges(before, now) : []),
-    ...armChanges(before.executor ?? {}, now.executor ?? {}),
-    ...(now.station?.notes ?? []).map((note) => !before.station?.notes.includes(note) && capitalize(note)),
+    ...(before.task === now.task ? taskChanges(before, now) : []),
+    ...(before.executor && now.executor ? armChanges(before.executor, now.executor) : []),
+    ...notes.map(capitalize),
   ].filter(Boolean);
 }
 
+/** @param {State} before @param {State} now */
 function taskChanges(before, now) {
-  const ways = ({ learned: { clusters, demonstrations } }) =>
-    `${clusters.length} ${pluralize(clusters.length, "way")} from ${demonstrations.length} ${pluralize(demonstrations.length, "demonstration")}`;
   return [
-    ...pairWithPrevious(before, now, "demonstrations").map(([old, one]) => demonstrationChange(old, one)),
-    ...pairWithPrevious(before, now, "runs").map(([old, run]) => !old && `Learned: ${ways(run)}`),
-    ...pairWithPrevious(before, now, "jobs").map(([old, job]) => old?.state !== job.state && jobChange(job)),
+    ...pairWithPrevious(before.demonstrations, now.demonstrations, ({ id }) => id).map(demonstrationChange),
+    ...newEntries(before.runs, now.runs, ({ id }) => id).map(([, run]) => runChange(run)),
+    ...pairWithPrevious(before.jobs, now.jobs, ({ id }) => id).map(jobChange),
   ];
 }
 
-function demonstrationChange(old, one) {
-  const why = one.reasons?.length ? `, ${one.reasons.join("; ")}` : "";
-  if (!old || old.verdict !== one.verdict)
+/** @param {[Demonstration | undefined, Demonstration]} pair */
+function demonstrationChange([old, one]) {
+  const why = one.reasons.length ? `, ${one.reasons.join("; ")}` : "";
+  if (!old || old.verdict !== one.verdict) {
     return `Demonstration ${one.number} ${old ? "was judged again" : "was recorded"}: ${one.verdict}${why}`;
+  }
   if (Boolean(old.discarded_ns) === Boolean(one.discarded_ns)) return "";
   return `Demonstration ${one.number} was ${one.discarded_ns ? "discarded" : "restored"}`;
 }
 
-function jobChange({ kind, state, message }) {
+/** @param {Run} run */
+function runChange({ learned: { clusters, demonstrations } }) {
+  const ways = `${clusters.length} ${pluralize(clusters.length, "way")}`;
+  return `Learned: ${ways} from ${demonstrations.length} ${pluralize(demonstrations.length, "demonstration")}`;
+}
+
+/** @param {[Job | undefined, Job]} pair */
+function jobChange([old, { kind, state, message }]) {
+  if (old?.state === state) return "";
   const name = JOB_LABELS[kind] ?? capitalize(kind);
   return `${name} ${JOB_OUTCOMES[state] ?? "began"}${state === "failed" ? `: ${message}` : ""}`;
 }
 
-function armChanges(old, status) {
-  const { operator, asking, state, reason } = status;
-  return [
-    operator !== old.operator &&
-      (operator ? `${operator} has control of the arm` : old.operator && `${old.operator} gave control back`),
-    asking && asking !== old.asking && `${asking} asks for control of the arm`,
-    old.state &&
-      state &&
-      state !== old.state &&
-      `Arm: ${(STATE_LABELS[state] ?? state).toLowerCase()}${reason ? `, ${reason}` : ""}`,
-  ];
+/** @param {ExecutorStatus} old @param {ExecutorStatus} status */
+function armChanges(old, { operator, asking, state, reason }) {
+  const sentences = [];
+  if (operator && operator !== old.operator) sentences.push(`${operator} has control of the arm`);
+  if (!operator && old.operator) sentences.push(`${old.operator} gave control back`);
+  if (asking && asking !== old.asking) sentences.push(`${asking} asks for control of the arm`);
+  const label = (STATE_LABELS[state] ?? state).toLowerCase();
+  if (state !== old.state) sentences.push(`Arm: ${label}${reason ? `, ${reason}` : ""}`);
+  return sentences;
 }
 
-// [[former, present]] of a list that had been read before, so that a first reading is no news.
-function pairWithPrevious(before, now, name, key = "id") {
-  if (before[name] === now[name] || !before[name] || !now[name]) return [];
-  const former = new Map(before[name].map((one) => [one[key], one]));
-  return now[name].map((one) => [former.get(one[key]), one]);
+/**
+ * [former, present] of each entry of a list that had been read before, so that a first reading is no change.
+ * @template T
+ * @param {T[] | null} before
+ * @param {T[] | null} now
+ * @param {(entry: T) => string} keyOf
+ * @returns {[T | undefined, T][]}
+ */
+function pairWithPrevious(before, now, keyOf) {
+  if (before === now || !before || !now) return [];
+  const former = new Map(before.map((entry) => [keyOf(entry), entry]));
+  return now.map((entry) => [former.get(keyOf(entry)), entry]);
 }
 
-// [[name, whether it is here]] of what has come and gone.
-function membershipChanges(before, now, key) {
+/**
+ * The pairs of those entries that were not there before.
+ * @template T
+ * @param {T[] | null} before
+ * @param {T[] | null} now
+ * @param {(entry: T) => string} keyOf
+ */
+const newEntries = (before, now, keyOf) => pairWithPrevious(before, now, keyOf).filter(([old]) => !old);
+
+/**
+ * [name, whether it is here] of what has come and gone.
+ * @template T
+ * @param {T[]} before
+ * @param {T[]} now
+ * @param {(entry: T) => string} keyOf
+ * @returns {[string, boolean][]}
+ */
+function membershipChanges(before, now, keyOf) {
   if (before === now) return [];
-  const [old, fresh] = [before, now].map((list) => list.map((one) => one[key]));
+  const [old, fresh] = [before.map(keyOf), now.map(keyOf)];
   return [
-    ...fresh.filter((name) => !old.includes(name)).map((name) => [name, true]),
-    ...old.filter((name) => !fresh.includes(name)).map((name) => [name, false]),
+    ...fresh.filter((name) => !old.includes(name)).map((name) => /** @type {[string, boolean]} */ ([name, true])),
+    ...old.filter((name) => !fresh.includes(name)).map((name) => /** @type {[string, boolean]} */ ([name, false])),
   ];
 }

@@ -1,12 +1,17 @@
 // Keeps the store up to date: hears of changes over the events' WebSocket and reads what has changed.
 import { get, resourcePath } from "./api.js";
 import { ReconnectingSocket } from "./reconnecting_socket.js";
-import { selectedRun } from "./store.js";
+import { changesAny, selectedRun } from "./store.js";
 
 const TASK_KEY = "task"; // the key that keeps the choice while the page is reloaded
 const POLL_INTERVAL = 3000; // [ms] how often to ask while there is no WebSocket
 
-// What is read anew when a resource of a topic has changed.
+/** @typedef {"tasks" | "executions" | "demonstrations" | "runs" | "jobs"} Resource a list of the state */
+
+/**
+ * What is read anew when a resource of a topic has changed.
+ * @type {Record<string, Resource[]>}
+ */
 const RESOURCES_BY_TOPIC = {
   tasks: ["tasks"],
   demonstrations: ["demonstrations"],
@@ -16,51 +21,73 @@ const RESOURCES_BY_TOPIC = {
   jobs: ["jobs"],
   executions: ["executions"],
 };
-const STATE_TOPICS = ["station", "executor", "trackers", "recordings", "guidance"];
+
+/** @type {Resource[]} */
 const TASK_RESOURCES = ["demonstrations", "runs", "jobs"];
 
-export class EventStream {
-  #topicStates = {}; // topic -> {id: state}
-  #pending = new Set();
-  #reading = null; // the rounds under way
-  #listeners = new Map();
+/** @typedef {{topic: string, id: string, reason?: string, now?: object | null}} ServiceEvent as api/events.py describes it */
 
+/** @typedef {Record<string, any>} TopicState the documents of a topic by their id */
+
+/**
+ * What the state holds of the topics that tell their state.
+ * @type {Record<string, (documents: TopicState) => Partial<State>>}
+ */
+const STATE_OF_TOPIC = {
+  station: (documents) => ({ station: documents[""] ?? null }),
+  executor: (documents) => ({ executor: documents[""] ?? null }),
+  trackers: (documents) => ({
+    trackers: Object.keys(documents)
+      .sort()
+      .map((name) => ({ name, ...documents[name] })),
+  }),
+  recordings: (documents) => ({ recordings: Object.values(documents) }),
+  guidance: (documents) => ({
+    guidance: Object.fromEntries(Object.entries(documents).map(([task, { sentence }]) => [task, sentence])),
+  }),
+};
+
+export class EventStream {
+  /** @type {Record<string, TopicState>} */
+  #topicStates = {};
+  /** @type {Set<Resource>} */
+  #pending = new Set();
+  /** @type {Promise<void> | null} */
+  #reading = null; // the rounds under way
+  /** @type {Map<string, ((event: ServiceEvent) => void)[]>} */
+  #listeners = new Map();
+  /** @type {ConnectionState} */
+  #connection = "connecting"; // of the events alone
+
+  /** @param {import("./store.js").Store} store */
   constructor(store) {
     this.store = store;
-    this.connection = "connecting"; // of the events alone
   }
 
-  // `onConnection(state, details)` as ReconnectingSocket's onState.
+  /** @param {(state: ConnectionState, details: ConnectionDetails) => void} onConnection */
   start(onConnection) {
     const socket = new ReconnectingSocket("events", {
       onMessage: (text) => this.#handleEvent(JSON.parse(text)),
       onState: (state, details) => {
-        this.connection = state;
+        this.#connection = state;
         onConnection(state, details);
       },
     });
     socket.open();
     setInterval(() => {
-      if (this.connection !== "live" && !document.hidden) this.readAll();
+      if (this.#connection !== "live" && !document.hidden) this.readAll();
     }, POLL_INTERVAL);
     this.store.subscribe((state, changed) => {
-      if (changed.has("runs") || changed.has("run")) this.#readLatestVersions(state);
-      if (!changed.has("task")) return;
-      sessionStorage.setItem(TASK_KEY, state.task);
-      this.store.set({
-        demonstrations: null,
-        runs: null,
-        jobs: null,
-        latestVersions: {},
-        run: "",
-        path: "",
-        focus: null,
-      });
-      this.read(...TASK_RESOURCES);
+      if (changesAny(changed, "runs", "run")) this.#readLatestVersions(state);
+      if (changed.has("task")) this.#turnToTask(state.task);
     });
   }
 
-  // Call `listener(event)` with every event of a topic.
+  /**
+   * Call `listener` with every event of a topic.
+   * @param {string} topic
+   * @param {(event: ServiceEvent) => void} listener
+   */
   on(topic, listener) {
     this.#listeners.set(topic, [...(this.#listeners.get(topic) ?? []), listener]);
   }
@@ -69,7 +96,10 @@ export class EventStream {
     this.read("tasks", "executions", ...TASK_RESOURCES);
   }
 
-  // Read lists anew; what is asked for meanwhile is read in the next round. Resolves when they have been read.
+  /**
+   * Read lists anew; what is asked for meanwhile is read in the next round. Resolves when they have been read.
+   * @param {...Resource} names
+   */
   read(...names) {
     for (const name of names) this.#pending.add(name);
     if (this.#pending.size) this.#reading ??= this.#readRounds();
@@ -85,21 +115,29 @@ export class EventStream {
     this.#reading = null;
   }
 
+  /** @param {Resource} name */
   async #readOne(name) {
     const { task } = this.store.state;
-    if (TASK_RESOURCES.includes(name) && !task) return;
+    const isOfTask = TASK_RESOURCES.includes(name);
+    if (isOfTask && !task) return;
     try {
-      const list = await get(TASK_RESOURCES.includes(name) ? resourcePath("tasks", task, name) : name);
-      if (task === this.store.state.task || !TASK_RESOURCES.includes(name)) this.store.set({ [name]: list });
-      if (name === "tasks" && task === this.store.state.task) this.#selectTask(list); // a task that was chosen meanwhile may be newer than the list
+      const list = await get(isOfTask ? resourcePath("tasks", task, name) : name);
+      const isSameTask = task === this.store.state.task;
+      if (isSameTask || !isOfTask) this.store.set({ [name]: list });
+      if (name === "tasks" && isSameTask) this.#selectTask(list); // one that was chosen meanwhile may be newer than the list
     } catch {
       // the connection's state says so already, and it is read again when it is back
     }
   }
 
-  // Paths may have been edited since they were learned. An answer that is older than what is known, or none, changes nothing.
+  /**
+   * Paths may have been edited since they were learned. An answer that is older than what is known, or none, changes
+   * nothing.
+   * @param {State} state
+   */
   async #readLatestVersions(state) {
     const paths = selectedRun(state)?.learned.paths ?? [];
+    /** @type {LearnedPath[]} */
     const read = await Promise.all(paths.map((path) => get(resourcePath("paths", path.id)).catch(() => path)));
     const { latestVersions } = this.store.state;
     const newer = read.filter((path) => path.version >= (latestVersions[path.id]?.version ?? 0));
@@ -108,25 +146,37 @@ export class EventStream {
     });
   }
 
-  // A task that is gone, or none, gives way to the one that was chosen in this browser tab, else to the newest.
+  /** @param {string} task */
+  #turnToTask(task) {
+    sessionStorage.setItem(TASK_KEY, task);
+    const nothing = { demonstrations: null, runs: null, jobs: null, latestVersions: {} };
+    this.store.set({ ...nothing, run: "", path: "", focus: null });
+    this.read(...TASK_RESOURCES);
+  }
+
+  /**
+   * A task that is gone, or none, gives way to the one that was chosen in this browser tab, else to the newest.
+   * @param {Task[]} tasks
+   */
   #selectTask(tasks) {
     const names = tasks.map((task) => task.name);
     if (names.includes(this.store.state.task)) return;
     const kept = sessionStorage.getItem(TASK_KEY);
-    this.store.set({ task: names.includes(kept) ? kept : (names.at(-1) ?? "") });
+    this.store.set({ task: kept && names.includes(kept) ? kept : (names.at(-1) ?? "") });
   }
 
+  /** @param {ServiceEvent} event */
   #handleEvent(event) {
     if (event.topic === "all") {
       if (event.reason === "connected") {
         this.#topicStates = {}; // the states follow
-        for (const topic of STATE_TOPICS) this.#publishTopic(topic);
+        for (const topic of Object.keys(STATE_OF_TOPIC)) this.#publishTopic(topic);
       }
       this.readAll();
     } else if ("now" in event) {
-      const things = { ...this.#topicStates[event.topic], [event.id]: event.now };
-      if (event.now === null) delete things[event.id];
-      this.#topicStates[event.topic] = things;
+      const documents = { ...this.#topicStates[event.topic], [event.id]: event.now };
+      if (event.now === null) delete documents[event.id];
+      this.#topicStates[event.topic] = documents;
       this.#publishTopic(event.topic);
     } else {
       this.read(...(RESOURCES_BY_TOPIC[event.topic] ?? []));
@@ -134,18 +184,9 @@ export class EventStream {
     for (const listener of this.#listeners.get(event.topic) ?? []) listener(event);
   }
 
+  /** @param {string} topic */
   #publishTopic(topic) {
-    const things = this.#topicStates[topic] ?? {};
-    const now = {
-      station: () => things[""] ?? null,
-      executor: () => things[""] ?? null,
-      trackers: () =>
-        Object.entries(things)
-          .map(([name, tracker]) => ({ name, ...tracker }))
-          .sort((a, b) => a.name.localeCompare(b.name)),
-      recordings: () => Object.values(things),
-      guidance: () => Object.fromEntries(Object.entries(things).map(([task, { sentence }]) => [task, sentence])),
-    }[topic];
-    if (now) this.store.set({ [topic]: now() });
+    const changes = STATE_OF_TOPIC[topic]?.(this.#topicStates[topic] ?? {});
+    if (changes) this.store.set(changes);
   }
 }

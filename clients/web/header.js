@@ -1,7 +1,11 @@
 // The header: which task, who holds control, and the stop button.
-import { element } from "./elements.js";
+import { option } from "./elements.js";
 import { activeExecution } from "./store.js";
 
+/**
+ * @param {Context} context
+ * @param {{task: HTMLSelectElement, stop: HTMLButtonElement, control: HTMLElement}} parts
+ */
 export function header({ store }, { task, stop, control }) {
   task.addEventListener("change", () => store.set({ task: task.value }));
   store.subscribe((state, changed) => {
@@ -14,11 +18,12 @@ export function header({ store }, { task, stop, control }) {
   });
 }
 
+/** @param {HTMLSelectElement} select @param {State} state */
 function choose(select, state) {
   const names = (state.tasks ?? []).map((task) => task.name);
-  if ([...select.options].map((option) => option.value).join("\n") !== names.join("\n")) {
-    select.replaceChildren(...names.map((name) => element("option", { value: name }, name)));
+  if ([...select.options].map(({ value }) => value).join("\n") !== names.join("\n")) {
+    select.replaceChildren(...names.map((name) => option(name)));
   }
   select.value = state.task;
-  select.parentElement.hidden = names.length === 0;
+  if (select.parentElement) select.parentElement.hidden = names.length === 0;
 }

@@ -7,16 +7,40 @@ const HEIGHT = 150; // [px]
 const FONT = "11px system-ui, sans-serif";
 const dark = matchMedia("(prefers-color-scheme: dark)");
 
+/**
+ * @typedef {object} Series
+ * @property {string} label
+ * @property {string} color a variable of the style sheet, e.g. "--way-0"
+ * @property {boolean} [points] marks without a line
+ *
+ * @typedef {(low: number, high: number) => [number, number]} YRange of the range of the data
+ *
+ * @typedef {object} PlotOptions
+ * @property {string} title
+ * @property {string} [label]
+ * @property {Series[]} series
+ * @property {number} [height]
+ * @property {[number, number] | YRange} [yRange]
+ * @property {number[]} [limits] y of dashed lines
+ * @property {string} [xUnit] at the ticks
+ */
+
 export class LinePlot {
+  /** @type {uPlot | null} */
   #chart = null;
+  /** @type {uPlot.AlignedData} */
   #data;
+  /** @type {[number, number] | null} */
   #xRange = null;
   #rebuild = () => this.#build();
 
-  // `series`: [{label, color, points}]; `color` is a variable of the style sheet, e.g. "--way-0"; `points`: marks without a
-  // line. `yRange`: [low, high], or a function of the data's own; `limits`: y of dashed lines; `xUnit` stands at the ticks.
-  constructor(place, { title, label = title, series, height = HEIGHT, yRange = null, limits = [], xUnit = "" }) {
-    Object.assign(this, { series, height, yRange, limits, xUnit });
+  /** @param {HTMLElement} place @param {PlotOptions} options */
+  constructor(place, { title, label = title, series, height = HEIGHT, yRange, limits = [], xUnit = "" }) {
+    this.series = series;
+    this.height = height;
+    this.yRange = yRange;
+    this.limits = limits;
+    this.xUnit = xUnit;
     this.#data = [[], ...series.map(() => [])];
     this.canvas = element("div", { role: "img", "aria-label": label });
     this.element = element("div", { class: "line-plot" }, element("h3", {}, title), this.canvas);
@@ -27,23 +51,30 @@ export class LinePlot {
     dark.addEventListener("change", this.#rebuild);
   }
 
-  // `data`: x, and y of each series; `xRange`: [from, to] of what is shown, or null for all.
+  /**
+   * @param {uPlot.AlignedData} data x, and y of each series
+   * @param {[number, number] | null} xRange of what is shown, or null for all
+   */
   setData(data, xRange = null) {
     this.#data = data;
     this.#xRange = xRange;
-    this.#chart.setData(data);
-    if (xRange) this.#chart.setScale("x", { min: xRange[0], max: xRange[1] });
+    this.#chart?.setData(data);
+    if (xRange) this.#chart?.setScale("x", { min: xRange[0], max: xRange[1] });
   }
 
-  // Mark a place on the x axis; null: none.
+  /**
+   * Mark a place on the x axis; null: none.
+   * @param {number | null} x
+   */
   setCursor(x) {
-    this.#chart.setCursor({ left: x === null ? -10 : this.#chart.valToPos(x, "x"), top: 0 }, false);
+    const left = x === null ? -10 : (this.#chart?.valToPos(x, "x") ?? -10);
+    this.#chart?.setCursor({ left, top: 0 }, false);
   }
 
   remove() {
     dark.removeEventListener("change", this.#rebuild);
     this.resize.disconnect();
-    this.#chart.destroy();
+    this.#chart?.destroy();
     this.element.remove();
   }
 
@@ -51,6 +82,7 @@ export class LinePlot {
   #build() {
     this.#chart?.destroy();
     const style = getComputedStyle(document.documentElement);
+    /** @param {string} name */
     const color = (name) => style.getPropertyValue(name).trim();
     const axis = {
       stroke: color("--faint"),
@@ -58,6 +90,7 @@ export class LinePlot {
       ticks: { show: false },
       font: FONT,
     };
+    /** @param {uPlot} _ @param {number[]} ticks */
     const xTicks = (_, ticks) => ticks.map((tick) => `${tick}${this.xUnit && ` ${this.xUnit}`}`);
     this.#chart = new uPlot(
       {
@@ -80,24 +113,30 @@ export class LinePlot {
     this.#fit();
   }
 
+  /** @returns {uPlot.Scale} */
   #yScale() {
     const { yRange } = this;
     if (!yRange) return {};
-    return { range: Array.isArray(yRange) ? yRange : (_, low, high) => yRange(low, high) };
+    if (Array.isArray(yRange)) return { range: yRange };
+    /** @type {uPlot.Range.Function} */
+    const range = (_, low, high) => yRange(low, high);
+    return { range };
   }
 
   #fit() {
     const width = this.element.clientWidth;
-    if (width > 0 && width !== this.#chart.width) this.#chart.setSize({ width, height: this.height });
+    if (width > 0 && width !== this.#chart?.width) this.#chart?.setSize({ width, height: this.height });
   }
 }
 
+/** @param {Series} series @param {string} stroke @returns {uPlot.Series} */
 function seriesStyle({ label, points }, stroke) {
   const style = { label, stroke, width: 1.5, spanGaps: false };
   if (points) return { ...style, paths: () => null, points: { show: true, size: 8, fill: stroke } };
   return { ...style, points: { show: false } };
 }
 
+/** @param {uPlot} chart @param {number[]} values @param {string} color */
 function drawLimits(chart, values, color) {
   const { ctx, bbox } = chart;
   ctx.save();

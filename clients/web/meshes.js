@@ -6,6 +6,9 @@ import { wayColor } from "./way_colors.js";
 const GREY = 0x7a8694;
 const RED = 0xd62718;
 
+/** @typedef {{kind: string, size: number[], vertices?: Point[]}} Solid */
+
+/** @param {number} color @param {number} opacity */
 function phongMaterial(color, opacity = 1) {
   const { THREE } = globalThis.MeshCat;
   return new THREE.MeshPhongMaterial({
@@ -18,48 +21,47 @@ function phongMaterial(color, opacity = 1) {
   });
 }
 
-const GEOMETRIES = {
-  box: (THREE, { size }) => new THREE.BoxGeometry(...size),
-  cylinder: (THREE, { size }) => new THREE.CylinderGeometry(size[0], size[0], size[1], 48).rotateX(Math.PI / 2),
-  sphere: (THREE, { size }) => new THREE.SphereGeometry(size[0], 32, 24),
-  mesh: (THREE, { size, vertices }) => {
-    const geometry = new THREE.BufferGeometry().setFromPoints(
-      vertices.map((p) => new THREE.Vector3(...p).multiplyScalar(size[0])),
-    );
-    geometry.computeVertexNormals(); // three corners a face, none shared: sharp edges
-    return geometry;
-  },
-};
+/**
+ * A geometry of the scene's shape, about its own origin.
+ * @param {Solid} shape
+ */
+export function shapeGeometry({ kind, size, vertices = [] }) {
+  const { THREE } = globalThis.MeshCat;
+  if (kind === "cylinder") return new THREE.CylinderGeometry(size[0], size[0], size[1], 48).rotateX(Math.PI / 2);
+  if (kind === "sphere") return new THREE.SphereGeometry(size[0], 32, 24);
+  if (kind === "box") return new THREE.BoxGeometry(size[0], size[1], size[2]);
+  const corners = vertices.map((p) => new THREE.Vector3().fromArray(p).multiplyScalar(size[0]));
+  const geometry = new THREE.BufferGeometry().setFromPoints(corners);
+  geometry.computeVertexNormals(); // three corners a face, none shared: sharp edges
+  return geometry;
+}
 
-// A geometry of the scene's shape, about its own origin.
-export const shapeGeometry = (shape) => GEOMETRIES[shape.kind](globalThis.MeshCat.THREE, shape);
-
+/** @param {Shape} shape */
 export function shapeMesh(shape) {
   const { THREE } = globalThis.MeshCat;
   const mesh = new THREE.Mesh(shapeGeometry(shape), phongMaterial(shape.color));
-  mesh.position.set(...shape.position);
+  mesh.position.fromArray(shape.position);
   const [w, x, y, z] = shape.orientation;
   mesh.quaternion.set(x, y, z, w);
   mesh.castShadow = mesh.receiveShadow = true;
   return mesh;
 }
 
+/** @param {Point[]} points @param {number | undefined} cluster */
 export function demonstrationLine(points, cluster) {
   const { THREE } = globalThis.MeshCat;
-  const geometry = new THREE.BufferGeometry().setFromPoints(points.map((p) => new THREE.Vector3(...p)));
-  return new THREE.Line(
-    geometry,
-    new THREE.LineBasicMaterial({
-      color: cluster ? wayColor(cluster) : GREY,
-      opacity: cluster ? 0.75 : 1,
-      transparent: Boolean(cluster),
-    }),
-  );
+  const geometry = new THREE.BufferGeometry().setFromPoints(points.map((p) => new THREE.Vector3().fromArray(p)));
+  const style = cluster ? { color: wayColor(cluster), opacity: 0.75, transparent: true } : { color: GREY };
+  return new THREE.Line(geometry, new THREE.LineBasicMaterial(style));
 }
 
-// Neighbours that coincide have no direction.
+/**
+ * Without neighbours that coincide: between them there is no direction.
+ * @param {Point[]} points
+ */
 const withoutDuplicates = (points) => points.filter((point, i) => !i || distance(point, points[i - 1]) > 1e-5);
 
+/** @param {Point[]} points @param {number | number[]} radius @param {THREE.Material} material */
 function tubeMesh(points, radius, material) {
   const { THREE } = globalThis.MeshCat;
   const tube = new TubeGeometry(points.length);
@@ -69,27 +71,41 @@ function tubeMesh(points, radius, material) {
   return mesh;
 }
 
-// Drawn over everything: what is pointed at must not be hidden by an obstacle.
-function drawOnTop(mesh) {
+/**
+ * A tube that is drawn over everything: what is pointed at must not be hidden by an obstacle.
+ * @param {Point[]} points
+ * @param {number} radius
+ * @param {number} color
+ */
+function tubeOnTop(points, radius, color) {
+  const mesh = tubeMesh(points, radius, phongMaterial(color));
   mesh.material.depthTest = false;
   mesh.material.transparent = true; // drawn after all that is opaque
-  mesh.renderOrder = mesh.material.color.getHex() === RED ? 2 : 1;
+  mesh.renderOrder = color === RED ? 2 : 1;
   mesh.castShadow = false;
   return mesh;
 }
 
+/** @param {LearnedPath} path */
 export const pathTube = (path) => tubeMesh(sampleCurve(path.curve), 0.005, phongMaterial(wayColor(path.cluster)));
-export const deviationTube = (trajectory, share) =>
-  drawOnTop(tubeMesh(slicePolyline(withoutDuplicates(trajectory), share), 0.0032, phongMaterial(RED)));
-export const highlightTube = (trajectory, cluster) =>
-  drawOnTop(tubeMesh(withoutDuplicates(trajectory), 0.0025, phongMaterial(cluster ? wayColor(cluster) : GREY)));
 
+/** @param {Point[]} trajectory @param {number[]} share from where to where it deviates, of its length */
+export const deviationTube = (trajectory, share) =>
+  tubeOnTop(slicePolyline(withoutDuplicates(trajectory), share), 0.0032, RED);
+
+/** @param {Point[]} trajectory @param {number | undefined} cluster */
+export const highlightTube = (trajectory, cluster) =>
+  tubeOnTop(withoutDuplicates(trajectory), 0.0025, cluster ? wayColor(cluster) : GREY);
+
+/**
+ * A tube around a path, as wide as the demonstrations spread.
+ * @param {LearnedPath} path
+ * @param {number[]} spread radii [m]
+ */
 export function spreadTube(path, spread) {
-  const around = tubeMesh(
-    resamplePolyline(sampleCurve(path.curve), spread.length),
-    spread.map((radius) => Math.max(radius, 0.0005)),
-    phongMaterial(wayColor(path.cluster), 0.22),
-  );
-  around.material.side = globalThis.MeshCat.THREE.DoubleSide;
-  return around;
+  const radii = spread.map((radius) => Math.max(radius, 0.0005));
+  const points = resamplePolyline(sampleCurve(path.curve), spread.length);
+  const mesh = tubeMesh(points, radii, phongMaterial(wayColor(path.cluster), 0.22));
+  mesh.material.side = globalThis.MeshCat.THREE.DoubleSide;
+  return mesh;
 }

@@ -5,13 +5,16 @@ const NOTE_DURATION = 6000; // [ms] of a note; an error stays until it is closed
 
 export class Messages {
   #said = 0; // sentences so far
+  #timer = 0;
 
+  /** @param {HTMLElement} place */
   constructor(place) {
     this.place = place;
   }
 
+  /** @param {string} text @param {string} kind "note" or "error" */
   show(text, kind = "note") {
-    clearTimeout(this.timer);
+    clearTimeout(this.#timer);
     this.#said += 1;
     const close = element("button", { type: "button", class: "close", "aria-label": "Close this message" }, "×");
     close.addEventListener("click", () => this.clear());
@@ -19,16 +22,21 @@ export class Messages {
     this.place.setAttribute("role", kind === "error" ? "alert" : "status");
     this.place.replaceChildren(element("p", { class: kind }, text), close);
     this.place.hidden = false;
-    if (kind === "note") this.timer = setTimeout(() => this.clear(), NOTE_DURATION);
+    if (kind === "note") this.#timer = setTimeout(() => this.clear(), NOTE_DURATION);
   }
 
   clear() {
-    clearTimeout(this.timer);
+    clearTimeout(this.#timer);
     this.place.replaceChildren();
     this.place.hidden = true;
   }
 
-  // Do `order`; show its error as a sentence. Returns what it returned, or undefined. What was said after it began stays.
+  /**
+   * Do `order`; show its error as a sentence. Returns what it returned, or undefined. What was said after it began stays.
+   * @template T
+   * @param {() => T | Promise<T>} order
+   * @returns {Promise<T | undefined>}
+   */
   async attempt(order) {
     const before = this.#said;
     try {
@@ -36,8 +44,8 @@ export class Messages {
       if (this.#said === before) this.clear();
       return outcome;
     } catch (error) {
-      this.show(error.message, "error");
-      if (error.name === "TypeError" || error.name === "ReferenceError") throw error; // a fault of ours
+      this.show(error instanceof Error ? error.message : String(error), "error");
+      if (error instanceof TypeError || error instanceof ReferenceError) throw error; // a fault of ours
       return undefined;
     }
   }

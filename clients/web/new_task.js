@@ -1,8 +1,9 @@
 // A new task: its name and the scene that it is done in, in a popover of the header.
 import { get, put, resourcePath } from "./api.js";
-import { element, hint } from "./elements.js";
+import { element, hint, option } from "./elements.js";
 import { isName, nameRefusal } from "./names.js";
 
+/** @param {HTMLElement} place @param {Context} context */
 export function newTaskDialog(place, { store, eventStream, attempt, open }) {
   const name = element("input", { type: "text", id: "new-name", required: "", autocomplete: "off" });
   const scene = element("select", { id: "new-scene" });
@@ -23,16 +24,17 @@ export function newTaskDialog(place, { store, eventStream, attempt, open }) {
     name.setCustomValidity(wanted === "" || isName(wanted) ? "" : nameRefusal("task", wanted));
   });
   let chosen = ""; // by the person, since the popover was opened; whatever comes later leaves it
+  /** @param {Scene[]} scenes */
   const offer = (scenes) => {
     const used = store.state.tasks?.find((task) => task.name === store.state.task)?.scene;
-    scene.replaceChildren(...scenes.map((one) => element("option", { value: one.name }, one.name)));
+    scene.replaceChildren(...scenes.map((one) => option(one.name)));
     scene.value = [chosen, used].find((one) => scenes.some((other) => other.name === one)) ?? scenes[0]?.name ?? "";
   };
   scene.addEventListener("change", () => {
     chosen = scene.value;
   });
   place.addEventListener("toggle", async (event) => {
-    if (event.newState !== "open") return;
+    if (!(event instanceof ToggleEvent) || event.newState !== "open") return;
     chosen = "";
     name.focus();
     const scenes = await attempt(() => get("scenes"));
@@ -40,18 +42,20 @@ export function newTaskDialog(place, { store, eventStream, attempt, open }) {
   });
   form.addEventListener("submit", (event) => {
     event.preventDefault();
-    attempt(async () => {
-      const wanted = name.value.trim();
-      if (store.state.tasks?.some((task) => task.name === wanted))
-        throw new Error(`There is a task ${wanted} already: choose it above, or give another name.`);
-      await put(resourcePath("tasks", wanted), { scene: scene.value });
-      await eventStream.read("tasks");
-      if (name.value.trim() !== wanted) return; // another one is named meanwhile
-      name.value = "";
-      if (!place.matches(":popover-open")) return; // it was left meanwhile
-      store.set({ task: wanted });
-      place.hidePopover();
-      open("demonstrate");
-    });
+    attempt(make);
   });
+
+  async function make() {
+    const wanted = name.value.trim();
+    if (store.state.tasks?.some((task) => task.name === wanted))
+      throw new Error(`There is a task ${wanted} already: choose it above, or give another name.`);
+    await put(resourcePath("tasks", wanted), { scene: scene.value });
+    await eventStream.read("tasks");
+    if (name.value.trim() !== wanted) return; // another one is named meanwhile
+    name.value = "";
+    if (!place.matches(":popover-open")) return; // it was left meanwhile
+    store.set({ task: wanted });
+    place.hidePopover();
+    open("demonstrate");
+  }
 }

@@ -1,28 +1,36 @@
 // A clamped NURBS {degree, knots, control_points, weights}, evaluated as the service does (service/teachpath/nurbs.py).
 // Piegl & Tiller, The NURBS Book: algorithms A2.1 (span), A2.2 (basis functions), eq. (4.1).
 
-// The basis functions at parameters u: computed once, as long as degree and knots stay.
+/** @typedef {Pick<Curve, "degree" | "knots">} Spline */
+
+/** The basis functions at parameters u: computed once, as long as degree and knots stay. */
 export class BasisFunctions {
+  /** @param {number} degree @param {number[]} knots @param {number[]} u */
   constructor(degree, knots, u) {
     this.degree = degree;
     this.knots = knots;
     this.count = u.length;
     this.first = new Int32Array(u.length); // the first control point that counts at each parameter
     this.values = new Float64Array(u.length * (degree + 1));
-    u.forEach((at, i) => {
+    for (const [i, at] of u.entries()) {
       const span = findSpan(degree, knots, at);
       this.first[i] = span - degree;
       this.values.set(basisValues(degree, knots, span, at), i * (degree + 1));
-    });
+    }
   }
 
+  /** @param {Spline} curve */
   matches({ degree, knots }) {
     return (
       degree === this.degree && knots.length === this.knots.length && knots.every((knot, i) => knot === this.knots[i])
     );
   }
 
-  // Points of a curve of these knots: x, y, z after x, y, z, written into `out` [m].
+  /**
+   * Points of a curve of these knots: x, y, z after x, y, z, written into `out` [m].
+   * @param {Pick<Curve, "control_points" | "weights">} curve
+   * @param {Float64Array} out
+   */
   evaluate({ control_points, weights }, out = new Float64Array(3 * this.count)) {
     const order = this.degree + 1;
     for (let i = 0; i < this.count; i++) {
@@ -47,15 +55,29 @@ export class BasisFunctions {
   }
 }
 
-// Points [[x, y, z], ...] of a curve at parameters u.
+/**
+ * Points of a curve at parameters u.
+ * @param {Curve} curve
+ * @param {number[]} u
+ * @returns {Point[]}
+ */
 export function evaluateCurve(curve, u) {
   const flat = new BasisFunctions(curve.degree, curve.knots, u).evaluate(curve);
   return u.map((_, i) => [...flat.subarray(3 * i, 3 * i + 3)]);
 }
 
+/**
+ * Evenly spaced parameters from 0 to 1.
+ * @param {number} count
+ */
 export const linspace = (count) => Array.from({ length: count }, (_, i) => i / (count - 1));
 
-// The knot span [knots[span], knots[span + 1]) of a parameter; the last one holds its end.
+/**
+ * The knot span [knots[span], knots[span + 1]) of a parameter; the last one holds its end.
+ * @param {number} degree
+ * @param {number[]} knots
+ * @param {number} u
+ */
 export function findSpan(degree, knots, u) {
   let low = degree;
   let high = knots.length - degree - 1;
@@ -71,6 +93,7 @@ export function findSpan(degree, knots, u) {
   return low;
 }
 
+/** @param {number} degree @param {number[]} knots @param {number} span @param {number} u */
 function basisValues(degree, knots, span, u) {
   const values = new Float64Array(degree + 1);
   const left = new Float64Array(degree + 1);

@@ -14,14 +14,29 @@
 // setKeyboardLabel(label)   make the view focusable, and say what its keys do; "" takes that back
 // lockCamera(locked)        keep the camera still while e.g. TransformControls drags
 
+/**
+ * @typedef {object} PointerHandler
+ * @property {(event: PointerEvent) => boolean} down whether it takes the gesture
+ * @property {(event: PointerEvent) => void} move
+ * @property {(event: PointerEvent | null) => void} up null when the gesture was cancelled
+ *
+ * @typedef {{through?: Point, normal?: Point}} PlaneOptions
+ */
+
 export class Overlay {
+  /** @type {Map<string, THREE.Line>} */
   #lines = new Map();
+  /** @type {PointerHandler[]} */
   #handlers = [];
+  /** @type {PointerHandler | null} */
   #activeHandler = null;
 
+  /** @param {MeshCatViewer} viewer @param {HTMLElement} element */
   constructor(viewer, element) {
     const { THREE } = globalThis.MeshCat;
-    Object.assign(this, { viewer, element, THREE });
+    this.THREE = THREE;
+    this.viewer = viewer;
+    this.element = element;
     this.group = new THREE.Group();
     this.worldGroup = new THREE.Group();
     viewer.scene.updateMatrixWorld();
@@ -34,17 +49,22 @@ export class Overlay {
     this.viewer.set_dirty();
   }
 
+  /**
+   * @param {string} name
+   * @param {Point[] | null} points
+   * @param {{color?: THREE.ColorRepresentation, opacity?: number, dashed?: boolean}} style
+   */
   setLine(name, points, { color = 0x7a8694, opacity = 0.5, dashed = false } = {}) {
     const { THREE } = this;
     const before = this.#lines.get(name);
     if (before) {
       this.group.remove(before);
       before.geometry.dispose();
-      before.material.dispose();
+      /** @type {THREE.Material} */ (before.material).dispose();
       this.#lines.delete(name);
     }
-    if (points?.length > 1) {
-      const geometry = new THREE.BufferGeometry().setFromPoints(points.map((p) => new THREE.Vector3(...p)));
+    if (points && points.length > 1) {
+      const geometry = new THREE.BufferGeometry().setFromPoints(points.map((p) => new THREE.Vector3().fromArray(p)));
       const style = { color, opacity, transparent: opacity < 1 };
       const material = dashed
         ? new THREE.LineDashedMaterial({ ...style, dashSize: 0.012, gapSize: 0.008 })
@@ -57,6 +77,7 @@ export class Overlay {
     this.requestDraw();
   }
 
+  /** @param {Point} point */
   project(point) {
     return this.createProjector()(point);
   }
@@ -66,12 +87,14 @@ export class Overlay {
     const { scene, camera } = this.viewer;
     const place = camera.matrixWorldInverse.clone().premultiply(camera.projectionMatrix).multiply(scene.matrixWorld);
     const at = new this.THREE.Vector3();
+    /** @param {Point} point */
     return (point) => {
-      at.set(...point).applyMatrix4(place);
+      at.fromArray(point).applyMatrix4(place);
       return at.z > 1 ? null : [box.left + ((at.x + 1) / 2) * box.width, box.top + ((1 - at.y) / 2) * box.height];
     };
   }
 
+  /** @param {number} x @param {number} y */
   ray(x, y) {
     const { origin, direction } = this.#rayInWorld(x, y);
     const start = this.#toRobot(origin.clone());
@@ -79,6 +102,7 @@ export class Overlay {
     return { origin: start, direction: ahead.map((value, i) => value - start[i]) };
   }
 
+  /** @param {number} x @param {number} y @param {PlaneOptions} plane @returns {Point | null} */
   unproject(x, y, { through, normal } = {}) {
     const { THREE } = this;
     const at = this.#toWorld(through ?? [0, 0, 0]);
@@ -92,6 +116,7 @@ export class Overlay {
     return hit && this.#toRobot(hit);
   }
 
+  /** @param {PointerHandler} handler */
   capturePointer(handler) {
     this.#handlers.unshift(handler);
     return () => {
@@ -99,6 +124,7 @@ export class Overlay {
     };
   }
 
+  /** @param {string} label */
   setKeyboardLabel(label) {
     const attributes = { tabindex: "0", role: "application", "aria-label": label };
     for (const [name, value] of Object.entries(attributes)) {
@@ -107,13 +133,16 @@ export class Overlay {
     }
   }
 
+  /** @param {boolean} locked */
   lockCamera(locked) {
     this.viewer.controls.enabled = !locked; // read late: meshcat may replace its controls
   }
 
   // The viewer's own controls listen to mousedown and touchstart on the element; pointerdown comes before both.
   #listen() {
+    /** @type {Set<number>} */
     const pressed = new Set(); // pointers of the gesture: fingers may come and go while it lasts
+    /** @param {number} id @param {PointerEvent | null} event */
     const lift = (id, event) => {
       if (!pressed.delete(id)) return;
       const handler = this.#activeHandler;
@@ -123,6 +152,7 @@ export class Overlay {
       }
       handler?.up(event);
     };
+    /** @param {PointerEvent} event */
     const cancel = (event) => lift(event.pointerId, null);
     this.element.addEventListener("pointerdown", (event) => {
       const handler = this.#activeHandler
@@ -136,12 +166,14 @@ export class Overlay {
     });
     this.element.addEventListener("pointermove", (event) => this.#activeHandler?.move(event));
     this.element.addEventListener("pointerup", (event) => lift(event.pointerId, event));
-    for (const name of ["pointercancel", "lostpointercapture"]) this.element.addEventListener(name, cancel);
+    for (const name of /** @type {const} */ (["pointercancel", "lostpointercapture"]))
+      this.element.addEventListener(name, cancel);
     addEventListener("blur", () => {
       for (const id of [...pressed]) lift(id, null);
     });
   }
 
+  /** @param {number} x @param {number} y */
   #rayInWorld(x, y) {
     const { THREE, viewer } = this;
     const box = this.element.getBoundingClientRect();
@@ -153,10 +185,12 @@ export class Overlay {
     return caster.ray;
   }
 
+  /** @param {Point} point */
   #toWorld(point) {
-    return this.viewer.scene.localToWorld(new this.THREE.Vector3(...point));
+    return this.viewer.scene.localToWorld(new this.THREE.Vector3().fromArray(point));
   }
 
+  /** @param {THREE.Vector3} vector @returns {Point} */
   #toRobot(vector) {
     return this.viewer.scene.worldToLocal(vector).toArray();
   }

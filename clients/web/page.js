@@ -10,6 +10,7 @@
 //             open(id) }                choose another tab
 // A panel reads context.store.state, changes it with context.store.set(), and speaks REST through api.js.
 import { post, resourcePath } from "./api.js";
+import { closest, closestData } from "./elements.js";
 import { eventLog } from "./event_log.js";
 import { EventStream } from "./event_stream.js";
 import { header } from "./header.js";
@@ -26,7 +27,6 @@ import { Tabs } from "./tabs.js";
 import { View } from "./view.js";
 
 const root = document.documentElement;
-const byId = (id) => document.getElementById(id);
 const store = new Store();
 const eventStream = new EventStream(store);
 const messages = new Messages(byId("message"));
@@ -39,7 +39,17 @@ const view = new View(byId("view"), {
 const sceneLayers = new SceneLayers(view, store);
 enablePathPicking(view, store, sceneLayers);
 
-// The page is live when both of its WebSockets are; either may come back first.
+/** @param {string} id */
+function byId(id) {
+  return /** @type {HTMLElement} */ (document.getElementById(id));
+}
+
+/**
+ * The page is live when both of its WebSockets are; either may come back first.
+ * @param {"connection" | "events"} which
+ * @param {ConnectionState} state
+ * @param {ConnectionDetails} details
+ */
 function showConnection(which, state, { delay = 0 }) {
   root.dataset[which] = state;
   const states = [root.dataset.connection, root.dataset.events];
@@ -55,6 +65,7 @@ function showConnection(which, state, { delay = 0 }) {
 const tabs = new Tabs(byId("tabs"), byId("panels"), (id) => {
   for (const panel of panels) panel[panel.id === id ? "show" : "hide"]?.();
 });
+/** @type {Context} */
 const context = {
   store,
   eventStream,
@@ -65,11 +76,14 @@ const context = {
   attempt: (order) => messages.attempt(order),
   open: (id) => tabs.select(id),
 };
+/** @type {Panel[]} */
 const panels = [demonstrate, ways, edit, run];
 for (const panel of panels) panel.mount(tabs.add(panel.id, panel.title), context);
 newTaskDialog(byId("new-task"), context);
 eventLog(byId("events"), byId("events-button"), store);
-header(context, { task: byId("task"), stop: byId("stop"), control: byId("control") });
+const taskSelect = /** @type {HTMLSelectElement} */ (byId("task"));
+const stopButton = /** @type {HTMLButtonElement} */ (byId("stop"));
+header(context, { task: taskSelect, stop: stopButton, control: byId("control") });
 store.subscribe((state, changed) => {
   for (const panel of panels) panel.update(state, changed);
   sceneLayers.update(state, changed);
@@ -77,30 +91,29 @@ store.subscribe((state, changed) => {
 for (const panel of panels) panel.update(store.state, new Set(Object.keys(store.state)));
 
 byId("panels").addEventListener("click", (event) => {
-  const { open } = event.target.closest("[data-open]")?.dataset ?? {};
+  const { open } = closestData(event, "[data-open]");
   if (open) tabs.select(open);
 });
-for (const box of document.querySelectorAll("[data-layer]")) {
-  box.addEventListener("change", () => view.setLayerVisible(box.dataset.layer, box.checked));
+for (const box of document.querySelectorAll("input[data-layer]")) {
+  const { dataset } = /** @type {HTMLInputElement} */ (box);
+  box.addEventListener("change", () => {
+    view.setLayerVisible(dataset.layer ?? "", /** @type {HTMLInputElement} */ (box).checked);
+  });
 }
 byId("home").addEventListener("click", () => view.resetCamera());
 // The space bar stops the arm wherever the focus is, but in a text field.
 addEventListener(
   "keydown",
   (event) => {
-    if (
-      event.code !== "Space" ||
-      event.target.matches("input[type=text], input[type=number], textarea") ||
-      !activeExecution(store.state)
-    )
-      return;
+    const isTyped = closest(event, "input[type=text], input[type=number], textarea");
+    if (event.code !== "Space" || isTyped || !activeExecution(store.state)) return;
     event.preventDefault();
     event.stopPropagation();
     if (!event.repeat) stop();
   },
   { capture: true },
 );
-byId("stop").addEventListener("click", () => stop());
+stopButton.addEventListener("click", () => stop());
 
 function stop() {
   const status = activeExecution(store.state);
@@ -110,25 +123,27 @@ function stop() {
 eventStream.start((state, details) => showConnection("events", state, details));
 view.connect();
 
-// What the browser tests, and the curious, may ask: the state, whether all of the task is drawn, paths drawn, where they
-// are, how often the view was drawn.
-globalThis.teachpath = {
-  state: () => store.state,
-  settled: () => sceneLayers.isComplete,
-  objectPaths: () => view.objectPaths(),
-  worldMatrix: (path) => view.worldMatrix(path),
-  project: (point) => view.overlay.project(point),
-  opacity: (path) => view.opacity(path),
-  previewGhost: () => run.previewGhost(),
-  replayGhost: () => run.replayGhost(),
-  teleop: () => run.teleop(),
-  headset: () => demonstrate.headset(),
-  session: () => demonstrate.session(),
-  unproject: (x, y, plane) => view.overlay.unproject(x, y, plane),
-  get editor() {
-    return edit.editor;
+// What the browser tests may ask: the state, whether all of the task is drawn, paths drawn, where they are, how often
+// the view was drawn.
+Object.assign(globalThis, {
+  teachpath: {
+    state: () => store.state,
+    settled: () => sceneLayers.isComplete,
+    objectPaths: () => view.objectPaths(),
+    worldMatrix: (/** @type {string} */ path) => view.worldMatrix(path),
+    opacity: (/** @type {string} */ path) => view.opacity(path),
+    project: view.overlay.project.bind(view.overlay),
+    unproject: view.overlay.unproject.bind(view.overlay),
+    previewGhost: () => run.previewGhost(),
+    replayGhost: () => run.replayGhost(),
+    teleop: () => run.teleop(),
+    headset: () => demonstrate.headset(),
+    session: () => demonstrate.session(),
+    get editor() {
+      return edit.editor;
+    },
+    get draws() {
+      return view.draws;
+    },
   },
-  get draws() {
-    return view.draws;
-  },
-};
+});

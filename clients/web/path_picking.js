@@ -3,55 +3,75 @@ import { sampleCurve } from "./polyline.js";
 import { latestPaths } from "./store.js";
 
 const PICK_RADIUS = 9; // [px]
+const CLICK_TOLERANCE = 4; // [px]
 const POINTS_PER_PATH = 60;
 
+/**
+ * @param {import("./view.js").View} view
+ * @param {import("./store.js").Store} store
+ * @param {import("./scene_layers.js").SceneLayers} sceneLayers
+ */
 export function enablePathPicking(view, store, sceneLayers) {
-  const element = view.overlay.element;
-  const curves = new WeakMap(); // learned path -> points
-  const pointsOf = (path) => {
-    if (!curves.has(path)) curves.set(path, sampleCurve(path.curve, POINTS_PER_PATH));
-    return curves.get(path);
-  };
-
-  // The way under a pixel, a learned path before a demonstration, or null.
-  const under = (x, y) => {
-    const project = view.overlay.createProjector();
-    const shown = {
-      paths: () => latestPaths(store.state).map((path) => [path.id, pointsOf(path)]),
-      demonstrations: () => sceneLayers.drawnTrajectories(),
-    };
-    for (const kind of Object.keys(shown).filter((layer) => view.isLayerVisible(layer))) {
-      const found = shown[kind]().map(([id, points]) => ({
-        id,
-        distance: Math.min(...points.map((p) => distance(project(p), x, y))),
-      }));
-      const best = found.reduce((a, b) => (b.distance < a.distance ? b : a), { distance: PICK_RADIUS });
-      if (best.id) return { kind, id: best.id };
-    }
-    return null;
-  };
-
+  const { element } = view.overlay;
+  const pick = picker(view, store, sceneLayers);
   let asked = false;
   element.addEventListener("pointermove", (event) => {
     if (event.buttons || asked) return;
     asked = true;
     requestAnimationFrame(() => {
       asked = false;
-      const found = under(event.clientX, event.clientY);
+      const found = pick([event.clientX, event.clientY]);
       const { focus } = store.state;
       if (focus?.kind !== found?.kind || focus?.id !== found?.id) store.set({ focus: found });
     });
   });
   element.addEventListener("pointerleave", () => store.set({ focus: null }));
+  /** @type {number[] | null} */
   let pressed = null;
   element.addEventListener("pointerdown", (event) => {
     pressed = view.viewer.controls.enabled ? [event.clientX, event.clientY] : null; // else something is being dragged
   });
   element.addEventListener("pointerup", (event) => {
-    const still = pressed && distance(pressed, event.clientX, event.clientY) < 4;
-    const found = still && under(event.clientX, event.clientY);
+    const pixel = [event.clientX, event.clientY];
+    const found = distance(pressed, pixel) < CLICK_TOLERANCE ? pick(pixel) : null;
     if (found?.kind === "paths") store.set({ path: found.id });
   });
 }
 
-const distance = (seen, x, y) => (seen ? Math.hypot(seen[0] - x, seen[1] - y) : Infinity);
+/**
+ * Returns what finds the way under a pixel: a learned path before a demonstration, or null.
+ * @param {import("./view.js").View} view
+ * @param {import("./store.js").Store} store
+ * @param {import("./scene_layers.js").SceneLayers} sceneLayers
+ */
+function picker(view, store, sceneLayers) {
+  /** @type {WeakMap<LearnedPath, Point[]>} */
+  const sampled = new WeakMap();
+  /** @param {LearnedPath} path */
+  const pointsOf = (path) => {
+    const points = sampled.get(path) ?? sampleCurve(path.curve, POINTS_PER_PATH);
+    sampled.set(path, points);
+    return points;
+  };
+  /** @returns {[kind: string, lines: [id: string, points: Point[]][]][]} */
+  const candidates = () => [
+    ["paths", latestPaths(store.state).map((path) => [path.id, pointsOf(path)])],
+    ["demonstrations", sceneLayers.drawnTrajectories()],
+  ];
+  /** @param {number[]} pixel @returns {Focus | null} */
+  return (pixel) => {
+    const project = view.overlay.createProjector();
+    for (const [kind, lines] of candidates().filter(([layer]) => view.isLayerVisible(layer))) {
+      const best = { id: "", off: PICK_RADIUS };
+      for (const [id, points] of lines) {
+        const off = Math.min(...points.map((point) => distance(project(point), pixel)));
+        if (off < best.off) Object.assign(best, { id, off });
+      }
+      if (best.id) return { kind, id: best.id };
+    }
+    return null;
+  };
+}
+
+/** @param {number[] | null} a @param {number[]} b */
+const distance = (a, b) => (a ? Math.hypot(a[0] - b[0], a[1] - b[1]) : Infinity);

@@ -5,17 +5,29 @@ import { socketUrl } from "./api.js";
 const MIN_DELAY = 250; // [ms] before the first new attempt
 const MAX_DELAY = 2000; // [ms]
 
+/**
+ * @typedef {object} SocketOptions
+ * @property {(data: any) => void} onMessage text, or an ArrayBuffer
+ * @property {() => void} [onOpen] data may be sent
+ * @property {(state: ConnectionState, details: ConnectionDetails) => void} [onState] "connecting"; "live" with the first
+ *   message, which says that the service has accepted this client; "lost", and it connects again in `delay` s; "refused" for
+ *   `reason`, and it does not
+ * @property {(code: number) => boolean} [isRefusal] whether the code of a close means that
+ */
+
 export class ReconnectingSocket {
+  /** @type {WebSocket | null} */
   #socket = null;
   #delay = MIN_DELAY;
   #timer = 0;
 
-  // `path` below /api/v1. `onMessage(data)`: text, or an ArrayBuffer; `onOpen()`: data may be sent.
-  // `onState(state, {delay, reason})`: "connecting"; "live" with the first message, which says that the service has accepted
-  // this client; "lost", and it connects again in `delay` s; "refused" for `reason`, and it does not, which is where
-  // `isRefusal(code)` holds for the code of the close.
+  /** @param {string} path below /api/v1 @param {SocketOptions} options */
   constructor(path, { onMessage, onOpen = () => {}, onState = () => {}, isRefusal = () => false }) {
-    Object.assign(this, { path, onMessage, onOpen, onState, isRefusal });
+    this.path = path;
+    this.onMessage = onMessage;
+    this.onOpen = onOpen;
+    this.onState = onState;
+    this.isRefusal = isRefusal;
   }
 
   get isOpen() {
@@ -32,9 +44,12 @@ export class ReconnectingSocket {
     if (!this.#socket) this.#connect();
   }
 
-  // Send text or bytes; nothing while there is no connection.
+  /**
+   * Send text or bytes; nothing while there is no connection.
+   * @param {string | Uint8Array<ArrayBuffer>} data
+   */
   send(data) {
-    if (this.isOpen) this.#socket.send(data);
+    if (this.isOpen) this.#socket?.send(data);
   }
 
   // Close for good, without a further call; open() begins anew.
@@ -64,6 +79,7 @@ export class ReconnectingSocket {
     this.onState("connecting", {});
   }
 
+  /** @param {number} code @param {string} reason */
   #onClose(code, reason) {
     if (this.isRefusal(code)) {
       this.#socket = null;

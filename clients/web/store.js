@@ -14,6 +14,7 @@
 // latestVersions       {path id: its newest version}, of the run
 // pathSummaries        {path id: duration, clearance, reach ..., see panels/path_summaries.js}
 // Lists are null until they have been read, and stay as they were while the service is away.
+/** @type {State} */
 export const INITIAL_STATE = Object.freeze({
   connection: "connecting",
   tasks: null,
@@ -27,6 +28,7 @@ export const INITIAL_STATE = Object.freeze({
   guidance: {},
   station: null,
   executor: null,
+  lease: null,
   run: "",
   path: "",
   plan: null,
@@ -39,23 +41,30 @@ export const INITIAL_STATE = Object.freeze({
 const RESTING_STATES = ["idle", "ended", "faulted"];
 
 export class Store {
+  /** @type {Changed} */
   #changed = new Set();
+  /** @type {Set<(state: State, changed: Changed) => void>} */
   #subscribers = new Set();
 
-  constructor() {
-    this.state = INITIAL_STATE;
-  }
+  state = INITIAL_STATE;
 
-  // Merge `changes`; subscribers are called before the next frame is drawn, once for all changes.
+  /**
+   * Merge `changes`; subscribers are called before the next frame is drawn, once for all changes.
+   * @param {Partial<State>} changes
+   */
   set(changes) {
-    const changedNames = Object.keys(changes).filter((name) => changes[name] !== this.state[name]);
+    const names = /** @type {(keyof State)[]} */ (Object.keys(changes));
+    const changedNames = names.filter((name) => changes[name] !== this.state[name]);
     if (!changedNames.length) return;
     this.state = Object.freeze({ ...this.state, ...changes });
     if (!this.#changed.size) queueMicrotask(() => this.#notify());
     for (const name of changedNames) this.#changed.add(name);
   }
 
-  // `listener(state, changed)`: changed is the Set of the names that differ. Returns what ends that.
+  /**
+   * Call `listener` with the names that differ, after every change. Returns what ends that.
+   * @param {(state: State, changed: Changed) => void} listener
+   */
   subscribe(listener) {
     this.#subscribers.add(listener);
     return () => this.#subscribers.delete(listener);
@@ -68,21 +77,56 @@ export class Store {
   }
 }
 
-// Questions that several panels ask of the state.
+/**
+ * Whether one of these names of the state has changed.
+ * @param {Changed} changed
+ * @param {...keyof State} names
+ */
+export const changesAny = (changed, ...names) => names.some((name) => changed.has(name));
 
-// The selected run: the chosen one, else the newest; null while there is none.
+/**
+ * The selected run: the chosen one, else the newest; null while there is none.
+ * @param {State} state
+ */
 export const selectedRun = (state) => state.runs?.find((run) => run.id === state.run) ?? state.runs?.[0] ?? null;
 
-// The learned paths of the selected run, each in its newest version.
+/**
+ * The learned paths of the selected run, each in its newest version.
+ * @param {State} state
+ */
 export const latestPaths = (state) =>
   (selectedRun(state)?.learned.paths ?? []).map((path) => state.latestVersions[path.id] ?? path);
 
-// The selected learned path: the chosen one, else the first of the run; null while there is none.
+/**
+ * The selected learned path: the chosen one, else the first of the run; null while there is none.
+ * @param {State} state
+ */
 export function selectedPath(state) {
   const paths = latestPaths(state);
   return paths.find((path) => path.id === state.path) ?? paths[0] ?? null;
 }
 
-// The status of the execution that moves the arm now, or null.
+/**
+ * The status of the execution that moves the arm now, or null.
+ * @param {State} state
+ */
 export const activeExecution = (state) =>
   state.executor && !RESTING_STATES.includes(state.executor.state) ? state.executor : null;
+
+/**
+ * The way that each demonstration of the selected run belongs to: id -> index of the cluster.
+ * @param {State} state
+ * @returns {Map<string, number>}
+ */
+export function waysOfDemonstrations(state) {
+  const clusters = selectedRun(state)?.learned.clusters ?? [];
+  return new Map(clusters.flatMap(({ index, members }) => members.map((id) => [id, index])));
+}
+
+/**
+ * The number of each demonstration by its id.
+ * @param {State} state
+ * @returns {Map<string, number>}
+ */
+export const demonstrationNumbers = (state) =>
+  new Map((state.demonstrations ?? []).map(({ id, number }) => [id, number]));

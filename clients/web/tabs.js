@@ -2,16 +2,28 @@
 import { element } from "./elements.js";
 
 export class Tabs {
+  /** @type {Map<string, {tab: HTMLButtonElement, panel: HTMLDivElement, scrolled: number}>} */
   #tabs = new Map();
+  current = "";
 
-  // `chosen(id)` is called when another tab is chosen.
+  /**
+   * @param {HTMLElement} list
+   * @param {HTMLElement} panels
+   * @param {(id: string) => void} onSelect called when another tab is selected
+   */
   constructor(list, panels, onSelect = () => {}) {
-    Object.assign(this, { list, panels, onSelect });
+    this.list = list;
+    this.panels = panels;
+    this.onSelect = onSelect;
     list.setAttribute("role", "tablist");
     list.addEventListener("keydown", (event) => this.#onKey(event));
   }
 
-  // Adds a tab and returns the element of its panel.
+  /**
+   * Add a tab and return the element of its panel.
+   * @param {string} id
+   * @param {string} title
+   */
   add(id, title) {
     const tab = element(
       "button",
@@ -27,18 +39,20 @@ export class Tabs {
     tab.addEventListener("click", () => this.select(id));
     this.list.append(tab);
     this.panels.append(panel);
-    this.#tabs.set(id, { tab, panel });
+    this.#tabs.set(id, { tab, panel, scrolled: 0 });
     if (!this.current) this.select(id);
     else this.#render();
     return panel;
   }
 
+  /** @param {string} id */
   select(id) {
-    if (id === this.current || !this.#tabs.has(id)) return;
-    if (this.current) this.#tabs.get(this.current).scrolled = this.panels.scrollTop; // every tab stays where it was left
+    const [next, before] = [this.#tabs.get(id), this.#tabs.get(this.current)];
+    if (next === before || !next) return;
+    if (before) before.scrolled = this.panels.scrollTop; // every tab stays where it was left
     this.current = id;
     this.#render();
-    this.panels.scrollTop = this.#tabs.get(id).scrolled ?? 0;
+    this.panels.scrollTop = next.scrolled;
     this.onSelect(id);
   }
 
@@ -51,14 +65,21 @@ export class Tabs {
     }
   }
 
+  /** @param {KeyboardEvent} event */
   #onKey(event) {
     const ids = [...this.#tabs.keys()];
     const here = ids.indexOf(this.current);
-    const next = { ArrowRight: here + 1, ArrowLeft: here - 1, Home: 0, End: ids.length - 1 }[event.key];
+    const targets = new Map([
+      ["ArrowRight", here + 1],
+      ["ArrowLeft", here - 1],
+      ["Home", 0],
+      ["End", ids.length - 1],
+    ]);
+    const next = targets.get(event.key);
     if (next === undefined) return;
     event.preventDefault();
     const id = ids[(next + ids.length) % ids.length];
     this.select(id);
-    this.#tabs.get(id).tab.focus();
+    this.#tabs.get(id)?.tab.focus();
   }
 }

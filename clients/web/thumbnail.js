@@ -3,7 +3,10 @@ import { svgElement } from "./elements.js";
 
 const [WIDTH, HEIGHT, PADDING] = [44, 26, 2];
 
-// How trajectories are projected: on the two axes along which they reach farthest, with one scale for all.
+/**
+ * How trajectories are projected: on the two axes along which they reach farthest, with one scale for all.
+ * @param {Point[][]} trajectories
+ */
 export function fitProjection(trajectories) {
   const points = trajectories.flat();
   const low = [0, 1, 2].map((axis) => points.reduce((least, p) => Math.min(least, p[axis]), Infinity));
@@ -13,6 +16,7 @@ export function fitProjection(trajectories) {
   return { across, up, low, size, scale };
 }
 
+/** @param {Point[]} points @param {ReturnType<typeof fitProjection>} projection @param {string} className */
 export function thumbnail(points, { across, up, low, size, scale }, className) {
   const [left, bottom] = [(WIDTH - size[across] * scale) / 2, (HEIGHT - size[up] * scale) / 2];
   const flat = points.map((p) => [

@@ -1,8 +1,9 @@
 // Round tubes along a polyline: their vertices as arrays, and a geometry of three.js that is rewritten in place.
 const SIDES = 8;
 
-// A tube with a ring of vertices for each of `count` points.
+/** A tube with a ring of vertices for each of `count` points. */
 export class TubeGeometry {
+  /** @param {number} count */
   constructor(count) {
     const { THREE } = globalThis.MeshCat;
     this.count = count;
@@ -15,14 +16,20 @@ export class TubeGeometry {
     this.geometry.boundingSphere = new THREE.Sphere(new THREE.Vector3(), 1e3); // never culled, never computed again
   }
 
-  // `points`: x, y, z after x, y, z [m]; `radius` [m]: one, or one for each point.
+  /**
+   * @param {ArrayLike<number>} points x, y, z after x, y, z [m]
+   * @param {number | number[]} radius [m] one, or one for each point
+   */
   setPath(points, radius) {
     const { position, normal } = this.geometry.attributes;
-    writeTube(points, radius, position.array, normal.array);
+    writeTube(points, radius, floats(position), floats(normal));
     position.needsUpdate = normal.needsUpdate = true;
   }
 
-  // `color(i, out)` writes red, green and blue (0 to 1) of point i into `out`; for a material with vertexColors.
+  /**
+   * Colour the tube, for a material with vertexColors.
+   * @param {(i: number, out: number[]) => void} color writes red, green and blue (0 to 1) of point i into `out`
+   */
   setColors(color) {
     const { attributes } = this.geometry;
     if (!attributes.color) {
@@ -32,14 +39,25 @@ export class TubeGeometry {
     const out = [1, 1, 1];
     for (let i = 0; i < this.count; i++) {
       color(i, out);
-      for (let side = 0; side < SIDES; side++) attributes.color.array.set(out, 3 * (i * SIDES + side));
+      for (let side = 0; side < SIDES; side++) floats(attributes.color).set(out, 3 * (i * SIDES + side));
     }
     attributes.color.needsUpdate = true;
   }
 }
 
-// Write positions and normals of the rings. Each ring's frame is the one before, reflected twice, so that the tube is not
-// twisted (Wang et al., ACM Transactions on Graphics 27(1), 2008).
+/** @param {THREE.BufferAttribute | THREE.InterleavedBufferAttribute} attribute */
+const floats = (attribute) => /** @type {Float32Array} */ (attribute.array);
+
+/** @typedef {Float64Array | Float32Array} Floats */
+
+/**
+ * Write positions and normals of the rings. Each ring's frame is the one before, reflected twice, so that the tube is not
+ * twisted (Wang et al., ACM Transactions on Graphics 27(1), 2008).
+ * @param {ArrayLike<number>} points
+ * @param {number | number[]} radius
+ * @param {Floats} positions
+ * @param {Floats} normals
+ */
 export function writeTube(points, radius, positions, normals) {
   const count = points.length / 3;
   const tangent = tangentAt(points, 0, new Float64Array([1, 0, 0]));
@@ -57,12 +75,16 @@ export function writeTube(points, radius, positions, normals) {
       tangent.set(next);
     }
     cross(tangent, normal, binormal);
-    writeRing(i, points, normal, binormal, radius[i] ?? radius, positions, normals);
+    writeRing(i, points, [normal, binormal], Array.isArray(radius) ? radius[i] : radius, positions, normals);
   }
 }
 
-// Indices of the triangles between `count` rings.
+/**
+ * Indices of the triangles between `count` rings.
+ * @param {number} count
+ */
 export function tubeIndices(count) {
+  /** @type {number[]} */
   const indices = [];
   for (let i = 0; i + 1 < count; i++) {
     for (let k = 0; k < SIDES; k++) {
@@ -73,7 +95,15 @@ export function tubeIndices(count) {
   return indices;
 }
 
-function writeRing(i, points, normal, binormal, radius, positions, normals) {
+/**
+ * @param {number} i
+ * @param {ArrayLike<number>} points
+ * @param {Float64Array[]} frame normal and binormal
+ * @param {number} radius
+ * @param {Floats} positions
+ * @param {Floats} normals
+ */
+function writeRing(i, points, [normal, binormal], radius, positions, normals) {
   for (let side = 0; side < SIDES; side++) {
     const angle = (2 * Math.PI * side) / SIDES;
     const [c, s] = [Math.cos(angle), Math.sin(angle)];
@@ -85,7 +115,12 @@ function writeRing(i, points, normal, binormal, radius, positions, normals) {
   }
 }
 
-// Write the direction of the polyline at a point; where its neighbours coincide, `out` stays as it is.
+/**
+ * Write the direction of the polyline at a point; where its neighbours coincide, `out` stays as it is.
+ * @param {ArrayLike<number>} points
+ * @param {number} i
+ * @param {Float64Array} out
+ */
 function tangentAt(points, i, out) {
   const [before, after] = [3 * Math.max(0, i - 1), 3 * Math.min(points.length / 3 - 1, i + 1)];
   const [x, y, z] = [0, 1, 2].map((k) => points[after + k] - points[before + k]);
@@ -94,7 +129,10 @@ function tangentAt(points, i, out) {
   return out;
 }
 
-// A unit vector across a tangent.
+/**
+ * A unit vector across a tangent.
+ * @param {Float64Array} tangent
+ */
 function perpendicular(tangent) {
   const axis = Math.abs(tangent[2]) < 0.9 ? [0, 0, 1] : [1, 0, 0];
   const normal = cross(tangent, axis, new Float64Array(3));
@@ -102,7 +140,11 @@ function perpendicular(tangent) {
   return normal.map((value) => value / length);
 }
 
-// Mirror a vector in place at the plane that `axis` is perpendicular to; a zero axis mirrors nothing.
+/**
+ * Mirror a vector in place at the plane that `axis` is perpendicular to; a zero axis mirrors nothing.
+ * @param {Float64Array} vector
+ * @param {Float64Array} axis
+ */
 function reflect(vector, axis) {
   const squared = axis[0] ** 2 + axis[1] ** 2 + axis[2] ** 2;
   if (squared < 1e-24) return;
@@ -110,6 +152,7 @@ function reflect(vector, axis) {
   for (let k = 0; k < 3; k++) vector[k] += scale * axis[k];
 }
 
+/** @param {ArrayLike<number>} a @param {ArrayLike<number>} b @param {Float64Array} out */
 function cross(a, b, out) {
   for (let k = 0; k < 3; k++) {
     const [i, j] = [(k + 1) % 3, (k + 2) % 3];

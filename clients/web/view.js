@@ -10,15 +10,21 @@ const SERVICE_OBJECTS = ["robot", "object", "hand"]; // what the service draws; 
 const LAYERS = ["demonstrations", "paths", "deviations", "spread", "hand"];
 
 export class View {
+  /**
+   * @param {HTMLElement} element
+   * @param {{onConnection: (state: ConnectionState, details: ConnectionDetails) => void, onReady: () => void}} callbacks
+   */
   constructor(element, { onConnection, onReady }) {
-    this.viewer = new MeshCat.Viewer(element);
+    this.viewer = new globalThis.MeshCat.Viewer(element);
     this.builtins = new Set(Object.keys(this.viewer.scene_tree.children)); // meshcat's own
     this.onReady = onReady;
     this.hiddenLayers = new Set(["spread"]);
+    /** @type {Set<string> | null} */
     this.highlightedNames = null;
     this.draws = 0;
     this.undrawn = 0; // batches that have come since the last frame
     this.renderTime = 0; // [ms] that handing the newest draw to the graphics card took
+    /** @type {Set<string>} */
     this.dimmedKinds = new Set(); // kinds that are drawn pale, so that what is edited stands out
     this.lastDraw = 0; // [ms]
     this.frameInterval = 0; // [ms] between two draws
@@ -43,14 +49,18 @@ export class View {
     this.socket.open();
   }
 
+  /** @param {string} layer @param {boolean} visible */
   setLayerVisible(layer, visible) {
     if (visible) this.hiddenLayers.delete(layer);
     else this.hiddenLayers.add(layer);
     this.refresh();
   }
 
-  // Draw no more often than every so many milliseconds, and shadows as they are: where the machine cannot draw and sample
-  // a hand at once, the samples come first. 0: as often as wanted.
+  /**
+   * Draw no more often than every so many milliseconds, and shadows as they are: where the machine cannot draw and sample a
+   * hand at once, the samples come first. 0: as often as wanted.
+   * @param {number} milliseconds
+   */
   setFrameInterval(milliseconds) {
     this.frameInterval = milliseconds;
     this.viewer.renderer.shadowMap.autoUpdate = milliseconds === 0;
@@ -61,23 +71,31 @@ export class View {
     this.environment.fitCamera();
   }
 
+  /** @param {string} layer */
   isLayerVisible(layer) {
     return !this.hiddenLayers.has(layer);
   }
 
-  // Names like "paths/ID" that are drawn in full while the others are pale; null: all are.
-  set highlighted(names) {
+  /**
+   * Draw the things of these names, like "paths/ID", in full and the others pale; null: all in full.
+   * @param {Set<string> | null} names
+   */
+  highlight(names) {
     this.highlightedNames = names;
     this.refresh();
   }
 
-  // Draw a whole kind pale, whatever is highlighted, or not any more.
+  /**
+   * Draw a whole kind pale, whatever is highlighted, or not any more.
+   * @param {string} kind
+   * @param {boolean} dimmed
+   */
   setDimmed(kind, dimmed) {
     this.dimmedKinds[dimmed ? "add" : "delete"](kind);
     this.refresh();
   }
 
-  // Apply visibility and dimming to what has just been added, and draw.
+  /** Apply visibility and dimming to what has just been added, and draw. */
   refresh() {
     for (const layer of LAYERS) {
       const node = this.viewer.scene_tree.children[layer];
@@ -85,26 +103,18 @@ export class View {
     }
     for (const kind of ["demonstrations", "paths", "deviations", "spread"]) {
       for (const [id, node] of Object.entries(this.viewer.scene_tree.children[kind]?.children ?? {})) {
-        this.#dimMaterial(
-          node.children["<object>"]?.object.material,
-          this.dimmedKinds.has(kind) || (this.highlightedNames && !this.highlightedNames.has(`${kind}/${id}`)),
-        );
+        const pale = this.highlightedNames !== null && !this.highlightedNames.has(`${kind}/${id}`);
+        dimMaterial(materialOf(node), pale || this.dimmedKinds.has(kind));
       }
     }
     this.viewer.set_dirty();
   }
 
-  #dimMaterial(material, pale) {
-    if (!material) return;
-    material.userData.opacity ??= material.opacity;
-    material.opacity = material.userData.opacity * (pale ? 0.16 : 1);
-    material.transparent = material.opacity < 1 || !material.depthTest;
-    material.depthWrite = material.opacity === 1;
-  }
-
-  // Paths that hold a drawn object, e.g. "/robot/link2/upper".
+  /** Paths that hold a drawn object, e.g. "/robot/link2/upper". */
   objectPaths() {
+    /** @type {string[]} */
     const found = [];
+    /** @param {MeshCatNode} node @param {string} path */
     const walk = (node, path) => {
       if (node.children["<object>"]) found.push(path);
       for (const [name, child] of Object.entries(node.children))
@@ -114,12 +124,18 @@ export class View {
     return found.filter((path) => !this.builtins.has(path.split("/")[1])).sort();
   }
 
-  // How much a line or tube covers what is behind it; null when there is none.
+  /**
+   * How much a line or tube covers what is behind it; null when there is none.
+   * @param {string} path
+   */
   opacity(path) {
-    return this.#node(path)?.children["<object>"]?.object.material.opacity ?? null;
+    return materialOf(this.#node(path))?.opacity ?? null;
   }
 
-  // World matrix of a path, column by column, three's y-up frame; null when there is none.
+  /**
+   * World matrix of a path, column by column, three's y-up frame; null when there is none.
+   * @param {string} path
+   */
   worldMatrix(path) {
     const node = this.#node(path);
     if (!node) return null;
@@ -127,13 +143,18 @@ export class View {
     return node.object.matrixWorld.toArray();
   }
 
+  /** @param {string} path */
   #node(path) {
+    /** @type {MeshCatNode | undefined} */
     let node = this.viewer.scene_tree;
     for (const name of path.split("/").filter(Boolean)) node = node?.children[name];
     return node;
   }
 
-  // Apply a batch, and tell with the next frame how many have been drawn since the last one.
+  /**
+   * Apply a batch, and tell with the next frame how many have been drawn since the last one.
+   * @param {ArrayBuffer} batch
+   */
   #draw(batch) {
     if (this.undrawn++ === 0) {
       requestAnimationFrame(() => {
@@ -155,6 +176,7 @@ export class View {
     for (const name of SERVICE_OBJECTS) if (this.viewer.scene_tree.children[name]) this.viewer.delete_path([name]);
   }
 
+  /** @param {HTMLElement} element */
   #sizeTo(element) {
     // meshcat sizes itself by the window, and its control panel covers the view: both are ours to decide.
     const viewer = this.viewer;
@@ -186,4 +208,22 @@ export class View {
       if (here) this.onReady();
     };
   }
+}
+
+/**
+ * The material of a line or tube that is drawn at a node.
+ * @param {MeshCatNode | undefined} node
+ */
+function materialOf(node) {
+  const drawn = /** @type {THREE.Mesh | undefined} */ (node?.children["<object>"]?.object);
+  return /** @type {THREE.Material | undefined} */ (drawn?.material);
+}
+
+/** @param {THREE.Material | undefined} material @param {boolean} pale */
+function dimMaterial(material, pale) {
+  if (!material) return;
+  material.userData.opacity ??= material.opacity;
+  material.opacity = material.userData.opacity * (pale ? 0.16 : 1);
+  material.transparent = material.opacity < 1 || !material.depthTest;
+  material.depthWrite = material.opacity === 1;
 }

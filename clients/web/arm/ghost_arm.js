@@ -4,14 +4,27 @@ import { linkFrames } from "./kinematics.js";
 
 const COLOR = 0x2f7fb5;
 
-export class GhostArm {
-  #links = [];
-  #fingers = [];
+/** @type {Record<string, number>} */
+const FINGER_SIDES = { "left-finger": 1, "right-finger": -1 };
 
-  // `arm` as GET /robot gives it; `carried` is the scene's object, or null.
+export class GhostArm {
+  /** @type {THREE.Group[]} */
+  #links = [];
+  /** @type {{node: THREE.Group, side: number}[]} */
+  #fingers = [];
+  /** @type {THREE.Mesh | null} */
+  #object = null;
+
+  /**
+   * @param {import("../overlay.js").Overlay} overlay
+   * @param {import("../view.js").View} view
+   * @param {Robot} arm
+   * @param {Shape | null | undefined} carried the scene's object, if it has one
+   */
   constructor(overlay, view, arm, carried) {
     const { THREE } = overlay;
-    Object.assign(this, { overlay, arm });
+    this.overlay = overlay;
+    this.arm = arm;
     const behind = { polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 4 }; // the arm, where both are in one place
     this.material = new THREE.MeshLambertMaterial({
       color: COLOR,
@@ -24,45 +37,50 @@ export class GhostArm {
     const robot = view.viewer.scene_tree.children.robot?.children ?? {};
     for (let i = 0; i <= arm.links.length; i++) this.#links.push(this.#copy(robot[`link${i}`]));
     if (carried) {
-      this.object = new THREE.Mesh(shapeGeometry(carried), this.material);
-      this.group.add(this.object);
+      this.#object = new THREE.Mesh(shapeGeometry(carried), this.material);
+      this.group.add(this.#object);
     }
     overlay.group.add(this.group);
   }
 
-  // Show the arm at configuration `q` [rad], its gripper open or closed, and the object at its pose, if there is one.
-  setPose(q, { closed, position, orientation }) {
+  /**
+   * Show the arm at a configuration, its gripper open or closed, and the object at its pose, if there is one.
+   * @param {import("./motion.js").MotionSample} sample
+   */
+  setPose({ q, closed, position, orientation }) {
     for (const [i, frame] of linkFrames(this.arm.links, q).entries()) this.#links[i].matrix.fromArray(frame);
     for (const finger of this.#fingers) finger.node.position.y = closed ? 0 : finger.side * this.arm.finger_travel;
-    if (this.object && position) {
-      this.object.position.set(...position);
+    if (this.#object && position && orientation) {
+      this.#object.position.fromArray(position);
       const [w, x, y, z] = orientation;
-      this.object.quaternion.set(x, y, z, w);
+      this.#object.quaternion.set(x, y, z, w);
     }
     this.overlay.requestDraw();
   }
 
-  // Poses of the links as they are drawn, column by column, robot coordinates: for tests, and the curious.
+  /** Poses of the links as they are drawn, column by column, robot coordinates: for tests. */
   linkMatrices() {
     return this.#links.map((link) => link.matrix.toArray());
   }
 
   remove() {
     this.overlay.group.remove(this.group);
-    this.object?.geometry.dispose();
+    this.#object?.geometry.dispose();
     this.material.dispose(); // the other shapes belong to the view
     this.overlay.requestDraw();
   }
 
+  /** @param {MeshCatNode | undefined} node */
   #copy(node) {
     const link = new this.overlay.THREE.Group();
     link.matrixAutoUpdate = false;
     for (const [name, part] of Object.entries(node?.children ?? {})) {
       const copy = part.object.clone(true);
       copy.traverse((mesh) => {
-        if (mesh.isMesh) Object.assign(mesh, { material: this.material, castShadow: false, receiveShadow: false });
+        if (mesh instanceof this.overlay.THREE.Mesh)
+          Object.assign(mesh, { material: this.material, castShadow: false, receiveShadow: false });
       });
-      const side = { "left-finger": 1, "right-finger": -1 }[name];
+      const side = FINGER_SIDES[name];
       const holder = new this.overlay.THREE.Group();
       if (side) {
         copy.position.y = 0; // the view's own gripper may be open now

@@ -1,11 +1,25 @@
 // Plots of the joints against time: positions, velocities against their limits, tracking error and lateness.
-import { element, patchChildren } from "../elements.js";
+import { element } from "../elements.js";
 import { LinePlot } from "../line_plot.js";
+import { patchChildren } from "../patch_children.js";
 
 const HEIGHT = 132; // [px] of one plot
 const DEGREES_PER_RADIAN = 180 / Math.PI;
 
+/**
+ * @typedef {"positions" | "speeds" | "error" | "lateness"} PlotName
+ * @typedef {{time: number} & Record<PlotName, (number | null)[]>} PlotRow what all plots show at one time [s]
+ * @typedef {import("../line_plot.js").PlotOptions["yRange"]} Range
+ * @typedef {object} JointSample
+ * @property {number} time [s]
+ * @property {number[]} position [rad]
+ * @property {number[]} speed [rad/s]
+ * @property {number | null} error [rad]
+ * @property {number | null} lateness [s]
+ */
+
 const JOINTS = [1, 2, 3, 4, 5, 6].map((joint) => `joint ${joint}`);
+/** @type {{name: PlotName, title: string, series: string[], yRange: Range, limits?: number[]}[]} */
 const PLOTS = [
   { name: "positions", title: "Joint positions [°]", series: JOINTS, yRange: padded },
   {
@@ -24,7 +38,11 @@ const PLOTS = [
   { name: "lateness", title: "Lateness of the setpoints [µs]", series: ["lateness"], yRange: fromZero(100) },
 ];
 
-// One row of all plots; position [rad], speed [rad/s] with the limits of GET /robot, error [rad], lateness [s] or null.
+/**
+ * @param {Robot} arm its speed limits
+ * @param {JointSample} sample
+ * @returns {PlotRow}
+ */
 export function plotRow(arm, { time, position, speed, error, lateness }) {
   return {
     time,
@@ -36,25 +54,29 @@ export function plotRow(arm, { time, position, speed, error, lateness }) {
 }
 
 export class JointPlots {
-  #plots;
+  /** @type {PlotRow[]} */
   #rows = [];
-  #values;
+  #values = element("dl", { class: "values" });
   #frame = 0;
+  /** @type {number | null} */
   #cursorTime = null; // [s]
 
-  // `window` [s] of the newest rows is shown; 0: all of them.
+  /**
+   * @param {HTMLElement} place
+   * @param {{window?: number}} options `window` [s] of the newest rows is shown; 0: all of them
+   */
   constructor(place, { window = 0 } = {}) {
     this.window = window;
     this.element = element("div", { class: "plots" });
     place.append(this.element);
-    this.#plots = PLOTS.map((plot) => this.#createPlot(plot));
-    this.#values = element("dl", { class: "values" });
+    this.plots = PLOTS.map((plot) => this.#createPlot(plot));
     this.element.append(this.#values);
     new ResizeObserver(() => this.#scheduleDraw()).observe(this.element); // it may have been hidden
   }
 
+  /** @param {PlotRow} row */
   append(row) {
-    if (this.#rows.length && row.time <= this.#rows.at(-1).time) this.#rows = []; // another execution
+    if (row.time <= (this.#rows.at(-1)?.time ?? -Infinity)) this.#rows = []; // another execution
     this.#rows.push(row);
     if (this.window) {
       const first = this.#rows.findIndex((one) => one.time >= row.time - this.window);
@@ -63,18 +85,23 @@ export class JointPlots {
     this.#scheduleDraw();
   }
 
+  /** @param {PlotRow[]} rows */
   set(rows) {
     this.#rows = rows;
     this.#scheduleDraw();
   }
 
-  // Mark an instant [s] and show its values; null: none, and those of the newest row.
+  /**
+   * Mark an instant [s] and show its values; null: none, and those of the newest row.
+   * @param {number | null} time
+   */
   setCursor(time) {
     this.#cursorTime = time;
     this.#showValues();
-    for (const { plot } of this.#plots) plot.setCursor(time);
+    for (const { plot } of this.plots) plot.setCursor(time);
   }
 
+  /** @param {typeof PLOTS[number]} plot */
   #createPlot({ name, title, series, yRange, limits }) {
     const styled = series.map((label, i) => ({ label, color: `--way-${i}` }));
     const plot = new LinePlot(this.element, {
@@ -100,10 +127,11 @@ export class JointPlots {
   #draw() {
     const rows = this.#rows;
     const times = rows.map((row) => row.time);
-    const [first, last] = [times[0], times.at(-1)];
+    const [first, last] = [times[0], times[times.length - 1]];
+    /** @type {[number, number] | null} */
     const xRange =
       this.window && times.length ? [Math.max(first, last - this.window), Math.max(last, first + 1)] : null;
-    for (const { name, series, plot } of this.#plots)
+    for (const { name, series, plot } of this.plots)
       plot.setData([times, ...series.map((_, i) => rows.map((row) => row[name][i]))], xRange);
     this.#showValues();
   }
@@ -111,8 +139,8 @@ export class JointPlots {
   // The legend, with the figures that a canvas does not tell a screen reader.
   #showValues() {
     const rows = this.#rows;
-    const row =
-      this.#cursorTime === null ? rows.at(-1) : (rows.findLast((one) => one.time <= this.#cursorTime) ?? rows[0]);
+    const time = this.#cursorTime ?? Infinity;
+    const row = rows.findLast((one) => one.time <= time) ?? rows[0];
     if (!row) return;
     const [error, lateness] = [row.error[0], row.lateness[0]];
     patchChildren(
@@ -126,6 +154,7 @@ export class JointPlots {
   }
 }
 
+/** @param {string} name @param {string} value @param {string} speed @param {string} className */
 function valueRow(name, value, speed = "", className = "") {
   return [
     element("dt", { class: className }, className && element("span", { class: "swatch" }), name),
@@ -133,16 +162,25 @@ function valueRow(name, value, speed = "", className = "") {
   ];
 }
 
-// Without the sign of a zero.
-const formatValue = (value, digits) => value.toFixed(digits).replace(/^-(0\.?0*)$/, "$1");
+/**
+ * Without the sign of a zero; nothing where there is no value.
+ * @param {number | null} value
+ * @param {number} digits
+ */
+const formatValue = (value, digits) => (value === null ? "–" : value.toFixed(digits)).replace(/^-(0\.?0*)$/, "$1");
 
+/** @type {import("../line_plot.js").YRange} */
 function padded(low, high) {
-  if (low === null) return [-1, 1];
+  if (low === null) return [-1, 1]; // there is no data
   const margin = Math.max((high - low) * 0.08, 1);
   return [low - margin, high + margin];
 }
 
-// A range from zero that reaches at least so far.
+/**
+ * A range from zero that reaches at least so far.
+ * @param {number} least
+ * @returns {import("../line_plot.js").YRange}
+ */
 function fromZero(least) {
   return (_, high) => [0, Math.max(high * 1.1, least)];
 }

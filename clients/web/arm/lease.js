@@ -1,5 +1,5 @@
 // Control of the arm: taken, kept with beats, given back. Whoever holds it alone gives orders; everybody may stop.
-import { post } from "../api.js";
+import { ApiError, post } from "../api.js";
 
 const LEASE_DURATION = 6; // [s] that the service waits for a beat
 const HEARTBEAT_INTERVAL = 2000; // [ms]
@@ -7,28 +7,38 @@ const LEASE_HEADER = "Teachpath-Lease";
 
 class ControlLease {
   token = "";
+  #name = "";
+  #timer = 0;
   waiting = false; // asked for, and not yet given
 
-  changed() {} // called when control was gained, lost or asked for
+  /** Called when control was gained, lost or asked for. */
+  onChange = () => {};
 
   get held() {
     return this.token !== "" && !this.waiting;
   }
 
-  // Headers of an order; without control they are none, which suffices while nobody holds it.
+  /**
+   * Headers of an order; without control they are none, which suffices while nobody holds it.
+   * @returns {Record<string, string>}
+   */
   get headers() {
     return this.token ? { [LEASE_HEADER]: this.token } : {};
   }
 
+  /** @param {string} name */
   async take(name) {
-    this.name = name;
+    this.#name = name;
     this.#begin(await post("lease", { name, seconds: LEASE_DURATION }));
   }
 
-  // Ask the holder; who says nothing loses control after a while.
+  /**
+   * Ask the holder; who says nothing loses control after a while.
+   * @param {string} name
+   */
   async ask(name) {
     const lease = await post("lease/ask", { name, seconds: LEASE_DURATION });
-    this.name = name;
+    this.#name = name;
     this.waiting = true;
     this.#begin(lease);
   }
@@ -43,11 +53,12 @@ class ControlLease {
     await post("lease/keep", {}, this.headers);
   }
 
+  /** @param {{token: string}} lease */
   #begin(lease) {
     this.token = lease.token;
-    clearInterval(this.timer);
-    this.timer = setInterval(() => this.#heartbeat(), HEARTBEAT_INTERVAL);
-    this.changed();
+    clearInterval(this.#timer);
+    this.#timer = setInterval(() => this.#heartbeat(), HEARTBEAT_INTERVAL);
+    this.onChange();
   }
 
   async #heartbeat() {
@@ -55,20 +66,20 @@ class ControlLease {
     try {
       const lease = await post("lease/beat", {}, this.headers);
       if (token !== this.token) return; // given back meanwhile, perhaps taken anew
-      if (lease.holder === this.name) this.waiting = false;
-      this.changed();
+      if (lease.holder === this.#name) this.waiting = false;
+      this.onChange();
     } catch (error) {
-      if (error.status && token === this.token) this.#end(); // refused: it has lapsed, or somebody was given it
+      if (error instanceof ApiError && error.status && token === this.token) this.#end(); // refused: it has lapsed, or somebody was given it
     }
   }
 
   #end() {
-    clearInterval(this.timer);
+    clearInterval(this.#timer);
     this.token = "";
     this.waiting = false;
-    this.changed();
+    this.onChange();
   }
 }
 
-// This page's: whatever it orders the arm goes by it.
+/** This page's: whatever it orders the arm goes by it. */
 export const lease = new ControlLease();

@@ -1,15 +1,28 @@
 // Shows a motion by a ghost arm in the view: played in real time, or at the instant of the slider.
-import { element, formatNumber } from "../elements.js";
+import { element } from "../elements.js";
+import { formatNumber } from "../texts.js";
+
+/**
+ * @typedef {object} PlayerOptions
+ * @property {string} sliderLabel
+ * @property {string} closeLabel
+ * @property {Child[]} [children] below the slider
+ * @property {(seconds: number, sample: import("./motion.js").MotionSample) => string} [describe] called with every instant;
+ *   returns further words about it
+ * @property {() => void} [onClose] called when it was open
+ */
 
 export class MotionPlayer {
-  motion = null; // as in motion.js, while it is open
+  /** @type {import("./motion.js").Motion | null} */
+  motion = null; // while it is open
+  /** @type {import("./ghost_arm.js").GhostArm | null} */
   ghost = null;
-  #animation = null; // the requested frame while it plays
+  #animation = 0; // the requested frame while it plays
 
-  // `children`: further elements below the slider. `describe(seconds, sample)` is called with every instant and returns
-  // further words about it; `onClose()` is called when it was open.
+  /** @param {PlayerOptions} options */
   constructor({ sliderLabel, closeLabel, children = [], describe = () => "", onClose = () => {} }) {
-    Object.assign(this, { describe, onClose });
+    this.describe = describe;
+    this.onClose = onClose;
     this.slider = element("input", {
       type: "range",
       min: "0",
@@ -37,9 +50,11 @@ export class MotionPlayer {
     });
   }
 
+  /** @param {import("./motion.js").Motion} motion @param {import("./ghost_arm.js").GhostArm} ghost */
   open(motion, ghost) {
     this.close();
-    Object.assign(this, { motion, ghost });
+    this.motion = motion;
+    this.ghost = ghost;
     this.slider.max = String(motion.duration);
     this.element.hidden = false;
   }
@@ -47,15 +62,15 @@ export class MotionPlayer {
   close() {
     if (!this.motion) return;
     this.pause();
-    this.ghost.remove();
+    this.ghost?.remove();
     this.ghost = this.motion = null;
     this.element.hidden = true;
     this.onClose();
   }
 
-  // From where the slider is, or from the beginning when it is at the end.
+  /** Play from where the slider is, or from the beginning when it is at the end. */
   start() {
-    const { duration } = this.motion;
+    const { duration = 0 } = this.motion ?? {};
     const from = Number(this.slider.value) >= duration - 0.01 ? 0 : Number(this.slider.value);
     const began = performance.now() - 1000 * from;
     const next = () => {
@@ -70,13 +85,15 @@ export class MotionPlayer {
 
   pause() {
     cancelAnimationFrame(this.#animation);
-    this.#animation = null;
+    this.#animation = 0;
     this.play.textContent = "Play";
   }
 
+  /** @param {number} seconds */
   show(seconds) {
+    if (!this.motion) return;
     const sample = this.motion.sample(seconds);
-    this.ghost.setPose(sample.q, sample);
+    this.ghost?.setPose(sample);
     this.slider.value = String(seconds);
     const description = this.describe(seconds, sample);
     const text = `${formatNumber(seconds, 1, "s")} of ${formatNumber(this.motion.duration, 1, "s")}${description && `: ${description}`}`;

@@ -1,40 +1,47 @@
 // From a saved version to a certified plan, and on to where the arm is moved.
 import { get, post, resourcePath } from "../api.js";
-import { element, formatNumber, patchChildren, progressBar } from "../elements.js";
+import { closest, element, progressBar } from "../elements.js";
+import { patchChildren } from "../patch_children.js";
+import { formatNumber } from "../texts.js";
 import { versionTitle } from "./versions.js";
 
+/** @typedef {Job & {path: string, version: import("./draft.js").BaseVersion, plan?: Plan}} Planning */
+
+/** @param {HTMLElement} place @param {Editor} editor @returns {EditorSection} */
 export function certificationSection(place, editor) {
   const certify = element("button", { type: "button", id: "edit-certify", class: "primary" });
   const status = element("div", { id: "edit-certified", role: "status" });
   const why = element("p", { class: "note" }, "Save the version first; only what is saved is certified.");
   place.append(element("div", { class: "row" }, certify), why, status);
-  let job = null; // the planning that this panel has begun: {id, path, version, plan}
+  /** @type {Planning | null} */
+  let job = null; // that this section has begun
   const { context } = editor;
 
   certify.addEventListener("click", () =>
     context.attempt(async () => {
+      if (!editor.draft) return;
       const { path, base } = editor.draft;
       job = { path, version: base, ...(await post(resourcePath("paths", path, "plans"), { version: base.number })) };
       render();
     }),
   );
   status.addEventListener("click", (event) => {
-    if (!event.target.closest("button")) return;
+    if (!closest(event, "button") || !job) return;
     context.store.set({ path: job.path }); // its newest plan is this one
     context.open("run");
   });
   context.store.subscribe((state, changed) => {
-    if (!changed.has("jobs") || !job) return;
-    const now = state.jobs?.find(({ id }) => id === job.id);
-    if (!now || job.plan) return;
-    Object.assign(job, now);
+    if (!changed.has("jobs") || !job || job.plan) return;
+    const planning = job;
+    const now = state.jobs?.find(({ id }) => id === planning.id);
+    if (!now) return;
+    Object.assign(planning, now);
     render();
-    if (now.state === "succeeded") {
-      context.attempt(async () => {
-        job.plan = await get(resourcePath("plans", now.outcome));
-        render();
-      });
-    }
+    if (now.state !== "succeeded") return;
+    context.attempt(async () => {
+      planning.plan = await get(resourcePath("plans", now.outcome));
+      render();
+    });
   });
   const render = () => patchChildren(status, ...(job && job.path === editor.draft?.path ? content(job) : []));
 
@@ -49,6 +56,7 @@ export function certificationSection(place, editor) {
   };
 }
 
+/** @param {Planning} planning @returns {Child[]} */
 function content({ state, message, fraction, plan, version }) {
   if (state === "failed" || state === "cancelled")
     return [element("p", { class: "failed" }, `Version ${versionTitle(version)} is not certified: ${message}.`)];

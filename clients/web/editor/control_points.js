@@ -2,11 +2,14 @@
 import { element } from "../elements.js";
 import { movePoints, setPoint, setWeights } from "./curve_edits.js";
 
+/** @typedef {{input: HTMLInputElement, label: HTMLLabelElement}} Field */
+
 const AXES = ["x", "y", "z"];
 const MAX_COORDINATE = 10_000; // [mm] the service accepts no more
 const NO_BREAK_SPACE = "\u00a0"; // an option collapses plain ones
 const WEIGHT_RANGE = { min: "0.001", max: "1000" };
 
+/** @param {HTMLElement} place @param {Editor} editor @returns {EditorSection} */
 export function controlPointsSection(place, editor) {
   const list = element("select", {
     multiple: "",
@@ -35,16 +38,17 @@ export function controlPointsSection(place, editor) {
   list.addEventListener("change", () => editor.select([...list.selectedOptions].map((option) => Number(option.value))));
   pins.addEventListener("change", () => editor.unlock(pins.checked));
   place.addEventListener("change", (event) => {
-    const at = inputs.indexOf(event.target);
-    if (at < 0) return;
-    delete event.target.dataset.typed;
-    if (event.target.value === "" || !event.target.checkValidity()) {
-      editor.context.messages.show(
-        `The ${at < 3 ? AXES[at] : "weight"} ${event.target.value || "is empty; it"} must be a number from ${event.target.min} to ${event.target.max}.`,
-        "error",
-      );
+    const input = inputs.find((one) => one === event.target);
+    if (!input) return;
+    const at = inputs.indexOf(input);
+    delete input.dataset.typed;
+    const { value, min, max } = input;
+    if (value === "" || !input.checkValidity()) {
+      const name = at < 3 ? AXES[at] : "weight";
+      const rule = `must be a number from ${min} to ${max}`;
+      editor.context.messages.show(`The ${name} ${value || "is empty; it"} ${rule}.`, "error");
       writeFields(editor, fields, weight);
-    } else applyInput(editor, at, Number(event.target.value));
+    } else applyInput(editor, at, Number(value));
   });
 
   return {
@@ -59,14 +63,21 @@ export function controlPointsSection(place, editor) {
   };
 }
 
+/** @param {string} name @param {string} label @param {import("../elements.js").Attributes} limits */
 function field(name, label, limits) {
   const input = element("input", { type: "number", id: `edit-${name}`, "aria-label": label, ...limits });
   return { input, label: element("label", {}, name === "weight" ? "weight" : `${name} (mm)`, input) };
 }
 
-// A coordinate of one point is its own; that of several is their centre's, and moves them all.
+/**
+ * A coordinate of one point is its own; that of several is their centre's, and moves them all.
+ * @param {Editor} editor
+ * @param {number} at axis, or 3 for the weight
+ * @param {number} value
+ */
 function applyInput(editor, at, value) {
-  const { draft } = editor;
+  const { draft, selectionCenter } = editor;
+  if (!draft || !selectionCenter) return;
   if (at === 3) return editor.change(setWeights(draft.curve, draft.selected, value), `weight ${value}`);
   if (draft.selected.some((index) => draft.isPinned(index)))
     return editor.context.messages.show("Start and goal are pinned. Unlock them to move them.");
@@ -76,13 +87,14 @@ function applyInput(editor, at, value) {
     const point = draft.curve.control_points[index].map((old, axis) => (axis === at ? metres : old));
     return editor.change(setPoint(draft.curve, index, point), `${AXES[at]} of control point ${index + 1}`);
   }
-  const by = [0, 0, 0].map((_, axis) => (axis === at ? metres - editor.selectionCenter[axis] : 0));
+  const by = [0, 0, 0].map((_, axis) => (axis === at ? metres - selectionCenter[axis] : 0));
   return editor.change(
     movePoints(draft.curve, draft.selected, by),
     `${AXES[at]} of ${draft.selected.length} control points`,
   );
 }
 
+/** @param {HTMLSelectElement} list @param {import("./draft.js").Draft} draft */
 function writeList(list, draft) {
   const lines = draft.curve.control_points.map((point, i) => {
     const role = i === 0 ? "start" : i === draft.last ? "goal" : "";
@@ -91,7 +103,7 @@ function writeList(list, draft) {
     const places = point.map((value) => (1000 * value).toFixed(1).padStart(8, NO_BREAK_SPACE)).join("");
     return `${String(i + 1).padStart(2, NO_BREAK_SPACE)}${places}${NO_BREAK_SPACE}${NO_BREAK_SPACE}${role}${pin}${weight}`;
   });
-  while (list.options.length > lines.length) list.lastChild.remove();
+  while (list.options.length > lines.length) list.lastChild?.remove();
   lines.forEach((line, i) => {
     if (!list.options[i]) list.append(element("option", { value: String(i) }));
     if (list.options[i].textContent !== line) list.options[i].textContent = line;
@@ -99,6 +111,7 @@ function writeList(list, draft) {
   });
 }
 
+/** @param {import("./draft.js").Draft} draft */
 function selectionText({ selected }) {
   if (!selected.length)
     return "Choose a control point here, or click it in the view. Shift adds; Shift and a drag on free space choose with a box.";
@@ -107,7 +120,9 @@ function selectionText({ selected }) {
     : `${selected.length} control points; coordinates are those of their middle`;
 }
 
+/** @param {Editor} editor @param {Field[]} fields @param {Field} weight */
 function writeFields({ draft, selectionCenter }, fields, weight) {
+  if (!draft) return;
   const { selected, curve } = draft;
   for (const [axis, { input }] of fields.entries()) {
     writeField(input, selectionCenter ? Number((1000 * selectionCenter[axis]).toFixed(2)) : "", !selectionCenter);
@@ -116,6 +131,7 @@ function writeFields({ draft, selectionCenter }, fields, weight) {
   writeField(weight.input, weights.size === 1 ? Number([...weights][0].toPrecision(6)) : "", !selected.length);
 }
 
+/** @param {HTMLInputElement} input @param {string | number} value @param {boolean} disabled */
 function writeField(input, value, disabled) {
   if (input === document.activeElement && "typed" in input.dataset) return; // whatever comes meanwhile
   input.disabled = disabled;

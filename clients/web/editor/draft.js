@@ -6,14 +6,35 @@ import { curvesEqual } from "./curve_edits.js";
 const STORAGE_KEY = "teachpath.draft/";
 const MAX_STORED_CHARACTERS = 1_500_000; // beyond, the older steps are left out
 
+/**
+ * @typedef {Pick<Version, "number" | "branch" | "name">} BaseVersion the version that is edited
+ * @typedef {{curve: Curve, what: string}} Step what was before it, and its name
+ */
+
 export class Draft {
+  /** @type {Step[]} */
   #past = [];
+  /** @type {Step[]} */
   #future = [];
+  /** @type {Curve | null} */
   #beforeDrag = null; // the curve when the present drag began
 
-  // `base` = {number, branch}: the version that is edited; `original`: its curve; `storage` keeps the draft.
+  unlocked = false;
+  /** @type {number[]} */
+  selected = []; // control points
+
+  /**
+   * @param {string} path
+   * @param {BaseVersion} base
+   * @param {Curve} original the curve of the base
+   * @param {Pick<Storage, "getItem" | "setItem">} storage keeps the draft
+   */
   constructor(path, base, original, storage = sessionStorage) {
-    Object.assign(this, { path, base, original, storage, curve: original, unlocked: false, selected: [] });
+    this.path = path;
+    this.base = base;
+    this.original = original;
+    this.curve = original;
+    this.storage = storage;
   }
 
   get edited() {
@@ -32,20 +53,26 @@ export class Draft {
     return this.#future.at(-1)?.what ?? "";
   }
 
+  /** @param {number} index */
   isPinned(index) {
     return !this.unlocked && (index === 0 || index === this.last);
   }
 
-  // The selected control points that may be moved.
+  /** The selected control points that may be moved. */
   get movable() {
     return this.selected.filter((index) => !this.isPinned(index));
   }
 
+  /** @param {number[]} indices */
   select(indices) {
     this.selected = [...new Set(indices)].filter((i) => i >= 0 && i <= this.last).sort((a, b) => a - b);
   }
 
-  // One step; `what` names it for undo and redo.
+  /**
+   * Make one step.
+   * @param {Curve} curve
+   * @param {string} what names it for undo and redo
+   */
   change(curve, what) {
     if (curvesEqual(curve, this.curve)) return;
     this.#past.push({ curve: this.curve, what });
@@ -54,15 +81,17 @@ export class Draft {
     this.persist();
   }
 
-  // A drag: any number of curves between beginDrag() and endDrag() are one step.
+  /** A drag: any number of curves between beginDrag() and endDrag() are one step. */
   beginDrag() {
     this.#beforeDrag = this.curve;
   }
 
+  /** @param {Curve} curve */
   preview(curve) {
     this.curve = curve;
   }
 
+  /** @param {string} what */
   endDrag(what) {
     if (!this.#beforeDrag) return;
     const curve = this.curve;
@@ -84,7 +113,12 @@ export class Draft {
     this.#step(this.#future, this.#past);
   }
 
-  // Go on from another version; what was edited stays one step back.
+  /**
+   * Go on from another version; what was edited stays one step back.
+   * @param {BaseVersion} base
+   * @param {Curve} original
+   * @param {string} what
+   */
   rebase(base, original, what) {
     this.base = base;
     this.original = original;
@@ -92,7 +126,11 @@ export class Draft {
     this.persist();
   }
 
-  // A curve has been saved as this version; the draft may be a step further by now.
+  /**
+   * A curve has been saved as this version; the draft may be a step further by now.
+   * @param {BaseVersion} base
+   * @param {Curve} curve
+   */
   saved(base, curve) {
     this.base = base;
     this.original = curve;
@@ -111,10 +149,14 @@ export class Draft {
     this.storage.setItem(STORAGE_KEY + path, text);
   }
 
-  // The draft of a path that this tab has begun earlier, or null.
+  /**
+   * The draft of a path that this tab has begun earlier, or null.
+   * @param {string} path
+   * @param {Pick<Storage, "getItem" | "setItem">} storage
+   */
   static restore(path, storage = sessionStorage) {
     try {
-      const { base, original, curve, unlocked, past, future } = JSON.parse(storage.getItem(STORAGE_KEY + path));
+      const { base, original, curve, unlocked, past, future } = JSON.parse(storage.getItem(STORAGE_KEY + path) ?? "");
       const draft = new Draft(path, base, original, storage);
       Object.assign(draft, { curve, unlocked });
       draft.#past = past;
@@ -125,6 +167,7 @@ export class Draft {
     }
   }
 
+  /** @param {Step[]} from @param {Step[]} to */
   #step(from, to) {
     const step = from.pop();
     if (!step) return;
@@ -134,6 +177,7 @@ export class Draft {
     this.persist();
   }
 
+  /** @param {Curve} curve */
   #setCurve(curve) {
     this.curve = curve;
     this.select(this.selected);

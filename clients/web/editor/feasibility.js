@@ -1,26 +1,29 @@
-// Whether the arm can follow the draft: a sentence, the segment that fails, what to move, and the colours along the curve.
-import { capitalize, element, formatNumber, patchChildren, svgElement } from "../elements.js";
+// Whether the arm can follow the draft: a sentence, the segment that fails, what to move, and the colors along the curve.
+import { closest, element, svgElement } from "../elements.js";
+import { patchChildren } from "../patch_children.js";
+import { capitalize, formatNumber } from "../texts.js";
 import { colorFunction, legendColors, METRICS } from "./color_scale.js";
 import { movePoints } from "./curve_edits.js";
 
+/** @param {HTMLElement} place @param {Editor} editor @returns {EditorSection} */
 export function feasibilitySection(place, editor) {
   const status = element("div", { id: "edit-feasibility", role: "status" });
-  const metric = element("select", { id: "edit-metric", "aria-label": "what the colours show" });
+  const metric = element("select", { id: "edit-metric", "aria-label": "what the colors show" });
   metric.append(...Object.entries(METRICS).map(([name, { title }]) => element("option", { value: name }, title)));
   const scale = element("div", { class: "scale" });
   place.append(status, element("div", { class: "row" }, element("label", {}, "Colours of the curve ", metric)), scale);
   const paint = () => {
     const { assessment } = editor.feasibility ?? {};
     editor.curveOverlay.setColors(
-      assessment && colorFunction(assessment, METRICS[metric.value]),
+      assessment ? colorFunction(assessment, METRICS[metric.value]) : null,
       assessment?.failure?.position,
     );
     patchChildren(scale, assessment ? legend(METRICS[metric.value]) : "");
   };
   metric.addEventListener("change", paint);
   status.addEventListener("click", (event) => {
-    const suggestion = event.target.closest("button") && editor.feasibility?.assessment?.failure?.suggestion;
-    if (!suggestion) return;
+    const suggestion = closest(event, "button") && editor.feasibility?.assessment?.failure?.suggestion;
+    if (!suggestion || !editor.draft) return;
     editor.select([suggestion.control_point]);
     editor.change(
       movePoints(editor.draft.curve, [suggestion.control_point], suggestion.move),
@@ -37,17 +40,19 @@ export function feasibilitySection(place, editor) {
   };
 }
 
+/** @param {Editor} editor @returns {Child[]} */
 function content({ draft, feasibility }) {
-  if (!feasibility || feasibility.pending)
-    return [element("p", { class: "note" }, "The service is assessing the curve …")];
-  if (feasibility.error) return [element("p", { class: "failed" }, feasibility.error)];
+  if (feasibility?.error) return [element("p", { class: "failed" }, feasibility.error)];
+  if (!feasibility?.assessment) return [element("p", { class: "note" }, "The service is assessing the curve …")];
   const { failure, duration, sentence: outlook, lengths, clearance } = feasibility.assessment;
   if (!failure) {
-    const facts = `${formatNumber(lengths.at(-1), 3, "m")}, about ${formatNumber(duration, 2, "s")}, least clearance ${formatNumber(1000 * Math.min(...clearance), 0, "mm")}`;
+    const [length, least] = [lengths[lengths.length - 1], 1000 * Math.min(...clearance)];
+    const time = duration === null ? "" : `, about ${formatNumber(duration, 2, "s")}`;
+    const facts = `${formatNumber(length, 3, "m")}${time}, least clearance ${formatNumber(least, 0, "mm")}`;
     return [element("p", { class: "good" }, `${capitalize(outlook)}.`), element("p", { class: "note" }, facts)];
   }
   const { interval, reason, suggestion } = failure;
-  const pinned = draft.isPinned(suggestion.control_point);
+  const pinned = draft?.isPinned(suggestion.control_point);
   const size = Math.hypot(...suggestion.move);
   return [
     element(
@@ -70,10 +75,13 @@ function content({ draft, feasibility }) {
   ];
 }
 
-// A bar of the scale with its ends, and what red means.
+/**
+ * A bar of the scale with its ends, and what red means.
+ * @param {import("./color_scale.js").Metric} metric
+ */
 function legend({ unit, max }) {
-  const stops = legendColors.stops.map((colour, i) =>
-    svgElement("stop", { offset: String(i / (legendColors.stops.length - 1)), "stop-color": colour }),
+  const stops = legendColors.stops.map((color, i) =>
+    svgElement("stop", { offset: String(i / (legendColors.stops.length - 1)), "stop-color": color }),
   );
   const bar = svgElement(
     "svg",

@@ -2,8 +2,11 @@
 import { TransformControls } from "../vendor/three/TransformControls.js";
 
 export class Gizmo {
-  // beginDrag(), drag([dx, dy, dz]) since the beginning [m], endDrag().
-  constructor(overlay, { beginDrag, drag, endDrag }) {
+  /**
+   * @param {import("../overlay.js").Overlay} overlay
+   * @param {import("./point_drag.js").PointDrag} drag
+   */
+  constructor(overlay, drag) {
     const { THREE, viewer } = overlay;
     this.overlay = overlay;
     this.anchor = new THREE.Object3D();
@@ -16,13 +19,14 @@ export class Gizmo {
     this.controls.addEventListener("dragging-changed", ({ value }) => {
       overlay.lockCamera(value);
       if (value) start.copy(this.anchor.position);
-      (value ? beginDrag : endDrag)();
+      if (value) drag.begin();
+      else drag.end();
     });
-    this.controls.addEventListener("objectChange", () => drag(this.anchor.position.clone().sub(start).toArray()));
+    this.controls.addEventListener("objectChange", () => drag.move(this.anchor.position.clone().sub(start).toArray()));
     this.controls.addEventListener("change", () => overlay.requestDraw());
   }
 
-  // Whether the pointer is on a handle.
+  /** Whether the pointer is on a handle. */
   get isHovered() {
     return this.controls.object !== undefined && this.controls.axis !== null;
   }
@@ -31,11 +35,14 @@ export class Gizmo {
     return this.controls.dragging;
   }
 
-  // Show the handles at a point; null: hide them.
+  /**
+   * Show the handles at a point; null: hide them.
+   * @param {Point | null} point
+   */
   attachTo(point) {
     if (this.dragging) return;
     if (point) {
-      this.anchor.position.set(...point);
+      this.anchor.position.fromArray(point);
       this.controls.attach(this.anchor);
     } else this.controls.detach();
     this.overlay.requestDraw();

@@ -1,7 +1,9 @@
 // Knots: more of them for finer edits, fewer for a calmer curve, a higher degree; the shape stays.
-import { element, formatNumber } from "../elements.js";
+import { element } from "../elements.js";
+import { formatNumber } from "../texts.js";
 import { grevilleAbscissa, innerKnots, spanMidpoint } from "./curve_edits.js";
 
+/** @param {HTMLElement} place @param {Editor} editor @returns {EditorSection} */
 export function knotsSection(place, editor) {
   const u = element("input", {
     type: "number",
@@ -41,6 +43,7 @@ export function knotsSection(place, editor) {
       remove,
     ),
   );
+  /** @param {string} operation @param {object} more @param {string} what */
   const operate = (operation, more, what) =>
     editor.context.attempt(async () => {
       const done = await editor.applyOperation(operation, more, what);
@@ -56,9 +59,11 @@ export function knotsSection(place, editor) {
       `Knot removed at u = ${Number(Number(choice.value).toPrecision(4))}`,
     ),
   );
-  elevate.addEventListener("click", () => operate("elevate", {}, `Degree raised to ${editor.draft.curve.degree + 1}`));
+  elevate.addEventListener("click", () =>
+    operate("elevate", {}, `Degree raised to ${(editor.draft?.curve.degree ?? 0) + 1}`),
+  );
 
-  let proposed = {}; // {value, of}: what was proposed for u, and for which choice of control points
+  let proposed = { value: "", of: "" }; // what was proposed for u, and for which choice of control points
 
   return {
     update({ draft }, what) {
@@ -72,7 +77,7 @@ export function knotsSection(place, editor) {
           element("option", { value: String(u) }, formatNumber(u, 4) + (times > 1 ? ` ×${times}` : "")),
         ),
       );
-      if ([...choice.options].some((option) => option.value === kept)) choice.value = kept;
+      if ([...choice.options].some(({ value }) => value === kept)) choice.value = kept;
       remove.disabled = choice.disabled = !inner.length;
       elevate.disabled = curve.degree >= 7;
       const around = draft.selected.length === 1 ? grevilleAbscissa(curve, draft.selected[0]) : 0.5;
@@ -85,6 +90,7 @@ export function knotsSection(place, editor) {
   };
 }
 
+/** @param {number} metres */
 function formatDistance(metres) {
   return metres < 1e-8 ? "less than 0.00001 mm" : `${Number((1000 * metres).toPrecision(2))} mm`;
 }

@@ -2,18 +2,26 @@
 const PICK_RADIUS = 12; // [px]
 const CLICK_TOLERANCE = 3; // [px] that a click may move
 
-// `editor` has draft, select(indices), beginDrag(), drag(by), endDrag(), cancelDrag(); the `gizmo` comes first.
-export function enablePicking(editor, overlay, gizmo) {
-  let gesture = null;
+/**
+ * What a press has begun; at = [x, y] in CSS pixels.
+ * @typedef {{move(at: number[]): void, up(cancelled: boolean): void}} Gesture
+ *
+ * @typedef {import("../overlay.js").Overlay} Overlay
+ */
 
+/** @param {Editor} editor @param {Overlay} overlay @param {import("./gizmo.js").Gizmo} gizmo it comes first */
+export function enablePicking(editor, overlay, gizmo) {
+  /** @type {Gesture | null} */
+  let gesture = null;
+  /** @param {PointerEvent} event */
   const down = (event) => {
-    if (!editor.active || event.button !== 0 || gizmo.isHovered) return false;
+    if (!editor.active || !editor.draft || event.button !== 0 || gizmo.isHovered) return false;
     const at = [event.clientX, event.clientY];
     const index = nearest(editor.draft.curve.control_points, overlay, at);
     if (index === null && !event.shiftKey) return false; // the camera's
     overlay.element.focus({ preventScroll: true });
     if (index === null) gesture = new BoxGesture(editor, overlay, at);
-    else if (event.shiftKey) gesture = new ToggleGesture(editor, index);
+    else if (event.shiftKey) gesture = toggle(editor, index);
     else gesture = new DragGesture(editor, overlay, index, at);
     return true;
   };
@@ -24,84 +32,111 @@ export function enablePicking(editor, overlay, gizmo) {
   });
 }
 
+/**
+ * The control point under a pixel, or null.
+ * @param {Point[]} points
+ * @param {Overlay} overlay
+ * @param {number[]} pixel
+ */
 function nearest(points, overlay, [x, y]) {
   let best = null;
   let least = PICK_RADIUS;
-  points.forEach((point, i) => {
+  for (const [i, point] of points.entries()) {
     const seen = overlay.project(point);
     const off = seen ? Math.hypot(seen[0] - x, seen[1] - y) : Infinity;
     if (off <= least) [best, least] = [i, off];
-  });
+  }
   return best;
 }
 
 class DragGesture {
+  #moving = false;
+
+  /** @param {Editor} editor @param {Overlay} overlay @param {number} index @param {number[]} at */
   constructor(editor, overlay, index, at) {
-    Object.assign(this, { editor, overlay, at });
-    if (!editor.draft.selected.includes(index)) editor.select([index]);
-    this.through = editor.draft.curve.control_points[index];
-    this.from = overlay.unproject(...at, { through: this.through });
-    this.moving = false;
+    this.editor = editor;
+    this.overlay = overlay;
+    this.at = at;
+    if (!editor.draft?.selected.includes(index)) editor.select([index]);
+    this.through = editor.draft?.curve.control_points[index];
+    this.from = this.#pointAt(at);
   }
 
+  /** @param {number[]} at */
   move(at) {
-    if (!this.moving) {
+    if (!this.#moving) {
       if (Math.hypot(at[0] - this.at[0], at[1] - this.at[1]) <= CLICK_TOLERANCE) return;
-      if (!this.editor.beginDrag()) return;
-      this.moving = true;
+      if (!this.editor.drag.begin()) return;
+      this.#moving = true;
     }
-    const to = this.overlay.unproject(...at, { through: this.through });
-    if (to) this.editor.drag(to.map((value, axis) => value - this.from[axis]));
+    const { from } = this;
+    const to = this.#pointAt(at);
+    if (from && to) this.editor.drag.move(to.map((value, axis) => value - from[axis]));
   }
 
+  /** @param {boolean} cancelled */
   up(cancelled) {
-    if (!this.moving) return;
-    this.moving = false;
-    if (cancelled) this.editor.cancelDrag();
-    else this.editor.endDrag();
+    if (!this.#moving) return;
+    this.#moving = false;
+    if (cancelled) this.editor.drag.cancel();
+    else this.editor.drag.end();
+  }
+
+  /** @param {number[]} at */
+  #pointAt(at) {
+    return this.overlay.unproject(at[0], at[1], { through: this.through });
   }
 }
 
-class ToggleGesture {
-  constructor(editor, index) {
-    const { selected } = editor.draft;
-    editor.select(selected.includes(index) ? selected.filter((i) => i !== index) : [...selected, index]);
-  }
-
-  move() {}
-
-  up() {}
+/**
+ * Add a control point to the selection, or take it out; nothing moves.
+ * @param {Editor} editor
+ * @param {number} index
+ * @returns {Gesture}
+ */
+function toggle(editor, index) {
+  const { selected = [] } = editor.draft ?? {};
+  editor.select(selected.includes(index) ? selected.filter((i) => i !== index) : [...selected, index]);
+  return { move() {}, up() {} };
 }
 
-// A rectangle on the screen; the control points in it are added to the selection.
+/** A rectangle on the screen; the control points in it are added to the selection. */
 class BoxGesture {
+  /** @param {Editor} editor @param {Overlay} overlay @param {number[]} at */
   constructor(editor, overlay, at) {
-    Object.assign(this, { editor, overlay, at, to: at });
+    this.editor = editor;
+    this.overlay = overlay;
+    this.at = at;
+    this.to = at;
     this.element = document.createElement("div");
     this.element.className = "selection-box";
     document.body.append(this.element);
     this.move(at);
   }
 
+  /** @param {number[]} to */
   move(to) {
     this.to = to;
-    const [x, y] = [0, 1].map((axis) => Math.min(this.at[axis], to[axis]));
-    const [width, height] = [0, 1].map((axis) => Math.abs(this.at[axis] - to[axis]));
-    Object.assign(this.element.style, { left: `${x}px`, top: `${y}px`, width: `${width}px`, height: `${height}px` });
+    const [[left, right], [top, bottom]] = this.#sides();
+    const pixels = { left, top, width: right - left, height: bottom - top };
+    for (const [name, value] of Object.entries(pixels)) this.element.style.setProperty(name, `${value}px`);
   }
 
+  /** @param {boolean} cancelled */
   up(cancelled) {
     this.element.remove();
-    if (cancelled) return;
-    const inside = ([x, y]) =>
-      [x, y].every(
-        (value, axis) =>
-          Math.min(this.at[axis], this.to[axis]) <= value && value <= Math.max(this.at[axis], this.to[axis]),
-      );
-    const found = this.editor.draft.curve.control_points.flatMap((point, i) => {
+    const { draft } = this.editor;
+    if (cancelled || !draft) return;
+    const sides = this.#sides();
+    const found = draft.curve.control_points.flatMap((point, i) => {
       const seen = this.overlay.project(point);
-      return seen && inside(seen) ? [i] : [];
+      return seen && sides.every(([low, high], axis) => low <= seen[axis] && seen[axis] <= high) ? [i] : [];
     });
-    this.editor.select([...this.editor.draft.selected, ...found]);
+    this.editor.select([...draft.selected, ...found]);
+  }
+
+  /** Lower and upper end of both axes. */
+  #sides() {
+    return [0, 1].map((axis) => [Math.min(this.at[axis], this.to[axis]), Math.max(this.at[axis], this.to[axis])]);
   }
 }

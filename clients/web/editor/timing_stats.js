@@ -2,12 +2,17 @@
 const MAX_SAMPLES = 600;
 
 export class TimingStats {
+  /** @type {number[]} */
   #frames = []; // [ms] of work a frame: the curve, the buffers, the numbers beside the view
+  /** @type {number[]} */
   #renderings = []; // [ms] that handing the scene to the graphics card takes; without one it is drawn meanwhile
+  /** @type {number[]} */
   #intervals = []; // [ms] between two frames of one drag
+  /** @type {number[]} */
   #answers = []; // [ms] from release to assessment
   #before = 0;
 
+  /** @param {() => void} work @param {import("../view.js").View} view */
   measureFrame(work, view) {
     const began = performance.now();
     work();
@@ -17,6 +22,7 @@ export class TimingStats {
     this.#before = began;
   }
 
+  /** @param {number} ms */
   addAnswer(ms) {
     append(this.#answers, ms);
   }
@@ -36,13 +42,16 @@ export class TimingStats {
   }
 }
 
+/** @param {number[]} list @param {number} value */
 function append(list, value) {
   list.push(value);
   if (list.length > MAX_SAMPLES) list.shift();
 }
 
+/** @param {number[]} list */
 function percentiles(list) {
   const sorted = [...list].sort((a, b) => a - b);
+  /** @param {number} p */
   const share = (p) => sorted[Math.min(sorted.length - 1, Math.floor(p * sorted.length))] ?? null;
   return { p50: share(0.5), p95: share(0.95), max: sorted.at(-1) ?? null };
 }

@@ -1,7 +1,10 @@
 // The versions of the path: which there are, which one is edited, and how two of them differ.
 import { get, resourcePath } from "../api.js";
-import { element, patchChildren } from "../elements.js";
+import { closestData, element, option } from "../elements.js";
+import { patchChildren } from "../patch_children.js";
+import { readVersion } from "./stored_versions.js";
 
+/** @param {HTMLElement} place @param {Editor} editor @returns {EditorSection} */
 export function versionsSection(place, editor) {
   const table = element("div", { class: "versions" });
   const [first, second] = ["first", "second"].map((id) =>
@@ -11,7 +14,7 @@ export function versionsSection(place, editor) {
   const status = element("p", { class: "note", id: "edit-difference", role: "status" });
   place.append(table, element("div", { class: "row compare" }, first, " with ", second, compare), status);
   table.addEventListener("click", (event) => {
-    const number = event.target.closest("button")?.dataset.version;
+    const { version: number } = closestData(event);
     if (number) editor.context.attempt(() => editor.loadVersion(Number(number)));
   });
   let turn = 0; // the newest comparison is the one that is shown
@@ -20,6 +23,7 @@ export function versionsSection(place, editor) {
     return compareVersions(editor, Number(first.value), Number(second.value), status, () => mine === turn);
   };
   compare.addEventListener("click", () => editor.context.attempt(difference));
+  /** @type {Map<HTMLSelectElement, string>} */
   const chosen = new Map(); // select -> number of a version, as a person chose it
   for (const select of [first, second]) select.addEventListener("change", () => chosen.set(select, select.value));
   let path = "";
@@ -39,24 +43,20 @@ export function versionsSection(place, editor) {
       }
       patchChildren(table, content(editor));
       const numbers = editor.versions.map(({ number }) => String(number));
-      for (const [select, usual] of [
-        [first, "1"],
-        [second, numbers.at(-1)],
-      ]) {
-        select.replaceChildren(
-          ...editor.versions.map((version) =>
-            element("option", { value: String(version.number) }, versionTitle(version)),
-          ),
-        );
-        select.value = chosen.get(select) ?? usual;
+      const usual = ["1", numbers[numbers.length - 1]];
+      for (const [i, select] of [first, second].entries()) {
+        select.replaceChildren(...editor.versions.map((version) => option(version.number, versionTitle(version))));
+        select.value = chosen.get(select) ?? usual[i];
       }
       compare.disabled = numbers.length < 2;
     },
   };
 }
 
+/** @param {Pick<Version, "number" | "name">} version */
 export const versionTitle = ({ number, name }) => (name ? `${number} ${name}` : `${number}`);
 
+/** @param {Editor} editor */
 function content({ draft, versions }) {
   const head = element(
     "thead",
@@ -70,7 +70,7 @@ function content({ draft, versions }) {
     ),
   );
   const rows = versions.toReversed().map((version) => {
-    const here = version.number === draft.base.number;
+    const here = version.number === draft?.base.number;
     return element(
       "tr",
       { class: here ? "selected" : "", title: version.note || false },
@@ -97,13 +97,20 @@ function content({ draft, versions }) {
   return element("table", {}, head, element("tbody", {}, rows));
 }
 
+/**
+ * Show two versions side by side and say how they differ.
+ * @param {Editor} editor
+ * @param {number} a
+ * @param {number} b
+ * @param {HTMLElement} status
+ * @param {() => boolean} newest whether no other comparison was asked for meanwhile
+ */
 async function compareVersions(editor, a, b, status, newest) {
-  const { path } = editor.draft;
-  const read = (number) => get(resourcePath("paths", path, "versions", number));
+  const { path = "" } = editor.draft ?? {};
   const [difference, one, other] = await Promise.all([
     get(resourcePath("paths", path, "versions", a, "difference", b)),
-    read(a),
-    read(b),
+    readVersion(path, a),
+    readVersion(path, b),
   ]);
   if (path !== editor.draft?.path || !newest()) return;
   editor.curveOverlay.setComparison(one.path.curve, other.path.curve);
@@ -111,6 +118,7 @@ async function compareVersions(editor, a, b, status, newest) {
   status.scrollIntoView({ block: "nearest" });
 }
 
+/** @param {number} ns since the Unix epoch */
 function when(ns) {
   const date = new Date(ns / 1e6);
   const today = date.toDateString() === new Date().toDateString();

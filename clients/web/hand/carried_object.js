@@ -7,7 +7,10 @@ const COLOR_GRASPED = 0xe08a00;
 const COLOR_COLLIDING = 0xb3391f;
 
 export class CarriedObject {
-  // `overlay` as in overlay.js; `shape`: the carried object of the scene.
+  /**
+   * @param {import("../overlay.js").Overlay} overlay
+   * @param {import("../meshes.js").Solid} shape the carried object of the scene
+   */
   constructor(overlay, shape) {
     const { THREE } = overlay;
     this.overlay = overlay;
@@ -26,7 +29,12 @@ export class CarriedObject {
     overlay.group.add(this.group);
   }
 
-  // Show it at a position above `floor` [m], in the colour of its state.
+  /**
+   * Show it at a position, in the colour of its state.
+   * @param {Point} position
+   * @param {number} floor height of what is below [m]
+   * @param {{grasped: boolean, colliding: boolean}} state
+   */
   setPosition([x, y, z], floor, { grasped, colliding }) {
     this.body.position.set(x, y, z);
     this.disc.position.set(x, y, floor + 0.002);
@@ -36,10 +44,12 @@ export class CarriedObject {
     this.overlay.requestDraw();
   }
 
-  // Turn it as the hand that holds it, {position, turn}; null: upright. Returns the position.
-  setOrientation(held) {
-    this.body.quaternion.copy(held?.turn ?? new this.overlay.THREE.Quaternion());
-    return held?.position;
+  /**
+   * Turn it as the hand that holds it; null: upright.
+   * @param {THREE.Quaternion | null} turn
+   */
+  setOrientation(turn) {
+    this.body.quaternion.copy(turn ?? new this.overlay.THREE.Quaternion());
   }
 
   remove() {

@@ -6,9 +6,14 @@ export class FixedRateTimer {
   #due = 0;
   #before = 0;
 
-  // `onLate(ms)`: how far elapsed two calls were, when that was more than two periods.
+  /**
+   * @param {(seconds: number) => void} callback told the seconds since the call before
+   * @param {{rate?: number, onLate?: (ms: number) => void}} options `onLate`: told how far apart two calls were, when that
+   *   was more than two periods
+   */
   constructor(callback, { rate = SAMPLE_RATE, onLate = () => {} } = {}) {
-    Object.assign(this, { callback, onLate });
+    this.callback = callback;
+    this.onLate = onLate;
     this.period = 1000 / rate;
   }
 

@@ -3,15 +3,19 @@
 const LATE_FRAME = 40; // [ms] between two frames; more than any headset has by itself
 const MAX_SAMPLE_GAP = 90; // [ms] without a sample; where drawing costs more, nothing is drawn during a demonstration
 const MAX_FRAME_INTERVAL = 10_000; // [ms] between two drawn frames where each costs more than that
-const COST_FACTOR = 4; // where drawing makes frames late, drawn frames are this many times its cost elapsed
+const COST_FACTOR = 4; // where drawing makes frames late, drawn frames are this many times its cost apart
 const COST_DECAY = 0.995; // per frame that came in time
 
 export class FrameSkipper {
+  /** @type {number | null} */
   #before = null; // [ms] of the frame before
   #drawn = -Infinity; // [ms] of the newest drawn frame
   cost = 0; // [ms] that drawing seems to cost
 
-  // `time` of the frame [ms]; `busy`: a demonstration is under way or may begin at any moment.
+  /**
+   * @param {number} time of the frame [ms]
+   * @param {boolean} busy a demonstration is under way or may begin at any moment
+   */
   shouldRender(time, busy) {
     const elapsed = time - (this.#before ?? time);
     this.#before = time;

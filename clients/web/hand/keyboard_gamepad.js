@@ -3,6 +3,7 @@ import { viewDirection } from "./pointer_drag.js";
 
 const SPEED = 0.35; // [m/s] at full deflection, or while a key is held
 const DEAD_ZONE = 0.15; // share of a stick's deflection that counts as none
+/** @type {Record<string, number[]>} */
 const KEYS = {
   ArrowLeft: [-1, 0, 0],
   ArrowRight: [1, 0, 0],
@@ -12,24 +13,32 @@ const KEYS = {
   PageDown: [0, 0, -1],
 };
 
-// `canGrasp`, `grasp` and `release` as in pointer_drag.js. `held`: Enter must be held, and letting it go releases; else it
-// is pressed once to grasp and once to release. `places`: elements beside the view whose keys count.
-// Returns {step(seconds), end()}; step is called with every sample.
+/**
+ * Returns {step(seconds), end()}; step is called with every sample.
+ * @param {import("../overlay.js").Overlay} overlay
+ * @param {import("./hand_model.js").HandModel} handModel
+ * @param {HandActions} actions
+ * @param {{held?: boolean, places?: HTMLElement[]}} options `held`: Enter must be held, and letting it go releases; else it is
+ *   pressed once to grasp and once to release. `places`: elements beside the view whose keys count.
+ */
 export function attachKeyboardGamepad(
   overlay,
   handModel,
   { canGrasp, grasp, release },
   { held: mustHold = false, places = [] } = {},
 ) {
+  /** @type {Set<string>} */
   const held = new Set();
   let button = false; // of the gamepad
   let entered = false; // Enter is held
 
+  /** @param {boolean} closed */
   function toggle(closed) {
     if (closed && !handModel.grasped && canGrasp()) grasp();
     else if (!closed && handModel.grasped) release();
   }
 
+  /** @param {KeyboardEvent} event */
   function down(event) {
     if (event.key === "Enter") {
       if (!event.repeat) toggle(mustHold || !handModel.grasped);
@@ -43,6 +52,7 @@ export function attachKeyboardGamepad(
     if (mustHold && entered) toggle(false);
     entered = false;
   }
+  /** @param {KeyboardEvent} event */
   const up = (event) => {
     held.delete(event.key);
     if (event.key === "Enter") letGo();
@@ -51,22 +61,24 @@ export function attachKeyboardGamepad(
     held.clear();
     letGo();
   };
-  const listeners = [
-    ["keydown", down],
-    ["keyup", up],
-    ["blur", leave],
-  ];
-  const all = [overlay.element, ...places];
-  for (const place of all) for (const [type, listener] of listeners) place.addEventListener(type, listener);
+  const listening = new AbortController();
+  const { signal } = listening;
+  for (const place of [overlay.element, ...places]) {
+    place.addEventListener("keydown", down, { signal });
+    place.addEventListener("keyup", up, { signal });
+    place.addEventListener("blur", leave, { signal });
+  }
 
   function readVelocity() {
     const sum = [0, 0, 0];
+    /** @param {number[]} velocity */
     const add = (velocity) => {
       for (const [i, value] of velocity.entries()) sum[i] += value;
     };
     for (const key of held) add(KEYS[key]);
     const pad = [...(navigator.getGamepads?.() ?? [])].find((one) => one?.connected);
     if (pad) {
+      /** @param {number} index */
       const stick = (index) => (Math.abs(pad.axes[index] ?? 0) > DEAD_ZONE ? pad.axes[index] : 0);
       add([stick(0), -stick(1), -stick(3)]);
       const pressed = Boolean(pad.buttons[0]?.pressed || pad.buttons[7]?.pressed);
@@ -77,6 +89,7 @@ export function attachKeyboardGamepad(
   }
 
   return {
+    /** @param {number} seconds */
     step(seconds) {
       const [right, ahead, above] = readVelocity();
       if (!handModel.grasped || (!right && !ahead && !above)) return;
@@ -89,7 +102,7 @@ export function attachKeyboardGamepad(
       ]);
     },
     end() {
-      for (const place of all) for (const [type, listener] of listeners) place.removeEventListener(type, listener);
+      listening.abort();
     },
   };
 }

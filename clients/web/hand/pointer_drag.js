@@ -1,16 +1,25 @@
 // Mouse and touch: press on the object to grasp it, drag over a horizontal plane; shift, the wheel or a second finger
 // change the height; let go to release.
+/** @type {Record<string, number>} */
 const GRAB_RADIUS = { mouse: 28, pen: 32, touch: 48 }; // [px] around the object
 const METRES_PER_WHEEL_PIXEL = 0.0004; // [m] of height for a pixel of the wheel
 const METRES_PER_FINGER_PIXEL = 0.0012; // [m] of height for a pixel of the second finger
 
-// `handModel` as in hand_model.js; `canGrasp()`: whether the object may be grasped now; `grasp()` and `release()` do so.
-// Returns what detaches the listeners.
+/**
+ * Returns what detaches the listeners.
+ * @param {import("../overlay.js").Overlay} overlay
+ * @param {import("./hand_model.js").HandModel} handModel
+ * @param {HandActions} actions
+ */
 export function attachPointerDrag(overlay, handModel, { canGrasp, grasp, release }) {
+  /** @type {number | null} */
   let first = null; // id of the pointer that carries
-  let second = null; // {id, y} of the finger for the height
-  let plane = null; // {normal, through, offset, vertical} in which the object is dragged
+  /** @type {{id: number, y: number} | null} */
+  let second = null; // of the finger for the height
+  /** @type {{normal: Point, through: Point, offset: Point, vertical: boolean} | null} */
+  let plane = null; // in which the object is dragged
 
+  /** @param {MouseEvent} event */
   function hold(event) {
     const vertical = event.shiftKey;
     const normal = vertical ? viewDirection(overlay) : [0, 0, 1];
@@ -19,12 +28,16 @@ export function attachPointerDrag(overlay, handModel, { canGrasp, grasp, release
     plane = hit && { vertical, normal, through, offset: through.map((value, i) => value - hit[i]) };
   }
 
+  /** @param {PointerEvent} event */
   function drag(event) {
     if (!plane || plane.vertical !== event.shiftKey) hold(event);
-    const hit = plane && overlay.unproject(event.clientX, event.clientY, plane);
-    if (hit) handModel.setTarget(hit.map((value, i) => value + plane.offset[i]));
+    if (!plane) return;
+    const { offset } = plane;
+    const hit = overlay.unproject(event.clientX, event.clientY, plane);
+    if (hit) handModel.setTarget(hit.map((value, i) => value + offset[i]));
   }
 
+  /** @param {number} metres @param {MouseEvent} [event] */
   function lift(metres, event) {
     const [x, y, z] = handModel.target;
     handModel.setTarget([x, y, z + metres]);
@@ -70,6 +83,7 @@ export function attachPointerDrag(overlay, handModel, { canGrasp, grasp, release
   });
 
   // In the capture phase, before the camera's listener: while the object is carried, the wheel changes its height.
+  /** @param {WheelEvent} event */
   function wheel(event) {
     if (first === null) return;
     event.preventDefault();
@@ -84,14 +98,13 @@ export function attachPointerDrag(overlay, handModel, { canGrasp, grasp, release
   };
 }
 
-// Level direction from the object to the camera: normal of the upright plane that faces it.
+/**
+ * Level direction from the object to the camera: normal of the upright plane that faces it.
+ * @param {import("../overlay.js").Overlay} overlay
+ */
 export function viewDirection(overlay) {
-  const away = overlay.ray(...middle(overlay.element)).direction;
+  const box = overlay.element.getBoundingClientRect();
+  const away = overlay.ray(box.left + box.width / 2, box.top + box.height / 2).direction;
   const length = Math.hypot(away[0], away[1]) || 1;
   return [-away[0] / length, -away[1] / length, 0];
-}
-
-function middle(element) {
-  const box = element.getBoundingClientRect();
-  return [box.left + box.width / 2, box.top + box.height / 2];
 }

@@ -1,16 +1,29 @@
 // Sends the hand's samples from a web worker (sample_worker.js), so that neither drawing nor a busy machine leaves gaps.
+/**
+ * @typedef {{ms: number, within: number}} ClockOffset service clock minus page clock, and how far off it may be [ms]
+ *
+ * What the worker says of its TrackerSocket.
+ * @typedef {{live: boolean, offset: ClockOffset | null, dropped: number, sequence: number}} SenderStatus
+ *
+ * @typedef {object} TrackerCallbacks
+ * @property {(state: string, sentence: string) => void} onChange "live", "lost" (it connects again) or "refused" (it does not)
+ * @property {(sentence: string) => void} onRejected the service did not take a message
+ */
+
+/** @type {SenderStatus} */
 const INITIAL_STATUS = { live: false, offset: null, dropped: 0, sequence: 0 };
 
 export class SampleSender {
-  #status = INITIAL_STATUS; // of the worker's TrackerSocket
-  #worker;
+  #status = INITIAL_STATUS;
+  #worker = new Worker(new URL("./sample_worker.js", import.meta.url), { type: "module" });
+  /** @type {Map<number, {resolve: (value: any) => void, reject: (error: Error) => void}>} */
   #requests = new Map(); // number of a request -> {resolve, reject}
   #requestCount = 0;
 
-  // Callbacks as of TrackerSocket.
+  /** @param {string} name @param {TrackerCallbacks} callbacks */
   constructor(name, { onChange, onRejected }) {
-    Object.assign(this, { onChange, onRejected });
-    this.#worker = new Worker(new URL("./sample_worker.js", import.meta.url), { type: "module" });
+    this.onChange = onChange;
+    this.onRejected = onRejected;
     this.#worker.onmessage = ({ data }) => this.#handleMessage(data);
     this.#worker.onerror = () =>
       this.#rejectAll(new Error("The page's own thread for samples does not run. Load the page again."));
@@ -37,17 +50,26 @@ export class SampleSender {
     return this.#request({ order: "connect" });
   }
 
-  // End the recording; resolves to its report.
+  /**
+   * End the recording; resolves to its report.
+   * @returns {Promise<RecordingReport>}
+   */
   end({ discard = false } = {}) {
     return this.#request({ order: "end", discard });
   }
 
-  // Where the hand is now: it is sampled there, at a fixed rate, until the next pose.
+  /**
+   * Where the hand is now: it is sampled there, at a fixed rate, until the next pose.
+   * @param {Hand} hand
+   */
   setPose(hand) {
     this.#worker.postMessage({ pose: hand });
   }
 
-  // Send a sample that has its own time, as a headset's frame has; sampling at a fixed rate stops.
+  /**
+   * Send a sample that has its own time, as a headset's frame has; sampling at a fixed rate stops.
+   * @param {HandSample} sample
+   */
   send(sample) {
     this.#worker.postMessage({ sample });
   }
@@ -57,6 +79,7 @@ export class SampleSender {
     this.#rejectAll(new Error("The connection was closed."));
   }
 
+  /** @param {object} message @returns {Promise<any>} */
   #request(message) {
     this.#requestCount += 1;
     const answer = new Promise((resolve, reject) => this.#requests.set(this.#requestCount, { resolve, reject }));
@@ -64,9 +87,10 @@ export class SampleSender {
     return answer;
   }
 
+  /** @param {import("./sample_worker.js").WorkerMessage} message */
   #handleMessage({ status, state, sentence, rejected, number, value, error }) {
     if (status) this.#status = status;
-    if (state) this.onChange(state, sentence);
+    if (state) this.onChange(state, sentence ?? "");
     if (rejected) this.onRejected(rejected);
     if (!number) return;
     const { resolve, reject } = this.#requests.get(number) ?? {};
@@ -75,6 +99,7 @@ export class SampleSender {
     else resolve?.(value);
   }
 
+  /** @param {Error} error */
   #rejectAll(error) {
     for (const { reject } of this.#requests.values()) reject(error);
     this.#requests.clear();

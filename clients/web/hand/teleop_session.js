@@ -13,27 +13,42 @@ import { TRACKER_NAME } from "./tracker_name.js";
 
 const HANDLE = { kind: "sphere", size: [0.028] }; // [m] what is dragged; it stands at the gripper
 
+/**
+ * @typedef {object} TeleopOptions
+ * @property {boolean} usesPageHand the page's hand leads, else a tracker's does
+ * @property {boolean} usesHeadset the page's hand is that of a headset, whose samples go to addHeadsetSample()
+ * @property {HTMLElement} button the clutch
+ * @property {() => void} onChange the clutch or the connection has changed
+ * @property {(sentence: string) => void} onError the session cannot go on
+ */
+
 export class TeleopSession {
   clutchPressed = false;
   isPositioned = false; // the hand stands at the gripper, whose place is known
   handClosed = false; // the gripper closes and opens with the hand while the clutch is held
   gripperClosed = false; // as the arm reports it
+  /** @type {(() => void)[]} */
   #disposers = [];
+  /** @type {CarriedObject | null} */
+  #handle = null;
+  /** @type {ReturnType<typeof attachKeyboardGamepad> | null} */
+  #keyboardGamepad = null;
 
-  // `arm` as GET /robot gives it; `scene` around it. `usesPageHand`: the page's hand leads, else a tracker's does;
-  // `usesHeadset`: the page's hand is that of a headset, whose samples go to addHeadsetSample(). `button` is the clutch.
-  // `onChange()` is called when the clutch or the connection changes, `onError(sentence)` when the session cannot go on.
+  /**
+   * @param {import("../overlay.js").Overlay} overlay
+   * @param {Scene} scene around the arm
+   * @param {Robot} arm
+   * @param {TeleopOptions} options
+   */
   constructor(overlay, scene, arm, { usesPageHand, usesHeadset, button, onChange, onError }) {
-    Object.assign(this, {
-      overlay,
-      arm,
-      usesPageHand,
-      usesHeadset,
-      button,
-      onChange,
-      onError,
-      name: `${TRACKER_NAME}-lead`,
-    });
+    this.overlay = overlay;
+    this.arm = arm;
+    this.usesPageHand = usesPageHand;
+    this.usesHeadset = usesHeadset;
+    this.button = button;
+    this.onChange = onChange;
+    this.onError = onError;
+    this.name = `${TRACKER_NAME}-lead`;
     this.handModel = new HandModel({ ...scene, carried: { ...HANDLE, position: [0, 0, 0] } });
     this.sender = new SampleSender(this.name, {
       onChange: (state, sentence) => this.#onConnection(state, sentence),
@@ -42,7 +57,7 @@ export class TeleopSession {
     this.timer = new FixedRateTimer((seconds) => this.#tick(seconds));
   }
 
-  // Connect, and wait for the clutch.
+  /** Connect, and wait for the clutch. */
   async begin() {
     await this.sender.connect();
     if (this.usesHeadset) return;
@@ -51,44 +66,49 @@ export class TeleopSession {
       grasp: () => this.#setClutch(true),
       release: () => this.#setClutch(false),
     };
-    this.keyboardGamepad = attachKeyboardGamepad(this.overlay, this.handModel, actions, {
+    this.#keyboardGamepad = attachKeyboardGamepad(this.overlay, this.handModel, actions, {
       held: true,
       places: [this.button],
     });
-    this.#disposers.push(() => this.keyboardGamepad.end(), this.#bindClutch(actions));
+    this.#disposers.push(() => this.#keyboardGamepad?.end(), this.#bindClutch());
     if (this.usesPageHand)
-      this.#disposers.push(attachPointerDrag(this.overlay, this.handModel, actions), () =>
-        this.carriedObject?.remove(),
-      );
+      this.#disposers.push(attachPointerDrag(this.overlay, this.handModel, actions), () => this.#handle?.remove());
     const hidden = () => document.hidden && this.#setClutch(false);
     document.addEventListener("visibilitychange", hidden);
     this.#disposers.push(() => document.removeEventListener("visibilitychange", hidden));
     this.timer.start();
   }
 
-  // Where the arm is now, at configuration `q` [rad], and its gripper: without the clutch, the hand follows both.
+  /**
+   * Tell where the arm is now, and its gripper: without the clutch, the hand follows both.
+   * @param {number[]} q configuration [rad]
+   * @param {boolean} gripperClosed
+   */
   setArmState(q, gripperClosed) {
     const same = gripperClosed === this.gripperClosed;
     this.gripperClosed = gripperClosed;
     if (this.clutchPressed) return;
     this.handClosed = gripperClosed;
     if (!same) this.onChange();
-    const tool = linkFrames(this.arm.links, q).at(-1);
+    const tool = linkFrames(this.arm.links, q)[this.arm.links.length];
     this.handModel.position = [12, 13, 14].map((i) => tool[i] + this.arm.tool_length * tool[i - 4]);
     this.handModel.target = [...this.handModel.position];
     this.isPositioned = true;
-    if (this.usesPageHand && !this.usesHeadset) this.carriedObject ??= new CarriedObject(this.overlay, HANDLE);
+    if (this.usesPageHand && !this.usesHeadset) this.#handle ??= new CarriedObject(this.overlay, HANDLE);
     this.#draw();
   }
 
-  // A headset's sample: one hand leads, the other one's pinch or trigger is the clutch.
+  /**
+   * Take a headset's sample: one hand leads, the other one's pinch or trigger is the clutch.
+   * @param {HandSample & {clutch: boolean}} sample
+   */
   addHeadsetSample(sample) {
     this.#setClutch(sample.clutch);
     this.handClosed = sample.grasp;
     this.sender.send({ ...sample, clutch: this.clutchPressed });
   }
 
-  // Close the gripper, or open it; the arm takes this from the hand, and only while it follows.
+  /** Close the gripper, or open it; the arm takes this from the hand, and only while it follows. */
   toggleGripper() {
     if (!this.clutchPressed) return;
     this.handClosed = !this.handClosed;
@@ -102,27 +122,30 @@ export class TeleopSession {
     this.sender.close();
   }
 
-  #bindClutch({ grasp, release }) {
-    const down = (event) => {
-      this.button.setPointerCapture(event.pointerId);
-      grasp();
+  /** The button is the clutch while it is pressed; G closes and opens the gripper. Returns what detaches the listeners. */
+  #bindClutch() {
+    const listening = new AbortController();
+    const { signal } = listening;
+    const { button } = this;
+    const release = () => this.#setClutch(false);
+    /** @param {PointerEvent} event */
+    const press = (event) => {
+      button.setPointerCapture(event.pointerId);
+      this.#setClutch(true);
     };
-    const key = (event) => event.key.toLowerCase() === "g" && !event.repeat && this.toggleGripper();
-    const listeners = [
-      ["pointerdown", down],
-      ["pointerup", release],
-      ["pointercancel", release],
-      ["lostpointercapture", release],
-      ["keydown", key],
-    ];
-    for (const [type, listener] of listeners) this.button.addEventListener(type, listener);
-    this.overlay.element.addEventListener("keydown", key);
-    return () => {
-      for (const [type, listener] of listeners) this.button.removeEventListener(type, listener);
-      this.overlay.element.removeEventListener("keydown", key);
+    /** @param {KeyboardEvent} event */
+    const toggle = (event) => {
+      if (event.key.toLowerCase() === "g" && !event.repeat) this.toggleGripper();
     };
+    button.addEventListener("pointerdown", press, { signal });
+    button.addEventListener("pointerup", release, { signal });
+    button.addEventListener("pointercancel", release, { signal });
+    button.addEventListener("lostpointercapture", release, { signal });
+    for (const place of [button, this.overlay.element]) place.addEventListener("keydown", toggle, { signal });
+    return () => listening.abort();
   }
 
+  /** @param {boolean} pressed */
   #setClutch(pressed) {
     if (pressed === this.clutchPressed || (pressed && !(this.isPositioned && this.sender.live))) return;
     this.clutchPressed = this.handModel.grasped = pressed;
@@ -132,8 +155,9 @@ export class TeleopSession {
     this.onChange();
   }
 
+  /** @param {number} seconds */
   #tick(seconds) {
-    this.keyboardGamepad.step(seconds);
+    this.#keyboardGamepad?.step(seconds);
     if (this.clutchPressed && this.handModel.step(seconds)) this.#draw();
     this.#send();
   }
@@ -149,6 +173,7 @@ export class TeleopSession {
     });
   }
 
+  /** @param {string} state @param {string} sentence */
   #onConnection(state, sentence) {
     if (state === "refused") this.onError(sentence);
     if (state === "lost") this.#setClutch(false);
@@ -156,7 +181,7 @@ export class TeleopSession {
   }
 
   #draw() {
-    this.carriedObject?.setPosition(this.handModel.position, this.handModel.heightBelow(this.handModel.position), {
+    this.#handle?.setPosition(this.handModel.position, this.handModel.heightBelow(this.handModel.position), {
       grasped: this.clutchPressed,
       colliding: false,
     });

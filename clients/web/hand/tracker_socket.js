@@ -16,19 +16,22 @@ export const clock = () => performance.timeOrigin + performance.now();
 export class TrackerSocket {
   sequence = 0; // of the newest sample, sent or dropped
   dropped = 0;
+  /** @type {{trip: number, offset: number}[]} */
   #pings = [];
   #pingTimer = 0;
-  #connecting = null; // {resolve, reject} of connect()
-  #report = null; // {resolve, reject} of end()
+  /** @type {{resolve: () => void, reject: (error: Error) => void} | null} */
+  #connecting = null; // of connect()
+  /** @type {{resolve: (report: RecordingReport) => void, reject: (error: Error) => void} | null} */
+  #report = null; // of end()
 
-  // `onChange(state, sentence)`: "live", "lost" (it connects again) or "refused" (it does not); `onRejected(sentence)`: the
-  // service did not take a message.
+  /** @param {string} name @param {import("./sample_sender.js").TrackerCallbacks} callbacks */
   constructor(name, { onChange, onRejected }) {
-    Object.assign(this, { onChange, onRejected });
+    this.onChange = onChange;
+    this.onRejected = onRejected;
     this.socket = new ReconnectingSocket(`${resourcePath("trackers", name)}/samples`, {
       onOpen: () => this.#ping(),
       onMessage: (text) => this.#handleMessage(JSON.parse(text)),
-      onState: (state, { reason }) => this.#handleState(state, reason),
+      onState: (state, { reason = "" }) => this.#handleState(state, reason),
       isRefusal: (code) => code === REFUSED,
     });
   }
@@ -37,22 +40,28 @@ export class TrackerSocket {
     return this.socket.isOpen;
   }
 
-  // Service clock minus page clock [ms], by the fastest of the last pings, and how far off it may be; or null.
+  /** Service clock minus page clock [ms], by the fastest of the last pings, and how far off it may be; or null. */
   get offset() {
     if (!this.#pings.length) return null;
     const best = this.#pings.reduce((a, b) => (a.trip <= b.trip ? a : b));
     return { ms: best.offset, within: best.trip / 2 };
   }
 
-  // Resolves when connected, rejects with the service's reason.
+  /** Resolves when connected, rejects with the service's reason. */
   connect() {
-    return new Promise((resolve, reject) => {
-      this.#connecting = { resolve, reject };
-      this.socket.open();
-    });
+    return /** @type {Promise<void>} */ (
+      new Promise((resolve, reject) => {
+        this.#connecting = { resolve, reject };
+        this.socket.open();
+      })
+    );
   }
 
-  // Number one sample and send it, unless the socket is full or closed: then it is dropped, and the report counts it as lost.
+  /**
+   * Number one sample and send it, unless the socket is full or closed: then it is dropped, and the report counts it as
+   * lost.
+   * @param {HandSample} sample
+   */
   send(sample) {
     this.sequence += 1;
     if (this.live && this.socket.bufferedAmount <= MAX_BUFFERED_BYTES)
@@ -60,7 +69,10 @@ export class TrackerSocket {
     else this.dropped += 1;
   }
 
-  // End the recording with the handshake; resolves to its report.
+  /**
+   * End the recording with the handshake; resolves to its report.
+   * @returns {Promise<RecordingReport>}
+   */
   end({ discard = false } = {}) {
     return new Promise((resolve, reject) => {
       if (!this.live) {
@@ -71,12 +83,20 @@ export class TrackerSocket {
         () => reject(new Error("The service has not sent the report of the recording.")),
         REPORT_TIMEOUT,
       );
-      const finish = (settle) => (value) => {
+      const finish = () => {
         clearTimeout(timer);
         this.#report = null;
-        settle(value);
       };
-      this.#report = { resolve: finish(resolve), reject: finish(reject) };
+      this.#report = {
+        resolve: (report) => {
+          finish();
+          resolve(report);
+        },
+        reject: (error) => {
+          finish();
+          reject(error);
+        },
+      };
       this.socket.send(JSON.stringify({ end: this.sequence, discard }));
     });
   }
@@ -86,6 +106,7 @@ export class TrackerSocket {
     this.socket.close();
   }
 
+  /** @param {ConnectionState} state @param {string} reason */
   #handleState(state, reason) {
     if (state === "connecting") return;
     if (state === "live") {
@@ -107,6 +128,7 @@ export class TrackerSocket {
     );
   }
 
+  /** @param {any} message */
   #handleMessage(message) {
     if ("pong" in message) {
       const now = clock();

@@ -16,116 +16,147 @@ export async function xrUnavailableReason() {
   return able ? "" : "No headset is connected. Connect one, or open this page in the headset's own browser.";
 }
 
+/** @typedef {{side: XRHandedness, grasp: boolean, position: Point, orientation: DOMPointReadOnly}} TrackedHand */
+
+/**
+ * @typedef {object} XrHandOptions
+ * @property {(sample: Required<HandSample>) => void} onSample called once a frame with the hand in robot coordinates; its
+ *   `clutch`: the other hand is closed
+ * @property {() => void} onEnd the session is over, whoever ended it
+ * @property {(sentence: string) => void} onError
+ * @property {XRHandedness | ""} [handedness] the hand that counts; "": whichever closes
+ */
+
 export class XrHand {
   closed = false;
   frames = 0;
   samples = 0;
+  /** @type {XRSession | null} */
+  #session = null;
+  #before = 0; // [ms] of the frame before
+  #side = ""; // of the hand that is closed
+  /** @type {{position: Point, orientation: number[] | null}} */
+  #last = { position: [0, 0, 1], orientation: null };
 
-  // `onSample({position, orientation, tracked, grasp, clutch, ms, seconds})` is called once a frame with the hand in robot
-  // coordinates; `clutch`: the other hand is closed. `onEnd()`: the session is over, whoever ended it. `handedness`: the
-  // hand that counts; "": whichever closes.
+  /** @param {MeshCatViewer} viewer @param {XrHandOptions} options */
   constructor(viewer, { onSample, onEnd, onError, handedness = "" }) {
-    Object.assign(this, { viewer, onSample, onEnd, onError, handedness });
+    this.onSample = onSample;
+    this.onEnd = onEnd;
+    this.onError = onError;
+    this.handedness = handedness;
+    this.rig = new XrRig(viewer);
   }
 
-  // Must be called from a click.
+  /** Must be called from a click. */
   async start() {
-    const session = await navigator.xr.requestSession("immersive-vr", SESSION_FEATURES);
-    this.session = session;
+    try {
+      this.#session = (await navigator.xr?.requestSession("immersive-vr", SESSION_FEATURES)) ?? null;
+    } catch (error) {
+      this.rig.dispose();
+      throw error;
+    }
+    if (this.#session) await this.#present(this.#session);
+  }
+
+  async end() {
+    await this.#session?.end().catch(() => {}); // it may have ended already
+  }
+
+  /** @param {XRSession} session */
+  async #present(session) {
     session.addEventListener("end", () => this.#onSessionEnd());
     try {
-      this.rig = new XrRig(this.viewer);
-      await this.rig.present(session, (time, frame) => this.#frame(time, frame));
+      await this.rig.present(session, (time, frame, space) => this.#frame(session, time, frame, space));
     } catch (error) {
       await session.end();
       throw error;
     }
   }
 
-  async end() {
-    await this.session?.end().catch(() => {}); // it may have ended already
-  }
-
-  #frame(time, frame) {
+  /** @param {XRSession} session @param {number} time @param {XRFrame} frame @param {XRReferenceSpace} space */
+  #frame(session, time, frame, space) {
     this.frames += 1;
-    const seconds = this.before ? (time - this.before) / 1000 : 0;
-    this.before = time;
+    const seconds = this.#before ? (time - this.#before) / 1000 : 0;
+    this.#before = time;
     try {
-      const hand = this.#read(frame);
+      const hand = this.#read(session, frame, space);
       // The frame's time is that of the pose; a runtime that gives none, or another clock's, is not believed.
       const ms = Math.abs(performance.now() - time) < 1000 ? performance.timeOrigin + time : clock();
       this.samples += 1;
       this.onSample({ ...hand, ms, seconds });
     } catch (error) {
-      this.onError(`The headset's hand cannot be read: ${error.message}`);
+      this.onError(`The headset's hand cannot be read: ${error instanceof Error ? error.message : error}`);
     }
   }
 
-  // The hand that pinches, else the right one, else any; where it is lost it stays where it was, untracked.
-  #read(frame) {
-    const space = this.rig.space;
-    const hands = [...this.session.inputSources].map((source) => this.#pose(frame, source, space)).filter(Boolean);
-    const chosen = this.handedness ? hands.find((hand) => hand.side === this.handedness) : this.#choose(hands);
-    if (!chosen)
-      return {
-        ...(this.last ?? { position: [0, 0, 1], orientation: null }),
-        tracked: false,
-        grasp: this.closed,
-        clutch: false,
-      };
+  /**
+   * The hand that pinches, else the right one, else any; where it is lost it stays where it was, untracked.
+   * @param {XRSession} session
+   * @param {XRFrame} frame
+   * @param {XRReferenceSpace} space
+   */
+  #read(session, frame, space) {
+    const hands = [...session.inputSources].flatMap((source) => this.#track(frame, source, space) ?? []);
+    const chosen = this.#choose(hands);
+    if (!chosen) return { ...this.#last, tracked: false, grasp: this.closed, clutch: false };
     this.closed = chosen.grasp;
-    this.side = this.closed ? chosen.side : "";
-    const placed = this.rig.toRobot(chosen.position, chosen.orientation);
-    this.last = placed;
-    return {
-      ...placed,
-      tracked: chosen.tracked,
-      grasp: this.closed,
-      clutch: hands.some((hand) => hand !== chosen && hand.grasp),
-    };
+    this.#side = this.closed ? chosen.side : "";
+    this.#last = this.rig.toRobot(chosen.position, chosen.orientation);
+    const clutch = hands.some((hand) => hand !== chosen && hand.grasp);
+    return { ...this.#last, tracked: true, grasp: this.closed, clutch };
   }
 
+  /** @param {TrackedHand[]} hands */
   #choose(hands) {
-    return (
-      hands.find((hand) => hand.side === this.side) ??
-      hands.find((hand) => hand.grasp) ??
-      hands.find((hand) => hand.side === "right") ??
-      hands[0]
-    );
+    /** @param {string} side */
+    const at = (side) => hands.find((hand) => hand.side === side);
+    if (this.handedness) return at(this.handedness);
+    return at(this.#side) ?? hands.find((hand) => hand.grasp) ?? at("right") ?? hands[0];
   }
 
-  #pose(frame, source, space) {
-    if (source.hand) {
-      const [wrist, thumb, index] = ["wrist", "thumb-tip", "index-finger-tip"].map(
-        (joint) => source.hand.get(joint) && frame.getJointPose(source.hand.get(joint), space),
-      );
-      if (!wrist || !thumb || !index) return null;
-      const [a, b] = [thumb.transform.position, index.transform.position];
-      const gap = Math.hypot(a.x - b.x, a.y - b.y, a.z - b.z);
-      const held = this.closed && this.side === source.handedness;
-      return {
-        side: source.handedness,
-        grasp: gap < (held ? PINCH_END : PINCH_START),
-        position: [(a.x + b.x) / 2, (a.y + b.y) / 2, (a.z + b.z) / 2],
-        orientation: wrist.transform.orientation,
-        tracked: true,
-      };
-    }
+  /**
+   * @param {XRFrame} frame
+   * @param {XRInputSource} source
+   * @param {XRReferenceSpace} space
+   * @returns {TrackedHand | null}
+   */
+  #track(frame, source, space) {
+    if (source.hand) return this.#trackFingers(frame, source.hand, source.handedness, space);
     const pose = source.gripSpace && frame.getPose(source.gripSpace, space);
     if (!pose) return null;
     const { x, y, z } = pose.transform.position;
     const grasp = Boolean(source.gamepad?.buttons[0]?.pressed || source.gamepad?.buttons[1]?.pressed);
+    return { side: source.handedness, grasp, position: [x, y, z], orientation: pose.transform.orientation };
+  }
+
+  /**
+   * @param {XRFrame} frame
+   * @param {XRHand} hand
+   * @param {XRHandedness} side
+   * @param {XRReferenceSpace} space
+   * @returns {TrackedHand | null}
+   */
+  #trackFingers(frame, hand, side, space) {
+    /** @param {XRHandJoint} name */
+    const pose = (name) => {
+      const joint = hand.get(name);
+      return joint && frame.getJointPose?.(joint, space);
+    };
+    const [wrist, thumb, index] = [pose("wrist"), pose("thumb-tip"), pose("index-finger-tip")];
+    if (!wrist || !thumb || !index) return null;
+    const [a, b] = [thumb.transform.position, index.transform.position];
+    const gap = Math.hypot(a.x - b.x, a.y - b.y, a.z - b.z);
+    const held = this.closed && this.#side === side;
     return {
-      side: source.handedness,
-      grasp,
-      position: [x, y, z],
-      orientation: pose.transform.orientation,
-      tracked: true,
+      side,
+      grasp: gap < (held ? PINCH_END : PINCH_START),
+      position: [(a.x + b.x) / 2, (a.y + b.y) / 2, (a.z + b.z) / 2],
+      orientation: wrist.transform.orientation,
     };
   }
 
   #onSessionEnd() {
-    this.rig?.dispose();
+    this.rig.dispose();
     this.onEnd();
   }
 }

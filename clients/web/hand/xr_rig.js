@@ -5,9 +5,12 @@ import { FrameSkipper } from "./frame_skipping.js";
 const OPERATOR_POSITION = [1.25, 0, 0]; // [m] robot coordinates, on the floor
 
 export class XrRig {
+  #placed = false;
+
+  /** @param {MeshCatViewer} viewer */
   constructor(viewer) {
     const { THREE } = globalThis.MeshCat;
-    Object.assign(this, { viewer, THREE });
+    this.viewer = viewer;
     this.frameSkipper = new FrameSkipper();
     this.framesDrawn = 0;
     this.busy = false; // a demonstration is under way, or may begin at any moment
@@ -26,32 +29,42 @@ export class XrRig {
       new THREE.MeshLambertMaterial({ color: 0x3f7fbf }),
     );
     viewer.scene.add(this.marker);
-    this.textPanel = new TextPanel(THREE);
+    this.textPanel = new TextPanel();
     viewer.scene.add(this.textPanel.sprite);
   }
 
+  /** @param {string} text */
   setText(text) {
     this.textPanel.setText(text);
   }
 
-  // `frame(time, XRFrame)` is called before each frame is drawn.
-  async present(session, frame) {
-    this.renderer.setAnimationLoop((time, xr) => {
-      if (!xr) return;
-      if (!this.placed) this.#placeOperator(xr);
-      frame(time, xr);
+  /**
+   * @param {XRSession} session
+   * @param {(time: number, frame: XRFrame, space: XRReferenceSpace) => void} onFrame called before each frame is drawn
+   */
+  async present(session, onFrame) {
+    const { xr } = this.renderer;
+    this.renderer.setAnimationLoop((time, drawn) => {
+      const frame = /** @type {any} */ (drawn); // three declares WebXR's types anew
+      const space = /** @type {any} */ (xr.getReferenceSpace());
+      if (!frame || !space) return;
+      if (!this.#placed) this.#placeOperator(frame, space);
+      onFrame(time, frame, space);
       if (!this.frameSkipper.shouldRender(time, this.busy)) return;
       this.framesDrawn += 1;
       this.renderer.render(this.viewer.scene, this.camera);
     });
-    this.renderer.xr.setReferenceSpaceType("local-floor");
-    await this.renderer.xr.setSession(session); // after the loop was set, else every frame would come twice
-    this.space = this.renderer.xr.getReferenceSpace();
+    xr.setReferenceSpaceType("local-floor");
+    await xr.setSession(/** @type {any} */ (session)); // after the loop was set, else every frame would come twice
   }
 
-  // The head's first position becomes the place at the table, wherever in the room the operator is.
-  #placeOperator(xr) {
-    const head = xr.getViewerPose(this.space);
+  /**
+   * The head's first position becomes the place at the table, wherever in the room the operator is.
+   * @param {XRFrame} frame
+   * @param {XRReferenceSpace} space
+   */
+  #placeOperator(frame, space) {
+    const head = frame.getViewerPose(space);
     if (!head) return;
     const { x, z } = head.transform.position;
     const { x: a, y: b, z: c, w } = head.transform.orientation;
@@ -64,12 +77,17 @@ export class XrRig {
       -OPERATOR_POSITION[1] + x * sin - z * cos,
     );
     this.room.updateMatrixWorld(true);
-    this.placed = true;
+    this.#placed = true;
   }
 
-  // A pose of the reference space in robot coordinates; {position, orientation: [w, x, y, z]}.
+  /**
+   * A pose of the reference space in robot coordinates; orientation w, x, y, z.
+   * @param {Point} position
+   * @param {DOMPointReadOnly} orientation
+   */
   toRobot([x, y, z], orientation) {
-    const { THREE, viewer } = this;
+    const { THREE } = globalThis.MeshCat;
+    const { viewer } = this;
     const place = viewer.scene.worldToLocal(this.room.localToWorld(new THREE.Vector3(x, y, z)));
     this.marker.position.copy(place);
     const turn = viewer.scene
@@ -94,7 +112,10 @@ export class XrRig {
 
 // A sentence behind the table, for an operator who cannot see the page.
 class TextPanel {
-  constructor(THREE) {
+  #text = "";
+
+  constructor() {
+    const { THREE } = globalThis.MeshCat;
     this.canvas = Object.assign(document.createElement("canvas"), { width: 1024, height: 128 });
     this.texture = new THREE.CanvasTexture(this.canvas);
     this.sprite = new THREE.Sprite(new THREE.SpriteMaterial({ map: this.texture }));
@@ -102,10 +123,12 @@ class TextPanel {
     this.sprite.scale.set(1.2, 0.15, 1);
   }
 
+  /** @param {string} text */
   setText(text) {
-    if (text === this.text) return;
-    this.text = text;
+    if (text === this.#text) return;
+    this.#text = text;
     const context = this.canvas.getContext("2d");
+    if (!context) return;
     context.fillStyle = "#1d242c";
     context.fillRect(0, 0, 1024, 128);
     context.fillStyle = "#ffffff";

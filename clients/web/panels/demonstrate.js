@@ -1,28 +1,17 @@
-// Demonstrate: who is there, what is being recorded, and the demonstrations so far with their verdicts.
-import { section } from "../elements.js";
+// Demonstrate: the page's own hand, what is being recorded, and the demonstrations so far with their verdicts.
 import { demonstrationList } from "./demonstration_list.js";
 import { demonstrationPanel } from "./demonstration_panel.js";
 import { recordingList } from "./recordings.js";
+import { sectionedPanel } from "./sectioned_panel.js";
 
-let sections = [];
+/** @type {ReturnType<typeof demonstrationPanel>} */
+let session;
 
-export const panel = {
-  id: "demonstrate",
-  title: "Demonstrate",
+const demonstrate = sectionedPanel("demonstrate", "Demonstrate", [
+  ["demonstration-session", "Show it here", (place, context) => (session = demonstrationPanel(place, context))],
+  ["recordings", "Recording", recordingList],
+  ["demonstrations", "Demonstrations", demonstrationList],
+]);
 
-  mount(place, context) {
-    sections = [
-      demonstrationPanel(section(place, "demonstration-session", "Show it here"), context),
-      recordingList(section(place, "recordings", "Recording"), context),
-      demonstrationList(section(place, "demonstrations", "Demonstrations"), context),
-    ];
-  },
-
-  // The headset that is worn now, or null, and the demonstration session, or null: for tests.
-  headset: () => sections[0].headset(),
-  session: () => sections[0].session(),
-
-  update(state, changed) {
-    for (const one of sections) one.update(state, changed);
-  },
-};
+// For tests: the headset that is worn now, or null, and the demonstration session, or null.
+export const panel = { ...demonstrate, headset: () => session.headset(), session: () => session.session() };

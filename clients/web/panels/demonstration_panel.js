@@ -1,77 +1,75 @@
 // Demonstrations without a glove: by mouse, touch, keyboard, gamepad or headset, one after the other.
 import { get, patch, put, resourcePath } from "../api.js";
-import { capitalize, definitionList, element, formatNumber, hint, pluralize } from "../elements.js";
 import { DemonstrationSession } from "../hand/demonstration_session.js";
 import { SAMPLE_RATE } from "../hand/fixed_rate_timer.js";
 import { XrHand, xrUnavailableReason } from "../hand/xr_hand.js";
 import { isName, nameRefusal } from "../names.js";
+import { changesAny } from "../store.js";
+import { formatNumber, pluralize } from "../texts.js";
+import { createParts, demonstrationRow, senderFacts, sessionText } from "./demonstration_parts.js";
 
-const PHASE_TEXTS = {
-  countdown: "Get ready …",
-  ready: "Press on the box, carry it to its goal and let go.",
-  carrying: "Carrying. Let go at the goal.",
-  judging: "Let go. Waiting for the recorder …",
-  returning: "The box goes back to its start.",
-  lost: "The connection broke off; what was carried is lost. Connecting again …",
-};
-const HELP = [
-  ["Mouse", "press and drag; shift or the wheel changes the height"],
-  ["Touch", "one finger drags, a second one changes the height"],
-  ["Keyboard", "Enter grasps and lets go; arrows, Page Up, Page Down"],
-  ["Gamepad", "hold A; left stick moves, right stick changes the height"],
-];
+const HIDDEN = "The page was hidden, so recording has stopped; what was carried is lost.";
+const KEYS = "Carry the box: Enter grasps and lets go, arrows move, Page Up and Page Down change the height";
+const NOTHING_SHOWN = "Grasp the box, carry it to its goal and let go; each time makes one demonstration.";
 
+/** @param {HTMLElement} place @param {Context} context */
 export function demonstrationPanel(place, context) {
   const panel = new DemonstrationPanel(place, context);
   return {
+    /** @type {Section["update"]} */
     update: (state, changed) => panel.update(state, changed),
-    headset: () => panel.hand,
-    session: () => panel.session ?? null,
+    headset: () => panel.headset,
+    session: () => panel.session,
   };
 }
 
 class DemonstrationPanel {
-  #beginning = false;
+  /** @type {XrHand | null} */
+  headset = null; // that is worn now
+  /** @type {DemonstrationSession | null} */
+  session = null; // of the demonstration that is shown now
+  #isBeginning = false;
+  /** @type {string | null} */
+  #headsetReason = null; // why there is none; null: not known yet
 
+  /** @param {HTMLElement} place @param {Context} context */
   constructor(place, context) {
-    Object.assign(this, { place, context });
-    this.seconds = 3;
-    this.parts = parts();
+    this.context = context;
+    this.parts = createParts();
     place.append(...this.parts.all);
-    const { start, headset, finish, discard, undo, seconds } = this.parts;
+    const { start, headset, finish, discard, undo } = this.parts;
     start.addEventListener("click", () => this.#begin());
-    headset.addEventListener("click", () => this.#begin({ headset: true }));
+    headset.addEventListener("click", () => this.#begin({ withHeadset: true }));
     finish.addEventListener("click", () => this.#finish());
     discard.addEventListener("click", () => this.#setDiscarded(true));
     undo.addEventListener("click", () => this.#setDiscarded(false));
-    seconds.addEventListener("change", () => (this.seconds = Number(seconds.value)));
     document.addEventListener("visibilitychange", () => {
-      if (document.hidden && this.session && !this.hand)
-        this.#stop("The page was hidden, so recording has stopped; what was carried is lost.", { discard: true });
+      if (document.hidden && this.session && !this.headset) this.#stop(HIDDEN, { discard: true });
     });
     addEventListener("pagehide", () => this.session?.sender.close());
     this.#checkHeadset();
     navigator.xr?.addEventListener?.("devicechange", () => this.#checkHeadset());
   }
 
+  /** @param {State} state @param {Changed} changed */
   update(state, changed) {
     if (changed.has("task") && this.session && state.task !== this.session.task) this.#stop("");
-    if (changed.has("tasks") || changed.has("task")) this.#render();
+    if (changesAny(changed, "tasks", "task")) this.#render();
   }
 
   async #checkHeadset() {
-    this.why = await xrUnavailableReason();
+    this.#headsetReason = await xrUnavailableReason();
     this.#render();
   }
 
-  async #begin({ headset = false } = {}) {
-    if (this.session || this.#beginning) return;
-    this.#beginning = true;
+  async #begin({ withHeadset = false } = {}) {
+    if (this.session || this.#isBeginning) return;
+    this.#isBeginning = true;
     const { context, parts } = this;
     // The headset's session first: it must come from the click itself.
-    const hand = headset && (await context.attempt(() => this.#startHeadset()));
-    const session = (hand || !headset) && (await context.attempt(() => this.#record(headset ? 0 : SAMPLE_RATE)));
-    this.#beginning = false;
+    const isReady = !withHeadset || (await context.attempt(() => this.#startHeadset()));
+    const session = isReady ? await context.attempt(() => this.#record(withHeadset ? 0 : SAMPLE_RATE)) : null;
+    this.#isBeginning = false;
     if (!session) {
       await this.#stop("");
       return;
@@ -79,20 +77,24 @@ class DemonstrationPanel {
     this.#hideServiceObject(true);
     this.#render();
     parts.finish.focus();
-    for (let left = this.seconds; left > 0 && this.session === session; left--) {
-      this.#setStatusText(`Get ready: ${left}`);
+    const isCurrent = () => this.session === session;
+    for (let left = Number(parts.seconds.value); left > 0 && isCurrent(); left--) {
+      parts.statusText.textContent = `Get ready: ${left}`;
       await new Promise((resolve) => setTimeout(resolve, 1000));
     }
-    if (this.session !== session) return;
+    if (!isCurrent()) return;
     await context.attempt(() => session.startRecording());
-    if (!hand) context.overlay.element.focus({ preventScroll: true });
+    if (!withHeadset) context.overlay.element.focus({ preventScroll: true });
   }
 
-  // Begin a recording for the task that is chosen now; null when another one was chosen before it began.
+  /**
+   * Begin a recording for the task that is chosen now; null when another one was chosen before it began.
+   * @param {number} rate of the samples [Hz]
+   */
   async #record(rate) {
     const { context } = this;
-    const { task, scene } = await this.#scene();
-    if (task !== context.store.state.task) return null;
+    const { task, scene } = await this.#taskAndScene();
+    if (task !== context.store.state.task || !scene) return null;
     const session = new DemonstrationSession(context, scene, task, {
       onChange: () => this.#render(),
       onError: (why) => this.#stop(why),
@@ -106,8 +108,8 @@ class DemonstrationPanel {
     return this.session === session ? session : null;
   }
 
-  // The chosen task and its scene; without any task one is made.
-  async #scene() {
+  /** The chosen task and its scene; without any task one is made. */
+  async #taskAndScene() {
     const { store, eventStream } = this.context;
     if (!store.state.task) {
       const name = this.parts.name.value.trim() || "first-task";
@@ -117,183 +119,108 @@ class DemonstrationPanel {
       await eventStream.read("tasks");
     }
     const { task } = store.state;
+    /** @type {[Task, Scene[]]} */
     const [{ scene }, scenes] = await Promise.all([get(resourcePath("tasks", task)), get("scenes")]);
     return { task, scene: scenes.find(({ name }) => name === scene) };
   }
 
   async #startHeadset() {
-    const hand = new XrHand(this.context.view.viewer, {
+    const { view } = this.context;
+    const headset = new XrHand(view.viewer, {
       onSample: (sample) => {
-        if (this.session?.sender.live) this.session.setHeadsetSample(sample);
-        hand.rig.busy = this.session?.mayBeRecorded(sample) ?? false;
-        hand.rig.setText(this.#statusText());
+        const session = this.session;
+        if (session?.sender.live) session.setHeadsetSample(sample);
+        headset.rig.busy = session?.mayBeRecorded(sample) ?? false;
+        headset.rig.setText(session ? sessionText(session) : "");
       },
       onEnd: () => {
-        this.hand = null;
-        this.context.view.setFrameInterval(0);
-        this.session?.setHeadsetSample(null);
+        this.headset = null;
+        view.setFrameInterval(0);
+        this.session?.endHeadset();
         this.#render();
       },
       onError: (why) => this.#stop(why),
     });
-    await hand.start();
-    this.context.view.setFrameInterval(Infinity); // nobody looks at the page meanwhile
-    this.hand = hand;
-    return hand;
+    await headset.start();
+    view.setFrameInterval(Infinity); // nobody looks at the page meanwhile
+    this.headset = headset;
+    return true;
   }
 
   async #finish() {
     const report = await this.#stop("");
     if (!report) return;
     const { received, lost, refused, demonstrations } = report;
-    const shown = demonstrations.length;
-    const further = shown ? "" : " Grasp the box, carry it to its goal and let go; each time makes one demonstration.";
-    this.context.messages.show(
-      `Recorded ${shown} ${pluralize(shown, "demonstration")} from ${formatNumber(received, 0)} samples: ${lost} lost, ${refused} refused.${further}`,
-    );
+    const shown = `Recorded ${demonstrations.length} ${pluralize(demonstrations.length, "demonstration")}`;
+    const samples = `${formatNumber(received, 0)} samples: ${lost} lost, ${refused} refused.`;
+    this.context.messages.show(`${shown} from ${samples}${demonstrations.length ? "" : ` ${NOTHING_SHOWN}`}`);
   }
 
+  /**
+   * End the session; returns its report, or null.
+   * @param {string} why is shown as an error; "": nothing is
+   * @param {{discard?: boolean}} options
+   */
   async #stop(why, { discard = false } = {}) {
-    const { session, hand } = this;
-    this.session = this.hand = null;
+    const [session, headset] = [this.session, this.headset];
+    this.session = this.headset = null;
     if (session) this.#hideServiceObject(false);
-    await hand?.end();
+    await headset?.end();
     if (!session) return null;
+    let sentence = why;
     const report = await session.finish({ discard }).catch((error) => {
-      why ||= error.message;
+      sentence ||= error.message;
       return null;
     });
-    if (why) this.context.messages.show(why, "error");
+    if (sentence) this.context.messages.show(sentence, "error");
     this.#render();
     return report;
   }
 
-  // Discard the newest demonstration that is kept, or restore the one that was discarded last.
+  /**
+   * Discard the newest demonstration that is kept, or restore the one that was discarded last.
+   * @param {boolean} discarded
+   */
   async #setDiscarded(discarded) {
-    const { demonstrations = [] } = this.session ?? {};
-    const last = demonstrations.findLast((one) => Boolean(one.discarded_ns) !== discarded);
+    const last = this.session?.demonstrations.findLast((one) => Boolean(one.discarded_ns) !== discarded);
     if (!last) return;
-    const amended = await this.context.attempt(() => patch(resourcePath("demonstrations", last.id), { discarded }));
-    if (amended && this.session)
-      this.session.demonstrations = this.session.demonstrations.map((one) => (one.id === amended.id ? amended : one));
+    const path = resourcePath("demonstrations", last.id);
+    /** @type {Demonstration | undefined} */
+    const amended = await this.context.attempt(() => patch(path, { discarded }));
+    const session = this.session;
+    if (amended && session) {
+      session.demonstrations = session.demonstrations.map((one) => (one.id === amended.id ? amended : one));
+    }
     this.#render();
   }
 
-  // While the page draws the carried object itself, the service's is not shown.
+  /**
+   * While the page draws the carried object itself, the service's is not shown.
+   * @param {boolean} hidden
+   */
   #hideServiceObject(hidden) {
     const { viewer } = this.context.view;
     const node = viewer.scene_tree.children.object;
     if (node) node.object.visible = !hidden;
-    this.context.overlay.setKeyboardLabel(
-      hidden ? "Carry the box: Enter grasps and lets go, arrows move, Page Up and Page Down change the height" : "",
-    );
+    this.context.overlay.setKeyboardLabel(hidden ? KEYS : "");
     viewer.set_dirty();
   }
 
-  #statusText() {
-    const { session } = this;
-    if (!session) return "";
-    const last = session.demonstrations.at(-1);
-    const before = session.note || (last && `Take ${last.number}: ${last.verdict}.`) || "";
-    const wrong = session.phase === "carrying" && session.handModel.collidingObstacle(session.handModel.position);
-    if (wrong) return `The box is in the ${wrong}.`;
-    return session.phase === "carrying" ? PHASE_TEXTS.carrying : `${before} ${PHASE_TEXTS[session.phase]}`.trim();
-  }
-
-  #setStatusText(text) {
-    this.parts.statusText.textContent = text;
-  }
-
   #render() {
-    const { parts, session, context } = this;
+    const { parts, context } = this;
+    const session = this.session;
     const { task, tasks } = context.store.state;
     document.documentElement.dataset.session = session?.phase ?? "";
-    parts.idle.hidden = Boolean(session);
-    parts.active.hidden = !session;
-    parts.named.hidden = Boolean(task) || tasks === null;
-    parts.headset.disabled = this.why !== "";
-    parts.why.textContent = this.why ?? "";
+    parts.idle.hidden = session !== null;
+    parts.active.hidden = session === null;
+    parts.nameField.hidden = Boolean(task) || tasks === null;
+    parts.headset.disabled = this.#headsetReason !== "";
+    parts.why.textContent = this.#headsetReason ?? "";
     if (!session) return;
-    if (session.phase !== "countdown") this.#setStatusText(this.#statusText());
+    if (session.phase !== "countdown") parts.statusText.textContent = sessionText(session);
     parts.demonstrations.replaceChildren(...session.demonstrations.map(demonstrationRow));
     parts.discard.disabled = !session.demonstrations.some((one) => !one.discarded_ns);
     parts.undo.disabled = !session.demonstrations.some((one) => one.discarded_ns);
-    const { offset, dropped, sequence } = session.sender;
-    const figures = [
-      ["Samples sent", formatNumber(sequence - dropped, 0)],
-      ["Left out", dropped > 0 && formatNumber(dropped, 0)],
-      ["Clock", offset && `${formatNumber(offset.ms, 1, "ms")} off, ± ${formatNumber(offset.within, 1, "ms")}`],
-    ];
-    parts.figures.replaceChildren(definitionList(figures));
+    parts.figures.replaceChildren(senderFacts(session.sender));
   }
-}
-
-function parts() {
-  const button = (text, attributes = {}) => element("button", { type: "button", ...attributes }, text);
-  const start = button("Show it here", { class: "primary" });
-  const headset = button("In a headset", { disabled: true });
-  const why = element("p", { class: "note" });
-  const name = element("input", { type: "text", id: "task-name", value: "first-task", autocomplete: "off" });
-  const named = element("p", { class: "field" }, element("label", { for: "task-name" }, "Name of the task"), name);
-  const options = [0, 3, 5].map((value) =>
-    element("option", { value: String(value), selected: value === 3 ? "" : false }, value ? `${value} s` : "none"),
-  );
-  const seconds = element("select", { id: "countdown" }, options);
-  const how = element("details", {}, element("summary", {}, "How to carry the box"), definitionList(HELP));
-  const idle = element(
-    "div",
-    {},
-    hint("No glove? Carry the box in the view yourself; the recorder takes it like any tracker."),
-    named,
-    element("p", { class: "field" }, element("label", { for: "countdown" }, "Countdown"), seconds),
-    element("p", { class: "buttons" }, start, headset),
-    why,
-  );
-  const statusText = element("p", { class: "session-status", role: "status" });
-  const demonstrations = element("ol", { class: "demonstration-list", "aria-label": "demonstrations of this session" });
-  const [discard, undo, finish] = [button("Discard the take"), button("Undo"), button("Finish", { class: "primary" })];
-  const figures = element("div", {});
-  const active = element(
-    "div",
-    { hidden: "" },
-    statusText,
-    demonstrations,
-    element("p", { class: "buttons" }, finish, discard, undo),
-    figures,
-  );
-  return {
-    all: [idle, active, how],
-    idle,
-    active,
-    start,
-    headset,
-    why,
-    name,
-    named,
-    seconds,
-    statusText,
-    demonstrations,
-    discard,
-    undo,
-    finish,
-    figures,
-  };
-}
-
-function demonstrationRow(demonstration) {
-  const { received = 0, lost = 0 } = demonstration.account ?? {};
-  const word = demonstration.discarded_ns ? "discarded" : demonstration.verdict;
-  return element(
-    "li",
-    { class: word, value: String(demonstration.number) },
-    element("span", { class: "number" }, String(demonstration.number)),
-    element("span", { class: "verdict" }, word),
-    element(
-      "span",
-      { class: "figure" },
-      `${formatNumber(demonstration.duration, 1, "s")}, ${lost} of ${formatNumber(received + lost, 0)} lost`,
-    ),
-    demonstration.reasons?.length > 0 &&
-      element("span", { class: "why" }, capitalize(demonstration.reasons.join("; "))),
-  );
 }

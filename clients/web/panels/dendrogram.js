@@ -7,87 +7,116 @@ const LEFT = 30; // room for the numbers of the leaves
 const RIGHT = 8;
 const MIN_LABELLED_ROW = 11; // [px] rows below this have no numbers
 
-export class Dendrogram {
-  constructor() {
-    this.element = element("div", { class: "tree" });
-    this.onDrag = () => {};
+/**
+ * @typedef {{x: number, y: number, first: number}} MergeNode `first`: its uppermost leaf
+ * @typedef {{height: number, first: number, drawn: SVGElement}} Link
+ */
+
+export class DendrogramView {
+  element = element("div", { class: "tree" });
+  /** @type {Link[]} */
+  #links = [];
+  /** @type {SVGElement[]} */
+  #dots = [];
+  #top = 1; // [m] height at the right
+
+  /** @param {(height: number) => void} onDrag called while the cut is dragged */
+  constructor(onDrag) {
+    this.onDrag = onDrag;
+    this.line = svgElement("line", { class: "cut-line", y1: 0 });
+    this.handle = svgElement("line", { class: "cut-handle", y1: 0 });
+    this.handle.addEventListener("pointerdown", (event) => this.#drag(event));
   }
 
-  // Draw a dendrogram up to the height `top` [m]; `numbers` are those of the demonstrations.
+  /**
+   * @param {Dendrogram} dendrogram
+   * @param {number} top height up to which it is drawn [m]
+   * @param {Map<string, number>} numbers of the demonstrations
+   */
   draw({ demonstrations, leaves, merges }, top, numbers) {
-    this.top = top;
+    this.#top = top;
     const row = Math.min(17, Math.max(3, 240 / leaves.length));
     const tall = row * leaves.length + 8;
-    const places = new Map(leaves.map((id, i) => [id, 4 + (i + 0.5) * row]));
-    const nodes = demonstrations.map((id) => ({
-      x: LEFT,
-      y: places.get(id),
-      first: leaves.indexOf(id),
-      last: leaves.indexOf(id),
-    }));
-    this.links = [];
-    for (const [left, right, height] of merges) {
-      const [a, b] = [nodes[left], nodes[right]];
-      const x = this.#at(height);
-      nodes.push({ x, y: (a.y + b.y) / 2, first: Math.min(a.first, b.first), last: Math.max(a.last, b.last) });
-      this.links.push({
-        height,
-        first: Math.min(a.first, b.first),
-        drawn: svgElement("path", { d: `M${a.x},${a.y}H${x}V${b.y}H${b.x}`, class: "link" }),
-      });
-    }
-    this.leaves = leaves.map((id) => this.#leaf(id, places.get(id), row, numbers));
-    this.line = svgElement("line", { class: "cut-line", y1: 0, y2: tall });
-    this.handle = svgElement("line", { class: "cut-handle", y1: 0, y2: tall });
-    this.handle.addEventListener("pointerdown", (event) => this.#drag(event));
+    /** @param {number} leaf */
+    const yOf = (leaf) => 4 + (leaf + 0.5) * row;
+    const nodes = demonstrations.map((id) => ({ x: LEFT, y: yOf(leaves.indexOf(id)), first: leaves.indexOf(id) }));
+    this.#links = merges.map(([left, right, height]) => this.#link(nodes, left, right, height));
+    this.#dots = leaves.map((_, i) => dot(yOf(i), row));
+    const drawn = leaves.map((id, i) => leaf(id, yOf(i), row, this.#dots[i], numbers.get(id)));
+    for (const line of [this.line, this.handle]) line.setAttribute("y2", String(tall));
     const title = `Dendrogram of ${leaves.length} demonstrations`;
-    this.element.replaceChildren(
-      svgElement(
-        "svg",
-        { viewBox: `0 0 ${WIDTH} ${tall}`, role: "group", "aria-label": title },
-        this.links.map((link) => link.drawn),
-        this.leaves.map((leaf) => leaf.drawn),
-        this.line,
-        this.handle,
-      ),
-    );
+    const view = { viewBox: `0 0 ${WIDTH} ${tall}`, role: "group", "aria-label": title };
+    const links = this.#links.map((link) => link.drawn);
+    this.element.replaceChildren(svgElement("svg", view, links, drawn, this.line, this.handle));
   }
 
-  // Colour what a cut leaves together; what it parts is dashed.
+  /**
+   * Colour what a cut leaves together; what it parts is dashed.
+   * @param {Cut | null} cut
+   * @param {number} height [m]
+   */
   color(cut, height) {
-    const x = this.#at(height);
+    const x = String(this.#xOf(height));
     for (const line of [this.line, this.handle]) for (const end of ["x1", "x2"]) line.setAttribute(end, x);
-    const way = (leaf) => (cut ? cut.leaf_ranges.findIndex(([begin, end]) => leaf >= begin && leaf < end) + 1 : 0);
-    for (const link of this.links) {
-      const parted = link.height > height;
-      link.drawn.setAttribute("class", parted || !cut ? "link parted" : `link ${wayClass(way(link.first))}`);
+    /** @param {number} leaf */
+    const way = (leaf) => (cut?.leaf_ranges.findIndex(([begin, end]) => leaf >= begin && leaf < end) ?? -1) + 1;
+    for (const link of this.#links) {
+      const parted = link.height > height || !cut;
+      link.drawn.setAttribute("class", parted ? "link parted" : `link ${wayClass(way(link.first))}`);
     }
-    for (const [i, leaf] of this.leaves.entries()) leaf.dot.setAttribute("class", `dot ${cut ? wayClass(way(i)) : ""}`);
+    for (const [i, one] of this.#dots.entries()) one.setAttribute("class", `dot ${cut ? wayClass(way(i)) : ""}`);
   }
 
-  #leaf(id, y, row, numbers) {
-    const dot = svgElement("circle", { cx: LEFT - 4, cy: y, r: Math.min(3.5, row / 2), class: "dot" });
-    const text =
-      row >= MIN_LABELLED_ROW &&
-      svgElement("text", { x: LEFT - 12, y: y + 4, "text-anchor": "end" }, String(numbers.get(id) ?? "?"));
-    const ground = svgElement("rect", { x: 0, y: y - row / 2, width: LEFT + 6, height: row, class: "ground" });
-    return { dot, drawn: svgElement("g", { "data-focus": `demonstrations ${id}`, class: "leaf" }, ground, dot, text) };
+  /**
+   * The link of a merge, which makes a further node.
+   * @param {MergeNode[]} nodes
+   * @param {number} left
+   * @param {number} right
+   * @param {number} height [m]
+   */
+  #link(nodes, left, right, height) {
+    const [a, b] = [nodes[left], nodes[right]];
+    const [x, first] = [this.#xOf(height), Math.min(a.first, b.first)];
+    nodes.push({ x, y: (a.y + b.y) / 2, first });
+    return { height, first, drawn: svgElement("path", { d: `M${a.x},${a.y}H${x}V${b.y}H${b.x}`, class: "link" }) };
   }
 
-  #at(height) {
-    return LEFT + (height / this.top) * (WIDTH - LEFT - RIGHT);
+  /** @param {number} height */
+  #xOf(height) {
+    return LEFT + (height / this.#top) * (WIDTH - LEFT - RIGHT);
   }
 
+  /** @param {PointerEvent} event */
   #drag(event) {
-    const svg = this.element.firstElementChild;
-    const box = svg.getBoundingClientRect();
-    const move = ({ clientX }) =>
-      this.onDrag(((((clientX - box.left) / box.width) * WIDTH - LEFT) / (WIDTH - LEFT - RIGHT)) * this.top);
+    const box = (this.element.firstElementChild ?? this.element).getBoundingClientRect();
+    const dragging = new AbortController();
+    const { signal } = dragging;
+    /** @param {PointerEvent} event */
+    const move = ({ clientX }) => {
+      const x = ((clientX - box.left) / box.width) * WIDTH;
+      this.onDrag(((x - LEFT) / (WIDTH - LEFT - RIGHT)) * this.#top);
+    };
     this.handle.setPointerCapture(event.pointerId);
-    this.handle.addEventListener("pointermove", move);
-    for (const name of ["pointerup", "pointercancel"]) {
-      this.handle.addEventListener(name, () => this.handle.removeEventListener("pointermove", move), { once: true });
-    }
+    this.handle.addEventListener("pointermove", move, { signal });
+    this.handle.addEventListener("pointerup", () => dragging.abort(), { signal });
+    this.handle.addEventListener("pointercancel", () => dragging.abort(), { signal });
     event.preventDefault();
   }
+}
+
+/** @param {number} y @param {number} row */
+const dot = (y, row) => svgElement("circle", { cx: LEFT - 4, cy: y, r: Math.min(3.5, row / 2), class: "dot" });
+
+/**
+ * @param {string} id
+ * @param {number} y
+ * @param {number} row height
+ * @param {SVGElement} dot
+ * @param {number | undefined} number of the demonstration
+ */
+function leaf(id, y, row, dot, number) {
+  const place = { x: LEFT - 12, y: y + 4, "text-anchor": "end" };
+  const text = row >= MIN_LABELLED_ROW && svgElement("text", place, String(number ?? "?"));
+  const ground = svgElement("rect", { x: 0, y: y - row / 2, width: LEFT + 6, height: row, class: "ground" });
+  return svgElement("g", { "data-focus": `demonstrations ${id}`, class: "leaf" }, ground, dot, text);
 }

@@ -1,89 +1,115 @@
 // The dendrogram: how the demonstrations merge, with a cut that can be dragged to make more ways or fewer.
 import { get, post, resourcePath } from "../api.js";
-import { element, formatNumber, patchChildren, pluralize } from "../elements.js";
-import { selectedRun } from "../store.js";
-import { Dendrogram } from "./dendrogram.js";
+import { closestData, element, hideSection } from "../elements.js";
+import { patchChildren } from "../patch_children.js";
+import { demonstrationNumbers, selectedRun } from "../store.js";
+import { formatNumber, pluralize } from "../texts.js";
+import { DendrogramView } from "./dendrogram.js";
 import { markFocus, trackFocus } from "./focus.js";
 
-export function dendrogramCut(place, { store, attempt }) {
-  const tree = new Dendrogram();
-  const slider = element("input", {
-    type: "range",
-    min: "0",
-    max: "1",
-    step: "any",
-    "aria-label": "height of the cut",
-  });
-  const output = element("output", {});
-  const buttons = element("p", { class: "buttons" });
-  const requested = new Set();
-  let shown = null; // the dendrogram and its run
-  let height = 0;
-  place.append(tree.element, element("label", { class: "cut" }, "Cut ", slider, output), buttons);
-  trackFocus(tree.element, store);
-
-  const move = (to) => {
-    height = Math.min(Math.max(to, shown.top / 1000), shown.top);
-    const chosen = cutAt(shown.dendrogram, height);
-    slider.value = String(height / shown.top);
-    const count = chosen?.clusters ?? shown.dendrogram.leaves.length;
-    output.textContent = `${count} ${pluralize(count, "way")}, at ${formatNumber(height * 100, 1, "cm")}`;
-    slider.setAttribute("aria-valuetext", output.textContent);
-    tree.color(chosen, height);
-    const same = count === shown.dendrogram.clusters;
-    patchChildren(
-      buttons,
-      !same &&
-        chosen &&
-        element(
-          "button",
-          { type: "button", class: "primary", "data-cut": "1", "data-key": "cut" },
-          `Make ${count} ${pluralize(count, "way")}`,
-        ),
-      !same && element("button", { type: "button", "data-back": "1", "data-key": "back" }, "Put it back"),
-    );
-  };
-  slider.addEventListener("input", () => shown && move(Number(slider.value) * shown.top));
-  tree.onDrag = (to) => move(to);
-  buttons.addEventListener("click", (event) => {
-    const { cut: make, back } = event.target.closest("button")?.dataset ?? {};
-    if (back) move(shown.dendrogram.threshold);
-    if (make)
-      attempt(() =>
-        post(resourcePath("tasks", store.state.task, "jobs"), { kind: "recut", run: shown.run, threshold: height }),
-      );
-  });
-
-  // Only the cut of the run that is looked at can be moved, so that no dendrogram that comes later undoes it.
-  const ready = (run) => {
-    const known = shown?.run === run;
-    slider.disabled = !known;
-    for (const part of [tree.element, buttons]) part.inert = !known;
-  };
-  const show = (state, run, dendrogram) => {
-    const highest = dendrogram.merges.at(-1)?.[2] ?? 0;
-    shown = { run, dendrogram, top: 1.12 * Math.max(highest, dendrogram.threshold) || 1 };
-    const numbers = new Map((state.demonstrations ?? []).map((d) => [d.id, d.number]));
-    tree.draw(dendrogram, shown.top, numbers);
-    move(dendrogram.threshold);
-    ready(run);
-  };
-  return {
-    async update(state) {
-      markFocus(place, state.focus); // also on what has just been drawn anew
-      const run = selectedRun(state);
-      place.parentElement.hidden = !(run?.learned.demonstrations.length > 1);
-      ready(run?.id);
-      if (place.parentElement.hidden || run.id === shown?.run || requested.has(run.id) || !state.demonstrations) return;
-      requested.add(run.id);
-      const dendrogram = await attempt(() => get(resourcePath("tasks", state.task, "runs", run.id, "dendrogram")));
-      requested.delete(run.id);
-      if (dendrogram && selectedRun(store.state)?.id === run.id) show(store.state, run.id, dendrogram);
-    },
-  };
+/** @param {HTMLElement} place @param {Context} context @returns {Section} */
+export function dendrogramCut(place, context) {
+  const panel = new DendrogramCut(place, context);
+  return { update: (state) => panel.update(state) };
 }
 
-// The listed cut that a height falls into; null below the lowest that is listed.
-function cutAt(dendrogram, height) {
-  return dendrogram.cuts.find((one) => height >= one.lowest && (one.highest === null || height < one.highest)) ?? null;
+class DendrogramCut {
+  /** @type {Set<string>} */
+  #requested = new Set();
+  /** @type {{run: string, dendrogram: Dendrogram, top: number} | null} */
+  #shown = null;
+  #height = 0; // [m] of the cut
+
+  /** @param {HTMLElement} place @param {Context} context */
+  constructor(place, context) {
+    this.place = place;
+    this.context = context;
+    this.view = new DendrogramView((height) => this.#move(height));
+    const range = { type: "range", min: "0", max: "1", step: "any", "aria-label": "height of the cut" };
+    this.slider = element("input", range);
+    this.output = element("output", {});
+    this.buttons = element("p", { class: "buttons" });
+    place.append(this.view.element, element("label", { class: "cut" }, "Cut ", this.slider, this.output), this.buttons);
+    trackFocus(this.view.element, context.store);
+    this.slider.addEventListener("input", () => this.#move(Number(this.slider.value) * (this.#shown?.top ?? 0)));
+    this.buttons.addEventListener("click", (event) => {
+      const { cut, back } = closestData(event);
+      if (back && this.#shown) this.#move(this.#shown.dendrogram.threshold);
+      if (cut) context.attempt(() => this.#recut());
+    });
+  }
+
+  /** @param {State} state */
+  async update(state) {
+    markFocus(this.place, state.focus); // also on what has just been drawn anew
+    const run = selectedRun(state);
+    const isUseful = run !== null && run.learned.demonstrations.length > 1;
+    hideSection(this.place, !isUseful);
+    this.#enable(run?.id);
+    if (!isUseful || run.id === this.#shown?.run || this.#requested.has(run.id) || !state.demonstrations) return;
+    this.#requested.add(run.id);
+    const path = resourcePath("tasks", state.task, "runs", run.id, "dendrogram");
+    /** @type {Dendrogram | undefined} */
+    const dendrogram = await this.context.attempt(() => get(path));
+    this.#requested.delete(run.id);
+    const now = this.context.store.state;
+    if (dendrogram && selectedRun(now)?.id === run.id) this.#show(now, run.id, dendrogram);
+  }
+
+  /**
+   * Only the cut of the run that is looked at can be moved, so that no dendrogram that comes later undoes it.
+   * @param {string | undefined} run
+   */
+  #enable(run) {
+    const isKnown = this.#shown?.run === run;
+    this.slider.disabled = !isKnown;
+    for (const part of [this.view.element, this.buttons]) part.inert = !isKnown;
+  }
+
+  /** @param {State} state @param {string} run @param {Dendrogram} dendrogram */
+  #show(state, run, dendrogram) {
+    const highest = dendrogram.merges.at(-1)?.[2] ?? 0;
+    const top = 1.12 * Math.max(highest, dendrogram.threshold) || 1;
+    this.#shown = { run, dendrogram, top };
+    this.view.draw(dendrogram, top, demonstrationNumbers(state));
+    this.#move(dendrogram.threshold);
+    this.#enable(run);
+  }
+
+  /** @param {number} to height [m] */
+  #move(to) {
+    if (!this.#shown) return;
+    const { dendrogram, top } = this.#shown;
+    this.#height = Math.min(Math.max(to, top / 1000), top);
+    const cut = cutAt(dendrogram, this.#height);
+    const count = cut?.clusters ?? dendrogram.leaves.length;
+    const ways = `${count} ${pluralize(count, "way")}`;
+    this.slider.value = String(this.#height / top);
+    this.output.textContent = `${ways}, at ${formatNumber(this.#height * 100, 1, "cm")}`;
+    this.slider.setAttribute("aria-valuetext", this.output.textContent);
+    this.view.color(cut, this.#height);
+    const differs = count !== dendrogram.clusters;
+    const make = { type: "button", class: "primary", "data-cut": "1", "data-key": "cut" };
+    patchChildren(
+      this.buttons,
+      differs && cut && element("button", make, `Make ${ways}`),
+      differs && element("button", { type: "button", "data-back": "1", "data-key": "back" }, "Put it back"),
+    );
+  }
+
+  async #recut() {
+    if (!this.#shown) return;
+    const { store } = this.context;
+    const order = { kind: "recut", run: this.#shown.run, threshold: this.#height };
+    await post(resourcePath("tasks", store.state.task, "jobs"), order);
+  }
+}
+
+/**
+ * The listed cut that a height falls into; null below the lowest that is listed.
+ * @param {Dendrogram} dendrogram
+ * @param {number} height [m]
+ */
+function cutAt({ cuts }, height) {
+  return cuts.find(({ lowest, highest }) => height >= lowest && (highest === null || height < highest)) ?? null;
 }

@@ -7,118 +7,116 @@ import { KEYBOARD_HELP } from "../editor/keyboard.js";
 import { knotsSection } from "../editor/knots.js";
 import { saveForm } from "../editor/save_form.js";
 import { versionsSection } from "../editor/versions.js";
-import { element, hint, patchChildren, section, tabButton } from "../elements.js";
-import { selectedPath, selectedRun } from "../store.js";
+import { closestData, element, hideSection, hint, section, tabButton } from "../elements.js";
+import { patchChildren } from "../patch_children.js";
+import { changesAny, selectedPath, selectedRun } from "../store.js";
 import { wayClass } from "../way_colors.js";
 
-let context, editor, empty, sections, pathButtons, buttons;
+const NOTHING =
+  "Nothing to edit yet. Learn the ways of a task first; each has a path, whose control points can be dragged here.";
+
+/** @type {EditPanel | null} */
+let edit = null;
 
 export const panel = {
   id: "edit",
   title: "Edit",
-
-  mount(place, given) {
-    context = given;
-    editor = new Editor(context);
-    empty = section(place, "edit-empty", "Path");
-    sections = element("div", { id: "edit", hidden: "" });
-    place.append(sections);
-    pathButtons = element("div", { class: "row choice", role: "group", "aria-label": "path to edit" });
-    const path = section(sections, "edit-path", "Path");
-    path.append(pathButtons, undoButtons());
-    editor.add(
-      { update: updateButtons },
-      feasibilitySection(section(sections, "edit-arm", "Can the arm follow?"), editor),
-      controlPointsSection(section(sections, "edit-place", "Control points"), editor),
-      knotsSection(section(sections, "edit-knots", "Knots"), editor),
-      saveForm(section(sections, "edit-saving", "Save"), editor),
-      certificationSection(section(sections, "edit-certifying", "Certify"), editor),
-      versionsSection(section(sections, "edit-versions", "Versions"), editor),
-    );
-    pathButtons.addEventListener("click", (event) => {
-      const id = event.target.closest("button")?.dataset.path;
-      if (id) context.store.set({ path: id });
-    });
-    context.eventStream.on("paths", async (piece) => {
-      await editor.opened.catch(() => {}); // its list may be from before this version
-      if (piece.id === editor.draft?.path) editor.readVersions().catch(() => {});
-    });
+  /** @type {Panel["mount"]} */
+  mount(place, context) {
+    edit = new EditPanel(place, context);
   },
-
+  /** @type {Section["update"]} */
   update(state, changed) {
-    if (["runs", "run", "path"].some((name) => changed.has(name))) openPath(state);
+    if (changesAny(changed, "runs", "run", "path")) edit?.openPath(state);
   },
-
-  show() {
-    editor.show(true);
-  },
-
-  hide() {
-    editor?.show(false);
-  },
-
-  // For the browser tests, and the curious.
+  show: () => edit?.editor.show(true),
+  hide: () => edit?.editor.show(false),
+  /** For the browser tests. */
   get editor() {
-    return editor;
+    return edit?.editor;
   },
 };
 
-function openPath(state) {
-  const path = selectedPath(state);
-  empty.parentElement.hidden = Boolean(path);
-  sections.hidden = !path;
-  if (!path) {
-    patchChildren(
-      empty,
-      hint(
-        "Nothing to edit yet. Learn the ways of a task first; each has a path, whose control points can be dragged here.",
-      ),
-      tabButton("ways", "Go to the ways"),
+class EditPanel {
+  /** @param {HTMLElement} place @param {Context} context */
+  constructor(place, context) {
+    this.context = context;
+    const editor = new Editor(context);
+    this.editor = editor;
+    this.empty = section(place, "edit-empty", "Path");
+    this.sections = element("div", { id: "edit", hidden: "" });
+    place.append(this.sections);
+    this.pathButtons = element("div", { class: "row choice", role: "group", "aria-label": "path to edit" });
+    const steps = undoButtons(editor);
+    section(this.sections, "edit-path", "Path").append(this.pathButtons, steps.element);
+    editor.add(
+      steps,
+      feasibilitySection(section(this.sections, "edit-arm", "Can the arm follow?"), editor),
+      controlPointsSection(section(this.sections, "edit-place", "Control points"), editor),
+      knotsSection(section(this.sections, "edit-knots", "Knots"), editor),
+      saveForm(section(this.sections, "edit-saving", "Save"), editor),
+      certificationSection(section(this.sections, "edit-certifying", "Certify"), editor),
+      versionsSection(section(this.sections, "edit-versions", "Versions"), editor),
     );
-    if (editor.draft) editor.close();
-    return;
+    this.pathButtons.addEventListener("click", (event) => {
+      const { path } = closestData(event);
+      if (path) context.store.set({ path });
+    });
+    context.eventStream.on("paths", async ({ id }) => {
+      await editor.opened.catch(() => {}); // its list may be from before this version
+      if (id === editor.draft?.path) editor.readVersions().catch(() => {});
+    });
   }
-  const { learned } = selectedRun(state);
-  const paths = learned.paths.map((other) =>
-    element(
-      "button",
-      { type: "button", "data-path": other.id, "data-key": other.id, "aria-pressed": String(other.id === path.id) },
-      element("span", { class: `swatch ${wayClass(other.cluster)}` }),
-      `Way ${other.cluster}`,
-    ),
-  );
-  patchChildren(pathButtons, ...paths);
-  const spread = learned.clusters.find(({ index }) => index === path.cluster)?.spread;
-  context.attempt(() => editor.open(path.id, spread));
+
+  /** @param {State} state */
+  openPath(state) {
+    const [path, run] = [selectedPath(state), selectedRun(state)];
+    hideSection(this.empty, Boolean(path));
+    this.sections.hidden = !path;
+    if (!path || !run) {
+      patchChildren(this.empty, hint(NOTHING), tabButton("ways", "Go to the ways"));
+      if (this.editor.draft) this.editor.close();
+      return;
+    }
+    const { paths, clusters } = run.learned;
+    patchChildren(
+      this.pathButtons,
+      paths.map((other) => pathButton(other, other.id === path.id)),
+    );
+    const spread = clusters.find(({ index }) => index === path.cluster)?.spread ?? null;
+    this.context.attempt(() => this.editor.open(path.id, spread));
+  }
 }
 
-function undoButtons() {
-  const button = (id, words, keys, order) => {
-    const made = element("button", { type: "button", id: `edit-${id}`, "aria-keyshortcuts": keys }, words);
-    made.addEventListener("click", order);
+/** @param {LearnedPath} path @param {boolean} isEdited */
+function pathButton({ id, cluster }, isEdited) {
+  const attributes = { type: "button", "data-path": id, "data-key": id, "aria-pressed": String(isEdited) };
+  return element("button", attributes, element("span", { class: `swatch ${wayClass(cluster)}` }), `Way ${cluster}`);
+}
+
+/** @param {Editor} editor @returns {EditorSection & {element: HTMLElement}} */
+function undoButtons(editor) {
+  /** @param {string} id @param {string} text @param {string} keys @param {() => void} onClick */
+  const button = (id, text, keys, onClick) => {
+    const made = element("button", { type: "button", id: `edit-${id}`, "aria-keyshortcuts": keys }, text);
+    made.addEventListener("click", onClick);
     return made;
   };
-  buttons = {
-    undo: button("undo", "Undo", "Control+Z", () => editor.undo()),
-    redo: button("redo", "Redo", "Control+Shift+Z", () => editor.redo()),
+  const undo = button("undo", "Undo", "Control+Z", () => editor.undo());
+  const redo = button("redo", "Redo", "Control+Shift+Z", () => editor.redo());
+  const revert = button("revert", "Back to the version", "", () => {
+    if (editor.draft) editor.change(editor.draft.original, "going back to the version");
+  });
+  const help = element("p", { class: "note" }, `Drag control points in the view. ${KEYBOARD_HELP}`);
+  return {
+    element: element("div", {}, element("div", { class: "row" }, undo, redo, revert), help),
+    update({ draft }, what) {
+      if (!draft || what === "drag" || what === "feasibility") return;
+      undo.disabled = !draft.undoLabel;
+      undo.title = draft.undoLabel && `Undo ${draft.undoLabel}`;
+      redo.disabled = !draft.redoLabel;
+      redo.title = draft.redoLabel && `Redo ${draft.redoLabel}`;
+      revert.disabled = !draft.edited;
+    },
   };
-  const revert = button("revert", "Back to the version", "", () =>
-    editor.change(editor.draft.original, "going back to the version"),
-  );
-  buttons.revert = revert;
-  return element(
-    "div",
-    {},
-    element("div", { class: "row" }, Object.values(buttons)),
-    element("p", { class: "note" }, `Drag control points in the view. ${KEYBOARD_HELP}`),
-  );
-}
-
-function updateButtons({ draft }, what) {
-  if (!draft || what === "drag" || what === "feasibility") return;
-  buttons.undo.disabled = !draft.undoLabel;
-  buttons.undo.title = draft.undoLabel ? `Undo ${draft.undoLabel}` : "";
-  buttons.redo.disabled = !draft.redoLabel;
-  buttons.redo.title = draft.redoLabel ? `Redo ${draft.redoLabel}` : "";
-  buttons.revert.disabled = !draft.edited;
 }

@@ -4,49 +4,56 @@ import { GhostArm } from "../arm/ghost_arm.js";
 import { JointPlots, plotRow } from "../arm/joint_plots.js";
 import { Motion } from "../arm/motion.js";
 import { MotionPlayer } from "../arm/motion_player.js";
-import { capitalize, element, formatNumber, patchChildren } from "../elements.js";
+import { closestData, element } from "../elements.js";
+import { patchChildren } from "../patch_children.js";
+import { capitalize, formatNumber } from "../texts.js";
 
-const MAX_POINTS = 1500; // at most, of the curves
+const MAX_POINTS = 1500; // of the plots
 const MAX_LISTED = 20;
+const NOTHING = "Nothing has been executed yet. What the arm does is kept and can be looked at here.";
 
+/** @param {HTMLElement} place @param {Context} context */
 export function executionReplay(place, context) {
   const panel = new ExecutionReplay(place, context);
-  return { update: (state, changed) => panel.update(state, changed), hide: () => panel.hide(), player: panel.player };
+  return {
+    /** @type {Section["update"]} */
+    update: (state, changed) => panel.update(state, changed),
+    hide: () => panel.hide(),
+    player: panel.player,
+  };
 }
 
 class ExecutionReplay {
   #opened = 0; // executions that were asked for: only the newest one is shown
+  #execution = ""; // id of the one that is shown
+  /** @type {JointPlots | null} */
+  #plots = null;
 
+  /** @param {HTMLElement} place @param {Context} context */
   constructor(place, context) {
-    Object.assign(this, { place, context });
+    this.context = context;
     this.list = element("ol", { class: "executions", "aria-label": "executions, newest first" });
     this.curves = element("div", {});
     this.player = new MotionPlayer({
       sliderLabel: "Instant of the execution",
       closeLabel: "Close replay",
       children: [this.curves],
-      describe: (seconds) => this.#setCursor(seconds),
+      describe: (seconds) => {
+        this.#plots?.setCursor(seconds);
+        return "";
+      },
       onClose: () => this.#select(""),
     });
     place.append(this.list, this.player.element);
     this.list.addEventListener("click", (event) => {
-      const { execution } = event.target.closest("button")?.dataset ?? {};
+      const { execution } = closestData(event);
       if (execution) context.attempt(() => this.#open(execution));
     });
   }
 
+  /** @param {State} state @param {Changed} changed */
   update(state, changed) {
     if (changed.has("executions")) this.#render(state.executions);
-  }
-
-  #select(execution) {
-    this.execution = execution;
-    this.#render(this.context.store.state.executions);
-  }
-
-  #setCursor(seconds) {
-    this.plots.setCursor(seconds);
-    return "";
   }
 
   hide() {
@@ -54,95 +61,88 @@ class ExecutionReplay {
     this.player.close();
   }
 
+  /** @param {string} execution */
+  #select(execution) {
+    this.#execution = execution;
+    this.#render(this.context.store.state.executions);
+  }
+
+  /** @param {string} execution */
   async #open(execution) {
     const turn = ++this.#opened;
-    const [rows, arm, plan] = await Promise.all([
+    /** @type {[TimeSeries, Robot, Plan | null]} */
+    const [series, arm, plan] = await Promise.all([
       get(`${resourcePath("executions", execution, "series")}?points=${MAX_POINTS}`),
       get("robot"),
-      this.#plan(execution),
+      this.#readPlan(execution),
     ]);
     if (turn !== this.#opened) return; // another one was chosen meanwhile, or the tab was left
-    if (rows.times.length < 2) {
+    if (series.times.length < 2) {
       this.context.messages.show("Nothing was recorded of this execution: the arm did not begin to move.", "error");
       return;
     }
-    const begin = rows.times[0];
-    const times = rows.times.map((time) => time - begin);
-    const motion = new Motion({
-      times,
-      joints: rows.positions,
-      gripper_closed: rows.gripper_closed,
-      object_position: rows.object,
-      object_orientation: rows.object.map(() => [1, 0, 0, 0]),
-    });
-    this.player.open(
-      motion,
-      new GhostArm(this.context.overlay, this.context.view, arm, rows.object.length ? plan?.scene.carried : null),
-    );
-    this.plots ??= new JointPlots(this.curves);
-    const entry = (time, i) => ({
-      time,
-      position: rows.positions[i],
-      speed: rows.velocities[i],
-      error: rows.tracking_error[i],
-      lateness: rows.lateness[i],
-    });
-    this.plots.set(times.map((time, i) => plotRow(arm, entry(time, i))));
+    const carried = series.object.length ? (plan?.scene.carried ?? null) : null;
+    const ghost = new GhostArm(this.context.overlay, this.context.view, arm, carried);
+    this.player.open(motionOf(series), ghost);
+    this.#plots ??= new JointPlots(this.curves);
+    this.#plots.set(plotRows(series, arm));
     this.#select(execution);
     this.player.show(0);
   }
 
-  // The plan that it followed, for the shape of what was carried; it may be gone.
-  #plan(execution) {
+  /**
+   * The plan that it followed, for the shape of what was carried; it may be gone.
+   * @param {string} execution
+   */
+  #readPlan(execution) {
     const plan = this.context.store.state.executions?.find((one) => one.id === execution)?.plan;
     return plan ? get(resourcePath("plans", plan)).catch(() => null) : null;
   }
 
+  /** @param {Execution[] | null} executions */
   #render(executions) {
-    if (!executions?.length) {
-      patchChildren(
-        this.list,
-        element(
-          "li",
-          { class: "hint" },
-          "Nothing has been executed yet. What the arm does is kept and can be looked at here.",
-        ),
-      );
-      return;
-    }
-    patchChildren(
-      this.list,
-      executions.slice(0, MAX_LISTED).map((one) => executionRow(one, one.id === this.execution)),
-    );
+    const newest = (executions ?? []).slice(0, MAX_LISTED);
+    const rows = newest.map((one) => executionRow(one, one.id === this.#execution));
+    patchChildren(this.list, rows.length ? rows : element("li", { class: "hint" }, NOTHING));
   }
 }
 
-function executionRow({ id, created_ns, status }, open) {
-  const when = new Date(created_ns / 1e6).toLocaleTimeString([], {
-    hour: "2-digit",
-    minute: "2-digit",
-    second: "2-digit",
-    hour12: false,
+/** @param {TimeSeries} series */
+function motionOf({ times, positions, gripper_closed, object }) {
+  return new Motion({
+    times: times.map((time) => time - times[0]),
+    joints: positions,
+    gripper_closed,
+    object_position: object,
+    object_orientation: object.map(() => [1, 0, 0, 0]),
   });
+}
+
+/** @param {TimeSeries} series @param {Robot} arm */
+function plotRows({ times, positions, velocities, tracking_error, lateness }, arm) {
+  return times.map((time, i) =>
+    plotRow(arm, {
+      time: time - times[0],
+      position: positions[i],
+      speed: velocities[i],
+      error: tracking_error[i],
+      lateness: lateness[i],
+    }),
+  );
+}
+
+/** @param {Execution} execution @param {boolean} open */
+function executionRow({ id, created_ns, status }, open) {
+  const digits = /** @type {const} */ ({ hour: "2-digit", minute: "2-digit", second: "2-digit" });
+  const when = new Date(created_ns / 1e6).toLocaleTimeString([], { ...digits, hour12: false });
+  const time = status.duration > 0 ? ` after ${formatNumber(status.duration, 1, "s")}` : "";
+  const reason = status.reason ? `: ${status.reason}` : "";
+  const label = { "aria-label": `Replay the execution of ${when}`, "aria-pressed": String(open) };
   return element(
     "li",
     { class: open ? "open" : "" },
     element("span", {}, when),
-    element(
-      "span",
-      { class: "why" },
-      `${capitalize(status.state)}${status.duration > 0 ? ` after ${formatNumber(status.duration, 1, "s")}` : ""}${status.reason ? `: ${status.reason}` : ""}`,
-    ),
-    element(
-      "button",
-      {
-        type: "button",
-        "data-execution": id,
-        "data-key": id,
-        "aria-label": `Replay the execution of ${when}`,
-        "aria-pressed": String(open),
-      },
-      "Replay",
-    ),
+    element("span", { class: "why" }, `${capitalize(status.state)}${time}${reason}`),
+    element("button", { type: "button", "data-execution": id, "data-key": id, ...label }, "Replay"),
   );
 }

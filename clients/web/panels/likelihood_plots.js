@@ -1,17 +1,21 @@
 // Two plots: the log-likelihood while each way's model was trained (the paper's Fig. 4), and that of every demonstration.
-import { formatNumber, hint } from "../elements.js";
+import { hideSection, hint } from "../elements.js";
 import { LinePlot } from "../line_plot.js";
-import { selectedRun } from "../store.js";
+import { demonstrationNumbers, selectedRun } from "../store.js";
+import { formatNumber } from "../texts.js";
 import { wayVariable } from "../way_colors.js";
 
+/** @param {HTMLElement} place @param {Context} context @returns {Section} */
 export function likelihoodPlots(place, { store }) {
   let shown = "";
+  /** @type {LinePlot[]} */
   let plots = [];
+  /** @param {State} state */
   const draw = (state) => {
     const run = selectedRun(state);
-    place.parentElement.hidden = !run?.learned.clusters.length;
-    if (!run || place.parentElement.hidden || place.closest("[role=tabpanel]").hidden) return;
-    const numbers = new Map((state.demonstrations ?? []).map((d) => [d.id, d.number]));
+    hideSection(place, !run?.learned.clusters.length);
+    if (!run?.learned.clusters.length || place.closest("[role=tabpanel][hidden]")) return;
+    const numbers = demonstrationNumbers(state);
     const key = `${run.id} ${numbers.size}`;
     if (key === shown) return;
     shown = key;
@@ -22,6 +26,7 @@ export function likelihoodPlots(place, { store }) {
   return { show: () => draw(store.state), update: (state) => draw(state) };
 }
 
+/** @param {HTMLElement} place @param {Cluster[]} clusters @param {Map<string, number>} numbers */
 function drawPlots(place, clusters, numbers) {
   const trained = clusters.filter((cluster) => cluster.convergence.length > 0);
   if (trained.length) return [plotConvergence(place, trained), plotLikelihoods(place, trained, numbers)];
@@ -29,11 +34,12 @@ function drawPlots(place, clusters, numbers) {
   return [];
 }
 
+/** @param {HTMLElement} place @param {Cluster[]} clusters */
 function plotConvergence(place, clusters) {
-  const ends = clusters.map(
-    ({ index, convergence }) =>
-      `way ${index}: ${formatNumber(convergence[0], 0)} to ${formatNumber(convergence.at(-1), 0)} in ${convergence.length} iterations`,
-  );
+  const ends = clusters.map(({ index, convergence }) => {
+    const [first, last] = [convergence[0], convergence[convergence.length - 1]];
+    return `way ${index}: ${formatNumber(first, 0)} to ${formatNumber(last, 0)} in ${convergence.length} iterations`;
+  });
   const plot = new LinePlot(place, {
     title: "Log-likelihood by training iteration, in the colours of the ways: level at the end means learned",
     label: `Log-likelihood while training. ${ends.join("; ")}`,
@@ -48,6 +54,7 @@ function plotConvergence(place, clusters) {
   return plot;
 }
 
+/** @param {HTMLElement} place @param {Cluster[]} clusters @param {Map<string, number>} numbers */
 function plotLikelihoods(place, clusters, numbers) {
   const scores = clusters.flatMap(({ index, scores }) =>
     scores.map((score) => ({ ...score, way: index, number: numbers.get(score.demonstration) ?? 0 })),
@@ -66,4 +73,5 @@ function plotLikelihoods(place, clusters, numbers) {
   return plot;
 }
 
+/** @param {Cluster} cluster */
 const style = ({ index }) => ({ label: `way ${index}`, color: wayVariable(index) });

@@ -1,51 +1,52 @@
 // Summaries of the paths: duration, clearance and reach, from the newest plan, else from an assessment.
-import { get, post, resourcePath } from "../api.js";
-import { formatNumber, formatPercent } from "../elements.js";
+import { ApiError, get, post, resourcePath } from "../api.js";
 import { latestPaths } from "../store.js";
+import { formatNumber, formatPercent } from "../texts.js";
+
+/** @typedef {Pick<PathSummary, "facts" | "error">} Summary */
 
 export class PathSummaries {
+  /** @type {Map<string, Summary>} */
   #summaries = new Map(); // id of a plan, or path and version -> summary
+  /** @type {Promise<void>} */
   #queue = Promise.resolve(); // one request at a time: an assessment costs the service a moment
+  /** @type {Set<string>} */
   #pending = new Set();
 
+  /** @param {import("../store.js").Store} store */
   constructor(store) {
     this.store = store;
   }
 
+  /** @param {State} state */
   refresh(state) {
+    /** @type {Record<string, PathSummary>} */
     const found = {};
     for (const path of latestPaths(state)) {
-      const jobs = (state.jobs ?? []).filter(
-        (job) =>
-          job.kind === "plan" && job.request.path === path.id && (job.request.version ?? path.version) === path.version,
-      );
-      const last = jobs.at(-1);
-      const planning = ["queued", "running"].includes(last?.state);
-      const plan = last?.state === "succeeded" ? last.outcome : "";
+      const job = newestPlanning(path, state.jobs ?? []);
+      const plan = job?.state === "succeeded" ? job.outcome : "";
       const key = plan || `${path.id} ${path.version}`;
-      this.#request(
-        key,
-        plan
-          ? () => get(resourcePath("plans", plan)).then(planSummary)
-          : () =>
-              post(`${resourcePath("paths", path.id)}/assessment`, { version: path.version, curve: path.curve }).then(
-                assessmentSummary,
-              ),
-      );
-      const refused = last?.state === "failed" ? { error: `Not certified: ${last.message}` } : {};
-      found[path.id] = { ...this.#summaries.get(key), ...refused, planning, planned: Boolean(plan) };
+      this.#request(key, () => (plan ? summarizePlan(plan) : summarizeAssessment(path)));
+      const refused = job?.state === "failed" ? { error: `Not certified: ${job.message}` } : {};
+      const planning = job?.state === "queued" || job?.state === "running";
+      found[path.id] = { ...this.#summaries.get(key), ...refused, planning, planned: plan !== "" };
     }
-    if (JSON.stringify(found) !== JSON.stringify(this.store.state.pathSummaries))
-      this.store.set({ pathSummaries: found });
+    const { pathSummaries } = this.store.state;
+    if (JSON.stringify(found) !== JSON.stringify(pathSummaries)) this.store.set({ pathSummaries: found });
   }
 
-  async #request(key, question) {
+  /** @param {string} key @param {() => Promise<Summary>} summarize */
+  async #request(key, summarize) {
     if (this.#pending.has(key) || this.#summaries.has(key)) return;
     this.#pending.add(key);
-    this.#queue = this.#queue.then(question).then(
-      (found) => this.#summaries.set(key, found),
-      // a refusal says what is wrong with the path; without an answer it is asked again with the next change
-      (error) => error.status === 422 && this.#summaries.set(key, { error: error.message }),
+    this.#queue = this.#queue.then(summarize).then(
+      (summary) => {
+        this.#summaries.set(key, summary);
+      },
+      (error) => {
+        // A refusal says what is wrong with the path; without an answer it is asked again with the next change.
+        if (error instanceof ApiError && error.status === 422) this.#summaries.set(key, { error: error.message });
+      },
     );
     await this.#queue;
     this.#pending.delete(key);
@@ -53,26 +54,43 @@ export class PathSummaries {
   }
 }
 
-function planSummary({ duration, certificate }) {
+/**
+ * The newest job that plans this version of a path.
+ * @param {LearnedPath} path
+ * @param {Job[]} jobs
+ */
+function newestPlanning({ id, version }, jobs) {
+  return jobs.findLast(
+    ({ kind, request }) => kind === "plan" && request.path === id && (request.version ?? version) === version,
+  );
+}
+
+/** @param {string} id of a plan @returns {Promise<Summary>} */
+async function summarizePlan(id) {
+  /** @type {Plan} */
+  const { duration, certificate } = await get(resourcePath("plans", id));
+  const range = formatPercent(certificate.position_use.value);
   return {
     facts: [
       ["Duration", formatNumber(duration, 2, "s")],
       ["Clearance", formatNumber(certificate.clearance.value * 1000, 0, "mm")],
-      ["Reach", `the whole way, ${formatPercent(certificate.position_use.value)} of joint range`],
+      ["Reach", `the whole way, ${range} of joint range`],
     ],
   };
 }
 
-function assessmentSummary({ duration, clearance, reach, failure, sentence }) {
+/** @param {LearnedPath} path @returns {Promise<Summary>} */
+async function summarizeAssessment({ id, version, curve }) {
+  /** @type {Assessment} */
+  const assessment = await post(resourcePath("paths", id, "assessment"), { version, curve });
+  const { duration, clearance, reach, failure, sentence } = assessment;
+  const [least, left] = [Math.min(...clearance) * 1000, Math.min(...reach) * 1000];
+  const reached = left >= 0 ? "the whole way" : `${formatNumber(-left, 0, "mm")} short`;
   return {
     facts: [
       ["Duration", duration !== null && `about ${formatNumber(duration, 1, "s")}`],
-      ["Clearance", clearance.length > 0 && `about ${formatNumber(Math.min(...clearance) * 1000, 0, "mm")}`],
-      [
-        "Reach",
-        reach.length > 0 &&
-          (Math.min(...reach) >= 0 ? "the whole way" : `${formatNumber(-Math.min(...reach) * 1000, 0, "mm")} short`),
-      ],
+      ["Clearance", clearance.length > 0 && `about ${formatNumber(least, 0, "mm")}`],
+      ["Reach", reach.length > 0 && reached],
     ],
     error: failure ? sentence : "",
   };

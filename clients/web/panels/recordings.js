@@ -1,7 +1,14 @@
-// The recordings that run and the trackers that are there; the guidance; what the station has to say.
+// The recordings that run and the trackers that are there; what the station has to say.
 import { post, resourcePath } from "../api.js";
-import { capitalize, element, formatNumber, hint, patchChildren, pluralize } from "../elements.js";
+import { closestData, element, hint } from "../elements.js";
+import { patchChildren } from "../patch_children.js";
+import { changesAny } from "../store.js";
+import { capitalize, formatNumber, pluralize } from "../texts.js";
 
+/** @type {Record<string, string>} */
+const STATE_LABELS = { pausing: "will pause after this one", paused: "paused", lost: "the tracker has gone" };
+
+/** @type {Record<string, string>} */
 const PHASE_LABELS = {
   reach: "reaching for the object",
   grasp: "grasping it",
@@ -9,55 +16,48 @@ const PHASE_LABELS = {
   release: "letting go",
   return: "going back",
 };
+const AWAY = "Not known: the service does not answer. What was recorded until then is kept.";
+const NOTHING =
+  "No tracker is here. Start one beside the hand, and it appears within a second; or show the task with the mouse, above.";
 
+/** @param {HTMLElement} place @param {Context} context @returns {Section} */
 export function recordingList(place, { store, attempt }) {
   place.addEventListener("click", (event) => {
-    const { verb, tracker, task, look } = event.target.closest("button")?.dataset ?? {};
+    const { verb, tracker, task, look } = closestData(event);
     if (look) store.set({ task: look });
-    if (verb) attempt(() => post(`${resourcePath("tasks", task || store.state.task, "recording", verb)}`, { tracker }));
+    if (verb) attempt(() => post(resourcePath("tasks", task || store.state.task, "recording", verb), { tracker }));
   });
   return {
     update(state, changed) {
-      if (!["recordings", "trackers", "station", "guidance", "task", "connection"].some((name) => changed.has(name)))
-        return;
-      if (state.connection === "lost") {
-        patchChildren(place, hint("Not known: the service does not answer. What was recorded until then is kept."));
-        return;
-      }
-      const idle = state.trackers.filter((tracker) => !state.recordings.some((r) => r.tracker === tracker.name));
-      const lines = [
-        ...state.recordings.map((recording) => recordingRow(recording, state.task)),
-        ...idle.map((tracker) =>
-          element("p", { class: "job" }, element("span", { class: "dot there" }), `${tracker.name} is here`),
-        ),
-        ...(state.station?.notes ?? []).map((note) => element("p", { class: "job note" }, capitalize(note))),
-      ];
-      patchChildren(
-        place,
-        lines.length
-          ? lines
-          : hint(
-              "No tracker is here. Start one beside the hand, and it appears within a second; or show the task with the mouse, above.",
-            ),
-      );
+      if (!changesAny(changed, "recordings", "trackers", "station", "task", "connection")) return;
+      patchChildren(place, content(state));
     },
   };
 }
 
+/** @param {State} state @returns {Child} */
+function content({ connection, recordings, trackers, station, task }) {
+  if (connection === "lost") return hint(AWAY);
+  const idle = trackers.filter(({ name }) => !recordings.some(({ tracker }) => tracker === name));
+  const rows = [
+    ...recordings.map((recording) => recordingRow(recording, task)),
+    ...idle.map(({ name }) =>
+      element("p", { class: "job" }, element("span", { class: "dot there" }), `${name} is here`),
+    ),
+    ...(station?.notes ?? []).map((note) => element("p", { class: "job note" }, capitalize(note))),
+  ];
+  return rows.length ? rows : hint(NOTHING);
+}
+
+/** @param {ActiveRecording} recording @param {string} task that is chosen */
 function recordingRow(recording, task) {
   const { state, tracker, received, lost } = recording;
-  const paused = state === "paused" || state === "pausing";
-  const doing =
-    { pausing: "will pause after this one", paused: "paused", lost: "the tracker has gone" }[state] ??
-    PHASE_LABELS[recording.phase] ??
-    "waiting";
-  const key = (verb) => ({
-    type: "button",
-    "data-verb": verb,
-    "data-tracker": tracker,
-    "data-task": recording.task,
-    "data-key": `${verb} ${tracker}`,
-  });
+  const isHere = recording.task === task;
+  const activity = STATE_LABELS[state] ?? PHASE_LABELS[recording.phase] ?? "waiting";
+  const verb = state === "paused" || state === "pausing" ? "resume" : "pause";
+  const order = { "data-verb": verb, "data-tracker": tracker, "data-task": recording.task };
+  const look = { "data-look": recording.task, "data-key": `look ${tracker}` };
+  const samples = `${formatNumber(received, 0)} ${pluralize(received, "sample")}, ${formatNumber(lost, 0)} lost`;
   return element(
     "div",
     { class: "job", "data-key": tracker },
@@ -65,19 +65,15 @@ function recordingRow(recording, task) {
       "p",
       {},
       element("span", { class: `dot ${state || "recording"}` }),
-      `Recording ${tracker}${recording.task === task ? "" : ` for ${recording.task}`}: ${doing}`,
-      element(
-        "span",
-        { class: "note" },
-        `${formatNumber(received, 0)} ${pluralize(received, "sample")}, ${formatNumber(lost, 0)} lost`,
-      ),
+      `Recording ${tracker}${isHere ? "" : ` for ${recording.task}`}: ${activity}`,
+      element("span", { class: "note" }, samples),
     ),
     element(
       "span",
       { class: "buttons" },
-      recording.task !== task &&
-        element("button", { type: "button", "data-look": recording.task, "data-key": `look ${tracker}` }, "Look at it"),
-      state !== "lost" && element("button", key(paused ? "resume" : "pause"), paused ? "Resume" : "Pause"),
+      !isHere && element("button", { type: "button", ...look }, "Look at it"),
+      state !== "lost" &&
+        element("button", { type: "button", ...order, "data-key": `${verb} ${tracker}` }, capitalize(verb)),
     ),
   );
 }

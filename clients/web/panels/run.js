@@ -6,20 +6,25 @@ import { planPreview } from "./plan_preview.js";
 import { sectionedPanel } from "./sectioned_panel.js";
 import { teleopPanel } from "./teleop_panel.js";
 
-const run = sectionedPanel("run", "Run", [
-  ["preview", "Preview", planPreview],
-  ["arm", "Arm", armControls],
-  ["teleop", "Live hand", teleopPanel],
-  ["joints", "Joints", liveJoints],
-  ["replay", "Past executions", executionReplay],
-]);
-const ghostPose = (name) => run.section(name).player.ghost?.linkMatrices() ?? null;
+/** @type {ReturnType<typeof planPreview>} */
+let preview;
+/** @type {ReturnType<typeof executionReplay>} */
+let replay;
+/** @type {ReturnType<typeof teleopPanel>} */
+let teleop;
 
-// previewGhost(), replayGhost(): poses of the links of the two ghost arms as drawn, or null; teleop(): the session with a live
-// hand, or null. For tests.
+const run = sectionedPanel("run", "Run", [
+  ["preview", "Preview", (place, context) => (preview = planPreview(place, context))],
+  ["arm", "Arm", armControls],
+  ["teleop", "Live hand", (place, context) => (teleop = teleopPanel(place, context))],
+  ["joints", "Joints", liveJoints],
+  ["replay", "Past executions", (place, context) => (replay = executionReplay(place, context))],
+]);
+
+// For tests: poses of the links of the two ghost arms as drawn, or null; the session with a live hand, or null.
 export const panel = {
   ...run,
-  previewGhost: () => ghostPose("preview"),
-  replayGhost: () => ghostPose("replay"),
-  teleop: () => run.section("teleop").session(),
+  previewGhost: () => preview.player.ghost?.linkMatrices() ?? null,
+  replayGhost: () => replay.player.ghost?.linkMatrices() ?? null,
+  teleop: () => teleop.session(),
 };

@@ -1,23 +1,33 @@
 // A panel that is made of sections, one below the other under titles of their own.
 import { section } from "../elements.js";
 
-// `definitions`: [[id, title, create]], where create(place, context) returns {update(state, changed), show?, hide?}.
-// Returns the panel; its `section(id)` is what `create` has returned.
+/** @typedef {[id: string, title: string, create: (place: HTMLElement, context: Context) => Section]} SectionDefinition */
+
+/**
+ * @param {string} id
+ * @param {string} title
+ * @param {SectionDefinition[]} definitions
+ * @returns {Panel}
+ */
 export function sectionedPanel(id, title, definitions) {
-  const sections = new Map();
-  const call = (method, ...values) => {
-    for (const one of sections.values()) one[method]?.(...values);
-  };
+  /** @type {Section[]} */
+  const sections = [];
   return {
     id,
     title,
     mount(place, context) {
-      for (const [name, heading, create] of definitions)
-        sections.set(name, create(section(place, name, heading), context));
+      for (const [name, heading, create] of definitions) {
+        sections.push(create(section(place, name, heading), context));
+      }
     },
-    update: (state, changed) => call("update", state, changed),
-    show: () => call("show"),
-    hide: () => call("hide"),
-    section: (name) => sections.get(name),
+    update(state, changed) {
+      for (const one of sections) one.update(state, changed);
+    },
+    show() {
+      for (const one of sections) one.show?.();
+    },
+    hide() {
+      for (const one of sections) one.hide?.();
+    },
   };
 }

@@ -1,19 +1,31 @@
 // Table I: who was selected in each way, how they rank, by what margin, and in words why one was left out.
-import { capitalize, element, formatNumber, patchChildren } from "../elements.js";
-import { selectedRun } from "../store.js";
+import { element, hideSection } from "../elements.js";
+import { patchChildren } from "../patch_children.js";
+import { changesAny, demonstrationNumbers, selectedRun } from "../store.js";
+import { capitalize, formatNumber } from "../texts.js";
 import { wayClass } from "../way_colors.js";
 import { markFocus, trackFocus } from "./focus.js";
 
-// The columns between a demonstration and whether it is kept: [name, what it says, of a score]; what is not known is left empty.
+/** @typedef {{name: string, title: string, of: (score: Score) => string}} Column between a demonstration and what is kept */
+
+/** @type {Record<string, Column>} */
 const COLUMNS = {
-  rank: ["Rank", "1 is the most consistent", (score) => String(score.rank)],
-  z: ["z", "how far it is from the others of its way: 0 is like them or better", (score) => figure(score.z, 1)],
-  margin: ["Margin", "by how much it is better than the next in rank", (score) => figure(score.margin, 1)],
-  likelihood: [
-    "Log-lik.",
-    "log-likelihood under the model that judges it",
-    (score) => (score.z === null ? "" : figure(score.log_likelihood, 0)),
-  ],
+  rank: { name: "Rank", title: "1 is the most consistent", of: (score) => String(score.rank) },
+  z: {
+    name: "z",
+    title: "how far it is from the others of its way: 0 is like them or better",
+    of: ({ z }) => figure(z, 1),
+  },
+  margin: {
+    name: "Margin",
+    title: "by how much it is better than the next in rank",
+    of: ({ margin }) => figure(margin, 1),
+  },
+  likelihood: {
+    name: "Log-lik.",
+    title: "log-likelihood under the model that judges it",
+    of: ({ z, log_likelihood }) => (z === null ? "" : figure(log_likelihood, 0)),
+  },
 };
 // In the mode of the paper ranks go by the log-likelihood, else by z.
 const COLUMNS_BY_MODE = { default: ["rank", "z", "margin", "likelihood"], other: ["rank", "likelihood", "margin"] };
@@ -22,90 +34,79 @@ const NOTES_BY_MODE = {
     "Ranked by z: how far one is from the others of its way in course, shape, smoothness and bending, in robust standard deviations; 0 is like them or better.",
   other: "Ranked by the log-likelihood under the model of the way.",
 };
-const figure = (value, digits) => (value === null ? "" : formatNumber(value, digits));
+const NOTE = "The margin is the lead over the next in rank. A way's path is fitted to what is kept (✓).";
 
+/** @param {number | null | undefined} value what is not known is left empty @param {number} digits */
+const figure = (value, digits) => (value === null || value === undefined ? "" : formatNumber(value, digits));
+
+/** @param {HTMLElement} place @param {Context} context @returns {Section} */
 export function selectionTable(place, { store }) {
   trackFocus(place, store);
   return {
     update(state, changed) {
-      if (["runs", "run", "demonstrations"].some((name) => changed.has(name))) {
+      if (changesAny(changed, "runs", "run", "demonstrations")) {
         const run = selectedRun(state)?.learned;
-        place.parentElement.hidden = !run?.clusters.length;
-        const numbers = new Map((state.demonstrations ?? []).map((d) => [d.id, d.number]));
-        if (run?.clusters.length) patchChildren(place, table(run, numbers));
+        hideSection(place, !run?.clusters.length);
+        if (run?.clusters.length) patchChildren(place, table(run, demonstrationNumbers(state)));
       }
       markFocus(place, state.focus); // also on what has just been drawn anew
     },
   };
 }
 
-function table(run, numbers) {
-  const mode = run.mode === "default" ? "default" : "other";
-  const columns = COLUMNS_BY_MODE[mode].map((name) => COLUMNS[name]);
+/** @param {Run["learned"]} run @param {Map<string, number>} numbers @returns {Child[]} */
+function table({ mode, clusters }, numbers) {
+  const kind = mode === "default" ? "default" : "other";
+  const columns = COLUMNS_BY_MODE[kind].map((name) => COLUMNS[name]);
   const heads = [
-    ["Way", ""],
-    ["Shown", "number of the demonstration"],
+    { name: "Way", title: "" },
+    { name: "Shown", title: "number of the demonstration" },
     ...columns,
-    ["Kept", "the path of its way is fitted to it"],
+    { name: "Kept", title: "the path of its way is fitted to it" },
   ];
-  const head = element(
-    "thead",
-    {},
-    element(
-      "tr",
-      {},
-      heads.map(([name, title]) => element("th", { scope: "col", title }, name)),
-    ),
-  );
+  const cells = heads.map(({ name, title }) => element("th", { scope: "col", title }, name));
+  const groups = clusters.map((cluster) => rowGroup(cluster, numbers, columns));
   return [
-    element(
-      "table",
-      { class: "selection" },
-      head,
-      run.clusters.map((cluster) => rows(cluster, numbers, columns)),
-    ),
-    element(
-      "p",
-      { class: "note" },
-      `${NOTES_BY_MODE[mode]} The margin is the lead over the next in rank. A way's path is fitted to what is kept (✓).`,
-    ),
+    element("table", { class: "selection" }, element("thead", {}, element("tr", {}, cells)), groups),
+    element("p", { class: "note" }, `${NOTES_BY_MODE[kind]} ${NOTE}`),
   ];
 }
 
-function rows(cluster, numbers, columns) {
-  const why = (score) => score.note || score.deviation?.sentence;
-  const height = cluster.scores.length + cluster.scores.filter(why).length;
-  const way = element(
-    "th",
-    { scope: "rowgroup", rowspan: String(height) },
-    element("span", { class: `swatch ${wayClass(cluster.index)}` }),
-    String(cluster.index),
-  );
-  const reason = (score) =>
-    element(
-      "tr",
-      { class: "why", "data-focus": `demonstrations ${score.demonstration}` },
-      element("td", { colspan: String(columns.length + 2) }, capitalize(why(score))),
-    );
+/** @param {Cluster} cluster @param {Map<string, number>} numbers @param {Column[]} columns */
+function rowGroup({ index, scores }, numbers, columns) {
+  const height = scores.length + scores.filter(reasonOf).length;
+  const swatch = element("span", { class: `swatch ${wayClass(index)}` });
+  const way = element("th", { scope: "rowgroup", rowspan: String(height) }, swatch, String(index));
   return element(
     "tbody",
     {},
-    cluster.scores.map((score, i) => [row(score, numbers, i === 0 && way, columns), why(score) && reason(score)]),
+    scores.map((score, i) => [
+      scoreRow(score, numbers, i === 0 && way, columns),
+      reasonOf(score) && reasonRow(score, columns.length + 2),
+    ]),
   );
 }
 
-function row(score, numbers, way, columns) {
+/** @param {Score} score */
+const reasonOf = ({ note, deviation }) => note || deviation?.sentence;
+
+/** @param {Score} score @param {number} width */
+function reasonRow(score, width) {
+  const focus = { class: "why", "data-focus": `demonstrations ${score.demonstration}` };
+  return element("tr", focus, element("td", { colspan: String(width) }, capitalize(reasonOf(score))));
+}
+
+/** @param {Score} score @param {Map<string, number>} numbers @param {Child} way @param {Column[]} columns */
+function scoreRow(score, numbers, way, columns) {
+  const { demonstration, selected } = score;
   const tick = element("span", { class: "tick", role: "img", "aria-label": "kept" }, "✓");
-  const left = element("span", { class: "cross", role: "img", "aria-label": "left out" }, "–");
-  const figures = [
-    String(numbers.get(score.demonstration) ?? score.demonstration),
-    ...columns.map(([, , of]) => of(score)),
-  ];
+  const cross = element("span", { class: "cross", role: "img", "aria-label": "left out" }, "–");
+  const figures = [String(numbers.get(demonstration) ?? demonstration), ...columns.map(({ of }) => of(score))];
   return element(
     "tr",
-    { class: score.selected ? "selected" : "", "data-focus": `demonstrations ${score.demonstration}` },
+    { class: selected ? "selected" : "", "data-focus": `demonstrations ${demonstration}` },
     way,
     figures.map((text) => element("td", { class: "figure" }, text)),
-    element("td", {}, score.selected ? tick : left),
+    element("td", {}, selected ? tick : cross),
   );
 }

@@ -1,0 +1,103 @@
+// What the panel of a demonstration session is made of, and how it shows a session.
+import { definitionList, element, hint, option } from "../elements.js";
+import { capitalize, formatNumber } from "../texts.js";
+
+/** @type {Record<string, string>} */
+const PHASE_TEXTS = {
+  countdown: "Get ready …",
+  ready: "Press on the box, carry it to its goal and let go.",
+  carrying: "Carrying. Let go at the goal.",
+  judging: "Let go. Waiting for the recorder …",
+  returning: "The box goes back to its start.",
+  lost: "The connection broke off; what was carried is lost. Connecting again …",
+};
+
+/** @type {Fact[]} */
+const HELP = [
+  ["Mouse", "press and drag; shift or the wheel changes the height"],
+  ["Touch", "one finger drags, a second one changes the height"],
+  ["Keyboard", "Enter grasps and lets go; arrows, Page Up, Page Down"],
+  ["Gamepad", "hold A; left stick moves, right stick changes the height"],
+];
+const ABOUT = "No glove? Carry the box in the view yourself; the recorder takes it like any tracker.";
+
+export function createParts() {
+  /** @param {string} text @param {import("../elements.js").Attributes} attributes */
+  const button = (text, attributes = {}) => element("button", { type: "button", ...attributes }, text);
+  const start = button("Show it here", { class: "primary" });
+  const headset = button("In a headset", { disabled: true });
+  const why = element("p", { class: "note" });
+  const name = element("input", { type: "text", id: "task-name", value: "first-task", autocomplete: "off" });
+  const nameField = element("p", { class: "field" }, element("label", { for: "task-name" }, "Name of the task"), name);
+  const seconds = element("select", { id: "countdown" }, option(0, "none"), option(3, "3 s"), option(5, "5 s"));
+  seconds.value = "3";
+  const countdown = element("p", { class: "field" }, element("label", { for: "countdown" }, "Countdown"), seconds);
+  const idle = element(
+    "div",
+    {},
+    hint(ABOUT),
+    nameField,
+    countdown,
+    element("p", { class: "buttons" }, start, headset),
+    why,
+  );
+  const statusText = element("p", { class: "session-status", role: "status" });
+  const list = { class: "demonstration-list", "aria-label": "demonstrations of this session" };
+  const demonstrations = element("ol", list);
+  const [discard, undo, finish] = [button("Discard the take"), button("Undo"), button("Finish", { class: "primary" })];
+  const figures = element("div", {});
+  const buttons = element("p", { class: "buttons" }, finish, discard, undo);
+  const active = element("div", { hidden: "" }, statusText, demonstrations, buttons, figures);
+  const help = element("details", {}, element("summary", {}, "How to carry the box"), definitionList(HELP));
+  const idleParts = { idle, start, headset, why, name, nameField, seconds };
+  return {
+    all: [idle, active, help],
+    ...idleParts,
+    active,
+    statusText,
+    demonstrations,
+    discard,
+    undo,
+    finish,
+    figures,
+  };
+}
+
+/**
+ * What is said of a session.
+ * @param {import("../hand/demonstration_session.js").DemonstrationSession} session
+ */
+export function sessionText({ phase, note, demonstrations, handModel }) {
+  if (phase === "carrying") {
+    const obstacle = handModel.collidingObstacle(handModel.position);
+    return obstacle ? `The box is in the ${obstacle}.` : PHASE_TEXTS.carrying;
+  }
+  const last = demonstrations.at(-1);
+  const outcome = note || (last && `Take ${last.number}: ${last.verdict}.`) || "";
+  return `${outcome} ${PHASE_TEXTS[phase]}`.trim();
+}
+
+/** @param {import("../hand/sample_sender.js").SampleSender} sender */
+export function senderFacts({ offset, dropped, sequence }) {
+  const clock = offset && `${formatNumber(offset.ms, 1, "ms")} off, ± ${formatNumber(offset.within, 1, "ms")}`;
+  return definitionList([
+    ["Samples sent", formatNumber(sequence - dropped, 0)],
+    ["Left out", dropped > 0 && formatNumber(dropped, 0)],
+    ["Clock", clock],
+  ]);
+}
+
+/** @param {Demonstration} demonstration */
+export function demonstrationRow({ number, verdict, discarded_ns, duration, account, reasons }) {
+  const { received, lost } = account;
+  const word = discarded_ns ? "discarded" : verdict;
+  const figure = `${formatNumber(duration, 1, "s")}, ${lost} of ${formatNumber(received + lost, 0)} lost`;
+  return element(
+    "li",
+    { class: word, value: String(number) },
+    element("span", { class: "number" }, String(number)),
+    element("span", { class: "verdict" }, word),
+    element("span", { class: "figure" }, figure),
+    reasons.length > 0 && element("span", { class: "why" }, capitalize(reasons.join("; "))),
+  );
+}

@@ -1,0 +1,65 @@
+// The trajectories of demonstrations, read once and kept: as many points as are drawn.
+import { get, resourcePath } from "./api.js";
+
+const POINTS = 150; // of a demonstration as drawn
+const MAX_REQUESTS = 4; // at a time
+
+export class TrajectoryCache {
+  /** @type {Map<string, {trim: string, points: Point[]}>} */
+  #trajectories = new Map();
+  /** @type {Set<string>} */
+  #requested = new Set();
+
+  /** @param {() => void} onLoad called when another trajectory is here */
+  constructor(onLoad) {
+    this.onLoad = onLoad;
+  }
+
+  /** Whether nothing that was asked for is still to come. */
+  get isComplete() {
+    return !this.#requested.size;
+  }
+
+  /**
+   * Points of a demonstration, or null while they are not here yet, or cannot be drawn.
+   * @param {string} id
+   */
+  get(id) {
+    const points = this.#trajectories.get(id)?.points;
+    return points && points.length > 1 ? points : null;
+  }
+
+  /**
+   * Ask for the trajectories that are not here yet, or whose trim has changed; newest first.
+   * @param {Demonstration[]} demonstrations
+   */
+  async request(demonstrations) {
+    const missing = demonstrations
+      .filter((d) => this.#trajectories.get(d.id)?.trim !== trimKey(d) && !this.#requested.has(d.id))
+      .reverse();
+    for (const { id } of missing) this.#requested.add(id);
+    const next = async () => {
+      for (let d = missing.shift(); d; d = missing.shift()) await this.#load(d);
+    };
+    await Promise.all(Array.from({ length: MAX_REQUESTS }, next));
+  }
+
+  /** @param {Demonstration} demonstration */
+  async #load(demonstration) {
+    const { id } = demonstration;
+    const read = get(`${resourcePath("demonstrations", id, "trajectory")}?most=${POINTS}`);
+    const points = await read.then(
+      ({ positions }) => positions,
+      () => [], // a recording that cannot be read has no trajectory; its verdict says why
+    );
+    this.#trajectories.set(id, { trim: trimKey(demonstration), points });
+    this.#requested.delete(id);
+    this.onLoad();
+  }
+}
+
+/**
+ * Where a demonstration is cut from its recording: another trim has another trajectory.
+ * @param {Demonstration} demonstration
+ */
+export const trimKey = ({ trim, grasp, release }) => (trim ?? [grasp, release]).join();

@@ -1,0 +1,36 @@
+// The documents of the REST API, by the names of its own description (api.d.ts, which is generated from it).
+import type { components } from "./api";
+
+type Schemas = components["schemas"];
+
+declare global {
+  type Assessment = Schemas["Assessment"];
+  type Certificate = Schemas["Certificate"];
+  type Cluster = Schemas["Cluster"];
+  type Curve = Schemas["Curve"];
+  type Cut = Schemas["Cut"];
+  type Demonstration = Schemas["Demonstration"];
+  type Dendrogram = Schemas["Dendrogram"];
+  type EditResult = Schemas["EditResult"];
+  type Execution = Schemas["Execution"];
+  type ExecutorStatus = Schemas["ExecutorStatus"];
+  type Job = Schemas["Job"];
+  type LearnedPath = Schemas["LearnedPath"];
+  type LeaseState = Schemas["Lease"];
+  type LinkGeometry = Schemas["LinkGeometry"];
+  type MeasuredCalibration = Schemas["MeasuredCalibration"];
+  type MotionPreview = Schemas["MotionPreview"];
+  type Plan = Schemas["Plan"];
+  type RecordingReport = Schemas["Ended"];
+  type Robot = Schemas["Robot"];
+  type Run = Schemas["Run"];
+  type SavedVersion = Schemas["SavedVersion"];
+  type Scene = Schemas["Scene"];
+  type Score = Schemas["Score"];
+  type Shape = Schemas["Shape"];
+  type StreamStatistics = Schemas["StreamStatistics"];
+  type Task = Schemas["Task"];
+  type TimeSeries = Schemas["TimeSeries"];
+  type TrackerState = Schemas["Tracker"];
+  type Version = Schemas["Version"];
+}
