@@ -33,9 +33,12 @@ export function newTaskDialog(place, { store, eventStream, attempt, open }) {
   scene.addEventListener("change", () => {
     chosen = scene.value;
   });
+  // The toggle comes only after a while, when a person may have chosen already.
+  place.addEventListener("beforetoggle", () => {
+    chosen = "";
+  });
   place.addEventListener("toggle", async (event) => {
     if (!(event instanceof ToggleEvent) || event.newState !== "open") return;
-    chosen = "";
     name.focus();
     const scenes = await attempt(() => get("scenes"));
     if (scenes) offer(scenes);

@@ -50,12 +50,12 @@ function stateText(status) {
 
 /** @param {ExecutorStatus} status @param {boolean} isRunning @returns {Fact[]} */
 function figures({ override, duration, tracking_error, limit_use, cycles, late, missed }, isRunning) {
-  const setpoints = `${formatNumber(late, 0)}, ${formatNumber(missed, 0)} of ${formatNumber(cycles, 0)}`;
+  const setpoints = () => `${formatNumber(late, 0)}, ${formatNumber(missed, 0)} of ${formatNumber(cycles, 0)}`;
   return [
     ["Speed", formatPercent(override)],
     [isRunning ? "Time so far" : "Time taken", duration > 0 && formatNumber(duration, 1, "s")],
     ["Largest tracking error", tracking_error > 0 && formatNumber(tracking_error * 1000, 2, "mrad")],
     ["Largest limit use", limit_use > 0 && formatPercent(limit_use)],
-    ["Setpoints late, missed", cycles > 0 && setpoints],
+    ["Setpoints late, missed", cycles > 0 && setpoints()],
   ];
 }
