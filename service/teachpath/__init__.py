@@ -22,6 +22,7 @@ if TYPE_CHECKING:
         UnusableSettings,
     )
     from teachpath.learning.settings import LearningSettings
+    from teachpath.motion.arm.model import Arm
     from teachpath.motion.collision.builtin_scenes import empty_scene, paper_scene
     from teachpath.motion.settings import MotionSettings
     from teachpath.nurbs import Curve
@@ -31,6 +32,7 @@ if TYPE_CHECKING:
 __version__ = "0.1.0"
 
 __all__ = [
+    "Arm",
     "Cancelled",
     "Conflict",
     "Curve",
@@ -60,6 +62,7 @@ __all__ = [
 ]
 
 _MODULES = {
+    "Arm": "motion.arm.model",
     "LearningSettings": "learning.settings",
     "MotionSettings": "motion.settings",
     "empty_scene": "motion.collision.builtin_scenes",

@@ -154,11 +154,14 @@ class Station:
         """Open the service's side of the arm, its picture, and the processes that move it."""
         settings, robot = self.settings, self.settings.bus.robot
         self.joints = JointFeed(self.bus, self.keys, robot=robot)
-        self.executions = Executions(self.bus, self.keys, self.store, robot=robot, scene=settings.scene)
+        self.executions = Executions(
+            self.bus, self.keys, self.store, robot=robot, scene=settings.scene, arm=settings.arm
+        )
         self.preview = Preview(
             self.bus,
             self.keys,
             visual_solids(),
+            arm=settings.arm,
             robot=robot,
             home=np.array(settings.motion.home),
             statuses=self.recorder.shown_statuses,

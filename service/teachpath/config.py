@@ -25,7 +25,7 @@ from teachpath.io.store.settings import StoreSettings
 from teachpath.jobs.jobs import JobSettings
 from teachpath.learning.settings import LearningSettings
 from teachpath.live.preview.settings import PreviewSettings
-from teachpath.motion.arm.variants import choose
+from teachpath.motion.arm.model import Arm
 from teachpath.motion.collision.builtin_scenes import empty_scene, paper_scene
 from teachpath.motion.settings import MotionSettings
 from teachpath.recording.settings import RecordingSettings
@@ -73,6 +73,11 @@ class Settings(BaseModel):
     calibrations: tuple[Calibration, ...] = (Calibration("identity"), ROBOTTASKS)
     scenes: tuple[Scene, ...] = (paper_scene(), empty_scene())
 
+    @property
+    def arm(self) -> Arm:
+        """The arm that they name: the published variant `motion.variant`."""
+        return Arm.of_variant(self.motion.variant)
+
     def scene(self, name: str) -> Scene:
         """Return the scene `name`; raises NotFound with the known ones."""
         for scene in self.scenes:
@@ -101,8 +106,6 @@ def from_instructions(line: str) -> tuple[Settings, Login | None]:
 def load(file: Path | None = None, *, document: dict[str, Any] | None = None) -> Settings:
     """Read the settings: `document` wins over TEACHPATH_* variables, those over the file, that over the defaults.
 
-    The arm that they name (`motion.variant`) is from then on the arm of this process.
-
     Args:
         file: TOML file; else TEACHPATH_CONFIG, else ./teachpath.toml when it exists.
         document: settings given on the command line.
@@ -119,7 +122,6 @@ def load(file: Path | None = None, *, document: dict[str, Any] | None = None) ->
     _check_names("robot", [settings.bus.robot])
     _check_calibrations(settings.calibrations)
     _check_scenes(settings.scenes)
-    choose(settings.motion.variant)
     return settings
 
 

@@ -62,7 +62,8 @@ class JobKinds:
     def _planning_input(self, job: Job) -> tuple[Any, ...]:
         path, version = str(job.request["path"]), job.request.get("version")
         learned = self.store.versions.get(path, version)[1] if isinstance(version, int) else self.store.path(path)
-        return learned, self.settings.scene(self.store.task(job.task).scene), self.settings.motion
+        scene = self.settings.scene(self.store.task(job.task).scene)
+        return learned, scene, self.settings.motion, self.settings.arm
 
     def _store_run(self, job: Job, learned: Learned) -> str:
         return self.store.finish_learning(job.id, learned)

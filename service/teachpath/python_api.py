@@ -10,7 +10,7 @@ import numpy as np
 from teachpath.errors import UnusableInput
 from teachpath.learning.learn import learn as learn_trajectories
 from teachpath.learning.settings import LearningSettings, Progress, no_progress
-from teachpath.motion.arm.variants import choose
+from teachpath.motion.arm.model import Arm
 from teachpath.motion.collision.builtin_scenes import empty_scene
 from teachpath.motion.planning.certificate import plan_trajectory, verify
 from teachpath.motion.planning.plan import plan as plan_path
@@ -53,7 +53,13 @@ def learn(
     return learn_trajectories(trajectories, settings or LearningSettings(), progress=progress)
 
 
-def plan(path: LearnedPath | Curve, scene: Scene | None = None, settings: MotionSettings | None = None) -> Plan:
+def plan(
+    path: LearnedPath | Curve,
+    scene: Scene | None = None,
+    settings: MotionSettings | None = None,
+    *,
+    arm: Arm | None = None,
+) -> Plan:
     """Plan how the arm follows a path, and certify that it can.
 
     The tool points down. Where the scene has an object to carry, the arm picks it up at the start of the path.
@@ -62,6 +68,7 @@ def plan(path: LearnedPath | Curve, scene: Scene | None = None, settings: Motion
         path: a learned path, or a curve of positions [m, world].
         scene: what stands around; None: a table, and nothing on it.
         settings: the defaults when None.
+        arm: the published one that the settings name when None.
 
     Returns:
         The plan with its certificate: how much of every limit it uses, and where.
@@ -70,12 +77,10 @@ def plan(path: LearnedPath | Curve, scene: Scene | None = None, settings: Motion
         PathRefused: the arm cannot follow it; `failure` says where, why, and which control point to move.
         UnusableInput: it is no path in space.
     """
-    settings = settings or MotionSettings()
-    choose(settings.variant)
-    return plan_path(_learned_path(path), scene or empty_scene(), settings)
+    return plan_path(_learned_path(path), scene or empty_scene(), settings, arm=arm)
 
 
-def setpoints(plan: Plan, rate: float = 250.0) -> tuple[Array, Array]:
+def setpoints(plan: Plan, rate: float = 250.0, *, arm: Arm | None = None) -> tuple[Array, Array]:
     """Return the times (n,) [s] and the joints (n, 6) [rad] of a plan's motion along its path, at full speed.
 
     The last one is the first at or behind the end, where the arm rests.
@@ -83,14 +88,15 @@ def setpoints(plan: Plan, rate: float = 250.0) -> tuple[Array, Array]:
     Args:
         plan: certified.
         rate: setpoints a second [Hz].
+        arm: that the plan is for; the default one when None.
 
     Raises:
-        PathRefused: the plan has changed since it was certified.
+        PathRefused: the plan has changed since it was certified, or is for another arm.
         UnusableInput: the rate is outside 1 to 10000.
     """
     if not 1.0 <= rate <= 10_000.0:
         raise UnusableInput(f"a rate of {rate:g} Hz is outside 1 to 10000")
-    verify(plan)
+    verify(plan, arm or Arm.of_variant())
     trajectory = plan_trajectory(plan)
     count = int(np.ceil(trajectory.duration * rate)) + 1
     times = np.arange(count) / rate

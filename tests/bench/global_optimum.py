@@ -9,7 +9,8 @@ few percent, so a plan that is no slower than this has missed no better basin.
 import numba
 import numpy as np
 
-from teachpath.motion.arm.joint_path import JointPath, MotionLimits
+from teachpath.motion.arm.joint_path import JointPath
+from teachpath.motion.arm.limits import MotionLimits
 
 PIECES = 120
 LEVELS = 1000  # of x

@@ -9,31 +9,32 @@ import numpy as np
 from report import Figure, against
 
 from teachpath.motion.arm.kinematics import inverse_kinematics, tool_pose
-from teachpath.motion.arm.puma560 import DEFAULT_VARIANT, LOWER, TOOL_LENGTH, UPPER, VARIANTS
+from teachpath.motion.arm.model import Arm
+
+ARM = Arm.of_variant()
 
 POSES = 1000
 
 
 def measure(*, repeats: int) -> list[Figure]:
     """Return how far the answers are apart, whether any is missing, and how long a pose takes."""
-    table = VARIANTS[DEFAULT_VARIANT]
-    poses = tool_pose(np.random.default_rng(2).uniform(LOWER, UPPER, (POSES, 6)), table)
+    poses = tool_pose(np.random.default_rng(2).uniform(ARM.limits.lower, ARM.limits.upper, (POSES, 6)), ARM)
     ours, seconds = [], []
     for _ in range(repeats):
         began = time.process_time()
-        ours = inverse_kinematics(poses, variant=table).joints
+        ours = inverse_kinematics(poses, ARM).joints
         seconds.append(1e6 * (time.process_time() - began) / POSES)
-    back = np.abs(tool_pose(ours, table) - poses[:, None]).max()
+    back = np.abs(tool_pose(ours, ARM) - poses[:, None]).max()
     figures = [Figure(f"8 branches of {POSES} poses put through forward kinematics, farthest", (float(back),), "m, 1")]
     try:
         from eaik.IK_DH import DhRobot
     except ImportError:
         what = "inverse kinematics of a pose, 8 branches (EAIK is not installed)"
         return [*figures, Figure(what, tuple(seconds), "us")]
-    rows = table.links
+    rows = ARM.links
     robot = DhRobot(*(np.array([getattr(link, column) for link in rows]) for column in ("alpha", "a", "d")))
     flanges = poses.copy()
-    flanges[:, :3, 3] -= TOOL_LENGTH * poses[:, :3, 2]
+    flanges[:, :3, 3] -= ARM.tool_length * poses[:, :3, 2]
     began = time.process_time()
     answers = [robot.IK(pose) for pose in flanges]
     theirs = 1e6 * (time.process_time() - began) / POSES

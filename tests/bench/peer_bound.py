@@ -6,7 +6,7 @@ toppra has wheels for Linux on x86-64 only, and is left out elsewhere.
 import numpy as np
 from report import Figure, against
 
-from teachpath.motion.arm.joint_path import MotionLimits
+from teachpath.motion.arm.limits import MotionLimits
 from teachpath.motion.paths.ik_branches import Candidate, configurations
 from teachpath.motion.paths.tool_path import ToolPath
 

@@ -10,7 +10,8 @@ from global_optimum import best_duration
 from optimum import shortest_stop
 from report import Figure, against
 
-from teachpath.motion.arm.joint_path import ARM_LIMITS, JointPath
+from teachpath.motion.arm.joint_path import JointPath
+from teachpath.motion.arm.model import Arm
 from teachpath.motion.execution.governor import Governor, warm_up
 from teachpath.motion.paths.ik_branches import Candidate, enumerate_candidates, is_usable
 from teachpath.motion.paths.tool_path import ToolPath, sample_tool_path
@@ -19,6 +20,8 @@ from teachpath.motion.timing.limit_margins import NO_MARGINS, limit_uses
 from teachpath.motion.timing.timed_trajectory import TimedTrajectory, time_joint_path
 from teachpath.motion.timing.timing import duration_lower_bound, time_tool_path
 from teachpath.nurbs import Curve
+
+ARM = Arm.of_variant()
 
 RATE = 250.0
 DT = 1.0 / RATE
@@ -30,12 +33,12 @@ OPTIMA = 4  # stops per path and repetition that are held against the best possi
 
 def measure(*, repeats: int) -> list[Figure]:
     """Return the figures; stops are from full speed; cycles, limits and answers over random commands."""
-    warm_up(DT)
+    warm_up(DT, ARM.limits.motion)
     figures: list[Figure] = []
     stops: list[float] = []
     ratios: list[float] = []
     tracks: list[TimedTrajectory] = []
-    time_tool_path(*_branch(curves()["bow"]), ARM_LIMITS, rate=RATE)  # loads what the first path would wait for
+    time_tool_path(*_branch(curves()["bow"]), ARM.limits.motion, rate=RATE)  # loads what the first path would wait for
     for name, curve in curves().items():
         found = _path(name, curve, repeats)
         figures += found.figures
@@ -87,7 +90,8 @@ def _branch(curve: Curve) -> tuple[ToolPath, Candidate]:
     settings = MotionSettings()
     found = sample_tool_path(curve, settings)
     return found, max(
-        (c for c in enumerate_candidates(found, settings) if is_usable(c, settings)), key=lambda c: c.min_singular_value
+        (c for c in enumerate_candidates(found, ARM, settings) if is_usable(c, settings)),
+        key=lambda c: c.min_singular_value,
     )
 
 
@@ -96,11 +100,11 @@ def _path(name: str, curve: Curve, repeats: int) -> _Found:
     seconds = []
     for _ in range(repeats):
         began = time.perf_counter()
-        path, pace = time_tool_path(found, candidate, ARM_LIMITS, rate=RATE)
+        path, pace = time_tool_path(found, candidate, ARM.limits.motion, rate=RATE)
         seconds.append(time.perf_counter() - began)
-    track = time_joint_path(path, pace, ARM_LIMITS)
+    track = time_joint_path(path, pace, ARM.limits.motion)
     label = f"{name}, {found.lengths[-1]:.2f} m"
-    bound = duration_lower_bound(found, candidate, ARM_LIMITS)
+    bound = duration_lower_bound(found, candidate, ARM.limits.motion)
     stopped = _stops(track)
     stops = [DT * len(rates) for _, rates in stopped]
     apart = max(1, len(stopped) // (OPTIMA * repeats))
@@ -109,7 +113,7 @@ def _path(name: str, curve: Curve, repeats: int) -> _Found:
     cycles, used = _random_commands(track, runs=4 * repeats)
     figures = [
         against(f"{label}: duration", [track.duration], "s", name=LEAST, value=bound),
-        *peer_bound.measure(label, found, candidate, ARM_LIMITS, bound),
+        *peer_bound.measure(label, found, candidate, ARM.limits.motion, bound),
         *_bounds(label, found, candidate, bound),
         against(f"{label}: timing it", seconds, "s", name="asked", value=0.5),
         against(f"{label}: stops from full speed", stops, "s", name="worst allowed", value=LONGEST_STOP),
@@ -123,13 +127,13 @@ def _path(name: str, curve: Curve, repeats: int) -> _Found:
 
 def _bounds(label: str, found: ToolPath, candidate: Candidate, bound: float) -> list[Figure]:
     """Return what the jerk limit and the reserve cost, and what a scheme with one box of limits takes."""
-    path, pace = time_tool_path(found, candidate, ARM_LIMITS, rate=RATE, margins=NO_MARGINS)
-    whole = time_joint_path(path, pace, ARM_LIMITS).duration
-    free = ARM_LIMITS.scaled(1.0, 1.0, 20.0)
+    path, pace = time_tool_path(found, candidate, ARM.limits.motion, rate=RATE, margins=NO_MARGINS)
+    whole = time_joint_path(path, pace, ARM.limits.motion).duration
+    free = ARM.limits.motion.scaled(1.0, 1.0, 20.0)
     easy = time_joint_path(*time_tool_path(found, candidate, free, rate=RATE, margins=NO_MARGINS), free)
     figures = (
         ("without any reserve", whole),
-        ("without any reserve, best on a grid of everything", best_duration(path, ARM_LIMITS, whole)),
+        ("without any reserve, best on a grid of everything", best_duration(path, ARM.limits.motion, whole)),
         ("without any reserve, 20 times the jerk", easy.duration),
         ("constant box", _box(found, candidate)),
     )
@@ -147,15 +151,15 @@ def _box(found: ToolPath, candidate: Candidate) -> float:
     path = JointPath(found.lengths, found.lengths, candidate.joints)
     first, second, third = (np.abs(path(path.dense_parameters(), k)[:, :6]).max(axis=0) + 1e-9 for k in (1, 2, 3))
     fastest = min(
-        (ARM_LIMITS.speed / first).min(),
-        np.sqrt(ARM_LIMITS.acceleration / second).min(),
-        np.cbrt(ARM_LIMITS.jerk / third).min(),
+        (ARM.limits.motion.speed / first).min(),
+        np.sqrt(ARM.limits.motion.acceleration / second).min(),
+        np.cbrt(ARM.limits.motion.jerk / third).min(),
     )
     durations = []
     for v in fastest * np.linspace(0.02, 0.999, 60):
-        most = ((ARM_LIMITS.acceleration - second * v**2) / first).min()
+        most = ((ARM.limits.motion.acceleration - second * v**2) / first).min()
         for a in most * np.linspace(0.05, 0.999, 20):
-            j = ((ARM_LIMITS.jerk - third * v**3 - 3 * second * v * a) / first).min()
+            j = ((ARM.limits.motion.jerk - third * v**3 - 3 * second * v * a) / first).min()
             if j > 0.0:
                 durations.append(_rest_to_rest(found.lengths[-1], v, a, j))
     return float(min(durations))
@@ -209,5 +213,5 @@ def _random_commands(track: TimedTrajectory, *, runs: int) -> tuple[np.ndarray, 
             if moving:
                 took.append(1e6 * (time.perf_counter() - began))
             sent.append(governor.motion[0].copy())
-        used = max(used, *(float(use.max()) for use in limit_uses(np.array(sent), ARM_LIMITS, RATE)))
+        used = max(used, *(float(use.max()) for use in limit_uses(np.array(sent), ARM.limits.motion, RATE)))
     return np.array(took), used

@@ -12,7 +12,7 @@ from teachpath.learning.fitting.nurbs_fit import approximate
 from teachpath.learning.fitting.synthesis import best_fit, mean_path
 from teachpath.learning.resampling import smoothed
 from teachpath.learning.settings import LearningSettings
-from teachpath.motion.arm.joint_path import ARM_LIMITS
+from teachpath.motion.arm.model import Arm
 from teachpath.motion.paths.ik_branches import enumerate_candidates, is_usable
 from teachpath.motion.paths.tool_path import sample_tool_path
 from teachpath.motion.settings import MotionSettings
@@ -21,6 +21,8 @@ from teachpath.motion.timing.timing import time_tool_path
 from teachpath.nurbs import Curve
 from tests.experiments.scenarios import SHAPES, along
 from tests.unit.learning import synthetic
+
+ARM = Arm.of_variant()
 
 DEGREES = (3, 4, 5)
 RATE = 250.0  # Hz
@@ -74,11 +76,11 @@ def _bends(curve: Curve) -> Row:
 def _duration(curve: Curve) -> float | None:
     settings = MotionSettings()
     way = sample_tool_path(curve, settings)
-    able = [candidate for candidate in enumerate_candidates(way, settings) if is_usable(candidate, settings)]
+    able = [candidate for candidate in enumerate_candidates(way, ARM, settings) if is_usable(candidate, settings)]
     if not able:
         return None
-    path, pace = time_tool_path(way, max(able, key=lambda c: c.min_singular_value), ARM_LIMITS, rate=RATE)
-    return float(time_joint_path(path, pace, ARM_LIMITS).duration)
+    path, pace = time_tool_path(way, max(able, key=lambda c: c.min_singular_value), ARM.limits.motion, rate=RATE)
+    return float(time_joint_path(path, pace, ARM.limits.motion).duration)
 
 
 def summary(outcomes: Sequence[tuple[str, dict[int, Row] | None]]) -> dict[str, Any]:

@@ -14,7 +14,8 @@ from typing import Any
 import numpy as np
 
 from teachpath.motion.arm.kinematics import link_frames
-from teachpath.motion.arm.variants import VARIANTS
+from teachpath.motion.arm.model import Arm
+from teachpath.motion.arm.puma560 import VARIANTS
 from teachpath.nurbs import Curve
 from teachpath_proto.keys import is_name, name_refusal
 from teachpath_proto.tracker_pb2 import HandSample, Quaternion, Vector3
@@ -53,15 +54,15 @@ def link_poses() -> list[dict[str, Any]]:
     """Poses of all links of every published arm, at several configurations; column by column, as three.js has them."""
     chance = np.random.default_rng(2)
     return [
-        _link_poses(variant, chance.uniform(-math.pi, math.pi, 6)) for variant in VARIANTS.values() for _ in range(3)
+        _link_poses(Arm.of_variant(name), chance.uniform(-math.pi, math.pi, 6)) for name in VARIANTS for _ in range(3)
     ]
 
 
-def _link_poses(variant: Any, q: np.ndarray) -> dict[str, Any]:
+def _link_poses(arm: Arm, q: np.ndarray) -> dict[str, Any]:
     return {
-        "links": [{"a": link.a, "d": link.d, "alpha": link.alpha} for link in variant.links],
+        "links": [{"a": link.a, "d": link.d, "alpha": link.alpha} for link in arm.links],
         "q": q.tolist(),
-        "frames": [frame.T.ravel().tolist() for frame in link_frames(q, variant)],
+        "frames": [frame.T.ravel().tolist() for frame in link_frames(q, arm)],
     }
 
 

@@ -13,12 +13,14 @@ import pytest
 
 from teachpath.io.store.motions import Motion, read_motion
 from teachpath.motion.arm.kinematics import tool_pose
-from teachpath.motion.arm.puma560 import SPEED, TORQUE
+from teachpath.motion.arm.model import Arm
 from teachpath_client.errors import JobFailed
 from teachpath_client.models import Plan
 from tests.system.processes import Service, family
 from tests.system.test_station import record
 from tests.waiting import HANG, wait_until
+
+ARM = Arm.of_variant()
 
 pytestmark = pytest.mark.system
 
@@ -63,13 +65,13 @@ def path(service: Service, plan: Plan) -> np.ndarray:
         service.station.wait_for_arm()
         execution = service.station.run(plan.id)
     setpoints = motion_of(service, execution.id).setpoints
-    return np.asarray(tool_pose(np.array([s.position for s in setpoints]))[:, :3, 3])
+    return np.asarray(tool_pose(np.array([s.position for s in setpoints]), ARM)[:, :3, 3])
 
 
 def off_path(motion: Motion, path: np.ndarray) -> float:
     """The largest distance of the tool from a polyline [m]."""
     chords, worst = np.diff(path, axis=0), 0.0
-    for tool in tool_pose(np.array([s.position for s in motion.states]))[:, :3, 3]:
+    for tool in tool_pose(np.array([s.position for s in motion.states]), ARM)[:, :3, 3]:
         ahead = tool - path[:-1]
         share = np.einsum("ij,ij->i", ahead, chords) / np.maximum(np.sum(chords**2, axis=1), 1e-18)
         distance = np.linalg.norm(ahead - np.clip(share, 0.0, 1.0)[:, None] * chords, axis=1)
@@ -95,8 +97,8 @@ def test_an_executor_that_oversleeps_leaves_the_arm_on_its_path(
     assert (ended.status.state, ended.status.reason) == ("ended", "")
     motion = motion_of(service, execution.id)
     assert off_path(motion, path) <= OFF_PATH
-    assert max(np.max(np.abs(s.velocity) / SPEED) for s in motion.states) <= 1.0
-    assert max(np.max(np.abs(s.torque) / TORQUE) for s in motion.states) <= 1.0
+    assert max(np.max(np.abs(s.velocity) / ARM.limits.speed) for s in motion.states) <= 1.0
+    assert max(np.max(np.abs(s.torque) / ARM.limits.torque) for s in motion.states) <= 1.0
 
 
 def test_an_executor_that_dies_leaves_the_arm_at_rest_on_its_path(

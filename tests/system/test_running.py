@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from teachpath.motion.arm.kinematics import link_frames
+from teachpath.motion.arm.model import Arm
 from teachpath_client.models import Plan
 from tests.system.access import grave
 from tests.system.carriers import HEADSET, NEXT, START, begin, carry, carry_worn, move_hand, phase
@@ -16,6 +17,8 @@ from tests.system.operators import RESTING, Leader, Operator, Status
 from tests.system.processes import Service
 from tests.system.test_view import Visit
 from tests.waiting import wait_until
+
+ARM = Arm.of_variant()
 
 pytestmark = pytest.mark.system
 
@@ -115,7 +118,7 @@ def test_the_preview_is_the_plan_and_moves_no_arm(
         scrub(visit, float(times[k]))
         shown = float(visit.page.get_by_label("Instant of the motion").input_value())  # the slider has steps
         q = np.array([np.interp(shown, times, column) for column in joints.T])
-        np.testing.assert_allclose(ghost(visit), link_frames(q), atol=1e-6)
+        np.testing.assert_allclose(ghost(visit), link_frames(q, ARM), atol=1e-6)
     words = visit.page.locator("#preview output").inner_text()
     assert "on the way home" in words
     np.testing.assert_allclose(visit.place("/robot/link6"), before, atol=1e-5)
@@ -208,7 +211,7 @@ def test_a_past_execution_is_replayed_as_it_was(visit: Visit, service: Service, 
         shown = min(float(slider.input_value()), times[-1])
         q = np.array([np.interp(shown, times, column) for column in joints.T])
         drawn = np.array(visit.page.evaluate("teachpath.replayGhost()")).reshape(7, 4, 4).transpose(0, 2, 1)
-        np.testing.assert_allclose(drawn, link_frames(q), atol=1e-6)
+        np.testing.assert_allclose(drawn, link_frames(q, ARM), atol=1e-6)
     assert visit.page.locator("#replay .u-over").count() == 4
     np.testing.assert_allclose(visit.place("/robot/link6"), before, atol=1e-5)
     assert operator.executions()[0].id == last.id

@@ -9,11 +9,14 @@ import pytest
 
 from teachpath.io.store.motions import read_motion
 from teachpath.motion.arm.kinematics import tool_pose
+from teachpath.motion.arm.model import Arm
 from teachpath_client.station import Station
 from tests.system.demos import Start, assert_nothing_left, assert_story
 from tests.system.editors import Desk
 from tests.system.operators import RESTING, Operator
 from tests.waiting import wait_until
+
+ARM = Arm.of_variant()
 
 pytestmark = pytest.mark.system
 
@@ -72,7 +75,7 @@ def tell(browser: Any, url: str, station: Station, tmp_path: Path) -> None:
     file = tmp_path / "execution.mcap"
     file.write_bytes(station.recorded_execution(done.id))
     followed = np.array([setpoint.position for setpoint in read_motion(file).setpoints if setpoint.on_path])
-    places, fine = tool_pose(followed)[:, :3, 3], edited(np.linspace(0, 1, 1001))
+    places, fine = tool_pose(followed, ARM)[:, :3, 3], edited(np.linspace(0, 1, 1001))
     apart = np.array([np.linalg.norm(fine - place, axis=1).min() for place in places])
     assert apart.max() < NEAR, apart.max()
     assert np.linalg.norm(places[[0, -1]] - fine[[0, -1]], axis=1).max() < NEAR

@@ -26,6 +26,7 @@ from teachpath.live.event_hub import EventHub
 from teachpath.live.preview.preview import Preview
 from teachpath.motion.arm.geometry import visual_solids
 from teachpath.motion.arm.kinematics import link_frames
+from teachpath.motion.arm.model import Arm
 from teachpath.motion.collision.builtin_scenes import paper_scene
 from teachpath.motion.planning.assessment import assess
 from teachpath.motion.settings import MotionSettings
@@ -34,6 +35,8 @@ from teachpath.records import Cluster, Fit, JointState, Learned, LearnedPath, Ta
 from teachpath_proto.keys import Keys
 from tests.contract.rows import demonstration
 from tests.waiting import HANG, wait_until
+
+ARM = Arm.of_variant()
 
 pytestmark = pytest.mark.system
 
@@ -59,7 +62,7 @@ class Server:
         self.bus = MemoryBus()
 
     def start(self, demonstrations: int) -> None:
-        self.preview = Preview(self.bus, KEYS, visual_solids(), robot=ROBOT, home=HOME, statuses=list)
+        self.preview = Preview(self.bus, KEYS, visual_solids(), arm=ARM, robot=ROBOT, home=HOME, statuses=list)
         self.preview.show_object(paper_scene().carried)
         self.preview.start()
         app = FastAPI()
@@ -198,11 +201,11 @@ def test_shows_arm_obstacles_paths_and_demonstrations_with_a_clean_console(visit
 
 def test_the_arm_and_what_it_carries_move_and_then_the_page_rests(visit: Visit, server: Server) -> None:
     goal = HOME + np.array([0.5, -0.3, 0.3, 0.2, 0.2, 0.4])
-    assert np.allclose(visit.place("/robot/link6"), link_frames(HOME)[6], atol=1e-4)
+    assert np.allclose(visit.place("/robot/link6"), link_frames(HOME, ARM)[6], atol=1e-4)
     for share in np.linspace(0, 1, 20):
         server.publish_state(HOME + share * (goal - HOME), (0.4, 0.1, 0.5 + share / 10))
         visit.page.wait_for_timeout(20)
-    visit.wait(lambda: np.allclose(visit.place("/robot/link6"), link_frames(goal)[6], atol=1e-4))
+    visit.wait(lambda: np.allclose(visit.place("/robot/link6"), link_frames(goal, ARM)[6], atol=1e-4))
     assert np.allclose(visit.place("/object")[:3, 3], (0.4, 0.1, 0.6), atol=1e-4)
     drawn = visit.draws_when_at_rest()
     for _ in range(20):

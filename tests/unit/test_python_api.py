@@ -10,9 +10,11 @@ import numpy as np
 import pytest
 
 import teachpath
-from teachpath.motion.arm.puma560 import ACCELERATION, LOWER, SPEED, UPPER
+from teachpath.motion.arm.model import Arm
 from teachpath.motion.collision.builtin_scenes import paper_scene
 from tests.unit.motion.ways import MIDDLE, way
+
+ARM = Arm.of_variant()
 
 ROOT = Path(__file__).parents[2]
 U = np.sin(np.linspace(0.0, np.pi / 2, 120))[:, None] ** 2
@@ -93,9 +95,9 @@ def test_setpoints_follow_the_path_within_the_limits(plan: teachpath.Plan) -> No
     np.testing.assert_allclose(np.diff(times), 1 / rate)
     assert plan.duration <= times[-1] < plan.duration + 1 / rate
     np.testing.assert_allclose(joints[[0, -1]], plan.joints[[0, -1]], atol=1e-9)
-    assert ((joints >= LOWER) & (joints <= UPPER)).all()
-    assert (np.abs(np.diff(joints, axis=0)) * rate <= SPEED).all()
-    assert (np.abs(np.diff(joints, 2, axis=0)) * rate**2 <= ACCELERATION * (1 + 1e-9)).all()
+    assert ((joints >= ARM.limits.lower) & (joints <= ARM.limits.upper)).all()
+    assert (np.abs(np.diff(joints, axis=0)) * rate <= ARM.limits.speed).all()
+    assert (np.abs(np.diff(joints, 2, axis=0)) * rate**2 <= ARM.limits.acceleration * (1 + 1e-9)).all()
 
 
 def test_a_curve_of_one_s_own_is_planned_and_what_is_carried_is_fetched() -> None:
@@ -143,3 +145,14 @@ def test_a_plan_that_was_changed_gives_no_setpoints(plan: teachpath.Plan) -> Non
         teachpath.setpoints(replace(plan, joints=plan.joints + 0.01))
     with pytest.raises(teachpath.UnusableInput, match="a rate of 0 Hz is outside 1 to 10000"):
         teachpath.setpoints(plan, 0.0)
+
+
+def test_a_plan_is_of_its_arm_and_no_other(plan: teachpath.Plan, learned: teachpath.Learned) -> None:
+    other = teachpath.Arm.of_variant("corke-1996")
+    made = teachpath.plan(learned.paths[0], arm=other)
+    assert made.certificate.digest != plan.certificate.digest
+    assert len(teachpath.setpoints(made, arm=other)[0])
+    longer = replace(other, tool_length=other.tool_length + 0.01)
+    for wrong in (None, longer):
+        with pytest.raises(teachpath.PathRefused, match="another arm"):
+            teachpath.setpoints(made, arm=wrong)

@@ -34,6 +34,7 @@ def assessments_router(parts: Parts) -> APIRouter:
         stored = store.path(path) if wanted.version is None else store.versions.get(path, wanted.version)[1]
         scene = parts.settings.scene(store.task(store.run(stored.run).task).scene)
         curve = wanted.curve.curve() if wanted.curve else stored.curve
-        return json_response(parts.assessor.assess(stored, scene, parts.settings.motion, curve=curve))
+        settings = parts.settings
+        return json_response(parts.assessor.assess(stored, scene, settings.motion, settings.arm, curve=curve))
 
     return router

@@ -8,8 +8,7 @@ from fastapi import APIRouter, Response
 
 from teachpath.api.answers import json_response, model_of
 from teachpath.api.parts import Parts
-from teachpath.motion.arm.puma560 import ACCELERATION, FINGER_TRAVEL, JERK, LOWER, SPEED, TOOL_LENGTH, TORQUE, UPPER
-from teachpath.motion.arm.variants import arm
+from teachpath.motion.arm.puma560 import FINGER_TRAVEL
 from teachpath.records import Array, MotionPreview
 
 
@@ -62,18 +61,19 @@ def robot_router(parts: Parts) -> APIRouter:
     @router.get("/robot", response_model=model_of(Robot))
     def get_robot() -> Response:
         """Describe the arm: standard Denavit-Hartenberg links, joint limits, gripper, and where it waits."""
+        arm, limits = parts.settings.arm, parts.settings.arm.limits
         return json_response(
             Robot(
                 name=parts.settings.bus.robot,
-                variant=arm().name,
-                links=tuple(LinkGeometry(link.a, link.d, link.alpha) for link in arm().links),
-                lower=LOWER,
-                upper=UPPER,
-                speed=SPEED,
-                acceleration=ACCELERATION,
-                jerk=JERK,
-                torque=TORQUE,
-                tool_length=TOOL_LENGTH,
+                variant=arm.name,
+                links=tuple(LinkGeometry(link.a, link.d, link.alpha) for link in arm.links),
+                lower=limits.lower,
+                upper=limits.upper,
+                speed=limits.speed,
+                acceleration=limits.acceleration,
+                jerk=limits.jerk,
+                torque=limits.torque,
+                tool_length=arm.tool_length,
                 finger_travel=FINGER_TRAVEL,
                 home=parts.settings.motion.home,
             )
@@ -89,7 +89,7 @@ def robot_router(parts: Parts) -> APIRouter:
             preview_motion,  # with the libraries of planning, which nothing else here needs
         )
 
-        stored = parts.store.plan(plan)
-        return json_response(preview_motion(stored, parts.settings.motion, dwell=parts.settings.executor.dwell))
+        stored, settings = parts.store.plan(plan), parts.settings
+        return json_response(preview_motion(stored, settings.motion, settings.arm, dwell=settings.executor.dwell))
 
     return router

@@ -13,6 +13,7 @@ from teachpath.io.documents import from_document
 from teachpath.io.setpoints import read_setpoints
 from teachpath.io.store.motions import read_motion
 from teachpath.motion.analysis.log_check import SetpointLog, check_log
+from teachpath.motion.arm.model import Arm
 from teachpath.nurbs import Curve
 from teachpath_client.station import Station
 
@@ -32,7 +33,7 @@ def judge_file(file: Path, plan: str | None, url: str) -> None:
     log, path = _read_motion(file) if content[1:5] == b"MCAP" else (_read_csv(content, file.name), None)
     if plan is not None:
         path = _path_of(plan, url)
-    judgement = check_log(log, path)
+    judgement = check_log(log, path, Arm.of_variant())
     for sentence in judgement.measured:
         print(sentence)
     if judgement.faults:

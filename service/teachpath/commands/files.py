@@ -131,6 +131,7 @@ def _review(run: str, file: Path, settings: Settings) -> None:
             scene=settings.scene,
             trajectory=lambda row: trajectory_of(store, settings, row),
             motion=settings.motion,
+            arm=settings.arm,
             dwell=settings.executor.dwell,
         )
     finally:

@@ -59,6 +59,7 @@ def executor(config: Config = None, attached: Attached = False) -> None:
                 settings.executor,
                 robot=settings.bus.robot,
                 motion=settings.motion,
+                arm=settings.arm,
             ).run(stop)
         finally:
             bus.close()
@@ -83,6 +84,7 @@ def simulator(config: Config = None, attached: Attached = False) -> None:
                 settings.simulator,
                 robot=settings.bus.robot,
                 home=settings.motion.home,
+                arm=settings.arm,
             ).run(stop)
         finally:
             bus.close()

@@ -212,4 +212,5 @@ class CommandHandler:
                 plan=prepared.plan,
                 rate=self._settings.rate,
                 offset=self._time.wall_ns() - self._time.monotonic_ns(),
+                limits=self._programs.arm.limits.motion,
             )

@@ -7,10 +7,9 @@ from typing import Final, Protocol
 
 import numpy as np
 
-from teachpath.motion.arm.puma560 import ACCELERATION, JERK, SPEED
+from teachpath.motion.arm.limits import MotionLimits
 from teachpath.records import Array
 
-_LIMITS: Final = np.stack([SPEED, ACCELERATION, JERK])
 _NAMES: Final = ("speed", "acceleration", "jerk")
 
 
@@ -28,6 +27,7 @@ class LimitMeter:
     Args:
         rate: setpoints a second [Hz].
         start_q: (6,) where the arm rests at the beginning [rad].
+        limits: of the joints.
         previous: a meter whose largest use is kept; used when the arm was moved by hand since.
 
     Attributes:
@@ -35,8 +35,10 @@ class LimitMeter:
         max_use_location: which limit that was, and where, in words.
     """
 
-    def __init__(self, rate: float, start_q: Array, previous: LimitMeter | None = None) -> None:
-        self._scale = np.array([rate, rate**2, rate**3])[:, None] / _LIMITS  # (3, 6)
+    def __init__(self, rate: float, start_q: Array, limits: MotionLimits, previous: LimitMeter | None = None) -> None:
+        self._scale = np.array([rate, rate**2, rate**3])[:, None] / np.stack(
+            [limits.speed, limits.acceleration, limits.jerk]
+        )  # (3, 6)
         self._last: deque[Array] = deque([start_q] * 3, maxlen=3)  # newest last
         self.max_use: float = previous.max_use if previous else 0.0
         self.max_use_location: str = previous.max_use_location if previous else ""

@@ -22,6 +22,7 @@ from teachpath.executor.program_factory import ProgramFactory
 from teachpath.executor.settings import ExecutorSettings
 from teachpath.io import wire
 from teachpath.io.bus import Bus
+from teachpath.motion.arm.model import Arm
 from teachpath.motion.execution.governor import warm_up
 from teachpath.motion.settings import MotionSettings
 from teachpath.records import ExecutorStatus, JointState
@@ -49,12 +50,14 @@ class Executor:
         *,
         robot: str = "puma560",
         motion: MotionSettings | None = None,
+        arm: Arm | None = None,
         time_source: TimeSource | None = None,
     ) -> None:
         """Prepare the executor; nothing runs before `run`.
 
         Args:
             robot: name of the arm in its keys.
+            arm: that is moved; the published variant that `motion` names by default.
             time_source: paces the loop and stamps the setpoints; the machine's clocks by default.
         """
         self._bus = bus
@@ -66,7 +69,9 @@ class Executor:
         self._pacer = Pacer(round(1e9 * self._period), self._time)
         self._joint_states = JointStateMonitor(robot, self._settings.silence, self._time.monotonic_ns)
         self._stall_detector = SetpointStallDetector()
-        programs = ProgramFactory(bus, keys, self._settings, motion or MotionSettings(), self._joint_states, self._time)
+        motion = motion or MotionSettings()
+        self._arm = arm or Arm.of_variant(motion.variant)
+        programs = ProgramFactory(bus, keys, self._settings, motion, self._arm, self._joint_states, self._time)
         self._command_handler = CommandHandler(
             bus,
             keys,
@@ -82,7 +87,7 @@ class Executor:
 
     def run(self, stop: threading.Event) -> None:
         """Stream setpoints until `stop` is set; then bring the arm to rest on its path and return."""
-        warm_up(self._period)
+        warm_up(self._period, self._arm.limits.motion)
         handles = [
             self._bus.subscribe(self._keys.state(self._robot), self._joint_states.receive),
             *self._command_handler.serve(),

@@ -12,6 +12,7 @@ from teachpath.executor.teleop.hand_input import HandInput
 from teachpath.executor.teleop.program import TeleopProgram
 from teachpath.io import documents
 from teachpath.io.bus import Bus
+from teachpath.motion.arm.model import Arm
 from teachpath.motion.execution.motion_program import MotionProgram
 from teachpath.motion.execution.program import PlanProgram
 from teachpath.motion.settings import MotionSettings
@@ -38,6 +39,7 @@ class ProgramFactory:
 
     Args:
         motion: settings with which plans were made.
+        arm: that programs move.
         joint_states: monitor of the arm.
     """
 
@@ -47,6 +49,7 @@ class ProgramFactory:
         keys: Keys,
         settings: ExecutorSettings,
         motion: MotionSettings,
+        arm: Arm,
         joint_states: JointStateMonitor,
         time_source: TimeSource,
     ) -> None:
@@ -54,6 +57,7 @@ class ProgramFactory:
         self._keys = keys
         self._settings = settings
         self._motion = motion
+        self.arm = arm
         self._joint_states = joint_states
         self._time = time_source
 
@@ -74,6 +78,7 @@ class ProgramFactory:
             plan,
             self._joint_states.resting_q(self._settings.rest_speed),
             self._motion,
+            self.arm,
             override=command.override,
             dwell=self._settings.dwell,
             period=1.0 / self._settings.rate,
@@ -97,6 +102,7 @@ class ProgramFactory:
                 request,
                 start_q,
                 self._motion,
+                self.arm,
                 joint_states=self._joint_states,
                 period=1.0 / self._settings.rate,
                 clock=monotonic_ns,

@@ -11,7 +11,7 @@ from typing import Final
 from teachpath.errors import Conflict, Unreachable
 from teachpath.jobs import worker
 from teachpath.jobs.pool import KillablePool
-from teachpath.motion.arm.variants import choose
+from teachpath.motion.arm.model import Arm
 from teachpath.motion.settings import MotionSettings
 from teachpath.nurbs import Curve
 from teachpath.records import Assessment, LearnedPath, Scene
@@ -28,7 +28,9 @@ class CurveAssessor:
         self._lock = threading.Lock()
         self._newest: dict[str, object] = {}
 
-    def assess(self, path: LearnedPath, scene: Scene, settings: MotionSettings, *, curve: Curve) -> Assessment:
+    def assess(
+        self, path: LearnedPath, scene: Scene, settings: MotionSettings, arm: Arm, *, curve: Curve
+    ) -> Assessment:
         """Assess a curve that is to replace that of `path`; blocks, so call it on a thread.
 
         Raises:
@@ -41,7 +43,7 @@ class CurveAssessor:
             if self._newest[path.id] is not ticket:
                 raise Conflict(f"a newer curve of path {path.id} came meanwhile; this one was not looked at")
             try:
-                assessment = self._pool.submit(_assess, curve, scene, settings, path.orientation)
+                assessment = self._pool.submit(_assess, curve, scene, settings, arm, path.orientation)
                 return assessment.result(timeout=ASSESSMENT_TIMEOUT)
             except (BrokenProcessPool, CancelledError, TimeoutError):
                 self._pool.kill()
@@ -57,8 +59,7 @@ def _init_worker() -> None:
     os.nice(NICENESS)
 
 
-def _assess(curve: Curve, scene: Scene, settings: MotionSettings, orientation: Curve | None) -> Assessment:
+def _assess(curve: Curve, scene: Scene, settings: MotionSettings, arm: Arm, orientation: Curve | None) -> Assessment:
     from teachpath.motion.planning.assessment import assess  # loaded in the process that needs it, not in the service
 
-    choose(settings.variant)
-    return assess(curve, scene, settings, orientation=orientation)
+    return assess(curve, scene, settings, arm=arm, orientation=orientation)

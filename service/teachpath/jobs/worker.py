@@ -16,7 +16,7 @@ from typing import Any
 
 from teachpath.errors import Cancelled
 from teachpath.learning.settings import LearningSettings
-from teachpath.motion.arm.variants import choose
+from teachpath.motion.arm.model import Arm
 from teachpath.motion.settings import MotionSettings
 from teachpath.records import Learned, LearnedPath, Plan, Scene, Trajectory
 
@@ -98,10 +98,9 @@ def recut_run(
     return relearn(learned, demonstrations, threshold=threshold, clusters=clusters, progress=progress)
 
 
-def plan_path(path: LearnedPath, scene: Scene, settings: MotionSettings, *, progress: Progress) -> Plan:
+def plan_path(path: LearnedPath, scene: Scene, settings: MotionSettings, arm: Arm, *, progress: Progress) -> Plan:
     """Plan one path."""
     from teachpath.motion.planning.plan import plan
 
-    choose(settings.variant)
     progress(0.1, f"planning path {path.id}")
-    return plan(path, scene, settings)
+    return plan(path, scene, settings, arm=arm)

@@ -18,6 +18,7 @@ from teachpath.io.store.motions import MotionHeader, read_motion
 from teachpath.io.store.store import Execution, Store
 from teachpath.io.wire import decode_entry, decode_lease, decode_status, encode_command, encode_lease_request
 from teachpath.motion.analysis.time_series import TimeSeries, time_series
+from teachpath.motion.arm.model import Arm
 from teachpath.records import Command, ExecutorStatus, JournalEntry, Lease, LeaseRequest, Plan, Scene, TeleopRequest
 from teachpath.robot.motion_recorder import MotionRecorder
 from teachpath_proto.control import CommandVerb, ExecutorState
@@ -39,14 +40,18 @@ class Executions:
     Args:
         robot: name of the robot.
         scene: returns the present scene of a name; raises NotFound.
+        arm: that is moved.
     """
 
-    def __init__(self, bus: Bus, keys: Keys, store: Store, *, robot: str, scene: Callable[[str], Scene]) -> None:
+    def __init__(
+        self, bus: Bus, keys: Keys, store: Store, *, robot: str, scene: Callable[[str], Scene], arm: Arm
+    ) -> None:
         self._bus = bus
         self._keys = keys
         self._store = store
         self._robot = robot
         self._scene = scene
+        self._arm = arm
         self._recorder = MotionRecorder(bus, keys, store.motions, robot=robot)
         self._changed = threading.Condition()
         self._status: ExecutorStatus | None = None
@@ -93,7 +98,7 @@ class Executions:
     def series(self, execution: str, points: int) -> TimeSeries:
         """Return what the arm did over time in an execution; raises NotFound."""
         motion = read_motion(self.recording(execution))
-        return time_series(motion.setpoints, motion.states, points)
+        return time_series(motion.setpoints, motion.states, points, self._arm)
 
     @property
     def status(self) -> ExecutorStatus | None:

@@ -10,7 +10,7 @@ import numpy as np
 
 from teachpath.errors import UnusableInput
 from teachpath.motion.arm.mjcf import CARRIED_BODY, GRASP_WELD, TOOL_SITE, write_mjcf
-from teachpath.motion.arm.puma560 import TORQUE
+from teachpath.motion.arm.model import Arm
 from teachpath.records import Array, Quaternion, Scene, Vector
 from teachpath.simulator.settings import SimulatorSettings
 
@@ -21,13 +21,14 @@ REST_SPEED: Final = 1e-3  # [rad/s and m/s] below which a body stands still
 class SimulatedArm:
     """The physics: arm, gripper, object and obstacles, advanced by 1 ms a step."""
 
-    def __init__(self, scene: Scene, settings: SimulatorSettings, position: Sequence[float]) -> None:
+    def __init__(self, scene: Scene, arm: Arm, settings: SimulatorSettings, position: Sequence[float]) -> None:
         """Build the model of `scene`; raises UnusableInput when MuJoCo cannot."""
         try:
-            self._model = mujoco.MjModel.from_xml_string(write_mjcf(scene, timestep=STEP_NS / 1e9))
+            self._model = mujoco.MjModel.from_xml_string(write_mjcf(scene, arm, timestep=STEP_NS / 1e9))
         except ValueError as error:
             raise UnusableInput(f"scene {scene.name!r} cannot be simulated: {error}") from None
         self._settings, self._start = settings, np.array(position)
+        self._max_torque = arm.limits.torque
         self._carries = scene.carried is not None
         self._friction = np.array(self._model.dof_frictionloss[:6])
         self._acceleration = np.zeros(self._model.nv)
@@ -82,7 +83,7 @@ class SimulatedArm:
         mujoco.mj_mulM(self._model, self.data, self._force, self._acceleration)
         torque = self._force[:6] + self.data.qfrc_bias[:6] - self.data.qfrc_passive[:6]
         torque += self._friction * np.tanh(velocity / 0.02)
-        self.data.ctrl[:6] = np.clip(torque, -TORQUE, TORQUE)
+        self.data.ctrl[:6] = np.clip(torque, -self._max_torque, self._max_torque)
         mujoco.mj_step2(self._model, self.data)
 
     def grasp(self) -> bool:

@@ -16,6 +16,7 @@ import numpy as np
 from teachpath.errors import Conflict, UnusableInput
 from teachpath.io import documents, wire
 from teachpath.io.bus import Bus
+from teachpath.motion.arm.model import Arm
 from teachpath.motion.settings import MotionSettings
 from teachpath.records import JointState, Scene
 from teachpath.simulator.arm import STEP_NS, SimulatedArm
@@ -47,6 +48,7 @@ class Simulator:
         *,
         robot: str = "puma560",
         home: Sequence[float] = MotionSettings().home,
+        arm: Arm | None = None,
         time_source: TimeSource | None = None,
     ) -> None:
         """Prepare the arm; nothing runs before `run`.
@@ -55,12 +57,14 @@ class Simulator:
             scene: what stands around the arm until a reset brings another one.
             robot: name of the arm in its keys.
             home: (6,) configuration in which the arm starts [rad].
+            arm: that is simulated; the default variant when None.
             time_source: the machine's clocks by default.
         """
         self._bus = bus
         self._keys = keys
         self._robot = robot
         self._settings = settings or SimulatorSettings()
+        self._model = arm or Arm.of_variant()
         self._time = time_source or TimeSource()
         self._clock = self._time.wall_ns  # the clock of the setpoints
         self._wake = threading.Event()
@@ -163,7 +167,7 @@ class Simulator:
 
     def _build(self, scene: Scene, position: Sequence[float]) -> None:
         settings = self._settings
-        self._arm = SimulatedArm(scene, settings, position)
+        self._arm = SimulatedArm(scene, self._model, settings, position)
         self._scene = scene
         self._last_setpoint_ns = 0
         self._player = SetpointPlayer(self._arm.position, delay=settings.delay)

@@ -10,12 +10,14 @@ from teachpath.executor.settings import ExecutorSettings
 from teachpath.io import wire
 from teachpath.io.documents import encode
 from teachpath.io.memory_bus import MemoryBus
-from teachpath.motion.arm.puma560 import ACCELERATION, JERK, SPEED
+from teachpath.motion.arm.model import Arm
 from teachpath.motion.settings import MotionSettings
 from teachpath.records import Command, ExecutorStatus, JointState, JournalEntry, Lease, LeaseRequest, Plan, Setpoint
 from teachpath.time_source import TimeSource
 from teachpath_proto.control import CommandVerb, LeaseAction
 from teachpath_proto.keys import Keys
+
+ARM = Arm.of_variant()
 
 KEYS = Keys()
 HOME = np.array(MotionSettings().home)
@@ -139,5 +141,5 @@ def within_limits(setpoints: list[Setpoint]) -> bool:
     positions = np.array([setpoints[0].position] * 3 + [s.position for s in setpoints])
     return all(
         bool(np.all(np.abs(np.diff(positions, k, axis=0)) * 250.0**k <= limit * (1 + 1e-6)))
-        for k, limit in ((1, SPEED), (2, ACCELERATION), (3, JERK))
+        for k, limit in ((1, ARM.limits.speed), (2, ARM.limits.acceleration), (3, ARM.limits.jerk))
     )

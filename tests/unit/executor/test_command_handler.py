@@ -7,10 +7,13 @@ from teachpath.errors import Conflict, TeachpathError, UnusableInput
 from teachpath.io import wire
 from teachpath.io.documents import encode
 from teachpath.motion.arm.kinematics import tool_pose
+from teachpath.motion.arm.model import Arm
 from teachpath.records import Command, Plan
 from teachpath_proto.control import CommandVerb
 from tests.unit.executor.executors import KEYS, PERIOD_NS, Bench, standing, within_limits
 from tests.unit.motion.ways import MIDDLE, way
+
+ARM = Arm.of_variant()
 
 
 @pytest.fixture
@@ -58,7 +61,7 @@ def test_a_step_goes_a_length_along_the_path_and_is_held(bench: Bench, middle: P
     assert bench.statuses[-1].progress == pytest.approx(1.0)
     on_path = np.array([s.position for s in bench.setpoints if s.on_path])
     wanted = way(MIDDLE).curve(np.linspace(0, 1, 20001))
-    tool = tool_pose(on_path[::10])[:, :3, 3]
+    tool = tool_pose(on_path[::10], ARM)[:, :3, 3]
     off = np.sqrt(((tool[:, None, :] - wanted[None, ::10, :]) ** 2).sum(-1).min(axis=1))
     assert off.max() < 1e-3  # as fine as the samples of the curve are
 

@@ -9,11 +9,13 @@ from teachpath.executor.settings import ExecutorSettings
 from teachpath.io.documents import encode
 from teachpath.motion.analysis.log_check import SetpointLog, check_log
 from teachpath.motion.arm.kinematics import tool_pose
-from teachpath.motion.arm.puma560 import ACCELERATION, JERK, SPEED
+from teachpath.motion.arm.model import Arm
 from teachpath.motion.collision.builtin_scenes import empty_scene
 from teachpath.records import Plan
 from tests.unit.executor.executors import EPOCH, HOME, PERIOD_NS, Bench, standing, within_limits
 from tests.unit.motion.ways import MIDDLE, way
+
+ARM = Arm.of_variant()
 
 
 @pytest.fixture
@@ -30,7 +32,7 @@ def test_a_whole_pick_and_place(bench: Bench, middle: Plan) -> None:
     assert [s.cycle for s in bench.setpoints] == list(range(len(bench.setpoints)))
     assert set(np.diff([s.nominal_ns for s in bench.setpoints])) == {PERIOD_NS}
     closed = [s for s in bench.setpoints if s.gripper_closed]
-    tool = tool_pose(np.array([closed[0].position, closed[-1].position]))[:, :3, 3]
+    tool = tool_pose(np.array([closed[0].position, closed[-1].position]), ARM)[:, :3, 3]
     np.testing.assert_allclose(tool, way(MIDDLE).curve(np.array([0.0, 1.0])), atol=1e-6)
     np.testing.assert_allclose(bench.setpoints[-1].position, HOME, atol=1e-9)
     last = bench.statuses[-1]
@@ -49,7 +51,7 @@ def test_the_use_of_limits_is_measured_on_the_setpoints(bench: Bench, middle: Pl
     positions = np.array([HOME] * 3 + [s.position for s in bench.setpoints])
     uses = [
         np.abs(np.diff(positions, k, axis=0)).max(axis=0) * 250.0**k / limit
-        for k, limit in ((1, SPEED), (2, ACCELERATION), (3, JERK))
+        for k, limit in ((1, ARM.limits.speed), (2, ARM.limits.acceleration), (3, ARM.limits.jerk))
     ]
     assert bench.statuses[-1].limit_use == pytest.approx(np.max(uses), rel=1e-9)
     assert "joint" in bench.statuses[-1].limit_place
@@ -92,7 +94,7 @@ def test_stop_ends_on_the_path(bench: Bench, middle: Plan) -> None:
     assert standing(bench.setpoints)
     assert within_limits(bench.setpoints)
     wanted = way(MIDDLE).curve(np.linspace(0, 1, 20001))
-    here = tool_pose(bench.setpoints[-1].position)[:3, 3]
+    here = tool_pose(bench.setpoints[-1].position, ARM)[:3, 3]
     assert np.linalg.norm(wanted - here, axis=1).min() < 1e-4
 
 
@@ -186,7 +188,7 @@ def test_whenever_the_loop_oversleeps_what_was_sent_can_be_judged(bench: Bench, 
     times = np.array([s.nominal_ns - EPOCH for s in bench.setpoints]) / 1e9
     on_path = np.array([s.on_path for s in bench.setpoints])
     log = SetpointLog(times, np.array([s.position for s in bench.setpoints]), on_path)
-    assert check_log(log, way(MIDDLE).curve).faults == ()
+    assert check_log(log, way(MIDDLE).curve, ARM).faults == ()
 
 
 def refusal(bench: Bench, kind: type[TeachpathError], **given: object) -> str:

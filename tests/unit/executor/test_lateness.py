@@ -7,11 +7,12 @@ import pytest
 
 from teachpath.io import wire
 from teachpath.motion.arm.kinematics import tool_pose
-from teachpath.motion.arm.puma560 import ACCELERATION, JERK, SPEED
+from teachpath.motion.arm.model import Arm
 from teachpath.records import JointState, Plan, Setpoint
 from teachpath_client.driver import PlayerState, SetpointPlayer
 from tests.unit.executor.executors import EPOCH, HOME, KEYS, Bench
 
+ARM = Arm.of_variant()
 DELAY = 0.03
 OFF_PATH = 1e-5  # m
 ROUNDING = 1.0 + 1e-6
@@ -87,13 +88,13 @@ class PlayedBench(Bench):
 @pytest.fixture(scope="module")
 def path(middle: Plan) -> np.ndarray:
     """The tool's way (n, 3) when nothing is late [m]."""
-    return tool_pose(PlayedBench().run_whole(middle))[:, :3, 3]
+    return tool_pose(PlayedBench().run_whole(middle), ARM)[:, :3, 3]
 
 
 def off_path(played: np.ndarray, path: np.ndarray) -> float:
     """The largest distance of the tool from the way [m], seen as chords."""
     chords, worst = np.diff(path, axis=0), 0.0
-    for tool in tool_pose(played[::10])[:, :3, 3]:
+    for tool in tool_pose(played[::10], ARM)[:, :3, 3]:
         ahead = tool - path[:-1]
         share = np.einsum("ij,ij->i", ahead, chords) / np.maximum(np.sum(chords**2, axis=1), 1e-24)
         distance = np.linalg.norm(ahead - np.clip(share, 0.0, 1.0)[:, None] * chords, axis=1)
@@ -104,7 +105,7 @@ def off_path(played: np.ndarray, path: np.ndarray) -> float:
 def largest_uses(played: np.ndarray) -> list[float]:
     """The largest use of speed, acceleration and jerk limits by differences at the setpoints' period."""
     rows = played[::4]
-    limits = ((1, SPEED), (2, ACCELERATION), (3, JERK))
+    limits = ((1, ARM.limits.speed), (2, ARM.limits.acceleration), (3, ARM.limits.jerk))
     return [float((np.abs(np.diff(rows, k, axis=0)) * 250.0**k / limit).max()) for k, limit in limits]
 
 

@@ -15,11 +15,14 @@ from teachpath.live.preview.scene_tree import Viewer
 from teachpath.live.preview.settings import PreviewSettings
 from teachpath.motion.arm.geometry import visual_solids
 from teachpath.motion.arm.kinematics import link_frames
+from teachpath.motion.arm.model import Arm
 from teachpath.motion.collision.builtin_scenes import empty_scene, paper_scene
 from teachpath.motion.settings import MotionSettings
 from teachpath.records import HandState, JointState, Phase, Pose, RecordingState, RecordingStatus
 from teachpath_proto.keys import Keys
 from tests.unit.live.pages import ignore, take
+
+ARM = Arm.of_variant()
 
 KEYS = Keys()
 HOME = np.array(MotionSettings().home)
@@ -38,6 +41,7 @@ class Station:
             self.bus,
             KEYS,
             visual_solids(),
+            arm=ARM,
             robot="puma560",
             home=HOME,
             statuses=lambda: self.statuses,
@@ -83,7 +87,7 @@ def test_the_arm_follows_the_newest_joint_state() -> None:
             station.publish_state(HOME + np.array([q1, 0, 0, 0, 0, 0]))
         preview.update()
         sent = {c["path"]: np.reshape(c["matrix"], (4, 4)).T for c in take(viewer)}
-        frames = link_frames(HOME + np.array([0.3, 0, 0, 0, 0, 0]))
+        frames = link_frames(HOME + np.array([0.3, 0, 0, 0, 0, 0]), ARM)
         for i in range(1, 7):
             assert np.allclose(sent[f"/robot/link{i}"], frames[i], atol=1e-5)
         station.publish_state(HOME + np.array([0.3, 0, 0, 0, 0, 1e-9]))

@@ -17,6 +17,7 @@ from teachpath.io.store.store import Store
 from teachpath.learning.learn import learn
 from teachpath.learning.settings import LearningSettings
 from teachpath.live.preview.commands import pose_of
+from teachpath.motion.arm.model import Arm
 from teachpath.motion.collision.builtin_scenes import paper_scene
 from teachpath.motion.settings import MotionSettings
 from teachpath.offline.report import Review, review_of, write
@@ -52,7 +53,13 @@ def learned(store: Store) -> Store:
 
 def review(store: Store, what: str = "t") -> Review:
     return review_of(
-        store, what, scene=lambda name: paper_scene(), trajectory=trajectory, motion=MotionSettings(), dwell=0.5
+        store,
+        what,
+        scene=lambda name: paper_scene(),
+        trajectory=trajectory,
+        motion=MotionSettings(),
+        arm=Arm.of_variant(),
+        dwell=0.5,
     )
 
 

@@ -8,6 +8,7 @@ from teachpath.errors import UnusableRecording
 from teachpath.learning.settings import LearningSettings
 from teachpath.live.preview.preview import Preview
 from teachpath.motion.arm.geometry import visual_solids
+from teachpath.motion.arm.model import Arm
 from teachpath.recorder.guidance import GuidanceThread
 from teachpath.records import Demonstration, Trajectory
 from tests.unit.recorder.recorders import KEYS, Bench
@@ -28,7 +29,13 @@ def record(bench: Bench) -> None:
 
 def test_a_page_that_sleeps_does_not_delay_the_recorder(bench: Bench) -> None:
     view = Preview(
-        bench.bus, KEYS, visual_solids(), robot="puma", home=np.zeros(6), statuses=bench.recorder.shown_statuses
+        bench.bus,
+        KEYS,
+        visual_solids(),
+        arm=Arm.of_variant(),
+        robot="puma",
+        home=np.zeros(6),
+        statuses=bench.recorder.shown_statuses,
     )
     with view:
         viewer = view.connect(lambda: None)

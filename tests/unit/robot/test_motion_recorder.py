@@ -12,12 +12,15 @@ from teachpath.io import wire
 from teachpath.io.memory_bus import MemoryBus
 from teachpath.io.store.motions import MotionHeader, Motions, read_motion
 from teachpath.motion.analysis.time_series import time_series
+from teachpath.motion.arm.model import Arm
 from teachpath.records import ExecutorStatus, JournalEntry, Plan, Setpoint
 from teachpath.robot.motion_recorder import SETTLING_NS, MotionRecorder
 from teachpath_proto.control import ExecutorState
 from teachpath_proto.keys import Keys
 from tests.unit.executor.executors import Bench
 from tests.unit.motion.ways import MIDDLE, way
+
+ARM = Arm.of_variant()
 
 KEYS = Keys()
 EPOCH = 1_700_000_000 * 10**9
@@ -137,7 +140,7 @@ def test_a_series_has_no_more_points_than_asked_and_loses_no_peak(middle: Plan) 
     bench.when(lambda: len(bench.setpoints) == 402, lambda: setattr(bench, "error", 0.0))
     bench.when(lambda: bench.state == "ended", bench.stop.set)
     bench.run()
-    drawn = time_series(bench.setpoints, states, 50)
+    drawn = time_series(bench.setpoints, states, 50, ARM)
     assert len(drawn.times) == 50
     assert drawn.positions.shape == drawn.velocities.shape == drawn.torques.shape == (50, 6)
     assert drawn.tracking_error.max() == pytest.approx(0.03)
@@ -145,4 +148,4 @@ def test_a_series_has_no_more_points_than_asked_and_loses_no_peak(middle: Plan) 
     assert np.all(np.diff(drawn.times) > 0)
     assert drawn.times[-1] == pytest.approx(len(bench.setpoints) / 250, abs=0.2)
     np.testing.assert_allclose(drawn.positions[-1], bench.setpoints[-1].position)
-    assert len(time_series([], [], 50).times) == 0
+    assert len(time_series([], [], 50, ARM).times) == 0

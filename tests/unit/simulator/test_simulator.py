@@ -11,7 +11,7 @@ from teachpath.errors import Conflict, UnusableInput
 from teachpath.io import documents, wire
 from teachpath.io.memory_bus import MemoryBus
 from teachpath.motion.arm.kinematics import downward_poses, inverse_kinematics, link_frames, tool_pose
-from teachpath.motion.arm.puma560 import LOWER, TORQUE, UPPER
+from teachpath.motion.arm.model import Arm
 from teachpath.motion.collision.builtin_scenes import empty_scene, paper_scene
 from teachpath.motion.settings import MotionSettings
 from teachpath.records import ExecutorStatus, JointState, Scene, Setpoint
@@ -20,6 +20,8 @@ from teachpath.simulator.settings import SimulatorSettings
 from teachpath.time_source import TimeSource
 from teachpath_proto.control import ExecutorState
 from teachpath_proto.keys import Keys
+
+ARM = Arm.of_variant()
 
 KEYS = Keys()
 SETTINGS = SimulatorSettings()
@@ -113,10 +115,10 @@ class Bench:
 
 def above(position: tuple[float, float, float]) -> np.ndarray:
     """A configuration within the limits, of the branch of the home position, with the tool straight down."""
-    q = inverse_kinematics(downward_poses(np.array([position]), np.pi)).joints[0, 1]
+    q = inverse_kinematics(downward_poses(np.array([position]), np.pi), ARM).joints[0, 1]
     for turn in (-2 * np.pi, 2 * np.pi):
-        q = np.where((q < LOWER) & (turn > 0) | (q > UPPER) & (turn < 0), q + turn, q)
-    assert np.all((q >= LOWER) & (q <= UPPER))
+        q = np.where((q < ARM.limits.lower) & (turn > 0) | (q > ARM.limits.upper) & (turn < 0), q + turn, q)
+    assert np.all((q >= ARM.limits.lower) & (q <= ARM.limits.upper))
     return q
 
 
@@ -153,7 +155,7 @@ def test_follows_a_smooth_move_closely_and_within_its_torques() -> None:
     states = Bench().move(HOME + np.array([0.8, -0.4, 0.5, 0.6, 0.5, -1.0]), 1.2)
     assert np.max([np.abs(s.velocity).max() for s in states]) > 1.0  # a real move, not a crawl
     assert max(s.tracking_error for s in states) < 0.003
-    assert all(np.all(np.abs(s.torque) <= TORQUE) for s in states)
+    assert all(np.all(np.abs(s.torque) <= ARM.limits.torque) for s in states)
     assert not any(s.holding or s.missed for s in states)
 
 
@@ -161,8 +163,8 @@ def test_an_impossible_move_saturates_the_torques_instead_of_passing_them() -> N
     bench = Bench()
     states = bench.move(HOME + np.array([1.5, -0.8, 0.0, 0.0, 0.0, 0.0]), 0.25)
     torques = np.abs([s.torque for s in states])
-    assert np.all(torques <= TORQUE)
-    assert np.any(torques == TORQUE)
+    assert np.all(torques <= ARM.limits.torque)
+    assert np.any(torques == ARM.limits.torque)
     assert max(s.tracking_error for s in states) > 0.05
 
 
@@ -235,7 +237,7 @@ def test_carries_the_object_only_when_gripped_near_it() -> None:
         assert states[-1].gripper_closed
         assert lifted == pytest.approx(0.15 if carried else 0.0, abs=2e-3)
         if carried:
-            tool = tool_pose(states[-1].position)[:3, 3]
+            tool = tool_pose(states[-1].position, ARM)[:3, 3]
             assert np.allclose(states[-1].object_position, tool, atol=2e-3)
             dropped = bench.move(above((x + offset, y, z + 0.15)), 1.0, closed=False)
             assert dropped[-1].object_position[2] == pytest.approx(z, abs=2e-3)  # it falls back onto the table
@@ -295,6 +297,6 @@ def test_malformed_setpoints_are_left_out() -> None:
 def test_the_models_links_are_where_the_kinematics_says() -> None:
     bench = Bench(paper_scene())
     arm = bench.simulator._arm
-    frames = link_frames(arm.position)
+    frames = link_frames(arm.position, ARM)
     for i in range(1, 7):
         assert np.allclose(arm.data.body(f"link{i}").xpos, frames[i, :3, 3], atol=1e-9)

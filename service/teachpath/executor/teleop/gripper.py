@@ -7,6 +7,7 @@ from typing import Final
 import numpy as np
 
 from teachpath.motion.arm.kinematics import rotation_matrices, tool_pose
+from teachpath.motion.arm.model import Arm
 from teachpath.motion.collision.collision_model import Load
 from teachpath.recording.phases import hand_closure
 from teachpath.records import JointState, Sample
@@ -43,19 +44,20 @@ class GripperFollower:
             self._hand_closed = self.closed = not self._hand_closed
 
 
-def observed_load(arm: JointState, before: Load | None) -> Load | None:
+def observed_load(state: JointState, arm: Arm, before: Load | None) -> Load | None:
     """Return where the object is by the arm's own account: in its gripper, or in the world.
 
     Args:
-        arm: its newest joint state; an orientation of zeros says that it knows of no object.
+        state: newest joint state of the arm; an orientation of zeros says that it knows of no object.
+        arm: whose state it is.
         before: returned when the arm knows of no object.
     """
-    if not any(arm.object_orientation):
+    if not any(state.object_orientation):
         return before
     pose = np.eye(4)
-    pose[:3, :3] = rotation_matrices(np.array([arm.object_orientation]))[0]
-    pose[:3, 3] = arm.object_position
-    tool = tool_pose(arm.position)
-    if arm.gripper_closed and np.linalg.norm(pose[:3, 3] - tool[:3, 3]) <= MAX_GRASP_DISTANCE:
+    pose[:3, :3] = rotation_matrices(np.array([state.object_orientation]))[0]
+    pose[:3, 3] = state.object_position
+    tool = tool_pose(state.position, arm)
+    if state.gripper_closed and np.linalg.norm(pose[:3, 3] - tool[:3, 3]) <= MAX_GRASP_DISTANCE:
         return Load(grasp_pose=np.linalg.inv(tool) @ pose)
-    return Load(position=arm.object_position, rotation=pose[:3, :3])
+    return Load(position=state.object_position, rotation=pose[:3, :3])

@@ -13,6 +13,7 @@ from teachpath.executor.joint_state_monitor import JointStateMonitor
 from teachpath.executor.teleop.clutch import Clutch
 from teachpath.executor.teleop.gripper import GripperFollower, observed_load
 from teachpath.executor.teleop.hand_input import HandInput
+from teachpath.motion.arm.model import Arm
 from teachpath.motion.collision.collision_model import CollisionModel, Load
 from teachpath.motion.execution.segments import Detour, MotionState, RestPoint
 from teachpath.motion.execution.teleop_follower import TeleopFollower
@@ -31,6 +32,7 @@ class TeleopProgram:
         hand: samples of the tracker and state of its clutch; closed with the program.
         request: tracker, calibration, scene and scale.
         start_q: (6,) where the arm rests [rad].
+        arm: that follows.
         joint_states: monitor of the arm, which says what its gripper does and where the object is.
         period: between two setpoints [s].
         clock: returns monotonic nanoseconds.
@@ -45,6 +47,7 @@ class TeleopProgram:
         request: TeleopRequest,
         start_q: Array,
         settings: MotionSettings,
+        arm: Arm,
         *,
         joint_states: JointStateMonitor,
         period: float,
@@ -52,10 +55,11 @@ class TeleopProgram:
     ) -> None:
         self._hand = hand
         self._request = request
+        self._arm = arm
         self._joint_states = joint_states
         self._clock = clock
         self._gripper = GripperFollower(joint_states.current().gripper_closed)
-        model = CollisionModel(request.scene)
+        model = CollisionModel(request.scene, arm)
         self._follower = TeleopFollower(
             model, start_q, settings, scale=request.scale, share=request.share, period=period
         )
@@ -207,7 +211,7 @@ class TeleopProgram:
     def _take_sample(self, came_ns: int, sample: Sample) -> None:
         latest = self._joint_states.latest(came_ns)
         if latest is not None and self._request.scene.carried is not None:
-            self._follower.load = observed_load(latest[1], self._follower.load)
+            self._follower.load = observed_load(latest[1], self._arm, self._follower.load)
         was_engaged = self._clutch.engaged
         hand = to_world(self._request.calibration, np.array(sample.position))
         if self._clutch.update(self._hand.is_clutch_pressed(sample)):

@@ -18,6 +18,7 @@ from teachpath.live.preview.scene_tree import SceneTree, Viewer
 from teachpath.live.preview.settings import PreviewSettings
 from teachpath.motion.arm.geometry import LinkSolid
 from teachpath.motion.arm.kinematics import link_frames
+from teachpath.motion.arm.model import Arm
 from teachpath.periodic_thread import PeriodicThread
 from teachpath.records import Array, HandState, Phase, RecordingStatus, Shape, Vector
 from teachpath_proto.keys import Keys
@@ -48,6 +49,7 @@ class Preview:
         keys: Keys,
         drawing: Sequence[LinkSolid],
         *,
+        arm: Arm,
         robot: str,
         home: Array,
         statuses: Callable[[], Iterable[RecordingStatus]],
@@ -58,6 +60,7 @@ class Preview:
 
         Args:
             drawing: the primitives of the arm, each in the frame of its link.
+            arm: whose links they are.
             robot: name of the arm whose joint states are drawn.
             home: (6,) configuration shown until the first joint state comes [rad].
             statuses: returns the recordings whose hands are drawn, with their hands.
@@ -66,6 +69,7 @@ class Preview:
         self._bus = bus
         self._keys = keys
         self._robot = robot
+        self._arm = arm
         self._statuses = statuses
         self._clock = clock
         self._settings = settings or PreviewSettings()
@@ -162,7 +166,7 @@ class Preview:
             self._fingers.append((path, commands.pose_of(part.opening_offset)))
 
     def _pose_arm(self, q: Array, *, gripper_closed: bool) -> None:
-        for i, frame in enumerate(link_frames(q)):
+        for i, frame in enumerate(link_frames(q, self._arm)):
             self._place(f"/robot/link{i}", frame)
         for path, opened in self._fingers:
             self._place(path, np.eye(4) if gripper_closed else opened)

@@ -13,8 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from teachpath.motion.arm.puma560 import ACCELERATION, JERK, LOWER, SPEED, TOOL_LENGTH, UPPER, Array
-from teachpath.motion.arm.variants import arm
+from teachpath.motion.arm.limits import JointLimits
+from teachpath.motion.arm.model import Arm
+from teachpath.motion.arm.puma560 import Array
 from teachpath.nurbs import Curve
 
 PATH_TOLERANCE: Final = 1e-4  # m, that the tool may be off the path
@@ -54,36 +55,40 @@ class LogCheck:
     measured: tuple[str, ...]
 
 
-def check_log(log: SetpointLog, path: Curve | None) -> LogCheck:
+def check_log(log: SetpointLog, path: Curve | None, arm: Arm) -> LogCheck:
     """Judge a log.
 
     Args:
         log: at least 4 setpoints.
         path: that the tool follows [m], world; None when only the limits are judged.
+        arm: whose setpoints they are.
     """
     faults, measured = [], []
     period = float(np.median(np.diff(log.times)))
     measured.append(f"{len(log.times)} setpoints over {log.times[-1] - log.times[0]:.2f} s at {1 / period:.0f} Hz")
     if log.missing:
         faults.append(f"{log.missing} setpoints are missing, so it cannot be judged whole")
-    for judged in (_positions(log), *_differences(log, period), *(_path(log, path) if path is not None else [])):
+    limits = arm.limits
+    on_path = _path(log, path, arm) if path is not None else []
+    for judged in (_positions(log, limits), *_differences(log, period, limits), *on_path):
         (measured if judged[0] else faults).append(judged[1])
     if path is None:
         measured.append("without a path: only the limits were judged")
     return LogCheck(tuple(faults), tuple(measured))
 
 
-def _positions(log: SetpointLog) -> tuple[bool, str]:
-    outside = np.maximum(LOWER - log.positions, log.positions - UPPER)
+def _positions(log: SetpointLog, limits: JointLimits) -> tuple[bool, str]:
+    outside = np.maximum(limits.lower - log.positions, log.positions - limits.upper)
     row, joint = np.unravel_index(int(np.argmax(outside)), outside.shape)
     least = float(outside[row, joint])
     where = f"joint {joint + 1} at {log.times[row] - log.times[0]:.3f} s"
     if least > 0:
-        return False, f"{where} is {least:.4f} rad beyond its limit ({LOWER[joint]:.3f} to {UPPER[joint]:.3f})"
+        between = f"{limits.lower[joint]:.3f} to {limits.upper[joint]:.3f}"
+        return False, f"{where} is {least:.4f} rad beyond its limit ({between})"
     return True, f"every joint within its range, least {-least:.3f} rad to spare: {where}"
 
 
-def _differences(log: SetpointLog, period: float) -> list[tuple[bool, str]]:
+def _differences(log: SetpointLog, period: float, limits: JointLimits) -> list[tuple[bool, str]]:
     """Judge speed, acceleration and jerk; the arm is taken to rest before the log and wherever nothing was sent."""
     steps, moves = np.diff(log.times), np.any(np.diff(log.positions, axis=0) != 0.0, axis=1)
     uneven = np.abs(steps - period) > PERIOD_TOLERANCE * period
@@ -96,7 +101,8 @@ def _differences(log: SetpointLog, period: float) -> list[tuple[bool, str]]:
         sentence = f"{len(broken)} setpoints of a moving arm are not one period apart, the first at {when:.3f} s"
         found.append((False, f"{sentence} ({gap:.1f} ms)"))
     runs = np.split(np.arange(len(log.times)), np.flatnonzero(uneven & rested & (steps > period)) + 1)
-    for order, (name, limit) in enumerate(zip(QUANTITIES, (SPEED, ACCELERATION, JERK), strict=True), 1):
+    each = (limits.speed, limits.acceleration, limits.jerk)
+    for order, (name, limit) in enumerate(zip(QUANTITIES, each, strict=True), 1):
         uses = np.concatenate([_use(log.positions[run], order) / period**order / limit for run in runs])
         row, joint = np.unravel_index(int(np.argmax(uses)), uses.shape)
         where = f"joint {joint + 1} at {log.times[row] - log.times[0]:.3f} s"
@@ -110,9 +116,9 @@ def _use(positions: Array, order: int) -> Array:
     return np.abs(np.diff(np.concatenate([np.repeat(positions[:1], order, axis=0), positions]), order, axis=0))
 
 
-def _path(log: SetpointLog, path: Curve) -> list[tuple[bool, str]]:
+def _path(log: SetpointLog, path: Curve, arm: Arm) -> list[tuple[bool, str]]:
     points = path(np.linspace(0.0, 1.0, PATH_CHORDS + 1))
-    tool = _tool(log.positions)
+    tool = _tool(log.positions, arm)
     said = log.on_path if log.on_path is not None else _guessed(tool, points)
     if not said.any():
         return [(False, "the tool never comes to the start of the path")]
@@ -153,11 +159,11 @@ def _distance(places: Array, points: Array) -> Array:
     return best
 
 
-def _tool(q: Array) -> Array:
+def _tool(q: Array, arm: Arm) -> Array:
     """Return the grasp point (n, 3) [m] of configurations (n, 6), link by link from the tip to the base."""
-    point = np.tile([0.0, 0.0, TOOL_LENGTH], (len(q), 1))
+    point = np.tile([0.0, 0.0, arm.tool_length], (len(q), 1))
     for joint in reversed(range(6)):
-        link = arm().links[joint]
+        link = arm.links[joint]
         x, y, z = point.T
         ca, sa = np.cos(link.alpha), np.sin(link.alpha)
         x, y, z = x + link.a, ca * y - sa * z, sa * y + ca * z + link.d

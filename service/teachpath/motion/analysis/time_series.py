@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from teachpath.motion.arm.kinematics import tool_pose
+from teachpath.motion.arm.model import Arm
 from teachpath.motion.arm.puma560 import Array
 from teachpath.records import JointState, Matrix, Setpoint
 
@@ -40,13 +41,14 @@ class TimeSeries:
     lateness: Array
 
 
-def time_series(setpoints: Sequence[Setpoint], states: Sequence[JointState], points: int) -> TimeSeries:
+def time_series(setpoints: Sequence[Setpoint], states: Sequence[JointState], points: int, arm: Arm) -> TimeSeries:
     """Draw a recorded motion with at most `points` points.
 
     Args:
         setpoints: as they were sent.
         states: of the arm, with increasing stamps.
         points: at least 2.
+        arm: which moved.
     """
     count = len(states)
     if count == 0:
@@ -67,7 +69,7 @@ def time_series(setpoints: Sequence[Setpoint], states: Sequence[JointState], poi
         positions=positions,
         velocities=_largest(np.array([s.velocity for s in states]), groups),
         torques=_largest(np.array([s.torque for s in states]), groups),
-        tool=tool_pose(positions)[:, :3, 3],
+        tool=tool_pose(positions, arm)[:, :3, 3],
         object=np.array([states[k].object_position for k in ends]) if seen else np.empty((0, 3)),
         gripper_closed=tuple(states[k].gripper_closed for k in ends),
         tracking_error=np.maximum.reduceat(np.array([s.tracking_error for s in states]), groups),

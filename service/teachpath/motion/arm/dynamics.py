@@ -11,8 +11,8 @@ from scipy.spatial import ConvexHull
 
 from teachpath.motion.arm.kinematics import jacobian, tool_pose
 from teachpath.motion.arm.mjcf import OBJECT_DENSITY, write_mjcf
-from teachpath.motion.arm.puma560 import TORQUE, Array
-from teachpath.motion.arm.variants import arm
+from teachpath.motion.arm.model import Arm
+from teachpath.motion.arm.puma560 import Array
 from teachpath.records import Scene, Shape
 
 GRAVITY: Final = np.array([0.0, 0.0, -9.81])  # m/s^2
@@ -22,12 +22,13 @@ COULOMB_FADE_SPEED: Final = 0.02  # rad/s, below which Coulomb friction fades ou
 class Dynamics:
     """The arm without surroundings; what it carries is a mass at the grasp point."""
 
-    def __init__(self, carried: Shape | None = None) -> None:
-        self._model = mujoco.MjModel.from_xml_string(write_mjcf(Scene("nothing")))
+    def __init__(self, arm: Arm, carried: Shape | None = None) -> None:
+        self._arm = arm
+        self._model = mujoco.MjModel.from_xml_string(write_mjcf(Scene("nothing"), arm))
         self._data = mujoco.MjData(self._model)
         # Coulomb friction at the joint is the mean of both directions, as the simulated arm has it.
-        self._coulomb = np.array([abs(link.gear) * sum(link.coulomb) / 2 for link in arm().links])
-        self._viscous = np.array([link.viscous * link.gear**2 for link in arm().links])
+        self._coulomb = np.array([abs(link.gear) * sum(link.coulomb) / 2 for link in arm.links])
+        self._viscous = np.array([link.viscous * link.gear**2 for link in arm.links])
         self._mass = 0.0 if carried is None else OBJECT_DENSITY * _volume(carried)
 
     def torques(self, q: Array, velocity: Array, acceleration: Array) -> Array:
@@ -59,7 +60,7 @@ class Dynamics:
         """
         steady = self.torque_bounds(q, velocity, 0.0 * acceleration)
         moving = self.torque_bounds(q, velocity, acceleration) - steady
-        return float(np.min((TORQUE - steady) / moving))
+        return float(np.min((self._arm.limits.torque - steady) / moving))
 
     def _terms(self, q: Array, velocity: Array) -> tuple[Array, Array, Array]:
         """Return inertia matrices (n, 6, 6) and the torques (n, 6) of gravity and of turning at these velocities."""
@@ -77,16 +78,16 @@ class Dynamics:
             mujoco.mj_fullM(model, data, whole)
             inertia[row] = whole[:6, :6]
         if self._mass:
-            here, turning = jacobian(q)[:, :3], _turning(q, velocity)
+            here, turning = jacobian(q, self._arm)[:, :3], _turning(q, velocity, self._arm)
             inertia += self._mass * np.einsum("nki,nkj->nij", here, here)
             gravity -= self._mass * here.transpose(0, 2, 1) @ GRAVITY
             coriolis += self._mass * np.einsum("nki,nk->ni", here, turning)
         return inertia, gravity, coriolis
 
 
-def _turning(q: Array, velocity: Array, step: float = 1e-4) -> Array:
+def _turning(q: Array, velocity: Array, arm: Arm, step: float = 1e-4) -> Array:
     """Return the grasp point's acceleration (n, 3) at constant joint velocities, by differences over `step` [s]."""
-    before, now, after = (tool_pose(q + k * step * velocity)[:, :3, 3] for k in (-1, 0, 1))
+    before, now, after = (tool_pose(q + k * step * velocity, arm)[:, :3, 3] for k in (-1, 0, 1))
     return np.asarray((before - 2 * now + after) / step**2, dtype=np.float64)
 
 

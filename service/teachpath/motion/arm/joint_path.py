@@ -9,26 +9,10 @@ from typing import Final
 import numpy as np
 from scipy.interpolate import BSpline, make_interp_spline
 
-from teachpath.motion.arm.puma560 import ACCELERATION, JERK, SPEED, Array
+from teachpath.motion.arm.puma560 import Array
 
 SPLINE_DEGREE: Final = 5
 SAMPLES_PER_NODE: Final = 4  # samples per node that show what lies between the nodes
-
-
-@dataclass(frozen=True, eq=False)
-class MotionLimits:
-    """What the joints may do: (6,) each, in rad/s, rad/s^2, rad/s^3."""
-
-    speed: Array
-    acceleration: Array
-    jerk: Array
-
-    def scaled(self, speed: float, acceleration: float, jerk: float) -> MotionLimits:
-        """Return these limits times one factor each."""
-        return MotionLimits(speed * self.speed, acceleration * self.acceleration, jerk * self.jerk)
-
-
-ARM_LIMITS: Final = MotionLimits(SPEED, ACCELERATION, JERK)
 
 
 @dataclass(frozen=True, eq=False)

@@ -9,8 +9,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from teachpath.motion.arm.puma560 import TOOL_LENGTH, Variant
-from teachpath.motion.arm.variants import arm
+from teachpath.motion.arm.model import Arm
 
 Array = NDArray[np.float64]
 
@@ -37,19 +36,19 @@ class LinkLengths:
     wrist_to_grasp: float  # from wrist to grasp point
 
     @classmethod
-    def of_variant(cls, variant: Variant) -> LinkLengths:
-        """Return the lengths of a variant."""
-        rows = variant.links
+    def of_arm(cls, arm: Arm) -> LinkLengths:
+        """Return the lengths of an arm."""
+        rows = arm.links
         forearm, bend = hypot(rows[2].a, rows[3].d), atan2(rows[3].d, rows[2].a)
-        return cls(rows[0].d, rows[1].a, rows[2].d, forearm, bend, rows[5].d + TOOL_LENGTH)
+        return cls(rows[0].d, rows[1].a, rows[2].d, forearm, bend, rows[5].d + arm.tool_length)
 
 
-def link_frames(q: Array, variant: Variant | None = None) -> Array:
+def link_frames(q: Array, arm: Arm) -> Array:
     """Compute the frames of all links (standard Denavit-Hartenberg; Paul, Robot Manipulators, MIT Press 1981, ch. 2).
 
     Args:
         q: (..., 6) configurations [rad].
-        variant: of the arm; that of this process when it is left out, as in all that follows.
+        arm: whose links they are.
 
     Returns:
         (..., 7, 4, 4) poses to world from link 0 (the world itself) to link 6 (the flange).
@@ -57,19 +56,19 @@ def link_frames(q: Array, variant: Variant | None = None) -> Array:
     q = np.asarray(q, dtype=np.float64)
     frames = np.zeros((*q.shape[:-1], 7, 4, 4))
     frames[..., 0, :, :] = np.eye(4)
-    for i, link in enumerate((variant or arm()).links):
+    for i, link in enumerate(arm.links):
         frames[..., i + 1, :, :] = frames[..., i, :, :] @ _link_matrix(q[..., i], link.d, link.a, link.alpha)
     return frames
 
 
-def tool_pose(q: Array, variant: Variant | None = None) -> Array:
+def tool_pose(q: Array, arm: Arm) -> Array:
     """Compute the pose (..., 4, 4) to world from the tool (origin: grasp point, z: out of the gripper)."""
-    pose = link_frames(q, variant)[..., 6, :, :].copy()
-    pose[..., :3, 3] += TOOL_LENGTH * pose[..., :3, 2]
+    pose = link_frames(q, arm)[..., 6, :, :].copy()
+    pose[..., :3, 3] += arm.tool_length * pose[..., :3, 2]
     return pose
 
 
-def jacobian(q: Array, variant: Variant | None = None) -> Array:
+def jacobian(q: Array, arm: Arm) -> Array:
     """Compute the geometric Jacobian of the grasp point in world axes.
 
     Args:
@@ -78,11 +77,11 @@ def jacobian(q: Array, variant: Variant | None = None) -> Array:
     Returns:
         (..., 6, 6): rows velocity x y z [m/rad], then angular velocity x y z [1].
     """
-    frames = link_frames(q, variant)
-    tool = frames[..., 6, :3, 3] + TOOL_LENGTH * frames[..., 6, :3, 2]
+    frames = link_frames(q, arm)
+    tool = frames[..., 6, :3, 3] + arm.tool_length * frames[..., 6, :3, 2]
     axes = frames[..., :6, :3, 2]  # (..., 6 joints, 3)
-    arms = tool[..., None, :] - frames[..., :6, :3, 3]
-    return np.concatenate([np.swapaxes(np.cross(axes, arms), -1, -2), np.swapaxes(axes, -1, -2)], axis=-2)
+    lever_arms = tool[..., None, :] - frames[..., :6, :3, 3]
+    return np.concatenate([np.swapaxes(np.cross(axes, lever_arms), -1, -2), np.swapaxes(axes, -1, -2)], axis=-2)
 
 
 def downward_poses(positions: Array, roll: float) -> Array:
@@ -119,31 +118,31 @@ class IkSolutions:
     beyond_outer_reach: NDArray[np.bool_]
 
 
-def inverse_kinematics(poses: Array, *, previous_q4: float = 0.0, variant: Variant | None = None) -> IkSolutions:
+def inverse_kinematics(poses: Array, arm: Arm, *, previous_q4: float = 0.0) -> IkSolutions:
     """Solve the inverse kinematics in closed form, all 8 branches (after Paul 1981, ch. 3, and Lee & Ziegler 1984).
 
     At a singular wrist (joint 5 zero) joint 4 keeps the value of the pose before it.
 
     Args:
         poses: (n, 4, 4) to world from the tool.
+        arm: that is to bring its tool there.
         q4_before: joint 4 before the first pose [rad], for a path that begins at a singular wrist.
     """
-    of = variant or arm()
-    lengths = LinkLengths.of_variant(of)
+    lengths = LinkLengths.of_arm(arm)
     joints = np.zeros((len(poses), 8, 6))
     reach = _Reach.of(poses, lengths)
     for branch in range(8):
         side = 1.0 if branch < 4 else -1.0
         up = (branch // 2) % 2 == 0
         joints[:, branch, :3] = reach.shoulder_and_elbow(side, (-1.0 if up else 1.0) * side)
-        joints[:, branch, 3:] = _wrist(joints[:, branch, :3], poses, of, flip=branch % 2 == 1, before=previous_q4)
+        joints[:, branch, 3:] = _wrist(joints[:, branch, :3], poses, arm, flip=branch % 2 == 1, before=previous_q4)
     joints = np.pi - np.mod(np.pi - joints, 2 * np.pi)
     return IkSolutions(joints, np.repeat(reach.excess[:, None], 8, axis=1), reach.beyond)
 
 
-def min_singular_value(q: Array) -> Array:
+def min_singular_value(q: Array, arm: Arm) -> Array:
     """Compute the least singular value (...,) of the Jacobian at configurations (..., 6)."""
-    return np.asarray(np.linalg.svd(jacobian(q), compute_uv=False)[..., -1], dtype=np.float64)
+    return np.asarray(np.linalg.svd(jacobian(q, arm), compute_uv=False)[..., -1], dtype=np.float64)
 
 
 def describe_reach(excess: float, beyond: bool, s: float) -> str:
@@ -203,9 +202,9 @@ class _Reach:
         return np.column_stack([q1, q2, inside - of.forearm_angle])
 
 
-def _wrist(arm_joints: Array, poses: Array, variant: Variant, *, flip: bool, before: float) -> Array:
+def _wrist(arm_joints: Array, poses: Array, arm: Arm, *, flip: bool, before: float) -> Array:
     frame = np.broadcast_to(np.eye(4), (len(arm_joints), 4, 4))
-    for i, link in enumerate(variant.links[:3]):
+    for i, link in enumerate(arm.links[:3]):
         frame = frame @ _link_matrix(arm_joints[:, i], link.d, link.a, link.alpha)
     turn = np.swapaxes(frame[:, :3, :3], 1, 2) @ poses[:, :3, :3]  # R of joints 4, 5, 6: Rz(q4) Ry(-q5) Rz(q6)
     sign = -1.0 if flip else 1.0

@@ -10,8 +10,8 @@ import numpy as np
 from teachpath.errors import UnusableInput
 from teachpath.motion.arm.geometry import LinkSolid, collision_solids
 from teachpath.motion.arm.kinematics import link_frames
-from teachpath.motion.arm.puma560 import GRIPPER_COM, GRIPPER_INERTIA, GRIPPER_MASS, TOOL_LENGTH, Array, Link, Variant
-from teachpath.motion.arm.variants import arm
+from teachpath.motion.arm.model import Arm
+from teachpath.motion.arm.puma560 import GRIPPER_COM, GRIPPER_INERTIA, GRIPPER_MASS, Array, Link
 from teachpath.records import Scene, Shape
 
 CARRIED_BODY: Final = "carried"  # body and geom of the carried object
@@ -25,7 +25,7 @@ _ARM_CONTACTS: Final = 'contype="0" conaffinity="1"'
 _OBJECT_CONTACTS: Final = 'contype="2" conaffinity="1"'
 
 
-def write_mjcf(scene: Scene, *, timestep: float = 0.001, variant: Variant | None = None) -> str:
+def write_mjcf(scene: Scene, arm: Arm, *, timestep: float = 0.001) -> str:
     """Write the MJCF of arm and scene.
 
     Bodies `link1` to `link6` lie in the Denavit-Hartenberg frames, so that a body's pose is that of `link_frames`;
@@ -34,13 +34,12 @@ def write_mjcf(scene: Scene, *, timestep: float = 0.001, variant: Variant | None
 
     Args:
         scene: obstacles and carried object, in the world.
+        arm: which stands in it.
         timestep: of the simulation [s].
-        variant: of the arm; that of this process when it is left out.
 
     Raises:
         UnusableInput: a shape of the scene is neither box, cylinder, sphere nor mesh.
     """
-    of = variant or arm()
     return "\n".join(
         [
             '<mujoco model="puma560">',
@@ -53,12 +52,12 @@ def write_mjcf(scene: Scene, *, timestep: float = 0.001, variant: Variant | None
             "<worldbody>",
             *_solids_of(0),
             *[_obstacle(shape) for shape in scene.obstacles],
-            *_arm(of),
+            *_arm(arm),
             *([_carried(scene.carried)] if scene.carried else []),
             "</worldbody>",
             *([_grasp()] if scene.carried else []),
             "<actuator>",
-            *[_motor(i + 1, link) for i, link in enumerate(of.links)],
+            *[_motor(i + 1, link) for i, link in enumerate(arm.links)],
             "</actuator>",
             "</mujoco>",
         ]
@@ -79,10 +78,10 @@ def physical_inertia(link: Link) -> Array:
     return moments
 
 
-def _arm(variant: Variant) -> list[str]:
-    zero = link_frames(np.zeros(6), variant)
+def _arm(arm: Arm) -> list[str]:
+    zero = link_frames(np.zeros(6), arm)
     lines: list[str] = []
-    for i, link in enumerate(variant.links, start=1):
+    for i, link in enumerate(arm.links, start=1):
         relative = np.linalg.inv(zero[i - 1]) @ zero[i]
         anchor = -relative[:3, :3].T @ relative[:3, 3]  # origin and z of the frame before, seen from this one
         lines += [
@@ -96,12 +95,12 @@ def _arm(variant: Variant) -> list[str]:
             *_solids_of(i),
         ]
     lines += [
-        f'<site name="{TOOL_SITE}" pos="0 0 {TOOL_LENGTH}" size="0.004"/>',
+        f'<site name="{TOOL_SITE}" pos="0 0 {arm.tool_length}" size="0.004"/>',
         '<body name="gripper">',
         f'<inertial pos="{_text(GRIPPER_COM)}" mass="{GRIPPER_MASS}" diaginertia="{_text(GRIPPER_INERTIA)}"/>',
         "</body>",
     ]
-    return lines + ["</body>"] * len(variant.links)
+    return lines + ["</body>"] * len(arm.links)
 
 
 def _solids_of(link: int) -> list[str]:

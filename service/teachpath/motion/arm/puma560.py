@@ -7,7 +7,8 @@ The sources disagree, so there are variants: `VARIANTS` has them by name, each w
 source does not give is taken from the default and said to be. All have the frames and the zero position of Paul, in
 which the limits are stated; tables in the frames of Armstrong, Khatib and Burdick or of Lee, whose joints 2 and 3 are
 half a turn off, were converted. The variants differ by what matters to a tool (`d` of joint 3: 125.4 to 150.1 mm) and
-to a motor (its inertia at joint 2: 2.3 or 4.8 kg m^2), which is why a plan is of one variant and no other.
+to a motor (its inertia at joint 2: 2.3 or 4.8 kg m^2), which is why a plan is of one `Arm` (`model`) and no other. All
+variants have the same limits.
 
 The moments of inertia about the middle axis of link 3: 0.086 kg m^2 in the table of the toolbox that came with Corke
 and Armstrong-Helouvry, 0.066 in the same toolbox's table after Armstrong, Khatib and Burdick. With 0.066 and 0.0125
@@ -153,22 +154,6 @@ VARIANTS: Final[Mapping[str, Variant]] = {
         }),
     )
 }  # fmt: skip
-
-
-def _column(name: str) -> Array:
-    column = np.array([getattr(link, name) for link in _LINKS], dtype=np.float64)
-    column.flags.writeable = False
-    return column
-
-
-# What all variants have alike, in the zero position of Paul.
-LOWER: Final = _column("lower")  # (6,) rad
-UPPER: Final = _column("upper")
-SPEED: Final = _column("speed")  # (6,) rad/s
-ACCELERATION: Final = _column("acceleration")  # (6,) rad/s^2
-# Nobody publishes a jerk limit: by our convention the full acceleration is built up in a tenth of a second.
-JERK: Final = 10.0 * ACCELERATION
-TORQUE: Final = _column("torque")  # (6,) N m
 
 # The gripper is our own design: two fingers that close along y of frame 6.
 TOOL_LENGTH: Final = 0.13  # m, flange to grasp point

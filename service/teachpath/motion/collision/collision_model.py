@@ -15,8 +15,8 @@ from teachpath.errors import UnusableInput
 from teachpath.motion.arm.geometry import LinkSolid, collision_solids
 from teachpath.motion.arm.kinematics import link_frames, rotation_matrices, tool_pose
 from teachpath.motion.arm.mjcf import CARRIED_BODY, write_mjcf
-from teachpath.motion.arm.puma560 import TOOL_LENGTH, Array
-from teachpath.motion.arm.variants import arm
+from teachpath.motion.arm.model import Arm
+from teachpath.motion.arm.puma560 import Array
 from teachpath.records import Scene, Shape, Vector
 
 MAX_DISTANCE: Final = 0.3  # m, distances are not looked at beyond this
@@ -62,11 +62,11 @@ class Load:
 class CollisionModel:
     """The arm's solids and one scene, ready to measure distances (MuJoCo, `mj_geomDistance`)."""
 
-    def __init__(self, scene: Scene) -> None:
+    def __init__(self, scene: Scene, arm: Arm) -> None:
         """Build the model; raises UnusableInput when the scene has a shape without size, or two of one name."""
-        self.scene = scene
+        self.scene, self.arm = scene, arm
         try:
-            self._model = mujoco.MjModel.from_xml_string(write_mjcf(scene))
+            self._model = mujoco.MjModel.from_xml_string(write_mjcf(scene, arm))
         except ValueError as error:
             raise UnusableInput(f"scene {scene.name!r} cannot be built: {error}") from None
         self._data = mujoco.MjData(self._model)
@@ -106,18 +106,18 @@ class CollisionModel:
     def lever_arms(self, load: Load | None = None) -> Array:
         """Bound how far from each joint's axis any moving point can be (6,) [m], whatever the configuration."""
         self._place(np.zeros(6), None)
-        origins = link_frames(np.zeros(6))[:, :3, 3]
+        origins = link_frames(np.zeros(6), self.arm)[:, :3, 3]
         radius = np.zeros(7)
         for geom, part in self._solids.items():
             off = np.linalg.norm(self._data.geom_xpos[geom] - origins[part.link]) + np.linalg.norm(part.opening_offset)
             radius[part.link] = max(radius[part.link], off + self._model.geom_rbound[geom])
         if load is not None and load.grasp_pose is not None:
-            off = np.linalg.norm(load.grasp_pose[:3, 3] + np.array([0.0, 0.0, TOOL_LENGTH]))
+            off = np.linalg.norm(load.grasp_pose[:3, 3] + np.array([0.0, 0.0, self.arm.tool_length]))
             radius[6] = max(radius[6], off + self._model.geom_rbound[self._object])
         levers, far = np.zeros(6), 0.0  # far: from the frame behind a joint to any point that it moves
         for joint in range(5, -1, -1):
             far = max(far, radius[joint + 1])
-            link = arm().links[joint]
+            link = self.arm.links[joint]
             levers[joint] = link.a + far
             far += float(np.hypot(link.a, link.d))
         return levers
@@ -183,7 +183,7 @@ class CollisionModel:
             for geom, part in self._solids.items():
                 self._model.geom_pos[geom] += part.opening_offset
         q = np.atleast_2d(q)
-        held = tool_pose(q) @ load.grasp_pose if load is not None and load.grasp_pose is not None else None
+        held = tool_pose(q, self.arm) @ load.grasp_pose if load is not None and load.grasp_pose is not None else None
         pair = np.array(list(pairs), dtype=np.int64).reshape(-1, 2)
         radii = self._model.geom_rbound[pair]  # (pairs, 2) of the two bounding spheres
         boxes = np.flatnonzero(self._model.geom_type[pair[:, 1]] == mujoco.mjtGeom.mjGEOM_BOX)
@@ -235,11 +235,12 @@ class CollisionModel:
         return np.asarray(gaps, dtype=np.float64)
 
 
-def grasped_load(scene: Scene, start: Array) -> Load | None:
+def grasped_load(model: CollisionModel, start: Array) -> Load | None:
     """Return how the scene's object is held once it was grasped at configuration `start` (6,); None without one."""
-    if scene.carried is None:
+    carried = model.scene.carried
+    if carried is None:
         return None
-    return Load(grasp_pose=np.linalg.inv(tool_pose(start)) @ shape_pose(scene.carried))
+    return Load(grasp_pose=np.linalg.inv(tool_pose(start, model.arm)) @ shape_pose(carried))
 
 
 def shape_pose(shape: Shape) -> Array:

@@ -14,7 +14,7 @@ from typing import Final
 import numpy as np
 from ruckig import ControlInterface, InputParameter, Result, Ruckig, RuckigError, Trajectory
 
-from teachpath.motion.arm.joint_path import ARM_LIMITS
+from teachpath.motion.arm.limits import MotionLimits
 from teachpath.motion.arm.puma560 import Array
 from teachpath.motion.timing import kernels
 from teachpath.motion.timing.joint_moves import straight_move
@@ -277,10 +277,10 @@ class Governor:
         return bool(result == Result.Working and abs(self._answer.duration - closed_form) <= DURATION_TOLERANCE)
 
 
-def warm_up(dt: float) -> None:
+def warm_up(dt: float, limits: MotionLimits) -> None:
     """Compile the kernels, or load them from disk, so that the first motion does not wait for them."""
     turn = np.array([0.01, 0.0, 0.0, 0.0, 0.0, 0.0])
-    governor = Governor(straight_move(np.zeros(6), turn, ARM_LIMITS, margins=(0.5, 0.5, 0.5)), dt)
+    governor = Governor(straight_move(np.zeros(6), turn, limits, margins=(0.5, 0.5, 0.5)), dt)
     for act in (governor.step, governor.way_to_rest, governor.hold, governor.step, governor.reverse, governor.step):
         act()
 

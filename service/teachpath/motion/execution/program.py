@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from teachpath.errors import Conflict
+from teachpath.motion.arm.model import Arm
 from teachpath.motion.arm.puma560 import Array
 from teachpath.motion.execution.governor import MIN_OVERRIDE, Governor, WayToRest
 from teachpath.motion.execution.segments import Detour, MotionState, RestPoint, Segment, plan_return_path, plan_segments
@@ -25,6 +26,7 @@ class PlanProgram:
         plan: certified; checked again here.
         start_q: (6,) where the arm rests [rad].
         settings: as for planning.
+        arm: that the plan is for.
         override: share of the full speed, 0 to 1.
         dwell: how long the gripper takes to close or open [s].
         period: between two setpoints [s].
@@ -38,15 +40,17 @@ class PlanProgram:
         plan: Plan,
         start_q: Array,
         settings: MotionSettings,
+        arm: Arm,
         *,
         override: float = 1.0,
         dwell: float = 0.5,
         period: float = 0.004,
     ) -> None:
-        verify(plan)
+        verify(plan, arm)
         self._plan = plan
         self._settings = settings
-        self._segments = plan_segments(plan, start_q, settings, dwell)
+        self._arm = arm
+        self._segments = plan_segments(plan, start_q, settings, arm, dwell)
         self._next = 0  # index of the segment behind the present one
         self._length = float(plan.lengths[-1])
         self._override = override
@@ -200,8 +204,8 @@ class PlanProgram:
     def plan_return(self, start_q: Array) -> Detour:
         """Plan the way back from `start_q` (6,) to where the arm was held; raises PathRefused when it is not free."""
         assert self._segment is not None
-        tracks = plan_return_path(self._plan, self._segment, start_q, self.current_q, self._settings)
-        return Detour("on the way back to the path", tuple(tracks))
+        way = plan_return_path(self._plan, self._segment, start_q, self.current_q, self._settings, self._arm)
+        return Detour("on the way back to the path", tuple(way))
 
     def advance_planning(self) -> None:
         """Do nothing: all was planned before the start."""

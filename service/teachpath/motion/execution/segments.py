@@ -8,7 +8,8 @@ from typing import Final
 
 import numpy as np
 
-from teachpath.motion.arm.joint_path import ARM_LIMITS
+from teachpath.motion.arm.limits import MotionLimits
+from teachpath.motion.arm.model import Arm
 from teachpath.motion.arm.puma560 import Array
 from teachpath.motion.collision.collision_model import CollisionModel, Load, grasped_load
 from teachpath.motion.execution.governor import Governor
@@ -90,7 +91,7 @@ class Segment:
     is_path: bool = False
 
 
-def plan_segments(plan: Plan, start_q: Array, settings: MotionSettings, dwell: float) -> list[Segment]:
+def plan_segments(plan: Plan, start_q: Array, settings: MotionSettings, arm: Arm, dwell: float) -> list[Segment]:
     """Return the segments of an execution that begins in the configuration `start_q` (6,).
 
     Raises:
@@ -98,50 +99,48 @@ def plan_segments(plan: Plan, start_q: Array, settings: MotionSettings, dwell: f
     """
     carries = plan.scene.carried is not None
     load = Load(position=plan.scene.carried.position) if plan.scene.carried else None
-    model = CollisionModel(plan.scene)
+    model = CollisionModel(plan.scene, arm)
+    limits = arm.limits.motion.scaled(*[settings.move_share] * 3)
     stops = joint_waypoints(model, start_q, plan.above_start, settings, load=load, gripper_open=carries)
     start, goal = plan.joints[0], plan.joints[-1]
     leave = waypoints_home(model, start, goal, plan.above_goal, settings)
     closed = not carries
     return [
-        *[piece for a, b in pairwise(stops) for piece in _move("on the approach", a, b, True, closed, settings)],
-        *_move("on the way down", plan.above_start, start, True, closed, settings),
+        *[piece for a, b in pairwise(stops) for piece in _move("on the approach", a, b, True, closed, limits)],
+        *_move("on the way down", plan.above_start, start, True, closed, limits),
         Segment("closing the gripper", True, True, rest_time=dwell if carries else 0.0),
         Segment("on the path", False, True, plan_trajectory(plan), is_path=True),
         Segment("opening the gripper", False, closed, rest_time=dwell if carries else 0.0),
-        *_move("on the way up", goal, plan.above_goal, False, closed, settings),
-        *_move("on the way home", *leave, False, closed, settings),
+        *_move("on the way up", goal, plan.above_goal, False, closed, limits),
+        *_move("on the way home", *leave, False, closed, limits),
     ]
 
 
 def plan_return_path(
-    plan: Plan, segment: Segment, start_q: Array, goal_q: Array, settings: MotionSettings
+    plan: Plan, segment: Segment, start_q: Array, goal_q: Array, settings: MotionSettings, arm: Arm
 ) -> list[TimedTrajectory]:
     """Plan a slow way from `start_q` (6,) back to `goal_q` (6,), where the arm was held in a segment.
 
     Raises:
         PathRefused: the way is not free.
     """
-    carried = plan.scene.carried
+    carried, model = plan.scene.carried, CollisionModel(plan.scene, arm)
     load = None
     if carried is not None and segment.gripper_closed:
-        load = grasped_load(plan.scene, plan.joints[0])
+        load = grasped_load(model, plan.joints[0])
     elif carried is not None and segment.before_path:
         load = Load(position=carried.position)
     elif carried is not None:
-        load = placed_load(plan.scene, plan.joints[0], plan.joints[-1])
+        load = placed_load(model, plan.joints[0], plan.joints[-1])
     opened = carried is not None and not segment.gripper_closed
     what = "on the way back to the path"
-    stops = joint_waypoints(
-        CollisionModel(plan.scene), start_q, goal_q, settings, load=load, gripper_open=opened, move_name=what
-    )
-    limits = ARM_LIMITS.scaled(*[settings.move_share] * 3)
+    stops = joint_waypoints(model, start_q, goal_q, settings, load=load, gripper_open=opened, move_name=what)
+    limits = arm.limits.motion.scaled(*[settings.move_share] * 3)
     legs = [(a, b) for a, b in pairwise(stops) if np.abs(b - a).max() >= MIN_MOVE]
     return [straight_move(a, b, limits, margins=SYMMETRIC_MARGINS) for a, b in legs]
 
 
-def _move(name: str, start: Array, goal: Array, before: bool, closed: bool, settings: MotionSettings) -> list[Segment]:
+def _move(name: str, start: Array, goal: Array, before: bool, closed: bool, limits: MotionLimits) -> list[Segment]:
     if np.abs(goal - start).max() < MIN_MOVE:
         return []
-    limits = ARM_LIMITS.scaled(*[settings.move_share] * 3)
     return [Segment(name, before, closed, straight_move(start, goal, limits, margins=SYMMETRIC_MARGINS))]

@@ -16,9 +16,10 @@ import numpy as np
 from ruckig import InputParameter, Result, Ruckig, RuckigError, Trajectory
 
 from teachpath.errors import PathRefused
-from teachpath.motion.arm.joint_path import ARM_LIMITS, MotionLimits
 from teachpath.motion.arm.kinematics import BRANCH_NAMES, inverse_kinematics, min_singular_value, tool_pose
-from teachpath.motion.arm.puma560 import LOWER, UPPER, Array
+from teachpath.motion.arm.limits import MotionLimits
+from teachpath.motion.arm.model import Arm
+from teachpath.motion.arm.puma560 import Array
 from teachpath.motion.collision.collision_model import CollisionModel, Load
 from teachpath.motion.settings import MotionSettings
 
@@ -79,10 +80,10 @@ class TeleopFollower:
         self._settings = settings
         self._scale = scale
         self._period = period
-        self._limits: MotionLimits = ARM_LIMITS.scaled(share, share, share)
-        pose = tool_pose(start_q)
+        self._limits: MotionLimits = model.arm.limits.motion.scaled(share, share, share)
+        pose = tool_pose(start_q, model.arm)
         self._orientation = pose[:3, :3]
-        self._branch = _branch(start_q, pose)
+        self._branch = _branch(start_q, pose, model.arm)
         self._ruckig = Ruckig(6)
         self._state: tuple[Array, Array, Array] = (np.array(start_q, dtype=np.float64), np.zeros(6), np.zeros(6))
         self._trajectory: Trajectory | None = None
@@ -114,7 +115,7 @@ class TeleopFollower:
     def engage(self, hand: Array) -> None:
         """Begin to follow: the tool moves from where it is as the hand moves from `hand` (3,) [m, world]."""
         goal = self._end()
-        self._anchor = (np.array(hand), tool_pose(goal)[:3, 3])
+        self._anchor = (np.array(hand), tool_pose(goal, self._model.arm)[:3, 3])
 
     def disengage(self) -> None:
         """Cease to follow: the arm finishes its present motion, and rests."""
@@ -187,21 +188,25 @@ class TeleopFollower:
 
     def _reachable_goal(self, target: Array, here: Array) -> tuple[Array, str]:
         """Return the configuration nearest to the target that is reached from `here` (6,), and what is in the way."""
-        begin = tool_pose(here)[:3, 3]
+        arm = self._model.arm
+        begin = tool_pose(here, arm)[:3, 3]
         lead = min(1.0, MAX_TOOL_LEAD / max(float(np.linalg.norm(target - begin)), 1e-12))
         shares = lead * self._share * np.arange(1, POSES_PER_SOLVE + 1) / POSES_PER_SOLVE
         poses = np.tile(np.eye(4), (POSES_PER_SOLVE, 1, 1))
         poses[:, :3, :3] = self._orientation
         poses[:, :3, 3] = begin + shares[:, None] * (target - begin)
-        solved = inverse_kinematics(poses, previous_q4=float(here[3]))
+        solved = inverse_kinematics(poses, arm, previous_q4=float(here[3]))
         joints = np.unwrap(np.concatenate([here[None], solved.joints[:, self._branch]]), axis=0)
         turns = np.abs(np.diff(joints, axis=0)).max(axis=1)
         joints = joints[1:]
-        low, high = joints - LOWER, UPPER - joints
+        low, high = joints - arm.limits.lower, arm.limits.upper - joints
         checks = (
             (solved.reach_excess[:, self._branch] > 0, "the arm does not reach that far"),
             (np.minimum(low, high).min(axis=1) < 0, "a joint is at its limit"),
-            (min_singular_value(joints) < self._settings.least_singular, "the arm is stretched out: a singular pose"),
+            (
+                min_singular_value(joints, arm) < self._settings.least_singular,
+                "the arm is stretched out: a singular pose",
+            ),
             (turns > MAX_JOINT_JUMP, "the arm would have to turn over"),
         )
         good, reason = POSES_PER_SOLVE, ""
@@ -219,7 +224,8 @@ class TeleopFollower:
         return here + (goal - here) * min(1.0, MAX_JOINT_LEAD / max(turn, 1e-12)), reason if near >= good else ""
 
     def _find_obstruction(self, samples: Array) -> str:
-        if np.any(samples < LOWER) or np.any(samples > UPPER):
+        limits = self._model.arm.limits
+        if np.any(samples < limits.lower) or np.any(samples > limits.upper):
             return "a joint would pass its limit; move the hand back"
         rows = self._model.clearances(samples, load=self.load, gripper_open=True)  # the wider of both
         least = min(rows, key=lambda row: row.distance)
@@ -279,8 +285,8 @@ def _samples(run: Trajectory) -> Array:
     return np.array(kept)
 
 
-def _branch(here: Array, pose: Array) -> int:
-    solved = inverse_kinematics(pose[None], previous_q4=float(here[3])).joints[0]
+def _branch(here: Array, pose: Array, arm: Arm) -> int:
+    solved = inverse_kinematics(pose[None], arm, previous_q4=float(here[3])).joints[0]
     off = np.abs(np.angle(np.exp(1j * (solved - here)))).max(axis=1)
     if off.min() > 1e-3:
         raise PathRefused(

@@ -13,7 +13,9 @@ from numpy.typing import NDArray
 from scipy.interpolate import BSpline
 
 from teachpath.motion.arm.kinematics import BRANCH_NAMES, describe_reach, inverse_kinematics, min_singular_value
-from teachpath.motion.arm.puma560 import LOWER, SPEED, UPPER, Array
+from teachpath.motion.arm.limits import JointLimits
+from teachpath.motion.arm.model import Arm
+from teachpath.motion.arm.puma560 import Array
 from teachpath.motion.paths.tool_path import ToolPath
 from teachpath.motion.settings import MotionSettings
 
@@ -26,6 +28,7 @@ class IkBranch:
     """What the rolls of one branch share.
 
     Attributes:
+        arm: whose branch it is.
         index: of shoulder, elbow and wrist in `BRANCHES`.
         unrolled: (n, 6) configurations before any roll of the tool [rad]; where the arm does not reach, its nearest
             stretch.
@@ -34,6 +37,7 @@ class IkBranch:
         jumps: (n,) True where a joint jumps from a node to the next.
     """
 
+    arm: Arm
     index: int
     unrolled_joints: Array
     reach_excess: Array
@@ -43,7 +47,7 @@ class IkBranch:
     @cached_property
     def singular_values(self) -> Array:
         """Least singular value of the Jacobian (n,); joint 6 does not change it."""
-        return min_singular_value(self.unrolled_joints)
+        return min_singular_value(self.unrolled_joints, self.arm)
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,28 +107,32 @@ class Candidate:
         return bool(arm.reach_excess.max() <= 0 and self.limit_excess.max() <= 0 and not arm.jumps.any())
 
 
-def enumerate_candidates(path: ToolPath, settings: MotionSettings) -> list[Candidate]:
+def enumerate_candidates(path: ToolPath, arm: Arm, settings: MotionSettings) -> list[Candidate]:
     """Find every branch and tool roll along a route, with how well each does."""
-    solutions = inverse_kinematics(path.poses(path.parameters))
+    solutions = inverse_kinematics(path.poses(path.parameters), arm)
     outside = solutions.reach_excess[:, 0]
     found = []
-    for index, branch in enumerate(BRANCH_NAMES):
+    for index, name in enumerate(BRANCH_NAMES):
         unrolled = np.unwrap(solutions.joints[:, index], axis=0)
         jumps = np.append(np.abs(np.diff(unrolled, axis=0)).max(axis=1) > MAX_JOINT_STEP, False)
-        arm = IkBranch(index, unrolled, outside, solutions.beyond_outer_reach, jumps)
-        found += [rolled_candidate(path, branch, arm, ToolRoll(angle)) for angle in settings.rolls]
+        branch = IkBranch(arm, index, unrolled, outside, solutions.beyond_outer_reach, jumps)
+        found += [rolled_candidate(path, name, branch, ToolRoll(angle)) for angle in settings.rolls]
     return found
 
 
 def rolled_candidate(path: ToolPath, name: str, branch: IkBranch, roll: ToolRoll) -> Candidate:
     """Return what becomes of an arm's branch along a route when the tool is rolled."""
-    joints = shift_within_limits(roll_tool(branch.unrolled_joints, roll(path.parameters)))
-    return Candidate(f"{name}, {roll}", branch, roll, joints, np.maximum(joints - UPPER, LOWER - joints))
+    limits = branch.arm.limits
+    joints = shift_within_limits(roll_tool(branch.unrolled_joints, roll(path.parameters)), limits)
+    excess = np.maximum(joints - limits.upper, limits.lower - joints)
+    return Candidate(f"{name}, {roll}", branch, roll, joints, excess)
 
 
 def configurations(path: ToolPath, candidate: Candidate, u: Array) -> Array:
     """Return the configurations (m, 6) of a candidate at increasing parameters (m,) of its curve, from its start."""
-    unrolled = np.unwrap(inverse_kinematics(path.poses(u)).joints[:, candidate.branch.index], axis=0)
+    unrolled = np.unwrap(
+        inverse_kinematics(path.poses(u), candidate.branch.arm).joints[:, candidate.branch.index], axis=0
+    )
     return shift_near(roll_tool(unrolled, candidate.roll(u)), candidate.joints[0])
 
 
@@ -140,10 +148,10 @@ def shift_near(joints: Array, first: Array) -> Array:
     return np.asarray(joints + 2 * np.pi * np.round((first - joints[0]) / (2 * np.pi)), dtype=np.float64)
 
 
-def shift_within_limits(joints: Array) -> Array:
+def shift_within_limits(joints: Array, limits: JointLimits) -> Array:
     """Shift each joint of continuous configurations (n, 6) by whole turns, nearest to the middle of its range."""
     middle = (joints.max(axis=0) + joints.min(axis=0)) / 2
-    turns = np.round(((LOWER + UPPER) / 2 - middle) / (2 * np.pi))
+    turns = np.round(((limits.lower + limits.upper) / 2 - middle) / (2 * np.pi))
     return np.asarray(joints + 2 * np.pi * turns, dtype=np.float64)
 
 
@@ -164,8 +172,10 @@ def is_usable(candidate: Candidate, settings: MotionSettings) -> bool:
 
 def cost(candidate: Candidate, settings: MotionSettings) -> float:
     """Prefer branches far from singular poses and joint limits, and near to the arm's home (a second counts 0.2)."""
-    use = np.abs(candidate.joints - (LOWER + UPPER) / 2).max(axis=0) / ((UPPER - LOWER) / 2)
-    travel = np.abs(candidate.joints[0] - np.array(settings.home)) / SPEED
+    limits = candidate.branch.arm.limits
+    middle, half = (limits.lower + limits.upper) / 2, (limits.upper - limits.lower) / 2
+    use = np.abs(candidate.joints - middle).max(axis=0) / half
+    travel = np.abs(candidate.joints[0] - np.array(settings.home)) / limits.speed
     return float(0.1 / candidate.min_singular_value + use.max() + 0.2 * travel.max())
 
 
@@ -187,7 +197,8 @@ def describe_fault(candidate: Candidate, path: ToolPath, node: int, fault: str, 
     if fault == "limit":
         joint = int(np.argmax(candidate.limit_excess[node]))
         angle = candidate.joints[node, joint]
-        limit = UPPER[joint] if angle > UPPER[joint] else LOWER[joint]
+        limits = candidate.branch.arm.limits
+        limit = limits.upper[joint] if angle > limits.upper[joint] else limits.lower[joint]
         return (
             f"joint {joint + 1} needs {degrees(angle):.1f} deg, limit {degrees(limit):.1f}, {where} "
             f"({candidate.description} comes nearest)"

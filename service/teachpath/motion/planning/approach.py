@@ -9,7 +9,8 @@ import numpy as np
 
 from teachpath.errors import PathRefused
 from teachpath.motion.arm.kinematics import inverse_kinematics, tool_pose
-from teachpath.motion.arm.puma560 import LOWER, UPPER, Array
+from teachpath.motion.arm.model import Arm
+from teachpath.motion.arm.puma560 import Array
 from teachpath.motion.collision.collision_model import CollisionModel, Load
 from teachpath.motion.settings import MotionSettings
 from teachpath.motion.timing.joint_moves import placed_load, prove_move_clear, waypoints_home
@@ -21,24 +22,24 @@ LIFT_DIRECTIONS: Final = np.array(
 )
 
 
-def approach_configurations(q: Array, settings: MotionSettings) -> list[Array]:
+def approach_configurations(q: Array, arm: Arm, settings: MotionSettings) -> list[Array]:
     """Return configurations (6,) from which the tool comes to configuration `q` (6,), turned as there, the best first.
 
     They are `motion.lift` above it, then less, then tilted and beside; last `q` itself. Those out of reach or beyond a
     joint limit are left out.
     """
-    pose = tool_pose(q)
+    pose = tool_pose(q, arm)
     ahead = pose[:2, 3] / max(float(np.hypot(*pose[:2, 3])), 1e-9)
     seen = np.array([[ahead[0], ahead[1], 0.0], [-ahead[1], ahead[0], 0.0], [0.0, 0.0, 1.0]])
     ways = LIFT_DIRECTIONS / np.linalg.norm(LIFT_DIRECTIONS, axis=1)[:, None] @ seen
     poses = np.repeat(pose[None], len(ways) * len(LIFT_SHARES), axis=0)
     poses[:, :3, 3] += (np.array(LIFT_SHARES)[None, :, None] * settings.lift * ways[:, None]).reshape(-1, 3)
-    solutions = inverse_kinematics(poses, previous_q4=float(q[3]))
+    solutions = inverse_kinematics(poses, arm, previous_q4=float(q[3]))
     found = []
     for joints, excess in zip(solutions.joints, solutions.reach_excess[:, 0], strict=True):
         turned = joints + 2 * np.pi * np.round((q - joints) / (2 * np.pi))
         nearest = turned[int(np.argmin(np.abs(turned - q).max(axis=1)))]
-        if excess <= 0 and np.all(nearest >= LOWER) and np.all(nearest <= UPPER):
+        if excess <= 0 and np.all(nearest >= arm.limits.lower) and np.all(nearest <= arm.limits.upper):
             found.append(nearest)
     return [*found, q.copy()]
 
@@ -58,7 +59,7 @@ def find_approach(model: CollisionModel, start: Array, settings: MotionSettings)
                 model, np.stack([a, b]), settings, load=load, gripper_open=carried is not None, move_name=what
             )
 
-    return _first_free(approach_configurations(start, settings), free, "start")
+    return _first_free(approach_configurations(start, model.arm, settings), free, "start")
 
 
 def find_retreat(model: CollisionModel, start: Array, goal: Array, settings: MotionSettings) -> Array:
@@ -67,7 +68,7 @@ def find_retreat(model: CollisionModel, start: Array, goal: Array, settings: Mot
     Raises:
         PathRefused: none of those tried is free; says what is in the way of the first.
     """
-    behind = placed_load(model.scene, start, goal)
+    behind = placed_load(model, start, goal)
 
     def free(stop: Array) -> None:
         stops = np.stack([goal, stop])
@@ -76,7 +77,7 @@ def find_retreat(model: CollisionModel, start: Array, goal: Array, settings: Mot
         )
         waypoints_home(model, start, goal, stop, settings)
 
-    return _first_free(approach_configurations(goal, settings), free, "goal")
+    return _first_free(approach_configurations(goal, model.arm, settings), free, "goal")
 
 
 def _first_free(configurations: list[Array], free: Callable[[Array], None], end: str) -> Array:

@@ -8,8 +8,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from teachpath.motion.arm.joint_path import ARM_LIMITS
-from teachpath.motion.arm.puma560 import LOWER, UPPER
+from teachpath.motion.arm.model import Arm
 from teachpath.motion.collision.collision_model import Clearance, CollisionModel, grasped_load
 from teachpath.motion.paths.ik_branches import Candidate, enumerate_candidates, nearest_to_usable, node_faults
 from teachpath.motion.paths.tool_path import ToolPath, sample_tool_path
@@ -37,7 +36,12 @@ class _Inspection:
 
 
 def assess(
-    curve: Curve, scene: Scene, settings: MotionSettings | None = None, *, orientation: Curve | None = None
+    curve: Curve,
+    scene: Scene,
+    settings: MotionSettings | None = None,
+    *,
+    arm: Arm | None = None,
+    orientation: Curve | None = None,
 ) -> Assessment:
     """Look at a curve as quickly as an editor needs it; only `plan` certifies.
 
@@ -48,6 +52,7 @@ def assess(
         curve: positions [m].
         scene: what stands around.
         settings: as for `plan`.
+        arm: as for `plan`.
         turn: quaternions of what is carried, at the same parameter.
 
     Raises:
@@ -55,16 +60,19 @@ def assess(
     """
     settings = settings or MotionSettings()
     way = sample_tool_path(curve, settings, orientation=orientation if settings.orientation == "demonstrated" else None)
-    look = _inspect(way, scene, settings)
+    arm = arm or Arm.of_variant(settings.variant)
+    look = _inspect(way, CollisionModel(scene, arm), settings)
     nodes, candidate, failure = look.nodes, look.candidate, look.failure
-    duration = None if failure else estimate_duration(way, candidate, ARM_LIMITS.scaled(*[settings.path_share] * 3))
+    duration = (
+        None if failure else estimate_duration(way, candidate, arm.limits.motion.scaled(*[settings.path_share] * 3))
+    )
     return Assessment(
         lengths=way.lengths[nodes],
         parameters=way.parameters[nodes],
         positions=way.positions[nodes],
         faults=_faults(look),
         reach=-candidate.branch.reach_excess[nodes],
-        limits=np.minimum(UPPER - candidate.joints, candidate.joints - LOWER).min(axis=1)[nodes],
+        limits=np.minimum(arm.limits.upper - candidate.joints, candidate.joints - arm.limits.lower).min(axis=1)[nodes],
         singular=candidate.singular_values[nodes],
         clearance=np.array([row.distance for row in look.clearances]),
         nearest=tuple(f"{row.body} to {row.other_body}" if row.body else "" for row in look.clearances),
@@ -75,17 +83,16 @@ def assess(
     )
 
 
-def _inspect(tool_path: ToolPath, scene: Scene, settings: MotionSettings) -> _Inspection:
+def _inspect(tool_path: ToolPath, model: CollisionModel, settings: MotionSettings) -> _Inspection:
     """Choose a candidate as `plan` does, and find what fails first."""
-    model = CollisionModel(scene)
     nodes = np.unique(np.linspace(0, len(tool_path.lengths) - 1, ASSESSED_SAMPLES + 1).round().astype(np.int64))
-    every = enumerate_candidates(tool_path, settings)
+    every = enumerate_candidates(tool_path, model.arm, settings)
     fit = usable_candidates(every, settings)
     free = clear_candidates(tool_path, fit, model, settings)
     candidate = (free or fit or [nearest_to_usable(every)])[0]
-    load = grasped_load(scene, candidate.joints[0])
+    load = grasped_load(model, candidate.joints[0])
     rows = model.clearances(candidate.joints[nodes], load=load)
-    failure = start_failure(tool_path, scene, settings) or kinematic_failure(tool_path, candidate, settings)
+    failure = start_failure(tool_path, model.scene, settings) or kinematic_failure(tool_path, candidate, settings)
     if failure is None and not free:
         failure = clearance_failure(tool_path, candidate, model, settings)
     if failure is None and load is not None:

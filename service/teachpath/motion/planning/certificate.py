@@ -9,37 +9,43 @@ from dataclasses import asdict
 import numpy as np
 
 from teachpath.errors import PathRefused
-from teachpath.motion.arm.joint_path import ARM_LIMITS, JointPath, MotionLimits
-from teachpath.motion.arm.puma560 import ACCELERATION, JERK, LOWER, SPEED, TORQUE, UPPER, Array
-from teachpath.motion.arm.variants import arm
+from teachpath.motion.arm.joint_path import JointPath
+from teachpath.motion.arm.limits import JointLimits, MotionLimits
+from teachpath.motion.arm.model import Arm
+from teachpath.motion.arm.puma560 import TOOL_LENGTH, Array
 from teachpath.motion.timing.limit_margins import limit_uses
 from teachpath.motion.timing.timed_trajectory import TimedTrajectory, time_joint_path
 from teachpath.records import Extreme, Plan, Scene
 
 
-def digest(plan: Plan) -> str:
+def digest(plan: Plan, arm: Arm) -> str:
     """Compute the SHA-256 (hex) over all that decides the motion: arm, path, scene, configurations, limits, timing."""
     total = hashlib.sha256()
-    total.update(repr(arm().links).encode())
+    total.update(repr(arm.links).encode())
+    if arm.tool_length != TOOL_LENGTH:  # with the tool of the table, plans keep the digests that they were stored with
+        total.update(repr(arm.tool_length).encode())
     total.update(f"{plan.path}|{plan.path_version}|".encode())
     total.update(_scene_text(plan.scene).encode())
     numbers = (plan.lengths, plan.joints, plan.pace, plan.limits, plan.above_start, plan.above_goal, plan.duration)
-    for value in (*numbers, LOWER, UPPER, SPEED, ACCELERATION, JERK, TORQUE):
+    limits = arm.limits
+    rows = (limits.lower, limits.upper, limits.speed, limits.acceleration, limits.jerk, limits.torque)
+    for value in (*numbers, *rows):
         array = np.ascontiguousarray(value, dtype="<f8")
         total.update(f"{array.shape}".encode())
         total.update(array.tobytes())
     return total.hexdigest()
 
 
-def verify(plan: Plan) -> None:
-    """Check that a plan is the one that was certified.
+def verify(plan: Plan, arm: Arm) -> None:
+    """Check that a plan is the one that was certified, for this arm.
 
     Raises:
-        PathRefused: the digest does not match: path, scene, limits or timing have changed since.
+        PathRefused: the digest does not match: path, scene, limits or timing have changed since, or the arm is another.
     """
-    if digest(plan) != plan.certificate.digest:
+    if digest(plan, arm) != plan.certificate.digest:
         raise PathRefused(
-            f"plan {plan.id} has changed since it was certified (or the arm has: motion.variant); plan the path again"
+            f"plan {plan.id} has changed since it was certified, or is for another arm than the {arm.name} "
+            "(motion.variant); plan the path again"
         )
 
 
@@ -49,15 +55,16 @@ def plan_trajectory(plan: Plan) -> TimedTrajectory:
     return time_joint_path(path, plan.pace, MotionLimits(*plan.limits))
 
 
-def largest_limit_uses(setpoints: Array, rate: float) -> tuple[Extreme, Extreme, Extreme, Extreme]:
+def largest_limit_uses(setpoints: Array, rate: float, limits: JointLimits) -> tuple[Extreme, Extreme, Extreme, Extreme]:
     """Measure how much of the joints' position, speed, acceleration and jerk limits setpoints use.
 
     Args:
         setpoints: (n, 7) joints [rad] and where on the path each lies [m].
         rate: setpoints a second [Hz].
+        limits: of the joints.
     """
-    middle, half = (LOWER + UPPER) / 2, (UPPER - LOWER) / 2
-    shares = [np.abs(setpoints[:, :6] - middle) / half, *limit_uses(setpoints, ARM_LIMITS, rate)]
+    middle, half = (limits.lower + limits.upper) / 2, (limits.upper - limits.lower) / 2
+    shares = [np.abs(setpoints[:, :6] - middle) / half, *limit_uses(setpoints, limits.motion, rate)]
     position, velocity, acceleration, jerk = (largest_use(share, setpoints[:, 6]) for share in shares)
     return position, velocity, acceleration, jerk
 

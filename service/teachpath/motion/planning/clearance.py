@@ -22,7 +22,7 @@ def rough_clearance(
     tool_path: ToolPath, candidate: Candidate, model: CollisionModel, settings: MotionSettings
 ) -> Extreme:
     """Find the clearance along straight lines between a candidate's nodes; when it is too small, not yet why."""
-    load = grasped_load(model.scene, candidate.joints[0])
+    load = grasped_load(model, candidate.joints[0])
     sweep = ContinuousCheck.along_lines(candidate.joints, model.lever_arms(load))
     proved = prove_distance(sweep, lambda q: model.clearances(q, load=load), settings.clearance_min)
     share = (proved.parameter - sweep.parameters[0]) / (sweep.parameters[-1] - sweep.parameters[0])
@@ -44,7 +44,7 @@ def path_clearance(
     Raises:
         PathRefused: something comes too near; says where and which control point to move.
     """
-    load = grasped_load(model.scene, candidate.joints[0])
+    load = grasped_load(model, candidate.joints[0])
     sweep = ContinuousCheck.along_spline(joints, model.lever_arms(load))
     proved = prove_distance(sweep, lambda q: model.clearances(q, load=load), settings.clearance_min)
     if proved.distance < settings.clearance_min:
@@ -69,7 +69,7 @@ def clearance_failure(
     tool_path: ToolPath, candidate: Candidate, model: CollisionModel, settings: MotionSettings
 ) -> Failure:
     """Find where something comes too near first, on a candidate that does not keep clear."""
-    load = grasped_load(model.scene, candidate.joints[0])
+    load = grasped_load(model, candidate.joints[0])
     return _failure(tool_path, candidate, settings.clearance_min, lambda q: model.clearances(q, load=load))
 
 

@@ -11,7 +11,7 @@ from teachpath.errors import PathRefused, UnusableSettings
 from teachpath.motion.arm.dynamics import Dynamics
 from teachpath.motion.arm.joint_path import JointPath
 from teachpath.motion.arm.kinematics import tool_pose
-from teachpath.motion.arm.puma560 import LOWER, UPPER
+from teachpath.motion.arm.model import Arm
 from teachpath.motion.collision.collision_model import CollisionModel
 from teachpath.motion.paths.ik_branches import Candidate, enumerate_candidates, nearest_to_usable
 from teachpath.motion.paths.tool_path import ToolPath, sample_tool_path
@@ -39,7 +39,7 @@ class _PlanningJob:
     model: CollisionModel
 
 
-def plan(path: LearnedPath, scene: Scene, settings: MotionSettings | None = None) -> Plan:
+def plan(path: LearnedPath, scene: Scene, settings: MotionSettings | None = None, *, arm: Arm | None = None) -> Plan:
     """Plan the pick and place along a path: the centre of the carried object follows it, the tool points down.
 
     The arm goes from its home to above the start (or nearer, or beside it), down, closes the gripper, follows the path,
@@ -49,6 +49,7 @@ def plan(path: LearnedPath, scene: Scene, settings: MotionSettings | None = None
         path: what to follow.
         scene: what stands around.
         settings: what may be used of the arm; the defaults when None.
+        arm: that is to follow it; the published variant that the settings name when None.
 
     Returns:
         A plan with its certificate.
@@ -58,14 +59,15 @@ def plan(path: LearnedPath, scene: Scene, settings: MotionSettings | None = None
         UnusableSettings: the arm's home is outside the joint limits.
     """
     settings = settings or MotionSettings()
-    _home_within_limits(settings)
+    arm = arm or Arm.of_variant(settings.variant)
+    _home_within_limits(settings, arm)
     way = sample_tool_path(path.curve, settings, orientation=_turn(path, settings))
     _refuse(start_failure(way, scene, settings))
-    every = enumerate_candidates(way, settings)
+    every = enumerate_candidates(way, arm, settings)
     fit = usable_candidates(every, settings)
     if not fit:
         _refuse(kinematic_failure(way, nearest_to_usable(every), settings))
-    job = _PlanningJob(path, scene, settings, way, CollisionModel(scene))
+    job = _PlanningJob(path, scene, settings, way, CollisionModel(scene, arm))
     return _first_certified(job, fit)
 
 
@@ -84,17 +86,18 @@ def _first_certified(job: _PlanningJob, fit: list[Candidate]) -> Plan:
     raise refused
 
 
-def _home_within_limits(settings: MotionSettings) -> None:
+def _home_within_limits(settings: MotionSettings, arm: Arm) -> None:
+    lower, upper = arm.limits.lower, arm.limits.upper
     for joint, angle in enumerate(settings.home):
-        if not LOWER[joint] <= angle <= UPPER[joint]:
-            limits = f"{LOWER[joint]:.3f} to {UPPER[joint]:.3f}"
+        if not lower[joint] <= angle <= upper[joint]:
+            limits = f"{lower[joint]:.3f} to {upper[joint]:.3f}"
             raise UnusableSettings(f"motion.home puts joint {joint + 1} to {angle:.3f} rad, limits {limits}")
 
 
 def _certified(job: _PlanningJob, candidate: Candidate) -> Plan:
-    settings, way = job.settings, job.tool_path
-    joints, pace, limits, torque = time_within_torques(way, candidate, Dynamics(job.scene.carried), settings)
-    _tool_on_path(way, joints, settings)
+    settings, way, arm = job.settings, job.tool_path, job.model.arm
+    joints, pace, limits, torque = time_within_torques(way, candidate, Dynamics(arm, job.scene.carried), settings)
+    _tool_on_path(way, joints, arm, settings)
     clearance = path_clearance(way, candidate, job.model, settings, joints)
     start, goal = joints.joints[0], joints.joints[-1]
     above_start = find_approach(job.model, start, settings)
@@ -114,7 +117,7 @@ def _certified(job: _PlanningJob, candidate: Candidate) -> Plan:
         duration=track.duration,
         certificate=_certificate(way, candidate, track, settings, torque, clearance),
     )
-    return replace(drawn, certificate=replace(drawn.certificate, digest=digest(drawn)))
+    return replace(drawn, certificate=replace(drawn.certificate, digest=digest(drawn, arm)))
 
 
 def _certificate(
@@ -130,7 +133,9 @@ def _certificate(
     Raises:
         PathRefused: it is more than what may be used.
     """
-    position, velocity, acceleration, jerk = largest_limit_uses(trajectory.setpoints(settings.rate), settings.rate)
+    position, velocity, acceleration, jerk = largest_limit_uses(
+        trajectory.setpoints(settings.rate), settings.rate, candidate.branch.arm.limits
+    )
     worst = max((velocity, acceleration, jerk), key=lambda extreme: extreme.value)
     if worst.value > settings.path_share:
         raise PathRefused(
@@ -151,11 +156,11 @@ def _certificate(
     )
 
 
-def _tool_on_path(tool_path: ToolPath, joints: JointPath, settings: MotionSettings) -> None:
+def _tool_on_path(tool_path: ToolPath, joints: JointPath, arm: Arm, settings: MotionSettings) -> None:
     samples = joints.dense_parameters()
     reached = joints(samples)
     wanted = tool_path.curve(tool_path.arc.parameters(reached[:, 6]))
-    off = np.linalg.norm(tool_pose(reached[:, :6])[:, :3, 3] - wanted, axis=1)
+    off = np.linalg.norm(tool_pose(reached[:, :6], arm)[:, :3, 3] - wanted, axis=1)
     worst = int(np.argmax(off))
     if off[worst] > settings.path_tolerance:
         s = float(reached[worst, 6])

@@ -10,7 +10,7 @@ import numpy as np
 from scipy.interpolate import BSpline
 
 from teachpath.motion.arm.kinematics import inverse_kinematics, min_singular_value
-from teachpath.motion.arm.puma560 import LOWER, UPPER, Array
+from teachpath.motion.arm.puma560 import Array
 from teachpath.motion.paths.ik_branches import Candidate, roll_tool
 from teachpath.motion.paths.tool_path import ToolPath
 from teachpath.motion.settings import MotionSettings
@@ -45,14 +45,16 @@ def name_control_point(tool_path: ToolPath, s: float) -> str:
 
 def fault_margin(fault: str, candidate: Candidate, node: int) -> FaultMargin:
     """Return what to raise so that a fault of a branch (see `branches.faults`) goes away."""
+    arm = candidate.branch.arm
     if fault == "reach":
         return lambda q, outside: -outside
     if fault == "limit":
         joint = int(np.argmax(candidate.limit_excess[node]))
-        return lambda q, outside: np.minimum(UPPER - q, q - LOWER)[:, joint]
+        limits = arm.limits
+        return lambda q, outside: np.minimum(limits.upper - q, q - limits.lower)[:, joint]
     if fault == "turn":
         return lambda q, outside: np.abs(np.sin(q[:, 4]))
-    return lambda q, outside: min_singular_value(q)
+    return lambda q, outside: min_singular_value(q, arm)
 
 
 def suggest_move(
@@ -107,7 +109,7 @@ class _MarginNearNode:
         )
         poses[:, :3, 3] += moves
         here = self.candidate.joints[self.node]
-        solutions = inverse_kinematics(poses, previous_q4=float(here[3]))
+        solutions = inverse_kinematics(poses, self.candidate.branch.arm, previous_q4=float(here[3]))
         roll = self.candidate.roll(self.tool_path.parameters[self.node : self.node + 1])
         q = roll_tool(solutions.joints[:, self.candidate.branch.index], roll)
         return self.margin(q + 2 * np.pi * np.round((here - q) / (2 * np.pi)), solutions.reach_excess[:, 0])

@@ -14,7 +14,8 @@ from scipy.interpolate import BSpline
 from scipy.ndimage import gaussian_filter1d
 
 from teachpath.motion.arm.kinematics import BRANCH_NAMES
-from teachpath.motion.arm.puma560 import LOWER, UPPER, Array
+from teachpath.motion.arm.model import Arm
+from teachpath.motion.arm.puma560 import Array
 from teachpath.motion.collision.collision_model import CollisionModel, grasped_load
 from teachpath.motion.paths.ik_branches import Candidate, ToolRoll, rolled_candidate
 from teachpath.motion.paths.tool_path import ToolPath
@@ -62,7 +63,7 @@ def _search_rolls(
     What is carried is held as the candidate's own roll takes it at the start.
     """
     nodes = np.unique(np.linspace(0, len(tool_path.lengths) - 1, SEARCH_NODES).round().astype(np.int64))
-    more = _roll_steps(candidate.joints[nodes])
+    more = _roll_steps(candidate.joints[nodes], model.arm)
     few = _roll_costs(model, candidate, nodes[::COARSE_STRIDE], more, settings)
     # What leads through leads through some of the places too: mostly that is enough to see that nothing does.
     if _cheapest_sequence(few, COARSE_STRIDE * MAX_ROLL_STEPS) is None:
@@ -77,10 +78,10 @@ def _search_rolls(
     return u, candidate.roll(u) + ROLL_STEP * more[way_through]
 
 
-def _roll_steps(joints: Array) -> NDArray[np.int64]:
+def _roll_steps(joints: Array, arm: Arm) -> NDArray[np.int64]:
     """Return by how many turns (m,) the tool could be rolled further at some of the configurations (k, 6)."""
-    first = int(np.floor((joints[:, 5].min() - UPPER[5]) / ROLL_STEP))
-    last = int(np.ceil((joints[:, 5].max() - LOWER[5]) / ROLL_STEP))
+    first = int(np.floor((joints[:, 5].min() - arm.limits.upper[5]) / ROLL_STEP))
+    last = int(np.ceil((joints[:, 5].max() - arm.limits.lower[5]) / ROLL_STEP))
     return np.arange(first, last + 1)
 
 
@@ -92,7 +93,8 @@ def _roll_costs(
     joints = candidate.joints[nodes]
     clear = _clearances(model, candidate, joints)[:, more % ROLL_COUNT]
     rolled = joints[:, 5, None] - ROLL_STEP * more
-    free = (rolled >= LOWER[5]) & (rolled <= UPPER[5]) & (clear >= settings.clearance_min + SMOOTHING_CLEARANCE)
+    lower, upper = model.arm.limits.lower[5], model.arm.limits.upper[5]
+    free = (rolled >= lower) & (rolled <= upper) & (clear >= settings.clearance_min + SMOOTHING_CLEARANCE)
     costs = np.where(free, CLEARANCE_WEIGHT * np.maximum(SUFFICIENT_CLEARANCE - clear, 0.0), np.inf)
     if model.scene.carried is not None:
         costs[np.ix_(nodes == 0, more != 0)] = np.inf  # it is held as the candidate's own roll takes it
@@ -101,7 +103,7 @@ def _roll_costs(
 
 def _clearances(model: CollisionModel, candidate: Candidate, joints: Array) -> Array:
     """Measure the clearance (k, ANGLES) [m] at configurations (k, 6) with the tool rolled further."""
-    load = grasped_load(model.scene, candidate.joints[0])
+    load = grasped_load(model, candidate.joints[0])
     every = np.repeat(joints[:, None], ROLL_COUNT, axis=1)
     every[:, :, 5] -= ROLL_STEP * np.arange(ROLL_COUNT)
     rows = model.clearances(every.reshape(-1, 6), load=load)

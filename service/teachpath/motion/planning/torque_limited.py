@@ -6,8 +6,9 @@ from typing import Final
 
 from teachpath.errors import PathRefused
 from teachpath.motion.arm.dynamics import Dynamics
-from teachpath.motion.arm.joint_path import ARM_LIMITS, JointPath, MotionLimits
-from teachpath.motion.arm.puma560 import TORQUE, Array
+from teachpath.motion.arm.joint_path import JointPath
+from teachpath.motion.arm.limits import MotionLimits
+from teachpath.motion.arm.puma560 import Array
 from teachpath.motion.paths.ik_branches import Candidate
 from teachpath.motion.paths.tool_path import ToolPath
 from teachpath.motion.planning.certificate import largest_use
@@ -36,12 +37,13 @@ def time_within_torques(
     Raises:
         PathRefused: the motors are too weak however slow it goes, or no motion keeps the limits.
     """
-    limits = ARM_LIMITS.scaled(*[settings.path_share] * 3)
+    arm = candidate.branch.arm
+    limits = arm.limits.motion.scaled(*[settings.path_share] * 3)
     for _ in range(MAX_RETIMINGS):
         joints, pace = time_tool_path(tool_path, candidate, limits, rate=settings.rate)
         rows = time_joint_path(joints, pace, limits).table[::TORQUE_STRIDE]
         q, velocity = rows[:, 0, :6], rows[:, 1, :6]
-        worst = largest_use(dynamics.torque_bounds(q, velocity, limits.acceleration), rows[:, 0, 6], TORQUE)
+        worst = largest_use(dynamics.torque_bounds(q, velocity, limits.acceleration), rows[:, 0, 6], arm.limits.torque)
         if worst.value <= 1.0:
             return joints, pace, limits, worst
         left = dynamics.acceleration_share(q, velocity, limits.acceleration)

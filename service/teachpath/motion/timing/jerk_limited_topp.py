@@ -15,7 +15,8 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from teachpath.motion.arm.joint_path import JointPath, MotionLimits
+from teachpath.motion.arm.joint_path import JointPath
+from teachpath.motion.arm.limits import MotionLimits
 from teachpath.motion.arm.puma560 import Array
 from teachpath.motion.timing.interior_point import Derivatives, minimize
 from teachpath.motion.timing.limit_margins import Margins

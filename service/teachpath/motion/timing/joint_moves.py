@@ -10,14 +10,13 @@ import numpy as np
 from ruckig import InputParameter, Ruckig, Trajectory
 
 from teachpath.errors import PathRefused
-from teachpath.motion.arm.joint_path import MotionLimits
 from teachpath.motion.arm.kinematics import tool_pose
+from teachpath.motion.arm.limits import MotionLimits
 from teachpath.motion.arm.puma560 import Array
 from teachpath.motion.collision.collision_model import Clearance, CollisionModel, Load, shape_pose
 from teachpath.motion.collision.continuous import ContinuousCheck, prove_distance
 from teachpath.motion.settings import MotionSettings
 from teachpath.motion.timing.timed_trajectory import MAX_TABLE_STEP, TimedTrajectory, apply_chain_rule
-from teachpath.records import Scene
 
 MIN_FINGER_DISTANCE: Final = 0.001  # m, that open fingers stay away from the object between them
 
@@ -170,7 +169,7 @@ def waypoints_home(
         PathRefused: the way is not free.
     """
     home = np.array(settings.home)
-    load = placed_load(model.scene, start, goal)
+    load = placed_load(model, start, goal)
     what = "on the way home from the goal"
     prove_move_clear(
         model, np.stack([above_goal, home]), settings, load=load, gripper_open=load is not None, move_name=what
@@ -178,10 +177,11 @@ def waypoints_home(
     return above_goal, home
 
 
-def placed_load(scene: Scene, start: Array, goal: Array) -> Load | None:
+def placed_load(model: CollisionModel, start: Array, goal: Array) -> Load | None:
     """Say where the carried object stands once it was moved along a path between two configurations."""
-    if scene.carried is None:
+    carried = model.scene.carried
+    if carried is None:
         return None
-    pose = tool_pose(goal) @ np.linalg.inv(tool_pose(start)) @ shape_pose(scene.carried)
+    pose = tool_pose(goal, model.arm) @ np.linalg.inv(tool_pose(start, model.arm)) @ shape_pose(carried)
     x, y, z = (float(value) for value in pose[:3, 3])
     return Load(position=(x, y, z), rotation=pose[:3, :3])

@@ -12,7 +12,7 @@ from typing import Final
 
 import numpy as np
 
-from teachpath.motion.arm.joint_path import MotionLimits
+from teachpath.motion.arm.limits import MotionLimits
 from teachpath.motion.arm.puma560 import Array
 
 # Of moves that have a reserve on both sides: shares of speed, acceleration and jerk.

@@ -12,7 +12,8 @@ from typing import Final
 import numpy as np
 from scipy.interpolate import CubicHermiteSpline
 
-from teachpath.motion.arm.joint_path import JointPath, MotionLimits
+from teachpath.motion.arm.joint_path import JointPath
+from teachpath.motion.arm.limits import MotionLimits
 from teachpath.motion.arm.puma560 import Array
 from teachpath.motion.timing.jerk_limited_topp import quadratic_basis
 

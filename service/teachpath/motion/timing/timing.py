@@ -14,7 +14,8 @@ from scipy.interpolate import BSpline, make_interp_spline
 from scipy.ndimage import uniform_filter1d
 
 from teachpath.errors import PathRefused
-from teachpath.motion.arm.joint_path import JointPath, MotionLimits
+from teachpath.motion.arm.joint_path import JointPath
+from teachpath.motion.arm.limits import MotionLimits
 from teachpath.motion.arm.puma560 import Array
 from teachpath.motion.paths.ik_branches import Candidate, configurations
 from teachpath.motion.paths.tool_path import ToolPath

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from teachpath.errors import NotFound, PathRefused
 from teachpath.io.store.store import Run, Store
+from teachpath.motion.arm.model import Arm
 from teachpath.motion.execution.motion_preview import preview_motion
 from teachpath.motion.settings import MotionSettings
 from teachpath.records import Demonstration, LearnedPath, MotionPreview, Plan, Scene, Trajectory
@@ -22,6 +23,7 @@ class Review:
         paths: in their newest versions.
         plans: the newest of each path's present version, by path.
         motions: what the arm would do, by path.
+        arm: that does it.
     """
 
     run: Run
@@ -31,6 +33,7 @@ class Review:
     paths: tuple[LearnedPath, ...]
     plans: dict[str, Plan]
     motions: dict[str, MotionPreview]
+    arm: Arm
 
     def number(self, demonstration: str) -> int:
         """Return the number of a demonstration within its task; 0 when it is gone."""
@@ -44,6 +47,7 @@ def review_of(
     scene: Callable[[str], Scene],
     trajectory: Callable[[Demonstration], Trajectory],
     motion: MotionSettings,
+    arm: Arm,
     dwell: float,
 ) -> Review:
     """Gather a review.
@@ -53,6 +57,7 @@ def review_of(
         scene: gives the scene of a name.
         trajectory: gives the object's trajectory of a demonstration.
         motion: settings for the arm's home and its ways there.
+        arm: that the plans are for.
         dwell: how long the gripper takes [s].
 
     Raises:
@@ -66,7 +71,7 @@ def review_of(
     motions = {}
     for path, plan in plans.items():
         try:
-            motions[path] = preview_motion(plan, motion, dwell=dwell)
+            motions[path] = preview_motion(plan, motion, arm, dwell=dwell)
         except PathRefused:
             continue  # a plan under other settings: its certificate is shown, its motion is not
     return Review(
@@ -77,6 +82,7 @@ def review_of(
         paths,
         plans,
         motions,
+        arm,
     )
 
 

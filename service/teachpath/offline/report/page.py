@@ -71,7 +71,7 @@ def html(review: Review, *, home: Array) -> str:
 
 def _data(review: Review, home: Array) -> str:
     motions = [
-        {"path": path.id, "name": f"Way {path.cluster}", **frames(review.motions[path.id])}
+        {"path": path.id, "name": f"Way {path.cluster}", **frames(review.motions[path.id], review.arm)}
         for path in review.paths
         if path.id in review.motions
     ]

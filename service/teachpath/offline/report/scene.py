@@ -13,6 +13,7 @@ from teachpath.live.preview.preview import Preview
 from teachpath.live.preview.scene_tree import pack
 from teachpath.motion.arm.geometry import visual_solids
 from teachpath.motion.arm.kinematics import link_frames
+from teachpath.motion.arm.model import Arm
 from teachpath.offline.report.content import Review
 from teachpath.records import Array, MotionPreview
 from teachpath_proto.keys import Keys
@@ -29,7 +30,7 @@ def way_color(cluster: int) -> int:
 
 def scene_batch(review: Review, home: Array) -> bytes:
     """Return the commands that draw all that stands: arm, scene, demonstrations and paths."""
-    preview = Preview(MemoryBus(), Keys(), visual_solids(), robot="", home=home, statuses=list)
+    preview = Preview(MemoryBus(), Keys(), visual_solids(), arm=review.arm, robot="", home=home, statuses=list)
     preview.show_object(review.scene.carried)
     arm = preview.connect(lambda: None).pop() or b""
     drawn = [
@@ -72,10 +73,10 @@ def _departures(review: Review) -> list[bytes]:
     return drawn
 
 
-def frames(motion: MotionPreview) -> dict[str, Any]:
+def frames(motion: MotionPreview, arm: Arm) -> dict[str, Any]:
     """Return the poses of links and object: times [s] and, for each, 4 x 4 matrices column by column."""
     at = np.linspace(0, len(motion.times) - 1, min(FRAMES, len(motion.times))).round().astype(int)
-    links = np.array([link_frames(q) for q in motion.joints[at]])  # (n, 7, 4, 4)
+    links = np.array([link_frames(q, arm) for q in motion.joints[at]])  # (n, 7, 4, 4)
     document = {
         "times": np.round(motion.times[at], 3).tolist(),
         "links": np.round(links.transpose(0, 1, 3, 2).reshape(len(at), -1, 16), 5).tolist(),

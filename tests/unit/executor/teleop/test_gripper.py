@@ -7,12 +7,14 @@ import pytest
 
 from teachpath.executor.teleop.gripper import GripperFollower
 from teachpath.motion.arm.kinematics import downward_poses, inverse_kinematics, tool_pose
-from teachpath.motion.arm.puma560 import LOWER, UPPER
+from teachpath.motion.arm.model import Arm
 from teachpath.motion.collision.builtin_scenes import paper_scene
 from teachpath.records import Calibration, JointState, TeleopRequest
 from tests.unit.executor.executors import within_limits
 from tests.unit.executor.teleop.test_program import CLUTCH, Held
 from tests.unit.recording.hands import CLOSED, OPEN, sample
+
+ARM = Arm.of_variant()
 
 SCENE = paper_scene()
 BLOCK = np.array(SCENE.carried.position) if SCENE.carried else np.zeros(3)
@@ -21,8 +23,8 @@ REACH = 0.03
 
 def above(height: float) -> np.ndarray:
     """A configuration within its limits with the tool straight down over the block."""
-    q = inverse_kinematics(downward_poses((BLOCK + height * np.eye(3)[2])[None], np.pi)).joints[0, 1]
-    return np.where(q < LOWER, q + 2 * np.pi, np.where(q > UPPER, q - 2 * np.pi, q))
+    q = inverse_kinematics(downward_poses((BLOCK + height * np.eye(3)[2])[None], np.pi), ARM).joints[0, 1]
+    return np.where(q < ARM.limits.lower, q + 2 * np.pi, np.where(q > ARM.limits.upper, q - 2 * np.pi, q))
 
 
 class Picking(Held):
@@ -35,7 +37,7 @@ class Picking(Held):
         self.carried: np.ndarray | None = None  # the block, seen from the tool
 
     def joint_state(self) -> JointState:
-        state, tool = super().joint_state(), tool_pose(self.position)
+        state, tool = super().joint_state(), tool_pose(self.position, ARM)
         if state.gripper_closed and self.carried is None and np.linalg.norm(self.block - tool[:3, 3]) < REACH:
             self.carried = self.block - tool[:3, 3]
         elif not state.gripper_closed:
@@ -88,7 +90,7 @@ def test_the_block_is_taken_carried_through_the_clutch_and_put_down() -> None:
     assert -0.003 <= (seen["pressed down"] - BLOCK)[2] < 0.02
     assert "move the hand back" in str(seen["why"])
     np.testing.assert_allclose(seen["put down"], seen["pressed down"], atol=1e-9)
-    assert tool_pose(bench.position)[2, 3] > seen["put down"][2] + 0.1
+    assert tool_pose(bench.position, ARM)[2, 3] > seen["put down"][2] + 0.1
     assert within_limits(bench.setpoints)
 
 

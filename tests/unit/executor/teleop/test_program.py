@@ -9,10 +9,13 @@ from teachpath.errors import Conflict, UnusableInput
 from teachpath.io.documents import encode
 from teachpath.io.wire import encode_sample
 from teachpath.motion.arm.kinematics import tool_pose
+from teachpath.motion.arm.model import Arm
 from teachpath.motion.collision.builtin_scenes import empty_scene
 from teachpath.records import Calibration, TeleopRequest
 from tests.unit.executor.executors import HOME, KEYS, PERIOD_NS, Bench, standing, within_limits
 from tests.unit.recording.hands import sample
+
+ARM = Arm.of_variant()
 
 CLUTCH = 4
 ORDER = TeleopRequest("glove", Calibration("identity"), empty_scene())
@@ -56,7 +59,7 @@ class Held(Bench):
 
 
 def moved(bench: Held) -> np.ndarray:
-    return tool_pose(bench.setpoints[-1].position)[:3, 3] - tool_pose(HOME)[:3, 3]
+    return tool_pose(bench.setpoints[-1].position, ARM)[:3, 3] - tool_pose(HOME, ARM)[:3, 3]
 
 
 def test_the_arm_follows_while_the_clutch_is_pressed_and_a_lost_hand_needs_it_again() -> None:

@@ -5,12 +5,15 @@ from teachpath.errors import UnusableRecording
 from teachpath.io.setpoints import read_setpoints
 from teachpath.motion.analysis.log_check import SetpointLog, check_log
 from teachpath.motion.arm.kinematics import tool_pose
+from teachpath.motion.arm.model import Arm
 from teachpath.motion.collision.builtin_scenes import paper_scene
 from teachpath.motion.planning.certificate import plan_trajectory
 from teachpath.motion.planning.plan import plan
 from teachpath.motion.settings import MotionSettings
 from teachpath.records import Plan
 from tests.unit.motion.ways import FAR, MIDDLE, way
+
+ARM = Arm.of_variant()
 
 RATE = 250.0
 
@@ -26,7 +29,7 @@ def streamed(planned: Plan, **changes: object) -> SetpointLog:
 
 
 def test_what_was_planned_is_judged_to_keep_everything(planned: Plan) -> None:
-    judgement = check_log(streamed(planned), way(MIDDLE).curve)
+    judgement = check_log(streamed(planned), way(MIDDLE).curve, ARM)
     assert judgement.faults == ()
     assert any("over 100.0 % of its parameter" in sentence for sentence in judgement.measured)
 
@@ -35,7 +38,7 @@ def test_its_own_kinematics_agree_with_ours() -> None:
     from teachpath.motion.analysis.log_check import _tool
 
     q = np.random.default_rng(2).uniform(-2, 2, (50, 6))
-    np.testing.assert_allclose(_tool(q), tool_pose(q)[:, :3, 3], atol=1e-12)
+    np.testing.assert_allclose(_tool(q, ARM), tool_pose(q, ARM)[:, :3, 3], atol=1e-12)
 
 
 def test_a_setpoint_that_was_dropped_repeated_or_moved_is_found(planned: Plan) -> None:
@@ -46,7 +49,7 @@ def test_a_setpoint_that_was_dropped_repeated_or_moved_is_found(planned: Plan) -
     moved = whole.positions.copy()
     moved[middle] += 2e-4
     for log, words in ((dropped, "missing"), (repeated, "limit used to"), (SetpointLog(whole.times, moved), "jerk")):
-        faults = check_log(log, way(MIDDLE).curve).faults
+        faults = check_log(log, way(MIDDLE).curve, ARM).faults
         assert any(words in fault for fault in faults), faults
 
 
@@ -55,23 +58,23 @@ def test_a_gap_at_rest_is_no_fault_and_one_in_motion_is(planned: Plan) -> None:
     rest = np.repeat(whole.positions[:1], 10, axis=0)
     positions = np.concatenate([rest, whole.positions])
     times = np.concatenate([np.arange(10) / RATE, 1.0 + whole.times])
-    assert check_log(SetpointLog(times, positions), None).faults == ()
+    assert check_log(SetpointLog(times, positions), None, ARM).faults == ()
     middle = len(times) // 2
     times[middle:] += 0.5
-    assert any("not one period apart" in fault for fault in check_log(SetpointLog(times, positions), None).faults)
+    assert any("not one period apart" in fault for fault in check_log(SetpointLog(times, positions), None, ARM).faults)
 
 
 def test_another_path_or_other_limits_are_broken(planned: Plan) -> None:
-    assert any("off the path" in f for f in check_log(streamed(planned), way(MIDDLE, height=0.61).curve).faults)
+    assert any("off the path" in f for f in check_log(streamed(planned), way(MIDDLE, height=0.61).curve, ARM).faults)
     faster = streamed(planned)
     quick = SetpointLog(faster.times / 1.2, faster.positions)
-    assert len([f for f in check_log(quick, way(MIDDLE).curve).faults if "limit used to" in f]) == 3
+    assert len([f for f in check_log(quick, way(MIDDLE).curve, ARM).faults if "limit used to" in f]) == 3
     beyond = SetpointLog(faster.times, faster.positions + np.array([0, 0, 0, 0, 4.0, 0]))
-    assert any("beyond its limit" in f for f in check_log(beyond, None).faults)
-    far = tool_pose(np.array(MotionSettings().home))[:3, 3]
+    assert any("beyond its limit" in f for f in check_log(beyond, None, ARM).faults)
+    far = tool_pose(np.array(MotionSettings().home), ARM)[:3, 3]
     rest = SetpointLog(faster.times, np.tile(MotionSettings().home, (len(faster.times), 1)))
     assert np.linalg.norm(way(FAR).curve(0.0) - far) > 0.01
-    assert any("never comes to the start" in f for f in check_log(rest, way(FAR).curve).faults)
+    assert any("never comes to the start" in f for f in check_log(rest, way(FAR).curve, ARM).faults)
 
 
 def test_a_csv_is_read_back_and_a_broken_one_names_its_line() -> None:

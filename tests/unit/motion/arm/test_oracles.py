@@ -9,35 +9,31 @@ from scipy.spatial.transform import Rotation
 
 from teachpath.motion.arm.kinematics import inverse_kinematics, jacobian, link_frames, tool_pose
 from teachpath.motion.arm.mjcf import physical_inertia, write_mjcf
+from teachpath.motion.arm.model import Arm
 from teachpath.motion.arm.puma560 import (
-    DEFAULT_VARIANT,
     GRIPPER_COM,
     GRIPPER_INERTIA,
     GRIPPER_MASS,
-    LOWER,
-    TOOL_LENGTH,
-    UPPER,
     VARIANTS,
-    Variant,
 )
 from teachpath.motion.collision.builtin_scenes import empty_scene
 from tests.unit.motion.arm.screws import Body, Screws
 
-TABLE = VARIANTS[DEFAULT_VARIANT]
+ARM = Arm.of_variant()
 NOMINAL = np.array([0, np.pi / 4, np.pi, 0, np.pi / 4, 0])  # `qn` of the toolbox
 ONES, NOTHING = np.ones(6), np.zeros(6)
 # Printed with four decimals, and taken from ones with four more.
 PRINTED = 5.1e-5
 
-every_variant = pytest.mark.parametrize("variant", VARIANTS.values(), ids=list(VARIANTS))
+every_arm = pytest.mark.parametrize("arm", [Arm.of_variant(name) for name in VARIANTS], ids=list(VARIANTS))
 
 
 class Bare:
     """The arm in MuJoCo with exactly the published masses, without our gripper, contacts and joint stops."""
 
     def __init__(self) -> None:
-        self.model = model = mujoco.MjModel.from_xml_string(write_mjcf(empty_scene(), variant=TABLE))
-        for number, link in enumerate(TABLE.links, start=1):
+        self.model = model = mujoco.MjModel.from_xml_string(write_mjcf(empty_scene(), ARM))
+        for number, link in enumerate(ARM.links, start=1):
             model.body_mass[model.body(f"link{number}").id] = link.mass
             model.body_inertia[model.body(f"link{number}").id] = link.inertia
         model.body_mass[model.body("gripper").id] = 0.0
@@ -52,7 +48,7 @@ class Bare:
         self.model.opt.gravity[2] = -gravity
         self.data.qpos[:], self.data.qvel[:], self.data.qacc[:] = q, velocity, acceleration
         mujoco.mj_inverse(self.model, self.data)
-        coulomb = np.array([abs(link.gear) * link.coulomb[0] for link in TABLE.links])
+        coulomb = np.array([abs(link.gear) * link.coulomb[0] for link in ARM.links])
         return np.array(self.data.qfrc_inverse) + coulomb * (velocity > 0)
 
 
@@ -94,12 +90,12 @@ def test_gravity_load_elsewhere_is_the_published_one() -> None:
 
 def test_pose_and_jacobian_are_the_published_ones() -> None:
     # The same book, section 7.2: the wrist centre from the shoulder; the toolbox's tests: manipulabilities.
-    frame = link_frames(NOMINAL, TABLE)[6]
-    wrist = frame[:3, 3] - TABLE.links[5].d * frame[:3, 2] - [0.0, 0.0, TABLE.links[0].d]
+    frame = link_frames(NOMINAL, ARM)[6]
+    wrist = frame[:3, 3] - ARM.links[5].d * frame[:3, 2] - [0.0, 0.0, ARM.links[0].d]
     np.testing.assert_allclose(wrist, [0.5963, -0.1501, -0.01435], atol=PRINTED)
     np.testing.assert_allclose(frame[:3, :3], [[0, 0, 1], [0, 1, 0], [-1, 0, 0]], atol=1e-12)
-    at_tool = jacobian(NOMINAL, TABLE)
-    hand = (TABLE.links[5].d + TOOL_LENGTH) * frame[:3, 2]
+    at_tool = jacobian(NOMINAL, ARM)
+    hand = (ARM.links[5].d + ARM.tool_length) * frame[:3, 2]
     at_wrist = at_tool[:3] - np.cross(at_tool[3:].T, hand).T
     volumes = [np.sqrt(np.linalg.det(j @ j.T)) for j in (at_tool, at_wrist, at_tool[3:])]
     np.testing.assert_allclose(volumes, [0.0786, 0.111181, 2.44949], atol=PRINTED)
@@ -107,44 +103,44 @@ def test_pose_and_jacobian_are_the_published_ones() -> None:
 
 @pytest.fixture(scope="module")
 def configurations() -> np.ndarray:
-    return np.random.default_rng(1994).uniform(LOWER, UPPER, (100, 6))
+    return np.random.default_rng(1994).uniform(ARM.limits.lower, ARM.limits.upper, (100, 6))
 
 
-def screws_of(variant: Variant) -> Screws:
-    rows = variant.links
+def screws_of(arm: Arm) -> Screws:
+    rows = arm.links
     return Screws(
         height=rows[0].d,
         upper=rows[1].a,
         offset=rows[2].d,
         elbow=rows[2].a,
         forearm=rows[3].d,
-        hand=rows[5].d + TOOL_LENGTH,
+        hand=rows[5].d + arm.tool_length,
     )
 
 
-@every_variant
-def test_pose_and_jacobian_are_those_of_the_screws(variant: Variant, configurations: np.ndarray) -> None:
-    other = screws_of(variant)
+@every_arm
+def test_pose_and_jacobian_are_those_of_the_screws(arm: Arm, configurations: np.ndarray) -> None:
+    other = screws_of(arm)
     for q in configurations[:40]:
-        np.testing.assert_allclose(tool_pose(q, variant), other.tool_pose(q), atol=1e-12)
-        np.testing.assert_allclose(jacobian(q, variant), other.jacobian(q), atol=1e-12)
+        np.testing.assert_allclose(tool_pose(q, arm), other.tool_pose(q), atol=1e-12)
+        np.testing.assert_allclose(jacobian(q, arm), other.jacobian(q), atol=1e-12)
 
 
-@every_variant
-def test_inverse_dynamics_is_that_of_the_screws(variant: Variant, configurations: np.ndarray) -> None:
-    model = mujoco.MjModel.from_xml_string(write_mjcf(empty_scene(), variant=variant))
+@every_arm
+def test_inverse_dynamics_is_that_of_the_screws(arm: Arm, configurations: np.ndarray) -> None:
+    model = mujoco.MjModel.from_xml_string(write_mjcf(empty_scene(), arm))
     model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_CONSTRAINT
-    data, other = mujoco.MjData(model), screws_of(variant)
-    bodies, zero = [], link_frames(NOTHING, variant)
-    for number, link in enumerate(variant.links, start=1):
+    data, other = mujoco.MjData(model), screws_of(arm)
+    bodies, zero = [], link_frames(NOTHING, arm)
+    for number, link in enumerate(arm.links, start=1):
         solids = [(max(link.mass, 1e-3), link.com, physical_inertia(link))]
         if number == 6:
             solids.append((GRIPPER_MASS, GRIPPER_COM, np.array(GRIPPER_INERTIA)))
         for mass, com, moments in solids:
             turn = zero[number, :3, :3]
             bodies.append(Body(number, mass, turn @ com + zero[number, :3, 3], turn @ np.diag(moments) @ turn.T))
-    armature = np.array([link.motor_inertia * link.gear**2 for link in variant.links])
-    viscous = np.array([link.viscous * link.gear**2 for link in variant.links])
+    armature = np.array([link.motor_inertia * link.gear**2 for link in arm.links])
+    viscous = np.array([link.viscous * link.gear**2 for link in arm.links])
     rng = np.random.default_rng(7)
     for q in configurations[:30]:
         velocity, acceleration = rng.uniform(-3, 3, 6), rng.uniform(-20, 20, 6)
@@ -156,9 +152,9 @@ def test_inverse_dynamics_is_that_of_the_screws(variant: Variant, configurations
 
 def test_the_eight_branches_are_all_that_there_are() -> None:
     """Newton's method on the screws, from anywhere, finds nothing that the closed form has not."""
-    other, rng = screws_of(TABLE), np.random.default_rng(8)
-    pose = tool_pose(np.array([0.4, 0.7, -2.2, 0.9, 1.1, -0.5]), TABLE)
-    known, found = inverse_kinematics(pose[None], variant=TABLE).joints[0], set()
+    other, rng = screws_of(ARM), np.random.default_rng(8)
+    pose = tool_pose(np.array([0.4, 0.7, -2.2, 0.9, 1.1, -0.5]), ARM)
+    known, found = inverse_kinematics(pose[None], ARM).joints[0], set()
     for _ in range(100):
         answer = _newton(other, pose, rng.uniform(-np.pi, np.pi, 6))
         if answer is not None:

@@ -1,5 +1,3 @@
-import subprocess
-import sys
 from dataclasses import fields
 from itertools import pairwise
 from typing import get_args, get_type_hints
@@ -10,19 +8,17 @@ import pytest
 
 from teachpath.motion.arm.geometry import collision_solids, visual_solids
 from teachpath.motion.arm.mjcf import physical_inertia, write_mjcf
+from teachpath.motion.arm.model import Arm
 from teachpath.motion.arm.puma560 import (
-    ACCELERATION,
     DEFAULT_VARIANT,
-    LOWER,
-    SPEED,
-    TORQUE,
-    UPPER,
     VARIANTS,
     Link,
     Variant,
 )
 from teachpath.motion.collision.builtin_scenes import builtin_scenes, paper_scene
 from teachpath.motion.settings import MotionSettings
+
+ARM = Arm.of_variant()
 
 PROBE = '<geom name="probe" type="sphere" size="0.0001" contype="0" conaffinity="0"/>'
 SQUARE = np.array([0.5**0.5, 0.5**0.5, 1.0])  # the corners of a square within a circle
@@ -49,25 +45,6 @@ def test_what_a_variant_does_not_name_is_the_defaults_and_limits_are_alike(varia
         assert of[0] == of[1] or not alike
 
 
-def test_a_process_has_one_arm_and_never_another() -> None:
-    program = """
-from teachpath.errors import UnusableSettings
-from teachpath.motion.arm.variants import arm, choose
-from teachpath.motion.arm.kinematics import tool_pose
-choose("fu-gonzalez-lee"); choose("corke-1996")
-print(round(tool_pose([0.0] * 6)[1, 3], 5), arm().name)
-try: choose("corke-armstrong")
-except UnusableSettings as error: print(error)
-try: choose("stanford")
-except UnusableSettings as error: print(error)
-"""
-    done = subprocess.run([sys.executable, "-c", program], check=True, capture_output=True, text=True)
-    first, second, third = done.stdout.splitlines()
-    assert first == "-0.1254 corke-1996"
-    assert "corke-1996 already" in second
-    assert "known: corke-armstrong, " in third
-
-
 @every_variant
 def test_the_simulated_inertia_differs_only_where_no_body_can_have_the_published_one(variant: Variant) -> None:
     for link in variant.links:
@@ -80,25 +57,26 @@ def test_the_simulated_inertia_differs_only_where_no_body_can_have_the_published
 
 @every_variant
 def test_the_acceleration_box_keeps_every_torque_at_full_speed(variant: Variant) -> None:
-    model = mujoco.MjModel.from_xml_string(write_mjcf(builtin_scenes()["empty"], variant=variant))
+    arm = Arm.of_variant(variant.name)
+    model = mujoco.MjModel.from_xml_string(write_mjcf(builtin_scenes()["empty"], arm))
     model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_CONSTRAINT  # neither contacts nor joint stops
     data = mujoco.MjData(model)
     rng = np.random.default_rng(3)
     worst = np.zeros(6)
     for _ in range(300):
-        data.qpos[:6] = rng.uniform(LOWER, UPPER)
-        data.qvel[:6] = SPEED * rng.choice([-1.0, 1.0], 6)
-        data.qacc[:6] = ACCELERATION * rng.choice([-1.0, 1.0], 6)
+        data.qpos[:6] = rng.uniform(arm.limits.lower, arm.limits.upper)
+        data.qvel[:6] = arm.limits.speed * rng.choice([-1.0, 1.0], 6)
+        data.qacc[:6] = arm.limits.acceleration * rng.choice([-1.0, 1.0], 6)
         wanted = data.qacc[:6].copy()
         mujoco.mj_forward(model, data)
         data.qacc[:6] = wanted
         mujoco.mj_inverse(model, data)
-        worst = np.maximum(worst, np.abs(data.qfrc_inverse[:6]) / TORQUE)
+        worst = np.maximum(worst, np.abs(data.qfrc_inverse[:6]) / arm.limits.torque)
     assert worst.max() <= 1.0
 
 
 def test_every_part_is_a_geom_of_its_link() -> None:
-    model = mujoco.MjModel.from_xml_string(write_mjcf(paper_scene()))
+    model = mujoco.MjModel.from_xml_string(write_mjcf(paper_scene(), ARM))
     for part in collision_solids():
         assert model.geom_bodyid[model.geom(part.name).id] == (model.body(f"link{part.link}").id if part.link else 0)
     assert len({part.name for part in visual_solids()}) == len(visual_solids())
@@ -107,7 +85,7 @@ def test_every_part_is_a_geom_of_its_link() -> None:
 def test_what_is_drawn_alone_stands_out_by_millimetres() -> None:
     """Every corner of a trim lies within 6 mm of a solid of the same link."""
     model = mujoco.MjModel.from_xml_string(
-        write_mjcf(builtin_scenes()["empty"]).replace("</worldbody>", PROBE + "</worldbody>")
+        write_mjcf(builtin_scenes()["empty"], ARM).replace("</worldbody>", PROBE + "</worldbody>")
     )
     data = mujoco.MjData(model)
     mujoco.mj_kinematics(model, data)
@@ -124,19 +102,19 @@ def test_what_is_drawn_alone_stands_out_by_millimetres() -> None:
 
 
 def test_motors_are_limited_to_the_published_torques() -> None:
-    model = mujoco.MjModel.from_xml_string(write_mjcf(paper_scene()))
-    np.testing.assert_allclose(model.actuator_ctrlrange, np.column_stack([-TORQUE, TORQUE]))
-    np.testing.assert_allclose(model.jnt_range[:6], np.column_stack([LOWER, UPPER]))
+    model = mujoco.MjModel.from_xml_string(write_mjcf(paper_scene(), ARM))
+    np.testing.assert_allclose(model.actuator_ctrlrange, np.column_stack([-ARM.limits.torque, ARM.limits.torque]))
+    np.testing.assert_allclose(model.jnt_range[:6], np.column_stack([ARM.limits.lower, ARM.limits.upper]))
 
 
 def test_the_parts_join_into_one_arm_in_every_configuration() -> None:
     chain = ["foot", "pedestal", "trunk", "shoulder", "upper arm", "forearm", "wrist roll", "wrist yoke", "wrist"]
     chain += ["flange", "palm", "left finger"]
-    model = mujoco.MjModel.from_xml_string(write_mjcf(paper_scene()))
+    model = mujoco.MjModel.from_xml_string(write_mjcf(paper_scene(), ARM))
     data = mujoco.MjData(model)
     rng = np.random.default_rng(4)
     for _ in range(20):
-        data.qpos[:6] = rng.uniform(LOWER, UPPER)
+        data.qpos[:6] = rng.uniform(ARM.limits.lower, ARM.limits.upper)
         mujoco.mj_kinematics(model, data)
         for one, other in pairwise(chain):
             gap = mujoco.mj_geomDistance(model, data, model.geom(one).id, model.geom(other).id, 1.0, None)

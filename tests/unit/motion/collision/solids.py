@@ -5,7 +5,10 @@ import numpy as np
 
 from teachpath.motion.arm.geometry import collision_solids
 from teachpath.motion.arm.mjcf import write_mjcf
+from teachpath.motion.arm.model import Arm
 from teachpath.motion.collision.builtin_scenes import empty_scene
+
+ARM = Arm.of_variant()
 
 RIM = np.linspace(0.0, 2 * np.pi, 12, endpoint=False)
 SIGNS = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], dtype=float)
@@ -15,7 +18,7 @@ class Surface:
     """Corners of boxes and meshes, rims of cylinders, poles of spheres: of the arm's moving parts."""
 
     def __init__(self) -> None:
-        self._model = mujoco.MjModel.from_xml_string(write_mjcf(empty_scene()))
+        self._model = mujoco.MjModel.from_xml_string(write_mjcf(empty_scene(), ARM))
         self._data = mujoco.MjData(self._model)
         self._geoms = [self._model.geom(part.name).id for part in collision_solids() if part.link >= 1]
         self._local = [self._points(geom) for geom in self._geoms]

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from teachpath.motion.arm.kinematics import downward_poses, inverse_kinematics, tool_pose
-from teachpath.motion.arm.puma560 import LOWER, UPPER
+from teachpath.motion.arm.model import Arm
 from teachpath.motion.collision.builtin_scenes import paper_scene
 from teachpath.motion.collision.collision_model import MAX_DISTANCE, Clearance, CollisionModel, Load
 from teachpath.motion.settings import MotionSettings
@@ -10,19 +10,21 @@ from teachpath.motion.timing.joint_moves import placed_load
 from teachpath.records import Scene, Shape
 from tests.unit.motion.collision.solids import Surface
 
+ARM = Arm.of_variant()
+
 HOME = np.array(MotionSettings().home)
 
 
 def over(x: float, y: float, z: float) -> np.ndarray:
     """A configuration with the tool pointing down at a place, elbow up."""
-    return inverse_kinematics(downward_poses(np.array([[x, y, z]]), 0.0)).joints[:, 1]
+    return inverse_kinematics(downward_poses(np.array([[x, y, z]]), 0.0), ARM).joints[:, 1]
 
 
 def test_the_distance_of_the_fingers_to_a_table_is_the_gap_below_them() -> None:
     table = Shape("table", "box", (0.9, 1.2, 0.04), (0.6, 0.0, 0.48))
     for gap in (0.01, 0.03):
         tip = 0.135 - 0.13  # of the fingers below the grasp point
-        least = CollisionModel(Scene("s", (table,))).clearances(over(0.5, 0.1, 0.5 + tip + gap))[0]
+        least = CollisionModel(Scene("s", (table,)), ARM).clearances(over(0.5, 0.1, 0.5 + tip + gap))[0]
         assert least.distance == pytest.approx(gap, abs=1e-6)
         assert least.other_body == "table"
         assert "finger" in least.body
@@ -30,7 +32,7 @@ def test_the_distance_of_the_fingers_to_a_table_is_the_gap_below_them() -> None:
 
 def test_a_place_is_free_in_the_middle_and_struck_at_its_worst() -> None:
     post = Shape("post", "cylinder", (0.02, 0.3), (0.5, 0.0, 0.65))
-    model = CollisionModel(Scene("s", (post,)))
+    model = CollisionModel(Scene("s", (post,)), ARM)
     q = np.concatenate([over(0.5, y, 0.7) for y in (-0.3, -0.15, 0.0, 0.15)])
     distances = [row.distance for row in model.clearances(q)]
     assert int(np.argmin(distances)) == 2
@@ -38,11 +40,11 @@ def test_a_place_is_free_in_the_middle_and_struck_at_its_worst() -> None:
 
 
 def test_the_arm_at_home_is_clear_of_itself() -> None:
-    assert CollisionModel(Scene("s")).clearances(HOME)[0].distance > 0.02
+    assert CollisionModel(Scene("s"), ARM).clearances(HOME)[0].distance > 0.02
 
 
 def test_a_folded_arm_meets_itself() -> None:
-    least = CollisionModel(Scene("s")).clearances(over(0.15, -0.05, 0.4))[0]
+    least = CollisionModel(Scene("s"), ARM).clearances(over(0.15, -0.05, 0.4))[0]
     assert least.distance < 0.0
     assert {least.body, least.other_body} & {"pedestal", "trunk", "shoulder", "upper arm"}
 
@@ -53,8 +55,8 @@ def test_the_block_may_touch_the_table_it_stands_on_but_not_what_is_beside_it() 
     q = over(*scene.carried.position)
     upright = np.eye(4)
     upright[:3, 3] = scene.carried.position
-    load = Load(grasp_pose=np.linalg.inv(tool_pose(q[0])) @ upright)
-    model = CollisionModel(scene)
+    load = Load(grasp_pose=np.linalg.inv(tool_pose(q[0], ARM)) @ upright)
+    model = CollisionModel(scene, ARM)
     assert model.support_distances(q, load)[0].distance == pytest.approx(0.0, abs=1e-6)
     assert model.clearances(q, load=load)[0].distance > 0.01
     assert model.finger_distances(q, Load(position=scene.carried.position))[0].distance > 0.005
@@ -64,8 +66,8 @@ def test_the_block_may_touch_the_table_it_stands_on_but_not_what_is_beside_it() 
 
 
 def test_no_moving_point_is_farther_from_an_axis_than_its_lever() -> None:
-    surface, levers = Surface(), CollisionModel(paper_scene()).lever_arms()
-    q = np.random.default_rng(5).uniform(LOWER, UPPER, (60, 6))
+    surface, levers = Surface(), CollisionModel(paper_scene(), ARM).lever_arms()
+    q = np.random.default_rng(5).uniform(ARM.limits.lower, ARM.limits.upper, (60, 6))
     longest = np.zeros(6)
     for joint in range(6):
         step = np.zeros(6)
@@ -97,7 +99,7 @@ TURNED = (np.cos(np.pi / 8), 0.0, 0.0, np.sin(np.pi / 8))
     ],
 )
 def test_every_kind_of_shape_is_met_where_it_is(shape: Shape, distance: float) -> None:
-    model = CollisionModel(Scene("s", (shape,)))
+    model = CollisionModel(Scene("s", (shape,)), ARM)
     (least,) = model.clearances(over(0.5 - 0.07 - 0.011, 0.0, 0.75))
     assert least.other_body == shape.name
     assert least.distance == pytest.approx(distance, abs=2e-5)
@@ -107,14 +109,14 @@ def test_the_object_stands_turned_where_a_turned_tool_left_it() -> None:
     scene = paper_scene()
     assert scene.carried is not None
     start, goal = over(*scene.carried.position)[0], over(0.6, 0.2, 0.6)[0]
-    load = placed_load(scene, start, goal + np.array([0, 0, 0, 0, 0, 0.5]))
+    load = placed_load(CollisionModel(scene, ARM), start, goal + np.array([0, 0, 0, 0, 0, 0.5]))
     assert load is not None
     assert load.rotation is not None
     assert np.arctan2(load.rotation[1, 0], load.rotation[0, 0]) == pytest.approx(-0.5, abs=1e-9)
 
 
 def test_nothing_near_is_far() -> None:
-    assert CollisionModel(Scene("s")).clearances(over(0.5, 0.0, 0.8))[0].distance <= MAX_DISTANCE
+    assert CollisionModel(Scene("s"), ARM).clearances(over(0.5, 0.0, 0.8))[0].distance <= MAX_DISTANCE
 
 
 @pytest.mark.parametrize(

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from teachpath.motion.arm.joint_path import JointPath
+from teachpath.motion.arm.model import Arm
 from teachpath.motion.arm.puma560 import Array
 from teachpath.motion.collision.builtin_scenes import empty_scene, paper_scene
 from teachpath.motion.collision.collision_model import Clearance, CollisionModel, grasped_load
@@ -13,6 +14,8 @@ from teachpath.motion.settings import MotionSettings
 from teachpath.records import Scene, Shape
 from tests.unit.motion.collision.solids import Surface
 from tests.unit.motion.ways import MIDDLE, learned, wandering, way
+
+ARM = Arm.of_variant()
 
 LEVERS = np.array([1.0, 0.0, 0.0, 0.0, 0.0, 0.0])
 
@@ -61,7 +64,7 @@ def test_what_is_asked_is_proved_where_it_just_holds() -> None:
 def test_the_bound_on_the_way_of_every_point_holds_along_a_spline(seed: int) -> None:
     made = plan(learned(wandering(seed)), empty_scene())
     joints = JointPath(np.linspace(0, 1, len(made.lengths)), made.lengths, made.joints)
-    model = CollisionModel(empty_scene())
+    model = CollisionModel(empty_scene(), ARM)
     sweep = ContinuousCheck.along_spline(joints, model.lever_arms())
     places = np.linspace(0, 1, 300)
     bound = np.interp(places, sweep.parameters, sweep.motion_bounds)
@@ -75,7 +78,8 @@ def test_the_certified_clearance_is_below_any_that_dense_sampling_finds(scene: S
     made = plan(way(MIDDLE), scene) if scene.carried else plan(learned(wandering(2)), scene)
     joints = JointPath(np.linspace(0, 1, len(made.lengths)), made.lengths, made.joints)
     q = joints(np.linspace(0, 1, 3000))[:, :6]
-    dense = min(row.distance for row in CollisionModel(scene).clearances(q, load=grasped_load(scene, q[0])))
+    model = CollisionModel(scene, ARM)
+    dense = min(row.distance for row in model.clearances(q, load=grasped_load(model, q[0])))
     certified = made.certificate.clearance.value
     assert MotionSettings().clearance_min <= certified <= dense
     assert certified > 0.8 * dense

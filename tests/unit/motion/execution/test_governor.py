@@ -7,8 +7,8 @@ import pytest
 import ruckig
 
 import teachpath.motion
-from teachpath.motion.arm.joint_path import ARM_LIMITS
 from teachpath.motion.arm.kinematics import tool_pose
+from teachpath.motion.arm.model import Arm
 from teachpath.motion.execution.governor import MAX_REVERSE_RATE, Governor
 from teachpath.motion.paths.ik_branches import enumerate_candidates, is_usable
 from teachpath.motion.paths.tool_path import sample_tool_path
@@ -20,6 +20,8 @@ from teachpath.motion.timing.timing import time_tool_path
 from teachpath.nurbs import Curve
 from tests.unit.motion.ways import FAR, NEAR, hooked, wandering, way
 
+ARM = Arm.of_variant()
+
 DT = 0.004
 LIMIT = 1.0 + 1e-9
 CURVES = {"near": way(NEAR).curve, "far": way(FAR, degree=5).curve, "hooked": hooked(), "wandering": wandering(1)}
@@ -28,13 +30,15 @@ CURVES = {"near": way(NEAR).curve, "far": way(FAR, degree=5).curve, "hooked": ho
 def track_of(curve: Curve) -> TimedTrajectory:
     settings = MotionSettings()
     found = sample_tool_path(curve, settings)
-    candidate = next(c for c in enumerate_candidates(found, settings) if is_usable(c, settings))
-    return time_joint_path(*time_tool_path(found, candidate, ARM_LIMITS, rate=1 / DT), ARM_LIMITS)
+    candidate = next(c for c in enumerate_candidates(found, ARM, settings) if is_usable(c, settings))
+    return time_joint_path(*time_tool_path(found, candidate, ARM.limits.motion, rate=1 / DT), ARM.limits.motion)
 
 
 @pytest.fixture(scope="module")
 def tracks() -> dict[str, TimedTrajectory]:
-    line = straight_move(np.zeros(6), np.array([1.0, -0.4, 0.2, 0.0, 0.9, 2.0]), ARM_LIMITS, margins=SYMMETRIC_MARGINS)
+    line = straight_move(
+        np.zeros(6), np.array([1.0, -0.4, 0.2, 0.0, 0.9, 2.0]), ARM.limits.motion, margins=SYMMETRIC_MARGINS
+    )
     return {"line": line} | {name: track_of(curve) for name, curve in CURVES.items()}
 
 
@@ -64,7 +68,7 @@ class Log:
 
     def most_used(self) -> float:
         rest = [self.sent[-1]] * 3 if self.stands() else []
-        return float(max(use.max() for use in limit_uses(np.array(self.sent + rest), ARM_LIMITS, 1 / DT)))
+        return float(max(use.max() for use in limit_uses(np.array(self.sent + rest), ARM.limits.motion, 1 / DT)))
 
 
 def command(governor: Governor, rng: np.random.Generator) -> None:
@@ -174,8 +178,8 @@ def test_the_way_is_the_same_at_every_rate_and_back(tracks: dict[str, TimedTraje
     log.governor.resume()
     log.governor.set_override(0.9)
     log.until(log.finished, within=2000)
-    tool = tool_pose(np.array(log.sent)[:, :6])[:, :3, 3]
-    wanted = tool_pose(track(np.linspace(0.0, track.duration, 100_000))[:, :6])[:, :3, 3]
+    tool = tool_pose(np.array(log.sent)[:, :6], ARM)[:, :3, 3]
+    wanted = tool_pose(track(np.linspace(0.0, track.duration, 100_000))[:, :6], ARM)[:, :3, 3]
     for point in tool[::10]:
         assert np.linalg.norm(wanted - point, axis=1).min() < 1e-4
 

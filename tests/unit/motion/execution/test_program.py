@@ -3,6 +3,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from teachpath.motion.arm.model import Arm
 from teachpath.motion.collision.builtin_scenes import paper_scene
 from teachpath.motion.execution.motion_preview import preview_motion
 from teachpath.motion.execution.program import PlanProgram
@@ -11,6 +12,8 @@ from teachpath.motion.planning.plan import plan
 from teachpath.motion.settings import MotionSettings
 from teachpath.records import Plan
 from tests.unit.motion.ways import MIDDLE, way
+
+ARM = Arm.of_variant()
 
 SETTINGS = MotionSettings()
 
@@ -21,12 +24,12 @@ def slower() -> list[Plan]:
     made = plan(way(MIDDLE), paper_scene())
     paces = [replace(made, pace=made.pace * share) for share in np.linspace(0.5, 1.0, 20)]
     timed = [replace(one, duration=plan_trajectory(one).duration) for one in paces]
-    return [replace(one, certificate=replace(one.certificate, digest=digest(one))) for one in timed]
+    return [replace(one, certificate=replace(one.certificate, digest=digest(one, ARM))) for one in timed]
 
 
 def test_whoever_has_done_all_has_done_exactly_one_whatever_the_last_bit_of_the_table(slower: list[Plan]) -> None:
     for made in slower:
-        program = PlanProgram(made, np.array(SETTINGS.home), SETTINGS)
+        program = PlanProgram(made, np.array(SETTINGS.home), SETTINGS, ARM)
         while not program.finished:
             program.step()
         assert (program.progress, program.arc_length) == (1.0, made.lengths[-1])
@@ -34,6 +37,6 @@ def test_whoever_has_done_all_has_done_exactly_one_whatever_the_last_bit_of_the_
 
 def test_what_is_rehearsed_goes_from_nothing_to_one_and_never_back(slower: list[Plan]) -> None:
     for made in slower:
-        progress = preview_motion(made, SETTINGS, dwell=0.5).progress
+        progress = preview_motion(made, SETTINGS, ARM, dwell=0.5).progress
         assert (progress[0], progress[-1]) == (0.0, 1.0)
         assert np.all(np.diff(progress) >= 0.0)

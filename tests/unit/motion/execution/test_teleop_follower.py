@@ -4,12 +4,14 @@ import numpy as np
 import pytest
 
 from teachpath.motion.arm.kinematics import tool_pose
-from teachpath.motion.arm.puma560 import ACCELERATION, JERK, LOWER, SPEED, UPPER
+from teachpath.motion.arm.model import Arm
 from teachpath.motion.collision.builtin_scenes import empty_scene, paper_scene
 from teachpath.motion.collision.collision_model import CollisionModel
 from teachpath.motion.execution.teleop_follower import TeleopFollower
 from teachpath.motion.settings import MotionSettings
 from teachpath.records import Scene
+
+ARM = Arm.of_variant()
 
 SETTINGS = MotionSettings()
 HOME = np.array(SETTINGS.home)
@@ -21,7 +23,7 @@ class Session:
     """A mirror, the setpoints that it made, and a hand."""
 
     def __init__(self, scene: Scene | None = None, **given: float) -> None:
-        self.model = CollisionModel(scene or empty_scene())
+        self.model = CollisionModel(scene or empty_scene(), ARM)
         self.mirror = TeleopFollower(self.model, HOME, SETTINGS, share=SHARE, **given)
         self.sent = [HOME] * 3
         self.reasons: set[str] = set()
@@ -36,13 +38,13 @@ class Session:
         return self.tool()
 
     def tool(self) -> np.ndarray:
-        return tool_pose(self.sent[-1])[:3, 3]
+        return tool_pose(self.sent[-1], ARM)[:3, 3]
 
     def within_limits(self) -> bool:
         q = np.array(self.sent)
-        return bool(np.all(q >= LOWER) and np.all(q <= UPPER)) and all(
+        return bool(np.all(q >= ARM.limits.lower) and np.all(q <= ARM.limits.upper)) and all(
             bool(np.all(np.abs(np.diff(q, k, axis=0)) / DT**k <= SHARE * limit * (1 + 1e-6)))
-            for k, limit in ((1, SPEED), (2, ACCELERATION), (3, JERK))
+            for k, limit in ((1, ARM.limits.speed), (2, ARM.limits.acceleration), (3, ARM.limits.jerk))
         )
 
 
@@ -54,7 +56,7 @@ def test_the_tool_goes_where_the_hand_went_scaled_and_keeps_its_orientation(scal
     way = np.array([0.05, 0.08, 0.04])
     end = session.run(600, hand + way)
     np.testing.assert_allclose(end - begin, scale * way, atol=1e-6)
-    np.testing.assert_allclose(tool_pose(session.sent[-1])[:3, :3], tool_pose(HOME)[:3, :3], atol=1e-6)
+    np.testing.assert_allclose(tool_pose(session.sent[-1], ARM)[:3, :3], tool_pose(HOME, ARM)[:3, :3], atol=1e-6)
     assert session.mirror.at_rest
     assert session.within_limits()
     assert session.reasons == {""}

@@ -5,7 +5,7 @@ import pytest
 
 from teachpath.errors import UnusableInput, UnusableSettings
 from teachpath.motion.arm.kinematics import tool_pose
-from teachpath.motion.arm.puma560 import LOWER, UPPER
+from teachpath.motion.arm.model import Arm
 from teachpath.motion.collision.builtin_scenes import paper_scene
 from teachpath.motion.paths.ik_branches import enumerate_candidates, shift_within_limits
 from teachpath.motion.paths.tool_path import ArcLength, sample_tool_path
@@ -13,6 +13,8 @@ from teachpath.motion.planning.plan import plan
 from teachpath.motion.settings import MotionSettings
 from teachpath.records import Scene, Shape
 from tests.unit.motion.ways import MIDDLE, clamped, way
+
+ARM = Arm.of_variant()
 
 SETTINGS = MotionSettings()
 
@@ -38,21 +40,24 @@ def test_a_sharp_bend_gets_more_nodes() -> None:
 
 def test_every_candidate_is_continuous_and_on_the_path() -> None:
     found = sample_tool_path(way(MIDDLE).curve, SETTINGS)
-    every = enumerate_candidates(found, SETTINGS)
+    every = enumerate_candidates(found, ARM, SETTINGS)
     assert len(every) == 8 * len(SETTINGS.rolls)
     for candidate in every:
-        np.testing.assert_allclose(tool_pose(candidate.joints)[:, :3, 3], found.positions, atol=1e-9)
+        np.testing.assert_allclose(tool_pose(candidate.joints, ARM)[:, :3, 3], found.positions, atol=1e-9)
         assert candidate.branch.jumps.any() == (np.abs(np.diff(candidate.joints, axis=0)).max() > 0.35)
-        inside = np.all((candidate.joints >= LOWER) & (candidate.joints <= UPPER))
+        inside = np.all((candidate.joints >= ARM.limits.lower) & (candidate.joints <= ARM.limits.upper))
         assert inside == (candidate.limit_excess.max() <= 0)
 
 
 def test_whole_turns_bring_a_joint_back_into_its_range() -> None:
-    inside = np.linspace(LOWER + 0.5, LOWER + 1.0, 5)
-    np.testing.assert_allclose(shift_within_limits(inside + 2 * np.pi * np.array([1, -1, 1, 2, 0, 1])) % (2 * np.pi),
-                               inside % (2 * np.pi), atol=1e-9)  # fmt: skip
-    shifted = shift_within_limits(inside[:, :1].repeat(6, axis=1) * 0 + 2 * np.pi * np.array([3, 1, -1, 2, -2, 5]))
-    assert np.all((shifted >= LOWER) & (shifted <= UPPER))
+    inside = np.linspace(ARM.limits.lower + 0.5, ARM.limits.lower + 1.0, 5)
+    outside = inside + 2 * np.pi * np.array([1, -1, 1, 2, 0, 1])
+    same = shift_within_limits(outside, ARM.limits) % (2 * np.pi)
+    np.testing.assert_allclose(same, inside % (2 * np.pi), atol=1e-9)
+    shifted = shift_within_limits(
+        inside[:, :1].repeat(6, axis=1) * 0 + 2 * np.pi * np.array([3, 1, -1, 2, -2, 5]), ARM.limits
+    )
+    assert np.all((shifted >= ARM.limits.lower) & (shifted <= ARM.limits.upper))
 
 
 def test_a_home_outside_the_joint_limits_is_refused() -> None:

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from teachpath.errors import PathRefused
+from teachpath.motion.arm.model import Arm
 from teachpath.motion.collision.builtin_scenes import empty_scene, paper_scene
 from teachpath.motion.paths.ik_branches import enumerate_candidates, nearest_to_usable
 from teachpath.motion.paths.tool_path import sample_tool_path
@@ -15,6 +16,8 @@ from teachpath.motion.settings import MotionSettings
 from teachpath.nurbs import Curve
 from teachpath.records import Assessment, Scene
 from tests.unit.motion.ways import MIDDLE, clamped, gated, learned, wandering, way
+
+ARM = Arm.of_variant()
 
 
 @pytest.mark.parametrize("curve", [way(MIDDLE, degree=5).curve, wandering(3)])
@@ -118,7 +121,7 @@ def test_the_first_stretch_is_the_first_run() -> None:
 
 
 def test_the_least_wrong_branch_has_the_fewest_wrong_nodes() -> None:
-    every = enumerate_candidates(sample_tool_path(way(0.31).curve, MotionSettings()), MotionSettings())
+    every = enumerate_candidates(sample_tool_path(way(0.31).curve, MotionSettings()), ARM, MotionSettings())
     chosen = nearest_to_usable(every)
     counts = [np.count_nonzero((c.limit_excess.max(axis=1) > 0) | c.branch.jumps) for c in every]
     assert np.count_nonzero((chosen.limit_excess.max(axis=1) > 0) | chosen.branch.jumps) == min(counts)

@@ -6,7 +6,7 @@ import pytest
 from teachpath.errors import PathRefused
 from teachpath.io.documents import decode, encode
 from teachpath.motion.arm.kinematics import tool_pose
-from teachpath.motion.arm.puma560 import ACCELERATION, JERK, LOWER, SPEED, UPPER
+from teachpath.motion.arm.model import Arm
 from teachpath.motion.collision.builtin_scenes import empty_scene, paper_scene
 from teachpath.motion.paths.tool_path import ArcLength
 from teachpath.motion.planning.certificate import digest, largest_limit_uses, plan_trajectory, verify
@@ -16,6 +16,8 @@ from teachpath.motion.settings import MotionSettings
 from teachpath.nurbs import Curve
 from teachpath.records import Plan, Shape
 from tests.unit.motion.ways import FAR, MIDDLE, NEAR, clamped, learned, way
+
+ARM = Arm.of_variant()
 
 
 @pytest.fixture(scope="module")
@@ -30,11 +32,11 @@ def test_the_three_ways_of_the_paper_keep_every_limit_and_the_path(x: float, deg
     made = plan(path, paper_scene())
     setpoints = plan_trajectory(made).setpoints(250.0)
     q, s = setpoints[:, :6], setpoints[:, 6]
-    assert np.all((q >= LOWER) & (q <= UPPER))
-    for order, limit in ((1, SPEED), (2, ACCELERATION), (3, JERK)):
+    assert np.all((q >= ARM.limits.lower) & (q <= ARM.limits.upper))
+    for order, limit in ((1, ARM.limits.speed), (2, ARM.limits.acceleration), (3, ARM.limits.jerk)):
         assert np.all(np.abs(np.diff(q, order, axis=0)) * 250.0**order <= limit)
     wanted = path.curve(ArcLength(path.curve).parameters(s))
-    poses = tool_pose(q)
+    poses = tool_pose(q, ARM)
     assert np.linalg.norm(poses[:, :3, 3] - wanted, axis=1).max() < 1e-4
     np.testing.assert_allclose(poses[:, :3, 2], np.tile([0, 0, -1], (len(s), 1)), atol=1e-4)
     assert made.certificate.clearance.value >= MotionSettings().clearance_min
@@ -44,12 +46,12 @@ def test_the_three_ways_of_the_paper_keep_every_limit_and_the_path(x: float, deg
 def test_the_certificate_agrees_with_setpoints_differenced_again(middle: Plan) -> None:
     certificate = middle.certificate
     written = certificate.position_use, certificate.velocity_use, certificate.acceleration_use, certificate.jerk_use
-    assert written == largest_limit_uses(plan_trajectory(middle).setpoints(250.0), 250.0)
+    assert written == largest_limit_uses(plan_trajectory(middle).setpoints(250.0), 250.0, ARM.limits)
 
 
 def test_a_plan_survives_json_and_any_change_of_it_is_noticed(middle: Plan) -> None:
     back = decode(Plan, encode(middle))
-    verify(back)
+    verify(back, ARM)
     bent = back.joints.copy()
     bent[10, 2] += 1e-9
     assert middle.scene.carried is not None
@@ -64,8 +66,8 @@ def test_a_plan_survives_json_and_any_change_of_it_is_noticed(middle: Plan) -> N
         replace(back, above_goal=back.above_goal + 1e-9),
     ):
         with pytest.raises(PathRefused, match="changed since it was certified"):
-            verify(changed)
-    assert digest(back) == middle.certificate.digest
+            verify(changed, ARM)
+    assert digest(back, ARM) == middle.certificate.digest
 
 
 def test_a_path_through_an_obstacle_is_refused_by_name_and_place() -> None:
@@ -124,7 +126,7 @@ def test_a_path_that_stands_still_or_has_no_length_is_refused() -> None:
 def test_without_an_object_the_path_is_simply_followed() -> None:
     made = plan(way(MIDDLE), empty_scene())
     assert made.scene.carried is None
-    verify(made)
+    verify(made, ARM)
 
 
 def test_the_same_path_gives_the_same_motion(middle: Plan) -> None:
@@ -139,10 +141,10 @@ def test_where_above_is_not_free_the_arm_comes_and_goes_from_nearer_or_from_a_si
     lid = Shape("lid", "box", (0.3, 0.3, 0.02), (x - 0.05, y - 0.2, 0.80))
     settings = MotionSettings()
     free, covered = (plan(way(MIDDLE), replace(scene, obstacles=(*scene.obstacles, *more))) for more in ((), (lid,)))
-    straight_up = tool_pose(free.above_start)[:3, 3] - tool_pose(free.joints[0])[:3, 3]
+    straight_up = tool_pose(free.above_start, ARM)[:3, 3] - tool_pose(free.joints[0], ARM)[:3, 3]
     np.testing.assert_allclose(straight_up, [0.0, 0.0, settings.lift], atol=1e-9)
     assert not np.allclose(covered.above_start, free.above_start)
-    verify(covered)
+    verify(covered, ARM)
 
 
 def test_the_tool_rolls_along_the_path_where_no_one_roll_leads_through() -> None:
@@ -168,14 +170,16 @@ def test_the_tool_rolls_along_the_path_where_no_one_roll_leads_through() -> None
     assert "rolling" in made.certificate.branch
     assert made.certificate.clearance.value >= MotionSettings().clearance_min
     setpoints = plan_trajectory(made).setpoints(250.0)
-    poses = tool_pose(setpoints[:, :6])
+    poses = tool_pose(setpoints[:, :6], ARM)
     wanted = curve(ArcLength(curve).parameters(setpoints[:, 6]))
     assert np.linalg.norm(poses[:, :3, 3] - wanted, axis=1).max() < 1e-4
     assert np.degrees(np.arccos(np.clip(poses[:, :3, 0] @ poses[0, :3, 0], -1, 1))).max() > 45.0
 
 
 def test_an_end_that_the_arm_cannot_come_to_is_refused() -> None:
-    in_the_way = Shape("crate", "box", (0.04, 0.04, 0.04), tuple(tool_pose(np.array(MotionSettings().home))[:3, 3]))
+    in_the_way = Shape(
+        "crate", "box", (0.04, 0.04, 0.04), tuple(tool_pose(np.array(MotionSettings().home), ARM)[:3, 3])
+    )
     scene = empty_scene()
     aside = np.linspace([0.45, -0.5, 0.65], [0.5, -0.35, 0.65], 6)
     with pytest.raises(PathRefused, match=r"into crate.*none of \d+ ways to the start of the path is free"):
@@ -188,9 +192,9 @@ def test_a_demonstrated_turn_is_followed_by_the_tool_when_it_is_asked_for() -> N
     turns = np.column_stack([np.cos(angles / 2), 0 * angles, np.sin(angles / 2), 0 * angles])
     path = replace(learned(curve), orientation=Curve(curve.degree, curve.knots, turns, curve.weights))
     made = plan(path, empty_scene(), MotionSettings(orientation="demonstrated"))
-    first, last = tool_pose(made.joints[[0, -1]])[:, :3, :3]
+    first, last = tool_pose(made.joints[[0, -1]], ARM)[:, :3, :3]
     c, s = np.cos(0.3), np.sin(0.3)
     np.testing.assert_allclose(last @ first.T, [[c, 0, s], [0, 1, 0], [-s, 0, c]], atol=1e-6)
     np.testing.assert_allclose(first[:, 2], [0, 0, -1], atol=1e-9)
     fixed = plan(path, empty_scene())
-    np.testing.assert_allclose(tool_pose(fixed.joints)[:, 2, 2], -1.0, atol=1e-9)
+    np.testing.assert_allclose(tool_pose(fixed.joints, ARM)[:, 2, 2], -1.0, atol=1e-9)

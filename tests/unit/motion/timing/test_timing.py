@@ -1,9 +1,10 @@
 import numpy as np
 import pytest
 
-from teachpath.motion.arm.joint_path import ARM_LIMITS, JointPath, MotionLimits
+from teachpath.motion.arm.joint_path import JointPath
 from teachpath.motion.arm.kinematics import tool_pose
-from teachpath.motion.arm.puma560 import ACCELERATION, JERK, SPEED
+from teachpath.motion.arm.limits import MotionLimits
+from teachpath.motion.arm.model import Arm
 from teachpath.motion.paths.ik_branches import Candidate, enumerate_candidates, is_usable
 from teachpath.motion.paths.tool_path import ToolPath, sample_tool_path
 from teachpath.motion.settings import MotionSettings
@@ -15,6 +16,8 @@ from teachpath.motion.timing.velocity_profile import max_squared_rates, reach_ti
 from teachpath.nurbs import Curve
 from tests.unit.motion.ways import FAR, MIDDLE, NEAR, clamped, hooked, wandering, way
 
+ARM = Arm.of_variant()
+
 RATE = 250.0
 
 
@@ -22,11 +25,12 @@ def on_a_branch(curve: Curve) -> tuple[ToolPath, Candidate]:
     settings = MotionSettings()
     found = sample_tool_path(curve, settings)
     return found, max(
-        (c for c in enumerate_candidates(found, settings) if is_usable(c, settings)), key=lambda c: c.min_singular_value
+        (c for c in enumerate_candidates(found, ARM, settings) if is_usable(c, settings)),
+        key=lambda c: c.min_singular_value,
     )
 
 
-def fastest(curve: Curve, limits: MotionLimits = ARM_LIMITS) -> tuple[TimedTrajectory, float]:
+def fastest(curve: Curve, limits: MotionLimits = ARM.limits.motion) -> tuple[TimedTrajectory, float]:
     """The track along a curve and the lower bound of its duration."""
     found, candidate = on_a_branch(curve)
     path, pace = time_tool_path(found, candidate, limits, rate=RATE)
@@ -39,9 +43,9 @@ def test_setpoints_keep_the_limits_with_the_reserve_at_any_phase_and_override(se
     track, _ = fastest(wandering(seed))
     for _ in range(20):
         setpoints = track.setpoints(RATE, phase=rng.uniform(), override=rng.choice([1.0, rng.uniform(0.05, 1.0)]))
-        assert Margins().time_stretch(setpoints, ARM_LIMITS, RATE) <= 1.002
-        assert max(use.max() for use in limit_uses(setpoints, ARM_LIMITS, RATE)) <= 1.0
-    assert Margins().time_stretch(track.setpoints(RATE), ARM_LIMITS, RATE) > 0.99
+        assert Margins().time_stretch(setpoints, ARM.limits.motion, RATE) <= 1.002
+        assert max(use.max() for use in limit_uses(setpoints, ARM.limits.motion, RATE)) <= 1.0
+    assert Margins().time_stretch(track.setpoints(RATE), ARM.limits.motion, RATE) > 0.99
 
 
 def test_the_reserve_is_against_the_way_a_joint_turns_and_larger_when_it_turns_fast() -> None:
@@ -49,9 +53,9 @@ def test_the_reserve_is_against_the_way_a_joint_turns_and_larger_when_it_turns_f
 
     def turning(speed: float, acceleration: float) -> float:
         joints = (speed * t + acceleration * t**2 / 2) * np.array([1.0, 0, 0, 0, 0, 0])
-        return Margins().time_stretch(joints, ARM_LIMITS, RATE) ** 2
+        return Margins().time_stretch(joints, ARM.limits.motion, RATE) ** 2
 
-    a, slow, fast = ACCELERATION[0], 0.1 * SPEED[0], 0.9 * SPEED[0]
+    a, slow, fast = ARM.limits.acceleration[0], 0.1 * ARM.limits.speed[0], 0.9 * ARM.limits.speed[0]
     assert turning(-slow, -a) == pytest.approx(1 / Margins().along[0])
     assert turning(3 * slow, -a) == pytest.approx(turning(-3 * slow, a))
     assert turning(fast, -a) > turning(3 * slow, -a) > 1 / Margins().against[0]
@@ -60,7 +64,9 @@ def test_the_reserve_is_against_the_way_a_joint_turns_and_larger_when_it_turns_f
 def test_a_kink_of_acceleration_and_the_reserve_cost_little() -> None:
     found, candidate = on_a_branch(way(MIDDLE).curve)
     kept, used = (
-        time_joint_path(*time_tool_path(found, candidate, ARM_LIMITS, rate=RATE, margins=reserve), ARM_LIMITS).duration
+        time_joint_path(
+            *time_tool_path(found, candidate, ARM.limits.motion, rate=RATE, margins=reserve), ARM.limits.motion
+        ).duration
         for reserve in (Margins(), NO_MARGINS)
     )
     assert used < kept < 1.03 * used
@@ -74,26 +80,30 @@ def test_the_ways_of_the_paper_take_little_longer_than_without_jerk_limit_and_re
 
 def test_a_sharp_bend_slows_only_itself() -> None:
     found, candidate = on_a_branch(hooked())
-    path, pace = time_tool_path(found, candidate, ARM_LIMITS, rate=RATE)
-    track = time_joint_path(path, pace, ARM_LIMITS)
+    path, pace = time_tool_path(found, candidate, ARM.limits.motion, rate=RATE)
+    track = time_joint_path(path, pace, ARM.limits.motion)
     # No constant box of limits for the length runs faster than the steepest place allows everywhere.
     by_length = JointPath(found.lengths, found.lengths, candidate.joints)
     first, second, third = (np.abs(by_length(by_length.dense_parameters(), k)[:, :6]).max(axis=0) for k in (1, 2, 3))
-    box = 1 / max((first / SPEED).max(), np.sqrt(second / ACCELERATION).max(), np.cbrt(third / JERK).max())
+    box = 1 / max(
+        (first / ARM.limits.speed).max(),
+        np.sqrt(second / ARM.limits.acceleration).max(),
+        np.cbrt(third / ARM.limits.jerk).max(),
+    )
     assert track.duration < 0.2 * found.lengths[-1] / box
 
 
 @pytest.mark.parametrize("curve", [way(MIDDLE).curve, way(FAR, degree=5).curve, hooked()])
 def test_the_tool_stays_on_the_curve(curve: Curve) -> None:
     found, candidate = on_a_branch(curve)
-    path, pace = time_tool_path(found, candidate, ARM_LIMITS, rate=RATE)
-    setpoints = time_joint_path(path, pace, ARM_LIMITS).setpoints(RATE, phase=0.3)
+    path, pace = time_tool_path(found, candidate, ARM.limits.motion, rate=RATE)
+    setpoints = time_joint_path(path, pace, ARM.limits.motion).setpoints(RATE, phase=0.3)
     wanted = found.curve(found.arc.parameters(setpoints[:, 6]))
-    assert np.linalg.norm(tool_pose(setpoints[:, :6])[:, :3, 3] - wanted, axis=1).max() < 1e-5
+    assert np.linalg.norm(tool_pose(setpoints[:, :6], ARM)[:, :3, 3] - wanted, axis=1).max() < 1e-5
 
 
 def test_a_smaller_share_of_the_limits_takes_longer() -> None:
-    durations = [fastest(way(MIDDLE).curve, ARM_LIMITS.scaled(s, s, s))[0].duration for s in (0.2, 0.5, 1.0)]
+    durations = [fastest(way(MIDDLE).curve, ARM.limits.motion.scaled(s, s, s))[0].duration for s in (0.2, 0.5, 1.0)]
     assert durations == sorted(durations, reverse=True)
 
 
@@ -104,7 +114,7 @@ def test_a_track_is_the_integral_of_its_derivatives() -> None:
         integral = np.concatenate([np.zeros((1, 6)), np.cumsum((slopes[1:] + slopes[:-1]) / 2 * track.step, axis=0)])
         gained = track.table[:, order, :6] - track.table[0, order, :6]
         # Where jerk jumps from limit to limit, a trapezoid is wrong by half a step of the jump.
-        jumps = JERK * track.step if order == 2 else 0.0
+        jumps = ARM.limits.jerk * track.step if order == 2 else 0.0
         assert np.all(np.abs(integral - gained) <= 2e-3 * np.abs(gained).max() + jumps)
     np.testing.assert_allclose(track.table[[0, -1], 1:3, :6], 0.0, atol=0.02)
 
@@ -119,7 +129,11 @@ def line(turn: float) -> JointPath:
 @pytest.mark.parametrize("turn", [0.02, 0.3, 2.0])
 def test_one_joint_alone_takes_hardly_longer_than_its_closed_form(turn: float) -> None:
     # Rest to rest under limits of speed, acceleration and jerk (Biagiotti & Melchiorri 2008, section 3.4).
-    v, a, j = SPEED[0], min(ACCELERATION[0], np.sqrt(SPEED[0] * JERK[0])), JERK[0]
+    v, a, j = (
+        ARM.limits.speed[0],
+        min(ARM.limits.acceleration[0], np.sqrt(ARM.limits.speed[0] * ARM.limits.jerk[0])),
+        ARM.limits.jerk[0],
+    )
     if turn >= v * (v / a + a / j):
         shortest = turn / v + v / a + a / j
     elif turn >= 2 * a**3 / j**2:
@@ -127,7 +141,9 @@ def test_one_joint_alone_takes_hardly_longer_than_its_closed_form(turn: float) -
     else:
         shortest = 4 * np.cbrt(turn / (2 * j))
     path = line(turn)
-    duration = time_joint_path(path, minimize_duration(path, ARM_LIMITS, 100, NO_MARGINS), ARM_LIMITS).duration
+    duration = time_joint_path(
+        path, minimize_duration(path, ARM.limits.motion, 100, NO_MARGINS), ARM.limits.motion
+    ).duration
     assert 0.999 * shortest < duration < 1.04 * shortest
 
 
@@ -135,8 +151,10 @@ def test_one_joint_alone_takes_hardly_longer_than_its_closed_form(turn: float) -
 def test_the_lower_bound_of_a_line_is_the_trapezoid(turn: float) -> None:
     grid = np.linspace(0.0, 1.0, 4001)
     first = np.tile([turn, 0, 0, 0, 0, 0], (len(grid), 1))
-    squares = max_squared_rates(grid, first, 0 * first, SPEED, ACCELERATION, np.full(len(grid), np.inf))
-    v, a = min(SPEED[0], np.sqrt(turn * ACCELERATION[0])), ACCELERATION[0]
+    squares = max_squared_rates(
+        grid, first, 0 * first, ARM.limits.speed, ARM.limits.acceleration, np.full(len(grid), np.inf)
+    )
+    v, a = min(ARM.limits.speed[0], np.sqrt(turn * ARM.limits.acceleration[0])), ARM.limits.acceleration[0]
     assert reach_times(grid, squares)[-1] == pytest.approx(turn / v + v / a, rel=2e-3)
 
 

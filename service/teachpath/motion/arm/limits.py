@@ -1,0 +1,71 @@
+"""The limits of the joints: what the arm may do in all, and the part of it that depends on time."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from teachpath.motion.arm.puma560 import Array, Link
+
+# Nobody publishes a jerk limit: by our convention the full acceleration is built up in a tenth of a second.
+JERK_PER_ACCELERATION: Final = 10.0  # 1/s
+
+
+@dataclass(frozen=True, eq=False)
+class MotionLimits:
+    """Largest speed [rad/s], acceleration [rad/s^2] and jerk [rad/s^3] of the joints: (6,) each."""
+
+    speed: Array
+    acceleration: Array
+    jerk: Array
+
+    def scaled(self, speed: float, acceleration: float, jerk: float) -> MotionLimits:
+        """Return these limits times one factor each."""
+        return MotionLimits(speed * self.speed, acceleration * self.acceleration, jerk * self.jerk)
+
+
+@dataclass(frozen=True, eq=False)
+class JointLimits:
+    """What the joints of an arm may do: (6,) each, read-only.
+
+    Attributes:
+        lower: least angle [rad], with the zero position of Paul.
+        upper: largest angle [rad].
+        speed: [rad/s].
+        acceleration: [rad/s^2].
+        jerk: [rad/s^3].
+        torque: of the motor, at the joint [N m].
+    """
+
+    lower: Array
+    upper: Array
+    speed: Array
+    acceleration: Array
+    jerk: Array
+    torque: Array
+
+    @classmethod
+    def of_links(cls, links: Sequence[Link]) -> JointLimits:
+        """Read the limits from the rows of a table."""
+
+        def column(name: str, factor: float = 1.0) -> Array:
+            values = factor * np.array([getattr(link, name) for link in links], dtype=np.float64)
+            values.flags.writeable = False
+            return values
+
+        return cls(
+            lower=column("lower"),
+            upper=column("upper"),
+            speed=column("speed"),
+            acceleration=column("acceleration"),
+            jerk=column("acceleration", JERK_PER_ACCELERATION),
+            torque=column("torque"),
+        )
+
+    @property
+    def motion(self) -> MotionLimits:
+        """The limits of speed, acceleration and jerk."""
+        return MotionLimits(self.speed, self.acceleration, self.jerk)
