@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import uuid
 from collections.abc import Iterable, Mapping
 from typing import Any
 
@@ -77,7 +78,8 @@ def plan(
         PathRefused: the arm cannot follow it; `failure` says where, why, and which control point to move.
         UnusableInput: it is no path in space.
     """
-    return plan_path(_learned_path(path), scene or empty_scene(), settings, arm=arm)
+    plan_id = f"plan-{uuid.uuid4().hex[:12]}"
+    return plan_path(_learned_path(path), scene or empty_scene(), settings, arm=arm, plan_id=plan_id)
 
 
 def setpoints(plan: Plan, rate: float = 250.0, *, arm: Arm | None = None) -> tuple[Array, Array]:

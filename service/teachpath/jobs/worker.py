@@ -9,6 +9,7 @@ import os
 import signal
 import threading
 import time
+import uuid
 from collections.abc import Callable
 from multiprocessing import Queue, parent_process
 from multiprocessing.synchronize import Event
@@ -103,4 +104,4 @@ def plan_path(path: LearnedPath, scene: Scene, settings: MotionSettings, arm: Ar
     from teachpath.motion.planning.plan import plan
 
     progress(0.1, f"planning path {path.id}")
-    return plan(path, scene, settings, arm=arm)
+    return plan(path, scene, settings, arm=arm, plan_id=f"plan-{uuid.uuid4().hex[:12]}")

@@ -8,7 +8,7 @@ from typing import Final
 
 import numpy as np
 from numpy.polynomial.legendre import leggauss
-from scipy.interpolate import CubicHermiteSpline, make_interp_spline
+from scipy.interpolate import BSpline, CubicHermiteSpline, make_interp_spline
 
 from teachpath.errors import PathRefused
 from teachpath.motion.arm.kinematics import downward_poses, rotation_matrices
@@ -97,9 +97,14 @@ class ToolPath:
         return poses
 
     def describe_node(self, index: int) -> str:
-        """Name a node."""
+        """Describe where a node lies: arc length and position."""
         x, y, z = self.positions[index]
         return f"at s = {self.lengths[index]:.3f} m ({x:.3f}, {y:.3f}, {z:.3f})"
+
+    def describe_control_point(self, s: float) -> str:
+        """Name the control point with most influence on the path at arc length `s` [m]."""
+        shares = control_point_weights(self.curve, float(self.arc.parameters(np.array([s]))[0]))
+        return f"control point {int(np.argmax(shares)) + 1} of {len(shares)}"
 
 
 def sample_tool_path(curve: Curve, settings: MotionSettings, *, orientation: Curve | None = None) -> ToolPath:
@@ -108,12 +113,13 @@ def sample_tool_path(curve: Curve, settings: MotionSettings, *, orientation: Cur
     Args:
         curve: positions [m].
         settings: how dense.
-        turn: quaternions of what is carried, at the same parameter; None to keep the tool pointing down.
+        orientation: quaternions of what is carried, at the same parameter; used where the settings ask for it.
 
     Raises:
         PathRefused: it has no 3 dimensions, is too short or stands still on its way.
     """
     arc = arc_length(curve)
+    orientation = orientation if settings.orientation == "demonstrated" else None
     count = max(MIN_NODES, int(np.ceil(arc.total / settings.node_spacing)))
     found = ToolPath.at_even_lengths(curve, orientation, arc, count)
     for _ in range(MAX_REFINEMENTS):
@@ -122,6 +128,15 @@ def sample_tool_path(curve: Curve, settings: MotionSettings, *, orientation: Cur
         count *= 2
         found = ToolPath.at_even_lengths(curve, orientation, arc, count)
     return found
+
+
+def control_point_weights(curve: Curve, u: float) -> Array:
+    """Return the weight (n,) with which each control point enters the curve's point at parameter `u`.
+
+    Piegl & Tiller, The NURBS Book, eq. (4.2).
+    """
+    row = BSpline.design_matrix(np.array([min(max(u, 0.0), 1.0)]), curve.knots, curve.degree).toarray()[0]
+    return np.asarray(row * curve.weights / (row @ curve.weights), dtype=np.float64)
 
 
 def arc_length(curve: Curve) -> ArcLength:

@@ -1,4 +1,4 @@
-"""Where the arm comes to the start of a path and where it leaves its goal: above it, or nearer, or at its side."""
+"""Finds the configurations before the start of a path and behind its goal: above it, nearer, or at its side."""
 
 from __future__ import annotations
 
@@ -12,28 +12,29 @@ from teachpath.motion.arm.kinematics import inverse_kinematics, tool_pose
 from teachpath.motion.arm.model import Arm
 from teachpath.motion.arm.puma560 import Array
 from teachpath.motion.collision.collision_model import CollisionModel, Load
+from teachpath.motion.refusals import first_accepted
 from teachpath.motion.settings import MotionSettings
 from teachpath.motion.timing.joint_moves import placed_load, prove_move_clear, waypoints_home
 
 LIFT_SHARES: Final = (1.0, 0.5, 0.25)  # of `motion.lift`
-# Seen from the arm: away from it, to its left, up.
+# Components: away from the arm, to its left, up.
 LIFT_DIRECTIONS: Final = np.array(
     [[0, 0, 1], [-1, 0, 1], [0, 1, 1], [0, -1, 1], [1, 0, 1], [-1, 0, 0], [0, 1, 0], [0, -1, 0]], dtype=np.float64
 )
 
 
 def approach_configurations(q: Array, arm: Arm, settings: MotionSettings) -> list[Array]:
-    """Return configurations (6,) from which the tool comes to configuration `q` (6,), turned as there, the best first.
+    """Return configurations (6,) from which the tool goes straight to configuration `q` (6,), the best first.
 
-    They are `motion.lift` above it, then less, then tilted and beside; last `q` itself. Those out of reach or beyond a
-    joint limit are left out.
+    The tool keeps its orientation. It begins `motion.lift` away, or a share of it: above, slanted, or from a side. The
+    last configuration is `q` itself. Those out of reach or beyond a joint limit are left out.
     """
     pose = tool_pose(q, arm)
     ahead = pose[:2, 3] / max(float(np.hypot(*pose[:2, 3])), 1e-9)
-    seen = np.array([[ahead[0], ahead[1], 0.0], [-ahead[1], ahead[0], 0.0], [0.0, 0.0, 1.0]])
-    ways = LIFT_DIRECTIONS / np.linalg.norm(LIFT_DIRECTIONS, axis=1)[:, None] @ seen
-    poses = np.repeat(pose[None], len(ways) * len(LIFT_SHARES), axis=0)
-    poses[:, :3, 3] += (np.array(LIFT_SHARES)[None, :, None] * settings.lift * ways[:, None]).reshape(-1, 3)
+    axes = np.array([[ahead[0], ahead[1], 0.0], [-ahead[1], ahead[0], 0.0], [0.0, 0.0, 1.0]])
+    directions = LIFT_DIRECTIONS / np.linalg.norm(LIFT_DIRECTIONS, axis=1)[:, None] @ axes
+    poses = np.repeat(pose[None], len(directions) * len(LIFT_SHARES), axis=0)
+    poses[:, :3, 3] += (np.array(LIFT_SHARES)[None, :, None] * settings.lift * directions[:, None]).reshape(-1, 3)
     solutions = inverse_kinematics(poses, arm, previous_q4=float(q[3]))
     found = []
     for joints, excess in zip(solutions.joints, solutions.reach_excess[:, 0], strict=True):
@@ -45,50 +46,48 @@ def approach_configurations(q: Array, arm: Arm, settings: MotionSettings) -> lis
 
 
 def find_approach(model: CollisionModel, start: Array, settings: MotionSettings) -> Array:
-    """Find the configuration (6,) from which the arm, come from its home, goes straight to the start of a path.
+    """Find the configuration (6,) over which the arm goes from its home to the start of a path.
 
     Raises:
-        PathRefused: none of those tried is free; says what is in the way of the first.
+        PathRefused: none of those tried is free; the sentence says what is in the way of the first.
     """
     carried = model.scene.carried
     load, home = Load(position=carried.position) if carried else None, np.array(settings.home)
 
-    def free(stop: Array) -> None:
+    def checked(stop: Array) -> Array:
         for a, b, what in ((home, stop, "on the way to the path's start"), (stop, start, "above the start")):
             prove_move_clear(
                 model, np.stack([a, b]), settings, load=load, gripper_open=carried is not None, move_name=what
             )
+        return stop
 
-    return _first_free(approach_configurations(start, model.arm, settings), free, "start")
+    return _first_checked(approach_configurations(start, model.arm, settings), checked, "start")
 
 
 def find_retreat(model: CollisionModel, start: Array, goal: Array, settings: MotionSettings) -> Array:
-    """Find the configuration (6,) to which the arm goes straight from the goal of a path, and on to its home.
+    """Find the configuration (6,) over which the arm goes from the goal of a path to its home.
 
     Raises:
-        PathRefused: none of those tried is free; says what is in the way of the first.
+        PathRefused: none of those tried is free; the sentence says what is in the way of the first.
     """
     behind = placed_load(model, start, goal)
 
-    def free(stop: Array) -> None:
+    def checked(stop: Array) -> Array:
         stops = np.stack([goal, stop])
         prove_move_clear(
             model, stops, settings, load=behind, gripper_open=behind is not None, move_name="above the goal"
         )
         waypoints_home(model, start, goal, stop, settings)
+        return stop
 
-    return _first_free(approach_configurations(goal, model.arm, settings), free, "goal")
+    return _first_checked(approach_configurations(goal, model.arm, settings), checked, "goal")
 
 
-def _first_free(configurations: list[Array], free: Callable[[Array], None], end: str) -> Array:
-    refused: PathRefused | None = None
-    for stop in configurations:
-        try:
-            free(stop)
-            return stop
-        except PathRefused as error:
-            refused = refused or error
-    raise PathRefused(
-        f"{refused}; none of {len(configurations)} ways to the {end} of the path is free, "
-        f"from above, nearer or its side: move the {end}, or what stands around it"
-    )
+def _first_checked(configurations: list[Array], checked: Callable[[Array], Array], end: str) -> Array:
+    try:
+        return first_accepted(configurations, checked)
+    except PathRefused as refusal:
+        raise PathRefused(
+            f"{refusal}; none of {len(configurations)} ways to the {end} of the path is free, "
+            f"from above, nearer or its side: move the {end}, or what stands around it"
+        ) from None

@@ -1,4 +1,4 @@
-"""The proof behind a plan: its digest, and how much of each limit its setpoints use, measured on the setpoints."""
+"""Certifies a plan: measures how much of each limit its setpoints use, and signs it with a digest."""
 
 from __future__ import annotations
 
@@ -13,9 +13,13 @@ from teachpath.motion.arm.joint_path import JointPath
 from teachpath.motion.arm.limits import JointLimits, MotionLimits
 from teachpath.motion.arm.model import Arm
 from teachpath.motion.arm.puma560 import TOOL_LENGTH, Array
-from teachpath.motion.timing.limit_margins import limit_uses
+from teachpath.motion.paths.ik_branches import Candidate
+from teachpath.motion.paths.tool_path import ToolPath
+from teachpath.motion.planning.torque_limited import TimedPath
+from teachpath.motion.settings import MotionSettings
+from teachpath.motion.timing.limit_margins import largest_use, limit_uses
 from teachpath.motion.timing.timed_trajectory import TimedTrajectory, time_joint_path
-from teachpath.records import Extreme, Plan, Scene
+from teachpath.records import Certificate, Extreme, Plan, Scene
 
 
 def digest(plan: Plan, arm: Arm) -> str:
@@ -50,9 +54,47 @@ def verify(plan: Plan, arm: Arm) -> None:
 
 
 def plan_trajectory(plan: Plan) -> TimedTrajectory:
-    """Make the motion of a plan against time, the same wherever it is made."""
+    """Return the motion of a plan along its path at full speed; it is the same wherever it is computed."""
     path = JointPath(np.linspace(0.0, 1.0, len(plan.lengths)), plan.lengths, plan.joints)
     return time_joint_path(path, plan.pace, MotionLimits(*plan.limits))
+
+
+def certify(
+    tool_path: ToolPath, candidate: Candidate, timed: TimedPath, clearance: Extreme, settings: MotionSettings
+) -> Certificate:
+    """Measure how much of the limits the setpoints of a path use; the digest is left empty.
+
+    Args:
+        tool_path: what the tool follows.
+        candidate: the branch and roll of the tool.
+        timed: how the joints follow it.
+        clearance: what was proved.
+        settings: what may be used.
+
+    Raises:
+        PathRefused: the setpoints use more than that.
+    """
+    setpoints = timed.trajectory.setpoints(settings.rate)
+    position, velocity, acceleration, jerk = largest_limit_uses(setpoints, settings.rate, candidate.branch.arm.limits)
+    worst = max((velocity, acceleration, jerk), key=lambda extreme: extreme.value)
+    if worst.value > settings.path_share:
+        raise PathRefused(
+            f"a limit is used to {100 * worst.value:.1f} % by {worst.place}, at most "
+            f"{100 * settings.path_share:.1f} %; smooth the path there: "
+            f"move {tool_path.describe_control_point(worst.s)}"
+        )
+    singular_s = float(tool_path.lengths[int(np.argmin(candidate.singular_values))])
+    return Certificate(
+        digest="",
+        branch=candidate.description,
+        position_use=position,
+        velocity_use=velocity,
+        acceleration_use=acceleration,
+        jerk_use=jerk,
+        torque_use=timed.torque_use,
+        least_singular=Extreme(candidate.min_singular_value, f"s = {singular_s:.3f} m", singular_s),
+        clearance=clearance,
+    )
 
 
 def largest_limit_uses(setpoints: Array, rate: float, limits: JointLimits) -> tuple[Extreme, Extreme, Extreme, Extreme]:
@@ -67,14 +109,6 @@ def largest_limit_uses(setpoints: Array, rate: float, limits: JointLimits) -> tu
     shares = [np.abs(setpoints[:, :6] - middle) / half, *limit_uses(setpoints, limits.motion, rate)]
     position, velocity, acceleration, jerk = (largest_use(share, setpoints[:, 6]) for share in shares)
     return position, velocity, acceleration, jerk
-
-
-def largest_use(values: Array, lengths: Array, limits: Array | float = 1.0) -> Extreme:
-    """Find the largest share of the joints' limits (6,) in values (n, 6), and its joint and place [m]."""
-    share = values / limits
-    row, joint = np.unravel_index(int(np.argmax(share)), share.shape)
-    s = float(lengths[row])
-    return Extreme(float(share[row, joint]), f"joint {joint + 1} at s = {s:.3f} m", s)
 
 
 def _scene_text(scene: Scene) -> str:

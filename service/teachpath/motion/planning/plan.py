@@ -1,92 +1,71 @@
-"""From a learned path to a plan the arm can execute, with its certificate, or to the reason why not."""
+"""From a learned path to a plan that the arm can execute, with its certificate, or to the reason why not."""
 
 from __future__ import annotations
 
-import uuid
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
-from teachpath.errors import PathRefused, UnusableSettings
+from teachpath.errors import UnusableSettings
 from teachpath.motion.arm.dynamics import Dynamics
-from teachpath.motion.arm.joint_path import JointPath
-from teachpath.motion.arm.kinematics import tool_pose
 from teachpath.motion.arm.model import Arm
 from teachpath.motion.collision.collision_model import CollisionModel
-from teachpath.motion.paths.ik_branches import Candidate, enumerate_candidates, nearest_to_usable
+from teachpath.motion.paths.ik_branches import Candidate, enumerate_candidates
 from teachpath.motion.paths.tool_path import ToolPath, sample_tool_path
 from teachpath.motion.planning.approach import find_approach, find_retreat
 from teachpath.motion.planning.candidates import clear_candidates, usable_candidates
-from teachpath.motion.planning.certificate import digest, largest_limit_uses
-from teachpath.motion.planning.clearance import clearance_refusal, path_clearance
-from teachpath.motion.planning.failure import describe, kinematic_failure, start_failure
-from teachpath.motion.planning.suggestion import name_control_point
+from teachpath.motion.planning.certificate import certify, digest
+from teachpath.motion.planning.clearance import path_clearance
+from teachpath.motion.planning.failure import check_start, no_candidate
 from teachpath.motion.planning.torque_limited import time_within_torques
+from teachpath.motion.refusals import first_accepted
 from teachpath.motion.settings import MotionSettings
-from teachpath.motion.timing.timed_trajectory import TimedTrajectory, time_joint_path
-from teachpath.nurbs import Curve
-from teachpath.records import Certificate, Extreme, Failure, LearnedPath, Plan, Scene
+from teachpath.records import LearnedPath, Plan, Scene
 
 
-@dataclass(frozen=True, eq=False)
-class _PlanningJob:
-    """What stays the same while branches are tried."""
-
-    path: LearnedPath
-    scene: Scene
-    settings: MotionSettings
-    tool_path: ToolPath
-    model: CollisionModel
-
-
-def plan(path: LearnedPath, scene: Scene, settings: MotionSettings | None = None, *, arm: Arm | None = None) -> Plan:
-    """Plan the pick and place along a path: the centre of the carried object follows it, the tool points down.
+def plan(
+    path: LearnedPath,
+    scene: Scene,
+    settings: MotionSettings | None = None,
+    *,
+    arm: Arm | None = None,
+    plan_id: str = "plan",
+) -> Plan:
+    """Plan the pick and place along a path: the centre of the carried object follows it.
 
     The arm goes from its home to above the start (or nearer, or beside it), down, closes the gripper, follows the path,
     opens the gripper, goes up and home. Without a carried object it follows the path with the gripper closed.
 
     Args:
         path: what to follow.
-        scene: what stands around.
+        scene: what stands around the arm.
         settings: what may be used of the arm; the defaults when None.
-        arm: that is to follow it; the published variant that the settings name when None.
+        arm: that is to follow the path; the published variant that the settings name when None.
+        plan_id: of the plan that is made.
 
     Returns:
         A plan with its certificate.
 
     Raises:
-        PathRefused: the arm cannot; the sentence says why, where, and which control point to move.
+        PathRefused: the arm cannot follow it; the sentence says why, where, and which control point to move.
         UnusableSettings: the arm's home is outside the joint limits.
     """
     settings = settings or MotionSettings()
     arm = arm or Arm.of_variant(settings.variant)
-    _home_within_limits(settings, arm)
-    way = sample_tool_path(path.curve, settings, orientation=_turn(path, settings))
-    _refuse(start_failure(way, scene, settings))
-    every = enumerate_candidates(way, arm, settings)
-    fit = usable_candidates(every, settings)
-    if not fit:
-        _refuse(kinematic_failure(way, nearest_to_usable(every), settings))
-    job = _PlanningJob(path, scene, settings, way, CollisionModel(scene, arm))
-    return _first_certified(job, fit)
+    _check_home(settings, arm)
+    tool_path = sample_tool_path(path.curve, settings, orientation=path.orientation)
+    check_start(tool_path, scene, settings)
+    model = CollisionModel(scene, arm)
+    candidates = enumerate_candidates(tool_path, arm, settings)
+    usable = usable_candidates(candidates, settings)
+    clear = clear_candidates(tool_path, usable, model, settings)
+    if not clear:
+        raise no_candidate(tool_path, usable or candidates, model, settings)
+    certified = first_accepted(clear, lambda candidate: _certified_plan(path, tool_path, candidate, model, settings))
+    return replace(certified, id=plan_id)
 
 
-def _first_certified(job: _PlanningJob, fit: list[Candidate]) -> Plan:
-    """Certify the first of the candidates that keep clear with which everything else can be done too."""
-    free = clear_candidates(job.tool_path, fit, job.model, job.settings)
-    if not free:
-        raise clearance_refusal(job.tool_path, fit[0], job.model, job.settings)
-    refused: PathRefused | None = None
-    for candidate in free:
-        try:
-            return _certified(job, candidate)
-        except PathRefused as error:
-            refused = refused or error
-    assert refused is not None
-    raise refused
-
-
-def _home_within_limits(settings: MotionSettings, arm: Arm) -> None:
+def _check_home(settings: MotionSettings, arm: Arm) -> None:
     lower, upper = arm.limits.lower, arm.limits.upper
     for joint, angle in enumerate(settings.home):
         if not lower[joint] <= angle <= upper[joint]:
@@ -94,87 +73,27 @@ def _home_within_limits(settings: MotionSettings, arm: Arm) -> None:
             raise UnusableSettings(f"motion.home puts joint {joint + 1} to {angle:.3f} rad, limits {limits}")
 
 
-def _certified(job: _PlanningJob, candidate: Candidate) -> Plan:
-    settings, way, arm = job.settings, job.tool_path, job.model.arm
-    joints, pace, limits, torque = time_within_torques(way, candidate, Dynamics(arm, job.scene.carried), settings)
-    _tool_on_path(way, joints, arm, settings)
-    clearance = path_clearance(way, candidate, job.model, settings, joints)
-    start, goal = joints.joints[0], joints.joints[-1]
-    above_start = find_approach(job.model, start, settings)
-    above_goal = find_retreat(job.model, start, goal, settings)
-    track = time_joint_path(joints, pace, limits)
-    drawn = Plan(
-        id=f"plan-{uuid.uuid4().hex[:12]}",
-        path=job.path.id,
-        path_version=job.path.version,
-        scene=job.scene,
-        lengths=joints.lengths,
-        joints=joints.joints,
-        pace=pace,
-        limits=np.stack([limits.speed, limits.acceleration, limits.jerk]),
+def _certified_plan(
+    path: LearnedPath, tool_path: ToolPath, candidate: Candidate, model: CollisionModel, settings: MotionSettings
+) -> Plan:
+    """Time a candidate, find its approach and retreat, and certify it; raises PathRefused where one of them fails."""
+    timed = time_within_torques(tool_path, candidate, Dynamics(model.arm, model.scene.carried), settings)
+    clearance = path_clearance(tool_path, candidate, model, settings, timed.joints)
+    start, goal = timed.joints.joints[0], timed.joints.joints[-1]
+    above_start = find_approach(model, start, settings)
+    above_goal = find_retreat(model, start, goal, settings)
+    unsigned = Plan(
+        id="",
+        path=path.id,
+        path_version=path.version,
+        scene=model.scene,
+        lengths=timed.joints.lengths,
+        joints=timed.joints.joints,
+        pace=timed.pace,
+        limits=np.stack([timed.limits.speed, timed.limits.acceleration, timed.limits.jerk]),
         above_start=above_start,
         above_goal=above_goal,
-        duration=track.duration,
-        certificate=_certificate(way, candidate, track, settings, torque, clearance),
+        duration=timed.trajectory.duration,
+        certificate=certify(tool_path, candidate, timed, clearance, settings),
     )
-    return replace(drawn, certificate=replace(drawn.certificate, digest=digest(drawn, arm)))
-
-
-def _certificate(
-    tool_path: ToolPath,
-    candidate: Candidate,
-    trajectory: TimedTrajectory,
-    settings: MotionSettings,
-    torque: Extreme,
-    clearance: Extreme,
-) -> Certificate:
-    """Measure what the setpoints use of the limits; the digest is left out.
-
-    Raises:
-        PathRefused: it is more than what may be used.
-    """
-    position, velocity, acceleration, jerk = largest_limit_uses(
-        trajectory.setpoints(settings.rate), settings.rate, candidate.branch.arm.limits
-    )
-    worst = max((velocity, acceleration, jerk), key=lambda extreme: extreme.value)
-    if worst.value > settings.path_share:
-        raise PathRefused(
-            f"a limit is used to {100 * worst.value:.1f} % by {worst.place}, at most "
-            f"{100 * settings.path_share:.1f} %; smooth the path there: move {name_control_point(tool_path, worst.s)}"
-        )
-    singular_s = float(tool_path.lengths[int(np.argmin(candidate.singular_values))])
-    return Certificate(
-        digest="",
-        branch=candidate.description,
-        position_use=position,
-        velocity_use=velocity,
-        acceleration_use=acceleration,
-        jerk_use=jerk,
-        torque_use=torque,
-        least_singular=Extreme(candidate.min_singular_value, f"s = {singular_s:.3f} m", singular_s),
-        clearance=clearance,
-    )
-
-
-def _tool_on_path(tool_path: ToolPath, joints: JointPath, arm: Arm, settings: MotionSettings) -> None:
-    samples = joints.dense_parameters()
-    reached = joints(samples)
-    wanted = tool_path.curve(tool_path.arc.parameters(reached[:, 6]))
-    off = np.linalg.norm(tool_pose(reached[:, :6], arm)[:, :3, 3] - wanted, axis=1)
-    worst = int(np.argmax(off))
-    if off[worst] > settings.path_tolerance:
-        s = float(reached[worst, 6])
-        raise PathRefused(
-            f"the path bends too sharply to be followed within its tolerance "
-            f"{tool_path.describe_node(int(np.argmin(np.abs(tool_path.lengths - s))))}; "
-            f"move {name_control_point(tool_path, s)}"
-        )
-
-
-def _turn(path: LearnedPath, settings: MotionSettings) -> Curve | None:
-    return path.orientation if settings.orientation == "demonstrated" else None
-
-
-def _refuse(failure: Failure | None) -> None:
-    if failure is not None:
-        raise PathRefused(describe(failure), failure)
+    return replace(unsigned, certificate=replace(unsigned.certificate, digest=digest(unsigned, model.arm)))

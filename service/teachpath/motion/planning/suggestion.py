@@ -7,14 +7,12 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
-from scipy.interpolate import BSpline
 
 from teachpath.motion.arm.kinematics import inverse_kinematics, min_singular_value
 from teachpath.motion.arm.puma560 import Array
 from teachpath.motion.paths.ik_branches import Candidate, roll_tool
-from teachpath.motion.paths.tool_path import ToolPath
+from teachpath.motion.paths.tool_path import ToolPath, control_point_weights
 from teachpath.motion.settings import MotionSettings
-from teachpath.nurbs import Curve
 from teachpath.records import Suggestion, Vector
 
 PROBE_DISTANCE: Final = 0.004  # m, by which the tool is moved to see what becomes better
@@ -26,21 +24,6 @@ NAMED_COMPONENT_SHARE: Final = 0.45  # share of the largest component from which
 
 # How good some configurations (m, 6) are, reached from poses whose wrist lies (m,) [m] out of reach: (m,), growing.
 FaultMargin = Callable[[Array, Array], Array]
-
-
-def control_point_weights(curve: Curve, u: float) -> Array:
-    """Return how far each control point (n,) takes the curve's point at `u` along when it is moved.
-
-    Piegl & Tiller, The NURBS Book, eq. (4.2).
-    """
-    row = BSpline.design_matrix(np.array([min(max(u, 0.0), 1.0)]), curve.knots, curve.degree).toarray()[0]
-    return np.asarray(row * curve.weights / (row @ curve.weights), dtype=np.float64)
-
-
-def name_control_point(tool_path: ToolPath, s: float) -> str:
-    """Name the control point that takes the path along most at arc length `s` [m]."""
-    shares = control_point_weights(tool_path.curve, float(tool_path.arc.parameters(np.array([s]))[0]))
-    return f"control point {int(np.argmax(shares)) + 1} of {len(shares)}"
 
 
 def fault_margin(fault: str, candidate: Candidate, node: int) -> FaultMargin:

@@ -19,6 +19,7 @@ from teachpath.motion.arm.puma560 import Array
 from teachpath.motion.collision.collision_model import CollisionModel, grasped_load
 from teachpath.motion.paths.ik_branches import Candidate, ToolRoll, rolled_candidate
 from teachpath.motion.paths.tool_path import ToolPath
+from teachpath.motion.planning.clearance import SUFFICIENT_CLEARANCE
 from teachpath.motion.settings import MotionSettings
 
 ROLL_COUNT: Final = 24  # of a full turn
@@ -27,7 +28,6 @@ SEARCH_NODES: Final = 60  # along the path, about
 COARSE_STRIDE: Final = 3  # every such place is looked at before the others
 MAX_ROLL_STEPS: Final = 2  # of an angle that the tool may turn from a place to the next
 SMOOTHING_CLEARANCE: Final = 0.001  # m of clearance above what is asked, for what the smoothing takes
-SUFFICIENT_CLEARANCE: Final = 0.02  # m of clearance beyond which more is not sought
 CLEARANCE_WEIGHT: Final = 300.0  # of a missing metre of clearance, beside the square of a turn by one angle
 FILTER_WIDTH: Final = 2.0  # places, of the filter that takes the steps out of the angles
 SPLINE_DEGREE: Final = 5  # of the angles by the curve's parameter

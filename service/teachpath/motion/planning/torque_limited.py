@@ -1,56 +1,92 @@
-"""The fastest motion along a route that is within the motors' strength as well as within the joints' limits."""
+"""Times a path: the fastest motion within the joints' limits that is within the motors' torques as well."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Final
+
+import numpy as np
 
 from teachpath.errors import PathRefused
 from teachpath.motion.arm.dynamics import Dynamics
 from teachpath.motion.arm.joint_path import JointPath
+from teachpath.motion.arm.kinematics import tool_pose
 from teachpath.motion.arm.limits import MotionLimits
+from teachpath.motion.arm.model import Arm
 from teachpath.motion.arm.puma560 import Array
 from teachpath.motion.paths.ik_branches import Candidate
 from teachpath.motion.paths.tool_path import ToolPath
-from teachpath.motion.planning.certificate import largest_use
-from teachpath.motion.planning.suggestion import name_control_point
 from teachpath.motion.settings import MotionSettings
-from teachpath.motion.timing.timed_trajectory import time_joint_path
+from teachpath.motion.timing.limit_margins import largest_use
+from teachpath.motion.timing.timed_trajectory import TimedTrajectory, time_joint_path
 from teachpath.motion.timing.timing import time_tool_path
 from teachpath.records import Extreme
 
-TORQUE_STRIDE: Final = 8  # instant of a track is looked at for its torques
-MAX_RETIMINGS: Final = 4  # times that a path is timed at most, each time with lower limits of acceleration
-ACCELERATION_SAFETY_SHARE: Final = (
-    0.97  # of the acceleration that the torques leave, because a slower path has other torques
-)
-MIN_ACCELERATION_SHARE: Final = 0.05  # of the limits of acceleration with which a path is still worth following
+TORQUE_STRIDE: Final = 8  # rows of a trajectory's table from one torque check to the next
+MAX_RETIMINGS: Final = 4  # timings of a path at most, each with lower acceleration limits than the one before
+# Share of the acceleration that the torques leave; less than all of it, because a slower path has other torques.
+ACCELERATION_SAFETY_SHARE: Final = 0.97
+MIN_ACCELERATION_SHARE: Final = 0.05  # of the acceleration limits, with which a path is still worth following
+
+
+@dataclass(frozen=True, eq=False)
+class TimedPath:
+    """How the joints follow a path over time.
+
+    Attributes:
+        joints: by a parameter from 0 to 1.
+        pace: coefficients of the square of the parameter's rate (see `timed_trajectory.time_joint_path`) [1/s^2].
+        limits: that the motion keeps.
+        trajectory: the motion at full speed.
+        torque_use: the largest use of a motor's torque.
+    """
+
+    joints: JointPath
+    pace: Array
+    limits: MotionLimits
+    trajectory: TimedTrajectory
+    torque_use: Extreme
 
 
 def time_within_torques(
     tool_path: ToolPath, candidate: Candidate, dynamics: Dynamics, settings: MotionSettings
-) -> tuple[JointPath, Array, MotionLimits, Extreme]:
-    """Time a route; where the limits of acceleration would ask too much of a motor, with lower ones.
-
-    Returns:
-        Joints and pace (see `timing.timed`), the limits they keep, and the largest use of a motor's torque.
+) -> TimedPath:
+    """Time a path; where a motor would need more torque than it has, time it again with lower acceleration limits.
 
     Raises:
-        PathRefused: the motors are too weak however slow it goes, or no motion keeps the limits.
+        PathRefused: the motors are too weak at any speed, no motion keeps the limits, or the tool leaves the path.
     """
     arm = candidate.branch.arm
     limits = arm.limits.motion.scaled(*[settings.path_share] * 3)
     for _ in range(MAX_RETIMINGS):
         joints, pace = time_tool_path(tool_path, candidate, limits, rate=settings.rate)
-        rows = time_joint_path(joints, pace, limits).table[::TORQUE_STRIDE]
+        trajectory = time_joint_path(joints, pace, limits)
+        rows = trajectory.table[::TORQUE_STRIDE]
         q, velocity = rows[:, 0, :6], rows[:, 1, :6]
         worst = largest_use(dynamics.torque_bounds(q, velocity, limits.acceleration), rows[:, 0, 6], arm.limits.torque)
         if worst.value <= 1.0:
-            return joints, pace, limits, worst
+            _check_tolerance(tool_path, joints, arm, settings)
+            return TimedPath(joints, pace, limits, trajectory, worst)
         left = dynamics.acceleration_share(q, velocity, limits.acceleration)
         if left < MIN_ACCELERATION_SHARE:
             break
         limits = limits.scaled(1.0, ACCELERATION_SAFETY_SHARE * left, 1.0)
     raise PathRefused(
         f"the motors would have to give {100 * worst.value:.0f} % of their torque at {worst.place}; carry less, or "
-        f"bring the path nearer to the robot there, by {name_control_point(tool_path, worst.s)}"
+        f"bring the path nearer to the robot there, by {tool_path.describe_control_point(worst.s)}"
     )
+
+
+def _check_tolerance(tool_path: ToolPath, joints: JointPath, arm: Arm, settings: MotionSettings) -> None:
+    """Check that the tool stays within the path's tolerance between the nodes of the joints' spline."""
+    reached = joints(joints.dense_parameters())
+    wanted = tool_path.curve(tool_path.arc.parameters(reached[:, 6]))
+    off = np.linalg.norm(tool_pose(reached[:, :6], arm)[:, :3, 3] - wanted, axis=1)
+    worst = int(np.argmax(off))
+    if off[worst] > settings.path_tolerance:
+        s = float(reached[worst, 6])
+        node = int(np.argmin(np.abs(tool_path.lengths - s)))
+        raise PathRefused(
+            f"the path bends too sharply to be followed within its tolerance {tool_path.describe_node(node)}; "
+            f"move {tool_path.describe_control_point(s)}"
+        )

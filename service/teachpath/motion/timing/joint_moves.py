@@ -15,6 +15,7 @@ from teachpath.motion.arm.limits import MotionLimits
 from teachpath.motion.arm.puma560 import Array
 from teachpath.motion.collision.collision_model import Clearance, CollisionModel, Load, shape_pose
 from teachpath.motion.collision.continuous import ContinuousCheck, prove_distance
+from teachpath.motion.refusals import first_accepted
 from teachpath.motion.settings import MotionSettings
 from teachpath.motion.timing.timed_trajectory import MAX_TABLE_STEP, TimedTrajectory, apply_chain_rule
 
@@ -139,18 +140,16 @@ def joint_waypoints(
     Raises:
         PathRefused: neither way is free; says what comes too near on the straight one.
     """
-    home = np.array(settings.home)
-    refused: PathRefused | None = None
-    for stops in ((here, goal), (here, home, goal)):
-        try:
-            prove_move_clear(
-                model, np.array(stops), settings, load=load, gripper_open=gripper_open, move_name=move_name
-            )
-            return stops
-        except PathRefused as error:
-            refused = refused or error
-    assert refused is not None
-    raise PathRefused(f"{refused}; bring the arm nearer to its home first")
+
+    def checked(waypoints: Sequence[Array]) -> Sequence[Array]:
+        stacked = np.array(waypoints)
+        prove_move_clear(model, stacked, settings, load=load, gripper_open=gripper_open, move_name=move_name)
+        return waypoints
+
+    try:
+        return first_accepted([(here, goal), (here, np.array(settings.home), goal)], checked)
+    except PathRefused as refusal:
+        raise PathRefused(f"{refusal}; bring the arm nearer to its home first") from None
 
 
 def waypoints_home(

@@ -14,6 +14,7 @@ import numpy as np
 
 from teachpath.motion.arm.limits import MotionLimits
 from teachpath.motion.arm.puma560 import Array
+from teachpath.records import Extreme
 
 # Of moves that have a reserve on both sides: shares of speed, acceleration and jerk.
 SYMMETRIC_MARGINS: Final = (0.99, 0.93, 0.87)
@@ -63,6 +64,20 @@ def limit_uses(setpoints: Array, limits: MotionLimits, rate: float) -> tuple[Arr
         np.abs(change) / limit for change, limit in zip(_changes(setpoints, rate), _each(limits), strict=True)
     )
     return first, second, third
+
+
+def largest_use(values: Array, lengths: Array, limits: Array | float = 1.0) -> Extreme:
+    """Return the largest share of the limits (6,) in values (n, 6), with its joint and arc length.
+
+    Args:
+        values: (n, 6) of the joints.
+        lengths: (n,) arc lengths where they occur [m].
+        limits: (6,), or 1 for values that are shares already.
+    """
+    share = values / limits
+    row, joint = np.unravel_index(int(np.argmax(share)), share.shape)
+    s = float(lengths[row])
+    return Extreme(float(share[row, joint]), f"joint {joint + 1} at s = {s:.3f} m", s)
 
 
 def _changes(setpoints: Array, rate: float) -> list[Array]:

@@ -7,11 +7,10 @@ from teachpath.errors import PathRefused
 from teachpath.motion.arm.model import Arm
 from teachpath.motion.collision.builtin_scenes import empty_scene, paper_scene
 from teachpath.motion.paths.ik_branches import enumerate_candidates, nearest_to_usable
-from teachpath.motion.paths.tool_path import sample_tool_path
+from teachpath.motion.paths.tool_path import control_point_weights, sample_tool_path
 from teachpath.motion.planning.assessment import assess
 from teachpath.motion.planning.failure import first_failing_range
 from teachpath.motion.planning.plan import plan
-from teachpath.motion.planning.suggestion import control_point_weights
 from teachpath.motion.settings import MotionSettings
 from teachpath.nurbs import Curve
 from teachpath.records import Assessment, Scene
