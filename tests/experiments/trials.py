@@ -9,8 +9,8 @@ from math import sqrt
 import numpy as np
 
 from teachpath.errors import LearningFailed
-from teachpath.learning.clustering.distances import frechet_distance
 from teachpath.learning.learn import learn
+from teachpath.learning.matching import frechet_distance
 from teachpath.learning.resampling import at_equal_arc_length
 from teachpath.learning.settings import LearningSettings
 from teachpath.records import Array, Cluster, Learned, Trajectory

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 
-from teachpath.learning.clustering.distances import frechet_distance
+from teachpath.learning.matching import frechet_distance
 from teachpath.learning.resampling import at_equal_arc_length
 from teachpath.records import Array, Cluster, Fit, Learned, LearnedPath
 

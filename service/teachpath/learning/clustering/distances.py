@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.distance import cdist
 
+from teachpath.learning.matching import frechet_distances, time_warping_distances
 from teachpath.learning.settings import Progress, no_progress
 from teachpath.records import Array
 
@@ -54,11 +55,6 @@ def nearest_paths(
     return np.concatenate([index for index, _ in found]), np.concatenate([apart for _, apart in found])
 
 
-def frechet_distance(one: Array, other: Array) -> float:
-    """Return the discrete Fréchet distance [m] of two polylines (n, 3) of as many points."""
-    return float(_widest(cdist(one, other)[None])[0])
-
-
 def _compiled(paths: Array, kind: int, progress: Progress) -> Distances:
     from teachpath.learning.clustering import kernels
 
@@ -93,38 +89,5 @@ def _warped(paths: Array, kind: int, progress: Progress) -> Array:
         progress(begin / len(left), PROGRESS_MESSAGE)
         pairs = slice(begin, begin + PAIRS_PER_BATCH)
         apart = np.stack([cdist(paths[i], paths[j]) for i, j in zip(left[pairs], right[pairs], strict=True)])
-        found.append(_widest(apart) if kind == 1 else _cheapest(apart))
+        found.append(frechet_distances(apart) if kind == 1 else time_warping_distances(apart))
     return np.concatenate(found)
-
-
-def _widest(apart: Array) -> Array:
-    """Return the discrete Fréchet distances of pairs, computed along the diagonals of the table (pairs, n, n)."""
-    pairs, n, _ = apart.shape
-    flat, stride = apart.reshape(pairs, -1), max(n - 1, 1)  # from one to the next of a diagonal
-    last, before = np.full((2, pairs, n + 1), np.inf)  # column i + 1 is row i of the table
-    before[:, 0] = -np.inf
-    for step in range(2 * n - 1):
-        first, end = max(0, step - n + 1), min(step, n - 1) + 1
-        reached = np.full((pairs, n + 1), np.inf)
-        shortest = np.minimum(np.minimum(last[:, first:end], last[:, first + 1 : end + 1]), before[:, first:end])
-        diagonal = flat[:, step + first * stride : step + (end - 1) * stride + 1 : stride]
-        np.maximum(diagonal, shortest, out=reached[:, first + 1 : end + 1])
-        last, before = reached, last
-    return np.asarray(last[:, -1])
-
-
-def _cheapest(apart: Array) -> Array:
-    """Return the mean distances along the cheapest monotone matchings of pairs, from their table (pairs, n, n)."""
-    pairs, n, _ = apart.shape
-    last, before = np.full((2, pairs, n + 1, 2), np.inf)  # cost and steps; column i + 1 is row i of the table
-    before[:, 0] = 0.0
-    for step in range(2 * n - 1):
-        rows = np.arange(max(0, step - n + 1), min(step, n - 1) + 1)
-        best = last[:, rows]
-        for other, wins in ((last[:, rows + 1], np.less), (before[:, rows], np.less_equal)):
-            best = np.where(wins(other[..., :1], best[..., :1]), other, best)
-        reached = np.full((pairs, n + 1, 2), np.inf)
-        reached[:, rows + 1, 0] = best[..., 0] + apart[:, rows, step - rows]
-        reached[:, rows + 1, 1] = best[..., 1] + 1
-        last, before = reached, last
-    return np.asarray(last[:, -1, 0] / last[:, -1, 1])

@@ -7,7 +7,6 @@ from collections.abc import Sequence
 import numpy as np
 
 from teachpath.errors import LearningFailed
-from teachpath.learning.clustering.distances import frechet_distance
 from teachpath.learning.fitting.nurbs_fit import (
     CURVE_SAMPLES,
     Approximation,
@@ -16,6 +15,7 @@ from teachpath.learning.fitting.nurbs_fit import (
     distances_to_curve,
 )
 from teachpath.learning.fitting.orientation_fit import fit_orientations, mean_orientations
+from teachpath.learning.matching import frechet_distance
 from teachpath.learning.resampling import SMOOTHING_WINDOW, arc_lengths, at_equal_arc_length, smoothed
 from teachpath.learning.settings import LearningSettings, StepCallback
 from teachpath.records import Array, Fit, LearnedPath, Trajectory

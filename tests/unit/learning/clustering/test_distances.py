@@ -11,7 +11,8 @@ from scipy.spatial.distance import cdist, squareform
 
 from teachpath.errors import Cancelled
 from teachpath.learning.clustering import kernels
-from teachpath.learning.clustering.distances import frechet_distance, nearest_paths, pairwise_distances
+from teachpath.learning.clustering.distances import nearest_paths, pairwise_distances
+from teachpath.learning.matching import frechet_distance
 from teachpath.records import Array
 
 KINDS = {"arc": 0, "frechet": 1, "dtw": 2}

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from teachpath.errors import LearningFailed
-from teachpath.learning.clustering.distances import frechet_distance
 from teachpath.learning.fitting import synthesis
 from teachpath.learning.fitting.synthesis import residual_noise
+from teachpath.learning.matching import frechet_distance
 from teachpath.learning.resampling import at_equal_arc_length
 from teachpath.learning.settings import LearningSettings
 from teachpath.records import Array, LearnedPath, Trajectory
