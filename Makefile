@@ -86,7 +86,7 @@ test: check browser
 	$(BIN)/python -m pytest $(ARGS)
 
 bench: $(READY)
-	@$(BIN)/python tests/bench/run.py $(ARGS)
+	@$(BIN)/python -m tests.bench.run $(ARGS)
 
 experiments: $(READY)
 	@$(BIN)/python -m tests.experiments.run $(ARGS)

@@ -8,11 +8,11 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
-from report import Figure, against
 
 from teachpath.motion.execution.governor import Governor
 from teachpath.motion.timing import kernels
 from teachpath.motion.timing.timed_trajectory import TimedTrajectory
+from tests.bench.report import Figure, against
 
 ALLOWED = 0.1  # s
 EXACT = 1e-9  # s

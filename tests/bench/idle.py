@@ -4,7 +4,7 @@ import os
 import time
 from pathlib import Path
 
-from report import Figure, against
+from tests.bench.report import Figure, against
 
 SETTLED = 3.0  # [s] until a station that has just begun is at rest
 SECONDS = 10.0  # [s] of each measurement

@@ -6,10 +6,10 @@ EAIK is no dependency of the project: `.venv/bin/pip install --no-deps EAIK` bri
 import time
 
 import numpy as np
-from report import Figure, against
 
 from teachpath.motion.arm.kinematics import inverse_kinematics, tool_pose
 from teachpath.motion.arm.model import Arm
+from tests.bench.report import Figure, against
 
 ARM = Arm.of_variant()
 

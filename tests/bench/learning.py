@@ -3,8 +3,6 @@
 from functools import partial
 
 import numpy as np
-from learning_peers import timed
-from report import Figure, against
 
 from teachpath.learning.learn import learn
 from teachpath.learning.settings import LearningSettings
@@ -12,6 +10,8 @@ from teachpath.motion.collision.builtin_scenes import paper_scene
 from teachpath.motion.planning.plan import plan
 from teachpath.motion.settings import MotionSettings
 from teachpath.records import Learned, Trajectory
+from tests.bench.learning_peers import timed
+from tests.bench.report import Figure, against
 
 
 def measure(trajectories: dict[str, Trajectory], *, repeats: int) -> list[Figure]:

@@ -10,7 +10,6 @@ from collections.abc import Callable
 import numpy as np
 from geomdl import fitting as geomdl_fitting
 from hmmlearn.hmm import GMMHMM
-from report import Figure, against
 from scipy.cluster.hierarchy import fcluster, linkage
 from scipy.interpolate import BSpline, make_lsq_spline, splev, splprep
 from scipy.spatial import cKDTree
@@ -23,6 +22,7 @@ from teachpath.learning.selection.consistency import MODEL_STATES
 from teachpath.learning.selection.features import extract_features
 from teachpath.learning.settings import LearningSettings
 from teachpath.records import Array, Trajectory
+from tests.bench.report import Figure, against
 
 BOUND = 0.005  # m
 DEGREE = 3

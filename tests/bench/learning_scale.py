@@ -5,11 +5,9 @@ import resource
 import subprocess
 import sys
 import time
-from pathlib import Path
 
 import numba
 import numpy as np
-from report import Figure, against
 
 from teachpath.learning.clustering.distances import pairwise_distances
 from teachpath.learning.clustering.kernels import _mean_distances, blocks_of
@@ -17,6 +15,7 @@ from teachpath.learning.clustering.subsampled_clustering import cluster_paths
 from teachpath.learning.selection.default_mode import select
 from teachpath.learning.settings import LearningSettings
 from teachpath.records import Array, Trajectory
+from tests.bench.report import Figure, against
 
 POINTS = 150
 
@@ -26,7 +25,7 @@ def measure(*, quick: bool) -> list[Figure]:
     sizes = (3000, 21_000, 60) if quick else (10_000, 25_000, 600)
     values = {}
     for part, size in zip(("pairs", "crowd", "selection"), sizes, strict=True):
-        command = [sys.executable, str(Path(__file__)), part, str(size)]
+        command = [sys.executable, "-m", "tests.bench.learning_scale", part, str(size)]
         values |= json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout)
     many, crowd, chosen = sizes
     return [

@@ -9,16 +9,14 @@ from contextlib import contextmanager
 from functools import partial
 from statistics import median
 
-import idle
-import teleoperation
-from busy import learner_and_page
-from report import Figure, against
-
 from teachpath.commands.serving import free_port, serving
 from teachpath.config import load
 from teachpath_client import Station
 from teachpath_client.errors import NotInTime
 from teachpath_client.models import ExecutorStatus, Job
+from tests.bench import idle, teleoperation
+from tests.bench.busy import learner_and_page
+from tests.bench.report import Figure, against
 
 POLL = 0.002  # [s]
 LONGEST_LEARNING = 0.5  # [s]

@@ -7,12 +7,11 @@ from contextlib import contextmanager
 from dataclasses import asdict
 from typing import Any
 
-from motion import show
-from report import Figure, against
-
 from teachpath.commands.serving import free_port, serving
 from teachpath.config import load
 from teachpath_client import Station
+from tests.bench.motion import show
+from tests.bench.report import Figure, against
 
 POINTS = 20  # control points of the path that is dragged
 FRAME = 16.0  # [ms] limit of a frame

@@ -4,11 +4,11 @@ toppra has wheels for Linux on x86-64 only, and is left out elsewhere.
 """
 
 import numpy as np
-from report import Figure, against
 
 from teachpath.motion.arm.limits import MotionLimits
 from teachpath.motion.paths.ik_branches import Candidate, configurations
 from teachpath.motion.paths.tool_path import ToolPath
+from tests.bench.report import Figure, against
 
 POINTS = 1600  # of the curve, even in its parameter
 

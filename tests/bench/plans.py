@@ -10,14 +10,14 @@ from collections import Counter
 from dataclasses import dataclass
 
 import numpy as np
-from checker import Verdict, judge
-from random_plans import random_case, streamed
-from refusals import search
-from report import Figure, against
 
 from teachpath.errors import PathRefused
 from teachpath.motion.planning.plan import plan
 from teachpath.records import Fit, LearnedPath
+from tests.bench.report import Figure, against
+from tests.plan_checker.checker import Verdict, judge
+from tests.plan_checker.exhaustive_search import search
+from tests.plan_checker.random_cases import random_case, streamed
 
 DT = 0.004
 ALLOWED = 1.0 + 1e-9

@@ -12,9 +12,7 @@ from pathlib import Path
 from statistics import median
 from typing import Any
 
-import sender
 import zenoh
-from report import Figure, against
 
 from teachpath.commands.serving import free_port
 from teachpath.io.bus import Bus, BusSettings, listen_on_bus
@@ -27,6 +25,8 @@ from teachpath.recorder.recorder import DemonstrationCallbacks, Lookup, Recorder
 from teachpath.recording.settings import RecordingSettings
 from teachpath.records import Calibration, Demonstration, RecordingRequest, StopRequest, Trajectory
 from teachpath_client.synthetic import RATE
+from tests.bench import sender
+from tests.bench.report import Figure, against
 
 DEMO = 4236  # samples of the demo's twelve demonstrations
 

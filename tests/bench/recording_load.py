@@ -10,10 +10,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
-import crowd
 import numpy as np
 import zenoh
-from report import Figure
 
 from teachpath.commands.serving import free_port
 from teachpath.io.bus import Bus, BusSettings, listen_on_bus
@@ -24,6 +22,8 @@ from teachpath.recorder.recorder import Lookup, Recorder
 from teachpath.recording.settings import RecordingSettings
 from teachpath.records import Calibration, RecordingRequest, StopRequest
 from teachpath_proto import tracker_pb2
+from tests.bench import crowd
+from tests.bench.report import Figure
 
 TRACKERS = 400
 PROCESSES = 4

@@ -4,19 +4,20 @@ import argparse
 import math
 import time
 
-import inverse
-import learning
-import learning_peers
-import learning_scale
-import motion
-import page
-import plans
-import recording
-import recording_load
-import timing
-from report import Figure, machine, print_report
-
 from teachpath.records import Trajectory
+from tests.bench import (
+    inverse,
+    learning,
+    learning_peers,
+    learning_scale,
+    motion,
+    page,
+    plans,
+    recording,
+    recording_load,
+    timing,
+)
+from tests.bench.report import Figure, machine, print_report
 
 
 def main() -> None:

@@ -3,10 +3,9 @@
 import math
 import time
 
-from report import Figure, against
-
 from teachpath_client import HandReading, Link, Station
 from teachpath_proto.keys import Keys
+from tests.bench.report import Figure, against
 
 PERIOD = 0.02  # [s] between two samples: 50 Hz
 CLUTCH = 4

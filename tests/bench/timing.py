@@ -3,12 +3,7 @@
 import time
 from dataclasses import dataclass
 
-import answers
 import numpy as np
-import peer_bound
-from global_optimum import best_duration
-from optimum import shortest_stop
-from report import Figure, against
 
 from teachpath.motion.arm.joint_path import JointPath
 from teachpath.motion.arm.model import Arm
@@ -20,6 +15,10 @@ from teachpath.motion.timing.limit_margins import NO_MARGINS, limit_uses
 from teachpath.motion.timing.timed_trajectory import TimedTrajectory, time_joint_path
 from teachpath.motion.timing.timing import duration_lower_bound, time_tool_path
 from teachpath.nurbs import Curve
+from tests.bench import answers, peer_bound
+from tests.bench.global_optimum import best_duration
+from tests.bench.optimum import shortest_stop
+from tests.bench.report import Figure, against
 
 ARM = Arm.of_variant()
 

@@ -4,12 +4,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from checker import GRIP, frames, judge
-from random_plans import random_case, streamed
-from refusals import configurations, search
 
 from teachpath.motion.planning.plan import plan
 from teachpath.records import Shape
+from tests.plan_checker.checker import GRIP, frames, judge
+from tests.plan_checker.exhaustive_search import configurations, search
+from tests.plan_checker.random_cases import random_case, streamed
 from tests.unit.motion.ways import learned
 
 ACCEPTED = (3, 4)

@@ -8,11 +8,11 @@ from dataclasses import dataclass
 from itertools import product
 
 import numpy as np
-from checker import GRIP, HIGH, LOW, A, D, Solids, frames
 
 from teachpath.exchange import to_geomdl
 from teachpath.nurbs import Curve
 from teachpath.records import Scene
+from tests.plan_checker.checker import GRIP, HIGH, LOW, A, D, Solids, frames
 
 PLACES = 41  # along the curve
 ROLLS = np.radians(np.arange(0, 360, 15))
