@@ -134,17 +134,31 @@ def test_the_same_path_gives_the_same_motion(middle: Plan) -> None:
     assert again.certificate.digest == middle.certificate.digest
 
 
-def test_where_above_is_not_free_the_arm_comes_and_goes_from_nearer_or_from_a_side() -> None:
+def under_a_lid(height: float, *, at_goal: bool) -> tuple[np.ndarray, np.ndarray]:
+    """Plan with a lid of which the underside lies at a height, and return how the tool comes to and leaves the path."""
     scene = paper_scene()
     assert scene.carried is not None
     x, y, _ = scene.carried.position
-    lid = Shape("lid", "box", (0.3, 0.3, 0.02), (x - 0.05, y - 0.2, 0.80))
-    settings = MotionSettings()
-    free, covered = (plan(way(MIDDLE), replace(scene, obstacles=(*scene.obstacles, *more))) for more in ((), (lid,)))
-    straight_up = tool_pose(free.above_start, ARM)[:3, 3] - tool_pose(free.joints[0], ARM)[:3, 3]
-    np.testing.assert_allclose(straight_up, [0.0, 0.0, settings.lift], atol=1e-9)
-    assert not np.allclose(covered.above_start, free.above_start)
-    verify(covered, ARM)
+    lid = Shape("lid", "box", (0.3, 0.3, 0.02), (x - 0.05, (0.2 - y) if at_goal else (y - 0.2), height + 0.01))
+    made = plan(way(MIDDLE), replace(scene, obstacles=(*scene.obstacles, lid)))
+    verify(made, ARM)
+    ends = np.array([made.above_start, made.joints[0], made.above_goal, made.joints[-1]])
+    before, start, after, goal = tool_pose(ends, ARM)[:, :3, 3]
+    return before - start, after - goal
+
+
+@pytest.mark.parametrize("at_goal", [False, True])
+def test_where_above_is_not_free_the_arm_comes_and_goes_from_nearer_or_from_a_side(at_goal: bool) -> None:
+    lift = MotionSettings().lift
+    above = {height: under_a_lid(height, at_goal=at_goal)[at_goal] for height in (1.0, 0.79, 0.78, 0.76)}
+    for height, distance in ((1.0, lift), (0.79, lift / 2), (0.78, lift / 4)):
+        np.testing.assert_allclose(above[height], [0.0, 0.0, distance], atol=1e-9)
+    assert np.hypot(*above[0.76][:2]) > 0.02
+    assert above[0.76][2] > 0.0
+
+
+def test_the_other_end_of_the_path_is_left_as_it_is() -> None:
+    np.testing.assert_allclose(under_a_lid(0.76, at_goal=False)[1], [0.0, 0.0, MotionSettings().lift], atol=1e-9)
 
 
 def test_the_tool_rolls_along_the_path_where_no_one_roll_leads_through() -> None:
