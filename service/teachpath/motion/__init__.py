@@ -1,1 +1,1 @@
-"""The motion room: from a learned path to a certified plan, and the arm along it, live."""
+"""Motion: plans a learned path, certifies the plan, and computes the setpoints of its execution."""

@@ -1,1 +1,1 @@
-"""Analysis: a recorded motion, checked against its limits and drawn over time."""
+"""Analysis: checks recorded motions against limits and path, and reduces them to time series."""

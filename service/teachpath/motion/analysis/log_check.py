@@ -1,7 +1,7 @@
-"""Judges a log of setpoints against limits and path, from the numbers alone.
+"""Checks a log of setpoints against limits and path, from the numbers alone.
 
-Nothing that makes motion is used here: no track, no governor, no kinematics of ours but the table of the arm. What is
-measured is what was sent, differenced and put through a chain of matrices of its own.
+The check is independent of the code that makes motion: it uses the table of the arm, but neither trajectories nor the
+governor nor our kinematics. It differences the setpoints, and computes the tool's position by a chain of its own.
 """
 
 from __future__ import annotations
@@ -18,10 +18,10 @@ from teachpath.motion.arm.model import Arm
 from teachpath.motion.arm.puma560 import Array
 from teachpath.nurbs import Curve
 
-PATH_TOLERANCE: Final = 1e-4  # m, that the tool may be off the path
-LIMIT_TOLERANCE: Final = 1e-6  # relative, for the rounding of differences
-PERIOD_TOLERANCE: Final = 0.01  # of the period, by which setpoints may be off their even times
-PATH_CHORDS: Final = 20_000  # of which the path is made to measure the distance to it
+PATH_TOLERANCE: Final = 1e-4  # m, of the tool to the path
+LIMIT_TOLERANCE: Final = 1e-6  # of a limit, for the rounding of differences
+PERIOD_TOLERANCE: Final = 0.01  # of the period, between setpoints
+PATH_CHORDS: Final = 20_000  # that stand for the path in the measurement of distances
 QUANTITIES: Final = ("speed", "acceleration", "jerk")
 
 
@@ -32,8 +32,8 @@ class SetpointLog:
     Attributes:
         times: (n,) when each is due [s].
         positions: (n, 6) of the joints [rad].
-        on_path: (n,) whether the tool is said to be on the path; None when the log does not say.
-        missing: setpoints that are not in it, as far as its numbering tells.
+        on_path: (n,) whether the log has the tool on the path; None when it does not say.
+        missing: number of setpoints that the numbering of the log skips.
     """
 
     times: Array
@@ -44,11 +44,11 @@ class SetpointLog:
 
 @dataclass(frozen=True)
 class LogCheck:
-    """What was found.
+    """The result of a check.
 
     Attributes:
-        faults: what is wrong, each a sentence; empty when all is kept.
-        measured: what was measured, each a sentence.
+        faults: sentences, one for each limit or requirement that is broken.
+        measured: sentences, one for each that is kept.
     """
 
     faults: tuple[str, ...]
@@ -56,11 +56,11 @@ class LogCheck:
 
 
 def check_log(log: SetpointLog, path: Curve | None, arm: Arm) -> LogCheck:
-    """Judge a log.
+    """Check a log of setpoints.
 
     Args:
         log: at least 4 setpoints.
-        path: that the tool follows [m], world; None when only the limits are judged.
+        path: that the tool follows [m], world; None to check only the limits.
         arm: whose setpoints they are.
     """
     faults, measured = [], []
@@ -89,7 +89,7 @@ def _positions(log: SetpointLog, limits: JointLimits) -> tuple[bool, str]:
 
 
 def _differences(log: SetpointLog, period: float, limits: JointLimits) -> list[tuple[bool, str]]:
-    """Judge speed, acceleration and jerk; the arm is taken to rest before the log and wherever nothing was sent."""
+    """Check speed, acceleration and jerk; the arm is taken to rest before the log and wherever nothing was sent."""
     steps, moves = np.diff(log.times), np.any(np.diff(log.positions, axis=0) != 0.0, axis=1)
     uneven = np.abs(steps - period) > PERIOD_TOLERANCE * period
     rested = np.concatenate([[True], ~moves[:-1]])  # before each step
@@ -112,7 +112,7 @@ def _differences(log: SetpointLog, period: float, limits: JointLimits) -> list[t
 
 
 def _use(positions: Array, order: int) -> Array:
-    """Return the differences (n, 6) that end in each of the positions (n, 6), behind a rest."""
+    """Return the differences of an order (n, 6) that end in each of the positions (n, 6), after a rest."""
     return np.abs(np.diff(np.concatenate([np.repeat(positions[:1], order, axis=0), positions]), order, axis=0))
 
 
@@ -137,7 +137,10 @@ def _path(log: SetpointLog, path: Curve, arm: Arm) -> list[tuple[bool, str]]:
 
 
 def _guessed(tool: Array, points: Array) -> NDArray[np.bool_]:
-    """Say which setpoints should be on the path: from the first at its start to the last at its end, or to the last."""
+    """Return (n,) which setpoints should be on the path: from the first at its start to the last at its end.
+
+    Where none is at its end, they go on to the last of all.
+    """
     starts = np.flatnonzero(np.linalg.norm(tool - points[0], axis=1) <= PATH_TOLERANCE)
     ends = np.flatnonzero(np.linalg.norm(tool - points[-1], axis=1) <= PATH_TOLERANCE)
     said = np.zeros(len(tool), dtype=np.bool_)
@@ -148,7 +151,7 @@ def _guessed(tool: Array, points: Array) -> NDArray[np.bool_]:
 
 
 def _distance(places: Array, points: Array) -> Array:
-    """Return the distance (n,) of places (n, 3) to a chain of chords through points (m, 3) [m]."""
+    """Return the distance (n,) [m] of positions (n, 3) to a chain of chords through points (m, 3)."""
     nearest = cKDTree(points).query(places)[1]
     best = np.full(len(places), np.inf)
     for shift in (-1, 0):
@@ -160,7 +163,7 @@ def _distance(places: Array, points: Array) -> Array:
 
 
 def _tool(q: Array, arm: Arm) -> Array:
-    """Return the grasp point (n, 3) [m] of configurations (n, 6), link by link from the tip to the base."""
+    """Return the grasp point (n, 3) [m, world] at configurations (n, 6), link by link from the tip to the base."""
     point = np.tile([0.0, 0.0, arm.tool_length], (len(q), 1))
     for joint in reversed(range(6)):
         link = arm.links[joint]

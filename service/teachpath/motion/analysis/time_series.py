@@ -1,4 +1,4 @@
-"""A recorded motion as curves over time: as many points as a plot shows, and no peak lost."""
+"""Reduces a recorded motion to time series of as many points as a plot shows, without losing peaks."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ from teachpath.records import JointState, Matrix, Setpoint
 
 @dataclass(frozen=True, eq=False)
 class TimeSeries:
-    """What the arm did over time.
+    """A recorded motion over time.
 
     Attributes:
         times: (n,) since the first setpoint [s].
         positions: (n, 6) of the joints [rad].
-        velocities: (n, 6), of those between two times the one of largest size [rad/s].
+        velocities: (n, 6), each the one of largest magnitude since the time before [rad/s].
         torques: (n, 6), likewise [N m].
         tool: (n, 3) grasp point [m], world.
         object: (n, 3) carried object [m], world; empty when there is none.
@@ -42,13 +42,13 @@ class TimeSeries:
 
 
 def time_series(setpoints: Sequence[Setpoint], states: Sequence[JointState], points: int, arm: Arm) -> TimeSeries:
-    """Draw a recorded motion with at most `points` points.
+    """Reduce a recorded motion to at most `points` points.
 
     Args:
-        setpoints: as they were sent.
+        setpoints: in the order in which they were sent.
         states: of the arm, with increasing stamps.
         points: at least 2.
-        arm: which moved.
+        arm: that moved.
     """
     count = len(states)
     if count == 0:
@@ -56,7 +56,7 @@ def time_series(setpoints: Sequence[Setpoint], states: Sequence[JointState], poi
     groups = np.unique(np.linspace(0, count, min(points, count) + 1).astype(np.int64))[:-1]
     begin = setpoints[0].nominal_ns if setpoints else states[0].stamp_ns
     stamps = np.array([s.stamp_ns - begin for s in states], dtype=np.float64) / 1e9
-    ends = np.append(groups[1:], count) - 1  # the newest state of each group stands for it
+    ends = np.append(groups[1:], count) - 1  # the newest state of each group represents it
     positions = np.array([states[k].position for k in ends])
     seen = states[-1].object_orientation != (0.0, 0.0, 0.0, 0.0)
     late = np.zeros(len(groups))
@@ -78,7 +78,7 @@ def time_series(setpoints: Sequence[Setpoint], states: Sequence[JointState], poi
 
 
 def _largest(values: Array, groups: NDArray[np.int64]) -> Array:
-    """Return of each group of rows (n, 6) the value of largest size, with its sign."""
+    """Return the value of largest magnitude in each group of rows (n, 6), with its sign."""
     high, low = np.maximum.reduceat(values, groups), np.minimum.reduceat(values, groups)
     return np.where(high > -low, high, low)
 

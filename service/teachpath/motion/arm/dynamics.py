@@ -1,4 +1,4 @@
-"""What the motors must give along a motion: inverse dynamics of the arm's table (MuJoCo), with friction and a load."""
+"""Torques of the motors along a motion: inverse dynamics of the arm (MuJoCo), with friction and a load."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ from teachpath.motion.arm.puma560 import Array
 from teachpath.records import Scene, Shape
 
 GRAVITY: Final = np.array([0.0, 0.0, -9.81])  # m/s^2
-COULOMB_FADE_SPEED: Final = 0.02  # rad/s, below which Coulomb friction fades out
+COULOMB_FADE_SPEED: Final = 0.02  # rad/s, joint speed below which Coulomb friction fades out
 
 
 class Dynamics:
-    """The arm without surroundings; what it carries is a mass at the grasp point."""
+    """The arm without surroundings; the carried object is a point mass at the grasp point."""
 
     def __init__(self, arm: Arm, carried: Shape | None = None) -> None:
         self._arm = arm
@@ -41,12 +41,12 @@ class Dynamics:
         return np.asarray(np.einsum("nij,nj->ni", inertia, acceleration) + gravity + coriolis + friction)
 
     def torque_bounds(self, q: Array, velocity: Array, acceleration: Array) -> Array:
-        """Bound the torques (n, 6) [N m] of everything that may happen on a way.
+        """Return upper bounds (n, 6) [N m] of the torques that any sequence of commands can need on a path.
 
         Args:
-            q: (n, 6) configurations on the way.
-            velocity: (n, 6) there, at full speed; the arm may be slower, to and fro.
-            acceleration: (6,) largest ones, in any combination of signs.
+            q: (n, 6) configurations on the path.
+            velocity: (n, 6) at full speed; the arm may be slower, forward or backward.
+            acceleration: (6,) limits, which may be used in any combination of signs.
         """
         inertia, gravity, coriolis = self._terms(q, velocity)
         # Gravity does not depend on the rate, Coriolis and centrifugal torques grow with its square.
@@ -54,16 +54,16 @@ class Dynamics:
         return np.asarray(np.abs(inertia) @ acceleration + steady + np.abs(self._viscous * velocity) + self._coulomb)
 
     def acceleration_share(self, q: Array, velocity: Array, acceleration: Array) -> float:
-        """Return the largest share of the acceleration limits (6,) with which `largest` keeps the motors' torques.
+        """Return the largest share of the acceleration limits (6,) at which `torque_bounds` keep the torque limits.
 
-        Zero or less means that the motors cannot even hold this.
+        At zero or less, the motors cannot even hold the arm.
         """
         steady = self.torque_bounds(q, velocity, 0.0 * acceleration)
         moving = self.torque_bounds(q, velocity, acceleration) - steady
         return float(np.min((self._arm.limits.torque - steady) / moving))
 
     def _terms(self, q: Array, velocity: Array) -> tuple[Array, Array, Array]:
-        """Return inertia matrices (n, 6, 6) and the torques (n, 6) of gravity and of turning at these velocities."""
+        """Return inertia matrices (n, 6, 6), and torques (n, 6) of gravity and of centrifugal and Coriolis forces."""
         model, data = self._model, self._data
         inertia, gravity, coriolis = np.empty((len(q), 6, 6)), np.empty_like(q), np.empty_like(q)
         whole = np.empty((model.nv, model.nv))
@@ -78,15 +78,15 @@ class Dynamics:
             mujoco.mj_fullM(model, data, whole)
             inertia[row] = whole[:6, :6]
         if self._mass:
-            here, turning = jacobian(q, self._arm)[:, :3], _turning(q, velocity, self._arm)
-            inertia += self._mass * np.einsum("nki,nkj->nij", here, here)
-            gravity -= self._mass * here.transpose(0, 2, 1) @ GRAVITY
-            coriolis += self._mass * np.einsum("nki,nk->ni", here, turning)
+            translation, turning = jacobian(q, self._arm)[:, :3], _centripetal(q, velocity, self._arm)
+            inertia += self._mass * np.einsum("nki,nkj->nij", translation, translation)
+            gravity -= self._mass * translation.transpose(0, 2, 1) @ GRAVITY
+            coriolis += self._mass * np.einsum("nki,nk->ni", translation, turning)
         return inertia, gravity, coriolis
 
 
-def _turning(q: Array, velocity: Array, arm: Arm, step: float = 1e-4) -> Array:
-    """Return the grasp point's acceleration (n, 3) at constant joint velocities, by differences over `step` [s]."""
+def _centripetal(q: Array, velocity: Array, arm: Arm, step: float = 1e-4) -> Array:
+    """Return the grasp point's acceleration (n, 3) at constant joint velocities, from differences over `step` [s]."""
     before, now, after = (tool_pose(q + k * step * velocity, arm)[:, :3, 3] for k in (-1, 0, 1))
     return np.asarray((before - 2 * now + after) / step**2, dtype=np.float64)
 

@@ -1,7 +1,7 @@
-"""The arm's body from simple solids: the one list that is drawn, simulated and checked for collisions.
+"""The arm's solids: one list for drawing, simulation and collision checking.
 
-What makes it a Puma: a slim column, a drum across its top, a long tapered upper arm on the drum's one end, beside the
-column, a thinner forearm on the inner side of the elbow, a slender wrist.
+A Puma 560 has a slim column with a drum across its top, a long tapered upper arm at one end of the drum, beside the
+column, a thinner forearm on the inner side of the elbow, and a slender wrist.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ Z_TO_Y_ROTATION: Final[Quaternion] = (
     sin(radians(-45)),
     0.0,
     0.0,
-)  # the solid's z along y of the link
+)  # turns the solid's z to the link's y
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,8 +40,9 @@ class LinkSolid:
             `prism` (thickness along its z, convex `outline` in its xy plane, counter-clockwise).
         position: of the solid's centre in the link's frame [m].
         orientation: of the solid in the link's frame.
-        opens: how far the part moves, in the link's frame, when the gripper opens [m].
-        trim: drawn alone; it stands out of the solid below it by a few millimetres at places that meet nothing.
+        opening_offset: displacement in the link's frame while the gripper is open [m].
+        visual_only: whether it is only drawn. Such a solid stands out of another one of its link by a few millimetres,
+            where nothing can touch it.
     """
 
     name: str
@@ -57,12 +58,12 @@ class LinkSolid:
 
 
 def collision_solids() -> tuple[LinkSolid, ...]:
-    """Return every part that is simulated and kept clear of all others."""
-    return tuple(part for part in _SOLIDS if not part.visual_only)
+    """Return the solids that are simulated and checked for collisions."""
+    return tuple(solid for solid in _SOLIDS if not solid.visual_only)
 
 
 def visual_solids() -> tuple[LinkSolid, ...]:
-    """Return every part of the Puma 560 and its gripper; proportions are our own after photographs of the arm."""
+    """Return all solids of the Puma 560 and its gripper; the proportions are our own, after photographs of the arm."""
     return _SOLIDS
 
 

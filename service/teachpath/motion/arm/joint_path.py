@@ -1,4 +1,4 @@
-"""What the joints do along a path, one quintic spline through nodes, and what they may do."""
+"""The path of the joints: one quintic spline through configurations at nodes."""
 
 from __future__ import annotations
 
@@ -12,16 +12,16 @@ from scipy.interpolate import BSpline, make_interp_spline
 from teachpath.motion.arm.puma560 import Array
 
 SPLINE_DEGREE: Final = 5
-SAMPLES_PER_NODE: Final = 4  # samples per node that show what lies between the nodes
+SAMPLES_PER_NODE: Final = 4  # of `dense_parameters`, which show what lies between the nodes
 
 
 @dataclass(frozen=True, eq=False)
 class JointPath:
-    """Configurations q and the tool's length s as functions of one parameter.
+    """Configurations q and arc length s as functions of one parameter.
 
     Attributes:
         nodes: (n,) strictly increasing parameters.
-        lengths: (n,) of the tool's way up to each node [m].
+        lengths: (n,) arc length of the tool's path up to each node [m].
         joints: (n, 6) configurations at the nodes [rad].
     """
 
@@ -31,12 +31,12 @@ class JointPath:
 
     @property
     def length(self) -> float:
-        """Length of the whole way [m]."""
+        """Arc length of the whole path [m]."""
         return float(self.lengths[-1])
 
     @cached_property
     def spline(self) -> BSpline[np.float64]:
-        """The six joints and the length by the parameter."""
+        """The six joints and the arc length as functions of the parameter."""
         return make_interp_spline(self.nodes, np.column_stack([self.joints, self.lengths]), k=SPLINE_DEGREE)
 
     @cached_property
@@ -44,11 +44,11 @@ class JointPath:
         return (self.spline, *(self.spline.derivative(k) for k in (1, 2, 3)))
 
     def __call__(self, parameter: Array | float, order: int = 0) -> Array:
-        """Evaluate (..., 7) the six joints and the length, or their derivative of `order` 0 to 3."""
+        """Return (..., 7) the six joints and the arc length, or their derivative of `order` 1 to 3."""
         at = np.clip(parameter, self.nodes[0], self.nodes[-1])
         return np.asarray(self._derivatives[order](at), dtype=np.float64)
 
     def dense_parameters(self) -> Array:
-        """Return parameters several times denser than the nodes."""
+        """Return parameters at the nodes and at even places between them."""
         grid = np.arange((len(self.nodes) - 1) * SAMPLES_PER_NODE + 1) / SAMPLES_PER_NODE
         return np.interp(grid, np.arange(len(self.nodes)), self.nodes)

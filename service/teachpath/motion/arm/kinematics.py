@@ -1,4 +1,4 @@
-"""Where the arm's links are, how the tool moves, and which configurations bring it to a pose."""
+"""Forward kinematics, Jacobian and closed-form inverse kinematics of the arm."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from teachpath.motion.arm.model import Arm
 
 Array = NDArray[np.float64]
 
-# Below this sine of joint 5 the axes of joints 4 and 6 coincide and only the sum of their angles is determined.
+# Below this sine of joint 5, the axes of joints 4 and 6 coincide, and only the sum of their angles is determined.
 SINGULAR_WRIST_SINE: Final = 1e-9
 
 BRANCH_NAMES: Final = tuple(
@@ -26,14 +26,14 @@ BRANCH_NAMES: Final = tuple(
 
 @dataclass(frozen=True)
 class LinkLengths:
-    """What the inverse kinematics uses of an arm [m]; `bend` is the angle between forearm and link 3 [rad]."""
+    """The lengths that the inverse kinematics uses [m]; `forearm_angle` is that between forearm and link 3 [rad]."""
 
     shoulder_height: float  # of joint 2 above the floor
     upper_arm: float
-    shoulder_offset: float  # of the arm beside the axis of joint 1
+    shoulder_offset: float  # from the axis of joint 1 to the plane of the arm
     forearm: float  # from elbow to wrist
     forearm_angle: float
-    wrist_to_grasp: float  # from wrist to grasp point
+    wrist_to_grasp: float
 
     @classmethod
     def of_arm(cls, arm: Arm) -> LinkLengths:
@@ -107,10 +107,10 @@ class IkSolutions:
     """All inverse kinematics of n poses.
 
     Attributes:
-        joints: (n, 8, 6) [rad], each in (-pi, pi]; order of `BRANCHES`; where `excess` is positive the nearest
-            stretch of the arm, which misses the pose.
-        excess: (n, 8) how far the wrist centre lies outside the reach [m]; at most 0 when the pose is reachable.
-        beyond: (n,) True where the excess is beyond the outer reach, False where it is within the inner one.
+        joints: (n, 8, 6) [rad], each in (-pi, pi], in the order of `BRANCH_NAMES`. Where a pose is out of reach, the
+            arm is stretched or folded towards it, and misses it.
+        reach_excess: (n, 8) how far the wrist centre lies outside the reach [m]; at most 0 for a pose within reach.
+        beyond_outer_reach: (n,) True where the wrist centre is too far away, False where it is too near.
     """
 
     joints: Array
@@ -146,7 +146,13 @@ def min_singular_value(q: Array, arm: Arm) -> Array:
 
 
 def describe_reach(excess: float, beyond: bool, s: float) -> str:
-    """Say why a pose at arc length `s` [m] has no configuration."""
+    """Describe why no configuration reaches a pose at arc length `s` [m].
+
+    Args:
+        excess: how far the wrist centre lies outside the reach [m].
+        beyond: whether it is too far away, and not too near.
+        s: arc length [m].
+    """
     where = "outside the reach" if beyond else "too near to the arm's own axis"
     return f"wrist centre {100 * excess:.1f} cm {where} at s = {s:.3f} m"
 
@@ -164,13 +170,13 @@ def rotation_matrices(quaternions: Array) -> Array:
 
 @dataclass(frozen=True, eq=False)
 class _Reach:
-    """Where n wrist centres lie, seen from the shoulder [m]."""
+    """Positions of n wrist centres relative to the shoulder [m]."""
 
     lengths: LinkLengths
     wrist: Array  # (n, 3)
-    along: Array  # (n,) level distance in the plane of the arm
+    along: Array  # (n,) horizontal distance in the plane of the arm
     height: Array
-    far: Array  # distance
+    far: Array  # (n,) distance from the shoulder
 
     @classmethod
     def of(cls, poses: Array, lengths: LinkLengths) -> _Reach:
@@ -185,18 +191,23 @@ class _Reach:
 
     @property
     def excess(self) -> Array:
-        """How far each lies outside the reach; at most 0 inside."""
+        """How far each wrist centre lies outside the reach; at most 0 inside."""
         long, short = self.lengths.upper_arm, self.lengths.forearm
         inner = self.lengths.shoulder_offset - np.hypot(self.wrist[:, 0], self.wrist[:, 1])
         return np.maximum(np.maximum(inner, self.far - (long + short)), abs(long - short) - self.far)
 
-    def shoulder_and_elbow(self, side: float, knee: float) -> Array:
-        """Return joints 1 to 3 (n, 3) with the arm on one side (1: righty, -1: lefty) and the knee bent one way."""
+    def shoulder_and_elbow(self, side: float, elbow: float) -> Array:
+        """Return joints 1 to 3 (n, 3).
+
+        Args:
+            side: of the shoulder, 1 for righty, -1 for lefty.
+            elbow: sign of the elbow's angle.
+        """
         of = self.lengths
         bend = np.clip((self.far**2 - of.upper_arm**2 - of.forearm**2) / (2 * of.upper_arm * of.forearm), -1.0, 1.0)
-        # Seen along joint 2 the wrist lies ahead for righty, behind for lefty; z of frame 1 points to the arm's side.
+        # Along joint 2, the wrist lies ahead for righty and behind for lefty; z of frame 1 points to the arm's side.
         q1 = np.arctan2(self.wrist[:, 1], self.wrist[:, 0]) + np.arctan2(of.shoulder_offset, side * self.along)
-        inside = knee * np.arccos(bend)
+        inside = elbow * np.arccos(bend)
         across, onward = of.forearm * np.sin(inside), of.upper_arm + of.forearm * np.cos(inside)
         q2 = np.arctan2(self.height, side * self.along) - np.arctan2(across, onward)
         return np.column_stack([q1, q2, inside - of.forearm_angle])

@@ -1,4 +1,4 @@
-"""The limits of the joints: what the arm may do in all, and the part of it that depends on time."""
+"""Limits of the joints: position, torque, and the limits of motion (speed, acceleration, jerk)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The arm and its scene as a MuJoCo model (MJCF), written from the one table and the one list of solids."""
+"""Writes arm and scene as a MuJoCo model (MJCF), from the table of the arm and the list of its solids."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ GRASP_WELD: Final = "grasp"  # the weld that holds it: set its relative pose, th
 TOOL_SITE: Final = "tool"  # site at the grasp point
 OBJECT_DENSITY: Final = 300.0  # kg/m^3, of the carried object: a light wooden block
 
-# Contacts: the arm touches obstacles, not itself nor what it carries (the certificate keeps it clear of itself).
+# The arm has contacts with obstacles, but not with itself or its object: the certificate keeps it clear of itself.
 _OBSTACLE_CONTACTS: Final = 'contype="1" conaffinity="1"'
 _ARM_CONTACTS: Final = 'contype="0" conaffinity="1"'
 _OBJECT_CONTACTS: Final = 'contype="2" conaffinity="1"'
@@ -29,12 +29,12 @@ def write_mjcf(scene: Scene, arm: Arm, *, timestep: float = 0.001) -> str:
     """Write the MJCF of arm and scene.
 
     Bodies `link1` to `link6` lie in the Denavit-Hartenberg frames, so that a body's pose is that of `link_frames`;
-    joints are `joint1` to `joint6`, torque motors `motor1` to `motor6` [N m]. A geom has the name of its part, an
-    obstacle's geom is `obstacle:<name>`, the carried object's body is `carried`.
+    joints are `joint1` to `joint6`, torque motors `motor1` to `motor6` [N m]. A geom of the arm has the name of its
+    solid, an obstacle's geom is `obstacle:<name>`, and the carried object's body is `carried`.
 
     Args:
         scene: obstacles and carried object, in the world.
-        arm: which stands in it.
+        arm: that stands in the scene.
         timestep: of the simulation [s].
 
     Raises:
@@ -65,10 +65,10 @@ def write_mjcf(scene: Scene, arm: Arm, *, timestep: float = 0.001) -> str:
 
 
 def physical_inertia(link: Link) -> Array:
-    """Return the moments of inertia (3,) that a rigid body can have, nearest to the published ones of `link`.
+    """Return moments of inertia (3,) that a rigid body can have, nearest to the published ones of `link`.
 
-    No body has a moment above the sum of the other two. Of link 1 only the middle one was published and of link 3 the
-    middle one is too large by its neighbours; the others keep their values.
+    No moment of a rigid body exceeds the sum of the other two. Of link 1, only the middle moment was published; of link
+    3, the published middle moment is too large. All other moments keep their published values.
     """
     moments = np.array(link.inertia)
     if link.mass == 0.0:

@@ -1,4 +1,4 @@
-"""The arm as a value: what is planned, simulated or executed is so for one arm, which is passed along."""
+"""The arm as a value, which is passed to everything that plans, simulates, executes or draws."""
 
 from __future__ import annotations
 

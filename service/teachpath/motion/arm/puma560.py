@@ -1,14 +1,13 @@
-"""The Puma 560 as published: tables of lengths, masses, friction and limits, from which everything else is made.
+"""The Puma 560 as published: tables of lengths, masses, friction and limits, from which all models are built.
 
 Frames: frame 0 is `world`, on the floor under the pedestal; frame i (1 to 6) is the standard Denavit-Hartenberg frame
 behind joint i, fixed to link i. The tool's grasp point lies on z of frame 6.
 
-The sources disagree, so there are variants: `VARIANTS` has them by name, each with the source of every column. What a
-source does not give is taken from the default and said to be. All have the frames and the zero position of Paul, in
-which the limits are stated; tables in the frames of Armstrong, Khatib and Burdick or of Lee, whose joints 2 and 3 are
-half a turn off, were converted. The variants differ by what matters to a tool (`d` of joint 3: 125.4 to 150.1 mm) and
-to a motor (its inertia at joint 2: 2.3 or 4.8 kg m^2), which is why a plan is of one `Arm` (`model`) and no other. All
-variants have the same limits.
+The sources disagree, so there are variants: `VARIANTS` has them by name, each with the source of every column. A column
+that a source does not give is taken from the default, and its entry says so. All variants have the frames, the zero
+position and therefore the limits of Paul; tables in the frames of Armstrong, Khatib and Burdick or of Lee, whose joints
+2 and 3 are half a turn off, were converted. The variants differ in lengths (`d` of joint 3: 125.4 to 150.1 mm) and in
+inertia (of the motor at joint 2: 2.3 or 4.8 kg m^2), so a plan is of one `Arm` (`model`) and no other.
 
 The moments of inertia about the middle axis of link 3: 0.086 kg m^2 in the table of the toolbox that came with Corke
 and Armstrong-Helouvry, 0.066 in the same toolbox's table after Armstrong, Khatib and Burdick. With 0.066 and 0.0125

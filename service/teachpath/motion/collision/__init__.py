@@ -1,1 +1,1 @@
-"""Collision: the distance between arm, load and scene, at samples and between them."""
+"""Collision: distances between arm, load and scene, at configurations and on the whole motion between them."""

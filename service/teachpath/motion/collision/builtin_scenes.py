@@ -1,4 +1,4 @@
-"""The scenes that come with teachpath, in the world frame: the table's top lies at z = 0.50 m."""
+"""The built-in scenes, in the world frame: the table's top lies at z = 0.50 m."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def paper_scene() -> Scene:
 
 
 def empty_scene() -> Scene:
-    """Return a scene with nothing but the table."""
+    """Return a scene with a table and nothing on it."""
     return Scene(name="empty", obstacles=(_TABLE,))
 
 

@@ -1,4 +1,4 @@
-"""How far the arm and what it carries stay away from the scene, from each other and from the arm itself."""
+"""Measures the distances of arm and carried object to the scene, to each other, and between parts of the arm."""
 
 from __future__ import annotations
 
@@ -19,22 +19,25 @@ from teachpath.motion.arm.model import Arm
 from teachpath.motion.arm.puma560 import Array
 from teachpath.records import Scene, Shape, Vector
 
-MAX_DISTANCE: Final = 0.3  # m, distances are not looked at beyond this
-# Neighbours touch by design, and of these pairs of links the distance hardly changes: their joints' limits keep them.
+MAX_DISTANCE: Final = 0.3  # m, larger distances are not measured
+# Pairs of links that are neighbours, or between which the joints' limits keep a nearly constant distance.
 _IGNORED_LINK_PAIRS: Final = {(0, 1), (0, 2), (1, 2), (2, 3), (3, 4), (3, 5), (4, 5), (4, 6), (5, 6)}
 _ROTATING_COLUMN: Final = "trunk"
 
 
 @dataclass(frozen=True, slots=True)
 class Clearance:
-    """A least distance [m] (negative: how deep they overlap), and between whom; without names it is at least that."""
+    """A least distance [m] and the two bodies between which it is; negative where they overlap.
+
+    Without names, the distance is at least this.
+    """
 
     distance: float
     body: str
     other_body: str
 
     def describe_violation(self, distance: float, required: float) -> str:
-        """Return the words for a distance [m] below the least one; that is negative where they may overlap so deep."""
+        """Describe a distance [m] below the required one; a negative required distance is an allowed overlap."""
         if distance >= 0.0:
             near = f"{self.body} comes within {1000 * distance:.1f} mm of {self.other_body}"
             return f"{near}, least allowed {1000 * required:.1f} mm"
@@ -46,12 +49,12 @@ class Clearance:
 
 @dataclass(frozen=True, eq=False)
 class Load:
-    """Where the carried object is: in the gripper (`grasp`), or standing in the world (`placed`).
+    """Where the carried object is: in the gripper (`grasp_pose`), or standing in the world (`position`).
 
     Attributes:
-        grasp: (4, 4) pose to tool from object.
-        placed: centre of the object [m].
-        turned: (3, 3) its orientation there; None as it stands at its start.
+        grasp_pose: (4, 4) pose to tool from object.
+        position: centre of the object [m, world].
+        rotation: (3, 3) its orientation there, to world from object; None for the one that it has at its start.
     """
 
     grasp_pose: Array | None = None
@@ -63,7 +66,7 @@ class CollisionModel:
     """The arm's solids and one scene, ready to measure distances (MuJoCo, `mj_geomDistance`)."""
 
     def __init__(self, scene: Scene, arm: Arm) -> None:
-        """Build the model; raises UnusableInput when the scene has a shape without size, or two of one name."""
+        """Build the model; raise UnusableInput when a shape has no size, or two have one name."""
         self.scene, self.arm = scene, arm
         try:
             self._model = mujoco.MjModel.from_xml_string(write_mjcf(scene, arm))
@@ -82,10 +85,10 @@ class CollisionModel:
         self._closed = self._model.geom_pos.copy()
 
     def clearances(self, q: Array, *, load: Load | None = None, gripper_open: bool = False) -> list[Clearance]:
-        """Measure the least distance of everything that should stay apart, for each configuration.
+        """Measure the least distance between all bodies that must stay apart, for each configuration.
 
-        Left out are pairs that touch on purpose: gripper and object, and the object on what it stands on at its
-        start (see `supports`).
+        Pairs that touch on purpose are left out: gripper and object, and the object and its support (see
+        `support_distances`).
 
         Args:
             q: (n, 6) configurations [rad].
@@ -95,16 +98,16 @@ class CollisionModel:
         return self._clearances(q, self._pairs(load), load, gripper_open)
 
     def support_distances(self, q: Array, load: Load) -> list[Clearance]:
-        """Measure the distance of the carried object to what it stands on at its start (0: they touch)."""
+        """Measure the distance (n rows) of the carried object to its support, on which it stands at its start."""
         return self._clearances(q, [(self._object, other) for other in self._supports()], load, False)
 
     def finger_distances(self, q: Array, load: Load) -> list[Clearance]:
-        """Measure the distance of the open fingers to the object that stands between them."""
+        """Measure the distance (n rows) of the open fingers to the object that stands between them."""
         fingers = [geom for geom, part in self._solids.items() if part.opening_offset[1]]
         return self._clearances(q, [(finger, self._object) for finger in fingers], load, True)
 
     def lever_arms(self, load: Load | None = None) -> Array:
-        """Bound how far from each joint's axis any moving point can be (6,) [m], whatever the configuration."""
+        """Return bounds (6,) [m] on the distance of any moving point to each joint's axis, in any configuration."""
         self._place(np.zeros(6), None)
         origins = link_frames(np.zeros(6), self.arm)[:, :3, 3]
         radius = np.zeros(7)
@@ -114,13 +117,13 @@ class CollisionModel:
         if load is not None and load.grasp_pose is not None:
             off = np.linalg.norm(load.grasp_pose[:3, 3] + np.array([0.0, 0.0, self.arm.tool_length]))
             radius[6] = max(radius[6], off + self._model.geom_rbound[self._object])
-        levers, far = np.zeros(6), 0.0  # far: from the frame behind a joint to any point that it moves
+        lever_arms, far = np.zeros(6), 0.0  # far: from the frame behind a joint to any point that it moves
         for joint in range(5, -1, -1):
             far = max(far, radius[joint + 1])
             link = self.arm.links[joint]
-            levers[joint] = link.a + far
+            lever_arms[joint] = link.a + far
             far += float(np.hypot(link.a, link.d))
-        return levers
+        return lever_arms
 
     def _id(self, name: str) -> int:
         return int(self._model.geom(name).id)
@@ -154,7 +157,7 @@ class CollisionModel:
         return {other for other in self._obstacles if self._distance(self._object, other, MAX_DISTANCE) <= touching}
 
     def _placed_pose(self, load: Load | None) -> Array | None:
-        """Return the pose (4, 4) of the object where it stands in the world, or None."""
+        """Return the pose (4, 4) of an object that stands in the world; None where there is none."""
         carried = self.scene.carried
         if load is None or load.position is None or carried is None:
             return None
@@ -193,7 +196,7 @@ class CollisionModel:
         rows, nearest = [], 0
         for gap, row, pose in zip(self._distance_bounds(pair, radii, boxes, places, turns), q, objects, strict=True):
             self._place(row, pose)
-            # Who was nearest in the row before is so again mostly, and then few others have to be measured.
+            # The nearest pair of the row before is mostly the nearest again; then few others have to be measured.
             best = self._distance(pair[nearest, 0], pair[nearest, 1], MAX_DISTANCE) if len(pair) else MAX_DISTANCE
             close = np.flatnonzero(gap < best)
             for k in close[np.argsort(gap[close])].tolist():
@@ -207,7 +210,7 @@ class CollisionModel:
         return rows
 
     def _geom_poses(self, q: Array, objects: Sequence[Array | None]) -> tuple[Array, Array]:
-        """Return where all solids are (n, geoms, 3) and how they are turned (n, geoms, 3, 3)."""
+        """Return positions (n, geoms, 3) and rotations (n, geoms, 3, 3) of all solids."""
         places = np.empty((len(q), self._model.ngeom, 3))
         turns = np.empty((len(q), self._model.ngeom, 9))
         for index, (row, pose) in enumerate(zip(q, objects, strict=True)):
@@ -218,13 +221,14 @@ class CollisionModel:
     def _distance_bounds(
         self, pair: NDArray[np.int64], radii: Array, boxes: NDArray[np.int64], places: Array, turns: Array
     ) -> Array:
-        """Return distances (n, pairs) that are quick and never too large: of bounding spheres, or of one and a box.
+        """Return quick lower bounds (n, pairs) of distances: between bounding spheres, or a bounding sphere and a box.
 
         Args:
-            pair: (pairs, 2) of geoms.
+            pair: (pairs, 2) indices of geoms.
             radii: (pairs, 2) of their bounding spheres.
-            boxes: pairs whose second is a box, which may be as large as a table.
-            places: (n, geoms, 3) where the solids are; `turns` how they are turned.
+            boxes: indices of pairs whose second geom is a box, which may be as large as a table.
+            places: (n, geoms, 3) positions of the solids.
+            turns: (n, geoms, 3, 3) their rotations.
         """
         apart = places[:, pair[:, 0]] - places[:, pair[:, 1]]
         gaps = np.linalg.norm(apart, axis=2) - radii.sum(axis=1)
@@ -236,7 +240,7 @@ class CollisionModel:
 
 
 def grasped_load(model: CollisionModel, start: Array) -> Load | None:
-    """Return how the scene's object is held once it was grasped at configuration `start` (6,); None without one."""
+    """Return the load after the scene's object was grasped at configuration `start` (6,); None without an object."""
     carried = model.scene.carried
     if carried is None:
         return None
@@ -244,7 +248,7 @@ def grasped_load(model: CollisionModel, start: Array) -> Load | None:
 
 
 def shape_pose(shape: Shape) -> Array:
-    """Return the pose (4, 4) to world of a shape where its scene has it."""
+    """Return the pose (4, 4) to world from a shape, as its scene has it."""
     pose = np.eye(4)
     pose[:3, :3] = rotation_matrices(np.array([shape.orientation]))[0]
     pose[:3, 3] = shape.position

@@ -1,1 +1,1 @@
-"""Paths: the tool's poses along a curve, and the arm's configurations for them."""
+"""Paths: the tool's poses along a curve, and the branches of inverse kinematics that reach them."""

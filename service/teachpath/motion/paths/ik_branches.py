@@ -1,4 +1,4 @@
-"""Every way in which the arm can hold its tool along a whole route, and what is wrong with it, node by node."""
+"""Branches of inverse kinematics along a whole tool path: the candidates of a plan, and their faults node by node."""
 
 from __future__ import annotations
 
@@ -19,22 +19,20 @@ from teachpath.motion.arm.puma560 import Array
 from teachpath.motion.paths.tool_path import ToolPath
 from teachpath.motion.settings import MotionSettings
 
-# A joint that turns more than this between two nodes has jumped: the branch ends there.
-MAX_JOINT_STEP: Final = 0.35  # rad
+MAX_JOINT_STEP: Final = 0.35  # rad between two nodes; a larger one is a jump, at which the branch ends
 
 
 @dataclass(frozen=True, eq=False)
 class IkBranch:
-    """What the rolls of one branch share.
+    """One branch of inverse kinematics along a tool path, before any roll of the tool.
 
     Attributes:
         arm: whose branch it is.
-        index: of shoulder, elbow and wrist in `BRANCHES`.
-        unrolled: (n, 6) configurations before any roll of the tool [rad]; where the arm does not reach, its nearest
-            stretch.
-        outside: (n,) how far the wrist centre is out of reach [m]; at most 0 within.
-        beyond: (n,) True where it is too far away, False where too near to the arm's axis.
-        jumps: (n,) True where a joint jumps from a node to the next.
+        index: of shoulder, elbow and wrist in `BRANCH_NAMES`.
+        unrolled_joints: (n, 6) configurations [rad]; out of reach, the arm is stretched or folded towards the pose.
+        reach_excess: (n,) how far the wrist centre is out of reach [m]; at most 0 within reach.
+        beyond_outer_reach: (n,) True where it is too far away, False where it is too near to the arm's axis.
+        jumps: (n,) True where a joint jumps between a node and the next.
     """
 
     arm: Arm
@@ -52,11 +50,11 @@ class IkBranch:
 
 @dataclass(frozen=True, eq=False)
 class ToolRoll:
-    """How the tool is rolled about its own axis: by one angle, or from place to place.
+    """The roll of the tool about its own axis: one angle, or a function of the curve's parameter.
 
     Attributes:
-        angle: [rad] all the way, when there is no spline.
-        spline: angles by the curve's parameter.
+        angle: constant roll [rad]; used where there is no spline.
+        spline: angle [rad] as a function of the curve's parameter.
     """
 
     angle: float = 0.0
@@ -68,20 +66,20 @@ class ToolRoll:
         return np.asarray(angles, dtype=np.float64)
 
     def __str__(self) -> str:
-        """Say it in words."""
+        """Describe the roll in words."""
         return f"roll {degrees(self.angle):.0f} deg" if self.spline is None else "rolling"
 
 
 @dataclass(frozen=True, eq=False)
 class Candidate:
-    """One way to hold the arm along a whole route.
+    """A branch with a roll of the tool: continuous configurations of the arm along a whole tool path.
 
     Attributes:
-        branch: shoulder, elbow, wrist and tool roll in words.
-        arm: what does not depend on the roll.
+        description: shoulder, elbow, wrist and tool roll in words.
+        branch: of inverse kinematics, which does not depend on the roll.
         roll: of the tool about its own axis.
         joints: (n, 6) continuous configurations [rad].
-        over: (n, 6) by how much each joint is beyond its limit [rad]; negative within.
+        limit_excess: (n, 6) by how much each joint is beyond its limit [rad]; negative within.
     """
 
     description: str
@@ -97,18 +95,18 @@ class Candidate:
 
     @property
     def min_singular_value(self) -> float:
-        """Least singular value on the whole route."""
+        """Least singular value on the whole path."""
         return float(self.singular_values.min())
 
     @property
     def feasible(self) -> bool:
-        """Whether everything is reached within the joint limits and without a jump."""
-        arm = self.branch
-        return bool(arm.reach_excess.max() <= 0 and self.limit_excess.max() <= 0 and not arm.jumps.any())
+        """Whether all poses are reached within the joint limits and without a jump."""
+        branch = self.branch
+        return bool(branch.reach_excess.max() <= 0 and self.limit_excess.max() <= 0 and not branch.jumps.any())
 
 
 def enumerate_candidates(path: ToolPath, arm: Arm, settings: MotionSettings) -> list[Candidate]:
-    """Find every branch and tool roll along a route, with how well each does."""
+    """Return a candidate for every branch of `arm` and every constant roll of the settings, along a tool path."""
     solutions = inverse_kinematics(path.poses(path.parameters), arm)
     outside = solutions.reach_excess[:, 0]
     found = []
@@ -121,7 +119,7 @@ def enumerate_candidates(path: ToolPath, arm: Arm, settings: MotionSettings) -> 
 
 
 def rolled_candidate(path: ToolPath, name: str, branch: IkBranch, roll: ToolRoll) -> Candidate:
-    """Return what becomes of an arm's branch along a route when the tool is rolled."""
+    """Return the candidate of a branch with a roll of the tool; `name` is that of the branch."""
     limits = branch.arm.limits
     joints = shift_within_limits(roll_tool(branch.unrolled_joints, roll(path.parameters)), limits)
     excess = np.maximum(joints - limits.upper, limits.lower - joints)
@@ -129,7 +127,7 @@ def rolled_candidate(path: ToolPath, name: str, branch: IkBranch, roll: ToolRoll
 
 
 def configurations(path: ToolPath, candidate: Candidate, u: Array) -> Array:
-    """Return the configurations (m, 6) of a candidate at increasing parameters (m,) of its curve, from its start."""
+    """Return the configurations (m, 6) of a candidate at parameters (m,) that increase from the start of its curve."""
     unrolled = np.unwrap(
         inverse_kinematics(path.poses(u), candidate.branch.arm).joints[:, candidate.branch.index], axis=0
     )
@@ -137,14 +135,14 @@ def configurations(path: ToolPath, candidate: Candidate, u: Array) -> Array:
 
 
 def roll_tool(joints: Array, roll: Array) -> Array:
-    """Turn the tool about its own axis by `roll` (...,) [rad]: joint 6 alone, the other way round."""
+    """Roll the tool about its own axis by `roll` (...,) [rad]: joint 6 turns by the opposite angle."""
     turned = joints.copy()
     turned[..., 5] -= roll
     return turned
 
 
 def shift_near(joints: Array, first: Array) -> Array:
-    """Shift each joint of continuous configurations (m, 6) by whole turns, so that they begin near to `first` (6,)."""
+    """Shift each joint of continuous configurations (m, 6) by whole turns, to begin nearest to `first` (6,)."""
     return np.asarray(joints + 2 * np.pi * np.round((first - joints[0]) / (2 * np.pi)), dtype=np.float64)
 
 
@@ -156,7 +154,7 @@ def shift_within_limits(joints: Array, limits: JointLimits) -> Array:
 
 
 def node_faults(candidate: Candidate, settings: MotionSettings) -> NDArray[np.str_]:
-    """Name what is wrong at each node (n,): `reach`, `limit`, `turn` of the wrist, `singular`; empty when nothing."""
+    """Return the fault at each node (n,): `reach`, `limit`, `turn` of the wrist, `singular`, or empty."""
     named = np.full(len(candidate.joints), "", dtype="<U9")
     named[candidate.singular_values < settings.least_singular] = "singular"
     named[candidate.branch.jumps] = "turn"
@@ -166,12 +164,15 @@ def node_faults(candidate: Candidate, settings: MotionSettings) -> NDArray[np.st
 
 
 def is_usable(candidate: Candidate, settings: MotionSettings) -> bool:
-    """Tell whether a candidate reaches everything, keeps the joint limits, has no jump and no singular pose."""
+    """Return whether a candidate reaches all poses within the joint limits, without a jump and never singular."""
     return candidate.feasible and candidate.min_singular_value >= settings.least_singular
 
 
 def cost(candidate: Candidate, settings: MotionSettings) -> float:
-    """Prefer branches far from singular poses and joint limits, and near to the arm's home (a second counts 0.2)."""
+    """Return the cost of a candidate: low far from singular poses and joint limits, and near to the arm's home.
+
+    A second of travel from home costs 0.2.
+    """
     limits = candidate.branch.arm.limits
     middle, half = (limits.lower + limits.upper) / 2, (limits.upper - limits.lower) / 2
     use = np.abs(candidate.joints - middle).max(axis=0) / half
@@ -180,14 +181,14 @@ def cost(candidate: Candidate, settings: MotionSettings) -> float:
 
 
 def nearest_to_usable(every: Sequence[Candidate]) -> Candidate:
-    """Choose the candidate with the fewest nodes beyond limits or before a jump; among equals the best conditioned."""
+    """Return the candidate with the fewest nodes beyond limits or at a jump, and of those the least singular one."""
     wrong = [np.count_nonzero((c.limit_excess.max(axis=1) > 0) | c.branch.jumps) for c in every]
     fewest = [c for c, count in zip(every, wrong, strict=True) if count == min(wrong)]
     return max(fewest, key=lambda c: c.min_singular_value)
 
 
 def describe_fault(candidate: Candidate, path: ToolPath, node: int, fault: str, settings: MotionSettings) -> str:
-    """Say what is wrong at a node, and where."""
+    """Describe the fault at a node, and where it is."""
     where = path.describe_node(node)
     if fault == "reach":
         s = float(path.lengths[node])

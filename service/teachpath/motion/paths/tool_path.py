@@ -1,4 +1,4 @@
-"""The curve as the arm must follow it: even arc lengths along it, and the tool's pose at each of them."""
+"""The path of the tool: a curve sampled at even arc lengths, with the tool's poses."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ from teachpath.motion.arm.puma560 import Array
 from teachpath.motion.settings import MotionSettings
 from teachpath.nurbs import Curve, unit_quaternions
 
-MIN_PATH_LENGTH: Final = 0.01  # m, of a path that is worth following
+MIN_PATH_LENGTH: Final = 0.01  # m, of a path that is followed
 MIN_NODES: Final = 60
-MAX_REFINEMENTS: Final = 3  # times that the nodes are doubled where the curve bends sharply
+MAX_REFINEMENTS: Final = 3  # doublings of the number of nodes for a curve that bends sharply
 CUSP_SPEED_SHARE: Final = 1e-4  # share of the mean speed |dc/du| below which a curve has a cusp
 
 
@@ -38,7 +38,7 @@ class ArcLength:
         self.total = float(self._lengths[-1])
 
     def cusp(self) -> float | None:
-        """Return the arc length [m] where the curve has a cusp, or None."""
+        """Return the arc length [m] where the curve has a cusp; None where it has none."""
         still = int(np.argmin(self._speeds))
         return float(self._lengths[still]) if self._speeds[still] < CUSP_SPEED_SHARE * self.total else None
 
@@ -48,7 +48,7 @@ class ArcLength:
 
     def parameters(self, lengths: Array) -> Array:
         """Return the curve's parameters (m,) at arc lengths (m,) [m]."""
-        # Inverting by linear interpolation alone would put its kinks into the third derivative of q(s).
+        # The kinks of a linear interpolation alone would appear in the third derivative of q(s).
         slope = self._arc.derivative()
         u = np.interp(lengths, self._lengths, self._grid)
         for _ in range(3):
@@ -61,8 +61,8 @@ class ToolPath:
     """A curve sampled at even arc lengths.
 
     Attributes:
-        curve: what was sampled.
-        turn: quaternions of what is carried, at the same parameter; None when the tool points down all the way.
+        curve: that was sampled.
+        orientation: quaternions of what is carried, at the same parameter; None where the tool always points down.
         arc: the curve's arc length.
         lengths: (n,) arc length of the nodes [m].
         parameters: (n,) of the curve at the nodes.
@@ -84,10 +84,10 @@ class ToolPath:
         return ToolPath(curve, orientation, arc, lengths, parameters, curve(parameters))
 
     def poses(self, u: Array) -> Array:
-        """Return the tool's poses (m, 4, 4) to world at parameters (m,), before any roll about its own axis.
+        """Return the tool's poses (m, 4, 4) to world at parameters (m,), without any roll about its own axis.
 
-        The tool points down with its fingers closing along y, and from there turns as what is carried turns from its
-        own orientation at the start.
+        At the start, the tool points down and its fingers close along y. From there it turns by the same rotation as
+        what is carried.
         """
         poses = downward_poses(self.curve(u), 0.0)
         if self.orientation is not None:
@@ -108,15 +108,15 @@ class ToolPath:
 
 
 def sample_tool_path(curve: Curve, settings: MotionSettings, *, orientation: Curve | None = None) -> ToolPath:
-    """Sample a curve at even arc lengths, as densely as its sharpest bend needs.
+    """Sample a curve at even arc lengths, as densely as its sharpest bend requires.
 
     Args:
         curve: positions [m].
-        settings: how dense.
+        settings: spacing of the nodes, and tolerance.
         orientation: quaternions of what is carried, at the same parameter; used where the settings ask for it.
 
     Raises:
-        PathRefused: it has no 3 dimensions, is too short or stands still on its way.
+        PathRefused: the curve is not in 3 dimensions, is too short, or has a cusp.
     """
     arc = arc_length(curve)
     orientation = orientation if settings.orientation == "demonstrated" else None
@@ -143,7 +143,7 @@ def arc_length(curve: Curve) -> ArcLength:
     """Return the arc length of a curve that an arm can follow.
 
     Raises:
-        PathRefused: it has no 3 dimensions, is too short or stands still on its way.
+        PathRefused: it is not in 3 dimensions, is too short, or has a cusp.
     """
     if curve.control_points.shape[1] != 3:
         raise PathRefused(f"a path in the world has 3 dimensions, this one has {curve.control_points.shape[1]}")
@@ -161,7 +161,7 @@ def arc_length(curve: Curve) -> ArcLength:
 
 
 def _spline_error(found: ToolPath) -> float:
-    """Return how far [m] the spline through the nodes leaves the curve half way between them."""
+    """Return the largest distance [m] of curve and spline through the nodes, halfway between nodes."""
     middle = (found.lengths[1:] + found.lengths[:-1]) / 2
     spline = make_interp_spline(found.lengths, found.positions, k=5)
     wanted = found.curve(found.arc.parameters(middle))

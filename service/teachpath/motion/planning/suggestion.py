@@ -1,4 +1,4 @@
-"""Where a path fails, which control point to move, which way and how far: found by moving the tool a little."""
+"""Suggests which control point of a failing path to move, where to and how far, by trial moves of the tool."""
 
 from __future__ import annotations
 
@@ -15,19 +15,19 @@ from teachpath.motion.paths.tool_path import ToolPath, control_point_weights
 from teachpath.motion.settings import MotionSettings
 from teachpath.records import Suggestion, Vector
 
-PROBE_DISTANCE: Final = 0.004  # m, by which the tool is moved to see what becomes better
-MIN_SLOPE: Final = 1e-9  # slope of a margin that shows no way
+PROBE_DISTANCE: Final = 0.004  # m, of the moves that measure the slope of a margin
+MIN_SLOPE: Final = 1e-9  # of a margin; a smaller one gives no direction
 TRIED_DISTANCES: Final = (0.005, 0.01, 0.015, 0.02, 0.03, 0.04, 0.06, 0.08, 0.12, 0.16, 0.24)  # m
-# Seen from the robot: x ahead, y to its left, z up.
+# For positive and negative x, y and z of the world, as seen from the robot.
 DIRECTION_WORDS: Final = (("away from the robot", "towards the robot"), ("to the left", "to the right"), ("up", "down"))
-NAMED_COMPONENT_SHARE: Final = 0.45  # share of the largest component from which on another is named as well
+NAMED_COMPONENT_SHARE: Final = 0.45  # of the largest component of a move, from which another one is named too
 
-# How good some configurations (m, 6) are, reached from poses whose wrist lies (m,) [m] out of reach: (m,), growing.
+# Returns margins (m,) of configurations (m, 6) whose wrist centres lie (m,) [m] out of reach; larger is better.
 FaultMargin = Callable[[Array, Array], Array]
 
 
 def fault_margin(fault: str, candidate: Candidate, node: int) -> FaultMargin:
-    """Return what to raise so that a fault of a branch (see `branches.faults`) goes away."""
+    """Return the margin that must grow for a fault at a node (see `ik_branches.node_faults`) to disappear."""
     arm = candidate.branch.arm
     if fault == "reach":
         return lambda q, outside: -outside
@@ -43,14 +43,14 @@ def fault_margin(fault: str, candidate: Candidate, node: int) -> FaultMargin:
 def suggest_move(
     tool_path: ToolPath, candidate: Candidate, node: int, margin: FaultMargin, shortfall: float
 ) -> Suggestion:
-    """Propose a move of one control point after which a margin at a node suffices: the shortest of those tried.
+    """Suggest the shortest tried move of one control point after which a margin at a node suffices.
 
     Args:
-        way: the route.
-        candidate: branch of the arm.
-        node: where on the route.
-        margin: what to raise.
-        lacking: how much of it is missing.
+        tool_path: what the tool is to follow.
+        candidate: the branch and roll of the tool.
+        node: index of the node.
+        margin: that must grow.
+        shortfall: by how much it must grow.
     """
     shares = control_point_weights(tool_path.curve, float(tool_path.parameters[node]))
     point = int(np.argmax(shares))
@@ -68,17 +68,17 @@ def suggest_move(
 
 
 def _moves(measure: _MarginNearNode) -> Array:
-    """Return what to try (m, 3): up the margin's slope, and along the axes."""
+    """Return trial moves of the tool (m, 3) [m]: up the margin's slope, and along the axes."""
     slope = measure.slope()
-    ways = [*np.eye(3), *-np.eye(3)]
+    directions = [*np.eye(3), *-np.eye(3)]
     if (steepness := float(np.linalg.norm(slope))) > MIN_SLOPE:
-        ways.append(slope / steepness)
-    return np.concatenate([far * np.array(ways) for far in TRIED_DISTANCES])
+        directions.append(slope / steepness)
+    return np.concatenate([far * np.array(directions) for far in TRIED_DISTANCES])
 
 
 @dataclass(frozen=True, eq=False)
 class _MarginNearNode:
-    """The margin with the tool moved from a node, turned neither way, on the same branch."""
+    """The margin after moves of the tool from a node, with the same orientation, on the same branch."""
 
     tool_path: ToolPath
     candidate: Candidate
@@ -104,7 +104,7 @@ class _MarginNearNode:
 
 
 def margin_shortfall(fault: str, candidate: Candidate, node: int, settings: MotionSettings) -> float:
-    """Return by how much the margin of a fault falls short at a node."""
+    """Return by how much the margin of a fault is too small at a node."""
     if fault == "reach":
         return float(candidate.branch.reach_excess[node])
     if fault == "limit":
@@ -117,8 +117,8 @@ def margin_shortfall(fault: str, candidate: Candidate, node: int, settings: Moti
 def _direction(move: Vector) -> str:
     largest = max(abs(v) for v in move)
     named = sorted(
-        (-abs(value), ways[0] if value > 0 else ways[1])
-        for value, ways in zip(move, DIRECTION_WORDS, strict=True)
+        (-abs(value), words[0] if value > 0 else words[1])
+        for value, words in zip(move, DIRECTION_WORDS, strict=True)
         if abs(value) >= NAMED_COMPONENT_SHARE * largest
     )
     return " and ".join(words for _, words in named)

@@ -1,7 +1,7 @@
-"""Roll the tool from place to place, where no one roll of it leads past everything: a search along the path.
+"""Searches for a roll of the tool that changes along the path, where no constant roll keeps clear of everything.
 
-Rolling moves joint 6 alone, so the angles can be chosen when all else is. Places along the path and angles make a grid;
-the way through it that keeps clear and turns least is found by dynamic programming and made smooth.
+Rolling moves joint 6 alone, so the roll can be chosen last. Nodes of the path and roll angles form a grid; dynamic
+programming finds the sequence of angles that keeps clear and turns least, and a spline smooths it.
 """
 
 from __future__ import annotations
@@ -22,26 +22,26 @@ from teachpath.motion.paths.tool_path import ToolPath
 from teachpath.motion.planning.clearance import SUFFICIENT_CLEARANCE
 from teachpath.motion.settings import MotionSettings
 
-ROLL_COUNT: Final = 24  # of a full turn
-ROLL_STEP: Final = 2 * np.pi / ROLL_COUNT  # rad, from one to the next
-SEARCH_NODES: Final = 60  # along the path, about
-COARSE_STRIDE: Final = 3  # every such place is looked at before the others
-MAX_ROLL_STEPS: Final = 2  # of an angle that the tool may turn from a place to the next
-SMOOTHING_CLEARANCE: Final = 0.001  # m of clearance above what is asked, for what the smoothing takes
-CLEARANCE_WEIGHT: Final = 300.0  # of a missing metre of clearance, beside the square of a turn by one angle
-FILTER_WIDTH: Final = 2.0  # places, of the filter that takes the steps out of the angles
-SPLINE_DEGREE: Final = 5  # of the angles by the curve's parameter
+ROLL_COUNT: Final = 24  # roll angles in a full turn
+ROLL_STEP: Final = 2 * np.pi / ROLL_COUNT  # rad, between two roll angles
+SEARCH_NODES: Final = 60  # of the path, about
+COARSE_STRIDE: Final = 3  # of the first, coarse search, in search nodes
+MAX_ROLL_STEPS: Final = 2  # that the tool may turn from a search node to the next
+SMOOTHING_CLEARANCE: Final = 0.001  # m, on top of the required clearance, because smoothing changes the angles
+CLEARANCE_WEIGHT: Final = 300.0  # cost of a missing metre of clearance; a turn by one roll step costs 1
+FILTER_WIDTH: Final = 2.0  # search nodes, standard deviation of the filter that smooths the angles
+SPLINE_DEGREE: Final = 5  # of the angles as a function of the curve's parameter
 
 
 def rolling_candidates(
     tool_path: ToolPath, usable: list[Candidate], model: CollisionModel, settings: MotionSettings
 ) -> list[Candidate]:
-    """Return candidates whose tool rolls along the path: one a branch, or a first roll of it when it carries something.
+    """Return candidates whose tool rolls along the path: one for each branch; with an object, one for each first roll.
 
     Args:
-        way: the route.
-        fit: candidates with one roll each that do all that does not depend on the roll.
-        model: of the scene.
+        tool_path: what the tool is to follow.
+        usable: candidates with constant rolls, which fulfil everything that does not depend on the roll.
+        model: of arm and scene.
         settings: clearance to keep.
     """
     found, carries = [], model.scene.carried is not None
@@ -58,51 +58,51 @@ def rolling_candidates(
 def _search_rolls(
     tool_path: ToolPath, candidate: Candidate, model: CollisionModel, settings: MotionSettings
 ) -> tuple[Array, Array] | None:
-    """Return places (k,) by the curve's parameter and the angles (k,) [rad] there, or None when nothing leads through.
+    """Return parameters (k,) of the curve and roll angles (k,) [rad] there; None where no sequence keeps clear.
 
-    What is carried is held as the candidate's own roll takes it at the start.
+    The object is grasped with the candidate's own roll.
     """
     nodes = np.unique(np.linspace(0, len(tool_path.lengths) - 1, SEARCH_NODES).round().astype(np.int64))
-    more = _roll_steps(candidate.joints[nodes], model.arm)
-    few = _roll_costs(model, candidate, nodes[::COARSE_STRIDE], more, settings)
-    # What leads through leads through some of the places too: mostly that is enough to see that nothing does.
-    if _cheapest_sequence(few, COARSE_STRIDE * MAX_ROLL_STEPS) is None:
+    steps = _roll_steps(candidate.joints[nodes], model.arm)
+    coarse = _roll_costs(model, candidate, nodes[::COARSE_STRIDE], steps, settings)
+    # A sequence through all nodes is one through some of them too; mostly these suffice to see that there is none.
+    if _cheapest_sequence(coarse, COARSE_STRIDE * MAX_ROLL_STEPS) is None:
         return None
-    costs = np.empty((len(nodes), len(more)))
+    costs = np.empty((len(nodes), len(steps)))
     rest = np.arange(len(nodes)) % COARSE_STRIDE != 0
-    costs[~rest], costs[rest] = few, _roll_costs(model, candidate, nodes[rest], more, settings)
-    way_through = _cheapest_sequence(costs, MAX_ROLL_STEPS)
-    if way_through is None:
+    costs[~rest], costs[rest] = coarse, _roll_costs(model, candidate, nodes[rest], steps, settings)
+    sequence = _cheapest_sequence(costs, MAX_ROLL_STEPS)
+    if sequence is None:
         return None
     u = tool_path.parameters[nodes]
-    return u, candidate.roll(u) + ROLL_STEP * more[way_through]
+    return u, candidate.roll(u) + ROLL_STEP * steps[sequence]
 
 
 def _roll_steps(joints: Array, arm: Arm) -> NDArray[np.int64]:
-    """Return by how many turns (m,) the tool could be rolled further at some of the configurations (k, 6)."""
+    """Return the roll steps (m,) by which the tool can be rolled further at any of the configurations (k, 6)."""
     first = int(np.floor((joints[:, 5].min() - arm.limits.upper[5]) / ROLL_STEP))
     last = int(np.ceil((joints[:, 5].max() - arm.limits.lower[5]) / ROLL_STEP))
     return np.arange(first, last + 1)
 
 
 def _roll_costs(
-    model: CollisionModel, candidate: Candidate, nodes: NDArray[np.int64], more: NDArray[np.int64],
+    model: CollisionModel, candidate: Candidate, nodes: NDArray[np.int64], steps: NDArray[np.int64],
     settings: MotionSettings,
 ) -> Array:  # fmt: skip
-    """Return what each of `more` turns (m,) costs at nodes (k,) of the route: (k, m), infinite where it cannot be."""
+    """Return the costs (k, m) of roll steps (m,) at nodes (k,); infinite where the tool cannot be rolled so."""
     joints = candidate.joints[nodes]
-    clear = _clearances(model, candidate, joints)[:, more % ROLL_COUNT]
-    rolled = joints[:, 5, None] - ROLL_STEP * more
+    clear = _clearances(model, candidate, joints)[:, steps % ROLL_COUNT]
+    rolled = joints[:, 5, None] - ROLL_STEP * steps
     lower, upper = model.arm.limits.lower[5], model.arm.limits.upper[5]
     free = (rolled >= lower) & (rolled <= upper) & (clear >= settings.clearance_min + SMOOTHING_CLEARANCE)
     costs = np.where(free, CLEARANCE_WEIGHT * np.maximum(SUFFICIENT_CLEARANCE - clear, 0.0), np.inf)
     if model.scene.carried is not None:
-        costs[np.ix_(nodes == 0, more != 0)] = np.inf  # it is held as the candidate's own roll takes it
+        costs[np.ix_(nodes == 0, steps != 0)] = np.inf  # the object is grasped with the candidate's own roll
     return costs
 
 
 def _clearances(model: CollisionModel, candidate: Candidate, joints: Array) -> Array:
-    """Measure the clearance (k, ANGLES) [m] at configurations (k, 6) with the tool rolled further."""
+    """Measure the clearances (k, ROLL_COUNT) [m] at configurations (k, 6) with the tool rolled by every roll step."""
     load = grasped_load(model, candidate.joints[0])
     every = np.repeat(joints[:, None], ROLL_COUNT, axis=1)
     every[:, :, 5] -= ROLL_STEP * np.arange(ROLL_COUNT)
@@ -110,25 +110,30 @@ def _clearances(model: CollisionModel, candidate: Candidate, joints: Array) -> A
     return np.array([row.distance for row in rows]).reshape(len(joints), ROLL_COUNT)
 
 
-def _cheapest_sequence(costs: Array, steps: int) -> NDArray[np.int64] | None:
-    """Return the column at each row (k,) of the cheapest way through a grid of costs (k, m), or None without one."""
+def _cheapest_sequence(costs: Array, max_change: int) -> NDArray[np.int64] | None:
+    """Return the column at each row (k,) of the cheapest sequence through a grid of costs (k, m); None without one.
+
+    Args:
+        costs: (k, m), infinite where the sequence must not go.
+        max_change: of the column between two rows; a change by c costs c^2.
+    """
     count = costs.shape[1]
-    total, came = costs[0], []
+    total, previous = costs[0], []
     for row in costs[1:]:
-        padded = np.pad(total, steps, constant_values=np.inf)
-        trials = np.stack([padded[k : k + count] + (k - steps) ** 2 for k in range(2 * steps + 1)])
-        came.append(np.arange(count) + trials.argmin(axis=0) - steps)
+        padded = np.pad(total, max_change, constant_values=np.inf)
+        trials = np.stack([padded[k : k + count] + (k - max_change) ** 2 for k in range(2 * max_change + 1)])
+        previous.append(np.arange(count) + trials.argmin(axis=0) - max_change)
         total = trials.min(axis=0) + row
     if not np.isfinite(total.min()):
         return None
     chosen = [int(np.argmin(total))]
-    for back in reversed(came):
+    for back in reversed(previous):
         chosen.append(int(back[chosen[-1]]))
     return np.array(chosen[::-1])
 
 
 def _smoothed(u: Array, angles: Array) -> BSpline[np.float64]:
-    """Draw a smooth curve near angles (k,); a spline with these for coefficients does not overshoot."""
+    """Return a spline near angles (k,) at parameters `u` (k,); with angles for coefficients, it does not overshoot."""
     smooth = gaussian_filter1d(angles, FILTER_WIDTH, mode="nearest")
     inner = np.interp(np.linspace(0, len(u) - 1, max(len(u) // 3, 2)), np.arange(len(u)), u)
     knots = np.concatenate([np.zeros(SPLINE_DEGREE), inner, np.ones(SPLINE_DEGREE)])

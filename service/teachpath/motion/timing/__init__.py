@@ -1,1 +1,1 @@
-"""Timing: the fastest motion along a path within the limits of the joints."""
+"""Timing: the fastest motions along paths, within the limits of the joints."""

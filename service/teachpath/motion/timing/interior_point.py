@@ -1,7 +1,7 @@
-"""A primal-dual interior-point method for a sum over samples, each of which reads three neighbouring coefficients.
+"""A primal-dual interior-point method for sums over samples, each a function of three neighbouring coefficients.
 
-The objective is convex; constraints may curve the wrong way: their own curvature is then left out, which is what
-linearising them anew in every step comes to, and a line search on the barrier keeps every step feasible. Nocedal &
+The objective is convex. Where the curvature of a constraint would make the Hessian indefinite, it is left out, as if
+the constraint were linearised in every step. A line search on the barrier function keeps every step feasible. Nocedal &
 Wright, Numerical Optimization, 2nd ed., Springer 2006, chapter 19.
 """
 
@@ -16,13 +16,13 @@ from scipy.linalg import LinAlgError, cho_solve_banded, cholesky_banded
 from teachpath.motion.arm.puma560 import Array
 
 MAX_ITERATIONS: Final = 60
-CENTERING: Final = 0.15  # each step aims at this share of the present gap
-RELATIVE_GAP: Final = 5e-4  # between the objective and its dual at which it is solved, relative
-BOUNDARY_FRACTION: Final = 0.99  # of the way to the nearest constraint that a step goes at most
-MAX_BACKTRACKS: Final = 14
-ARMIJO_SLOPE: Final = 1e-4
-MIN_CURVATURE_SHARE: Final = 0.02  # share of the objective's curvature that is kept when constraints take it away
-MAX_DUAL_RATIO: Final = 1e6  # by which duals may be off the central path
+CENTERING: Final = 0.15  # share of the present duality gap that each step aims at
+RELATIVE_GAP: Final = 5e-4  # duality gap over the objective at which a problem counts as solved
+BOUNDARY_FRACTION: Final = 0.99  # of the step to the nearest constraint that is taken at most
+MAX_BACKTRACKS: Final = 14  # halvings of a step
+ARMIJO_SLOPE: Final = 1e-4  # share of the predicted decrease of the barrier function that a step must reach
+MIN_CURVATURE_SHARE: Final = 0.02  # of the objective's curvature that remains after that of the constraints
+MAX_DUAL_RATIO: Final = 1e6  # of a dual variable to its value on the central path, or the inverse
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,9 +30,10 @@ class Derivatives:
     """Derivatives at n samples.
 
     Attributes:
-        objective: (n,) of the objective by the value at each sample, a weighted sum of its three coefficients.
-        bend: (n,) second derivative by that value of what the objective sums with its weights.
-        slack: (n, k, 3) of the constraints' slacks by the three coefficients.
+        objective_gradient: (n,) derivative of the objective by the value at each sample, which is a weighted sum of its
+            three coefficients.
+        hessian_diagonal: (n,) second derivative of the objective's integrand by that value.
+        constraint_jacobian: (n, k, 3) derivatives of the constraint values by the three coefficients.
     """
 
     objective_gradient: Array
@@ -41,36 +42,36 @@ class Derivatives:
 
 
 class SampledProblem(Protocol):
-    """What can be minimised."""
+    """A problem that can be minimized: its constraints hold where all constraint values are positive."""
 
     @property
     def intervals(self) -> int:
-        """Intervals in which the samples lie, as many in each; interval i reads coefficients i to i + 2."""
+        """Number of intervals, with as many samples each; interval i depends on coefficients i to i + 2."""
 
     @property
     def basis(self) -> Array:
-        """Shares (n, 3) of the coefficients in the value at each sample."""
+        """Weights (n, 3) of the three coefficients in the value at each sample."""
 
     @property
     def quadrature_weights(self) -> Array:
-        """Weights (n,) of the samples in the objective."""
+        """Weights (n,) of the samples in the objective, which is an integral."""
 
     @property
     def constraint_curvature(self) -> Array:
-        """How much of what the objective sums each constraint (k,) has in its slack."""
+        """(k,) coefficient with which the objective's integrand enters each constraint."""
 
     def initial_coefficients(self) -> Array:
         """Return feasible coefficients (intervals + 2,)."""
 
     def constraint_values(self, coefficients: Array) -> tuple[float, Array] | None:
-        """Return the objective and the slacks (n, k) at coefficients near each sample (n, 3), None outside."""
+        """Return objective and constraint values (n, k) at each sample's coefficients (n, 3); None where undefined."""
 
     def derivatives(self, coefficients: Array) -> Derivatives:
-        """Differentiate there."""
+        """Return the derivatives at each sample's coefficients (n, 3)."""
 
 
 def minimize(problem: SampledProblem) -> Array:
-    """Return coefficients (intervals + 2,) at which a problem's objective is least, nearly, and all slacks positive."""
+    """Return coefficients (intervals + 2,) that nearly minimize the objective; all constraint values are positive."""
     found = problem.initial_coefficients()
     near = _coefficient_windows(found, problem)
     here = problem.constraint_values(near)
@@ -100,7 +101,7 @@ def minimize(problem: SampledProblem) -> Array:
 def _newton(
     problem: SampledProblem, derivatives: Derivatives, slack: Array, duals: Array, aim: float
 ) -> tuple[Array, float]:
-    """Return the step (intervals + 2,) and the slope of the barrier along it."""
+    """Return the Newton step (intervals + 2,) and the slope of the barrier function along it."""
     value, weights, bands = problem.basis, problem.quadrature_weights, duals / slack
     pull = (
         derivatives.objective_gradient[:, None] * value
@@ -124,7 +125,7 @@ def _newton(
 
 
 def _assembled(pull: Array, local: Array, intervals: int) -> tuple[Array, Array]:
-    """Add what the samples say: the gradient (intervals + 2,) and the matrix as its three upper bands."""
+    """Sum over the samples: return the gradient (intervals + 2,) and the Hessian as its three upper bands."""
     pull = pull.reshape(intervals, -1, 3).sum(axis=1)
     local = local.reshape(intervals, -1, 3, 3).sum(axis=1)
     gradient, band = np.zeros(intervals + 2), np.zeros((3, intervals + 2))
@@ -144,7 +145,10 @@ def _line_search(
     longest: float,
     slope: float,
 ) -> tuple[Array, float, Array] | None:
-    """Return the coefficients, objective and slacks after a part of a step that lowers the barrier, or None."""
+    """Return coefficients, objective and constraint values after a part of the step that lowers the barrier function.
+
+    Returns None when no part of the step does.
+    """
     before = here[0] - aim * float(np.log(here[1]).sum())
     for halving in range(MAX_BACKTRACKS):
         length = longest / 2**halving
@@ -158,11 +162,11 @@ def _line_search(
 
 
 def _longest(values: Array, changes: Array) -> float:
-    """Return the share of changes, at most 1, after which positive values are still positive."""
+    """Return the largest share of the changes, at most 1, that leaves positive values positive."""
     return min(1.0, BOUNDARY_FRACTION / max(float((-changes / values).max()), 1e-12))
 
 
 def _coefficient_windows(coefficients: Array, problem: SampledProblem) -> Array:
-    """Return the three coefficients (n, 3) that each sample reads."""
+    """Return the three coefficients (n, 3) on which each sample depends."""
     windows = np.lib.stride_tricks.sliding_window_view(coefficients, 3)
     return np.repeat(windows, len(problem.quadrature_weights) // problem.intervals, axis=0)

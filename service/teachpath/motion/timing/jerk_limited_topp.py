@@ -1,10 +1,10 @@
-"""Jerk-limited timing: how fast to run through a path whose parameter is already nearly proportional to time.
+"""Time-optimal path parameterization with a jerk limit, for a path whose parameter is nearly proportional to time.
 
 The unknown is x(sigma) = (d sigma / dt)^2, a quadratic spline. Speed and acceleration limits are linear in x and its
 derivatives, the jerk limit is q''' x + 3/2 q'' x' + 1/2 q' x'' <= J / sqrt(x) (Debrouwere et al., Time-optimal path
 following for robots with convex-concave constraints using sequential convex programming, IEEE Transactions on Robotics
 29(6), 2013). Each limit reads three neighbouring coefficients only, so the whole is solved by an interior-point method
-whose matrices are bands (`interior`).
+with banded matrices (`interior_point`).
 """
 
 from __future__ import annotations
@@ -21,18 +21,18 @@ from teachpath.motion.arm.puma560 import Array
 from teachpath.motion.timing.interior_point import Derivatives, minimize
 from teachpath.motion.timing.limit_margins import Margins
 
-SAMPLE_POINTS: Final = np.array([0.02, 0.34, 0.66, 0.98])  # within an interval, where the limits are imposed
-STILL_SPEED_SHARE: Final = 1e-6  # share of its speed limit that a joint uses when it stands still
-INITIAL_RATE_SHARE: Final = 0.5  # of the fastest constant x the search begins with
+SAMPLE_POINTS: Final = np.array([0.02, 0.34, 0.66, 0.98])  # of an interval, at which the limits are imposed
+STILL_SPEED_SHARE: Final = 1e-6  # of its speed limit; a joint that never uses more stands still
+INITIAL_RATE_SHARE: Final = 0.5  # of the largest constant x, with which the search begins
 
 Rows = tuple[NDArray[np.int64], Array, Array, Array]
 
 
 def quadratic_basis(parameters: Array, intervals: int) -> Rows:
-    """Evaluate the quadratic B-splines on even intervals of [0, 1].
+    """Evaluate the quadratic B-splines on even intervals of [0, 1] at parameters (n,).
 
     Returns:
-        (n,) index of the first of three coefficients, and (n, 3) their shares in value, first and second derivative.
+        (n,) index of the first of three coefficients, and (n, 3) their weights in value, first and second derivative.
     """
     first = np.clip((parameters * intervals).astype(np.int64), 0, intervals - 1)
     t = parameters * intervals - first
@@ -43,36 +43,36 @@ def quadratic_basis(parameters: Array, intervals: int) -> Rows:
 
 
 def minimize_duration(path: JointPath, limits: MotionLimits, intervals: int, margins: Margins) -> Array:
-    """Find x(sigma) that brings the arm from end to end soonest, as coefficients (intervals + 2,) [1/s^2].
+    """Return x(sigma) of the fastest motion from end to end, as coefficients (intervals + 2,) [1/s^2].
 
     Args:
         path: whose parameter is nearly proportional to time, with the third power of time at both ends.
-        limits: of the joints, kept at samples; what lies between them is for the caller to measure.
+        limits: of the joints, which are kept at samples; the caller measures what happens between them.
         intervals: of the spline.
-        reserve: shares of the limits that may be used.
+        margins: shares of the limits that may be used.
     """
     return minimize(_DurationProblem.of(path, limits, intervals, margins))
 
 
 @dataclass(frozen=True, eq=False)
 class _DurationProblem:
-    """Duration and limits as `interior.minimised` wants them, at n samples, for the m joints that move.
+    """Duration and limits at n samples, for the m joints that move (see `interior_point.SampledProblem`).
 
-    The constraints of a sample are, in this order: speed, acceleration along and against the way each joint turns, jerk
-    along and against it. Signs are such that every joint turns forward.
+    The constraints of a sample are, in this order: speed; acceleration along and against each joint's direction of
+    turning; jerk along and against it. Signs are chosen so that every joint turns forward.
     """
 
     intervals: int
-    basis: Array  # (n, 3) shares of three coefficients in x
+    basis: Array  # (n, 3) weights of three coefficients in x
     quadrature_weights: Array  # (n,) of the samples in an integral over sigma
-    ceiling: Array  # (n,) largest x for the speed limits
-    accelerations: Array  # (n, m, 3) shares of the coefficients in acceleration over its limit
+    ceiling: Array  # (n,) largest x within the speed limits
+    accelerations: Array  # (n, m, 3) weights of the coefficients in acceleration over its limit
     jerks: Array  # (n, m, 3) the same in jerk over its limit and over sqrt(x)
     margins: Margins
 
     @staticmethod
     def of(path: JointPath, limits: MotionLimits, intervals: int, margins: Margins) -> _DurationProblem:
-        """Return the coefficients of a joint path, for joints that move on it, where limits are imposed."""
+        """Set up the problem of a joint path, for the joints that move on it."""
         places = ((np.arange(intervals)[:, None] + SAMPLE_POINTS) / intervals).ravel()
         one, two, three = (path(places, k)[:, :6] for k in (1, 2, 3))
         moves = np.abs(one).max(axis=0) > STILL_SPEED_SHARE * limits.speed
@@ -95,7 +95,7 @@ class _DurationProblem:
         )
 
     def initial_coefficients(self) -> Array:
-        """Return a constant x that keeps all limits: (intervals + 2,)."""
+        """Return the coefficients (intervals + 2,) of a constant x that keeps all limits."""
         ones = np.ones(3)
         a, j = np.abs(self.accelerations @ ones).max(), np.abs(self.jerks @ ones).max()
         least = min(*self.margins.against, *self.margins.against_at_speed)
@@ -104,12 +104,12 @@ class _DurationProblem:
 
     @property
     def constraint_curvature(self) -> Array:
-        """How much of x^-1/2, which the objective is made of, each constraint has in it: (1 + 4 m,)."""
+        """(1 + 4 m,) coefficient with which x^-1/2, the objective's integrand, enters each constraint."""
         m = self.jerks.shape[1]
         return np.repeat([0.0, self.margins.along[1], self.margins.against[1]], [1 + 2 * m, m, m])
 
     def constraint_values(self, coefficients: Array) -> tuple[float, Array] | None:
-        """Return the duration [s] and the slack (n, 1 + 4 m) of all constraints; None where x is not positive."""
+        """Return the duration [s] and the values (n, 1 + 4 m) of all constraints; None where x is not positive."""
         x = self._value(coefficients)
         if x.min() <= 0.0:
             return None
@@ -127,7 +127,7 @@ class _DurationProblem:
         return float(self.quadrature_weights @ root), np.concatenate(parts, axis=1)
 
     def derivatives(self, coefficients: Array) -> Derivatives:
-        """Differentiate: the objective by x, the slacks by the coefficients."""
+        """Return the derivatives of the objective by x, and of the constraint values by the coefficients."""
         x = self._value(coefficients)
         steep = 0.5 * x**-1.5
         (_, along_j), (_, against_j), (fall_a, fall_j) = (

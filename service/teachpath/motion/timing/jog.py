@@ -1,4 +1,4 @@
-"""A step on the path: from rest to rest between two places of a track, within the same limits as the track itself."""
+"""Steps along a trajectory: from rest to rest between two plan times, within the limits of the trajectory."""
 
 from __future__ import annotations
 
@@ -13,15 +13,15 @@ from teachpath.motion.timing.limit_margins import SYMMETRIC_MARGINS, limit_uses
 from teachpath.motion.timing.timed_trajectory import MAX_TABLE_STEP, TimedTrajectory, apply_chain_rule
 
 NODE_TOLERANCE: Final = 1e-5  # [m] within which the arm is at a node
-MIN_JOG: Final = 1e-6  # s of plan time or m of path, a step shorter than this is none
-MAX_SLOWDOWNS: Final = 4  # times that a step is slowed down at most
-MAX_TIME_ACCELERATION: Final = 1e3  # 1/s, second derivative of plan time where the joints hardly move
-MAX_TIME_JERK: Final = 1e5  # 1/s^2, third one
+MIN_JOG: Final = 1e-6  # s of plan time; a shorter step is none
+MAX_SLOWDOWNS: Final = 4  # of one step
+MAX_TIME_ACCELERATION: Final = 1e3  # 1/s, second derivative of plan time, where the joints hardly move
+MAX_TIME_JERK: Final = 1e5  # 1/s^2, third derivative of plan time
 SETPOINT_PHASES: Final = (0.0, 0.25, 0.5, 0.75)  # of the first setpoint, in control periods
 
 
 def time_at_length(trajectory: TimedTrajectory, s: float) -> float:
-    """Return the plan time [s] at which a track is at length `s` [m]."""
+    """Return the plan time [s] at which a trajectory reaches arc length `s` [m]."""
     return float(
         np.interp(
             s, np.maximum.accumulate(trajectory.table[:, 0, 6]), np.arange(len(trajectory.table)) * trajectory.step
@@ -39,16 +39,19 @@ def node_length(lengths: Array, at: float, count: int) -> float:
 
 
 def jog_trajectory(trajectory: TimedTrajectory, begin: float, end: float, rate: float) -> TimedTrajectory:
-    """Make the track of a step: the same way, from rest at plan time `begin` to rest at `end` [s], either direction.
+    """Return the trajectory of a step: from rest at plan time `begin` to rest at `end` [s], in either direction.
 
-    The joints do q(tau(t)); tau(t) is one call of Ruckig, slowed down until the setpoints keep the limits. Like every
-    track it may be run slower, held and reversed.
+    The joints follow q(tau(t)), where tau(t) is one call of Ruckig, slowed down until the setpoints keep the limits.
+    Like every trajectory, it may be run slower, held and reversed.
 
     Args:
-        rate: setpoints a second on which limits are checked [Hz].
+        trajectory: along which the arm moves.
+        begin: plan time of the start [s].
+        end: plan time of the end [s].
+        rate: setpoints a second on which the limits are checked [Hz].
 
     Raises:
-        Conflict: there is nothing left to go in that direction.
+        Conflict: the trajectory ends here in that direction.
     """
     distance = abs(end - begin)
     if distance < MIN_JOG:
@@ -77,7 +80,7 @@ def jog_trajectory(trajectory: TimedTrajectory, begin: float, end: float, rate: 
 
 
 def _along(trajectory: TimedTrajectory, tau: Array) -> list[Array]:
-    """Return joints and length (n, 7) at plan times and their three derivatives by plan time."""
+    """Return joints and arc length (n, 7) at plan times (n,), and their three derivatives by plan time."""
     row = np.clip(np.rint(tau / trajectory.step).astype(np.int64), 0, len(trajectory.table) - 1)
     ahead = (tau - row * trajectory.step)[:, None]
     value, first, second, third = (trajectory.table[row, k] for k in range(4))

@@ -1,4 +1,4 @@
-"""Moves of the joints to a path and away from it: straight lines in the joints, checked against the scene."""
+"""Moves of the joints to a path and away from it: straight lines of the joints, checked against the scene."""
 
 from __future__ import annotations
 
@@ -19,19 +19,19 @@ from teachpath.motion.refusals import first_accepted
 from teachpath.motion.settings import MotionSettings
 from teachpath.motion.timing.timed_trajectory import MAX_TABLE_STEP, TimedTrajectory, apply_chain_rule
 
-MIN_FINGER_DISTANCE: Final = 0.001  # m, that open fingers stay away from the object between them
+MIN_FINGER_DISTANCE: Final = 0.001  # m, of open fingers to the object between them
 
 
 def straight_move(
     start: Array, goal: Array, limits: MotionLimits, *, margins: tuple[float, float, float]
 ) -> TimedTrajectory:
-    """Run from rest to rest on the straight line between two configurations, as fast as Ruckig finds.
+    """Return the fastest motion from rest to rest on the straight line between two configurations (Ruckig).
 
     Args:
         start: configuration (6,) [rad].
-        goal: another one.
+        goal: configuration (6,) [rad].
         limits: to keep.
-        reserve: shares of speed, acceleration and jerk limits that the run itself uses.
+        margins: shares of speed, acceleration and jerk limits that the motion itself uses.
     """
     turn = float(np.abs(goal - start).max())
     direction = (goal - start) / turn
@@ -54,12 +54,14 @@ def straight_move(
 def rest_to_rest(
     distance: float, speed: float, acceleration: float, jerk: float, step: float
 ) -> tuple[Array, Array, Array, Array, float]:
-    """Go a distance in one dimension from rest to rest, as fast as limits allow (one call of Ruckig).
+    """Return the fastest motion in one dimension from rest to rest (one call of Ruckig).
 
     Args:
         distance: to go, positive.
-        speed: limit, per second; `acceleration` and `jerk` likewise.
-        step: between two instants at most [s].
+        speed: limit [distance/s].
+        acceleration: limit [distance/s^2].
+        jerk: limit [distance/s^3].
+        step: largest time between two instants [s].
 
     Returns:
         (n,) place, speed, acceleration and jerk at even instants, and the time between two of them [s].
@@ -76,7 +78,7 @@ def rest_to_rest(
 
 
 def _phases(run: Trajectory, instants: Array) -> tuple[Array, Array, Array, Array]:
-    """Evaluate the one degree of freedom of Ruckig's answer, with its third derivative."""
+    """Return place, speed, acceleration and jerk (n,) of a one-dimensional trajectory at instants (n,) [s]."""
     profile = run.profiles[0][0]
     begins = np.concatenate([[0.0], np.cumsum(profile.t)])[:-1]
     phase = np.clip(np.searchsorted(begins, instants, side="right") - 1, 0, len(begins) - 1)
@@ -94,12 +96,12 @@ def prove_move_clear(
     gripper_open: bool,
     move_name: str,
 ) -> float:
-    """Return the clearance [m] that is proved for straight lines of the joints between configurations (n, 6).
+    """Prove the clearance [m] of straight lines of the joints between configurations (n, 6), and return it.
 
-    Open fingers stay away from an object that stands in the scene, or keep it between them.
+    Open fingers must stay away from an object that stands in the scene, or keep it between them.
 
     Raises:
-        PathRefused: something comes too near; `what` names the move.
+        PathRefused: something comes too near; the sentence begins with `move_name`.
     """
 
     def measure(q: Array) -> list[Clearance]:
@@ -132,13 +134,13 @@ def joint_waypoints(
     gripper_open: bool = False,
     move_name: str = "on the way to the path's start",
 ) -> Sequence[Array]:
-    """Find the stops on the way from one configuration to another: straight, or over the arm's home.
+    """Find the waypoints from one configuration to another: on a straight line of the joints, or over the arm's home.
 
     Returns:
         Two or three configurations (6,), from `here` to `goal`.
 
     Raises:
-        PathRefused: neither way is free; says what comes too near on the straight one.
+        PathRefused: neither is free; the sentence says what comes too near on the straight line.
     """
 
     def checked(waypoints: Sequence[Array]) -> Sequence[Array]:
@@ -155,17 +157,17 @@ def joint_waypoints(
 def waypoints_home(
     model: CollisionModel, start: Array, goal: Array, above_goal: Array, settings: MotionSettings
 ) -> tuple[Array, Array]:
-    """Find the stops on the way home behind a path, with the carried object left at its goal.
+    """Find the waypoints from a path to the arm's home, with the carried object left at the goal.
 
     Args:
-        model: of the scene.
+        model: of arm and scene.
         start: configuration (6,) at the path's start.
-        goal: the one at its end.
-        above_goal: the one above its end.
+        goal: configuration (6,) at its end.
+        above_goal: configuration (6,) above its end.
         settings: home and clearances.
 
     Raises:
-        PathRefused: the way is not free.
+        PathRefused: the move home is not free.
     """
     home = np.array(settings.home)
     load = placed_load(model, start, goal)
@@ -177,7 +179,7 @@ def waypoints_home(
 
 
 def placed_load(model: CollisionModel, start: Array, goal: Array) -> Load | None:
-    """Say where the carried object stands once it was moved along a path between two configurations."""
+    """Return the load that stands at the goal, after it was carried from configuration `start` (6,) to `goal` (6,)."""
     carried = model.scene.carried
     if carried is None:
         return None

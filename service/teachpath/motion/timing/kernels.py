@@ -1,4 +1,4 @@
-"""The arithmetic of the control loop, compiled: where a ramp of the rate leads, and whether its setpoints keep limits.
+"""Compiled arithmetic of the control loop: evaluates ramps of the rate, and checks whether their setpoints keep limits.
 
 Plan time tau runs at the rate r = d tau / dt; a *ramp* takes r to a new constant value in three phases of constant
 third derivative of tau (up, constant, down). A ramp is an array of eight: tau, r and r' at its beginning, the
@@ -16,22 +16,26 @@ import numpy as np
 
 from teachpath.motion.arm.puma560 import Array
 
-ACCEPTED_LIMIT_USE: Final = 0.997  # use of acceleration and jerk limits up to which a ramp is accepted
-TRAILING_SETPOINTS: Final = 3  # setpoints behind a ramp that its differences still reach
-JERK_REDUCTION: Final = 0.6  # the next try after a broken jerk limit
-ACCELERATION_REDUCTION: Final = 0.7  # the next try after a broken acceleration limit
-MIN_TIME_SAVED: Final = 0.002  # s, by which a ramp must be shorter than the one followed
-LOOKAHEAD_TIME: Final = 0.03  # s, over which the speed of the joints sets what is worth a try
+ACCEPTED_LIMIT_USE: Final = 0.997  # share of acceleration and jerk limits up to which a ramp is accepted
+TRAILING_SETPOINTS: Final = 3  # after the end of a ramp, whose differences still depend on it
+JERK_REDUCTION: Final = 0.6  # factor for the next trial after a broken jerk limit
+ACCELERATION_REDUCTION: Final = 0.7  # factor for the next trial after a broken acceleration limit
+MIN_TIME_SAVED: Final = 0.002  # s, by which a new ramp must be shorter than the present one
+LOOKAHEAD_TIME: Final = 0.03  # s, over which the joints' speeds bound the first trial
 MAX_RATE_ACCELERATION: Final = 1e4  # 1/s^2, of a ramp
 MAX_RATE_JERK: Final = 1e6  # 1/s^3
 
-KEPT, SPEED_BROKEN, ACCELERATION_BROKEN, JERK_BROKEN = 0, 1, 2, 3
+# What `check_ramp` answers.
+KEPT: Final = 0
+SPEED_BROKEN: Final = 1
+ACCELERATION_BROKEN: Final = 2
+JERK_BROKEN: Final = 3
 
 F = TypeVar("F", bound=Callable[..., Any])
 
 
 def compiled(function: F) -> F:
-    """Compile a function at its first call, and keep the result on disk where a place for it can be written."""
+    """Compile a function at its first call, and keep the result on disk where that can be written."""
     try:
         return cast(F, numba.njit(cache=True)(function))
     except RuntimeError:  # no directory that numba could write to
@@ -40,7 +44,7 @@ def compiled(function: F) -> F:
 
 @compiled
 def evaluate_table(table: Array, step: float, tau: float, out: Array) -> None:
-    """Write joints and length (7,) at plan time `tau` to `out`; at rest before and behind."""
+    """Write joints and arc length (7,) at plan time `tau` to `out`; outside the plan, those of its ends."""
     last = table.shape[0] - 1
     tau = min(max(tau, 0.0), last * step)
     row = min(int(tau / step + 0.5), last)
@@ -84,7 +88,7 @@ def shortest_ramp(ramp: Array, state: Array, target: float, steepest: float, har
         flat = (rise - (2.0 * peak * peak - b * b) / (2.0 * hardest)) / peak
     if peak < b or flat < 0.0:
         return -1.0
-    if target == 0.0 and r * d > 0.0:  # it would stop only behind a turn
+    if target == 0.0 and r * d > 0.0:  # it would stop only after a change of direction
         return -1.0
     ramp[0], ramp[1], ramp[2] = state[0], r, a
     ramp[3], ramp[4], ramp[5] = (peak - b) / hardest, flat, peak / hardest
@@ -94,7 +98,7 @@ def shortest_ramp(ramp: Array, state: Array, target: float, steepest: float, har
 
 @compiled
 def check_ramp(table: Array, step: float, ramp: Array, sent: Array, limits: Array, dt: float) -> tuple[int, float]:
-    """Stream a ramp in thought, from the newest setpoints on.
+    """Check the setpoints of a ramp, joined to those already sent, against the limits.
 
     Args:
         sent: (3, 6) newest setpoints, newest last [rad].
@@ -126,15 +130,15 @@ def find_ramp(
     table: Array, step: float, state: Array, target: float, sent: Array, limits: Array, dt: float, within: float,
     tries: int, ramp: Array,
 ) -> float:  # fmt: skip
-    """Look for the shortest ramp to the constant rate `target` within all limits; return its peak |r'|, or -1.
+    """Search for the shortest ramp to the constant rate `target` within all limits; return its peak |r'|, or -1.
 
-    A try that breaks a limit says where, and so what to lower: the jerk when the jerk breaks in the first or last
-    phase, else the acceleration. Once a ramp was found, the rest of the tries go half way to what was broken before.
+    The limit that a trial breaks, and when, tell what to reduce next: |r''| where the jerk limit breaks in the first or
+    last phase, otherwise |r'|. After a ramp was found, the remaining trials lie halfway to those that broke a limit.
 
     Args:
-        within: duration that it must stay below by `SOONER` [s].
-        tries: ramps that are judged at most.
-        ramp: (8,) where it is written.
+        within: duration of the present ramp [s]; a new one must be shorter by `MIN_TIME_SAVED`.
+        tries: ramps that are checked at most.
+        ramp: (8,) where the best ramp is written.
     """
     steepest, hardest = _search_bounds(table, step, state, limits, dt)
     failed_a, failed_j, kept_a, kept_j, best = 0.0, 0.0, 0.0, 0.0, -1.0
@@ -165,7 +169,7 @@ def find_ramp(
 
 @compiled
 def _search_bounds(table: Array, step: float, state: Array, limits: Array, dt: float) -> tuple[float, float]:
-    """Return the largest |r'| and |r''| that are worth a try: they would leave nothing to the rest of the motion."""
+    """Return the largest |r'| and |r''| worth a trial: those that alone would use up the joints' limits."""
     last = table.shape[0] - 1
     row = min(max(int(state[0] / step + 0.5), 0), last)
     reach = int(state[1] * LOOKAHEAD_TIME / step)
@@ -181,7 +185,7 @@ def _search_bounds(table: Array, step: float, state: Array, limits: Array, dt: f
 
 @compiled
 def evaluate_motion(table: Array, step: float, state: Array, out: Array) -> None:
-    """Write the joints' and the length's value, velocity and acceleration (3, 7) at a state (tau, r, r') to `out`."""
+    """Write value, velocity and acceleration (3, 7) of joints and arc length at a state (tau, r, r') to `out`."""
     evaluate_table(table, step, state[0], out[0])
     last = table.shape[0] - 1
     row = min(max(int(state[0] / step + 0.5), 0), last)
@@ -197,10 +201,10 @@ def evaluate_motion(table: Array, step: float, state: Array, out: Array) -> None
 def lead_along(
     table: Array, step: float, ramp: Array, elapsed: float, dt: float, periods: int, sent: Array, state: Array
 ) -> bool:
-    """Go on along a ramp in thought: write the newest setpoints (3, 6) and the state (3,) after some periods.
+    """Extrapolate along a ramp: write the newest setpoints (3, 6) and the state (3,) after some periods.
 
     Returns:
-        Whether the motion has come to an end of the table, where it rests.
+        Whether the motion has reached an end of the table, where it rests.
     """
     end = (table.shape[0] - 1) * step
     q = np.empty(7)

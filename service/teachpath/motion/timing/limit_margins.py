@@ -1,8 +1,8 @@
-"""How much of the joint limits a motion uses, and how much of them a plan may use.
+"""Measures how much of the joint limits a motion uses, and sets the margins that a plan leaves.
 
-A plan leaves a reserve, so that its rate can be changed at once. Slowing down adds acceleration and jerk against the
-way a joint turns, so the reserve is on that side alone, and it is the larger the faster the arm is, because a stop
-takes the longer. Run backwards, a plan has its reserve on the other side: it runs slower that way (`governor`).
+The margins allow the rate of a plan to change at any time. Slowing down adds acceleration and jerk against a joint's
+direction of turning, so the margins lie on that side; they grow with the speed, because a stop from a higher speed
+takes longer. A plan that runs backwards has its margins on the other side, so it runs slower then (`governor`).
 """
 
 from __future__ import annotations
@@ -16,20 +16,20 @@ from teachpath.motion.arm.limits import MotionLimits
 from teachpath.motion.arm.puma560 import Array
 from teachpath.records import Extreme
 
-# Of moves that have a reserve on both sides: shares of speed, acceleration and jerk.
+# Shares of speed, acceleration and jerk limits that moves with equal margins on both sides use.
 SYMMETRIC_MARGINS: Final = (0.99, 0.93, 0.87)
-SLOW_SPEED_SHARE: Final = 0.02  # share of its speed limit below which the way that a joint turns does not count
+SLOW_SPEED_SHARE: Final = 0.02  # of its speed limit, below which a joint's direction of turning does not count
 
 
 @dataclass(frozen=True)
 class Margins:
-    """Shares of the limits that a plan uses.
+    """Shares of the limits that a plan may use; what remains is the margin.
 
     Attributes:
-        speed: of the speed limits; slowing down needs none of it.
-        along: of the acceleration and jerk limits the way a joint turns.
+        speed: of the speed limits; slowing down needs no margin of them.
+        along: of the acceleration and jerk limits, along a joint's direction of turning.
         against: of the acceleration and jerk limits against it, at standstill.
-        fast: the same where a joint turns at its speed limit; between, it falls with the square of the speed.
+        against_at_speed: the same at a joint's speed limit; in between, it falls with the square of the speed.
     """
 
     speed: float = 0.99
@@ -39,11 +39,11 @@ class Margins:
 
     @property
     def against_decrease(self) -> tuple[float, float]:
-        """By how much `against` falls up to the speed limit."""
+        """By how much `against` falls between standstill and speed limit."""
         return self.against[0] - self.against_at_speed[0], self.against[1] - self.against_at_speed[1]
 
     def time_stretch(self, setpoints: Array, limits: MotionLimits, rate: float) -> float:
-        """Return the factor by which time must be stretched so that setpoints (n, 6) use these shares at most."""
+        """Return the factor by which time must be stretched for setpoints (n, 6) to use no more than these shares."""
         v, a, j = (change / limit for change, limit in zip(_changes(setpoints, rate), _each(limits), strict=True))
         fast = np.minimum((np.abs(v).max(axis=1) / self.speed) ** 2, 1.0)
         factors = [np.abs(v).max() / self.speed]
@@ -59,7 +59,7 @@ NO_MARGINS: Final = Margins(1.0, (1.0, 1.0), (1.0, 1.0), (1.0, 1.0))
 
 
 def limit_uses(setpoints: Array, limits: MotionLimits, rate: float) -> tuple[Array, Array, Array]:
-    """Measure the use of speed (n - 1, 6), acceleration (n - 2, 6) and jerk limits (n - 3, 6) by differences."""
+    """Return the used shares of speed (n - 1, 6), acceleration (n - 2, 6) and jerk limits (n - 3, 6) by differences."""
     first, second, third = (
         np.abs(change) / limit for change, limit in zip(_changes(setpoints, rate), _each(limits), strict=True)
     )

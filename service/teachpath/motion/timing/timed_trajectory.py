@@ -1,7 +1,8 @@
-"""The plan against time: configurations and length at even instants, so fine that a Taylor step lies on the path.
+"""A trajectory as a table of configurations at even instants, so fine that a Taylor step between them lies on the path.
 
-A track runs at full speed. The arm may run through it slower, to and fro: at a rate r = d tau / dt, the joints use r of
-their speed limits, r^2 of their acceleration limits and r^3 of their jerk limits, if r is constant.
+A trajectory runs at full speed in plan time tau. The arm may run through it slower, forward or backward: at a constant
+rate r = d tau / dt, the joints use r of their speed limits, r^2 of their acceleration limits and r^3 of their jerk
+limits.
 """
 
 from __future__ import annotations
@@ -17,19 +18,19 @@ from teachpath.motion.arm.limits import MotionLimits
 from teachpath.motion.arm.puma560 import Array
 from teachpath.motion.timing.jerk_limited_topp import quadratic_basis
 
-MAX_TABLE_STEP: Final = 0.0005  # s, between two instants at most
-MAX_TABLE_ROWS: Final = 120_000  # instants; a track that takes longer has them farther apart
-SUBINTERVALS: Final = 20  # per interval of the pace, in which time is integrated
+MAX_TABLE_STEP: Final = 0.0005  # s, between two rows of a table
+MAX_TABLE_ROWS: Final = 120_000  # of a longer trajectory, the rows are farther apart
+SUBINTERVALS: Final = 20  # of each interval of the pace, for the integration of time
 
 
 @dataclass(frozen=True, eq=False)
 class TimedTrajectory:
-    """Joints and length by plan time.
+    """Joints and arc length as functions of plan time.
 
     Attributes:
-        table: (n, 4, 7) of the six joints [rad] and the length [m]: value and three time derivatives.
+        table: (n, 4, 7) of the six joints [rad] and the arc length [m]: value and three time derivatives.
         step: between two rows [s].
-        limits: which the arm must keep while it runs on this track.
+        limits: that the arm must keep on this trajectory.
     """
 
     table: Array
@@ -42,7 +43,7 @@ class TimedTrajectory:
         return (len(self.table) - 1) * self.step
 
     def __call__(self, times: Array) -> Array:
-        """Return the joints and the length (m, 7) at plan times (m,) [s]; at rest before and behind."""
+        """Return the joints and the arc length (m, 7) at plan times (m,) [s]; outside the plan, those of its ends."""
         at = np.clip(times, 0.0, self.duration)
         row = np.rint(at / self.step).astype(np.int64)
         ahead = (at - row * self.step)[:, None]
@@ -50,7 +51,7 @@ class TimedTrajectory:
         return np.asarray(value + ahead * (first + ahead / 2 * (second + ahead / 3 * third)), dtype=np.float64)
 
     def setpoints(self, rate: float, *, phase: float = 0.0, override: float = 1.0) -> Array:
-        """Return what is streamed (n, 7) at a constant override, with the standstill before and behind.
+        """Return the setpoints (n, 7) at a constant override, with some of the standstill before and after.
 
         Args:
             rate: setpoints a second [Hz].
@@ -62,12 +63,12 @@ class TimedTrajectory:
 
 
 def time_joint_path(path: JointPath, pace: Array, limits: MotionLimits) -> TimedTrajectory:
-    """Run through a path whose parameter sigma goes from 0 to 1 at (d sigma / dt)^2 = x(sigma).
+    """Return the trajectory along a path whose parameter sigma goes from 0 to 1 at (d sigma / dt)^2 = x(sigma).
 
     Args:
-        path: the joints by sigma.
-        pace: coefficients of x (see `pace.spline_rows`) [1/s^2].
-        limits: which the arm must keep.
+        path: of the joints, as a function of sigma.
+        pace: coefficients of x (see `jerk_limited_topp.quadratic_basis`) [1/s^2].
+        limits: that the arm must keep.
     """
     intervals = len(pace) - 2
     grid = np.linspace(0.0, 1.0, SUBINTERVALS * intervals + 1)
@@ -90,11 +91,13 @@ def time_joint_path(path: JointPath, pace: Array, limits: MotionLimits) -> Timed
 
 
 def apply_chain_rule(values: list[Array], one: Array, two: Array, three: Array) -> Array:
-    """Return a table (n, 4, 7) by the chain rule.
+    """Return a table (n, 4, 7) of time derivatives by the chain rule.
 
     Args:
         values: (n, 7) values and three derivatives with respect to a parameter.
-        one: (n,) first time derivative of the parameter; `two` and `three` are the next.
+        one: (n,) first time derivative of the parameter.
+        two: (n,) second time derivative.
+        three: (n,) third time derivative.
     """
     zeroth, first, second, third = values
     v, a, j = one[:, None], two[:, None], three[:, None]

@@ -1,8 +1,9 @@
-"""From a route and a branch of the arm to the fastest motion along it that all joint limits allow.
+"""Finds the fastest motion of a candidate along its tool path that all joint limits allow.
 
-First a guess at the time each place of the curve is reached; then the joints as a spline over this guess, which is
-smooth because its parameter is nearly time; then the pace at which the parameter really runs (`pace`); last a stretch
-of time that is measured on setpoints, because between samples the joints' jerk has needles where the curve has knots.
+First, a guess tells when each point of the curve is reached. The joints become a spline over this guess, which is
+smooth because its parameter is nearly time. Then `jerk_limited_topp` finds the rate of the parameter. Last, time is
+stretched by a factor that is measured on setpoints, because between samples the joints' jerk has narrow peaks at the
+curve's knots.
 """
 
 from __future__ import annotations
@@ -25,39 +26,39 @@ from teachpath.motion.timing.timed_trajectory import TimedTrajectory, time_joint
 from teachpath.motion.timing.velocity_profile import max_squared_rates, reach_times
 from teachpath.nurbs import Curve
 
-GUESS_LIMIT_SHARES: Final = (0.98, 0.90)  # shares of speed and acceleration limits that the guess uses
-MIN_GUESS_SAMPLES: Final = 400  # of the curve in the guess, at least so many ...
-GUESS_SAMPLES_PER_SPAN: Final = 24  # ... and so many between two knots
-ESTIMATE_SAMPLES: Final = 150  # places of the estimate
-GUESS_EXTRA_TIME: Final = 0.1  # s, that the guess is too short for want of jerk limits
-FILTER_WINDOW: Final = 0.05  # s, of the filter that takes the jumps of acceleration out of the guess
-GUESS_KNOT_SPACING: Final = 0.05  # s, between two knots of the smooth guess
-MIN_GUESS_INTERVALS: Final = 24  # intervals of the smooth guess, at least
-MAX_GUESS_INTERVALS: Final = 80  # and at most
-RATE_INTERVALS: Final = 10  # intervals of the pace for each interval of the guess
-KINKED_RATE_INTERVALS: Final = 16  # the same where the curve has kinks of acceleration, which the pace must follow
-SMOOTH_DERIVATIVES: Final = 3  # derivatives that a curve without such kinks has
-MIN_SPLINE_NODES: Final = 400  # of the joints' spline, at least
+GUESS_LIMIT_SHARES: Final = (0.98, 0.90)  # of speed and acceleration limits, which the guess uses
+MIN_GUESS_SAMPLES: Final = 400  # of the curve
+GUESS_SAMPLES_PER_SPAN: Final = 24  # between two knots, at least
+ESTIMATE_SAMPLES: Final = 150  # of the curve, in the estimate of a duration
+GUESS_EXTRA_TIME: Final = 0.1  # s, that jerk limits add to the guess, which has none
+FILTER_WINDOW: Final = 0.05  # s, of the filter that smooths jumps of acceleration in the guess
+GUESS_KNOT_SPACING: Final = 0.05  # s, between two knots of the smoothed guess
+MIN_GUESS_INTERVALS: Final = 24  # of the smoothed guess
+MAX_GUESS_INTERVALS: Final = 80
+RATE_INTERVALS: Final = 10  # of the pace, for each interval of the guess
+KINKED_RATE_INTERVALS: Final = 16  # the same for a curve with kinks of acceleration, which the pace must follow
+SMOOTH_DERIVATIVES: Final = 3  # continuous derivatives of a curve without such kinks
+MIN_SPLINE_NODES: Final = 400  # of the joints' spline
 SETPOINT_PHASES: Final = (0.0, 0.25, 0.5, 0.75)  # of the first setpoint, in control periods
-CHECKED_OVERRIDES: Final = (0.1, 0.3, 0.5, 0.7, 0.9)
-MAX_STRETCHES: Final = 4  # times that time is stretched at most
-STRETCH_TOLERANCE: Final = 1e-3  # relative stretch that is not worth repeating
+CHECKED_OVERRIDES: Final = (0.1, 0.3, 0.5, 0.7, 0.9)  # besides full speed
+MAX_STRETCHES: Final = 4  # of time
+STRETCH_TOLERANCE: Final = 1e-3  # of the stretch factor; a smaller change is not repeated
 
 
 def time_tool_path(
     tool_path: ToolPath, candidate: Candidate, limits: MotionLimits, *, rate: float, margins: Margins | None = None
 ) -> tuple[JointPath, Array]:
-    """Find the fastest motion along a route on one branch of the arm.
+    """Find the fastest motion along a tool path.
 
     Args:
-        way: the route.
-        candidate: the branch and the roll of the tool.
-        limits: to keep, also while the rate is being changed.
-        rate: setpoints a second on which they are measured [Hz].
-        reserve: shares of the limits that the motion uses; the default when None.
+        tool_path: what the tool follows.
+        candidate: the branch and roll of the tool.
+        limits: to keep, also while the rate changes.
+        rate: setpoints a second on which the limits are measured [Hz].
+        margins: shares of the limits that the motion may use; the default when None.
 
     Returns:
-        The joints by a parameter from 0 to 1, and the coefficients of its pace (see `track.paced`).
+        The joints by a parameter from 0 to 1, and the coefficients of its pace (see `timed_trajectory`).
 
     Raises:
         PathRefused: no motion was found that keeps the limits.
@@ -81,7 +82,7 @@ def time_tool_path(
 
 
 def duration_lower_bound(tool_path: ToolPath, candidate: Candidate, limits: MotionLimits) -> float:
-    """Return the shortest time [s] that speed and acceleration limits alone allow: no jerk limit, no reserve."""
+    """Return the shortest duration [s] that speed and acceleration limits alone allow: no jerk limit, no margins."""
     u = _guess_samples(tool_path, 4 * MIN_GUESS_SAMPLES)
     spline = make_interp_spline(u, configurations(tool_path, candidate, u), k=5)
     free = np.full(len(u), np.inf)
@@ -91,18 +92,18 @@ def duration_lower_bound(tool_path: ToolPath, candidate: Candidate, limits: Moti
 
 
 def estimate_duration(tool_path: ToolPath, candidate: Candidate, limits: MotionLimits) -> float:
-    """Guess quickly how long the fastest motion takes [s]; `timed` finds out."""
+    """Estimate quickly how long the fastest motion takes [s]; `time_tool_path` computes it."""
     return float(_profile(tool_path, candidate, limits, ESTIMATE_SAMPLES)[1][-1] + GUESS_EXTRA_TIME)
 
 
 def _smoothness(curve: Curve) -> int:
-    """Return how many derivatives of a curve are continuous."""
+    """Return the number of continuous derivatives of a curve."""
     inner = curve.knots[curve.degree + 1 : -curve.degree - 1]
     return curve.degree - int(np.unique(inner, return_counts=True)[1].max(initial=0))
 
 
 def _guess(tool_path: ToolPath, candidate: Candidate, limits: MotionLimits) -> BSpline[np.float64]:
-    """Return the curve's parameter by nearly proportional time, from 0 to 1; it grows with the cube at both ends."""
+    """Return the curve's parameter over a parameter from 0 to 1, nearly time; at both ends it grows with the cube."""
     u, reached = _profile(tool_path, candidate, limits, MIN_GUESS_SAMPLES)
     duration = reached[-1] + GUESS_EXTRA_TIME
     instants = np.linspace(
@@ -117,13 +118,16 @@ def _guess(tool_path: ToolPath, candidate: Candidate, limits: MotionLimits) -> B
     knots = np.concatenate([np.zeros(5), np.linspace(0.0, 1.0, len(instants) // 50 + 1), np.ones(5)])
     places = np.convolve(knots[1:-1], np.full(5, 0.2), mode="valid")  # Greville points
     coefficients = np.interp(places * duration, instants, smooth)
-    # x = p'^2 grows with s^(4/3) when jerk is limited; a parameter that begins with the cube of time takes that out.
+    # With limited jerk, x = p'^2 grows with s^(4/3); for a parameter that begins with the cube of time, it does not.
     coefficients[:3], coefficients[-3:] = 0.0, 1.0
     return BSpline(knots, coefficients, 5)
 
 
 def _profile(tool_path: ToolPath, candidate: Candidate, limits: MotionLimits, places: int) -> tuple[Array, Array]:
-    """Return places of the curve and when each is reached [s], jerk being limited only where the curve itself bends."""
+    """Return parameters of the curve and the times [s] at which they are reached.
+
+    Jerk is limited only where the curve itself bends.
+    """
     u = _guess_samples(tool_path, places)
     spline = make_interp_spline(u, configurations(tool_path, candidate, u), k=5)
     slow = np.min(limits.jerk / np.maximum(np.abs(spline(u, 3)), 1e-9), axis=1) ** (2 / 3)
@@ -143,7 +147,7 @@ def _guess_samples(tool_path: ToolPath, least: int) -> Array:
 
 
 def _time_stretch(trajectory: TimedTrajectory, rate: float, margins: Margins) -> float:
-    """Return by what time must be stretched so that setpoints keep the limits with the reserve."""
+    """Return the factor by which time must be stretched for setpoints to keep the limits with their margins."""
     runs = [(phase, 1.0) for phase in SETPOINT_PHASES] + [(0.0, override) for override in CHECKED_OVERRIDES]
     return max(
         margins.time_stretch(trajectory.setpoints(rate, phase=phase, override=override), trajectory.limits, rate)

@@ -1,4 +1,4 @@
-"""The fastest profile along a path under speed and acceleration limits alone: a guess for timing, and its lower bound.
+"""The fastest velocity profile under speed and acceleration limits alone: a guess for timing, and its lower bound.
 
 With x = p'^2 and u = p'' every limit is linear in (x, u); one pass backward and one forward over a grid find the
 largest x (Pham & Pham, A new approach to time-optimal path parameterization based on reachability analysis, IEEE
@@ -28,7 +28,7 @@ def max_squared_rates(grid: Array, first: Array, second: Array, speed: Array, ac
         second: (n, 6) d2q/dp2.
         speed: (6,) limits [rad/s].
         acceleration: (6,) limits [rad/s^2].
-        cap: (n,) or scalar, what x must not exceed for other reasons.
+        cap: (n,) or scalar, upper bound of x for other reasons.
 
     Returns:
         (n,) [1/s^2].
@@ -55,14 +55,14 @@ def max_squared_rates(grid: Array, first: Array, second: Array, speed: Array, ac
 
 
 def reach_times(grid: Array, squares: Array) -> Array:
-    """Return when each point of the grid is reached (n,) [s], for x piecewise linear."""
+    """Return the times (n,) [s] at which the points of the grid are reached, for piecewise linear x (n,)."""
     rates = np.sqrt(squares)
     slowest = 1e-3 * rates.max()
     return np.concatenate([[0.0], np.cumsum(2.0 * np.diff(grid) / np.maximum(rates[1:] + rates[:-1], slowest))])
 
 
 def _without_next(top: Array, slope: Array, up: Mask, down: Mask, steps: Array) -> Array:
-    """Bound x at each point by all that does not depend on the next one: (n,)."""
+    """Return bounds (n,) of x at each point that do not depend on the next point."""
     with np.errstate(divide="ignore", invalid="ignore"):
         steeper = slope[:, :, None] - slope[:, None, :]
         room = (top[:, :, None] - top[:, None, :]) / steeper
