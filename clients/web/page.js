@@ -137,7 +137,7 @@ Object.assign(globalThis, {
     previewGhost: () => run.previewGhost(),
     replayGhost: () => run.replayGhost(),
     teleop: () => run.teleop(),
-    headset: () => demonstrate.headset(),
+    headset: () => demonstrate.headset() ?? run.headset(),
     session: () => demonstrate.session(),
     get editor() {
       return edit.editor;

@@ -102,6 +102,12 @@ class Operator:
         return seen[-1]
 
 
+def grasp_point(flange: np.ndarray) -> np.ndarray:
+    """Where the gripper grasps [m], of the flange's pose (4, 4)."""
+    point: np.ndarray = flange[:3, 3] + TOOL_LENGTH * flange[:3, 2]
+    return point
+
+
 class Leader(Operator):
     """Somebody who leads the arm by a live hand; where a busy machine makes it lose the hand, it is led again."""
 
@@ -125,25 +131,15 @@ class Leader(Operator):
 
     def tool(self) -> np.ndarray:
         """Where the grasp point is drawn [m]."""
-        pose = self._visit.place("/robot/link6")
-        tool: np.ndarray = pose[:3, 3] + TOOL_LENGTH * pose[:3, 2]
-        return tool
+        return grasp_point(self._visit.place("/robot/link6"))
 
     def tool_at_rest(self) -> np.ndarray:
-        """Where the grasp point is drawn, once it has been there for five looks."""
-        seen = [self.tool()]
-
-        def rests() -> bool:
-            self.page.wait_for_timeout(100)
-            seen.append(self.tool())
-            return len(seen) > 5 and bool(np.ptp(seen[-5:], axis=0).max() < 1e-4)
-
-        self._visit.wait(rests)
-        return seen[-1]
+        """Where the grasp point is drawn, once the arm rests."""
+        return grasp_point(self._visit.place_at_rest("/robot/link6"))
 
     @property
     def _pressed(self) -> bool:
-        return bool(self.page.evaluate("teachpath.leading()?.pressed"))
+        return bool(self.page.evaluate("teachpath.teleop()?.clutchPressed"))
 
     @property
     def _follows(self) -> bool:

@@ -15,7 +15,7 @@ from tests.system.access import grave
 from tests.system.carriers import HEADSET, NEXT, START, begin, carry, carry_worn, move_hand, phase
 from tests.system.operators import RESTING, Leader, Operator, Status
 from tests.system.processes import Service
-from tests.system.test_view import Visit
+from tests.system.test_view import REST, Visit
 from tests.waiting import wait_until
 
 ARM = Arm.of_variant()
@@ -112,7 +112,7 @@ def test_the_preview_is_the_plan_and_moves_no_arm(
     motion = service.station.preview(plans[0].id)
     visit.page.get_by_role("button", name="Preview", exact=True).click()
     visit.page.get_by_role("button", name="Pause").click()
-    before = visit.place("/robot/link6")
+    before = visit.place_at_rest("/robot/link6")
     times, joints = np.array(motion.times), np.array(motion.joints)
     for k in (0, len(times) // 3, len(times) // 2, len(times) - 1):
         scrub(visit, float(times[k]))
@@ -121,7 +121,7 @@ def test_the_preview_is_the_plan_and_moves_no_arm(
         np.testing.assert_allclose(ghost(visit), link_frames(q, ARM), atol=1e-6)
     words = visit.page.locator("#preview output").inner_text()
     assert "on the way home" in words
-    np.testing.assert_allclose(visit.place("/robot/link6"), before, atol=1e-5)
+    np.testing.assert_allclose(visit.place("/robot/link6"), before, atol=2 * REST)
     assert operator.executions() == executions
     visit.page.get_by_role("button", name="Close preview").click()
     assert visit.page.evaluate("teachpath.previewGhost()") is None
@@ -198,7 +198,7 @@ def test_a_past_execution_is_replayed_as_it_was(visit: Visit, service: Service, 
     operator.start()
     operator.until(lambda status: status["state"] in RESTING)
     last = operator.executions()[0]
-    before = visit.place("/robot/link6")
+    before = visit.place_at_rest("/robot/link6")
     visit.page.locator("#replay li button").first.click()
     slider = visit.page.get_by_label("Instant of the execution")
     slider.wait_for()
@@ -213,7 +213,7 @@ def test_a_past_execution_is_replayed_as_it_was(visit: Visit, service: Service, 
         drawn = np.array(visit.page.evaluate("teachpath.replayGhost()")).reshape(7, 4, 4).transpose(0, 2, 1)
         np.testing.assert_allclose(drawn, link_frames(q, ARM), atol=1e-6)
     assert visit.page.locator("#replay .u-over").count() == 4
-    np.testing.assert_allclose(visit.place("/robot/link6"), before, atol=1e-5)
+    np.testing.assert_allclose(visit.place("/robot/link6"), before, atol=2 * REST)
     assert operator.executions()[0].id == last.id
     visit.page.get_by_role("button", name="Close replay").click()
     assert visit.page.evaluate("teachpath.replayGhost()") is None

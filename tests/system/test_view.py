@@ -43,6 +43,7 @@ pytestmark = pytest.mark.system
 KEYS = Keys()
 HOME = np.array(MotionSettings().home)
 ROBOT = "puma560"
+REST = 1e-4  # [m], and of the entries of a rotation: an arm that moves less within half a second rests
 # How often the view had been drawn ten frames ago, and now.
 TEN_FRAMES = """async () => {
   const before = teachpath.draws;
@@ -163,6 +164,18 @@ class Visit:
         """Pose of a path in the world; the page gives three.js's frame, y up."""
         up = np.array([[1, 0, 0, 0], [0, 0, -1, 0], [0, 1, 0, 0], [0, 0, 0, 1.0]])
         return up @ np.reshape(self.page.evaluate(f"teachpath.worldMatrix('{path}')"), (4, 4)).T
+
+    def place_at_rest(self, path: str) -> np.ndarray:
+        """Pose of a path in the world, once it has been the same for five looks."""
+        seen = [self.place(path)]
+
+        def rests() -> bool:
+            self.page.wait_for_timeout(100)
+            seen.append(self.place(path))
+            return len(seen) > 5 and bool(np.ptp(seen[-5:], axis=0).max() < REST)
+
+        self.wait(rests, f"{path} rests")
+        return seen[-1]
 
     def wait(self, true: Callable[[], bool], what: str = "the page shows it") -> None:
         wait_until(true, what, pause=lambda seconds: self.page.wait_for_timeout(5000 * seconds))

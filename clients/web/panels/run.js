@@ -21,10 +21,12 @@ const run = sectionedPanel("run", "Run", [
   ["replay", "Past executions", (place, context) => (replay = executionReplay(place, context))],
 ]);
 
-// For tests: poses of the links of the two ghost arms as drawn, or null; the session with a live hand, or null.
+// For tests: poses of the links of the two ghost arms as drawn, or null; the session with a live hand and the
+// headset that leads, or null.
 export const panel = {
   ...run,
   previewGhost: () => preview.player.ghost?.linkMatrices() ?? null,
   replayGhost: () => replay.player.ghost?.linkMatrices() ?? null,
   teleop: () => teleop.session(),
+  headset: () => teleop.headset(),
 };

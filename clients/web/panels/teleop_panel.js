@@ -18,6 +18,7 @@ export function teleopPanel(place, context) {
     update: (state, changed) => panel.update(state, changed),
     hide: () => panel.end(),
     session: () => panel.session,
+    headset: () => panel.headset,
   };
 }
 
@@ -25,7 +26,7 @@ class TeleopPanel {
   /** @type {TeleopSession | null} */
   session = null;
   /** @type {XrHand | null} */
-  #headset = null;
+  headset = null; // that is worn now
   #execution = ""; // id of the one that follows the hand
   #isBeginning = false;
   #turn = 0; // whoever ends it, also while it begins, is not overruled by answers that come later
@@ -125,7 +126,7 @@ class TeleopPanel {
     });
     await headset.start();
     view.setFrameInterval(Infinity); // nobody looks at the page meanwhile
-    this.#headset = headset;
+    this.headset = headset;
   }
 
   /**
@@ -150,10 +151,10 @@ class TeleopPanel {
 
   #close() {
     this.jointStates.close();
-    this.#headset?.end();
+    this.headset?.end();
     this.session?.end();
     if (this.#execution && this.session?.usesPageHand) this.context.overlay.setKeyboardLabel("");
-    this.session = this.#headset = null;
+    this.session = this.headset = null;
     this.#execution = "";
     this.#render();
   }
@@ -179,7 +180,7 @@ class TeleopPanel {
     }
     const text = teleopText(status, this.session);
     if (this.parts.statusText.textContent !== text) this.parts.statusText.textContent = text;
-    this.#headset?.rig.setText(text);
+    this.headset?.rig.setText(text);
   }
 
   /**
