@@ -807,12 +807,12 @@ class TaughtPoint:
 
 @dataclass(frozen=True)
 class TimeSeries:
-    """What the arm did over time.
+    """A recorded motion over time.
 
     Attributes:
         times: (n,) since the first setpoint [s].
         positions: (n, 6) of the joints [rad].
-        velocities: (n, 6), of those between two times the one of largest size [rad/s].
+        velocities: (n, 6), each the one of largest magnitude since the time before [rad/s].
         torques: (n, 6), likewise [N m].
         tool: (n, 3) grasp point [m], world.
         object: (n, 3) carried object [m], world; empty when there is none.

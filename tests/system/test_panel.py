@@ -106,7 +106,7 @@ def leader(visit: Visit, service: Service) -> Iterator[Leader]:
     """Somebody at the tab Run who leads the arm, and lets it go in the end."""
     visit.page.set_viewport_size({"width": 900, "height": 420})  # less to draw
     visit.page.locator("#tab-run").click()
-    leader = Leader(visit, service)
+    leader = Leader(visit, service.station)
     visit.page.locator("#teleop").scroll_into_view_if_needed()
     yield leader
     visit.page.locator("#teleop").get_by_role("button", name="Finish").click()

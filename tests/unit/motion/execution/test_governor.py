@@ -125,7 +125,7 @@ def test_every_setpoint_has_a_way_to_rest_on_the_track_within_all_limits(
             sent = np.array(log.sent[-3:])[:, :6]
             rows = np.vstack([sent, way.positions, np.repeat(way.positions[-1:], 3, axis=0)])
             uses = [np.abs(np.diff(rows, k, axis=0)) / DT**k for k in (1, 2, 3)]
-            for use, limit in zip(uses, (ARM_LIMITS.speed, ARM_LIMITS.acceleration, ARM_LIMITS.jerk), strict=True):
+            for use, limit in zip(uses, (ARM.limits.speed, ARM.limits.acceleration, ARM.limits.jerk), strict=True):
                 assert np.all(use <= limit * LIMIT)
             if cycle % 60 == 0:
                 off = np.abs(way.positions[:, None] - fine).max(axis=2).min(axis=1)
