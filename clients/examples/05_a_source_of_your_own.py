@@ -27,7 +27,7 @@ class Arc:
     capabilities = Capabilities(rate=RATE, sensors=0, orientation=False, live=False)
 
     def __init__(self, height: str = "0.1") -> None:
-        self._height, self._over = float(height), False
+        self._height, self._ended = float(height), False
 
     def __enter__(self) -> Self:
         return self
@@ -37,13 +37,13 @@ class Arc:
 
     def close(self) -> None:
         """End the iteration soon."""
-        self._over = True
+        self._ended = True
 
     def __iter__(self) -> Iterator[HandReading]:
         for i in range(200):
             u = min(max((i - 25) / 149, 0.0), 1.0)
             place = (0.58 + 0.2 * math.sin(math.pi * u), -0.28 + 0.56 * u, 0.52 + self._height * math.sin(math.pi * u))
-            if not self._over:
+            if not self._ended:
                 yield HandReading(i / RATE, place, buttons=GRASP if 25 <= i < 175 else 0)
 
 

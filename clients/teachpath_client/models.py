@@ -206,7 +206,7 @@ class Demonstration:
     grasp: int
     release: int
     verdict: Verdict
-    account: StreamStatistics
+    statistics: StreamStatistics
     recording: str
     reasons: list[str] = field(default_factory=list)
     left_out: list[int] = field(default_factory=list)
@@ -575,10 +575,10 @@ class RecordingReport:
         clock_rate: seconds of the device's clock in one of the host's; 0: not known.
         phase: of the hand; empty when the recording has ended.
         state: recording, countdown, pausing, paused or lost; empty when the recording has ended.
-        pedal: whether the pedal has been used.
+        pedal_used: whether the pedal has been pressed in this recording.
         countdown_left: [s] until samples are recorded.
         takes_left: demonstrations until it pauses by itself; 0: nobody has said how many.
-        sign: what the fist that is held now asks for as it opens: toggle, discard or nothing.
+        pending_command: what the fist that is held now commands when it opens: toggle, discard or nothing.
         notes: what an operator should know, in words.
     """
 
@@ -604,10 +604,10 @@ class RecordingReport:
     idle: int
     phase: str
     state: str
-    pedal: bool
+    pedal_used: bool
     countdown_left: float
     takes_left: int
-    sign: str
+    pending_command: str
     notes: list[str]
 
 
@@ -754,7 +754,7 @@ class Shape:
 class StreamStatistics:
     """Counts of the samples of one recording or demonstration.
 
-    Jumps, leaps and samples out of the workspace are counted in the transport phase only.
+    Outliers, level shifts and samples out of the workspace are counted in the transport phase only.
     """
 
     received: int = 0
@@ -766,8 +766,8 @@ class StreamStatistics:
     gaps: int = 0
     missing: list[tuple[int, int]] = field(default_factory=list)
     longest_gap_ns: int = 0
-    jumps: int = 0
-    leaps: int = 0
+    outliers: int = 0
+    level_shifts: int = 0
     out_of_workspace: int = 0
     conflicts: int = 0
     clock_jumps: int = 0

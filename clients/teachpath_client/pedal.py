@@ -25,7 +25,7 @@ PEDAL_BIT = 2  # of HandSample.buttons
 HELD = 0.15  # [s] that a key of the terminal counts as held: some samples must carry it
 EVENT = struct.Struct("llHHi")  # struct input_event of linux/input.h: time, type, code, value
 KEY_EVENT, RELEASED, PRESSED = 0x01, 0, 1  # EV_KEY; value 2 repeats a key that is held
-GRAB = 0x40044590  # EVIOCGRAB: nobody else gets the keys, so that the pedal does not type into the terminal
+EVIOCGRAB = 0x40044590  # nobody else gets the keys, so that the pedal does not type into the terminal
 NAMES = {"space": b" ", "enter": b"\n", "tab": b"\t"}  # of keys that a letter cannot name
 KEYS = f"{', '.join(NAMES)}, a letter"
 READ_TIMEOUT = 0.1  # [s] between looks whether it is over
@@ -54,12 +54,12 @@ class _Pressed(ABC):
     """Listens on a thread of its own while the context is open."""
 
     def __init__(self) -> None:
-        self._over = threading.Event()
+        self._ended = threading.Event()
         self._thread: threading.Thread | None = None
 
     def _listen(self) -> None:
         with suppress(EOFError):
-            while not self._over.is_set():
+            while not self._ended.is_set():
                 if content := self._read():
                     self._take(content)
 
@@ -72,12 +72,12 @@ class _Pressed(ABC):
         """Take what came."""
 
     def _start(self) -> None:
-        self._over.clear()
+        self._ended.clear()
         self._thread = threading.Thread(target=self._listen, name="pedal", daemon=True)
         self._thread.start()
 
     def _stop(self) -> None:
-        self._over.set()
+        self._ended.set()
         if self._thread is not None:
             self._thread.join()
             self._thread = None
@@ -139,7 +139,7 @@ class EventPedal(_Pressed):
                 f"cannot open the pedal {self._path}: {error.strerror}; is it plugged in, and are you in group input?"
             ) from None
         with suppress(OSError):  # what is no input device cannot be grabbed, and types nowhere
-            fcntl.ioctl(self._fd, GRAB, 1)
+            fcntl.ioctl(self._fd, EVIOCGRAB, 1)
         self._start()
         return self
 

@@ -102,5 +102,5 @@ def status_line(feedback: tracker_pb2.HandFeedback) -> str:
         doing = STATE_TEXTS.get(feedback.state, feedback.state)
     takes = f"{feedback.takes} take{'s' if feedback.takes != 1 else ''}"
     left = f", {feedback.takes_left} to go" if feedback.takes_left else ""
-    sign = f"; open the fist now to {feedback.sign}" if feedback.sign else ""
-    return f"{feedback.task}: {doing}; {takes}{left}{sign}"
+    fist = f"; open the fist now to {feedback.pending_command}" if feedback.pending_command else ""
+    return f"{feedback.task}: {doing}; {takes}{left}{fist}"

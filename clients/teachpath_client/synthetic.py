@@ -25,7 +25,7 @@ REST = np.array([0.48, -0.45, 0.72])  # where the hand waits
 HAND_ABOVE = np.array([0.0, 0.0, 0.03])  # hand from the object's centre while it holds it
 
 # Where each way passes the obstacles (x at y = 0) and how high it lifts the object [m].
-WAYS = {"near": (0.38, 0.10), "between": (0.58, 0.10), "far": (0.78, 0.10)}
+ROUTES = {"near": (0.38, 0.10), "between": (0.58, 0.10), "far": (0.78, 0.10)}
 
 # Table I of the paper: which demonstration went which way.
 EXPERIMENT_1 = ("near", "between", "far", "far", "between", "near", "far", "near", "far", "near", "between", "near")
@@ -87,7 +87,7 @@ def _demonstration(way: str, hand: SyntheticHand, random: np.random.Generator) -
 
 
 def _carry(way: str, hand: SyntheticHand, duration: float, random: np.random.Generator) -> Array:
-    across, lift = WAYS[way]
+    across, lift = ROUTES[way]
     across += random.normal(0.0, hand.spread)
     lift += random.normal(0.0, hand.spread)
     u = _progress(duration)

@@ -37,7 +37,7 @@ class CommandVerb(StrEnum):
     REVERSE = "reverse"
     STEP = "step"
     REVOKE = "revoke"
-    MIRROR = "mirror"
+    TELEOPERATE = "teleoperate"
 
 
 class LeaseAction(StrEnum):

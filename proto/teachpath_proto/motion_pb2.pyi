@@ -64,7 +64,7 @@ class JointState(_message.Message):
     def __init__(self, stamp_ns: _Optional[int] = ..., cycle: _Optional[int] = ..., position: _Optional[_Iterable[float]] = ..., velocity: _Optional[_Iterable[float]] = ..., torque: _Optional[_Iterable[float]] = ..., tracking_error: _Optional[float] = ..., missed: _Optional[int] = ..., holding: _Optional[bool] = ..., gripper_closed: _Optional[bool] = ..., object_position: _Optional[_Iterable[float]] = ..., object_orientation: _Optional[_Iterable[float]] = ..., execution: _Optional[str] = ..., late: _Optional[int] = ..., stopped: _Optional[bool] = ...) -> None: ...
 
 class ExecutorCommand(_message.Message):
-    __slots__ = ("verb", "execution", "plan", "override", "length", "nodes", "lease", "who", "plan_id", "reason", "mirror")
+    __slots__ = ("verb", "execution", "plan", "override", "length", "nodes", "lease", "who", "plan_id", "reason", "teleop")
     class Verb(int, metaclass=_enum_type_wrapper.EnumTypeWrapper):
         __slots__ = ()
         UNSPECIFIED: _ClassVar[ExecutorCommand.Verb]
@@ -76,7 +76,7 @@ class ExecutorCommand(_message.Message):
         REVERSE: _ClassVar[ExecutorCommand.Verb]
         STEP: _ClassVar[ExecutorCommand.Verb]
         REVOKE: _ClassVar[ExecutorCommand.Verb]
-        MIRROR: _ClassVar[ExecutorCommand.Verb]
+        TELEOPERATE: _ClassVar[ExecutorCommand.Verb]
     UNSPECIFIED: ExecutorCommand.Verb
     START: ExecutorCommand.Verb
     OVERRIDE: ExecutorCommand.Verb
@@ -86,7 +86,7 @@ class ExecutorCommand(_message.Message):
     REVERSE: ExecutorCommand.Verb
     STEP: ExecutorCommand.Verb
     REVOKE: ExecutorCommand.Verb
-    MIRROR: ExecutorCommand.Verb
+    TELEOPERATE: ExecutorCommand.Verb
     VERB_FIELD_NUMBER: _ClassVar[int]
     EXECUTION_FIELD_NUMBER: _ClassVar[int]
     PLAN_FIELD_NUMBER: _ClassVar[int]
@@ -97,7 +97,7 @@ class ExecutorCommand(_message.Message):
     WHO_FIELD_NUMBER: _ClassVar[int]
     PLAN_ID_FIELD_NUMBER: _ClassVar[int]
     REASON_FIELD_NUMBER: _ClassVar[int]
-    MIRROR_FIELD_NUMBER: _ClassVar[int]
+    TELEOP_FIELD_NUMBER: _ClassVar[int]
     verb: ExecutorCommand.Verb
     execution: str
     plan: bytes
@@ -108,8 +108,8 @@ class ExecutorCommand(_message.Message):
     who: str
     plan_id: str
     reason: str
-    mirror: bytes
-    def __init__(self, verb: _Optional[_Union[ExecutorCommand.Verb, str]] = ..., execution: _Optional[str] = ..., plan: _Optional[bytes] = ..., override: _Optional[float] = ..., length: _Optional[float] = ..., nodes: _Optional[int] = ..., lease: _Optional[str] = ..., who: _Optional[str] = ..., plan_id: _Optional[str] = ..., reason: _Optional[str] = ..., mirror: _Optional[bytes] = ...) -> None: ...
+    teleop: bytes
+    def __init__(self, verb: _Optional[_Union[ExecutorCommand.Verb, str]] = ..., execution: _Optional[str] = ..., plan: _Optional[bytes] = ..., override: _Optional[float] = ..., length: _Optional[float] = ..., nodes: _Optional[int] = ..., lease: _Optional[str] = ..., who: _Optional[str] = ..., plan_id: _Optional[str] = ..., reason: _Optional[str] = ..., teleop: _Optional[bytes] = ...) -> None: ...
 
 class LeaseRequest(_message.Message):
     __slots__ = ("action", "name", "token", "seconds", "hold_when_lost")

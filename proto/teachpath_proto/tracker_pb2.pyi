@@ -79,7 +79,7 @@ class StopRecording(_message.Message):
     def __init__(self, tracker: _Optional[str] = ..., last_sequence: _Optional[int] = ..., discard: _Optional[bool] = ...) -> None: ...
 
 class RecordingReport(_message.Message):
-    __slots__ = ("task", "tracker", "demonstrations", "received", "lost", "duplicated", "reordered", "refused", "untracked", "longest_gap_ns", "notes", "phase", "idle", "gaps", "conflicts", "clock_jumps", "declared_rate", "seen_rate", "clock_offset_ns", "clock_uncertainty_ns", "clock_rate", "state", "pedal", "countdown_left", "takes_left", "sign", "missing")
+    __slots__ = ("task", "tracker", "demonstrations", "received", "lost", "duplicated", "reordered", "refused", "untracked", "longest_gap_ns", "notes", "phase", "idle", "gaps", "conflicts", "clock_jumps", "declared_rate", "seen_rate", "clock_offset_ns", "clock_uncertainty_ns", "clock_rate", "state", "pedal_used", "countdown_left", "takes_left", "pending_command", "missing")
     TASK_FIELD_NUMBER: _ClassVar[int]
     TRACKER_FIELD_NUMBER: _ClassVar[int]
     DEMONSTRATIONS_FIELD_NUMBER: _ClassVar[int]
@@ -102,10 +102,10 @@ class RecordingReport(_message.Message):
     CLOCK_UNCERTAINTY_NS_FIELD_NUMBER: _ClassVar[int]
     CLOCK_RATE_FIELD_NUMBER: _ClassVar[int]
     STATE_FIELD_NUMBER: _ClassVar[int]
-    PEDAL_FIELD_NUMBER: _ClassVar[int]
+    PEDAL_USED_FIELD_NUMBER: _ClassVar[int]
     COUNTDOWN_LEFT_FIELD_NUMBER: _ClassVar[int]
     TAKES_LEFT_FIELD_NUMBER: _ClassVar[int]
-    SIGN_FIELD_NUMBER: _ClassVar[int]
+    PENDING_COMMAND_FIELD_NUMBER: _ClassVar[int]
     MISSING_FIELD_NUMBER: _ClassVar[int]
     task: str
     tracker: str
@@ -129,14 +129,14 @@ class RecordingReport(_message.Message):
     clock_uncertainty_ns: int
     clock_rate: float
     state: str
-    pedal: bool
+    pedal_used: bool
     countdown_left: float
     takes_left: int
-    sign: str
-    missing: _containers.RepeatedCompositeFieldContainer[Stretch]
-    def __init__(self, task: _Optional[str] = ..., tracker: _Optional[str] = ..., demonstrations: _Optional[_Iterable[str]] = ..., received: _Optional[int] = ..., lost: _Optional[int] = ..., duplicated: _Optional[int] = ..., reordered: _Optional[int] = ..., refused: _Optional[int] = ..., untracked: _Optional[int] = ..., longest_gap_ns: _Optional[int] = ..., notes: _Optional[_Iterable[str]] = ..., phase: _Optional[str] = ..., idle: _Optional[int] = ..., gaps: _Optional[int] = ..., conflicts: _Optional[int] = ..., clock_jumps: _Optional[int] = ..., declared_rate: _Optional[float] = ..., seen_rate: _Optional[float] = ..., clock_offset_ns: _Optional[int] = ..., clock_uncertainty_ns: _Optional[int] = ..., clock_rate: _Optional[float] = ..., state: _Optional[str] = ..., pedal: _Optional[bool] = ..., countdown_left: _Optional[float] = ..., takes_left: _Optional[int] = ..., sign: _Optional[str] = ..., missing: _Optional[_Iterable[_Union[Stretch, _Mapping]]] = ...) -> None: ...
+    pending_command: str
+    missing: _containers.RepeatedCompositeFieldContainer[SequenceRange]
+    def __init__(self, task: _Optional[str] = ..., tracker: _Optional[str] = ..., demonstrations: _Optional[_Iterable[str]] = ..., received: _Optional[int] = ..., lost: _Optional[int] = ..., duplicated: _Optional[int] = ..., reordered: _Optional[int] = ..., refused: _Optional[int] = ..., untracked: _Optional[int] = ..., longest_gap_ns: _Optional[int] = ..., notes: _Optional[_Iterable[str]] = ..., phase: _Optional[str] = ..., idle: _Optional[int] = ..., gaps: _Optional[int] = ..., conflicts: _Optional[int] = ..., clock_jumps: _Optional[int] = ..., declared_rate: _Optional[float] = ..., seen_rate: _Optional[float] = ..., clock_offset_ns: _Optional[int] = ..., clock_uncertainty_ns: _Optional[int] = ..., clock_rate: _Optional[float] = ..., state: _Optional[str] = ..., pedal_used: _Optional[bool] = ..., countdown_left: _Optional[float] = ..., takes_left: _Optional[int] = ..., pending_command: _Optional[str] = ..., missing: _Optional[_Iterable[_Union[SequenceRange, _Mapping]]] = ...) -> None: ...
 
-class Stretch(_message.Message):
+class SequenceRange(_message.Message):
     __slots__ = ("first", "last")
     FIRST_FIELD_NUMBER: _ClassVar[int]
     LAST_FIELD_NUMBER: _ClassVar[int]
@@ -205,7 +205,7 @@ class RecorderStatus(_message.Message):
     def __init__(self, recordings: _Optional[_Iterable[_Union[RecordingReport, _Mapping]]] = ...) -> None: ...
 
 class HandFeedback(_message.Message):
-    __slots__ = ("task", "phase", "state", "holding", "countdown_left", "takes_left", "takes", "newest", "sign")
+    __slots__ = ("task", "phase", "state", "holding", "countdown_left", "takes_left", "takes", "newest", "pending_command")
     TASK_FIELD_NUMBER: _ClassVar[int]
     PHASE_FIELD_NUMBER: _ClassVar[int]
     STATE_FIELD_NUMBER: _ClassVar[int]
@@ -214,7 +214,7 @@ class HandFeedback(_message.Message):
     TAKES_LEFT_FIELD_NUMBER: _ClassVar[int]
     TAKES_FIELD_NUMBER: _ClassVar[int]
     NEWEST_FIELD_NUMBER: _ClassVar[int]
-    SIGN_FIELD_NUMBER: _ClassVar[int]
+    PENDING_COMMAND_FIELD_NUMBER: _ClassVar[int]
     task: str
     phase: str
     state: str
@@ -223,5 +223,5 @@ class HandFeedback(_message.Message):
     takes_left: int
     takes: int
     newest: DemonstrationReport
-    sign: str
-    def __init__(self, task: _Optional[str] = ..., phase: _Optional[str] = ..., state: _Optional[str] = ..., holding: _Optional[bool] = ..., countdown_left: _Optional[float] = ..., takes_left: _Optional[int] = ..., takes: _Optional[int] = ..., newest: _Optional[_Union[DemonstrationReport, _Mapping]] = ..., sign: _Optional[str] = ...) -> None: ...
+    pending_command: str
+    def __init__(self, task: _Optional[str] = ..., phase: _Optional[str] = ..., state: _Optional[str] = ..., holding: _Optional[bool] = ..., countdown_left: _Optional[float] = ..., takes_left: _Optional[int] = ..., takes: _Optional[int] = ..., newest: _Optional[_Union[DemonstrationReport, _Mapping]] = ..., pending_command: _Optional[str] = ...) -> None: ...

@@ -20,20 +20,22 @@ SAME_SHAPE_TOLERANCE = 1e-6  # m, distance that a removed knot may move the curv
 
 def to_geomdl(curve: Curve) -> NURBS.Curve:
     """Return the curve as geomdl's own, rational one."""
-    twin = NURBS.Curve(normalize_kv=False)
-    twin.degree = curve.degree
-    twin.ctrlptsw = np.column_stack([curve.control_points * curve.weights[:, None], curve.weights]).tolist()
-    twin.knotvector = curve.knots.tolist()
-    return twin
+    converted = NURBS.Curve(normalize_kv=False)
+    converted.degree = curve.degree
+    converted.ctrlptsw = np.column_stack([curve.control_points * curve.weights[:, None], curve.weights]).tolist()
+    converted.knotvector = curve.knots.tolist()
+    return converted
 
 
-def from_geomdl(twin: NURBS.Curve) -> Curve:
+def from_geomdl(converted: NURBS.Curve) -> Curve:
     """Return geomdl's rational curve as ours.
 
     Raises:
         UnusableInput: it is no clamped NURBS on [0, 1] of degree 1 to 7.
     """
-    return Curve(twin.degree, np.array(twin.knotvector), np.array(twin.ctrlpts), np.array(twin.weights))
+    return Curve(
+        converted.degree, np.array(converted.knotvector), np.array(converted.ctrlpts), np.array(converted.weights)
+    )
 
 
 def insert_knot(curve: Curve, u: float) -> Curve:

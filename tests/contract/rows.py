@@ -31,7 +31,7 @@ def demonstration(key: str, **changes: object) -> Demonstration:
         "grasp": 1,
         "release": 4,
         "verdict": Verdict.CLEAN,
-        "account": StreamStatistics(received=5),
+        "statistics": StreamStatistics(received=5),
         "recording": f"t/{key}.mcap",
     }
     return Demonstration(**{**values, **changes})  # type: ignore[arg-type]

@@ -32,7 +32,7 @@ def test_tasks_and_what_was_shown_are_read_and_changed(station: Station, shown: 
     assert shown in [task.name for task in station.tasks()]
     assert station.make_task(shown) == station.get_task(shown)
     first, *_ = station.demonstrations(shown)
-    assert (first.source, first.verdict, first.account.lost) == ("mine.csv", "clean", 0)
+    assert (first.source, first.verdict, first.statistics.lost) == ("mine.csv", "clean", 0)
     assert station.amend(first.id, mark="bad").mark == "bad"
     assert station.amend(first.id, mark="", trim=(1, 100)).trim == (1, 100)
     assert station.amend(first.id, trim=(0, 0)) == first

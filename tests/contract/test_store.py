@@ -1,5 +1,6 @@
 """The store: the laws that every database behind it keeps."""
 
+import json
 import threading
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
@@ -17,10 +18,10 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from teachpath.errors import Conflict, NotFound
-from teachpath.io.documents import encode
+from teachpath.io.documents import decode_demonstration, encode
 from teachpath.io.store.settings import StoreSettings
 from teachpath.io.store.store import Store
-from teachpath.io.store.tables import Base, JobRow, RunTable
+from teachpath.io.store.tables import Base, DemonstrationRow, JobRow, RunTable
 from teachpath.records import (
     Calibration,
     Deviation,
@@ -114,6 +115,19 @@ def test_a_migration_renames_what_runs_and_jobs_say_of_learning(store: Store, ur
     assert store.job("learn-1").request["settings"] == {"keep": 3, "min_silhouette": 0.4}
 
 
+def test_a_migration_renames_what_demonstrations_say_of_their_samples(store: Store, url: str) -> None:
+    statistics = StreamStatistics(received=9, outliers=2, level_shifts=1)
+    now = store.add_demonstration(demonstration("d", statistics=statistics))
+    with migrating(url, command.downgrade, "0006") as connection:
+        (before,) = connection.scalars(sa.select(DemonstrationRow.document))
+    assert "statistics" not in before
+    assert [before["account"][name] for name in ("received", "jumps", "leaps")] == [9, 2, 1]
+    assert decode_demonstration(json.dumps(before).encode()) == now  # so a file that was made then is read, too
+    with migrating(url, command.upgrade, "head"):
+        pass
+    assert store.demonstration(now.id) == now
+
+
 # tasks and demonstrations
 
 
@@ -165,7 +179,7 @@ COUNT = st.integers(0, 2**62)
     created_ns=COUNT,
     source=TEXT,
     calibration=st.builds(Calibration, TEXT, FINITE, st.tuples(*[FINITE] * 4), st.tuples(*[FINITE] * 3)),
-    account=st.builds(StreamStatistics, COUNT, notes=st.lists(TEXT, max_size=3).map(tuple)),
+    statistics=st.builds(StreamStatistics, COUNT, notes=st.lists(TEXT, max_size=3).map(tuple)),
 )
 def test_a_demonstration_survives_to_the_last_bit(store: Store, **values: object) -> None:
     key = f"d-{len(store.demonstrations('t'))}"

@@ -79,7 +79,7 @@ def finish(visit: Visit) -> str:
 
 
 def has_no_gaps(take: Demonstration) -> bool:
-    return take.account.lost == take.account.gaps == take.account.refused == 0
+    return take.statistics.lost == take.statistics.gaps == take.statistics.refused == 0
 
 
 # a headset, emulated
@@ -153,6 +153,6 @@ HEAR = """
 
 def is_judged_by_its_frames(take: Demonstration, heard: np.ndarray) -> None:
     """A machine without a graphics card may give no frames for a while: that is a gap as the page has stamped it."""
-    gap = take.account.longest_gap_ns / 1e9
+    gap = take.statistics.longest_gap_ns / 1e9
     assert np.abs(np.diff(heard) / 1000 - gap).min() < 1e-5
     assert take.verdict == "clean", take.reasons

@@ -61,7 +61,7 @@ def test_a_kill_in_mid_take_costs_only_what_was_not_yet_flushed(tmp_path: Path) 
         assert made.id == found[2]
         assert made.samples == int(found[1])
         assert made.verdict == "reject"
-        assert any("cut off" in note for note in made.account.notes)
+        assert any("cut off" in note for note in made.statistics.notes)
         assert len(trajectory(next_one, made.id)[0]) == made.release - made.grasp
         assert next_one.station.health().notes == []
         assert len(record(next_one, "carry", 1).demonstrations) == 1

@@ -61,7 +61,7 @@ def test_a_line_that_stalls_loses_nothing(tmp_path: Path) -> None:
         publish(publisher, stream[250:], rate=500.0)
         report = here.end("glove", len(stream))
         assert (report.received, report.lost, stretches(report)) == (len(stream), 0, [])
-        assert [d.account.lost for d in here.store.demonstrations("lift")] == [0, 0, 0]
+        assert [d.statistics.lost for d in here.store.demonstrations("lift")] == [0, 0, 0]
 
 
 @pytest.mark.parametrize("ours", [True, False])
@@ -103,7 +103,7 @@ def test_a_line_that_breaks_loses_what_was_under_way_and_our_client_sends_it_aga
             assert stretches(report) == [(201, 200 + report.lost)]
             assert report.lost >= 100
             # Where the hole ends is the line's own time: in what is learned of a take, or on the hand's way to it.
-            holed = [d for d in here.store.demonstrations("lift") if d.account.lost]
+            holed = [d for d in here.store.demonstrations("lift") if d.statistics.lost]
             assert holed
             for take in holed:
                 assert take.verdict != "clean"

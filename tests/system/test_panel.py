@@ -66,8 +66,8 @@ def test_every_demonstration_has_its_verdict_and_what_is_wrong_with_it(visit: Vi
         facts = read_facts(service.data / "recordings" / row.recording)
         assert facts["verdict"] == row.verdict
         assert row.verdict in said
-        account = json.loads(facts["account"])
-        assert account == json.loads(json.dumps(asdict(row.account)))
+        account = json.loads(facts["statistics"])
+        assert account == json.loads(json.dumps(asdict(row.statistics)))
         assert account["untracked"] == (39 if row.verdict == "reject" else 0)
     for mark in ("good", "bad", ""):
         visit.page.get_by_role("button", name=f"Mark demonstration 1 {mark or 'neither good nor bad'}").click()

@@ -88,9 +88,9 @@ class GloveProtocol:
             raise ClientError(f"the glove at {line.path} has {sensors} sensors, not {wanted}; is this its calibration?")
         if self._settings.touch != "off" and not self._ask(line, b"?P", 3)[2] & CYBERTOUCH:
             raise ClientError(f"the glove at {line.path} is no CyberTouch; leave out touch={self._settings.touch}")
-        self._tell(line, b"N", sensors)
-        self._tell(line, b"U", 0)
-        self._tell(line, b"D", 0)
+        self._write(line, b"N", sensors)
+        self._write(line, b"U", 0)
+        self._write(line, b"D", 0)
         if not self._polled:
             line.write(period(self._settings.rate))
             line.write(b"S" if self._settings.format == "binary" else b"s")
@@ -114,7 +114,7 @@ class GloveProtocol:
         if self._settings.touch != "off":
             line.write(vibration(0))
 
-    def _tell(self, line: SerialLine, letter: bytes, value: int) -> None:
+    def _write(self, line: SerialLine, letter: bytes, value: int) -> None:
         self._exchange(line, letter + bytes([value]), letter, 0)
 
     def _ask(self, line: SerialLine, question: bytes, size: int) -> bytes:

@@ -1,7 +1,7 @@
 // Mouse and touch: press on the object to grasp it, drag over a horizontal plane; shift, the wheel or a second finger
 // change the height; let go to release.
 /** @type {Record<string, number>} */
-const GRAB_RADIUS = { mouse: 28, pen: 32, touch: 48 }; // [px] around the object
+const GRASP_RADIUS = { mouse: 28, pen: 32, touch: 48 }; // [px] around the object
 const METRES_PER_WHEEL_PIXEL = 0.0004; // [m] of height for a pixel of the wheel
 const METRES_PER_FINGER_PIXEL = 0.0012; // [m] of height for a pixel of the second finger
 
@@ -57,7 +57,7 @@ export function attachPointerDrag(overlay, handModel, { canGrasp, grasp, release
       if (
         !seen ||
         Math.hypot(event.clientX - seen[0], event.clientY - seen[1]) >
-          (GRAB_RADIUS[event.pointerType] ?? GRAB_RADIUS.mouse)
+          (GRASP_RADIUS[event.pointerType] ?? GRASP_RADIUS.mouse)
       )
         return false;
       first = event.pointerId;

@@ -79,7 +79,7 @@ function facts(kept) {
     ["Repaired", count("repaired")],
     ["Not usable", count("reject")],
     ["Mean transport", kept.length > 0 && formatNumber(mean, 1, "s")],
-    ["Samples lost", String(kept.reduce((sum, d) => sum + d.account.lost, 0))],
+    ["Samples lost", String(kept.reduce((sum, d) => sum + d.statistics.lost, 0))],
   ];
 }
 
@@ -120,7 +120,7 @@ function exportLinks(task) {
 }
 
 /** @param {Demonstration} demonstration @param {Child} preview */
-function demonstrationRow({ id, number, verdict, mark, trim, reasons, duration, discarded_ns, account }, preview) {
+function demonstrationRow({ id, number, verdict, mark, trim, reasons, duration, discarded_ns, statistics }, preview) {
   const why = [mark && `marked ${mark}`, trim && "trimmed", ...reasons].filter(Boolean).join("; ");
   const word = discarded_ns ? "discarded" : verdict;
   const [verb, sign, name] = discarded_ns ? ["restore", "↶", "Restore"] : ["discard", "×", "Discard"];
@@ -135,7 +135,7 @@ function demonstrationRow({ id, number, verdict, mark, trim, reasons, duration, 
     element("span", { class: "number" }, String(number)),
     element("span", { class: "preview" }, preview),
     element("span", { class: "verdict" }, word),
-    element("span", { class: "figure" }, account.lost > 0 && `${account.lost} lost`),
+    element("span", { class: "figure" }, statistics.lost > 0 && `${statistics.lost} lost`),
     element("span", { class: "figure" }, formatNumber(duration, 1, "s")),
     element(
       "button",

@@ -88,8 +88,8 @@ export function senderFacts({ offset, dropped, sequence }) {
 }
 
 /** @param {Demonstration} demonstration */
-export function demonstrationRow({ number, verdict, discarded_ns, duration, account, reasons }) {
-  const { received, lost } = account;
+export function demonstrationRow({ number, verdict, discarded_ns, duration, statistics, reasons }) {
+  const { received, lost } = statistics;
   const word = discarded_ns ? "discarded" : verdict;
   const figure = `${formatNumber(duration, 1, "s")}, ${lost} of ${formatNumber(received + lost, 0)} lost`;
   return element(

@@ -26,7 +26,7 @@ def events_router(hub: EventHub) -> APIRouter:
         async def send(event: Document) -> None:
             await socket.send_text(json.dumps(event, separators=(",", ":"), allow_nan=False, default=str))
 
-        if await sockets.admit(socket):
+        if await sockets.accept(socket):
             await sockets.serve(socket, hub.subscribe, hub.unsubscribe, send, _refuse)
 
     return router

@@ -26,7 +26,7 @@ def joints_router(parts: Parts) -> APIRouter:
     @router.websocket("/joints")
     async def joints(socket: WebSocket) -> None:
         """Send the joint state whenever it has changed; refuse a page of another origin."""
-        if not await sockets.admit(socket):
+        if not await sockets.accept(socket):
             return
         listening, sending = asyncio.create_task(_listen(socket)), asyncio.create_task(_send(socket, parts))
         await asyncio.wait((listening, sending), return_when=asyncio.FIRST_COMPLETED)

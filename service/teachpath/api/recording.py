@@ -57,10 +57,10 @@ class RecordingReport:
         clock_rate: seconds of the device's clock in one of the host's; 0: not known.
         phase: of the hand; empty when the recording has ended.
         state: recording, countdown, pausing, paused or lost; empty when the recording has ended.
-        pedal: whether the pedal has been used.
+        pedal_used: whether the pedal has been pressed in this recording.
         countdown_left: [s] until samples are recorded.
         takes_left: demonstrations until it pauses by itself; 0: nobody has said how many.
-        sign: what the fist that is held now asks for as it opens: toggle, discard or nothing.
+        pending_command: what the fist that is held now commands when it opens: toggle, discard or nothing.
         notes: what an operator should know, in words.
     """
 
@@ -86,10 +86,10 @@ class RecordingReport:
     idle: int
     phase: str
     state: str
-    pedal: bool
+    pedal_used: bool
     countdown_left: float
     takes_left: int
-    sign: str
+    pending_command: str
     notes: tuple[str, ...]
 
 

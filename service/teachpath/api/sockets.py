@@ -36,7 +36,7 @@ def same_origin(headers: Mapping[str, str]) -> bool:
     return origin is None or urlsplit(origin).netloc.lower() == headers.get("host", "").lower()
 
 
-async def admit(socket: WebSocket) -> bool:
+async def accept(socket: WebSocket) -> bool:
     """Accept a WebSocket, and say whether it may stay.
 
     A page of another origin is refused: its handshake is answered with 403. So is a query parameter: there are none.

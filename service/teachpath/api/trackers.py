@@ -41,7 +41,7 @@ def trackers_router(parts: Parts, *, silence: float = SILENCE_TIMEOUT) -> APIRou
 
     @router.websocket("/trackers/{name}/samples")
     async def samples(socket: WebSocket, name: str) -> None:
-        if not await sockets.admit(socket):
+        if not await sockets.accept(socket):
             return
         loop, dismissed = asyncio.get_running_loop(), asyncio.Queue[str]()
 

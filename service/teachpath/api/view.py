@@ -79,7 +79,7 @@ def view_router(preview: Preview) -> APIRouter:
 
     @router.websocket("/api/v1/view")
     async def view(socket: WebSocket) -> None:
-        if await sockets.admit(socket):
+        if await sockets.accept(socket):
             await sockets.serve(socket, preview.connect, preview.disconnect, socket.send_bytes, _acknowledge)
 
     return router

@@ -34,7 +34,7 @@ def demonstrations(task: Task, url: Url = LOCAL) -> None:
         for column in ("No.", "Verdict", "Transport [s]", "Lost", "Said", "Why"):
             table.add_column(column, justify="right" if column in ("No.", "Transport [s]", "Lost") else "left")
         for d in station.demonstrations(task):
-            lost, why = str(d.account.lost), "; ".join(d.reasons)
+            lost, why = str(d.statistics.lost), "; ".join(d.reasons)
             table.add_row(str(d.number), d.verdict, f"{d.duration:.2f}", lost, _said(d), why)
         Console().print(table)
 
@@ -70,7 +70,7 @@ def _trimmed(d: Demonstration, trim: str) -> tuple[int, int]:
         begin, end = (float(part) for part in trim.split(","))
     except ValueError:
         raise UnusableInput(f"--trim {trim} is not BEGIN,END in seconds, e.g. 0.2,0.5") from None
-    rate = d.account.seen_rate
+    rate = d.statistics.seen_rate
     own = (d.release - d.grasp) / rate
     if begin < 0.0 or end < 0.0 or begin + end >= own:
         raise UnusableInput(f"--trim {trim}: together they must be under the {own:.2f} s from grasp to release")

@@ -121,7 +121,7 @@ class CommandHandler:
         return wire.encode_lease(lease)
 
     def _dispatch(self, command: Command, who: str) -> None:
-        if command.verb in (CommandVerb.START, CommandVerb.MIRROR):
+        if command.verb in (CommandVerb.START, CommandVerb.TELEOPERATE):
             self._start(command)
         elif command.verb == CommandVerb.STOP:
             self._stop(command, who)

@@ -62,7 +62,7 @@ class ProgramFactory:
         self._time = time_source
 
     def make(self, command: Command) -> PreparedProgram:
-        """Return the program of a `start` or `mirror` command.
+        """Return the program of a `start` or `teleoperate` command.
 
         Raises:
             UnusableInput: the command holds no plan or request, or one with values outside their ranges.
@@ -86,7 +86,7 @@ class ProgramFactory:
         return PreparedProgram(program, plan.id, plan.scene)
 
     def _follow_hand(self, command: Command) -> PreparedProgram:
-        request = documents.decode(TeleopRequest, command.mirror)
+        request = documents.decode(TeleopRequest, command.teleop)
         for name, value, (low, high) in (
             ("scale", request.scale, SCALE_RANGE),
             ("share", request.share, SHARE_RANGE),

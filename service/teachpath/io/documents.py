@@ -11,8 +11,12 @@ from cattrs import ClassValidationError, transform_error
 from cattrs.preconf.json import make_converter
 
 from teachpath.errors import UnusableInput
+from teachpath.records import Demonstration
 
 T = TypeVar("T")
+
+# What files that were recorded or exported earlier call the fields of a demonstration and of its statistics.
+FORMER_NAMES = {"account": "statistics", "jumps": "outliers", "leaps": "level_shifts"}
 
 _converter = make_converter(forbid_extra_keys=True)
 
@@ -51,10 +55,24 @@ def encode(record: Any) -> bytes:
     return json.dumps(to_document(record), allow_nan=False, separators=(",", ":")).encode()
 
 
-def decode(kind: type[T], payload: bytes) -> T:
-    """Return the record of JSON text; raises UnusableInput."""
+def decode(kind: type[T], payload: bytes, *, former_names: Mapping[str, str] | None = None) -> T:
+    """Return the record of JSON text; raises UnusableInput.
+
+    Args:
+        kind: of the record.
+        payload: JSON.
+        former_names: names of fields, at any depth, that are called otherwise now.
+    """
+    names = former_names or {}
     try:
-        document = json.loads(payload)
+        document = json.loads(
+            payload, object_pairs_hook=lambda pairs: {names.get(key, key): value for key, value in pairs}
+        )
     except ValueError as error:
         raise UnusableInput(f"{len(payload)} bytes are not a {kind.__name__} in JSON: {error}") from None
     return from_document(kind, document)
+
+
+def decode_demonstration(payload: bytes) -> Demonstration:
+    """Return the demonstration that a file states, also under former names; raises UnusableInput."""
+    return decode(Demonstration, payload, former_names=FORMER_NAMES)

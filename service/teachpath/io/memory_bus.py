@@ -43,11 +43,11 @@ class MemoryBus:
 
     def announce(self, key: str) -> Handle:
         self._tokens.append(key)
-        self._tell(key, True)
+        self._notify(key, True)
 
         def withdraw() -> None:
             self._tokens.remove(key)
-            self._tell(key, False)
+            self._notify(key, False)
 
         return Declaration(withdraw)
 
@@ -65,7 +65,7 @@ class MemoryBus:
         self._answers.clear()
         self._watchers.clear()
 
-    def _tell(self, key: str, alive: bool) -> None:
+    def _notify(self, key: str, alive: bool) -> None:
         for pattern, changed in list(self._watchers.values()):
             if pattern.fullmatch(key):
                 changed(key, alive)

@@ -11,13 +11,13 @@ import io
 from dataclasses import replace
 
 from teachpath.errors import UnusableInput, UnusableRecording, UnusableSample
-from teachpath.io.documents import decode, encode
+from teachpath.io.documents import decode_demonstration, encode
 from teachpath.io.wire import decode_sample, encode_sample
 from teachpath.records import Demonstration, Sample
 
 MARK = "# teachpath "
 COLUMNS = ["sequence", "device_ns", "receive_ns", "x", "y", "z", "qw", "qx", "qy", "qz", "tracked", "buttons"]
-MOST_SENSORS = 22
+MAX_SENSORS = 22
 LARGEST_NS = 2**63 - 1
 
 
@@ -48,12 +48,12 @@ def read_samples(content: bytes, name: str) -> tuple[Demonstration, list[Sample]
     """
     try:
         first, *rest = content.decode("utf-8").split("\n")
-        stated = decode(Demonstration, first.removeprefix(MARK).encode())
+        stated = decode_demonstration(first.removeprefix(MARK).encode())
         header, *rows = csv.reader(rest)
     except (UnicodeDecodeError, csv.Error, ValueError, UnusableInput) as error:
         raise UnusableRecording(f"{name}: not the samples of a demonstration: {error}") from None
     sensors = len(header) - len(COLUMNS)
-    if header[: len(COLUMNS)] != COLUMNS or not 0 <= sensors <= MOST_SENSORS:
+    if header[: len(COLUMNS)] != COLUMNS or not 0 <= sensors <= MAX_SENSORS:
         raise UnusableRecording(f"{name}, line 2: the columns must be {','.join(COLUMNS)}, then flexions f1, f2, ...")
     if not content.endswith(b"\n"):
         raise UnusableRecording(f"{name}: the last line does not end; is the file truncated?")

@@ -6,13 +6,13 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from teachpath.errors import TeachpathError
-from teachpath.io.documents import decode
+from teachpath.io.documents import decode_demonstration
 from teachpath.io.store.recordings import read_facts, salvage
 from teachpath.io.store.store import Store
 from teachpath.offline.lock import StationLock
 from teachpath.recorder.session import RecordingSession, RecordingSetup
 from teachpath.recording.settings import RecordingSettings
-from teachpath.records import Demonstration, Scene
+from teachpath.records import Scene
 
 SALVAGED = ".salvaged"
 
@@ -47,7 +47,7 @@ def _adopt(file: Path, store: Store) -> Finding:
     """Store the row of a recording that was finished just before the service was cut off."""
     place = store.recordings.place(file)
     try:
-        stated = decode(Demonstration, read_facts(file).get("demonstration", "").encode())
+        stated = decode_demonstration(read_facts(file).get("demonstration", "").encode())
         store.task(stated.task)
         row = store.add_demonstration(replace(stated, recording=place))
     except TeachpathError as error:

@@ -7,7 +7,7 @@ import time
 from dataclasses import dataclass, replace
 
 from teachpath.errors import UnusableInput, UnusableRecording
-from teachpath.io.documents import decode
+from teachpath.io.documents import decode_demonstration
 from teachpath.io.files import Track, read_tracks
 from teachpath.io.sample_files import holds_samples, read_samples
 from teachpath.io.store.recordings import read_facts_stream, salvage_stream
@@ -22,7 +22,7 @@ from teachpath.recording.settings import RecordingSettings
 from teachpath.records import Amendment, Calibration, Demonstration, Sample, Scene, Trajectory
 from teachpath_proto.keys import is_name, name_refusal
 
-MOST_REFUSED = 100_000  # of a file that says so
+MAX_REFUSED = 100_000  # of a file that says so
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,10 +78,10 @@ def _recorded(
     """Record each motion as if live."""
     made: list[tuple[Demonstration, Trajectory]] = []
     for samples in read.motions:
-        rate = read.stated.account.declared_rate if read.stated else 0.0
+        rate = read.stated.statistics.declared_rate if read.stated else 0.0
         setup = RecordingSetup(task, read.tracker, read.calibration, scene, rate)
         session = RecordingSession(store, settings, setup)
-        for _ in range(min(read.stated.account.refused, MOST_REFUSED) if read.stated else 0):
+        for _ in range(min(read.stated.statistics.refused, MAX_REFUSED) if read.stated else 0):
             session.counter.count_refused("some samples were refused when it was recorded")
         finished = [session.add(sample) for sample in samples]
         made += [f for f in finished if f is not None] + session.finish()
@@ -106,7 +106,7 @@ def _read_recording(source: Source) -> _Read:
             "is still in its data folder can be repaired with: teachpath doctor"
         )
     facts = read_facts_stream(io.BytesIO(source.content)).get("demonstration")
-    stated = _believed(decode(Demonstration, facts.encode()), samples, source.name) if facts else None
+    stated = _believed(decode_demonstration(facts.encode()), samples, source.name) if facts else None
     return _Read(header.tracker, stated.calibration if stated else header.calibration, [samples], stated)
 
 
@@ -155,7 +155,7 @@ def _curated(
 
 
 def _statistics(row: Demonstration, samples: list[Sample], settings: RecordingSettings) -> PhaseStatistics:
-    return phase_statistics(samples, TransportSpan(*row.transport), row.account, settings)
+    return phase_statistics(samples, TransportSpan(*row.transport), row.statistics, settings)
 
 
 def _check(

@@ -45,7 +45,7 @@ def _in_order(samples: Sequence[Sample]) -> list[Sample]:
 def dataset_of(demonstrations: Sequence[Demonstration], received: Sequence[Sequence[Sample]]) -> Dataset:
     """Return the dataset of demonstrations and their samples, in the order received."""
     takes = [_in_order(samples) for samples in received]
-    rates = [d.account.seen_rate for d in demonstrations if d.account.seen_rate > 0]
+    rates = [d.statistics.seen_rate for d in demonstrations if d.statistics.seen_rate > 0]
     turned = all(s.orientation for take in takes for s in take)
     names = ("x", "y", "z", *(("qw", "qx", "qy", "qz") if turned else ()), "closure")
     states = [_states(d, take, turned=turned) for d, take in zip(demonstrations, takes, strict=True)]

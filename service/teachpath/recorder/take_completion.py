@@ -75,7 +75,7 @@ def complete_take(
         grasp=cut.grasp,
         release=cut.release,
         verdict=quality.verdict,
-        account=statistics,
+        statistics=statistics,
         recording="",
         reasons=quality.reasons,
         left_out=left_out,
@@ -94,8 +94,8 @@ def add_position_outliers(take: SegmentedTake, settings: RecordingSettings) -> t
     found = find_outliers(ordered, positions, settings)
     statistics = replace(
         take.statistics,
-        jumps=len(found.outliers),
-        leaps=found.level_shifts,
+        outliers=len(found.outliers),
+        level_shifts=found.level_shifts,
         out_of_workspace=found.out_of_workspace,
     )
     return statistics, found.outliers
@@ -112,15 +112,15 @@ def reassess(
         samples: of its recording.
     """
     cut = TransportSpan(*after.transport)
-    take = SegmentedTake(samples, cut, before.account, after.calibration, None)
+    take = SegmentedTake(samples, cut, before.statistics, after.calibration, None)
     statistics, left_out = add_position_outliers(take, settings)
     quality = reassess_quality(
         QualityReport(before.verdict, before.reasons),
-        phase_statistics(samples, TransportSpan(*before.transport), before.account, settings),
+        phase_statistics(samples, TransportSpan(*before.transport), before.statistics, settings),
         phase_statistics(samples, cut, statistics, settings),
         settings,
     )
-    return {"account": statistics, "left_out": left_out, "verdict": quality.verdict, "reasons": quality.reasons}
+    return {"statistics": statistics, "left_out": left_out, "verdict": quality.verdict, "reasons": quality.reasons}
 
 
 def _assess(statistics: PhaseStatistics, take: SegmentedTake, settings: RecordingSettings) -> QualityReport:

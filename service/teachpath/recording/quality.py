@@ -12,7 +12,7 @@ FAULTS = {
     "lost": "lost",
     "refused": "refused",
     "untracked": "untracked",
-    "jumps": "jumping",
+    "outliers": "jumping",
     "out_of_workspace": "out of the workspace",
     "conflicts": "in conflict",
 }
@@ -89,10 +89,9 @@ def _excessive_faults(
 
 def _unusable(statistics: StreamStatistics, settings: RecordingSettings) -> list[str]:
     found = _breaks(statistics, settings, f", limit {settings.longest_gap:.2f} s")
-    if statistics.leaps:
-        found.append(
-            f"the position leaps {_times(statistics.leaps)} by over {100 * settings.largest_jump:.3g} cm and stays"
-        )
+    if statistics.level_shifts:
+        times, jump = _times(statistics.level_shifts), 100 * settings.largest_jump
+        found.append(f"the position leaps {times} by over {jump:.3g} cm and stays")
     return found
 
 

@@ -23,12 +23,12 @@ class Command:
     who: str = ""
     plan_id: str = ""
     reason: str = ""
-    mirror: bytes = b""  # in JSON
+    teleop: bytes = b""  # in JSON
 
 
 @dataclass(frozen=True, slots=True)
 class TeleopRequest:
-    """A live hand that the arm should mirror.
+    """A live hand that the arm should follow.
 
     Attributes:
         tracker: whose samples drive the arm while its clutch is pressed.

@@ -114,7 +114,7 @@ class Clock:
 class StreamStatistics:
     """Counts of the samples of one recording or demonstration.
 
-    Jumps, leaps and samples out of the workspace are counted in the transport phase only.
+    Outliers, level shifts and samples out of the workspace are counted in the transport phase only.
     """
 
     received: int = 0
@@ -126,8 +126,8 @@ class StreamStatistics:
     gaps: int = 0  # stretches of numbers that never came
     missing: tuple[tuple[int, int], ...] = ()  # first and last number of each of them, of the first 20
     longest_gap_ns: int = 0  # device clock
-    jumps: int = 0  # positions that their neighbours contradict; left out of the trajectory
-    leaps: int = 0  # places where the position jumps and stays
+    outliers: int = 0  # positions that their neighbours contradict; left out of the trajectory
+    level_shifts: int = 0  # places where the position jumps and stays
     out_of_workspace: int = 0
     conflicts: int = 0  # numbers that came twice with different device times
     clock_jumps: int = 0
@@ -156,7 +156,7 @@ class Demonstration:
     grasp: int
     release: int
     verdict: Verdict
-    account: StreamStatistics
+    statistics: StreamStatistics
     recording: str  # place of the MCAP file within the recordings
     reasons: tuple[str, ...] = ()  # why the verdict is not clean
     left_out: tuple[int, ...] = ()  # numbers of the samples that jumped

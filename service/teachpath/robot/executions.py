@@ -142,7 +142,7 @@ class Executions:
             Unreachable: the executor does not answer.
         """
         key = f"execution-{uuid.uuid4().hex[:12]}"
-        command = Command(CommandVerb.MIRROR, key, mirror=encode(order), lease=lease, who=who)
+        command = Command(CommandVerb.TELEOPERATE, key, teleop=encode(order), lease=lease, who=who)
         return self._start_execution(command, MotionHeader(key, self._robot))
 
     def command(self, execution: str, command: Command) -> Execution:

@@ -71,7 +71,7 @@ def test_on_a_terminal_the_line_is_written_over_and_a_countdown_sounds() -> None
 
 @pytest.mark.parametrize("sign", ["toggle", "discard"])
 def test_what_a_fist_offers_is_shown(sign: str) -> None:
-    assert f"open the fist now to {sign}" in shown([feedback("recording", sign=sign)], live=False)
+    assert f"open the fist now to {sign}" in shown([feedback("recording", pending_command=sign)], live=False)
 
 
 def test_a_station_that_says_nothing_is_said_once_until_it_speaks_again() -> None:

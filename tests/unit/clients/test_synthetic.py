@@ -7,7 +7,7 @@ import pytest
 from teachpath.motion.collision.builtin_scenes import TABLE_HEIGHT, paper_scene
 from teachpath_client import synthetic
 from teachpath_client.reading import HandReading
-from teachpath_client.synthetic import GOAL, HAND_ABOVE, RATE, START, WAYS, experiment_1, experiment_2
+from teachpath_client.synthetic import GOAL, HAND_ABOVE, RATE, ROUTES, START, experiment_1, experiment_2
 
 SCENE = paper_scene()
 SEEDS = range(1, 6)
@@ -44,9 +44,9 @@ def test_an_experiment_has_its_demonstrations_and_each_grasps_only_at_the_object
 def test_the_first_experiment_shows_three_ways_in_the_papers_order() -> None:
     ways = carries(list(experiment_1(1)))
     middles = [way[np.argmin(np.abs(way[:, 1]))][0] for way in ways]
-    nearest = [min(WAYS, key=lambda name, x=x: abs(WAYS[name][0] - x)) for x in middles]
+    nearest = [min(ROUTES, key=lambda name, x=x: abs(ROUTES[name][0] - x)) for x in middles]
     assert tuple(nearest) == synthetic.EXPERIMENT_1
-    assert sorted(nearest.count(name) for name in WAYS) == [3, 4, 5]
+    assert sorted(nearest.count(name) for name in ROUTES) == [3, 4, 5]
 
 
 def test_a_reading_is_what_a_glove_and_a_tracker_give() -> None:

@@ -73,7 +73,7 @@ def trajectory(store: Store) -> Callable[[Demonstration], Trajectory]:
 
 def said(row: Demonstration) -> Iterator[object]:
     """Yield what must be the same of a demonstration that was exported and imported."""
-    account = row.account
+    account = row.statistics
     yield from (row.verdict, row.reasons, row.left_out, row.transport, row.samples, row.duration, row.calibration)
     yield from (row.source, account.received, account.lost, account.duplicated, account.reordered, account.refused)
     yield from (account.untracked, account.gaps, account.longest_gap_ns, account.declared_rate, account.seen_rate)

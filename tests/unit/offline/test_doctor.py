@@ -52,7 +52,7 @@ def test_a_torn_recording_becomes_a_demonstration_and_the_torn_file_is_kept(stor
     assert "100 samples" in sentence
     (row,) = store.demonstrations("lift")
     assert row.verdict == "clean"
-    assert any("cut off" in note for note in row.account.notes)
+    assert any("cut off" in note for note in row.statistics.notes)
     assert len(store.recordings.samples(row.recording)) == row.samples == 100
     assert part.with_name(part.name + ".salvaged").exists()
     assert examined(store, data) == []

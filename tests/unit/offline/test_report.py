@@ -75,7 +75,7 @@ def test_it_holds_every_way_demonstration_and_reason_and_fetches_nothing(store: 
     assert not re.findall(r"""(?:src|href)\s*=|url\(|@import""", outside)
 
 
-def test_the_scene_is_drawn_as_it_stands_and_departures_where_they_are(store: Store) -> None:
+def test_the_scene_is_drawn_as_it_stands_and_deviations_where_they_are(store: Store) -> None:
     found = review(store)
     corners = ((0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0))
     wedge = Shape("wedge", "mesh", (0.1,), (0.3, 0.2, 0.4), orientation=(0.6, 0.0, 0.8, 0.0), vertices=corners)

@@ -114,7 +114,7 @@ def test_a_conversion_judges_again_and_forgives_no_other_fault(store: Store) -> 
     newest.measure("lab", [replace(p, world=(p.world[0] + 5.0, *p.world[1:])) for p in shifted((0.0, 0.0, 0.0))])
     (outside,) = newest.convert([torn])
     assert outside.verdict == "reject"
-    assert outside.account.out_of_workspace == 50
+    assert outside.statistics.out_of_workspace == 50
     assert outside.reasons[0] == "the tracker has gone in mid-take"
     assert newest.convert([outside], "lab@1") == [torn]
 

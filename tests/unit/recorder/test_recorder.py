@@ -30,7 +30,7 @@ def test_the_handshake_counts_what_never_came(bench: Bench) -> None:
     bench.send(stream[:40] + stream[42:])
     report = bench.end(115)
     assert report.lost == 2 + 5
-    assert bench.store.demonstrations("lift")[0].account.lost == 2
+    assert bench.store.demonstrations("lift")[0].statistics.lost == 2
     assert bench.store.demonstrations("lift")[0].verdict == "repaired"
 
 
@@ -43,7 +43,7 @@ def test_a_hole_on_the_way_is_said_and_the_take_and_the_next_one_are_learned_fro
     bench.send([s for i, s in enumerate(stream) if i not in hole])
     assert bench.end(220).lost == len(hole)
     holed, whole = bench.store.demonstrations("lift")
-    assert (holed.verdict, holed.account.lost, whole.verdict) == ("repaired", len(hole), "clean")
+    assert (holed.verdict, holed.statistics.lost, whole.verdict) == ("repaired", len(hole), "clean")
     seconds = (len(hole) + 1) * PERIOD_NS * 1e-9
     said = f"a gap of {seconds:.2f} s, {len(hole)} samples lost"
     assert holed.reasons == (f"while {way}, outside what is learned: {said}",)
@@ -182,6 +182,6 @@ def test_a_grasp_that_ends_a_take_is_the_first_sample_of_the_next_in_all_statist
     bench.send(stream)
     bench.end(len(stream))
     rows = bench.store.demonstrations("lift")
-    assert [row.account.received for row in rows] == [row.samples for row in rows]
+    assert [row.statistics.received for row in rows] == [row.samples for row in rows]
     assert [row.verdict for row in rows] == ["clean"] * 3
     assert [row.grasp for row in rows] == [20, 0, 0]

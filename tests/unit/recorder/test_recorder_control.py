@@ -41,7 +41,7 @@ def test_what_is_shown_while_paused_is_no_demonstration_and_no_loss(bench: Bench
     first, second = bench.store.demonstrations("lift")
     assert (first.verdict, second.verdict) == ("clean", "clean")
     assert first.samples + second.samples + report.idle == report.received
-    assert [d.account.received for d in (first, second)] == [first.samples, second.samples]
+    assert [d.statistics.received for d in (first, second)] == [first.samples, second.samples]
     assert bench.store.recordings.samples(second.recording)[0].sequence > 2 * SHOWN
 
 
@@ -69,7 +69,7 @@ def test_an_armed_recording_waits_for_the_pedal_and_the_pedal_pauses_again(bench
     assert len(bench.received(2 * SHOWN).demonstrations) == 1
     bench.send(pressed(demonstration(2 * SHOWN + 1)))
     report = bench.received(3 * SHOWN)
-    assert (report.state, report.pedal, len(report.demonstrations)) == ("paused", True, 1)
+    assert (report.state, report.pedal_used, len(report.demonstrations)) == ("paused", True, 1)
 
 
 # trackers that come and go
@@ -187,7 +187,7 @@ def test_two_trackers_of_one_name_make_no_demonstration_that_is_trusted(bench: B
         bench.send([one, replace(other, device_ns=other.device_ns + 3_000_000)])
     bench.end(SHOWN)
     assert [verdict for verdict, _ in verdicts(bench)] == ["reject"]
-    assert any("two trackers" in note for note in bench.store.demonstrations("lift")[0].account.notes)
+    assert any("two trackers" in note for note in bench.store.demonstrations("lift")[0].statistics.notes)
 
 
 @pytest.mark.parametrize("away_ns", [10**18, -(10**18), 3600 * 10**9, -3600 * 10**9])

@@ -77,7 +77,7 @@ def test_a_fist_begins_and_pauses_an_armed_recording(bench: Bench) -> None:
     assert len(bench.received(after).demonstrations) == 1
     second = fist(after + 1, 1.2)
     bench.send(second[:-20])
-    assert bench.received(after + len(second) - 20).sign == "toggle"
+    assert bench.received(after + len(second) - 20).pending_command == "toggle"
     bench.send(second[-20:])
     assert bench.received(after + len(second)).state == "paused"
     assert bench.end(after + len(second)).lost == 0

@@ -185,8 +185,8 @@ def salvage_stream(stream: BinaryIO) -> tuple[RecordingHeader | None, list[Sampl
 def facts_of(demonstration: Demonstration) -> dict[str, str]:
     """Return what the recording of a demonstration says of itself."""
     stated = replace(demonstration, number=0, recording="")  # they follow from where it is stored
-    account = documents.encode(stated.account).decode()
-    return {"verdict": stated.verdict, "account": account, "demonstration": documents.encode(stated).decode()}
+    account = documents.encode(stated.statistics).decode()
+    return {"verdict": stated.verdict, "statistics": account, "demonstration": documents.encode(stated).decode()}
 
 
 def amended(content: bytes, demonstration: Demonstration) -> bytes:

@@ -17,7 +17,7 @@ from teachpath.io.store.tables import PathRow
 from teachpath.nurbs import Curve
 from teachpath.records import MAIN_BRANCH, LearnedPath, Version
 
-MOST: Final = 10_000  # versions of one path
+MAX_VERSIONS: Final = 10_000  # versions of one path
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,8 +90,8 @@ class Versions:
             if head is not None and _same(learned.curve, curve):
                 raise UnusableInput(f"this is the curve of version {base.version}; edit it, or name another branch")
             number = 1 + (session.scalar(select(func.max(PathRow.version)).where(PathRow.id == path)) or 0)
-            if number > MOST:
-                raise UnusableInput(f"path {path} has {MOST} versions, which is the limit; learn the task anew")
+            if number > MAX_VERSIONS:
+                raise UnusableInput(f"path {path} has {MAX_VERSIONS} versions, which is the limit; learn the task anew")
             edited = replace(learned, version=number, curve=curve, fit=None, note="")
             row = PathRow(
                 id=path,
@@ -126,7 +126,7 @@ def learned_row(path: LearnedPath, created_ns: int) -> PathRow:
 
 
 def _row(session: Session, path: str, number: int) -> PathRow:
-    row = session.get(PathRow, (path, number)) if 0 < number <= MOST else None
+    row = session.get(PathRow, (path, number)) if 0 < number <= MAX_VERSIONS else None
     if row is None:
         newest = session.scalar(select(func.max(PathRow.version)).where(PathRow.id == path))
         if newest is None:

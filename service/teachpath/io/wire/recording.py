@@ -90,7 +90,7 @@ def encode_feedback(status: RecordingStatus, newest: Demonstration | None) -> by
         countdown_left=status.countdown_left,
         takes_left=status.takes_left,
         takes=len(status.demonstrations),
-        sign=status.pending_command or "",
+        pending_command=status.pending_command or "",
     )
     if newest is not None:
         message.newest.CopyFrom(_demonstration_report(newest))
@@ -121,14 +121,14 @@ def _report(status: RecordingStatus) -> tracker_pb2.RecordingReport:
         clock_uncertainty_ns=clock.uncertainty_ns,
         clock_rate=clock.rate,
         notes=statistics.notes,
-        missing=[tracker_pb2.Stretch(first=first, last=last) for first, last in statistics.missing],
+        missing=[tracker_pb2.SequenceRange(first=first, last=last) for first, last in statistics.missing],
         idle=status.idle,
         phase=status.phase or "",
         state=status.state or "",
-        pedal=status.pedal_used,
+        pedal_used=status.pedal_used,
         countdown_left=status.countdown_left,
         takes_left=status.takes_left,
-        sign=status.pending_command or "",
+        pending_command=status.pending_command or "",
     )
 
 

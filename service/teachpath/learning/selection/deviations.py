@@ -54,7 +54,7 @@ def describe_deviation(
         times = np.interp(np.linspace(0.0, s[-1], PATH_POINTS), s, since)
     begin, end = _span(profile, times, usual)
     share = (float(np.interp(begin, since, s) / s[-1]), float(np.interp(end, since, s) / s[-1]))
-    what = _told(trajectory, others, feature, (begin, end), _worst(away, within, share))
+    what = _sentence(trajectory, others, feature, (begin, end), _worst(away, within, share))
     sentence = f"{what}, {begin:.1f} to {end:.1f} s after the grasp, at {share[0]:.0%} to {share[1]:.0%} of its way"
     return Deviation(share, (begin, end), sentence)
 
@@ -73,7 +73,7 @@ def _span(profile: Array, times: Array, usual: float) -> tuple[float, float]:
     return float(edges[first]), float(edges[last + 1])
 
 
-def _told(
+def _sentence(
     trajectory: Trajectory,
     others: Sequence[Trajectory],
     feature: Feature,

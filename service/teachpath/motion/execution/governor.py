@@ -29,7 +29,7 @@ MAX_STOP_RAMPS: Final = 12  # ramps to rest judged behind a setpoint at most
 MAX_STOP_TIME: Final = 2.0  # s, of a ramp to rest; with none so short the present motion goes on for a while
 STOP_JERK_SHARE: Final = 0.93  # of the jerk limit that a way to rest may use at its positions
 STOP_LEADS: Final = (0, 1, 2, 4, 8, 16, 32, 64)  # periods for which it goes on
-MAX_STOP_PERIODS: Final = 5000  # of a way to rest, where nothing but the end of the track is one
+MAX_STOP_PERIODS: Final = 5000  # of a way to rest, where nothing but the end of the trajectory is one
 
 
 @dataclass(frozen=True, slots=True)
@@ -188,7 +188,7 @@ class Governor:
         """Find the way to rest from here, judged against all limits together with the setpoints already sent.
 
         Where no ramp to rest keeps them from here, the present ramp goes on for some periods; at worst it goes on to
-        the end of the track, where the motion rests.
+        the end of the trajectory, where the motion rests.
         """
         if self.progress.at_rest:
             return WayToRest(np.empty((0, 6)), self.tau)

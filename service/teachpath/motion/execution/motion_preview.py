@@ -42,7 +42,7 @@ def preview_motion(
     which = np.clip(np.searchsorted(begins, times, side="right") - 1, 0, len(parts) - 1)
     rows = _rows(parts, begins, times, which, np.array(settings.home))
     taught = next(index for index, part in enumerate(parts) if part.is_path)
-    share = np.clip(rows[:, 6] / plan.lengths[-1], 0.0, 1.0)  # the track ends within rounding of the length
+    share = np.clip(rows[:, 6] / plan.lengths[-1], 0.0, 1.0)  # the trajectory ends within rounding of the length
     positions, orientations = _object(plan, arm, rows[:, :6], which - taught)
     return MotionPreview(
         plan=plan.id,

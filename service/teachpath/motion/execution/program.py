@@ -31,6 +31,10 @@ class PlanProgram:
         dwell: how long the gripper takes to close or open [s].
         period: between two setpoints [s].
 
+    Attributes:
+        state: the motion of the newest setpoint.
+        waiting: whether the program waits for an arm that is late.
+
     Raises:
         PathRefused: the plan has changed since it was certified, or the way from `start_q` to its start is not free.
     """
@@ -54,11 +58,11 @@ class PlanProgram:
         self._next = 0  # index of the segment behind the present one
         self._length = float(plan.lengths[-1])
         self._override = override
-        self._held = self._waiting = False
+        self._held = self.waiting = False
         self._period = period
         self._elapsed = self._arc_length = 0.0
         still = np.zeros(6)
-        self._state = MotionState(np.array(start_q, dtype=np.float64), still, still, False)
+        self.state = MotionState(np.array(start_q, dtype=np.float64), still, still, False)
         self._segment: Segment | None = None
         self._governor: Governor | None = None  # of the segment
         self._detour: Detour | None = None
@@ -85,7 +89,7 @@ class PlanProgram:
     def held(self) -> bool:
         """Whether the arm is to rest: after `hold`, at an override of zero, or at the end of the way back."""
         governor = self._active_governor
-        returned = governor is not None and governor.reversing and governor.progress.at_rest and not self._waiting
+        returned = governor is not None and governor.reversing and governor.progress.at_rest and not self.waiting
         return self._held or self._override < MIN_OVERRIDE or returned
 
     @property
@@ -101,14 +105,9 @@ class PlanProgram:
         return self._held
 
     @property
-    def waiting(self) -> bool:
-        """Whether the program waits for an arm that is late."""
-        return self._waiting
-
-    @property
     def current_q(self) -> Array:
         """Configuration (6,) of the newest setpoint [rad]."""
-        return self._state.position
+        return self.state.position
 
     @property
     def override(self) -> float:
@@ -152,7 +151,7 @@ class PlanProgram:
 
     def set_waiting(self, waiting: bool) -> None:
         """Come to rest on the path until the arm has caught up, or go on."""
-        self._waiting = waiting
+        self.waiting = waiting
         for governor in self._governors():
             governor.set_waiting(waiting)
 
@@ -213,44 +212,39 @@ class PlanProgram:
     def start_detour(self, detour: Detour) -> None:
         """Follow a step or a way back; the arm rests at its beginning."""
         self._detour = detour if detour.trajectories else None
-        self._detour_governors = deque(self._governor_of(track) for track in detour.trajectories)
+        self._detour_governors = deque(self._governor_of(trajectory) for trajectory in detour.trajectories)
         self._held = False
 
     def step(self) -> MotionState:
         """Advance by one control period and return the nominal motion; never raises."""
         segment, governor = self._segment, self._active_governor
         if segment is None:
-            return self._state
+            return self.state
         if governor is None:
-            self._elapsed += 0.0 if self.held or self._waiting else self._period
+            self._elapsed += 0.0 if self.held or self.waiting else self._period
             if self._elapsed >= segment.rest_time:
                 self._advance()
-            return self._state
+            return self.state
         state = governor.step()
         on_path = segment.is_path and self.activity == segment.name
         if on_path:
             self._arc_length = self._length if state.finished else state.s  # the table ends a last bit away from it
         position, velocity, acceleration = governor.motion[:, :6].copy()
-        self._state = MotionState(position, velocity, acceleration, segment.gripper_closed, on_path)
+        self.state = MotionState(position, velocity, acceleration, segment.gripper_closed, on_path)
         if state.finished and not self.held:
             self._finish()
-        return self._state
+        return self.state
 
     def close(self) -> None:
         """Do nothing: a plan holds nothing that must be freed."""
-
-    @property
-    def state(self) -> MotionState:
-        """The motion of the newest setpoint."""
-        return self._state
 
     def way_to_rest(self) -> tuple[Array, RestPoint]:
         """Return the positions (n, 6) of the way to rest from the newest setpoint, and where it ends."""
         active = self._active_governor
         way = active.way_to_rest() if active is not None else WayToRest(np.empty((0, 6)), 0.0)
-        end = way.positions[-1] if len(way.positions) else self._state.position
+        end = way.positions[-1] if len(way.positions) else self.state.position
         taus = tuple((governor, way.tau if governor is active else governor.tau) for governor in self._governors())
-        return way.positions, RestPoint(end, self._next - 1, self._detour, taus, self._elapsed, self._state.on_path)
+        return way.positions, RestPoint(end, self._next - 1, self._detour, taus, self._elapsed, self.state.on_path)
 
     def restart(self, point: RestPoint) -> None:
         """Go on from where the arm rests, as the program was at that setpoint, whatever it has done since."""
@@ -263,7 +257,7 @@ class PlanProgram:
         if self._governor is not None:
             self._governor = governors.pop()
         self._detour_governors = governors
-        self._state = replace(self._state, position=point.position, on_path=point.on_path)
+        self.state = replace(self.state, position=point.position, on_path=point.on_path)
         if point.on_path and self._governor is not None:
             self._arc_length = float(self._governor.motion[0, 6])
 
@@ -274,9 +268,9 @@ class PlanProgram:
     def _governors(self) -> list[Governor]:
         return [*self._detour_governors, *([self._governor] if self._governor is not None else [])]
 
-    def _governor_of(self, track: TimedTrajectory) -> Governor:
-        governor = Governor(track, self._period, override=self._override)
-        governor.set_waiting(self._waiting)
+    def _governor_of(self, trajectory: TimedTrajectory) -> Governor:
+        governor = Governor(trajectory, self._period, override=self._override)
+        governor.set_waiting(self.waiting)
         return governor
 
     def _finish(self) -> None:
@@ -297,7 +291,7 @@ class PlanProgram:
         self._elapsed, self._governor = 0.0, None
         if self._segment is None:
             return
-        self._state = MotionState(self._state.position, np.zeros(6), np.zeros(6), self._segment.gripper_closed)
+        self.state = MotionState(self.state.position, np.zeros(6), np.zeros(6), self._segment.gripper_closed)
         if self._segment.trajectory is not None:
             self._governor = self._governor_of(self._segment.trajectory)
             if self._held:

@@ -41,7 +41,7 @@ SMOOTH_DERIVATIVES: Final = 3  # continuous derivatives of a curve without such 
 MIN_SPLINE_NODES: Final = 400  # of the joints' spline
 SETPOINT_PHASES: Final = (0.0, 0.25, 0.5, 0.75)  # of the first setpoint, in control periods
 CHECKED_OVERRIDES: Final = (0.1, 0.3, 0.5, 0.7, 0.9)  # besides full speed
-MAX_STRETCHES: Final = 4  # of time
+MAX_TIME_SCALINGS: Final = 4  # of time
 STRETCH_TOLERANCE: Final = 1e-3  # of the stretch factor; a smaller change is not repeated
 
 
@@ -71,7 +71,7 @@ def time_tool_path(
     u = np.asarray(warp(sigma), dtype=np.float64)
     path = JointPath(sigma, tool_path.arc.lengths(u), configurations(tool_path, candidate, u))
     pace = minimize_duration(path, limits, intervals, margins)
-    for _ in range(MAX_STRETCHES):
+    for _ in range(MAX_TIME_SCALINGS):
         factor = _time_stretch(time_joint_path(path, pace, limits), rate, margins)
         pace = pace / factor**2
         if abs(factor - 1.0) < STRETCH_TOLERANCE:

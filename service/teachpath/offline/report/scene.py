@@ -54,10 +54,10 @@ def scene_batch(review: Review, home: Array) -> bytes:
     for path in review.paths:
         color = way_color(path.cluster)
         drawn.append(commands.tube(f"/paths/{path.id}", path.curve(u), radius=0.005, color=color))
-    return arm + pack(drawn + _departures(review))
+    return arm + pack(drawn + _deviations(review))
 
 
-def _departures(review: Review) -> list[bytes]:
+def _deviations(review: Review) -> list[bytes]:
     """Draw where demonstrations depart from the others of their way."""
     drawn = []
     for score in (score for cluster in review.run.learned.clusters for score in cluster.scores):

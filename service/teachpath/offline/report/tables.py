@@ -72,7 +72,7 @@ def demonstrations(review: Review) -> str:
             escape(d.verdict),
             f"{d.duration:.2f} s",
             str(d.samples),
-            str(d.account.lost),
+            str(d.statistics.lost),
             escape(d.source),
             escape("; ".join(d.reasons)),
         ]

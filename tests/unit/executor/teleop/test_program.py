@@ -45,8 +45,8 @@ class Held(Bench):
     def press(self) -> None:
         self.buttons = CLUTCH
 
-    def mirror(self, order: TeleopRequest = ORDER) -> None:
-        self.when(lambda: self.now > PERIOD_NS, lambda: self.command("mirror", mirror=encode(order)))
+    def teleoperate(self, order: TeleopRequest = ORDER) -> None:
+        self.when(lambda: self.now > PERIOD_NS, lambda: self.command("teleoperate", teleop=encode(order)))
         self.when(lambda: "press the clutch" in self.statuses[-1].reason, lambda: None)
         self.after(0.1)
         self.when(lambda: True, self.press)
@@ -64,7 +64,7 @@ def moved(bench: Held) -> np.ndarray:
 
 def test_the_arm_follows_while_the_clutch_is_pressed_and_a_lost_hand_needs_it_again() -> None:
     bench, seen = Held(), []
-    bench.mirror()
+    bench.teleoperate()
     bench.when(lambda: bench.state == "following", lambda: setattr(bench, "hand", np.array([0.0, 0.05, 0.03])))
     bench.after(2.0)
     bench.when(lambda: True, lambda: seen.append(moved(bench)))
@@ -90,7 +90,7 @@ def test_what_does_not_fit_a_live_hand_is_refused() -> None:
         for verb, kind, given in (
             ("step", Conflict, {"length": 0.1}),
             ("start", Conflict, {"plan": b"{}"}),
-            ("mirror", Conflict, {"mirror": encode(ORDER)}),
+            ("teleoperate", Conflict, {"teleop": encode(ORDER)}),
         ):
             with pytest.raises(kind):
                 bench.command(verb, **given)
@@ -98,10 +98,12 @@ def test_what_does_not_fit_a_live_hand_is_refused() -> None:
 
     def too_large() -> None:
         with pytest.raises(UnusableInput, match="scale 90"):
-            bench.command("mirror", mirror=encode(TeleopRequest("glove", Calibration("identity"), empty_scene(), 90.0)))
+            bench.command(
+                "teleoperate", teleop=encode(TeleopRequest("glove", Calibration("identity"), empty_scene(), 90.0))
+            )
 
     bench.when(lambda: bench.now > PERIOD_NS, too_large)
-    bench.mirror()
+    bench.teleoperate()
     bench.when(lambda: bench.state == "following", refuse)
     bench.when(lambda: True, lambda: bench.command("hold"))
     bench.when(lambda: bench.state == "held", lambda: bench.command("stop"))
@@ -116,7 +118,7 @@ def test_a_page_that_looks_on_presses_the_clutch_and_letting_go_or_leaving_holds
 ) -> None:
     bench, seen = Held(), []
     bench.page = 0
-    bench.mirror(replace(ORDER, clutch="page"))
+    bench.teleoperate(replace(ORDER, clutch="page"))
     bench.after(0.3)
     bench.when(lambda: True, lambda: seen.append(moved(bench)))  # the hand's own button is no clutch now
     bench.when(lambda: bench.state == "held", lambda: setattr(bench, "page", CLUTCH))

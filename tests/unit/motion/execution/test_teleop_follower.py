@@ -20,21 +20,21 @@ SHARE = 0.5
 
 
 class Session:
-    """A mirror, the setpoints that it made, and a hand."""
+    """A follower, the setpoints that it made, and a hand."""
 
     def __init__(self, scene: Scene | None = None, **given: float) -> None:
         self.model = CollisionModel(scene or empty_scene(), ARM)
-        self.mirror = TeleopFollower(self.model, HOME, SETTINGS, share=SHARE, **given)
+        self.follower = TeleopFollower(self.model, HOME, SETTINGS, share=SHARE, **given)
         self.sent = [HOME] * 3
         self.reasons: set[str] = set()
 
     def run(self, periods: int, hand: np.ndarray | None = None) -> np.ndarray:
         for k in range(periods):
             if hand is not None and k % EVERY == 0:
-                self.mirror.set_hand(hand, len(self.sent))
-            self.sent.append(self.mirror.step()[0])
-            self.mirror.advance_planning()
-            self.reasons.add(self.mirror.reason)
+                self.follower.set_hand(hand, len(self.sent))
+            self.sent.append(self.follower.step()[0])
+            self.follower.advance_planning()
+            self.reasons.add(self.follower.reason)
         return self.tool()
 
     def tool(self) -> np.ndarray:
@@ -52,23 +52,23 @@ class Session:
 def test_the_tool_goes_where_the_hand_went_scaled_and_keeps_its_orientation(scale: float) -> None:
     session = Session(scale=scale)
     begin, hand = session.tool(), np.array([3.0, 1.0, -2.0])
-    session.mirror.engage(hand)
+    session.follower.engage(hand)
     way = np.array([0.05, 0.08, 0.04])
     end = session.run(600, hand + way)
     np.testing.assert_allclose(end - begin, scale * way, atol=1e-6)
     np.testing.assert_allclose(tool_pose(session.sent[-1], ARM)[:3, :3], tool_pose(HOME, ARM)[:3, :3], atol=1e-6)
-    assert session.mirror.at_rest
+    assert session.follower.at_rest
     assert session.within_limits()
     assert session.reasons == {""}
 
 
 def test_a_clutch_that_is_pressed_again_elsewhere_makes_no_jump() -> None:
     session = Session()
-    session.mirror.engage(np.zeros(3))
+    session.follower.engage(np.zeros(3))
     there = session.run(400, np.array([0.0, 0.06, 0.0]))
-    session.mirror.disengage()
+    session.follower.disengage()
     session.run(100)
-    session.mirror.engage(np.array([9.0, 9.0, 9.0]))
+    session.follower.engage(np.array([9.0, 9.0, 9.0]))
     np.testing.assert_allclose(session.run(300, np.array([9.0, 9.0, 9.0])), there, atol=1e-6)
     np.testing.assert_allclose(session.run(400, np.array([9.0, 9.0, 9.05])), there + np.array([0, 0, 0.05]), atol=1e-6)
     assert session.within_limits()
@@ -76,19 +76,19 @@ def test_a_clutch_that_is_pressed_again_elsewhere_makes_no_jump() -> None:
 
 def test_a_released_clutch_stops_the_arm_soon() -> None:
     session = Session()
-    session.mirror.engage(np.zeros(3))
+    session.follower.engage(np.zeros(3))
     session.run(60, np.array([0.0, 0.3, 0.0]))
-    assert not session.mirror.at_rest
-    session.mirror.disengage()
+    assert not session.follower.at_rest
+    session.follower.disengage()
     session.run(125)  # half a second
-    assert session.mirror.at_rest
+    assert session.follower.at_rest
     assert session.within_limits()
 
 
 def test_a_wild_hand_leaves_the_arm_within_its_limits_and_clear() -> None:
     rng = np.random.default_rng(5)
     session = Session(paper_scene())
-    session.mirror.engage(np.zeros(3))
+    session.follower.engage(np.zeros(3))
     for _ in range(60):
         hand = rng.normal(0.0, 0.25, 3) if rng.random() < 0.3 else rng.normal(0.0, 5.0, 3)
         session.run(int(rng.integers(3, 40)), hand)
@@ -112,7 +112,7 @@ def test_what_cannot_be_reached_is_said_and_the_arm_stays_as_near_as_it_safely_m
 ) -> None:
     session = Session(paper_scene())
     begin = session.tool()
-    session.mirror.engage(np.zeros(3))
+    session.follower.engage(np.zeros(3))
     session.run(900, np.array(way))
     assert any(word in reason for word in words.split("|") for reason in session.reasons)
     gone = (session.tool() - begin) @ np.array(way) / np.linalg.norm(way)
@@ -120,4 +120,4 @@ def test_what_cannot_be_reached_is_said_and_the_arm_stays_as_near_as_it_safely_m
     assert session.within_limits()
     back = session.run(900, np.zeros(3))
     np.testing.assert_allclose(back, begin, atol=2e-3)
-    assert session.mirror.reason == ""
+    assert session.follower.reason == ""
