@@ -35,7 +35,7 @@ from teachpath_proto.keys import is_name, name_refusal
 from teachpath_proto.logins import Login, Role
 
 PREFIX = "TEACHPATH_"
-FORMER_NAMES = {"learning.guard": "learning.min_silhouette"}  # setting -> what it is called now
+REPLACED = {"learning.guard": "learning.min_separation"}  # former setting -> the one that does its work
 SIZES = {"box": 3, "cylinder": 2, "sphere": 1, "mesh": 1}  # numbers in the size of a shape
 # RoboTasks (clfd datasets) was recorded in the frame of another arm; this maps it, shrunk, onto the Puma's table.
 ROBOTTASKS = Calibration("robottasks", scale=0.8, rotation=(1.0, 0.0, 0.0, 0.0), offset=(0.15, 0.17, 0.42))
@@ -217,8 +217,8 @@ def _refuse_unknown(document: Any, kind: Any, place: str) -> None:
     if not isinstance(document, dict) or not known:
         return
     for key, value in document.items():
-        if (now := FORMER_NAMES.get(f"{place}{key}")) is not None:
-            raise UnusableSettings(f"setting {place}{key} is now called {now}; rename it")
+        if (now := REPLACED.get(f"{place}{key}")) is not None:
+            raise UnusableSettings(f"setting {place}{key} was replaced by {now}; see deploy/teachpath.toml")
         if key not in known:
             raise UnusableSettings(f"there is no setting {place}{key}; known here: {', '.join(known)}")
         inner = next((k for k in (known[key], *get_args(known[key])) if is_dataclass(k)), None)

@@ -229,7 +229,7 @@ def _grouping(found: Found, folder: Path) -> list[str]:
         f"<p>Each over {found['sizes']['grouping']} seeds, the number of clusters found automatically. Modes paper "
         f"and repaired cut at a constant distance of {100 * THRESHOLD:.0f} cm, which suits demonstrations alike in "
         "speed; randomly undersampled points of a fast and a slow demonstration do not correspond. Mode default "
-        "compares at equal arc length and cuts by silhouette.</p>",
+        "compares at equal arc length and cuts where clusters are separated by more than their scatter.</p>",
         figure(folder, "groupings", "Fig. 11.", "Share of seeds with a perfect grouping, with 95 % intervals."),
         "<table><caption><b>Table IV.</b> Perfect groupings, and how many clusters were found how "
         "often.</caption><tr><th class=l>Shown<th class=l>Mode<th>right<th class=l>clusters: "

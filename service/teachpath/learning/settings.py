@@ -66,12 +66,12 @@ class LearningSettings:
     # distance of two demonstrations in mode default: mean of corresponding points at equal arc length `arc`,
     # `frechet` (discrete), `dtw`, or as in the others, of randomly undersampled points, `undersampled`
     metric: str = "arc"
-    # m, clusters farther apart than this stay apart; None = found by silhouette (mode default only)
+    # m, clusters farther apart than this stay apart; None = found by `min_separation` (mode default only)
     threshold: Annotated[float, Gt(0)] | None = None
     # number of clusters where it is known, goes before `threshold`; None = found (mode default only)
     clusters: Annotated[int, Ge(1)] | None = None
-    # mean silhouette below which the demonstrations are taken for one single way
-    min_silhouette: Annotated[float, Ge(0), Le(1)] = 0.5
+    # least distance of two clusters, as a multiple of the scatter within clusters (mode default)
+    min_separation: Annotated[float, Ge(1), Le(100)] = 2.0
     # robust z below which a demonstration is inconsistent with its cluster (mode default)
     inconsistent: Annotated[float, Le(0)] = -8.0
     # repetitions that a demonstration's stability is counted in: other seeds, in mode default others left out

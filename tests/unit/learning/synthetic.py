@@ -28,13 +28,14 @@ def demonstration(
     tremor: float = 0.0015,
     noise: float = 0.001,
     wiggle: float = 0.0,
+    goal: Array = GOAL,
 ) -> Trajectory:
     """One demonstration through via points, at minimum-jerk speed; spreads, tremor and wiggle in metres."""
     count = round(duration / PERIOD) + 1
     t = np.linspace(0.0, 1.0, count)
     tau = t + rng.normal(0, warp) * np.sin(np.pi * t) ** 2 / np.pi
     s = tau**3 * (10 - 15 * tau + 6 * tau**2)
-    ends = np.stack([START, GOAL]) + rng.normal(0, end_spread, (2, 3))
+    ends = np.stack([START, goal]) + rng.normal(0, end_spread, (2, 3))
     knots = np.vstack([ends[0], vias + rng.normal(0, via_spread, vias.shape), ends[1]])
     positions = CubicSpline(np.linspace(0, 1, len(knots)), knots)(s)
     seconds = t * duration

@@ -9,17 +9,14 @@ import numpy as np
 from teachpath.learning.clustering.average_linkage import average_linkage
 from teachpath.learning.clustering.dendrogram import Labels, height_for_count, labels_at_height, labels_for_count
 from teachpath.learning.clustering.distances import Distances
-from teachpath.learning.clustering.silhouettes import Silhouettes
-from teachpath.learning.settings import LearningSettings, Progress, Subprogress, no_progress
+from teachpath.learning.settings import LearningSettings, Progress, no_progress
 from teachpath.records import Array
 
-MAX_CLUSTERS = 10  # among which the silhouette chooses
-MIN_PAIR_SEPARATION = 0.1  # share of the path length; two demonstrations farther apart are two clusters
-SMALL_CLUSTER_PENALTY = (
-    0.5  # divided by the members of a cluster, added to its least silhouette: few members fall apart by chance
-)
-SILHOUETTE_MARGIN = 0.08  # of the silhouette
-AMBIGUOUS_HEIGHT_RATIO = 1.1  # ratio of a merge's height to that of the cut
+USUAL_SCATTER = 0.03  # mean distance of two demonstrations of one cluster, as share of the path length
+USUAL_SCATTER_PAIRS = 4  # measured distances for which the usual scatter counts
+SMALL_CLUSTER_MARGIN = 0.5  # added to the least separation of a cluster of one member, half of it for two, and so on
+AMBIGUITY_RATIO = 1.25  # a separation within this ratio of the least one is ambiguous
+AMBIGUOUS_HEIGHT_RATIO = 1.1  # of the height of a merge to that of a given cut
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,7 +28,7 @@ class Partition:
         threshold: height of the cut [m].
         labels: (m,) cluster of each demonstration, 1, 2, ... in the order of their first members.
         note: a sentence about what is doubtful, or empty.
-        rival: number of clusters of the next best cut when the choice was close, else None.
+        alternative: number of clusters of the next best cut when the choice was close, else None.
     """
 
     linkage: Array
@@ -44,34 +41,35 @@ class Partition:
 def cluster_distances(
     condensed: Distances, count: int, settings: LearningSettings, *, length: float, progress: Progress = no_progress
 ) -> Partition:
-    """Merge by average link and cut as the settings say: at a height, into a number, or where the silhouette is best.
+    """Merge by average linkage and cut as the settings say: into a number, at a height, or where clusters separate.
 
     Args:
         condensed: distances of all pairs [m], in scipy's order.
         count: number m of demonstrations.
-        settings: `clusters`, else `threshold`, else `min_silhouette` decide.
+        settings: `clusters`, else `threshold`, else `min_separation` decide.
         length: of a typical path [m].
         progress: receives the fraction done and a sentence.
     """
+    tree = average_linkage(condensed, count, progress)
     if settings.clusters is not None and settings.mode == "default":
-        return cut_into(average_linkage(condensed, count, progress), settings.clusters)
+        return cut_into(tree, settings.clusters)
     if settings.threshold is not None:
-        return cut_at(average_linkage(condensed, count, progress), settings.threshold)
-    return cut_by_silhouette(condensed, count, min_silhouette=settings.min_silhouette, length=length, progress=progress)
+        return cut_at(tree, settings.threshold)
+    return cut_by_separation(tree, min_separation=settings.min_separation, length=length)
 
 
 def cut_at(tree: Array, threshold: float) -> Partition:
     """Make the merges up to `threshold` [m]: clusters farther apart stay apart."""
     labels = labels_at_height(tree, threshold)
-    rival = _next_merge(tree, int(labels.max()), threshold)
-    if rival is None:
+    alternative = _next_merge(tree, int(labels.max()), threshold)
+    if alternative is None:
         return Partition(tree, threshold, labels)
-    least = float(tree[1 - max(rival, int(labels.max())), 2])
+    least = float(tree[1 - max(alternative, int(labels.max())), 2])
     note = (
         f"{_ways(int(labels.max()))}, but ambiguous: two clusters {least * 100:.1f} cm apart are close to "
-        f"learning.threshold {threshold * 100:.1f} cm, on its other side there are {rival}"
+        f"learning.threshold {threshold * 100:.1f} cm, on its other side there are {alternative}"
     )
-    return Partition(tree, threshold, labels, note, rival)
+    return Partition(tree, threshold, labels, note, alternative)
 
 
 def cut_into(tree: Array, clusters: int) -> Partition:
@@ -83,46 +81,60 @@ def cut_into(tree: Array, clusters: int) -> Partition:
     return Partition(tree, height, labels_for_count(tree, left), note, _next_merge(tree, left, height))
 
 
-def cut_by_silhouette(
-    condensed: Distances, count: int, *, min_silhouette: float, length: float, progress: Progress = no_progress
-) -> Partition:
-    """Merge by average link and cut where the mean silhouette is best (Rousseeuw 1987).
+def cut_by_separation(tree: Array, *, min_separation: float, length: float) -> Partition:
+    """Cut below the lowest merge of two clusters that are separated.
 
-    A silhouette is not defined for a single cluster, so below `min_silhouette` all demonstrations form one cluster.
-    When some clusters lie far apart, the best mean silhouette favours too few clusters; so the cut is lowered while
-    the cluster that splits next would be more than one cluster by itself. Two demonstrations form one cluster when
-    their distance is at most a tenth of the path length.
+    Two clusters are separated when their distance is at least `min_separation` times the scatter within clusters; a
+    cluster of few members needs a little more, because single demonstrations lie apart by chance. The scatter is the
+    mean distance of two demonstrations of one cluster, over all clusters that the merges below have made. Few such
+    distances say little, so the usual scatter of a hand counts beside them: demonstrations that were shown once are
+    clusters when they are about 0.075 of the path length apart.
 
     Args:
-        condensed: distances of all pairs [m].
-        count: number m of demonstrations.
-        min_silhouette: least mean silhouette for more than one cluster.
-        length: of a typical path [m], to which the distance of two demonstrations is compared.
-        progress: receives the fraction done and a sentence.
+        tree: (m - 1, 4) merges as scipy writes them.
+        min_separation: least ratio of the distance of two clusters to the scatter within clusters.
+        length: of a typical path [m].
     """
-    if count == 1:
-        return cut_into(np.empty((0, 4)), 1)
-    tree = average_linkage(condensed, count, Subprogress(progress, 0.0, 0.6))
-    top = float(tree[-1, 2])
-    wide = top > MIN_PAIR_SEPARATION * length
+    count = len(tree) + 1
+    ratios = separations(tree, length) / min_separation
+    separated = np.flatnonzero(ratios >= 1)
+    clusters = count - int(separated[0]) if len(separated) else 1
     if count == 2:
-        threshold = top / 2 if wide else top
-        return Partition(tree, threshold, labels_at_height(tree, threshold), _pair_note(top, wide), 1 if wide else 2)
-    most = min(MAX_CLUSTERS, count - 1)
-    silhouettes = Silhouettes(condensed, tree, most, Subprogress(progress, 0.6, 1.0))
-    scores = {k: silhouettes.mean(k) for k in range(2, most + 1)}
-    best = max(scores, key=lambda k: scores[k])
-    if scores[best] < min_silhouette:
-        doubt = _doubt_one(scores[best], min_silhouette, top, wide)
-        return Partition(tree, top, labels_for_count(tree, 1), doubt, best if doubt else None)
-    while best < most:
-        alone, members = silhouettes.mean_of_split(best)
-        if alone < min_silhouette + SMALL_CLUSTER_PENALTY / members:
-            break
-        best += 1
-    rivals = _rivals(scores, best, min_silhouette)
-    note, rival = _doubt_many(best, rivals), rivals[0] if rivals else None
-    return Partition(tree, height_for_count(tree, best), labels_for_count(tree, best), note, rival)
+        note, alternative = _pair_note(float(tree[0, 2]), clusters), 3 - clusters
+    else:
+        alternative = _close_choice(ratios, clusters)
+        note = _doubt(clusters, alternative) if alternative else ""
+    return Partition(
+        tree, height_for_count(tree, clusters), labels_for_count(tree, clusters), note, alternative or None
+    )
+
+
+def separations(tree: Array, length: float) -> Array:
+    """Return for every merge the distance of its two clusters in units of the scatter within clusters: (m - 1,).
+
+    The ratio of a merge with a small cluster is lowered by the margin that such a cluster needs.
+    """
+    count = len(tree) + 1
+    sizes = np.concatenate([np.ones(count), tree[:, 3]])
+    merged = sizes[tree[:, :2].astype(int)]
+    pairs = merged.prod(axis=1)  # whose mean distance is the height of the merge
+    within = np.cumsum(pairs) - pairs
+    distances = np.cumsum(pairs * tree[:, 2]) - pairs * tree[:, 2]
+    usual = USUAL_SCATTER_PAIRS * USUAL_SCATTER * length
+    scatter = (usual + distances) / (USUAL_SCATTER_PAIRS + within)
+    return np.asarray(tree[:, 2] / scatter - SMALL_CLUSTER_MARGIN / merged.min(axis=1))
+
+
+def _close_choice(ratios: Array, clusters: int) -> int:
+    """Return the number of clusters of the cut that was nearly chosen instead, or 0."""
+    count = len(ratios) + 1
+    chosen = count - clusters  # row of the merge above the cut
+    found = [(float(ratio), count - row) for row, ratio in enumerate(ratios[:chosen]) if ratio * AMBIGUITY_RATIO >= 1]
+    if clusters > 1 and ratios[chosen] <= AMBIGUITY_RATIO:
+        higher = np.flatnonzero(ratios[chosen + 1 :] >= 1)
+        coarser = count - (chosen + 1 + int(higher[0])) if len(higher) else 1
+        found.append((1 / float(ratios[chosen]), coarser))
+    return max(found, default=(0.0, 0))[1]
 
 
 def _next_merge(tree: Array, clusters: int, height: float) -> int | None:
@@ -138,34 +150,18 @@ def _next_merge(tree: Array, clusters: int, height: float) -> int | None:
     return other if ratio < AMBIGUOUS_HEIGHT_RATIO else None
 
 
-def _rivals(scores: dict[int, float], best: int, min_silhouette: float) -> list[int]:
-    """Return the numbers of clusters with nearly the best silhouette, the best of them first."""
-    close = [k for k, score in scores.items() if k != best and score > scores[best] - SILHOUETTE_MARGIN]
-    close.sort(key=lambda k: -scores[k])
-    return close + ([1] if scores[best] < min_silhouette + SILHOUETTE_MARGIN else [])
-
-
 def _ways(count: int) -> str:
     return "one way" if count == 1 else f"{count} ways"
 
 
-def _pair_note(top: float, wide: bool) -> str:
-    ways = "two ways" if wide else "one way"
-    return f"two demonstrations, {top * 100:.1f} cm apart, are taken for {ways}; set learning.threshold to decide it"
+def _pair_note(distance: float, clusters: int) -> str:
+    ways = "two ways" if clusters == 2 else "one way"
+    apart = f"{distance * 100:.1f} cm apart"
+    return f"two demonstrations, {apart}, are taken for {ways}; set learning.threshold to decide it"
 
 
-def _doubt_one(score: float, min_silhouette: float, top: float, wide: bool) -> str:
-    if wide or score > min_silhouette - SILHOUETTE_MARGIN:
-        return (
-            f"one way, but ambiguous: the demonstrations are up to {top * 100:.1f} cm apart and the best partition "
-            f"has silhouette {score:.2f} (learning.min_silhouette {min_silhouette:.2f}); set learning.threshold to "
-            "decide it"
-        )
-    return ""
-
-
-def _doubt_many(best: int, rivals: list[int]) -> str:
-    if not rivals:
-        return ""
-    others = " or ".join(str(k) for k in sorted(rivals))
-    return f"{best} ways, but ambiguous: {others} would do nearly as well; set learning.threshold to decide it"
+def _doubt(clusters: int, alternative: int) -> str:
+    return (
+        f"{_ways(clusters)}, but ambiguous: {_ways(alternative)} would do nearly as well; set learning.threshold to "
+        "decide it"
+    )

@@ -7,7 +7,7 @@ import pytest
 
 from teachpath.learning.clustering.average_linkage import average_linkage
 from teachpath.learning.clustering.distances import pairwise_distances
-from teachpath.learning.clustering.partition import Partition, cut_at, cut_by_silhouette, cut_into
+from teachpath.learning.clustering.partition import Partition, cut_at, cut_by_separation, cut_into
 from teachpath.learning.resampling import at_equal_arc_length, smoothed
 from teachpath.learning.summary import ambiguities
 from teachpath.records import Array, Trajectory
@@ -20,8 +20,13 @@ def condensed(demonstrations: dict[str, Trajectory]) -> Array:
     return pairwise_distances(np.stack([at_equal_arc_length(smoothed(d), 100) for d in demonstrations.values()]))
 
 
-def grouped(demonstrations: dict[str, Trajectory], min_silhouette: float = 0.5) -> Partition:
-    return cut_by_silhouette(condensed(demonstrations), len(demonstrations), min_silhouette=min_silhouette, length=0.8)
+def separated(distances: Array, count: int, *, length: float = 1.0, min_separation: float = 2.0) -> Partition:
+    return cut_by_separation(average_linkage(distances, count), min_separation=min_separation, length=length)
+
+
+def grouped(demonstrations: dict[str, Trajectory], min_separation: float = 2.0) -> Partition:
+    distances = condensed(demonstrations)
+    return separated(distances, len(demonstrations), length=0.8, min_separation=min_separation)
 
 
 @pytest.mark.parametrize("seed", range(8))
@@ -36,21 +41,46 @@ def test_a_single_way_stays_whole(seed: int, wiggle: float) -> None:
     assert set(grouped(synthetic.experiment_2(seed, wiggle=wiggle)).labels) == {1}
 
 
-def test_without_the_guard_a_single_way_is_split() -> None:
-    assert grouped(synthetic.experiment_2(1, wiggle=0.0), min_silhouette=0.0).labels.max() > 1
+@pytest.mark.parametrize("sizes", [(1, 1, 1), (2, 1, 1), (5, 1, 1), (3, 3, 1)])
+@pytest.mark.parametrize("seed", range(4))
+def test_a_way_shown_once_is_a_cluster(sizes: tuple[int, ...], seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    truth = rng.permutation(np.repeat([1, 2, 3], sizes))
+    labels = grouped({str(i): synthetic.demonstration(rng, synthetic.WAYS[w - 1]) for i, w in enumerate(truth)}).labels
+    np.testing.assert_array_equal(labels[:, None] == labels, truth[:, None] == truth)
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_a_tidy_hand_of_which_one_wiggles_stays_one_cluster(seed: int) -> None:
+    tidy = {"via_spread": 0.003, "end_spread": 0.001, "tremor": 0.0005, "noise": 0.0005}
+    assert set(grouped(synthetic.experiment_2(seed, wiggle=0.025, **tidy)).labels) == {1}
+
+
+def test_twelve_clusters_are_found() -> None:
+    labels = separated(places(*np.repeat(np.arange(12) * 0.4, 3)), 36).labels
+    np.testing.assert_array_equal(labels, np.repeat(np.arange(12) + 1, 3))
+
+
+def test_a_lower_least_separation_splits_a_single_way() -> None:
+    assert grouped(synthetic.experiment_2(1, wiggle=0.0), min_separation=1.0).labels.max() > 1
+
+
+@pytest.mark.parametrize(("spread", "clusters"), [(0.001, 2), (0.03, 1)])  # m
+def test_the_scatter_within_decides_what_is_apart(spread: float, clusters: int) -> None:
+    assert separated(places(*np.repeat([0.0, 0.06], 8), spread=spread), 16).labels.max() == clusters
 
 
 def test_close_ways_are_told_apart_though_others_are_far_away() -> None:
     rng = np.random.default_rng(3)
     shifts = np.repeat([0.0, 0.08, 1.0, 2.0], 5)
     paths = synthetic.loop(40) + shifts[:, None, None] + rng.normal(0, 0.01, (20, 1, 3))
-    grouping = cut_by_silhouette(pairwise_distances(paths), 20, min_silhouette=0.5, length=1.0)
+    grouping = separated(pairwise_distances(paths), 20)
     np.testing.assert_array_equal(grouping.labels, np.repeat([1, 2, 3, 4], 5))
 
 
 def test_the_cut_reproduces_the_labels_at_its_threshold() -> None:
     distance = condensed(synthetic.experiment_1(4))
-    grouping = cut_by_silhouette(distance, 12, min_silhouette=0.5, length=0.8)
+    grouping = separated(distance, 12, length=0.8)
     again = cut_at(average_linkage(distance, 12), grouping.threshold)
     np.testing.assert_array_equal(grouping.labels, again.labels)
     np.testing.assert_array_equal(grouping.linkage, again.linkage)
@@ -79,20 +109,20 @@ def test_the_extremes_of_the_threshold_give_single_demonstrations_and_one_cluste
 
 @pytest.mark.parametrize(("apart", "ways"), [(0.02, 1), (0.3, 2)])
 def test_two_demonstrations_are_answered_with_a_note(apart: float, ways: int) -> None:
-    grouping = cut_by_silhouette(np.array([apart]), 2, min_silhouette=0.5, length=1.0)
+    grouping = separated(np.array([apart]), 2)
     assert grouping.labels.max() == ways
     assert "learning.threshold" in grouping.note
 
 
 def test_identical_demonstrations_are_one_way() -> None:
     for count in (2, 3, 5):
-        grouping = cut_by_silhouette(np.zeros(count * (count - 1) // 2), count, min_silhouette=0.5, length=1.0)
+        grouping = separated(np.zeros(count * (count - 1) // 2), count)
         assert set(grouping.labels) == {1}
         assert np.isfinite(grouping.threshold)
 
 
 def test_one_demonstration_is_one_way() -> None:
-    grouping = cut_by_silhouette(np.empty(0), 1, min_silhouette=0.5, length=1.0)
+    grouping = separated(np.empty(0), 1)
     assert grouping.labels.tolist() == [1]
     assert grouping.linkage.shape == (0, 4)
 
@@ -120,8 +150,8 @@ def places(*offsets: float, spread: float = 0.002) -> Array:
 
 
 def test_a_close_choice_names_the_next_best_cut_and_the_clusters_it_touches() -> None:
-    apart = places(0, 0, 0, 0, 0.6, 0.6, 0.6, 0.6, 0.66, 0.66, 0.66, 0.66, spread=0.012)
-    grouping = cut_by_silhouette(apart, 12, min_silhouette=0.5, length=1.0)
+    apart = places(0, 0, 0, 0, 0.6, 0.6, 0.6, 0.6, 0.64, 0.64, 0.64, 0.64, spread=0.012)
+    grouping = separated(apart, 12)
     assert grouping.alternative is not None
     assert grouping.alternative != grouping.labels.max()
     assert "ambiguous" in grouping.note
@@ -131,7 +161,7 @@ def test_a_close_choice_names_the_next_best_cut_and_the_clusters_it_touches() ->
 
 
 def test_a_clear_choice_is_not_called_ambiguous() -> None:
-    grouping = cut_by_silhouette(places(0, 0, 0, 0.5, 0.5, 0.5), 6, min_silhouette=0.5, length=1.0)
+    grouping = separated(places(0, 0, 0, 0.5, 0.5, 0.5), 6)
     assert (grouping.note, grouping.alternative) == ("", None)
     assert ambiguities(grouping) == ["", ""]
 

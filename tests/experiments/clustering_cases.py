@@ -1,0 +1,105 @@
+"""Demonstrations of known clusters, for the rates of the clustering: ways shown once, tidy and untidy hands, ends."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import partial
+from typing import Any
+
+import numpy as np
+from scipy.interpolate import CubicSpline
+
+from teachpath.learning.resampling import at_equal_arc_length
+from teachpath.records import Array, Trajectory
+from tests.unit.learning import synthetic
+
+TIDY = {"via_spread": 0.003, "end_spread": 0.001, "tremor": 0.0005, "noise": 0.0005}  # m
+UNTIDY = {"via_spread": 0.03}
+MOUSE = {"via_spread": 0.002, "end_spread": 0.001, "tremor": 0.0002, "noise": 0.0002}
+Labelled = tuple[list[Trajectory], list[int]]
+
+
+@dataclass(frozen=True)
+class Case:
+    """Demonstrations whose clusters are known.
+
+    Attributes:
+        shown: from a seed to the demonstrations in random order and the true cluster of each.
+        target: least rate of seeds with the right clusters.
+    """
+
+    title: str
+    shown: Callable[[int], Labelled]
+    target: float = 0.95
+
+
+def known_ways(
+    seed: int, sizes: Sequence[int], ways: Sequence[Array] = synthetic.WAYS, pace: float = 0.2, **hand: Any
+) -> Labelled:
+    """So many demonstrations of each way, in random order, whose durations differ by up to `pace`."""
+    rng = np.random.default_rng([seed, 14])
+    truth = rng.permutation(np.repeat(np.arange(len(sizes)), sizes))
+    shown = [
+        synthetic.demonstration(rng, ways[way], duration=3.16 * (1 + pace * rng.uniform(-1, 1)), **hand)
+        for way in truth
+    ]
+    return shown, truth.tolist()
+
+
+def drawn_ways(seed: int, sizes: Sequence[int], least: float, **hand: Any) -> Labelled:
+    """The same along ways that are drawn at random, whose mean paths are at least `least` [m] apart."""
+    rng = np.random.default_rng([seed, 15])
+    ways: list[Array] = []
+    paths: list[Array] = []
+    while len(ways) < len(sizes):
+        vias = np.array([[0.38, 0.10, 0.20], [0.40, -0.12, 0.20]])
+        vias = vias + rng.uniform(-1, 1, 3) * [0.3, 0.02, 0.3] + rng.normal(0, 0.04, (2, 3))
+        knots = np.vstack([synthetic.START, vias, synthetic.GOAL])
+        path = at_equal_arc_length(CubicSpline(np.linspace(0, 1, 4), knots)(np.linspace(0, 1, 200)), 100)
+        if all(np.linalg.norm(path - other, axis=1).mean() > least for other in paths):
+            ways.append(vias)
+            paths.append(path)
+    return known_ways(seed, sizes, ways, **hand)
+
+
+def one_way(seed: int, count: int, pace: float = 0.45, **hand: Any) -> Labelled:
+    return known_ways(seed, (count,), synthetic.WAYS[1:2], pace, **hand)
+
+
+def one_wiggles(seed: int, **hand: Any) -> Labelled:
+    """Five of one way; one wiggles by 2.5 cm."""
+    shown, truth = one_way(seed, 4, 0.2, **hand)
+    rng = np.random.default_rng([seed, 16])
+    shown.insert(int(rng.integers(5)), synthetic.demonstration(rng, wiggle=0.025, **hand))
+    return shown, [*truth, 0]
+
+
+def _once(sizes: tuple[int, ...]) -> list[Case]:
+    return [
+        Case(f"{sizes}, the ways of the paper", partial(known_ways, sizes=sizes)),
+        Case(f"{sizes}, ways 10 cm apart or more", partial(drawn_ways, sizes=sizes, least=0.10)),
+    ]
+
+
+ONCE = tuple(
+    case for sizes in ((1, 1, 1), (2, 1, 1), (4, 1, 1), (5, 1, 1), (3, 3, 1), (2, 2, 1)) for case in _once(sizes)
+)
+OFTEN = (
+    Case("(5, 3, 4), the ways of the paper", partial(known_ways, sizes=(5, 3, 4))),
+    Case("(5, 3, 4), ±45 % duration", partial(known_ways, sizes=(5, 3, 4), pace=0.45, warp=0.25)),
+    Case("(5, 3, 4), an untidy hand", partial(known_ways, sizes=(5, 3, 4), **UNTIDY)),
+    Case("(5, 3, 4), ways 6 cm apart or more", partial(drawn_ways, sizes=(5, 3, 4), least=0.06)),
+    Case("(3, 3), a tidy hand, ways 4 cm apart or more", partial(drawn_ways, sizes=(3, 3), least=0.04, **TIDY)),
+    Case("eight ways three times", partial(drawn_ways, sizes=(3,) * 8, least=0.10)),
+    Case("twelve ways three times", partial(drawn_ways, sizes=(3,) * 12, least=0.08)),
+)
+ONE = (
+    *(Case(f"one way, {count} times, ±45 % duration", partial(one_way, count=count)) for count in (2, 3, 4, 5, 12)),
+    *(Case(f"one way, {count} times, an untidy hand", partial(one_way, count=count, **UNTIDY)) for count in (3, 5, 12)),
+    Case("one way, a tidy hand, 5 times", partial(one_way, count=5, **TIDY)),
+    Case("one way, one of five wiggles", one_wiggles),
+    Case("one way, a tidy hand, one of five wiggles", partial(one_wiggles, **TIDY)),
+    Case("one way, four times with the mouse", partial(one_way, count=4, **MOUSE)),
+)
+GROUPS = {"Ways shown once": ONCE, "Ways shown often": OFTEN, "One way": ONE}
