@@ -63,6 +63,24 @@ def drawn_ways(seed: int, sizes: Sequence[int], least: float, **hand: Any) -> La
     return known_ways(seed, sizes, ways, **hand)
 
 
+def goals_apart(seed: int, sizes: Sequence[int], apart: float, **hand: Any) -> Labelled:
+    """One way to goals in a row, `apart` [m] from one to the next in a random direction on the table."""
+    rng = np.random.default_rng([seed, 17])
+    truth = rng.permutation(np.repeat(np.arange(len(sizes)), sizes))
+    angle = rng.uniform(0, 2 * np.pi)
+    step = apart * np.array([np.cos(angle), np.sin(angle), 0.0])
+    return [synthetic.demonstration(rng, goal=synthetic.GOAL + goal * step, **hand) for goal in truth], truth.tolist()
+
+
+def reversed_in_space(shown: Labelled) -> Labelled:
+    """The same with starts and goals exchanged."""
+    return [Trajectory(each.times, each.positions[::-1]) for each in shown[0]], shown[1]
+
+
+def starts_apart(seed: int, sizes: Sequence[int], apart: float) -> Labelled:
+    return reversed_in_space(goals_apart(seed, sizes, apart))
+
+
 def one_way(seed: int, count: int, pace: float = 0.45, **hand: Any) -> Labelled:
     return known_ways(seed, (count,), synthetic.WAYS[1:2], pace, **hand)
 
@@ -102,4 +120,13 @@ ONE = (
     Case("one way, a tidy hand, one of five wiggles", partial(one_wiggles, **TIDY)),
     Case("one way, four times with the mouse", partial(one_way, count=4, **MOUSE)),
 )
-GROUPS = {"Ways shown once": ONCE, "Ways shown often": OFTEN, "One way": ONE}
+ENDS = (
+    *(
+        Case(f"{sizes}, goals {100 * apart:g} cm apart", partial(goals_apart, sizes=sizes, apart=apart))
+        for sizes in ((1, 1), (3, 3), (4, 2), (5, 1), (2, 2, 2))
+        for apart in (0.05, 0.10)
+    ),
+    Case("(3, 3), starts 5 cm apart", partial(starts_apart, sizes=(3, 3), apart=0.05)),
+    Case("(3, 3), a tidy hand, goals 2 cm apart", partial(goals_apart, sizes=(3, 3), apart=0.02, **TIDY), 0.0),
+)
+GROUPS = {"Ways shown once": ONCE, "Ways shown often": OFTEN, "One way": ONE, "Ends": ENDS}

@@ -9,7 +9,7 @@ import numpy as np
 
 from teachpath.errors import TeachpathError
 from teachpath.learning.clustering.distances import pairwise_distances
-from teachpath.learning.clustering.partition import cluster_distances
+from teachpath.learning.clustering.subsampled_clustering import cluster_paths
 from teachpath.learning.resampling import arc_lengths, at_equal_arc_length, smoothed
 from teachpath.learning.settings import LearningSettings
 from teachpath.periodic_thread import PeriodicThread
@@ -97,7 +97,7 @@ def _clusters(courses: Array, settings: LearningSettings, length: float) -> list
     if len(courses) < 2:
         return [ClusterSummary(len(courses), 0.0)]
     condensed = pairwise_distances(courses)
-    labels = cluster_distances(condensed, len(courses), settings, length=length).labels
+    labels = cluster_paths(courses, settings, length=length, metric="arc").labels
     left, right = np.triu_indices(len(courses), 1)
     summaries = []
     for label in range(1, int(labels.max()) + 1):

@@ -13,8 +13,7 @@ import pytest
 from teachpath.errors import LearningFailed
 from teachpath.io.documents import encode
 from teachpath.learning.clustering.cuts import dendrogram
-from teachpath.learning.clustering.distances import pairwise_distances
-from teachpath.learning.clustering.partition import cluster_distances
+from teachpath.learning.clustering.subsampled_clustering import cluster_paths
 from teachpath.learning.fitting.nurbs_fit import CurveDistance, approximate
 from teachpath.learning.learn import learn
 from teachpath.learning.resampling import at_equal_arc_length
@@ -59,7 +58,7 @@ def test_what_learning_makes_can_be_pickled() -> None:
     scores = score_consistency(features, range(5), 5, budget=TrainingBudget(), on_step=int)
     made: list[Any] = [
         LearningSettings(),
-        cluster_distances(pairwise_distances(paths), 5, LearningSettings(), length=1.0),
+        cluster_paths(paths, LearningSettings(), length=1.0, metric="arc"),
         dendrogram(learned, 3),
         features,
         scores,

@@ -6,10 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from teachpath.learning.clustering.average_linkage import average_linkage
 from teachpath.learning.clustering.dendrogram import Labels, height_for_count, labels_at_height, labels_for_count
-from teachpath.learning.clustering.distances import Distances
-from teachpath.learning.settings import LearningSettings, Progress, no_progress
+from teachpath.learning.settings import LearningSettings
 from teachpath.records import Array
 
 USUAL_SCATTER = 0.03  # mean distance of two demonstrations of one cluster, as share of the path length
@@ -38,24 +36,20 @@ class Partition:
     alternative: int | None = None
 
 
-def cluster_distances(
-    condensed: Distances, count: int, settings: LearningSettings, *, length: float, progress: Progress = no_progress
-) -> Partition:
-    """Merge by average linkage and cut as the settings say: into a number, at a height, or where clusters separate.
+def cut_as_set(tree: Array, settings: LearningSettings, *, length: float, groups: int = 1) -> Partition:
+    """Cut a dendrogram as the settings say: into a number of clusters, at a height, or where clusters separate.
 
     Args:
-        condensed: distances of all pairs [m], in scipy's order.
-        count: number m of demonstrations.
+        tree: (m - 1, 4) merges as scipy writes them.
         settings: `clusters`, else `threshold`, else `min_separation` decide.
         length: of a typical path [m].
-        progress: receives the fraction done and a sentence.
+        groups: number of groups of demonstrations with different ends, whose merges come last.
     """
-    tree = average_linkage(condensed, count, progress)
     if settings.clusters is not None and settings.mode == "default":
         return cut_into(tree, settings.clusters)
     if settings.threshold is not None:
         return cut_at(tree, settings.threshold)
-    return cut_by_separation(tree, min_separation=settings.min_separation, length=length)
+    return cut_by_separation(tree, min_separation=settings.min_separation, length=length, groups=groups)
 
 
 def cut_at(tree: Array, threshold: float) -> Partition:
@@ -81,25 +75,29 @@ def cut_into(tree: Array, clusters: int) -> Partition:
     return Partition(tree, height, labels_for_count(tree, left), note, _next_merge(tree, left, height))
 
 
-def cut_by_separation(tree: Array, *, min_separation: float, length: float) -> Partition:
+def cut_by_separation(tree: Array, *, min_separation: float, length: float, groups: int = 1) -> Partition:
     """Cut below the lowest merge of two clusters that are separated.
 
     Two clusters are separated when their distance is at least `min_separation` times the scatter within clusters; a
     cluster of few members needs a little more, because single demonstrations lie apart by chance. The scatter is the
     mean distance of two demonstrations of one cluster, over all clusters that the merges below have made. Few such
     distances say little, so the usual scatter of a hand counts beside them: demonstrations that were shown once are
-    clusters when they are about 0.075 of the path length apart.
+    clusters when they are about 0.075 of the path length apart. Groups with different ends are always separated.
 
     Args:
         tree: (m - 1, 4) merges as scipy writes them.
         min_separation: least ratio of the distance of two clusters to the scatter within clusters.
         length: of a typical path [m].
+        groups: number of groups of demonstrations with different ends, whose merges come last.
     """
     count = len(tree) + 1
     ratios = separations(tree, length) / min_separation
-    separated = np.flatnonzero(ratios >= 1)
-    clusters = count - int(separated[0]) if len(separated) else 1
-    if count == 2:
+    ratios[count - groups :] = np.inf
+    clusters = separated_clusters(ratios)
+    if groups > 1:
+        alternative = _close_choice(ratios, clusters)
+        note = "; ".join([_ends_note(groups), *([_doubt(clusters, alternative)] if alternative else [])])
+    elif count == 2:
         note, alternative = _pair_note(float(tree[0, 2]), clusters), 3 - clusters
     else:
         alternative = _close_choice(ratios, clusters)
@@ -109,10 +107,21 @@ def cut_by_separation(tree: Array, *, min_separation: float, length: float) -> P
     )
 
 
-def separations(tree: Array, length: float) -> Array:
+def separated_clusters(ratios: Array) -> int:
+    """Return the number of clusters below the lowest merge (m - 1,) whose ratio to the least separation is 1."""
+    separated = np.flatnonzero(ratios >= 1)
+    return len(ratios) + 1 - int(separated[0]) if len(separated) else 1
+
+
+def separations(tree: Array, length: float, usual_scatter: float = USUAL_SCATTER) -> Array:
     """Return for every merge the distance of its two clusters in units of the scatter within clusters: (m - 1,).
 
     The ratio of a merge with a small cluster is lowered by the margin that such a cluster needs.
+
+    Args:
+        tree: (m - 1, 4) merges as scipy writes them.
+        length: of a typical path [m].
+        usual_scatter: mean distance of two demonstrations of one cluster, as share of the length.
     """
     count = len(tree) + 1
     sizes = np.concatenate([np.ones(count), tree[:, 3]])
@@ -120,7 +129,7 @@ def separations(tree: Array, length: float) -> Array:
     pairs = merged.prod(axis=1)  # whose mean distance is the height of the merge
     within = np.cumsum(pairs) - pairs
     distances = np.cumsum(pairs * tree[:, 2]) - pairs * tree[:, 2]
-    usual = USUAL_SCATTER_PAIRS * USUAL_SCATTER * length
+    usual = USUAL_SCATTER_PAIRS * usual_scatter * length
     scatter = (usual + distances) / (USUAL_SCATTER_PAIRS + within)
     return np.asarray(tree[:, 2] / scatter - SMALL_CLUSTER_MARGIN / merged.min(axis=1))
 
@@ -158,6 +167,10 @@ def _pair_note(distance: float, clusters: int) -> str:
     ways = "two ways" if clusters == 2 else "one way"
     apart = f"{distance * 100:.1f} cm apart"
     return f"two demonstrations, {apart}, are taken for {ways}; set learning.threshold to decide it"
+
+
+def _ends_note(groups: int) -> str:
+    return f"starts or goals differ by more than their scatter: {groups} groups, which are never averaged"
 
 
 def _doubt(clusters: int, alternative: int) -> str:

@@ -12,7 +12,8 @@ import numpy as np
 
 from teachpath.learning.clustering.dendrogram import extended_linkage, labels_at_height
 from teachpath.learning.clustering.distances import nearest_paths, pairwise_distances
-from teachpath.learning.clustering.partition import Partition, cluster_distances
+from teachpath.learning.clustering.ends import end_groups, grouped_linkage
+from teachpath.learning.clustering.partition import Partition, cut_as_set
 from teachpath.learning.settings import LearningSettings, Progress, Subprogress, no_progress
 from teachpath.records import Array
 
@@ -30,19 +31,16 @@ def cluster_paths(
 
     Args:
         paths: (m, n, 3) [m].
-        settings: see `clustering.cluster_distances`; `seed` draws the sample.
+        settings: see `partition.cut_as_set`; `seed` draws the sample.
         length: of a typical path [m].
         metric: see `distances.pairwise_distances`.
         progress: receives the fraction done and a sentence.
     """
     m = len(paths)
-    measure, cut = Subprogress(progress, 0.0, 0.7), Subprogress(progress, 0.7, 1.0)
     if m <= MAX_EXACT_DEMONSTRATIONS:
-        condensed = pairwise_distances(paths, metric, measure)
-        return cluster_distances(condensed, m, settings, length=length, progress=cut)
+        return _cluster_by_all_pairs(paths, settings, length, metric, progress)
     sample = np.sort(np.random.default_rng(settings.seed).choice(m, SAMPLE_SIZE, replace=False))
-    condensed = pairwise_distances(paths[sample], metric)
-    of_sample = cluster_distances(condensed, SAMPLE_SIZE, settings, length=length)
+    of_sample = _cluster_by_all_pairs(paths[sample], settings, length, metric, no_progress)
     joins, apart = nearest_paths(paths, paths[sample], metric, progress)
     joins, apart = sample[joins], apart.copy()
     joins[sample] = sample
@@ -53,3 +51,16 @@ def cluster_paths(
     note = f"{m} demonstrations are grouped by a sample of {SAMPLE_SIZE}"
     notes = "; ".join(sentence for sentence in (note, of_sample.note) if sentence)
     return replace(of_sample, linkage=linkage, labels=labels, note=notes)
+
+
+def _cluster_by_all_pairs(
+    paths: Array, settings: LearningSettings, length: float, metric: str, progress: Progress
+) -> Partition:
+    if metric == "undersampled":  # whose first and last points are drawn at random
+        groups = np.ones(len(paths), dtype=np.int64)
+    else:
+        comparing = Subprogress(progress, 0.0, 0.2)
+        groups = end_groups(paths, min_separation=settings.min_separation, length=length, progress=comparing)
+    condensed = pairwise_distances(paths, metric, Subprogress(progress, 0.2, 0.7))
+    tree = grouped_linkage(condensed, groups, Subprogress(progress, 0.7, 1.0))
+    return cut_as_set(tree, settings, length=length, groups=int(groups.max()))

@@ -1,0 +1,65 @@
+"""Starts and goals of demonstrations: where they differ by more than their scatter, a mean would lead to neither."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.spatial.distance import pdist
+
+from teachpath.learning.clustering.average_linkage import MAX_SCIPY_DEMONSTRATIONS, average_linkage
+from teachpath.learning.clustering.dendrogram import Labels, labels_for_count
+from teachpath.learning.clustering.distances import Distances, pairwise_distances
+from teachpath.learning.clustering.partition import separated_clusters, separations
+from teachpath.learning.settings import Progress, Subprogress, no_progress
+from teachpath.records import Array
+
+USUAL_END_SCATTER = 0.02  # mean distance of the ends of two demonstrations alike, as share of the path length
+MIN_RISE = 1.01  # of the height of a merge between groups to that of the merge before
+
+
+def end_groups(paths: Array, *, min_separation: float, length: float, progress: Progress = no_progress) -> Labels:
+    """Group paths (m, n, 3) [m] that begin and end in the same places, as `partition.cut_by_separation` groups paths.
+
+    Returns:
+        (m,) labels 1, 2, ... in the order of the first members.
+    """
+    if len(paths) < 2:
+        return np.ones(len(paths), dtype=np.int64)
+    apart: Distances
+    if len(paths) > MAX_SCIPY_DEMONSTRATIONS:
+        # The discrete Fréchet distance of two lines is the larger distance of their ends.
+        apart = pairwise_distances(paths[:, [0, -1]], "frechet", Subprogress(progress, 0.0, 0.5))
+    else:
+        apart = np.maximum(pdist(paths[:, 0]), pdist(paths[:, -1]))
+    tree = average_linkage(apart, len(paths), Subprogress(progress, 0.5, 1.0))
+    ratios = separations(tree, length, USUAL_END_SCATTER) / min_separation
+    return labels_for_count(tree, separated_clusters(ratios))
+
+
+def grouped_linkage(condensed: Distances, groups: Labels, progress: Progress = no_progress) -> Array:
+    """Merge by average linkage, the members of every group before any two groups.
+
+    Args:
+        condensed: distances of all pairs [m], in scipy's order.
+        groups: (m,) labels, see `end_groups`.
+        progress: receives the fraction done and a sentence.
+
+    Returns:
+        (m - 1, 4) merges as scipy writes them. A merge of two groups that are nearer than the merges within them is
+        raised just above these, so that every cut keeps the order.
+    """
+    count = len(groups)
+    between = int(groups.max()) - 1
+    if between == 0:
+        return average_linkage(condensed, count, progress)
+    lift = float(np.max(condensed))  # makes every distance between groups larger than any within
+    apart = condensed.copy()
+    begin = 0
+    for i in range(count - 1):
+        end = begin + count - 1 - i
+        apart[begin:end][groups[i + 1 :] != groups[i]] += lift
+        begin = end
+    tree = average_linkage(apart, count, progress)
+    for row in range(count - 1 - between, count - 1):
+        before = float(tree[row - 1, 2]) if row else 0.0
+        tree[row, 2] = max(float(tree[row, 2]) - lift, MIN_RISE * before)
+    return tree
