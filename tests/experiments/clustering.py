@@ -19,9 +19,10 @@ from tests.experiments.trials import Rate, rate
 
 @dataclass(frozen=True)
 class Rates:
-    """How often the clusters of a case are right, and how often they are called ambiguous."""
+    """How often the clusters of a case are right, the incomplete one named and no other, and the note ambiguous."""
 
     right: Rate
+    named: Rate
     ambiguous: Rate
 
 
@@ -39,13 +40,14 @@ def is_right(found: Partition, truth: list[int]) -> bool:
 
 def measure(case: Case, runs: int, metric: str = "arc") -> Rates:
     """Cluster a case with so many seeds."""
-    right, ambiguous = [], []
+    right, named, ambiguous = [], [], []
     for seed in range(runs):
         shown, truth = case.shown(seed)
         found = partition(shown, LearningSettings(metric=metric))
         right.append(is_right(found, truth))
+        named.append(list(found.incomplete) == [0] * case.stops)
         ambiguous.append("ambiguous" in found.note)
-    return Rates(rate(right), rate(ambiguous))
+    return Rates(rate(right), rate(named), rate(ambiguous))
 
 
 def main() -> None:
@@ -54,13 +56,15 @@ def main() -> None:
     parser.add_argument("--runs", type=int, default=200, help="seeds of each case")
     parser.add_argument("--metric", default="arc", help="arc, frechet, dtw or undersampled")
     asked = parser.parse_args()
-    console = Console(width=120)
+    console = Console(width=150)
     for group, cases in GROUPS.items():
-        table = Table("Shown", "Right", "Called ambiguous", "Target", title=f"{group}, {asked.runs} seeds each")
+        heads = ("Shown", "Right", "Incomplete ones named", "Called ambiguous", "Target")
+        table = Table(*heads, title=f"{group}, {asked.runs} seeds each")
         for case in cases:
             rates = measure(case, asked.runs, asked.metric)
             short = "" if rates.right.share >= case.target else "  falls short"
-            table.add_row(case.title, str(rates.right), str(rates.ambiguous), f"{case.target:.0%}{short}")
+            told = (rates.right, rates.named, rates.ambiguous)
+            table.add_row(case.title, *map(str, told), f"{case.target:.0%}{short}")
         console.print(table)
 
 

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from scipy.interpolate import CubicSpline
 
-from teachpath.learning.resampling import at_equal_arc_length
+from teachpath.learning.resampling import arc_lengths, at_equal_arc_length, smoothed
 from teachpath.records import Array, Trajectory
 from tests.unit.learning import synthetic
 
@@ -27,11 +27,13 @@ class Case:
     Attributes:
         shown: from a seed to the demonstrations in random order and the true cluster of each.
         target: least rate of seeds with the right clusters.
+        stops: whether the first demonstration is incomplete, 1 or 0.
     """
 
     title: str
     shown: Callable[[int], Labelled]
     target: float = 0.95
+    stops: int = 0
 
 
 def known_ways(
@@ -120,6 +122,31 @@ ONE = (
     Case("one way, a tidy hand, one of five wiggles", partial(one_wiggles, **TIDY)),
     Case("one way, four times with the mouse", partial(one_way, count=4, **MOUSE)),
 )
+
+
+def one_stops(seed: int, count: int, shares: tuple[float, float], sizes: Sequence[int] = (), **hand: Any) -> Labelled:
+    """One way, or several; the first demonstration stops at a share of its path and belongs to the others still."""
+    shown, truth = known_ways(seed, sizes) if sizes else one_way(seed, count, 0.2, **hand)
+    share = np.random.default_rng([seed, 18]).uniform(*shares)
+    along = arc_lengths(smoothed(shown[0]))
+    last = max(int(np.searchsorted(along, share * along[-1])), 10)
+    shown[0] = Trajectory(shown[0].times[:last], shown[0].positions[:last])
+    return shown, truth
+
+
+def _stops(count: int, low: float, high: float) -> Case:
+    title = f"one of {count} stops at {100 * low:.0f} to {100 * high:.0f} %"
+    return Case(title, partial(one_stops, count=count, shares=(low, high)), stops=1)
+
+
+NEARLY = (0.84, 0.91)
+INCOMPLETE = (
+    *(_stops(count, low, high) for count in (3, 6) for low, high in (NEARLY, (0.6, 0.8), (0.4, 0.6))),
+    Case("one of 6 of a tidy hand stops at 84 to 91 %", partial(one_stops, count=6, shares=NEARLY, **TIDY), stops=1),
+    Case(
+        "one of (5, 3, 4) stops at 50 to 90 %", partial(one_stops, count=0, sizes=(5, 3, 4), shares=(0.5, 0.9)), stops=1
+    ),
+)
 ENDS = (
     *(
         Case(f"{sizes}, goals {100 * apart:g} cm apart", partial(goals_apart, sizes=sizes, apart=apart))
@@ -129,4 +156,4 @@ ENDS = (
     Case("(3, 3), starts 5 cm apart", partial(starts_apart, sizes=(3, 3), apart=0.05)),
     Case("(3, 3), a tidy hand, goals 2 cm apart", partial(goals_apart, sizes=(3, 3), apart=0.02, **TIDY), 0.0),
 )
-GROUPS = {"Ways shown once": ONCE, "Ways shown often": OFTEN, "One way": ONE, "Ends": ENDS}
+GROUPS = {"Ways shown once": ONCE, "Ways shown often": OFTEN, "One way": ONE, "Ends": ENDS, "Incomplete": INCOMPLETE}

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, replace
 from importlib.metadata import version
 
 import numpy as np
 
-from teachpath.learning.clustering.dendrogram import members_by_label
+from teachpath.learning.clustering.dendrogram import Labels, members_by_label
+from teachpath.learning.clustering.incomplete import Stop, describe
 from teachpath.learning.clustering.partition import Partition
 from teachpath.learning.clustering.subsampled_clustering import cluster_paths
 from teachpath.learning.fitting.synthesis import fit_mean_path, fit_pooled_points
@@ -16,9 +17,9 @@ from teachpath.learning.input_validation import validate
 from teachpath.learning.resampling import arc_lengths, at_equal_arc_length, smoothed, undersampled
 from teachpath.learning.selection.default_mode import select, step_count
 from teachpath.learning.selection.paper_mode import paper_step_count, select_as_paper
-from teachpath.learning.settings import LearningSettings, Progress, StepCounter, Subprogress, no_progress
+from teachpath.learning.settings import LearningSettings, Progress, StepCallback, StepCounter, Subprogress, no_progress
 from teachpath.learning.summary import ambiguities, fingerprint, representatives, tube_radius
-from teachpath.records import Array, Cluster, Learned, LearnedPath, Trajectory
+from teachpath.records import Array, Cluster, Deviation, Learned, LearnedPath, Score, Trajectory
 
 PATH_POINTS = 100  # at equal arc length, for the distance of two paths
 SELECTION_MESSAGE = "looking for inconsistent demonstrations"
@@ -92,22 +93,24 @@ def learn_partition(
     names = tuple(demonstrations)
     members = members_by_label(names, grouping.labels)
     choosing = Subprogress(progress, 0.0, 0.75)
+    stops = {names[number]: stop for number, stop in grouping.incomplete.items()}
     if settings.mode == "default":
         on_step = StepCounter(choosing, step_count([len(ids) for ids in members], settings.repeats), SELECTION_MESSAGE)
         clusters = tuple(
-            select(index + 1, {name: demonstrations[name] for name in ids}, settings, on_step=on_step)
+            _select_complete(index + 1, ids, demonstrations, stops, settings, on_step)
             for index, ids in enumerate(members)
         )
     else:
         on_step = StepCounter(choosing, paper_step_count(len(members), settings.repeats), SELECTION_MESSAGE)
         clusters = select_as_paper(dict(zip(names, courses, strict=True)), members, settings, on_step=on_step)
-    central = representatives(courses, grouping.labels)
+    central = representatives(courses, _labels_of_complete(grouping))
     found = _fitted(clusters, demonstrations, settings, Subprogress(progress, 0.75, 1.0))
     paths = tuple(path for path, _ in found)
     described = [
         replace(cluster, representative=names[member], spread=spread, ambiguous=doubt)
         for cluster, (_, spread), member, doubt in zip(clusters, found, central, ambiguities(grouping), strict=True)
     ]
+    notes = [grouping.note, *(f"demonstration {name} {describe(stop)}" for name, stop in stops.items())]
     progress(1.0, f"learned {len(paths)} {'path' if len(paths) == 1 else 'paths'}")
     return Learned(
         mode=settings.mode,
@@ -116,11 +119,41 @@ def learn_partition(
         threshold=grouping.threshold,
         clusters=tuple(described),
         paths=paths,
-        notes=(grouping.note,) if grouping.note else (),
+        notes=tuple(note for note in notes if note),
         settings=asdict(settings),
         versions=dict(LIBRARY_VERSIONS),
         inputs={name: fingerprint(trajectory) for name, trajectory in demonstrations.items()},
     )
+
+
+def _select_complete(
+    index: int,
+    ids: Sequence[str],
+    demonstrations: Mapping[str, Trajectory],
+    stops: Mapping[str, Stop],
+    settings: LearningSettings,
+    on_step: StepCallback,
+) -> Cluster:
+    """Select among the complete demonstrations of a cluster; the incomplete ones follow them, not selected."""
+    complete = [name for name in ids if name not in stops] or list(ids)
+    cluster = select(index, {name: demonstrations[name] for name in complete}, settings, on_step=on_step)
+    last: list[Score] = []
+    for name in sorted(set(ids) - set(complete)):
+        duration = float(np.ptp(demonstrations[name].times))
+        deviation = Deviation((stops[name].share, 1.0), (duration, duration), describe(stops[name]))
+        rank = len(complete) + len(last) + 1
+        last.append(Score(name, 0.0, rank, False, describe(stops[name]), deviation=deviation))
+    members = (*cluster.members, *(score.demonstration for score in last))
+    return replace(cluster, members=members, scores=(*cluster.scores, *last))
+
+
+def _labels_of_complete(grouping: Partition) -> Labels:
+    """Return the labels with 0 for incomplete demonstrations, unless a cluster has no others."""
+    labels = grouping.labels.copy()
+    labels[list(grouping.incomplete)] = 0
+    alone = ~np.isin(grouping.labels, labels)
+    labels[alone] = grouping.labels[alone]
+    return labels
 
 
 def _equalised(demonstrations: Mapping[str, Trajectory], seed: int) -> Array:

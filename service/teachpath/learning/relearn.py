@@ -8,6 +8,8 @@ from typing import Any
 
 from teachpath.errors import LearningFailed
 from teachpath.learning.clustering.cuts import recut_partition
+from teachpath.learning.clustering.ends import end_groups
+from teachpath.learning.clustering.incomplete import find_incomplete
 from teachpath.learning.clustering.partition import Partition
 from teachpath.learning.learn import comparable_paths, learn_partition, metric_of
 from teachpath.learning.settings import LearningSettings, Progress, no_progress
@@ -43,7 +45,11 @@ def relearn(
     progress(0.0, f"cutting the dendrogram at {grouping.threshold * 100:.2f} cm")
     settings = _with_cut(_settings_of(learned), grouping, clusters)
     listed = {name: demonstrations[name] for name in learned.demonstrations}
-    courses, _ = comparable_paths(listed, metric_of(settings), settings.seed)
+    metric = metric_of(settings)
+    courses, length = comparable_paths(listed, metric, settings.seed)
+    if metric != "undersampled":
+        groups = end_groups(courses, min_separation=settings.min_separation, length=length)
+        grouping = replace(grouping, incomplete=find_incomplete(courses, groups, length))
     return learn_partition(listed, courses, grouping, settings, progress)
 
 

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from teachpath.learning.clustering.dendrogram import Labels, height_for_count, labels_at_height, labels_for_count
+from teachpath.learning.clustering.incomplete import Stop
 from teachpath.learning.settings import LearningSettings
 from teachpath.records import Array
 
@@ -27,6 +29,7 @@ class Partition:
         labels: (m,) cluster of each demonstration, 1, 2, ... in the order of their first members.
         note: a sentence about what is doubtful, or empty.
         alternative: number of clusters of the next best cut when the choice was close, else None.
+        incomplete: where demonstrations stop that do not reach the goal, by their number.
     """
 
     linkage: Array
@@ -34,6 +37,7 @@ class Partition:
     labels: Labels
     note: str = ""
     alternative: int | None = None
+    incomplete: Mapping[int, Stop] = field(default_factory=dict)
 
 
 def cut_as_set(tree: Array, settings: LearningSettings, *, length: float, groups: int = 1) -> Partition:

@@ -6,19 +6,23 @@ proportion. A cluster may be missed when it has fewer members than one in the si
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
 
-from teachpath.learning.clustering.dendrogram import extended_linkage, labels_at_height
+from teachpath.learning.clustering.average_linkage import average_linkage
+from teachpath.learning.clustering.dendrogram import Labels, extended_linkage, labels_at_height
 from teachpath.learning.clustering.distances import nearest_paths, pairwise_distances
 from teachpath.learning.clustering.ends import end_groups, grouped_linkage
+from teachpath.learning.clustering.incomplete import Stop, find_incomplete
 from teachpath.learning.clustering.partition import Partition, cut_as_set
 from teachpath.learning.settings import LearningSettings, Progress, Subprogress, no_progress
 from teachpath.records import Array
 
 MAX_EXACT_DEMONSTRATIONS = 20_000  # above which only distances to a sample are measured
 SAMPLE_SIZE = 2000
+JOINING_SHARE = 0.4  # of the first merge of a complete demonstration, at which an incomplete one joins it; below half
 
 
 def cluster_paths(
@@ -50,17 +54,42 @@ def cluster_paths(
     labels = labels_at_height(linkage, of_sample.threshold)
     note = f"{m} demonstrations are grouped by a sample of {SAMPLE_SIZE}"
     notes = "; ".join(sentence for sentence in (note, of_sample.note) if sentence)
-    return replace(of_sample, linkage=linkage, labels=labels, note=notes)
+    incomplete = {
+        int(sample[i]): replace(stop, follows=int(sample[stop.follows])) for i, stop in of_sample.incomplete.items()
+    }
+    return replace(of_sample, linkage=linkage, labels=labels, note=notes, incomplete=incomplete)
 
 
 def _cluster_by_all_pairs(
     paths: Array, settings: LearningSettings, length: float, metric: str, progress: Progress
 ) -> Partition:
     if metric == "undersampled":  # whose first and last points are drawn at random
-        groups = np.ones(len(paths), dtype=np.int64)
-    else:
-        comparing = Subprogress(progress, 0.0, 0.2)
-        groups = end_groups(paths, min_separation=settings.min_separation, length=length, progress=comparing)
-    condensed = pairwise_distances(paths, metric, Subprogress(progress, 0.2, 0.7))
+        condensed = pairwise_distances(paths, metric, Subprogress(progress, 0.0, 0.7))
+        tree = average_linkage(condensed, len(paths), Subprogress(progress, 0.7, 1.0))
+        return cut_as_set(tree, settings, length=length)
+    comparing = Subprogress(progress, 0.0, 0.2)
+    groups = end_groups(paths, min_separation=settings.min_separation, length=length, progress=comparing)
+    incomplete = find_incomplete(paths, groups, length)
+    complete = np.setdiff1d(np.arange(len(paths)), list(incomplete))
+    groups = np.unique(groups[complete], return_inverse=True)[1] + 1
+    condensed = pairwise_distances(paths[complete], metric, Subprogress(progress, 0.2, 0.7))
     tree = grouped_linkage(condensed, groups, Subprogress(progress, 0.7, 1.0))
-    return cut_as_set(tree, settings, length=length, groups=int(groups.max()))
+    partition = cut_as_set(tree, settings, length=length, groups=int(groups.max()))
+    return _with_incomplete(partition, complete, incomplete) if incomplete else partition
+
+
+def _with_incomplete(partition: Partition, complete: Labels, incomplete: Mapping[int, Stop]) -> Partition:
+    """Let incomplete demonstrations join the complete ones that they follow, below every other merge of these."""
+    first_merges = np.full(len(complete), np.inf)
+    for left, right, height, _ in partition.linkage[::-1]:
+        for node in (int(left), int(right)):
+            if node < len(complete):
+                first_merges[node] = height
+    joins = np.arange(len(complete) + len(incomplete))
+    heights = np.zeros(len(joins))
+    for number, stop in incomplete.items():
+        joins[number] = stop.follows
+        heights[number] = JOINING_SHARE * first_merges[np.searchsorted(complete, stop.follows)]
+    linkage = extended_linkage(partition.linkage, complete, joins, heights)
+    labels = labels_at_height(linkage, partition.threshold)
+    return replace(partition, linkage=linkage, labels=labels, incomplete=incomplete)
