@@ -18,7 +18,7 @@ from teachpath.learning.resampling import arc_lengths, at_equal_arc_length, smoo
 from teachpath.learning.selection.default_mode import select, step_count
 from teachpath.learning.selection.paper_mode import paper_step_count, select_as_paper
 from teachpath.learning.settings import LearningSettings, Progress, StepCallback, StepCounter, Subprogress, no_progress
-from teachpath.learning.summary import ambiguities, fingerprint, representatives, tube_radius
+from teachpath.learning.summary import ambiguities, copies, fingerprint, representatives, tube_radius
 from teachpath.records import Array, Cluster, Deviation, Learned, LearnedPath, Score, Trajectory
 
 PATH_POINTS = 100  # at equal arc length, for the distance of two paths
@@ -110,7 +110,9 @@ def learn_partition(
         replace(cluster, representative=names[member], spread=spread, ambiguous=doubt)
         for cluster, (_, spread), member, doubt in zip(clusters, found, central, ambiguities(grouping), strict=True)
     ]
-    notes = [grouping.note, *(f"demonstration {name} {describe(stop)}" for name, stop in stops.items())]
+    inputs = {name: fingerprint(trajectory) for name, trajectory in demonstrations.items()}
+    incomplete = [f"demonstration {name} {describe(stop)}" for name, stop in stops.items()]
+    told = copies(inputs) if settings.mode == "default" else []
     progress(1.0, f"learned {len(paths)} {'path' if len(paths) == 1 else 'paths'}")
     return Learned(
         mode=settings.mode,
@@ -119,10 +121,10 @@ def learn_partition(
         threshold=grouping.threshold,
         clusters=tuple(described),
         paths=paths,
-        notes=tuple(note for note in notes if note),
+        notes=tuple(note for note in (grouping.note, *incomplete, *told) if note),
         settings=asdict(settings),
         versions=dict(LIBRARY_VERSIONS),
-        inputs={name: fingerprint(trajectory) for name, trajectory in demonstrations.items()},
+        inputs=inputs,
     )
 
 

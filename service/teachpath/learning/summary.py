@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from hashlib import sha256
 
 import numpy as np
@@ -87,3 +87,15 @@ def fingerprint(trajectory: Trajectory) -> str:
         if part is not None:
             digest.update(np.ascontiguousarray(part, dtype="<f8").tobytes())
     return digest.hexdigest()
+
+
+def copies(fingerprints: Mapping[str, str]) -> list[str]:
+    """Name the demonstrations that are copies of one another, by their fingerprints: one sentence for each set."""
+    same: dict[str, list[str]] = {}
+    for name, digest in fingerprints.items():
+        same.setdefault(digest, []).append(name)
+    return [
+        f"demonstrations {', '.join(names[:-1])} and {names[-1]} are copies; their agreement says nothing"
+        for names in same.values()
+        if len(names) > 1
+    ]

@@ -8,6 +8,8 @@ import numpy as np
 
 from teachpath.io.documents import from_document, to_document
 from teachpath.learning.fitting.nurbs_fit import approximate
+from teachpath.learning.learn import learn
+from teachpath.learning.settings import LearningSettings
 from teachpath.learning.summary import fingerprint, representatives, tube_radius
 from teachpath.records import Learned, Trajectory
 from tests.unit.learning import synthetic
@@ -63,3 +65,13 @@ def test_a_run_survives_storing_and_one_stored_before_is_still_read(learned: Lea
     old = from_document(Learned, document)
     assert old.clusters[0].spread is None
     assert old.clusters[0].members == learned.clusters[0].members
+
+
+def test_copies_are_named_and_others_are_not() -> None:
+    one, other = list(synthetic.experiment_2(1).values())[:2]
+    learned = learn({"a": one, "b": other, "c": replace(one, times=one.times.copy()), "d": one}, LearningSettings())
+    assert [note for note in learned.notes if "copies" in note] == [
+        "demonstrations a, c and d are copies; their agreement says nothing"
+    ]
+    nudged = replace(one, positions=one.positions + 1e-9)
+    assert not any("copies" in note for note in learn({"a": one, "b": nudged}, LearningSettings()).notes)
