@@ -35,7 +35,8 @@ from teachpath_proto.keys import is_name, name_refusal
 from teachpath_proto.logins import Login, Role
 
 PREFIX = "TEACHPATH_"
-REPLACED = {"learning.guard": "learning.min_separation"}  # former setting -> the one that does its work
+# former settings -> the one that does their work
+REPLACED = dict.fromkeys(("learning.guard", "learning.min_silhouette"), "learning.min_separation")
 SIZES = {"box": 3, "cylinder": 2, "sphere": 1, "mesh": 1}  # numbers in the size of a shape
 # RoboTasks (clfd datasets) was recorded in the frame of another arm; this maps it, shrunk, onto the Puma's table.
 ROBOTTASKS = Calibration("robottasks", scale=0.8, rotation=(1.0, 0.0, 0.0, 0.0), offset=(0.15, 0.17, 0.42))

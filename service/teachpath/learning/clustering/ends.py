@@ -24,13 +24,13 @@ def end_groups(paths: Array, *, min_separation: float, length: float, progress: 
     """
     if len(paths) < 2:
         return np.ones(len(paths), dtype=np.int64)
-    apart: Distances
+    distances: Distances
     if len(paths) > MAX_SCIPY_DEMONSTRATIONS:
         # The discrete Fréchet distance of two lines is the larger distance of their ends.
-        apart = pairwise_distances(paths[:, [0, -1]], "frechet", Subprogress(progress, 0.0, 0.5))
+        distances = pairwise_distances(paths[:, [0, -1]], "frechet", Subprogress(progress, 0.0, 0.5))
     else:
-        apart = np.maximum(pdist(paths[:, 0]), pdist(paths[:, -1]))
-    tree = average_linkage(apart, len(paths), Subprogress(progress, 0.5, 1.0))
+        distances = np.maximum(pdist(paths[:, 0]), pdist(paths[:, -1]))
+    tree = average_linkage(distances, len(paths), Subprogress(progress, 0.5, 1.0))
     ratios = separations(tree, length, USUAL_END_SCATTER) / min_separation
     return labels_for_count(tree, separated_clusters(ratios))
 
@@ -52,13 +52,13 @@ def grouped_linkage(condensed: Distances, groups: Labels, progress: Progress = n
     if between == 0:
         return average_linkage(condensed, count, progress)
     lift = float(np.max(condensed))  # makes every distance between groups larger than any within
-    apart = condensed.copy()
+    distances = condensed.copy()
     begin = 0
     for i in range(count - 1):
         end = begin + count - 1 - i
-        apart[begin:end][groups[i + 1 :] != groups[i]] += lift
+        distances[begin:end][groups[i + 1 :] != groups[i]] += lift
         begin = end
-    tree = average_linkage(apart, count, progress)
+    tree = average_linkage(distances, count, progress)
     for row in range(count - 1 - between, count - 1):
         before = float(tree[row - 1, 2]) if row else 0.0
         tree[row, 2] = max(float(tree[row, 2]) - lift, MIN_RISE * before)
