@@ -3,9 +3,10 @@
 ClientError
 ├── Unreachable       no station answers
 ├── Refused           the station refused a request; carries its answer
+├── NotStopped        the executor has not confirmed a stop: the arm may be moving
 ├── JobFailed         work ended without an outcome; carries the job
 ├── ExecutionFaulted  the arm has stopped by itself; carries the execution
-    └── NotInTime         what was waited for has not ended; it goes on
+└── NotInTime         what was waited for has not ended; it goes on
 """
 
 from __future__ import annotations
@@ -32,6 +33,10 @@ class Refused(ClientError):
     def __init__(self, status: int, refusal: Refusal) -> None:
         super().__init__(refusal.detail)
         self.status, self.refusal = status, refusal
+
+
+class NotStopped(ClientError):
+    """The executor has not confirmed a stop; the arm may be moving."""
 
 
 class JobFailed(ClientError):

@@ -7,13 +7,14 @@ from typing import Any, Self, TypeVar
 
 import httpx
 
-from teachpath_client.errors import ClientError, Refused, Unreachable
+from teachpath_client.errors import ClientError, NotStopped, Refused, Unreachable
 from teachpath_client.models import Refusal
 from teachpath_client.structuring import structured
 
 T = TypeVar("T")
 
 LOCAL = "http://127.0.0.1:8765"
+STOP_TIMEOUT = 5.0  # [s] for the answer to a stop; a station that lives says within 2 s that nothing was confirmed
 
 
 class Rest:
@@ -67,7 +68,22 @@ class Rest:
         **query: Any,
     ) -> T:
         """Call a resource and return its answer as a record; raises as `call`."""
-        answer = self._send(method, resource, body, content, query)
+        return self._structured(kind, method, resource, self._send(method, resource, body, content, query))
+
+    def _stop(self, kind: Callable[..., T], resource: str) -> T:
+        """Send a stop and return the record that confirms it; raises NotStopped, or Refused."""
+        try:
+            answer = self._send("POST", resource, None, None, {}, timeout=STOP_TIMEOUT)
+        except Unreachable as error:
+            raise NotStopped(f"NOT STOPPED: {error}; press the emergency stop of the arm") from None
+        except Refused as refused:
+            if refused.refusal.error == "NotStopped":
+                raise NotStopped(str(refused)) from None
+            raise
+        return self._structured(kind, "POST", resource, answer)
+
+    @staticmethod
+    def _structured(kind: Callable[..., T], method: str, resource: str, answer: httpx.Response) -> T:
         try:
             return structured(kind, answer.json())
         except ValueError as error:
@@ -77,12 +93,19 @@ class Rest:
         return self._send("GET", resource, None, None, {}).content
 
     def _send(
-        self, method: str, resource: str, body: Mapping[str, Any] | None, content: bytes | None, query: dict[str, Any]
+        self,
+        method: str,
+        resource: str,
+        body: Mapping[str, Any] | None,
+        content: bytes | None,
+        query: dict[str, Any],
+        *,
+        timeout: float | None = None,
     ) -> httpx.Response:
+        wait = self._http.timeout if timeout is None else timeout
+        parameters = query or None  # {} would take a query out of the address
         try:
-            answer = self._http.request(
-                method, resource, json=body, content=content, params=query or None
-            )  # {} would take a query out of the address
+            answer = self._http.request(method, resource, json=body, content=content, params=parameters, timeout=wait)
         except httpx.HTTPError as error:
             raise Unreachable(f"no station at {self.url} ({error}); start it with: teachpath serve") from None
         if answer.is_error:

@@ -122,12 +122,18 @@ class WorkResources(Rest):
         return self._ask(Execution, "POST", f"/executions/{execution}/{verb}")
 
     def stop(self, execution: str) -> Execution:
-        """Stop and end an execution, on its path; this is not an emergency stop."""
-        return self._ask(Execution, "POST", f"/executions/{execution}/stop")
+        """Stop and end an execution, on its path; this is not an emergency stop.
+
+        It returns when the executor's status shows that the execution ends or has ended.
+
+        Raises:
+            NotStopped: the executor has not confirmed it; a station that answers goes on trying for a minute.
+        """
+        return self._stop(Execution, f"/executions/{execution}/stop")
 
     def stop_arm(self) -> ExecutorStatus:
-        """Stop whatever moves the arm, on its path; this is not an emergency stop."""
-        return self._ask(ExecutorStatus, "POST", "/stop")
+        """Stop whatever moves the arm, on its path, as `stop` does; returns the status that shows it."""
+        return self._stop(ExecutorStatus, "/stop")
 
     def series(self, execution: str, *, points: int = 500) -> TimeSeries:
         """Return what the arm did over time, in at most `points` points."""

@@ -64,7 +64,7 @@ class JointState(_message.Message):
     def __init__(self, stamp_ns: _Optional[int] = ..., cycle: _Optional[int] = ..., position: _Optional[_Iterable[float]] = ..., velocity: _Optional[_Iterable[float]] = ..., torque: _Optional[_Iterable[float]] = ..., tracking_error: _Optional[float] = ..., missed: _Optional[int] = ..., holding: _Optional[bool] = ..., gripper_closed: _Optional[bool] = ..., object_position: _Optional[_Iterable[float]] = ..., object_orientation: _Optional[_Iterable[float]] = ..., execution: _Optional[str] = ..., late: _Optional[int] = ..., stopped: _Optional[bool] = ...) -> None: ...
 
 class ExecutorCommand(_message.Message):
-    __slots__ = ("verb", "execution", "plan", "override", "length", "nodes", "lease", "who", "plan_id", "reason", "teleop")
+    __slots__ = ("verb", "execution", "plan", "override", "length", "nodes", "lease", "who", "plan_id", "reason", "teleop", "id")
     class Verb(int, metaclass=_enum_type_wrapper.EnumTypeWrapper):
         __slots__ = ()
         UNSPECIFIED: _ClassVar[ExecutorCommand.Verb]
@@ -98,6 +98,7 @@ class ExecutorCommand(_message.Message):
     PLAN_ID_FIELD_NUMBER: _ClassVar[int]
     REASON_FIELD_NUMBER: _ClassVar[int]
     TELEOP_FIELD_NUMBER: _ClassVar[int]
+    ID_FIELD_NUMBER: _ClassVar[int]
     verb: ExecutorCommand.Verb
     execution: str
     plan: bytes
@@ -109,7 +110,8 @@ class ExecutorCommand(_message.Message):
     plan_id: str
     reason: str
     teleop: bytes
-    def __init__(self, verb: _Optional[_Union[ExecutorCommand.Verb, str]] = ..., execution: _Optional[str] = ..., plan: _Optional[bytes] = ..., override: _Optional[float] = ..., length: _Optional[float] = ..., nodes: _Optional[int] = ..., lease: _Optional[str] = ..., who: _Optional[str] = ..., plan_id: _Optional[str] = ..., reason: _Optional[str] = ..., teleop: _Optional[bytes] = ...) -> None: ...
+    id: str
+    def __init__(self, verb: _Optional[_Union[ExecutorCommand.Verb, str]] = ..., execution: _Optional[str] = ..., plan: _Optional[bytes] = ..., override: _Optional[float] = ..., length: _Optional[float] = ..., nodes: _Optional[int] = ..., lease: _Optional[str] = ..., who: _Optional[str] = ..., plan_id: _Optional[str] = ..., reason: _Optional[str] = ..., teleop: _Optional[bytes] = ..., id: _Optional[str] = ...) -> None: ...
 
 class LeaseRequest(_message.Message):
     __slots__ = ("action", "name", "token", "seconds", "hold_when_lost")
@@ -170,7 +172,7 @@ class JournalEntry(_message.Message):
     def __init__(self, at_ns: _Optional[int] = ..., who: _Optional[str] = ..., verb: _Optional[str] = ..., execution: _Optional[str] = ..., answer: _Optional[str] = ...) -> None: ...
 
 class ExecutorStatus(_message.Message):
-    __slots__ = ("execution", "state", "reason", "progress", "override", "cycles", "late", "missed", "lateness_p50_us", "lateness_p99_us", "lateness_max_us", "limit_use", "tracking_error", "limit_place", "duration", "length", "stretch", "operator", "asking", "hand_latency_p50_us", "hand_latency_p99_us", "scheduling")
+    __slots__ = ("execution", "state", "reason", "progress", "override", "cycles", "late", "missed", "lateness_p50_us", "lateness_p99_us", "lateness_max_us", "limit_use", "tracking_error", "limit_place", "duration", "length", "stretch", "operator", "asking", "hand_latency_p50_us", "hand_latency_p99_us", "scheduling", "ending")
     EXECUTION_FIELD_NUMBER: _ClassVar[int]
     STATE_FIELD_NUMBER: _ClassVar[int]
     REASON_FIELD_NUMBER: _ClassVar[int]
@@ -193,6 +195,7 @@ class ExecutorStatus(_message.Message):
     HAND_LATENCY_P50_US_FIELD_NUMBER: _ClassVar[int]
     HAND_LATENCY_P99_US_FIELD_NUMBER: _ClassVar[int]
     SCHEDULING_FIELD_NUMBER: _ClassVar[int]
+    ENDING_FIELD_NUMBER: _ClassVar[int]
     execution: str
     state: str
     reason: str
@@ -215,4 +218,5 @@ class ExecutorStatus(_message.Message):
     hand_latency_p50_us: float
     hand_latency_p99_us: float
     scheduling: str
-    def __init__(self, execution: _Optional[str] = ..., state: _Optional[str] = ..., reason: _Optional[str] = ..., progress: _Optional[float] = ..., override: _Optional[float] = ..., cycles: _Optional[int] = ..., late: _Optional[int] = ..., missed: _Optional[int] = ..., lateness_p50_us: _Optional[float] = ..., lateness_p99_us: _Optional[float] = ..., lateness_max_us: _Optional[float] = ..., limit_use: _Optional[float] = ..., tracking_error: _Optional[float] = ..., limit_place: _Optional[str] = ..., duration: _Optional[float] = ..., length: _Optional[float] = ..., stretch: _Optional[str] = ..., operator: _Optional[str] = ..., asking: _Optional[str] = ..., hand_latency_p50_us: _Optional[float] = ..., hand_latency_p99_us: _Optional[float] = ..., scheduling: _Optional[str] = ...) -> None: ...
+    ending: bool
+    def __init__(self, execution: _Optional[str] = ..., state: _Optional[str] = ..., reason: _Optional[str] = ..., progress: _Optional[float] = ..., override: _Optional[float] = ..., cycles: _Optional[int] = ..., late: _Optional[int] = ..., missed: _Optional[int] = ..., lateness_p50_us: _Optional[float] = ..., lateness_p99_us: _Optional[float] = ..., lateness_max_us: _Optional[float] = ..., limit_use: _Optional[float] = ..., tracking_error: _Optional[float] = ..., limit_place: _Optional[str] = ..., duration: _Optional[float] = ..., length: _Optional[float] = ..., stretch: _Optional[str] = ..., operator: _Optional[str] = ..., asking: _Optional[str] = ..., hand_latency_p50_us: _Optional[float] = ..., hand_latency_p99_us: _Optional[float] = ..., scheduling: _Optional[str] = ..., ending: _Optional[bool] = ...) -> None: ...

@@ -37,6 +37,7 @@ for command in (
     work.recut,
     work.plan,
     work.run,
+    work.stop,
     evaluate.evaluate,
     evaluate.diff,
     files.export,

@@ -12,6 +12,7 @@
     │   ├── Outdated           a newer version was saved meanwhile; carries it
     │   └── Cancelled          the operator cancelled the job
     └── Unreachable            a process or peer does not answer
+        └── NotStopped         the executor has not confirmed a stop: the arm may be moving
 
 A message names the value, the limit, the place and the way out.
 """
@@ -79,3 +80,7 @@ class Cancelled(Conflict):
 
 class Unreachable(TeachpathError):
     """A process or peer does not answer."""
+
+
+class NotStopped(Unreachable):
+    """The executor has not confirmed a stop; the arm may be moving."""

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Annotated, Final, Literal
 
+from anyio import CapacityLimiter
+from anyio.to_thread import run_sync
 from fastapi import APIRouter, Header, Query, Response
 from fastapi.responses import FileResponse
 from pydantic import AfterValidator, Field
@@ -20,6 +23,7 @@ from teachpath.robot.executions import Executions
 from teachpath_proto.control import CommandVerb
 
 MAX_HEADER_LENGTH: Final = 64  # characters of a name or a token
+MAX_STOPS: Final = 100  # that wait for the executor at a time
 Token = Annotated[
     str,
     Header(
@@ -186,19 +190,22 @@ def _add_steering(router: APIRouter, executions: Executions) -> None:
 def stops_router(parts: Parts) -> APIRouter:
     """Return the routes that stop the arm: they are answered whatever else the request holds."""
     router, executions = APIRouter(tags=["executions"]), parts.executions
+    threads = CapacityLimiter(MAX_STOPS)  # of stops alone, so that a stop waits for no other request
 
     @router.post("/executions/{execution}/stop")
-    def stop(execution: str, lease: AnyToken = "", who: AnyWho = "") -> Execution:
+    async def stop(execution: str, lease: AnyToken = "", who: AnyWho = "") -> Execution:
         """Stop and end an execution; everybody may do it, and more than once.
 
-        A stop brings the arm to rest on its path: it is not an emergency stop. It is never refused for a field or
-        parameter that it does not know.
+        It is answered when the executor's own status shows that the execution ends or has ended; an answer of 503
+        (NotStopped) says that the executor has not confirmed it, while the stop is repeated. A stop brings the arm to
+        rest on its path: it is not an emergency stop. It is never refused for a field or parameter that it does not
+        know.
         """
-        return executions.command(execution, Command(CommandVerb.STOP, execution, lease=lease, who=who))
+        return await run_sync(partial(executions.stop_one, execution, lease=lease, who=who), limiter=threads)
 
     @router.post("/stop")
-    def stop_whatever_moves(lease: AnyToken = "", who: AnyWho = "") -> ExecutorStatus:
-        """Stop whatever moves the arm, on its path; everybody may do it. This is not an emergency stop."""
-        return executions.stop_all(lease=lease, who=who)
+    async def stop_whatever_moves(lease: AnyToken = "", who: AnyWho = "") -> ExecutorStatus:
+        """Stop whatever moves the arm, on its path, as the stop of an execution does; everybody may do it."""
+        return await run_sync(partial(executions.stop_all, lease=lease, who=who), limiter=threads)
 
     return router

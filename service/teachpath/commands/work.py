@@ -18,6 +18,7 @@ from teachpath.commands.tables import clusters_table, cuts_table, paths_table, p
 from teachpath.errors import UnusableInput
 from teachpath_client.models import BusSettings, Execution, Job
 from teachpath_client.station import Station
+from teachpath_proto.control import ExecutorState
 
 Task = Annotated[str, typer.Argument(help="The task.")]
 AsRecorded = Annotated[bool, typer.Option(help="Also those under a former version of their calibration.")]
@@ -173,6 +174,25 @@ def run(
         f"{status.missed} missed; limits used to {status.limit_use:.1%}, "
         f"tracking error up to {1e3 * status.tracking_error:.2f} mrad"
     )
+
+
+def stop(
+    execution: Annotated[str, typer.Argument(help="Id of an execution; empty: whatever moves.")] = "",
+    url: Url = LOCAL,
+) -> None:
+    """Stop the arm on its path, whoever moves it.
+
+    It says "stopped" when the executor's own status shows it; else it says NOT STOPPED and ends with exit status 1,
+    while the service goes on trying. This is not an emergency stop.
+    """
+    with Station(url) as station:
+        status = station.stop(execution).status if execution else station.stop_arm()
+    if not ExecutorState(status.state).is_resting:
+        print(f"stopped: {status.execution} comes to rest on its path")
+    else:
+        print(
+            f"stopped: {status.execution} has {status.state}" if status.execution else "stopped: nothing moves the arm"
+        )
 
 
 def replay(

@@ -1,11 +1,13 @@
 """Checks every command to the executor: who may give it, and whether the arm can obey.
 
-A command that passes is queued for the control loop, which obeys in its next period. Everything here runs on the bus's
-threads. A stop has a key and thread of its own, so that it waits for nothing.
+A command that passes is queued for the control loop, which obeys in its next period. Commands are answered on the bus's
+threads. A stop has a key and a thread of its own, so that it waits for nothing; one that was put there is obeyed by the
+control loop, for nobody can answer a put in the executor's place.
 """
 
 from __future__ import annotations
 
+import logging
 import threading
 from collections import deque
 from collections.abc import Callable
@@ -19,7 +21,7 @@ from teachpath.errors import Conflict, TeachpathError, Unreachable, UnusableInpu
 from teachpath.executor.execution import Execution
 from teachpath.executor.joint_state_monitor import JointStateMonitor
 from teachpath.executor.lease import ControlLease
-from teachpath.executor.program_factory import ProgramFactory
+from teachpath.executor.program_factory import PreparedProgram, ProgramFactory
 from teachpath.executor.settings import ExecutorSettings
 from teachpath.io import documents, wire
 from teachpath.io.bus import Bus, Handle
@@ -28,8 +30,13 @@ from teachpath.time_source import TimeSource
 from teachpath_proto.control import CommandVerb, ExecutorState, LeaseAction
 from teachpath_proto.keys import Keys
 
+log = logging.getLogger(__name__)
+
 DEFAULT_OPERATOR: Final = "somebody"  # name of a person who commands without a lease and without a name
 RESET_TIMEOUT: Final = 5.0  # [s] that the simulated arm may take to build a scene
+MAX_WAITING_STOPS: Final = 1000  # stops that were put and not obeyed yet
+STOPS_A_PERIOD: Final = 10  # of them that are obeyed in one cycle of the loop, so that a flood delays no setpoint
+KNOWN_STOPS: Final = 100  # ids of stops whose repeats are not written to the journal
 LEASE_FREE_VERBS: Final = (CommandVerb.STOP, CommandVerb.REVOKE)
 
 
@@ -46,6 +53,7 @@ class CommandHandler:
         lease: who is in control.
         current: the execution under way, or the one that ended last; None before the first.
         pending: what the control loop does to the current execution in its next period.
+        status_is_due: whether a stop came since the control loop has published the status.
     """
 
     def __init__(
@@ -69,7 +77,11 @@ class CommandHandler:
         self._status = status
         self._on_start = on_start
         self._start_lock = threading.Lock()
+        self._lock = threading.Lock()  # held where a stop and the begin of an execution must not cross
         self._stop_count = 0
+        self._received_stops: deque[bytes] = deque(maxlen=MAX_WAITING_STOPS)
+        self._known_stops: deque[str] = deque(maxlen=KNOWN_STOPS)
+        self.status_is_due = False
         self.lease = ControlLease(time_source.monotonic_ns)
         self.current: Execution | None = None
         self.pending: deque[Callable[[Execution], None]] = deque()
@@ -79,6 +91,7 @@ class CommandHandler:
         return [
             self._bus.serve(self._keys.executor_command, self.answer),
             self._bus.serve(self._keys.executor_stop, self._answer_stop),
+            self._bus.subscribe(self._keys.executor_stop, lambda _, payload: self._received_stops.append(payload)),
             self._bus.serve(self._keys.executor_lease, self._answer_lease),
         ]
 
@@ -104,14 +117,30 @@ class CommandHandler:
         except TeachpathError as error:
             self.write_journal(who, command.verb, str(error))
             raise
-        self.write_journal(who, command.verb, "done")
+        if not self._is_repeat(command):
+            self.write_journal(who, command.verb, "done")
         return wire.encode_status(self._status())
+
+    def obey_stops(self) -> None:
+        """Obey the stops that were put; called by the control loop."""
+        for _ in range(min(len(self._received_stops), STOPS_A_PERIOD)):
+            try:
+                self._answer_stop(self._received_stops.popleft())
+            except TeachpathError as error:
+                log.warning("a stop that was put is none: %s", error)
 
     def _answer_stop(self, payload: bytes) -> bytes:
         command = wire.decode_command(payload) if payload else Command(CommandVerb.STOP)
         if command.verb != CommandVerb.STOP:
             raise UnusableInput(f"this key answers stop alone; send {command.verb} to {self._keys.executor_command}")
         return self.answer(wire.encode_command(command))
+
+    def _is_repeat(self, command: Command) -> bool:
+        with self._lock:
+            known = command.id in self._known_stops
+            if command.id and not known:
+                self._known_stops.append(command.id)
+        return known
 
     def _answer_lease(self, payload: bytes) -> bytes:
         request = wire.decode_lease_request(payload)
@@ -174,8 +203,9 @@ class CommandHandler:
         self.pending.append(lambda execution: execution.start_detour(detour, start_q))
 
     def _stop(self, command: Command, who: str) -> None:
-        self._stop_count += 1
-        stopped = self.current
+        with self._lock:
+            self._stop_count += 1
+            stopped, self.status_is_due = self.current, True
         if stopped is None or command.execution not in ("", stopped.id):
             return
         reason = "stopped by the operator" if who == DEFAULT_OPERATOR else f"stopped by {who}"
@@ -199,18 +229,22 @@ class CommandHandler:
             with suppress(Unreachable):  # only the simulated robot has a scene to put back
                 reset = self._keys.reset(self._joint_states.robot)
                 self._bus.ask(reset, documents.encode(prepared.scene), timeout=RESET_TIMEOUT)
-            if self._stop_count != stops_before:
-                prepared.program.close()
-                raise Conflict("it was stopped before it began")
-            if self.current is not None:
-                self.current.program.close()
-            self._on_start()
-            self.pending.clear()
-            self.current = Execution(
-                command.execution,
-                prepared.program,
-                plan=prepared.plan,
-                rate=self._settings.rate,
-                offset=self._time.wall_ns() - self._time.monotonic_ns(),
-                limits=self._programs.arm.limits.motion,
-            )
+            with self._lock:
+                self._begin(command.execution, prepared, stops_before)
+
+    def _begin(self, execution: str, prepared: PreparedProgram, stops_before: int) -> None:
+        if self._stop_count != stops_before:
+            prepared.program.close()
+            raise Conflict("it was stopped before it began")
+        if self.current is not None:
+            self.current.program.close()
+        self._on_start()
+        self.pending.clear()
+        self.current = Execution(
+            execution,
+            prepared.program,
+            plan=prepared.plan,
+            rate=self._settings.rate,
+            offset=self._time.wall_ns() - self._time.monotonic_ns(),
+            limits=self._programs.arm.limits.motion,
+        )

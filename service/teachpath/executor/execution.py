@@ -73,6 +73,11 @@ class Execution:
         return self.state.is_resting
 
     @property
+    def is_ending(self) -> bool:
+        """Whether the execution is over as soon as the arm rests."""
+        return self._final_state is not None
+
+    @property
     def is_settled(self) -> bool:
         """Whether the execution has been held for so long that the arm itself rests."""
         return self.state is ExecutorState.HELD and self._rest_setpoints > SETTLING_TIME * self._rate
@@ -247,6 +252,7 @@ class Execution:
             stretch=self.program.activity + (LATE_ARM_SUFFIX if self.program.waiting else ""),
             hand_latency_p50_us=latency_p50,
             hand_latency_p99_us=latency_p99,
+            ending=self.is_ending,
         )
 
     def _describe_reason(self) -> str:

@@ -83,7 +83,7 @@ class Executor:
             on_start=self._pacer.reset,
         )
         self._scheduling = "real-time scheduling was not asked for"
-        self._published = ("", "", 0)  # execution, state and time of the newest status
+        self._published = ("", "", False, 0)  # execution, state, whether it ends, and time of the newest status
 
     def run(self, stop: threading.Event) -> None:
         """Stream setpoints until `stop` is set; then bring the arm to rest on its path and return."""
@@ -116,6 +116,7 @@ class Executor:
 
     def _cycle(self, due: int) -> None:
         self._joint_states.poll()
+        self._command_handler.obey_stops()
         current = self._command_handler.current
         if current is not None and not current.is_resting:
             pending = self._command_handler.pending
@@ -196,13 +197,14 @@ class Executor:
             )
 
     def _publish_status(self, due: int) -> None:
-        """Publish the status: at once when the state has changed, otherwise at an even rate."""
-        current = self._command_handler.current
-        state = (current.id, current.state) if current is not None else ("", ExecutorState.IDLE)
+        """Publish the status: at once when the state has changed or a stop came, otherwise at an even rate."""
+        handler, current = self._command_handler, self._command_handler.current
+        state = (current.id, current.state, current.is_ending) if current else ("", ExecutorState.IDLE, False)
         rate = self._settings.status_rate
-        if self._command_handler.is_resting:
+        if handler.is_resting:
             rate = min(rate, IDLE_STATUS_RATE)
-        if state == self._published[:2] and due - self._published[2] < 1e9 / rate:
+        is_due, handler.status_is_due = handler.status_is_due, False
+        if not is_due and state == self._published[:3] and due - self._published[3] < 1e9 / rate:
             return
         self._published = (*state, due)
         self._bus.publish(self._keys.executor_status, wire.encode_status(self._status()))

@@ -24,6 +24,7 @@ class Command:
     plan_id: str = ""
     reason: str = ""
     teleop: bytes = b""  # in JSON
+    id: str = ""
 
 
 @dataclass(frozen=True, slots=True)

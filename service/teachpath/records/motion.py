@@ -164,3 +164,4 @@ class ExecutorStatus:
     scheduling: str = ""
     hand_latency_p50_us: float = 0.0
     hand_latency_p99_us: float = 0.0
+    ending: bool = False

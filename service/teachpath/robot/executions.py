@@ -8,6 +8,7 @@ import time
 import uuid
 from collections.abc import Callable
 from contextlib import suppress
+from dataclasses import replace
 from pathlib import Path
 from typing import Final
 
@@ -21,6 +22,7 @@ from teachpath.motion.analysis.time_series import TimeSeries, time_series
 from teachpath.motion.arm.model import Arm
 from teachpath.records import Command, ExecutorStatus, JournalEntry, Lease, LeaseRequest, Plan, Scene, TeleopRequest
 from teachpath.robot.motion_recorder import MotionRecorder
+from teachpath.robot.stopper import Stopper
 from teachpath_proto.control import CommandVerb, ExecutorState
 from teachpath_proto.keys import Keys
 
@@ -30,7 +32,6 @@ STEERING_VERBS: Final = (
     CommandVerb.RESUME,
     CommandVerb.STEP,
     CommandVerb.REVERSE,
-    CommandVerb.STOP,
 )
 
 
@@ -53,6 +54,8 @@ class Executions:
         self._scene = scene
         self._arm = arm
         self._recorder = MotionRecorder(bus, keys, store.motions, robot=robot)
+        self._stopper = Stopper(bus, keys)
+        self._starting: set[str] = set()  # executions that the executor has not answered for yet
         self._changed = threading.Condition()
         self._status: ExecutorStatus | None = None
         self._last_seen = 0.0
@@ -75,6 +78,7 @@ class Executions:
         """Stop receiving; what came is stored first."""
         for handle in self._handles:
             handle.close()
+        self._stopper.close()
         if self._writer is not None:
             self._received.put(None)
             self._writer.join()
@@ -148,8 +152,6 @@ class Executions:
     def command(self, execution: str, command: Command) -> Execution:
         """Steer an execution by one of `STEERING_VERBS`.
 
-        A stop of an execution that has ended already is answered, too.
-
         Raises:
             UnusableInput: an unknown verb.
             NotFound: no such execution.
@@ -157,21 +159,35 @@ class Executions:
         """
         if command.verb not in STEERING_VERBS:
             raise UnusableInput(f"{command.verb!r} is no command; say {', '.join(STEERING_VERBS)}")
-        row = self.get(execution)
-        if command.verb == CommandVerb.STOP:
-            if not row.status.state.is_resting:
-                self._bus.ask(self._keys.executor_stop, encode_command(command))
-            return self.get(execution)
+        self.get(execution)
         status = self.status
         if status is None or status.execution != execution:
             raise Conflict(f"execution {execution} is not running")
         self._bus.ask(self._keys.executor_command, encode_command(command))
         return self.get(execution)
 
+    def stop_one(self, execution: str, *, lease: str = "", who: str = "") -> Execution:
+        """Stop an execution, and return it when the executor's status shows that it ends or has ended.
+
+        Raises:
+            NotFound: no such execution.
+            NotStopped: the executor has not confirmed it; the stop is repeated.
+        """
+        row = self.get(execution)
+        if row.status.state.is_resting:
+            return row
+        command = Command(CommandVerb.STOP, execution, lease=lease, who=who)
+        confirmed = self._stopper.stop(command, lambda: execution in self._starting)
+        row = self.get(execution)
+        if row.status.state.is_resting or confirmed.execution == execution:
+            return row
+        reason = "the executor does not run it any more"
+        return replace(row, status=replace(row.status, state=ExecutorState.FAULTED, reason=reason))
+
     def stop_all(self, *, lease: str = "", who: str = "") -> ExecutorStatus:
-        """Stop whatever execution is under way; raises Unreachable when the executor does not answer."""
+        """Stop whatever execution is under way, and return the executor's status that shows it; raises NotStopped."""
         command = Command(CommandVerb.STOP, lease=lease, who=who)
-        return decode_status(self._bus.ask(self._keys.executor_stop, encode_command(command)))
+        return self._stopper.stop(command, lambda: bool(self._starting))
 
     def request_lease(self, request: LeaseRequest) -> Lease:
         """Send a request about the control lease and return who is in control.
@@ -227,6 +243,7 @@ class Executions:
         )
         self._plans[key] = plan
         self._recorder.begin(header)
+        self._starting.add(key)
         try:
             self._bus.ask(self._keys.executor_command, encode_command(command), timeout=30.0)
         except TeachpathError as error:
@@ -234,6 +251,8 @@ class Executions:
             self._store.put_execution(key, plan, refused)
             self._recorder.abandon()
             raise
+        finally:
+            self._starting.discard(key)
         return self.get(key)
 
     def _check_certificate(self, plan: Plan) -> None:
@@ -253,6 +272,7 @@ class Executions:
                 before, self._status = self._status, status
                 self._last_seen = time.monotonic()
                 self._changed.notify_all()
+            self._stopper.on_status(status)
             if before is None or (before.execution, before.state) != (status.execution, status.state):
                 self._received.put(status)
 

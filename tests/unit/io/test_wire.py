@@ -101,7 +101,7 @@ def test_a_status_survives_the_wire_with_its_state(state: ExecutorState) -> None
 
 @pytest.mark.parametrize("verb", CommandVerb)
 def test_commands_survive_the_wire(verb: CommandVerb) -> None:
-    command = Command(verb, "e1", b"{}", 0.5, -0.25, -3, "token", "Ada", "plan-1", "moved", b"[]")
+    command = Command(verb, "e1", b"{}", 0.5, -0.25, -3, "token", "Ada", "plan-1", "moved", b"[]", "stop-1")
     assert wire.decode_command(wire.encode_command(command)) == command
 
 

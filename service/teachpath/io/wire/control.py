@@ -32,6 +32,7 @@ def decode_command(payload: bytes) -> Command:
     if not abs(m.length) <= LONGEST_STEP:
         raise UnusableInput(f"a step of {m.length:g} m is over {LONGEST_STEP:g} m; are its units metres?")
     _name(m.who)
+    _name(m.id)
     verb = CommandVerb(motion_pb2.ExecutorCommand.Verb.Name(m.verb).lower())
     return Command(**{name: getattr(m, name) for name in Command.__dataclass_fields__} | {"verb": verb})
 
