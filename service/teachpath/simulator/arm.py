@@ -32,7 +32,9 @@ class SimulatedArm:
         self._carries = scene.carried is not None
         self._friction = np.array(self._model.dof_frictionloss[:6])
         self._acceleration = np.zeros(self._model.nv)
+        self._rate = np.zeros(self._model.nv)
         self._force = np.zeros(self._model.nv)
+        self._integral = np.zeros(6)  # [N m]
         self.data = mujoco.MjData(self._model)
         self.reset()
 
@@ -40,6 +42,7 @@ class SimulatedArm:
         """Put the arm where it began, at rest and with its gripper open, and the object at its start."""
         mujoco.mj_resetData(self._model, self.data)
         self.data.qpos[:6] = self._start
+        self._integral[:] = 0.0
         mujoco.mj_forward(self._model, self.data)
 
     @property
@@ -73,18 +76,27 @@ class SimulatedArm:
     def step(self, position: Array, velocity: Array, acceleration: Array) -> None:
         """Follow a target motion for 1 ms by computed torque (Siciliano et al., Robotics, Springer 2009, 8.5.2).
 
-        Coulomb friction is compensated along the target's velocity, so that the motors do not chatter at rest.
+        Coulomb friction is compensated along the target's velocity, so that the motors do not chatter at rest. What is
+        left of it there, an integral of the error takes up, which grows to twice the friction at most: without it an
+        arm that stops on its way rests 0.6 mm beside its path.
         """
         mujoco.mj_step1(self._model, self.data)
         w = self._settings.bandwidth
-        self._acceleration[:6] = (
-            acceleration + 2 * w * (velocity - self.data.qvel[:6]) + w**2 * (position - self.data.qpos[:6])
-        )
-        mujoco.mj_mulM(self._model, self.data, self._force, self._acceleration)
-        torque = self._force[:6] + self.data.qfrc_bias[:6] - self.data.qfrc_passive[:6]
-        torque += self._friction * np.tanh(velocity / 0.02)
+        error = position - self.data.qpos[:6]
+        self._acceleration[:6] = acceleration + 3 * w * (velocity - self.data.qvel[:6]) + 3 * w**2 * error
+        force = self._force_of(self._acceleration)
+        self._rate[:6] = w**3 * error
+        integral = self._integral + self._force_of(self._rate) * (STEP_NS / 1e9)
+        self._integral = np.clip(integral, -2 * self._friction, 2 * self._friction)
+        torque = force + self.data.qfrc_bias[:6] - self.data.qfrc_passive[:6]
+        torque += self._friction * np.tanh(velocity / 0.02) + self._integral
         self.data.ctrl[:6] = np.clip(torque, -self._max_torque, self._max_torque)
         mujoco.mj_step2(self._model, self.data)
+
+    def _force_of(self, acceleration: Array) -> Array:
+        """Return the torques (6,) that inertia asks for at accelerations (nv,) of all degrees of freedom."""
+        mujoco.mj_mulM(self._model, self.data, self._force, acceleration)
+        return np.array(self._force[:6])
 
     def grasp(self) -> bool:
         """Grasp the object as it lies between the fingers; return False when it is out of reach."""

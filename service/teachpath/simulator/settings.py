@@ -14,7 +14,7 @@ class SimulatorSettings:
 
     # whether serve starts it; false where a driver of a real arm speaks in its place
     start: bool = True
-    # [rad/s] natural frequency of the critically damped tracking error
+    # [rad/s] of the three poles of the tracking error, all at one place
     bandwidth: Annotated[float, Gt(0), Le(150)] = 60.0
     # [s] that setpoints wait before they are played, so that one that was held up on its way still comes in time
     delay: Annotated[float, Ge(0.004), Le(0.2)] = 0.03
