@@ -20,6 +20,7 @@ from pydantic import BaseModel, ConfigDict, ValidationError
 from teachpath.errors import NotFound, UnusableSettings
 from teachpath.executor.settings import ExecutorSettings
 from teachpath.io.bus import BusSettings
+from teachpath.io.import_settings import ImportSettings
 from teachpath.io.meshes import read_hull
 from teachpath.io.store.settings import StoreSettings
 from teachpath.jobs.jobs import JobSettings
@@ -64,6 +65,7 @@ class Settings(BaseModel):
     bus: BusSettings = BusSettings()
     web: WebSettings = WebSettings()
     store: StoreSettings = StoreSettings()
+    imports: ImportSettings = ImportSettings()
     recording: RecordingSettings = RecordingSettings()
     learning: LearningSettings = LearningSettings()
     motion: MotionSettings = MotionSettings()

@@ -87,6 +87,7 @@ def _add_demonstrations(router: APIRouter, parts: Parts) -> None:
             task=task,
             scene=parts.settings.scene(scene),
             calibration=parts.calibrations.get(calibration),
+            limits=parts.settings.imports,
         )
         for demonstration, trajectory in made:
             parts.imported(demonstration, trajectory)

@@ -93,6 +93,7 @@ def read_groups(folder: Path, format: str, *, units: str, rate: float) -> dict[s
         UnusableRecording: the folder holds no such files or files of both kinds, or a file is wrong.
     """
     from teachpath.io.files import read_tracks
+    from teachpath.io.import_settings import ImportSettings
 
     if not folder.is_dir():
         raise UnusableRecording(f"{folder} is not a folder")
@@ -112,7 +113,9 @@ def read_groups(folder: Path, format: str, *, units: str, rate: float) -> dict[s
             content = file.read_bytes()
         except OSError as error:
             raise UnusableRecording(f"cannot read {file}: {error.strerror}") from None
-        tracks = read_tracks(content, file.name, kind=kinds[0], units=units or UNITS[kinds[0]], rate=rate)
+        tracks = read_tracks(
+            content, file.name, ImportSettings(), kind=kinds[0], units=units or UNITS[kinds[0]], rate=rate
+        )
         grouped.setdefault(name, []).extend(Trajectory(t.times, t.positions, t.orientations) for t in tracks)
     return grouped
 

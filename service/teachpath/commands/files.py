@@ -51,7 +51,13 @@ def import_(
             kind = format or (each.suffix[1:] if each.suffix in (".mcap", ".npy") else "csv")
             source = Source(each.name, content, kind, units or ("cm" if robottasks else "m"), rate)
             made = import_file(
-                store, settings.recording, source, task=task, scene=settings.scene(scene), calibration=chosen
+                store,
+                settings.recording,
+                source,
+                task=task,
+                scene=settings.scene(scene),
+                calibration=chosen,
+                limits=settings.imports,
             )
             for d, _ in made:
                 print(f"{task} {d.number}: {d.samples} samples, {d.duration:.2f} s, {d.verdict} ({d.id})")

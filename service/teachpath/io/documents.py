@@ -68,7 +68,7 @@ def decode(kind: type[T], payload: bytes, *, former_names: Mapping[str, str] | N
         document = json.loads(
             payload, object_pairs_hook=lambda pairs: {names.get(key, key): value for key, value in pairs}
         )
-    except ValueError as error:
+    except (ValueError, RecursionError) as error:
         raise UnusableInput(f"{len(payload)} bytes are not a {kind.__name__} in JSON: {error}") from None
     return from_document(kind, document)
 

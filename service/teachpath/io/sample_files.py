@@ -12,6 +12,8 @@ from dataclasses import replace
 
 from teachpath.errors import UnusableInput, UnusableRecording, UnusableSample
 from teachpath.io.documents import decode_demonstration, encode
+from teachpath.io.files import check_count, text_lines
+from teachpath.io.import_settings import ImportSettings
 from teachpath.io.wire import decode_sample, encode_sample
 from teachpath.records import Demonstration, Sample
 
@@ -40,26 +42,31 @@ def write_samples(stated: Demonstration, samples: list[Sample]) -> bytes:
     return text.getvalue().encode()
 
 
-def read_samples(content: bytes, name: str) -> tuple[Demonstration, list[Sample]]:
+def read_samples(content: bytes, name: str, limits: ImportSettings) -> tuple[Demonstration, list[Sample]]:
     """Return the demonstration that a file states, and its samples.
 
     Raises:
-        UnusableRecording: the file is no such one, or torn; names the line.
+        UnusableRecording: the file is no such one, torn, or over the limits; names the line.
     """
+    lines = text_lines(content, name, limits)
     try:
-        first, *rest = content.decode("utf-8").split("\n")
-        stated = decode_demonstration(first.removeprefix(MARK).encode())
-        header, *rows = csv.reader(rest)
+        stated = decode_demonstration(next(lines).removeprefix(MARK).encode())
+        rows = csv.reader(lines)
+        header = next(rows, [])
+        sensors = len(header) - len(COLUMNS)
+        if header[: len(COLUMNS)] != COLUMNS or not 0 <= sensors <= MAX_SENSORS:
+            columns = ",".join(COLUMNS)
+            raise UnusableRecording(f"{name}, line 2: the columns must be {columns}, then flexions f1, f2, ...")
+        if not content.endswith(b"\n"):
+            raise UnusableRecording(f"{name}: the last line does not end; is the file truncated?")
+        read = [_sample(row, len(header), stated.source, f"{name}, line {i}") for i, row in enumerate(rows, 3) if row]
+    except UnusableRecording:
+        raise
     except (UnicodeDecodeError, csv.Error, ValueError, UnusableInput) as error:
         raise UnusableRecording(f"{name}: not the samples of a demonstration: {error}") from None
-    sensors = len(header) - len(COLUMNS)
-    if header[: len(COLUMNS)] != COLUMNS or not 0 <= sensors <= MAX_SENSORS:
-        raise UnusableRecording(f"{name}, line 2: the columns must be {','.join(COLUMNS)}, then flexions f1, f2, ...")
-    if not content.endswith(b"\n"):
-        raise UnusableRecording(f"{name}: the last line does not end; is the file truncated?")
-    read = [_sample(row, len(header), stated.source, f"{name}, line {i}") for i, row in enumerate(rows, 3) if row]
     if len(read) != stated.samples:
         raise UnusableRecording(f"{name}: {len(read)} samples, {stated.samples} stated in the first line")
+    check_count(name, 1, len(read), limits)
     return stated, read
 
 

@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 from teachpath.errors import UnusableInput, UnusableRecording
 from teachpath.io.documents import decode_demonstration
 from teachpath.io.files import Track, read_tracks
+from teachpath.io.import_settings import ImportSettings
 from teachpath.io.sample_files import holds_samples, read_samples
 from teachpath.io.store.recordings import read_facts_stream, salvage_stream
 from teachpath.io.store.store import Store
@@ -47,7 +48,14 @@ class _Read:
 
 
 def import_file(
-    store: Store, settings: RecordingSettings, source: Source, *, task: str, scene: Scene, calibration: Calibration
+    store: Store,
+    settings: RecordingSettings,
+    source: Source,
+    *,
+    task: str,
+    scene: Scene,
+    calibration: Calibration,
+    limits: ImportSettings,
 ) -> list[tuple[Demonstration, Trajectory]]:
     """Make a demonstration of each motion in a file; the whole motion counts as grasped.
 
@@ -60,9 +68,10 @@ def import_file(
     """
     if not is_name(task):
         raise UnusableInput(name_refusal("task", task))
-    read = _read(source, calibration)
+    read = _read(source, calibration, limits)
     for number, samples in enumerate(read.motions, 1):
         where = source.name if len(read.motions) == 1 else f"{source.name}, motion {number} of {len(read.motions)}"
+        _check_duration(samples, limits, where)
         _check(samples, settings, scene, read.calibration, where)
     store.ensure_task(task, scene=scene.name, calibration=read.calibration.name)
     judged = [_judged(store, settings, each, read) for each in _recorded(store, settings, task, scene, read)]
@@ -88,18 +97,18 @@ def _recorded(
     return made
 
 
-def _read(source: Source, calibration: Calibration) -> _Read:
+def _read(source: Source, calibration: Calibration, limits: ImportSettings) -> _Read:
     if source.kind == "mcap":
-        return _read_recording(source)
+        return _read_recording(source, limits)
     if source.kind == "csv" and holds_samples(source.content):
-        stated, samples = read_samples(source.content, source.name)
+        stated, samples = read_samples(source.content, source.name, limits)
         return _Read(stated.source, stated.calibration, [samples], _believed(stated, samples, source.name))
-    tracks = read_tracks(source.content, source.name, kind=source.kind, units=source.units, rate=source.rate)
+    tracks = read_tracks(source.content, source.name, limits, kind=source.kind, units=source.units, rate=source.rate)
     return _Read(source.name, calibration, [_samples(track, source.name) for track in tracks])
 
 
-def _read_recording(source: Source) -> _Read:
-    header, samples, fault = salvage_stream(io.BytesIO(source.content))
+def _read_recording(source: Source, limits: ImportSettings) -> _Read:
+    header, samples, fault = salvage_stream(io.BytesIO(source.content), limits)
     if header is None or fault or not samples:
         raise UnusableRecording(
             f"{source.name}: no whole recording of hand samples ({fault or 'there are none in it'}); a torn one that "
@@ -156,6 +165,14 @@ def _curated(
 
 def _statistics(row: Demonstration, samples: list[Sample], settings: RecordingSettings) -> PhaseStatistics:
     return phase_statistics(samples, TransportSpan(*row.transport), row.statistics, settings)
+
+
+def _check_duration(samples: list[Sample], limits: ImportSettings, where: str) -> None:
+    duration = (max(s.receive_ns for s in samples) - min(s.receive_ns for s in samples)) * 1e-9
+    if duration > limits.max_duration:
+        raise UnusableRecording(
+            f"{where}: it lasts {duration:g} s, limit {limits.max_duration:g} (imports.max_duration); split it"
+        )
 
 
 def _check(

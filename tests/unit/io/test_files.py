@@ -5,13 +5,14 @@ import pytest
 
 from teachpath.errors import UnusableRecording
 from teachpath.io.files import read_tracks
+from teachpath.io.import_settings import ImportSettings
 
 CSV = "t,x,y,z\n" + "".join(f"{i * 0.02},{i},{2 * i},0.5\n" for i in range(30))
 
 
 def read(content: bytes | str, kind: str = "csv", units: str = "m", rate: float = 50.0) -> list[object]:
     raw = content.encode() if isinstance(content, str) else content
-    return list(read_tracks(raw, "f", kind=kind, units=units, rate=rate))
+    return list(read_tracks(raw, "f", ImportSettings(), kind=kind, units=units, rate=rate))
 
 
 def npy(values: object) -> bytes:
@@ -21,8 +22,8 @@ def npy(values: object) -> bytes:
 
 
 def test_units_scale_positions_only() -> None:
-    (metres,) = read_tracks(CSV.encode(), "f", kind="csv", units="m", rate=50.0)
-    (inches,) = read_tracks(CSV.encode(), "f", kind="csv", units="in", rate=50.0)
+    (metres,) = read_tracks(CSV.encode(), "f", ImportSettings(), kind="csv", units="m", rate=50.0)
+    (inches,) = read_tracks(CSV.encode(), "f", ImportSettings(), kind="csv", units="in", rate=50.0)
     assert np.allclose(inches.positions, metres.positions * 0.0254)
     assert np.array_equal(inches.times, metres.times)
 
@@ -31,7 +32,7 @@ def test_robottasks_makes_one_track_a_demonstration() -> None:
     values = np.zeros((3, 40, 7))
     values[..., 3] = 1.0
     values[..., 0] = np.arange(40)
-    tracks = read_tracks(npy(values), "f", kind="robottasks", units="cm", rate=100.0)
+    tracks = read_tracks(npy(values), "f", ImportSettings(), kind="robottasks", units="cm", rate=100.0)
     assert [len(t.times) for t in tracks] == [40, 40, 40]
     assert tracks[0].positions[-1, 0] == pytest.approx(0.39)
     assert tracks[0].times[-1] == pytest.approx(0.39)

@@ -11,6 +11,7 @@ import pytest
 from mcap.reader import make_reader
 
 from teachpath.errors import Conflict, NotFound, TeachpathError, UnusableInput, UnusableRecording
+from teachpath.io.import_settings import ImportSettings
 from teachpath.io.sample_files import read_samples, write_samples
 from teachpath.io.store.settings import StoreSettings
 from teachpath.io.store.store import Store
@@ -34,7 +35,9 @@ def exported(store: Store, rows: list[Demonstration], kind: str, into: Path) -> 
 
 def imported(store: Store, file: Path, kind: str) -> Demonstration:
     source = Source(file.name, file.read_bytes(), kind)
-    ((row, _),) = import_file(store, SETTINGS, source, task="again", scene=EMPTY, calibration=Calibration("identity"))
+    ((row, _),) = import_file(
+        store, SETTINGS, source, task="again", scene=EMPTY, calibration=Calibration("identity"), limits=ImportSettings()
+    )
     return row
 
 
@@ -195,10 +198,10 @@ def test_only_usable_ones_are_chosen_unless_all_or_some_are_wanted(store: Store)
 def test_a_torn_file_of_samples_is_refused_wherever_it_is_torn(store: Store) -> None:
     row = record(store, whole())
     content = write_samples(row, store.recordings.samples(row.recording))
-    assert read_samples(content, "x.csv")[0] == row
+    assert read_samples(content, "x.csv", ImportSettings())[0] == row
     for keep in np.random.default_rng(1).integers(len("# teachpath "), len(content) - 1, 200).tolist():
         with pytest.raises(UnusableRecording, match=r"x\.csv"):
-            read_samples(content[:keep], "x.csv")
+            read_samples(content[:keep], "x.csv", ImportSettings())
 
 
 def cell(content: bytes, line: int, column: int, text: str) -> bytes:
@@ -220,7 +223,7 @@ def test_a_sample_that_cannot_be_is_named_with_its_line(store: Store, column: in
     row = record(store, whole())
     content = cell(write_samples(row, store.recordings.samples(row.recording)), 11, column, text)
     with pytest.raises(TeachpathError, match=r"x\.csv"):
-        read_samples(content, "x.csv")
+        read_samples(content, "x.csv", ImportSettings())
 
 
 def test_a_header_that_states_something_else_is_refused(store: Store) -> None:
@@ -232,4 +235,4 @@ def test_a_header_that_states_something_else_is_refused(store: Store) -> None:
         (content.replace(b'"samples":', b'"samples":1', 1), "stated in the first line"),
     ):
         with pytest.raises(UnusableRecording, match=sentence):
-            read_samples(broken, "x.csv")
+            read_samples(broken, "x.csv", ImportSettings())

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from teachpath.errors import UnusableInput, UnusableRecording
+from teachpath.io.import_settings import ImportSettings
 from teachpath.io.store.recordings import RecordingHeader
 from teachpath.io.store.settings import StoreSettings
 from teachpath.io.store.store import Store
@@ -34,7 +35,9 @@ def imported(
     store: Store, content: bytes, task: str = "wipe", scene: Scene = EMPTY
 ) -> list[tuple[Demonstration, Trajectory]]:
     source = Source("wipe.csv", content)
-    return import_file(store, RecordingSettings(), source, task=task, scene=scene, calibration=IDENTITY)
+    return import_file(
+        store, RecordingSettings(), source, task=task, scene=scene, calibration=IDENTITY, limits=ImportSettings()
+    )
 
 
 def test_an_imported_motion_is_a_clean_demonstration_of_its_whole_length(store: Store) -> None:
@@ -82,7 +85,9 @@ def test_a_recording_is_imported_with_its_own_samples_phases_and_calibration(sto
     shown = demonstration(at=(0.5, 0.0, 0.98))
     lab = Calibration("lab", 1.0, (1.0, 0.0, 0.0, 0.0), (0.0, 0.0, -0.5))
     source = Source("take.mcap", recorded(store, shown, lab), "mcap")
-    ((row, _),) = import_file(store, RecordingSettings(), source, task="lift", scene=BLOCK, calibration=IDENTITY)
+    ((row, _),) = import_file(
+        store, RecordingSettings(), source, task="lift", scene=BLOCK, calibration=IDENTITY, limits=ImportSettings()
+    )
     assert (row.source, row.calibration, row.verdict) == ("glove", lab, "clean")
     assert (row.grasp, row.release) == (20, 70)
     again = store.recordings.samples(row.recording)
@@ -95,7 +100,9 @@ def test_an_exported_recording_imports_as_the_same_demonstration(store: Store) -
     ((first, way),) = imported(store, csv(60))
     exported = store.recordings.path(first.recording).read_bytes()
     source = Source("again.mcap", exported, "mcap")
-    ((second, same),) = import_file(store, RecordingSettings(), source, task="wipe", scene=EMPTY, calibration=IDENTITY)
+    ((second, same),) = import_file(
+        store, RecordingSettings(), source, task="wipe", scene=EMPTY, calibration=IDENTITY, limits=ImportSettings()
+    )
     assert np.array_equal(way.positions, same.positions)
     assert np.array_equal(way.times, same.times)
     changed = {"id": second.id, "number": 2, "created_ns": second.created_ns, "recording": second.recording}
@@ -107,12 +114,16 @@ def test_a_torn_recording_is_refused_and_leaves_nothing(store: Store, keep: floa
     content = recorded(store, demonstration())
     source = Source("torn.mcap", content[: int(keep * len(content))], "mcap")
     with pytest.raises(UnusableRecording, match=r"torn\.mcap: no whole recording .*teachpath doctor"):
-        import_file(store, RecordingSettings(), source, task="lift", scene=EMPTY, calibration=IDENTITY)
+        import_file(
+            store, RecordingSettings(), source, task="lift", scene=EMPTY, calibration=IDENTITY, limits=ImportSettings()
+        )
     assert store.tasks() == []
 
 
 def test_a_recording_in_which_nothing_is_grasped_is_refused(store: Store) -> None:
     source = Source("idle.mcap", recorded(store, demonstration()[:15]), "mcap")
     with pytest.raises(UnusableRecording, match="does not begin at the object"):
-        import_file(store, RecordingSettings(), source, task="lift", scene=BLOCK, calibration=IDENTITY)
+        import_file(
+            store, RecordingSettings(), source, task="lift", scene=BLOCK, calibration=IDENTITY, limits=ImportSettings()
+        )
     assert store.tasks() == []

@@ -8,19 +8,20 @@ from __future__ import annotations
 
 import io
 import os
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import BinaryIO
 
 from mcap.exceptions import EndOfFile
-from mcap.records import Channel, Header, Message, Metadata, Statistics
-from mcap.stream_reader import StreamReader
+from mcap.records import Channel, Message, Metadata, Statistics
 
 from teachpath.errors import NotFound, UnusableRecording
 from teachpath.io import documents
+from teachpath.io.import_settings import ImportSettings
 from teachpath.io.store.mcap_file import McapFile, StampedMessage
+from teachpath.io.store.mcap_records import read_records
 from teachpath.io.store.viewer_messages import ViewerMessages
 from teachpath.io.wire import decode_sample, encode_sample, message_types
 from teachpath.records import Calibration, Demonstration, Sample
@@ -153,20 +154,26 @@ def salvage(file: Path) -> tuple[RecordingHeader | None, list[Sample], str]:
         return salvage_stream(stream)
 
 
-def salvage_stream(stream: BinaryIO) -> tuple[RecordingHeader | None, list[Sample], str]:
-    """Read a recording from an open file; as `salvage`."""
+def salvage_stream(
+    stream: BinaryIO, limits: ImportSettings | None = None
+) -> tuple[RecordingHeader | None, list[Sample], str]:
+    """Read a recording from an open file, as `salvage`; reading ends where `limits` are passed."""
     header: RecordingHeader | None = None
     samples: list[Sample] = []
     fault = ""
     ours: set[int] = set()  # channels that hold samples
     try:
-        for record in _records(stream):
+        for record in read_records(stream, limits):
             if isinstance(record, Metadata) and record.name == HEADER:
                 header = documents.decode(RecordingHeader, record.metadata["header"].encode())
             elif isinstance(record, Channel) and record.topic == TOPIC:
                 ours.add(record.id)
             elif isinstance(record, Message) and record.channel_id in ours:
                 tracker = header.tracker if header else ""
+                if limits is not None and len(samples) == limits.max_samples:
+                    raise UnusableRecording(
+                        f"it has over {len(samples)} samples, the limit (imports.max_samples); split the recording"
+                    )
                 samples.append(decode_sample(tracker, record.data, record.log_time))
             elif isinstance(record, Statistics):
                 # A reader passes over a record of a kind that it does not know, so a damaged kind hides a whole chunk.
@@ -218,15 +225,7 @@ def read_facts_stream(stream: BinaryIO) -> dict[str, str]:
     """Return what a recording says of itself, last of all, from an open file; as `read_facts`."""
     facts: dict[str, str] = {}
     with suppress(Exception):  # damage shows as whatever the reader raises
-        for record in _records(stream):
+        for record in read_records(stream):
             if isinstance(record, Metadata) and record.name == FACTS:
                 facts = dict(record.metadata)
     return facts
-
-
-def _records(stream: BinaryIO) -> Iterator[object]:
-    records = StreamReader(stream, validate_crcs=True, record_size_limit=16 * 1024 * 1024).records
-    first = next(iter(records), None)
-    if not isinstance(first, Header):
-        raise UnusableRecording("it has no MCAP header")
-    yield from records

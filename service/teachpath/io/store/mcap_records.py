@@ -1,0 +1,93 @@
+"""The records of an MCAP file in turn; a chunk is decompressed within limits, and its records are read one by one."""
+
+from __future__ import annotations
+
+import io
+import zlib
+from collections.abc import Iterator
+from typing import BinaryIO, Final
+
+import lz4.frame
+import zstandard
+from mcap.exceptions import EndOfFile
+from mcap.records import Chunk, Header, McapRecord
+from mcap.stream_reader import StreamReader
+
+from teachpath.errors import UnusableRecording
+from teachpath.io.import_settings import ImportSettings
+
+MAX_RECORD_SIZE: Final = 16 * 1024 * 1024  # bytes of a record, and of what one chunk expands to
+MAX_RECORDS_PER_SAMPLE: Final = 10  # a sample has some messages for viewers beside it
+
+
+def read_records(stream: BinaryIO, limits: ImportSettings | None = None) -> Iterator[McapRecord]:
+    """Yield every record but chunks, whose records take their place.
+
+    Args:
+        stream: of the file, at its beginning.
+        limits: of a file that is imported; without them only each chunk is limited, to 16 MiB.
+
+    Raises:
+        UnusableRecording: it has no header, or expands to more than the limits.
+        EndOfFile: it is cut off.
+    """
+    records = StreamReader(stream, emit_chunks=True, validate_crcs=True, record_size_limit=MAX_RECORD_SIZE).records
+    if not isinstance(next(iter(records), None), Header):
+        raise UnusableRecording("it has no MCAP header")
+    expanded = count = 0
+    for record in records:
+        if isinstance(record, Chunk):
+            expanded += record.uncompressed_size
+            if limits is not None and expanded > limits.max_expanded_size:
+                raise UnusableRecording(
+                    f"its chunks expand to {expanded} bytes or more, limit {limits.max_expanded_size} "
+                    "(imports.max_expanded_size); split the recording"
+                )
+        for each in _chunk_records(record) if isinstance(record, Chunk) else (record,):
+            count += 1
+            if limits is not None and count > limits.max_samples * MAX_RECORDS_PER_SAMPLE:
+                raise UnusableRecording(
+                    f"it has over {limits.max_samples * MAX_RECORDS_PER_SAMPLE} records, {MAX_RECORDS_PER_SAMPLE} for "
+                    "each sample of imports.max_samples; split the recording"
+                )
+            yield each
+
+
+def _chunk_records(chunk: Chunk) -> Iterator[McapRecord]:
+    plain = _decompressed(chunk)
+    if chunk.uncompressed_crc not in (0, zlib.crc32(plain)):
+        raise UnusableRecording("the check sum of a chunk is wrong")
+    stream = io.BytesIO(plain)
+    records = StreamReader(stream, skip_magic=True, emit_chunks=True, record_size_limit=MAX_RECORD_SIZE).records
+    try:
+        while stream.tell() < len(plain):
+            if plain[stream.tell()] == 0:
+                raise UnusableRecording(f"byte {stream.tell()} of a chunk begins no record")
+            if not isinstance(record := next(records), Chunk):  # a chunk in a chunk is none
+                yield record
+    except EndOfFile:
+        if stream.tell() < len(plain):
+            raise
+
+
+def _decompressed(chunk: Chunk) -> bytes:
+    """Return what a chunk holds; never takes more memory than the chunk says that it needs, nor more than the limit."""
+    size = chunk.uncompressed_size
+    if size > MAX_RECORD_SIZE:
+        raise UnusableRecording(
+            f"a chunk of {len(chunk.data)} bytes expands to {size}, limit {MAX_RECORD_SIZE}; write it in smaller chunks"
+        )
+    if chunk.compression == "zstd":
+        decompressor = zstandard.ZstdDecompressor(max_window_size=MAX_RECORD_SIZE)
+        plain = decompressor.stream_reader(chunk.data).read(size + 1)
+    elif chunk.compression == "lz4":
+        plain = lz4.frame.LZ4FrameDecompressor().decompress(chunk.data, max_length=size + 1)
+    elif chunk.compression == "":
+        plain = chunk.data
+    else:
+        raise UnusableRecording(f"a chunk is compressed by {chunk.compression!r}; known: zstd, lz4, none")
+    if len(plain) != size:
+        raise UnusableRecording(
+            f"a chunk that states {size} bytes expands to {'more' if len(plain) > size else len(plain)}"
+        )
+    return plain
