@@ -46,13 +46,24 @@ def decode_setpoint(payload: bytes) -> Setpoint:
     return Setpoint(m.cycle, m.nominal_ns, position, velocity, acceleration, m.gripper_closed, m.execution, way)
 
 
-def joint_state(player: SetpointPlayer, position: Sequence[float], velocity: Sequence[float]) -> bytes:
+def joint_state(
+    player: SetpointPlayer,
+    position: Sequence[float],
+    velocity: Sequence[float],
+    *,
+    enabled: bool = True,
+    protective_stop: bool = False,
+    fault: str = "",
+) -> bytes:
     """Return the joint state of an arm that plays setpoints and measures neither torques nor an object.
 
     Args:
         player: what it plays.
         position: (6,) measured [rad].
         velocity: (6,) measured [rad/s].
+        enabled: whether the drives are on.
+        protective_stop: whether the arm's own controller has stopped it.
+        fault: what is wrong with the arm, in words; empty: nothing.
     """
     newest = player.last_reached
     return JointState(
@@ -67,6 +78,9 @@ def joint_state(player: SetpointPlayer, position: Sequence[float], velocity: Seq
         late=player.late,
         holding=player.state in (PlayerState.STOPPING, PlayerState.STOPPED),
         stopped=player.state is PlayerState.STOPPED,
+        enabled=enabled,
+        protective_stop=protective_stop,
+        fault=fault,
         gripper_closed=newest.gripper_closed if newest else False,
         object_position=[0.0] * 3,
         object_orientation=[0.0] * 4,

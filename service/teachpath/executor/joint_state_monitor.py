@@ -50,11 +50,18 @@ class JointStateMonitor:
         return None if self._latest is None else ((now - self._latest[0]) / 1e9, self._latest[1])
 
     def current(self) -> JointState:
-        """Return the arm's present joint state; raises Unreachable when the arm is silent."""
+        """Return the arm's present joint state.
+
+        Raises:
+            Conflict: the arm can follow no setpoint; why, and the way out.
+            Unreachable: the arm is silent.
+        """
         self.poll()
         latest = self.latest(self._clock())
         if latest is None or latest[0] > self._silence:
             raise Unreachable(f"no joint state from {self.robot}; is the simulator or the arm's driver running?")
+        if latest[1].inability:
+            raise Conflict(latest[1].inability)
         return latest[1]
 
     def resting_q(self, max_speed: float) -> Array:
@@ -64,7 +71,7 @@ class JointStateMonitor:
             max_speed: of a joint that counts as resting [rad/s].
 
         Raises:
-            Conflict: the arm still moves.
+            Conflict: the arm still moves, or can follow no setpoint.
             Unreachable: the arm is silent.
         """
         arm = self.current()

@@ -146,6 +146,10 @@ class Executor:
         self._supervise_arm(current, arm, due)
 
     def _supervise_arm(self, current: Execution, arm: JointState, due: int) -> None:
+        if arm.fault:
+            current.end(ExecutorState.FAULTED, f"{arm.inability}, then start again")
+        elif arm.inability:
+            self._hold(current, f"{arm.inability}; then resume")
         if self._follows_way_to_rest(current, arm, due):
             return
         untaken = current.untaken(arm) / self._settings.rate

@@ -120,6 +120,11 @@ class JointState:
     """What the arm does; joint arrays are (6,), `tracking_error` is the largest over the joints [rad].
 
     An arm that is `holding` follows the way to rest of setpoint `cycle`; once it is `stopped`, it rests at its end.
+
+    Attributes:
+        enabled: whether the drives are on.
+        protective_stop: whether the arm's own controller has stopped it.
+        fault: what is wrong with the arm, in words; empty: nothing.
     """
 
     stamp_ns: int
@@ -136,6 +141,18 @@ class JointState:
     execution: str = ""
     late: int = 0
     stopped: bool = False
+    enabled: bool = True
+    protective_stop: bool = False
+    fault: str = ""
+
+    @property
+    def inability(self) -> str:
+        """Why the arm can follow no setpoint, and the way out, in words; empty when it can."""
+        if self.fault:
+            return f"the arm reports a fault: {self.fault}; clear it at the arm"
+        if self.protective_stop:
+            return "the arm's own controller has stopped it (protective stop): see why, and release it at the arm"
+        return "" if self.enabled else "the arm's drives are off: switch them on at the arm"
 
 
 @dataclass(frozen=True, slots=True)

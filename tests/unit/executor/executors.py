@@ -2,6 +2,7 @@
 
 import threading
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 
@@ -34,6 +35,7 @@ class Bench:
         self.now = 0
         self.position = position
         self.error = 0.0
+        self.drives: dict[str, Any] = {}  # what the joint state says of them; they are on
         self.pushed = 0.0  # [rad] that somebody keeps all joints off their setpoints
         self.velocity = 0.0
         self.speaking = True
@@ -109,6 +111,7 @@ class Bench:
             object_position=(0.0, 0.0, 0.0),
             object_orientation=(1.0, 0.0, 0.0, 0.0),
             execution=newest.execution if newest else "",
+            **self.drives,
         )
 
     def command(self, verb: str, execution: str = "run-1", **given: object) -> ExecutorStatus:

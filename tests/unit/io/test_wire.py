@@ -1,16 +1,35 @@
 import math
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 
 import pytest
+from google.protobuf.descriptor import FieldDescriptor
+from google.protobuf.message import Message
 from hypothesis import given
 from hypothesis import strategies as st
 
 from teachpath.errors import UnusableInput, UnusableSample
 from teachpath.io import wire
 from teachpath.records import Command, ExecutorStatus, JournalEntry, Lease, LeaseRequest
-from teachpath_proto import motion_pb2
+from teachpath_proto import motion_pb2, tracker_pb2
 from teachpath_proto.control import CommandVerb, ExecutorState, LeaseAction
 from tests.unit.recording.hands import sample
+
+FLOATS = (FieldDescriptor.CPPTYPE_DOUBLE, FieldDescriptor.CPPTYPE_FLOAT)
+FILLING = {
+    FieldDescriptor.CPPTYPE_INT64: 1, FieldDescriptor.CPPTYPE_UINT64: 1, FieldDescriptor.CPPTYPE_INT32: 1,
+    FieldDescriptor.CPPTYPE_UINT32: 1, FieldDescriptor.CPPTYPE_ENUM: 1, FieldDescriptor.CPPTYPE_BOOL: True,
+    FieldDescriptor.CPPTYPE_DOUBLE: 0.5, FieldDescriptor.CPPTYPE_FLOAT: 0.5, FieldDescriptor.CPPTYPE_STRING: "a",
+}  # fmt: skip
+DECODERS = [
+    (motion_pb2.Setpoint, wire.decode_setpoint),
+    (motion_pb2.JointState, wire.decode_state),
+    (motion_pb2.ExecutorStatus, wire.decode_status),
+    (motion_pb2.ExecutorCommand, wire.decode_command),
+    (motion_pb2.LeaseRequest, wire.decode_lease_request),
+    (motion_pb2.Lease, wire.decode_lease),
+    (tracker_pb2.StartRecording, wire.decode_recording_request),
+]
 
 GOOD = sample(7, (0.1, 0.2, 0.3))
 
@@ -77,6 +96,48 @@ def test_setpoints_states_and_commands_never_let_rubbish_through(noise: bytes) -
     for decode in (wire.decode_setpoint, wire.decode_state, wire.decode_command):
         with pytest.raises(UnusableInput):
             decode(noise)
+
+
+def filled(kind: type[Message]) -> Message:
+    """A message with something in every field."""
+    message = kind()
+    for field in message.DESCRIPTOR.fields:
+        repeated = field.is_repeated
+        if field.cpp_type == field.CPPTYPE_MESSAGE:
+            inner = filled(field.message_type._concrete_class)
+            getattr(message, field.name).extend([inner]) if repeated else getattr(message, field.name).CopyFrom(inner)
+        else:
+            value = b"" if field.type == field.TYPE_BYTES else FILLING[field.cpp_type]
+            getattr(message, field.name).extend([value]) if repeated else setattr(message, field.name, value)
+    return message
+
+
+def float_fields(message: Message, path: tuple[str, ...] = ()) -> Iterator[tuple[Message, FieldDescriptor]]:
+    for field, value in message.ListFields():
+        if field.cpp_type == field.CPPTYPE_MESSAGE:
+            for inner in value if field.is_repeated else [value]:
+                yield from float_fields(inner)
+        elif field.cpp_type in FLOATS:
+            yield message, field
+
+
+@pytest.mark.parametrize(("kind", "decode"), DECODERS)
+@pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf])
+def test_a_number_that_is_not_finite_is_refused_in_any_field_of_any_message(
+    kind: type[Message], decode: Callable[[bytes], object], value: float
+) -> None:
+    whole = filled(kind)
+    for number, (_, field) in enumerate(float_fields(whole)):
+        broken = filled(kind)
+        place, found = list(float_fields(broken))[number]
+        assert found.name == field.name
+        if field.is_repeated:
+            getattr(place, field.name)[0] = value
+        else:
+            setattr(place, field.name, value)
+        with pytest.raises(UnusableInput, match=field.name) as error:
+            decode(broken.SerializeToString())
+        assert str(value) in str(error.value)
 
 
 def test_the_words_of_the_contract_are_those_of_its_messages() -> None:

@@ -75,6 +75,9 @@ def encode_state(state: JointState) -> bytes:
         execution=state.execution,
         late=state.late,
         stopped=state.stopped,
+        enabled=state.enabled,
+        protective_stop=state.protective_stop,
+        fault=state.fault,
     ).SerializeToString()
 
 
@@ -101,6 +104,9 @@ def decode_state(payload: bytes) -> JointState:
         execution=m.execution,
         late=m.late,
         stopped=m.stopped,
+        enabled=m.enabled,
+        protective_stop=m.protective_stop,
+        fault=m.fault,
     )
 
 

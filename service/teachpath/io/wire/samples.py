@@ -86,7 +86,7 @@ def _parse(payload: bytes) -> tracker_pb2.HandSample:
     if len(payload) > MAX_SAMPLE_SIZE:
         raise UnusableSample(f"a sample of {len(payload)} bytes is over the limit of {MAX_SAMPLE_SIZE}")
     try:
-        return parse(tracker_pb2.HandSample, payload)
+        return parse(tracker_pb2.HandSample, payload, check_finite=False)
     except UnusableInput as error:
         raise UnusableSample(str(error)) from None
 
