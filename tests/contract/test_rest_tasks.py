@@ -58,7 +58,11 @@ SHORT = "t,x,y,z\n" + "".join(f"{i * 0.02},{i},0,0\n" for i in range(6))
         (b"rubbish", {"format": "robottasks"}, "not a whole .npy array"),
         (b"PK\x03\x04rubbish", {"format": "robottasks"}, "not a whole .npy array"),
         (npy(np.zeros((2, 30, 7)))[:-100], {"format": "robottasks"}, "not a whole .npy array"),
-        (npy(np.zeros((2, 30, 7))).replace(b"(2, 30", b"(20000000, 30000000"), {"format": "robottasks"}, "not a whole"),
+        (
+            npy(np.zeros((2, 30, 7))).replace(b"(2, 30", b"(20000000, 30000000"),
+            {"format": "robottasks"},
+            "motions, limit 1000",
+        ),
         (npy(np.zeros((2, 30, 3))), {"format": "robottasks"}, "the array must be floats"),
         (npy(np.zeros((0, 30, 7))), {"format": "robottasks"}, "holds no demonstrations"),
         (npy(np.zeros((2, 0, 7))), {"format": "robottasks"}, "too few"),
