@@ -28,7 +28,7 @@ class _Stop:
 
     command: Command
     is_starting: Callable[[], bool]  # whether what it stops may be about to begin
-    begun: float  # [s of the monotonic clock]
+    start_time: float  # [s of the monotonic clock]
 
 
 class Stopper:
@@ -105,7 +105,7 @@ class Stopper:
                 with suppress(TeachpathError):  # whoever answers is not believed, and whoever does not is put to
                     self._bus.publish(self._key, payload)
                     self._bus.ask(self._key, payload, timeout=REPEAT_INTERVAL)
-                elapsed = time.monotonic() - stop.begun
+                elapsed = time.monotonic() - stop.start_time
                 interval = REPEAT_INTERVAL if elapsed < CONFIRM_TIMEOUT else SLOW_REPEAT_INTERVAL
                 with self._changed:
                     done = self._changed.wait_for(lambda: self._closed or self._is_confirmed(stop), interval)
@@ -119,6 +119,6 @@ class Stopper:
     def _is_confirmed(self, stop: _Stop) -> bool:
         """Tell whether a status that came since the stop was sent shows it."""
         status, execution = self._status, stop.command.execution
-        if status is None or self._received < stop.begun or stop.is_starting():
+        if status is None or self._received < stop.start_time or stop.is_starting():
             return False
         return status.state.is_resting or status.ending or execution not in ("", status.execution)
