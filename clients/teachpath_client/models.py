@@ -686,11 +686,23 @@ class SavedVersion:
 
 @dataclass(frozen=True)
 class Scene:
-    """What stands around the arm. Obstacles include the table; `carried` is the object at its start, or None."""
+    """What stands around the arm. Obstacles include the table; `carried` is the object at its start, or None.
+
+    Arm, gripper and carried object stay above the floor, inside every box of `keep_in` and out of every shape of
+    `keep_out`; nothing stands in these zones, they are rules.
+
+    Attributes:
+        floor: height of the floor [m, world]; the arm's foot stands at 0.
+        keep_in: boxes.
+        keep_out: shapes of any kind.
+    """
 
     name: str
     obstacles: list[Shape] = field(default_factory=list)
     carried: Shape | None = None
+    floor: float = 0.0
+    keep_in: list[Shape] = field(default_factory=list)
+    keep_out: list[Shape] = field(default_factory=list)
 
 
 @dataclass(frozen=True)

@@ -5,7 +5,7 @@ const THEMES = {
 };
 
 /**
- * Add it to meshcat's viewer; returns {fitCamera()}, which puts the camera to its home.
+ * Add it to meshcat's viewer; returns {fitCamera(), setFloor(height)}: the first puts the camera to its home.
  * @param {MeshCatViewer} viewer
  */
 export function createEnvironment(viewer) {
@@ -32,7 +32,13 @@ export function createEnvironment(viewer) {
   };
   dark.addEventListener("change", paint);
   paint();
-  return { fitCamera: () => fitCamera(viewer) };
+  /** @param {number} height of the chosen scene's floor [m] */
+  const setFloor = (height) => {
+    grid.position.z = height;
+    ground.position.z = height + 0.001;
+    viewer.set_dirty();
+  };
+  return { fitCamera: () => fitCamera(viewer), setFloor };
 }
 
 /**

@@ -5,6 +5,7 @@ import { wayColor } from "./way_colors.js";
 
 const GREY = 0x7a8694;
 const RED = 0xd62718;
+const GREEN = 0x2a8f5a;
 
 /** @typedef {{kind: string, size: number[], vertices?: Point[]}} Solid */
 
@@ -39,12 +40,40 @@ export function shapeGeometry({ kind, size, vertices = [] }) {
 /** @param {Shape} shape */
 export function shapeMesh(shape) {
   const { THREE } = globalThis.MeshCat;
-  const mesh = new THREE.Mesh(shapeGeometry(shape), phongMaterial(shape.color));
-  mesh.position.fromArray(shape.position);
-  const [w, x, y, z] = shape.orientation;
-  mesh.quaternion.set(x, y, z, w);
+  const mesh = placed(new THREE.Mesh(shapeGeometry(shape), phongMaterial(shape.color)), shape);
   mesh.castShadow = mesh.receiveShadow = true;
   return mesh;
+}
+
+/**
+ * A zone that the arm keeps out of: one sees through it what is in it.
+ * @param {Shape} zone
+ */
+export function keepOutMesh(zone) {
+  const { THREE } = globalThis.MeshCat;
+  return placed(new THREE.Mesh(shapeGeometry(zone), phongMaterial(RED, 0.18)), zone);
+}
+
+/**
+ * The edges of a box that the arm keeps in.
+ * @param {Shape} zone
+ */
+export function keepInEdges(zone) {
+  const { THREE } = globalThis.MeshCat;
+  const edges = new THREE.EdgesGeometry(shapeGeometry(zone));
+  return placed(new THREE.LineSegments(edges, new THREE.LineBasicMaterial({ color: GREEN })), zone);
+}
+
+/**
+ * @template {THREE.Object3D} T
+ * @param {T} object
+ * @param {Shape} shape that says where it is
+ * @returns {T}
+ */
+function placed(object, { position, orientation: [w, x, y, z] }) {
+  object.position.fromArray(position);
+  object.quaternion.set(x, y, z, w);
+  return object;
 }
 
 /** @param {Point[]} points @param {number | undefined} cluster */

@@ -1,8 +1,17 @@
 // Draws the chosen task in the 3-D view: its scene, demonstrations, learned paths, deviations and spread.
-// Names in the view's tree: /scene/NAME, /demonstrations/ID, /paths/ID, /deviations/ID (of a demonstration), /spread/ID
+// Names in the view's tree: /scene/NAME, /zones/NAME, /demonstrations/ID, /paths/ID, /deviations/ID (of a demonstration), /spread/ID
 // (of a path); panels may draw beside them on the overlay.
 import { get } from "./api.js";
-import { demonstrationLine, deviationTube, highlightTube, pathTube, shapeMesh, spreadTube } from "./meshes.js";
+import {
+  demonstrationLine,
+  deviationTube,
+  highlightTube,
+  keepInEdges,
+  keepOutMesh,
+  pathTube,
+  shapeMesh,
+  spreadTube,
+} from "./meshes.js";
 import { changesAny, latestPaths, selectedRun, waysOfDemonstrations } from "./store.js";
 import { TrajectoryCache, trimKey } from "./trajectory_cache.js";
 
@@ -65,6 +74,11 @@ export class SceneLayers {
       "scene",
       scene.obstacles.map((shape) => [shape.name, JSON.stringify(shape), () => shapeMesh(shape)]),
     );
+    this.#sync("zones", [
+      ...scene.keep_in.map((zone) => drawing(zone.name, `in ${JSON.stringify(zone)}`, () => keepInEdges(zone))),
+      ...scene.keep_out.map((zone) => drawing(zone.name, `out ${JSON.stringify(zone)}`, () => keepOutMesh(zone))),
+    ]);
+    this.view.environment.setFloor(scene.floor);
   }
 
   /** @param {State} state */

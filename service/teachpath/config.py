@@ -158,7 +158,13 @@ def _with_meshes(settings: Settings, folder: Path) -> Settings:
         return replace(shape, vertices=read_hull(folder / shape.file)) if shape.file and not shape.vertices else shape
 
     scenes = tuple(
-        replace(scene, obstacles=tuple(map(read, scene.obstacles)), carried=scene.carried and read(scene.carried))
+        replace(
+            scene,
+            obstacles=tuple(map(read, scene.obstacles)),
+            carried=scene.carried and read(scene.carried),
+            keep_in=tuple(map(read, scene.keep_in)),
+            keep_out=tuple(map(read, scene.keep_out)),
+        )
         for scene in settings.scenes
     )
     return settings.model_copy(update={"scenes": scenes})
@@ -240,10 +246,12 @@ def _check_calibrations(calibrations: tuple[Calibration, ...]) -> None:
 def _check_scenes(scenes: tuple[Scene, ...]) -> None:
     _check_names("scene", (scene.name for scene in scenes))
     for scene in scenes:
-        shapes = scene.obstacles + ((scene.carried,) if scene.carried else ())
-        _check_names(f"body of scene {scene.name}", (shape.name for shape in shapes))
-        for shape in shapes:
+        _check_names(f"body of scene {scene.name}", (shape.name for shape in scene.bodies))
+        for shape in scene.bodies:
             _check_shape(shape, scene.name)
+        for zone in scene.keep_in:
+            if zone.kind != "box":
+                raise UnusableSettings(f"keep-in zone {zone.name} in scene {scene.name} is a {zone.kind}; use a box")
 
 
 def _check_shape(shape: Shape, scene: str) -> None:

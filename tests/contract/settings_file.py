@@ -27,7 +27,9 @@ MORE = {
     "scenes": """\
 # Positions are of centres [m], sizes of a box x, y, z, of a cylinder radius, height, of a sphere its radius; a shape
 # is turned by its `orientation` (quaternion w, x, y, z). A `mesh` has a `file` beside this one (.obj, .stl), and as
-# size the factor from its units to metres; its convex hull takes its place""",
+# size the factor from its units to metres; its convex hull takes its place.
+# `floor`: its height. Arm, gripper and carried object stay above it, inside every box of [[scenes.keep_in]] and out of
+# every shape of [[scenes.keep_out]]""",
 }
 RARE = ("orientation", "file", "vertices")  # of a shape, not shown
 # A setting without a default shows one that it could have.
@@ -68,7 +70,7 @@ def _tables(room: str, values: tuple[Calibration | Scene, ...]) -> Iterator[str]
             shapes = [s for s in (inner if isinstance(inner, tuple) else (inner,)) if isinstance(s, Shape)]
             if shapes:
                 tables[field.name] = shapes
-            elif inner is not None:
+            elif inner not in (None, ()):
                 yield f"{field.name} = {_toml(inner)}"
         for name, shapes in tables.items():
             mark = f"[[{room}.{name}]]" if isinstance(getattr(value, name), tuple) else f"[{room}.{name}]"

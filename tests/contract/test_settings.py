@@ -206,6 +206,23 @@ def test_the_command_line_ends_with_the_sentence(tmp_path: Path) -> None:
     )
 
 
+ZONE = "scenes = [{name = 's', floor = -0.2, %s = [{name = 'z', kind = '%s', size = %s, position = [0, 0, 1]}]}]\n"
+
+
+def test_a_scene_has_a_floor_and_zones_and_one_without_has_a_floor_at_the_arms_foot(tmp_path: Path) -> None:
+    (scene,) = load(toml(tmp_path, "[[scenes]]\nname = 'old'\n")).scenes
+    assert (scene.floor, scene.keep_in, scene.keep_out) == (0.0, (), ())
+    (scene,) = load(toml(tmp_path, ZONE % ("keep_out", "cylinder", "[0.1, 2.0]"))).scenes
+    assert (scene.floor, scene.keep_out[0].size) == (-0.2, (0.1, 2.0))
+    for zone, sentence in (
+        (("keep_in", "cylinder", "[0.1, 2.0]"), "keep-in zone z in scene s is a cylinder; use a box"),
+        (("keep_out", "box", "[0.1, 2.0]"), r"z in scene s has size \(0.1, 2.0\); a box has 3 lengths over 0"),
+        (("keep_off", "box", "[1, 1, 1]"), "there is no setting scenes.0.keep_off; known here: name, obstacles, "),
+    ):
+        with pytest.raises(UnusableSettings, match=sentence):
+            load(toml(tmp_path, ZONE % zone))
+
+
 def test_scenes_are_found_by_name() -> None:
     settings = Settings()
     assert settings.scene("paper").name == "paper"

@@ -85,6 +85,7 @@ class Solids:
         """Return the least distance [m] of arm and object from the obstacles, up to `enough`; negative inside."""
         chain, least = np.array(frames(q)), enough
         poses = chain[self._links] @ self._poses
+        least = min(least, self._within_zones(self.points(q)))
         for shape in self._scene.obstacles:
             for part in np.flatnonzero(_distances(shape, poses[:, :3, 3]) - self._radii < least):
                 least = min(least, _outside(shape, _moved(poses[part], self._points[part])))
@@ -93,6 +94,25 @@ class Solids:
             free = [shape for shape in self._scene.obstacles if shape.name != "table"]  # on which it stands at first
             least = min(least, *(_outside(shape, there) for shape in free), np.inf)
         return float(least)
+
+    def points(self, q: np.ndarray) -> np.ndarray:
+        """Return points (n, 3) [m, world] on all that moves, the held object with it."""
+        chain = np.array(frames(q))
+        moving = [_moved(*part) for part in zip(chain[self._links] @ self._poses, self._points, strict=True)]
+        if self._held is not None:
+            moving.append(_moved(chain[6] @ self._held[0], self._held[1]))
+        return np.concatenate(moving)
+
+    def _within_zones(self, points: np.ndarray) -> float:
+        """Return the least distance [m] of points from the floor, and from where the zones forbid to be."""
+        inside = [-_inside_box(zone, points).max() for zone in self._scene.keep_in]
+        outside = [_distances(zone, points).min() for zone in self._scene.keep_out]
+        return float(min([points[:, 2].min() - self._scene.floor, *inside, *outside]))
+
+
+def _inside_box(zone: Shape, points: np.ndarray) -> np.ndarray:
+    """Return how far (n,) [m] points stick out of an upright box; negative inside."""
+    return (np.abs(points - np.array(zone.position)) - np.array(zone.size) / 2).max(axis=1)
 
 
 def _off_path(tools: np.ndarray, curve: Curve, count: int = 6000) -> float:
@@ -178,7 +198,7 @@ def _turn(axis: int, angle: float) -> np.ndarray:
 
 def _rotation(quaternion: Sequence[float]) -> np.ndarray:
     w, *v = quaternion
-    cross = np.cross(np.eye(3), v)
+    cross = np.cross(np.eye(3), v)  # its product with a vector u is v x u
     pose = np.eye(4)
-    pose[:3, :3] += 2 * w * -cross + 2 * cross @ cross
+    pose[:3, :3] += 2 * w * cross + 2 * cross @ cross
     return pose

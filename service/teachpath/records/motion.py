@@ -36,11 +36,28 @@ class Shape:
 
 @dataclass(frozen=True, slots=True)
 class Scene:
-    """What stands around the arm. Obstacles include the table; `carried` is the object at its start, or None."""
+    """What stands around the arm. Obstacles include the table; `carried` is the object at its start, or None.
+
+    Arm, gripper and carried object stay above the floor, inside every box of `keep_in` and out of every shape of
+    `keep_out`; nothing stands in these zones, they are rules.
+
+    Attributes:
+        floor: height of the floor [m, world]; the arm's foot stands at 0.
+        keep_in: boxes.
+        keep_out: shapes of any kind.
+    """
 
     name: str
     obstacles: tuple[Shape, ...] = ()
     carried: Shape | None = None
+    floor: float = 0.0
+    keep_in: tuple[Shape, ...] = ()
+    keep_out: tuple[Shape, ...] = ()
+
+    @property
+    def bodies(self) -> tuple[Shape, ...]:
+        """All that stands in the scene, and its zones."""
+        return self.obstacles + ((self.carried,) if self.carried else ()) + self.keep_in + self.keep_out
 
 
 @dataclass(frozen=True, slots=True)

@@ -37,6 +37,13 @@ def test_a_plan_survives_json_to_the_last_bit() -> None:
     assert documents.encode(again) == documents.encode(plan)
 
 
+def test_a_scene_that_was_stored_without_floor_and_zones_has_the_defaults() -> None:
+    document = documents.to_document(a_plan().scene)
+    for field in ("floor", "keep_in", "keep_out"):
+        del document[field]
+    assert documents.from_document(Scene, document) == a_plan().scene
+
+
 @pytest.mark.parametrize("payload", [b"", b"{", b"[]", b"null", b"\xff", b'{"id": 1}'])
 def test_what_is_no_document_is_a_sentence(payload: bytes) -> None:
     with pytest.raises(UnusableInput, match=r"not a (Plan|.* in JSON)|not a Plan"):

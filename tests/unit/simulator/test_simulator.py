@@ -14,7 +14,7 @@ from teachpath.motion.arm.kinematics import downward_poses, inverse_kinematics, 
 from teachpath.motion.arm.model import Arm
 from teachpath.motion.collision.builtin_scenes import empty_scene, paper_scene
 from teachpath.motion.settings import MotionSettings
-from teachpath.records import ExecutorStatus, JointState, Scene, Setpoint
+from teachpath.records import ExecutorStatus, JointState, Scene, Setpoint, Shape
 from teachpath.simulator.loop import Simulator
 from teachpath.simulator.settings import SimulatorSettings
 from teachpath.time_source import TimeSource
@@ -241,6 +241,12 @@ def test_carries_the_object_only_when_gripped_near_it() -> None:
             assert np.allclose(states[-1].object_position, tool, atol=2e-3)
             dropped = bench.move(above((x + offset, y, z + 0.15)), 1.0, closed=False)
             assert dropped[-1].object_position[2] == pytest.approx(z, abs=2e-3)  # it falls back onto the table
+
+
+def test_an_object_without_a_table_falls_onto_the_floor_of_its_scene() -> None:
+    block = Shape("block", "box", (0.04, 0.04, 0.04), (0.6, 0.0, 0.2))
+    bench = Bench(Scene("low", carried=block, floor=-0.1))
+    assert bench.run(1.5)[-1].object_position[2] == pytest.approx(-0.08, abs=2e-3)
 
 
 def test_reset_brings_the_object_back_leaves_the_arm_and_takes_a_new_scene() -> None:

@@ -37,6 +37,7 @@ def solid(
     *,
     pose: Array | None = None,
     color: int = 0x8090A0,
+    opacity: float = 1.0,
     outline: Outline = (),
     vertices: Sequence[Vector] = (),
 ) -> bytes:
@@ -49,6 +50,7 @@ def solid(
             metres, with `vertices`, three a triangle) [m].
         pose: (4, 4) to the frame of `path` from the body's centre; None is the identity.
         color: 0xRRGGBB.
+        opacity: 0 to 1.
 
     Raises:
         UnusableInput: the kind is unknown.
@@ -69,7 +71,7 @@ def solid(
         shape = geometry.TriangularMeshGeometry(corners, np.arange(len(corners)).reshape(-1, 3))
     else:
         raise UnusableInput(f"{path} cannot be drawn: {kind!r} is no box, cylinder, sphere, prism or mesh")
-    return _object(path, geometry.Mesh(shape, _paint(color, 1.0)), pose)
+    return _object(path, geometry.Mesh(shape, _paint(color, opacity)), pose)
 
 
 def line(path: str, points: Array, *, color: int, opacity: float = 1.0) -> bytes:

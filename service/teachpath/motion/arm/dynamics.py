@@ -25,6 +25,7 @@ class Dynamics:
     def __init__(self, arm: Arm, carried: Shape | None = None) -> None:
         self._arm = arm
         self._model = mujoco.MjModel.from_xml_string(write_mjcf(Scene("nothing"), arm))
+        self._model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_CONTACT  # of the floor, which would only cost time
         self._data = mujoco.MjData(self._model)
         # Coulomb friction at the joint is the mean of both directions, as the simulated arm has it.
         self._coulomb = np.array([abs(link.gear) * sum(link.coulomb) / 2 for link in arm.links])

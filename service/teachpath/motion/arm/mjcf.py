@@ -23,6 +23,7 @@ OBJECT_DENSITY: Final = 300.0  # kg/m^3, of the carried object: a light wooden b
 _OBSTACLE_CONTACTS: Final = 'contype="1" conaffinity="1"'
 _ARM_CONTACTS: Final = 'contype="0" conaffinity="1"'
 _OBJECT_CONTACTS: Final = 'contype="2" conaffinity="1"'
+_ZONE_CONTACTS: Final = 'contype="0" conaffinity="0"'  # a zone is a rule: nothing stands there
 
 
 def write_mjcf(scene: Scene, arm: Arm, *, timestep: float = 0.001) -> str:
@@ -30,10 +31,11 @@ def write_mjcf(scene: Scene, arm: Arm, *, timestep: float = 0.001) -> str:
 
     Bodies `link1` to `link6` lie in the Denavit-Hartenberg frames, so that a body's pose is that of `link_frames`;
     joints are `joint1` to `joint6`, torque motors `motor1` to `motor6` [N m]. A geom of the arm has the name of its
-    solid, an obstacle's geom is `obstacle:<name>`, and the carried object's body is `carried`.
+    solid, an obstacle's geom is `obstacle:<name>`, a keep-out zone's `zone:<name>`, and the carried object's body is
+    `carried`.
 
     Args:
-        scene: obstacles and carried object, in the world.
+        scene: floor, obstacles, keep-out zones and carried object, in the world.
         arm: that stands in the scene.
         timestep: of the simulation [s].
 
@@ -51,7 +53,9 @@ def write_mjcf(scene: Scene, arm: Arm, *, timestep: float = 0.001) -> str:
             "</asset>",
             "<worldbody>",
             *_solids_of(0),
-            *[_obstacle(shape) for shape in scene.obstacles],
+            f'<geom name="floor" type="plane" size="0 0 1" pos="0 0 {float(scene.floor)!r}" {_OBSTACLE_CONTACTS}/>',
+            *[_fixed(f"obstacle:{shape.name}", shape, _OBSTACLE_CONTACTS) for shape in scene.obstacles],
+            *[_fixed(f"zone:{shape.name}", shape, _ZONE_CONTACTS) for shape in scene.keep_out],
             *_arm(arm),
             *([_carried(scene.carried)] if scene.carried else []),
             "</worldbody>",
@@ -128,18 +132,18 @@ def _mesh(solid: LinkSolid) -> str:
 
 def _bodies(scene: Scene) -> list[tuple[str, Shape]]:
     carried = [(CARRIED_BODY, scene.carried)] if scene.carried else []
-    return [(f"obstacle:{shape.name}", shape) for shape in scene.obstacles] + carried
+    zones = [(f"zone:{shape.name}", shape) for shape in scene.keep_out]
+    return [(f"obstacle:{shape.name}", shape) for shape in scene.obstacles] + zones + carried
 
 
 def _hull(shape: Shape, name: str) -> str:
     return f'<mesh name={quoteattr(name)} vertex="{_text(shape.size[0] * np.ravel(shape.vertices))}"/>'
 
 
-def _obstacle(shape: Shape) -> str:
-    name = f"obstacle:{shape.name}"
+def _fixed(name: str, shape: Shape, contacts: str) -> str:
     return (
         f'<geom name={quoteattr(name)} {_solid(shape, name)} pos="{_text(shape.position)}" '
-        f'quat="{_text(shape.orientation)}" rgba="{_color(shape.color)}" {_OBSTACLE_CONTACTS}/>'
+        f'quat="{_text(shape.orientation)}" rgba="{_color(shape.color)}" {contacts}/>'
     )
 
 

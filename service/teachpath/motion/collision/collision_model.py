@@ -1,10 +1,10 @@
-"""Measures the distances of arm and carried object to the scene, to each other, and between parts of the arm."""
+"""Measures the distances of arm and carried object to the scene and its zones, and between parts of the arm."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
-from itertools import combinations
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from itertools import combinations, product
 from typing import Final
 
 import mujoco
@@ -17,6 +17,7 @@ from teachpath.motion.arm.kinematics import link_frames, rotation_matrices, tool
 from teachpath.motion.arm.mjcf import CARRIED_BODY, write_mjcf
 from teachpath.motion.arm.model import Arm
 from teachpath.motion.arm.puma560 import Array
+from teachpath.motion.collision.boundaries import Boundary, Extent, boundary_distances, scene_boundaries
 from teachpath.records import Scene, Shape, Vector
 
 MAX_DISTANCE: Final = 0.3  # m, larger distances are not measured
@@ -62,6 +63,14 @@ class Load:
     rotation: Array | None = None
 
 
+@dataclass(frozen=True)
+class _Pairs:
+    """What is measured: pairs of geoms, and geoms with the half-space that each stays in."""
+
+    bodies: list[tuple[int, int]] = field(default_factory=list)
+    boundaries: list[tuple[int, Boundary]] = field(default_factory=list)
+
+
 class CollisionModel:
     """The arm's solids and one scene, ready to measure distances (MuJoCo, `mj_geomDistance`)."""
 
@@ -79,9 +88,15 @@ class CollisionModel:
         for shape in scene.obstacles:
             self._obstacles.append(self._id(f"obstacle:{shape.name}"))
             self._names[self._obstacles[-1]] = shape.name
+        self._zones = [self._id(f"zone:{shape.name}") for shape in scene.keep_out]
+        self._names |= {self._id(f"zone:{shape.name}"): f"the keep-out zone {shape.name}" for shape in scene.keep_out}
+        self._boundaries = scene_boundaries(scene)
         self._object = self._id(CARRIED_BODY) if scene.carried else -1
         if scene.carried:
             self._names[self._object] = scene.carried.name
+        self._extents = {
+            geom: self._extent(geom) for geom in (*self._solids, *([self._object] if scene.carried else []))
+        }
         self._closed = self._model.geom_pos.copy()
 
     def clearances(self, q: Array, *, load: Load | None = None, gripper_open: bool = False) -> list[Clearance]:
@@ -99,12 +114,12 @@ class CollisionModel:
 
     def support_distances(self, q: Array, load: Load) -> list[Clearance]:
         """Measure the distance (n rows) of the carried object to its support, on which it stands at its start."""
-        return self._clearances(q, [(self._object, other) for other in self._supports()], load, False)
+        return self._clearances(q, self._supports(), load, False)
 
     def finger_distances(self, q: Array, load: Load) -> list[Clearance]:
         """Measure the distance (n rows) of the open fingers to the object that stands between them."""
         fingers = [geom for geom, part in self._solids.items() if part.opening_offset[1]]
-        return self._clearances(q, [(finger, self._object) for finger in fingers], load, True)
+        return self._clearances(q, _Pairs([(finger, self._object) for finger in fingers]), load, True)
 
     def lever_arms(self, load: Load | None = None) -> Array:
         """Return bounds (6,) [m] on the distance of any moving point to each joint's axis, in any configuration."""
@@ -128,33 +143,51 @@ class CollisionModel:
     def _id(self, name: str) -> int:
         return int(self._model.geom(name).id)
 
-    def _pairs(self, load: Load | None) -> list[tuple[int, int]]:
+    def _extent(self, geom: int) -> Extent:
+        kind, size = self._model.geom_type[geom], self._model.geom_size[geom]
+        if kind == mujoco.mjtGeom.mjGEOM_SPHERE:
+            return Extent(np.zeros((1, 3)), ball=float(size[0]))
+        if kind == mujoco.mjtGeom.mjGEOM_CYLINDER:
+            return Extent(np.outer([-size[1], size[1]], [0.0, 0.0, 1.0]), disc=float(size[0]))
+        if kind == mujoco.mjtGeom.mjGEOM_BOX:
+            return Extent(size * list(product((-1.0, 1.0), repeat=3)))
+        mesh = self._model.mesh(self._model.geom_dataid[geom])
+        return Extent(self._model.mesh_vert[mesh.vertadr[0] :][: mesh.vertnum[0]].astype(np.float64))
+
+    def _pairs(self, load: Load | None) -> _Pairs:
         supports, pairs = self._supports(), self._arm_pairs()
         if load is not None and load.grasp_pose is not None:
-            pairs += [(self._object, other) for other in self._obstacles if other not in supports]
-            pairs += [(self._object, geom) for geom, part in self._solids.items() if part.link <= 4]
+            around = [(self._object, other) for other in self._obstacles + self._zones]
+            pairs.bodies.extend(pair for pair in around if pair not in supports.bodies)
+            pairs.bodies.extend((self._object, geom) for geom, part in self._solids.items() if part.link <= 4)
+            sides = [(self._object, boundary) for boundary in self._boundaries]
+            pairs.boundaries.extend(pair for pair in sides if pair not in supports.boundaries)
         elif load is not None:
-            pairs += [
+            pairs.bodies.extend(
                 (geom, self._object)
                 for geom, part in self._solids.items()
                 if part.link >= 2 and not part.opening_offset[1]
-            ]
+            )
         return pairs
 
-    def _arm_pairs(self) -> list[tuple[int, int]]:
+    def _arm_pairs(self) -> _Pairs:
+        # The foot stands on the floor, and the column turns about its own axis: where they are, they always are.
         moving = [geom for geom, part in self._solids.items() if part.link >= 1 and part.name != _ROTATING_COLUMN]
-        pairs = [(geom, obstacle) for geom in moving for obstacle in self._obstacles]
-        for (one, a), (two, b) in combinations(self._solids.items(), 2):
-            if _may_meet(a, b):
-                pairs.append((one, two))
-        return pairs
+        pairs = [(geom, other) for geom in moving for other in self._obstacles + self._zones]
+        solids = combinations(self._solids.items(), 2)
+        pairs += [(one, two) for (one, a), (two, b) in solids if _may_meet(a, b)]
+        return _Pairs(pairs, [(geom, boundary) for geom in moving for boundary in self._boundaries])
 
-    def _supports(self, touching: float = 0.003) -> set[int]:
+    def _supports(self, touching: float = 0.003) -> _Pairs:
+        """Return what the object stands on at its start: obstacles, or the floor."""
         carried = self.scene.carried
         if carried is None:
-            return set()
-        self._place(np.zeros(6), shape_pose(carried))
-        return {other for other in self._obstacles if self._distance(self._object, other, MAX_DISTANCE) <= touching}
+            return _Pairs()
+        places, turns = self._geom_poses(np.zeros((1, 6)), [shape_pose(carried)])
+        floor = (self._object, self._boundaries[0])
+        on_floor = boundary_distances([floor], self._extents, places, turns)[0, 0] <= touching
+        near = [other for other in self._obstacles if self._distance(self._object, other, MAX_DISTANCE) <= touching]
+        return _Pairs([(self._object, other) for other in near], [floor] if on_floor else [])
 
     def _placed_pose(self, load: Load | None) -> Array | None:
         """Return the pose (4, 4) of an object that stands in the world; None where there is none."""
@@ -178,23 +211,32 @@ class CollisionModel:
     def _distance(self, one: int | np.int64, two: int | np.int64, furthest: float) -> float:
         return float(mujoco.mj_geomDistance(self._model, self._data, int(one), int(two), furthest, None))
 
-    def _clearances(
-        self, q: Array, pairs: Iterable[tuple[int, int]], load: Load | None, gripper_open: bool
-    ) -> list[Clearance]:
+    def _clearances(self, q: Array, pairs: _Pairs, load: Load | None, gripper_open: bool) -> list[Clearance]:
         self._model.geom_pos[:] = self._closed
         if gripper_open:
             for geom, part in self._solids.items():
                 self._model.geom_pos[geom] += part.opening_offset
         q = np.atleast_2d(q)
         held = tool_pose(q, self.arm) @ load.grasp_pose if load is not None and load.grasp_pose is not None else None
-        pair = np.array(list(pairs), dtype=np.int64).reshape(-1, 2)
-        radii = self._model.geom_rbound[pair]  # (pairs, 2) of the two bounding spheres
-        boxes = np.flatnonzero(self._model.geom_type[pair[:, 1]] == mujoco.mjtGeom.mjGEOM_BOX)
         standing = self._placed_pose(load)
         objects = [standing if held is None else held[index] for index in range(len(q))]
         places, turns = self._geom_poses(q, objects)
+        rows = self._body_clearances(q, pairs.bodies, objects, places, turns)
+        if pairs.boundaries:
+            gaps = boundary_distances(pairs.boundaries, self._extents, places, turns)
+            for index, column in enumerate(gaps.argmin(axis=1)):
+                geom, boundary = pairs.boundaries[column]
+                if (gap := float(gaps[index, column])) < rows[index].distance:
+                    rows[index] = Clearance(gap, self._names[geom], boundary.name)
+        return rows
+
+    def _body_clearances(
+        self, q: Array, pairs: list[tuple[int, int]], objects: Sequence[Array | None], places: Array, turns: Array
+    ) -> list[Clearance]:
+        pair = np.array(pairs, dtype=np.int64).reshape(-1, 2)
+        bounds = self._distance_bounds(pair, places, turns)
         rows, nearest = [], 0
-        for gap, row, pose in zip(self._distance_bounds(pair, radii, boxes, places, turns), q, objects, strict=True):
+        for gap, row, pose in zip(bounds, q, objects, strict=True):
             self._place(row, pose)
             # The nearest pair of the row before is mostly the nearest again; then few others have to be measured.
             best = self._distance(pair[nearest, 0], pair[nearest, 1], MAX_DISTANCE) if len(pair) else MAX_DISTANCE
@@ -218,18 +260,16 @@ class CollisionModel:
             places[index], turns[index] = self._data.geom_xpos, self._data.geom_xmat
         return places, turns.reshape(len(q), -1, 3, 3)
 
-    def _distance_bounds(
-        self, pair: NDArray[np.int64], radii: Array, boxes: NDArray[np.int64], places: Array, turns: Array
-    ) -> Array:
+    def _distance_bounds(self, pair: NDArray[np.int64], places: Array, turns: Array) -> Array:
         """Return quick lower bounds (n, pairs) of distances: between bounding spheres, or a bounding sphere and a box.
 
         Args:
             pair: (pairs, 2) indices of geoms.
-            radii: (pairs, 2) of their bounding spheres.
-            boxes: indices of pairs whose second geom is a box, which may be as large as a table.
             places: (n, geoms, 3) positions of the solids.
             turns: (n, geoms, 3, 3) their rotations.
         """
+        radii = self._model.geom_rbound[pair]  # (pairs, 2) of the two bounding spheres
+        boxes = np.flatnonzero(self._model.geom_type[pair[:, 1]] == mujoco.mjtGeom.mjGEOM_BOX)  # as large as a table
         apart = places[:, pair[:, 0]] - places[:, pair[:, 1]]
         gaps = np.linalg.norm(apart, axis=2) - radii.sum(axis=1)
         box = pair[boxes, 1]

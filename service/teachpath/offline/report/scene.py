@@ -15,11 +15,12 @@ from teachpath.motion.arm.geometry import visual_solids
 from teachpath.motion.arm.kinematics import link_frames
 from teachpath.motion.arm.model import Arm
 from teachpath.offline.report.content import Review
-from teachpath.records import Array, MotionPreview
+from teachpath.records import Array, MotionPreview, Shape
 from teachpath_proto.keys import Keys
 
 POINTS = 160  # of a path and of a demonstration as drawn
-RED = 0xD62718  # of departures
+RED = 0xD62718  # of deviations and keep-out zones
+GREEN = 0x2A8F5A  # of keep-in zones
 FRAMES = 240  # of a motion; the viewer goes evenly from one to the next
 
 
@@ -33,17 +34,10 @@ def scene_batch(review: Review, home: Array) -> bytes:
     preview = Preview(MemoryBus(), Keys(), visual_solids(), arm=review.arm, robot="", home=home, statuses=list)
     preview.show_object(review.scene.carried)
     arm = preview.connect(lambda: None).pop() or b""
-    drawn = [
-        commands.solid(
-            f"/scene/{s.name}",
-            s.kind,
-            s.size,
-            pose=commands.pose_of(s.position, s.orientation),
-            color=s.color,
-            vertices=s.vertices,
-        )
-        for s in review.scene.obstacles
-    ]
+    scene = review.scene
+    drawn = [_drawn(f"/scene/{s.name}", s, s.color) for s in scene.obstacles]
+    drawn += [_drawn(f"/zones/{s.name}", s, GREEN, opacity=0.05) for s in scene.keep_in]
+    drawn += [_drawn(f"/zones/{s.name}", s, RED, opacity=0.18) for s in scene.keep_out]
     ways = {member: cluster.index for cluster in review.run.learned.clusters for member in cluster.members}
     for key, trajectory in review.trajectories.items():
         positions = trajectory.thinned(POINTS).positions
@@ -55,6 +49,13 @@ def scene_batch(review: Review, home: Array) -> bytes:
         color = way_color(path.cluster)
         drawn.append(commands.tube(f"/paths/{path.id}", path.curve(u), radius=0.005, color=color))
     return arm + pack(drawn + _deviations(review))
+
+
+def _drawn(path: str, shape: Shape, color: int, *, opacity: float = 1.0) -> bytes:
+    pose = commands.pose_of(shape.position, shape.orientation)
+    return commands.solid(
+        path, shape.kind, shape.size, pose=pose, color=color, opacity=opacity, vertices=shape.vertices
+    )
 
 
 def _deviations(review: Review) -> list[bytes]:

@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 
 from teachpath.motion.planning.plan import plan
-from teachpath.records import Shape
-from tests.plan_checker.checker import GRIP, frames, judge
+from teachpath.records import Scene, Shape
+from tests.plan_checker.checker import GRIP, HIGH, LOW, Solids, frames, judge
 from tests.plan_checker.exhaustive_search import configurations, search
 from tests.plan_checker.random_cases import random_case, streamed
+from tests.unit.motion.collision.solids import Surface
 from tests.unit.motion.ways import learned
 
 ACCEPTED = (3, 4)
@@ -35,6 +36,14 @@ def test_the_judge_of_refusals_knows_every_configuration_of_a_plan_and_what_bloc
         assert min(np.abs(other - q).max() for other in every) < 1e-6
     ball = Shape("ball in the way", "sphere", (0.03,), tuple(curve(np.zeros(1))[0]))
     assert not search(curve, replace(scene, obstacles=(ball,))).possible
+
+
+def test_the_judge_puts_every_solid_where_the_simulated_arm_has_it() -> None:
+    surface, bodies = Surface(), Solids(Scene("nothing"))
+    for q in np.random.default_rng(1).uniform(LOW, HIGH, (20, 6)):
+        points, drawn = surface(q[None])[0], bodies.points(q)
+        np.testing.assert_allclose(drawn.min(axis=0), points.min(axis=0), atol=2e-3)  # a round rim has finitely many
+        np.testing.assert_allclose(drawn.max(axis=0), points.max(axis=0), atol=2e-3)
 
 
 def test_the_checker_notices_what_is_wrong() -> None:
