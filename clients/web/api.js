@@ -1,6 +1,5 @@
 // The REST API of the service: every answer is a document, every failure a sentence with a way out.
-const REQUEST_TIMEOUT = 30_000; // [ms]
-const NO_ANSWER = "The service does not answer. Is it running? This page connects again by itself.";
+import { send } from "./transport.js";
 
 /**
  * What the service refused, or that it did not answer (status 0). `kind` is the service's name of it, e.g. "Conflict";
@@ -50,24 +49,15 @@ export function socketUrl(path) {
  * @returns {Promise<any>} the document
  */
 async function call(method, path, body, further = {}) {
-  const answer = await send(method, path, body, further);
+  /** @type {Record<string, string>} */
+  const headers = { ...further, Accept: "application/json" };
+  if (body !== undefined) headers["Content-Type"] = "application/json";
+  const answer = await send(method, path, { headers, body: body && JSON.stringify(body) }).catch((error) => {
+    throw new ApiError(error.message);
+  });
   const document = await answer.json().catch(() => null);
   if (answer.ok) return document;
   const { detail, error: kind, newer } = document ?? {};
   const unknown = `The service answered ${method} ${path} with status ${answer.status}; look into its log.`;
   throw new ApiError(detail ?? unknown, { status: answer.status, kind, newer });
-}
-
-/** @param {string} method @param {string} path @param {object | undefined} body @param {Record<string, string>} further */
-async function send(method, path, body, further) {
-  /** @type {Record<string, string>} */
-  const headers = { ...further, Accept: "application/json" };
-  if (body !== undefined) headers["Content-Type"] = "application/json";
-  const signal = AbortSignal.timeout(REQUEST_TIMEOUT);
-  try {
-    return await fetch(`/api/v1/${path}`, { method, headers, body: body && JSON.stringify(body), signal });
-  } catch {
-    const late = `The service has not answered for ${REQUEST_TIMEOUT / 1000} s; it may be busy. Try again.`;
-    throw new ApiError(signal.aborted ? late : NO_ANSWER);
-  }
 }

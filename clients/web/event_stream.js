@@ -62,9 +62,16 @@ export class EventStream {
   /** @param {import("./store.js").Store} store */
   constructor(store) {
     this.store = store;
+    store.subscribe((state, changed) => {
+      if (changesAny(changed, "runs", "run")) this.#readLatestVersions(state);
+      if (changed.has("task")) this.#turnToTask(state.task);
+    });
   }
 
-  /** @param {(state: ConnectionState, details: ConnectionDetails) => void} onConnection */
+  /**
+   * Hear the events.
+   * @param {(state: ConnectionState, details: ConnectionDetails) => void} onConnection
+   */
   start(onConnection) {
     const socket = new ReconnectingSocket("events", {
       onMessage: (text) => this.#handleEvent(JSON.parse(text)),
@@ -77,10 +84,6 @@ export class EventStream {
     setInterval(() => {
       if (this.#connection !== "live" && !document.hidden) this.readAll();
     }, POLL_INTERVAL);
-    this.store.subscribe((state, changed) => {
-      if (changesAny(changed, "runs", "run")) this.#readLatestVersions(state);
-      if (changed.has("task")) this.#turnToTask(state.task);
-    });
   }
 
   /**

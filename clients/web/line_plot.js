@@ -101,7 +101,7 @@ export class LinePlot {
         scales: { x: { time: false }, y: this.#yScale() },
         axes: [
           { ...axis, size: 24, values: xTicks },
-          { ...axis, size: 48 },
+          { ...axis, size: yAxisWidth },
         ],
         series: [{}, ...this.series.map((one) => seriesStyle(one, color(one.color)))],
         hooks: { draw: [(chart) => drawLimits(chart, this.limits, color("--bad"))] },
@@ -128,6 +128,10 @@ export class LinePlot {
     if (width > 0 && width !== this.#chart?.width) this.#chart?.setSize({ width, height: this.height });
   }
 }
+
+/** @type {uPlot.Axis.Size} room for the longest label [px] */
+const yAxisWidth = (_, labels) =>
+  Math.max(48, 14 + 6 * Math.max(0, ...(labels ?? []).map((text) => text?.length ?? 0)));
 
 /** @param {Series} series @param {string} stroke @returns {uPlot.Series} */
 function seriesStyle({ label, points }, stroke) {

@@ -6,6 +6,7 @@
 //             update(state, changed)    called after every change of the state; changed is the Set of names (store.js)
 //             show(), hide() }          optional: its tab was chosen, or another one
 // context = { store, eventStream, view, sceneLayers, overlay, messages,
+//             readOnly                  nothing can be ordered: a review package shows the panel
 //             attempt(order)            do an order; an error becomes a sentence in the message line
 //             open(id) }                choose another tab
 // A panel reads context.store.state, changes it with context.store.set(), and speaks REST through api.js.
@@ -25,16 +26,15 @@ import { SceneLayers } from "./scene_layers.js";
 import { activeExecution, Store } from "./store.js";
 import { Tabs } from "./tabs.js";
 import { View } from "./view.js";
+import { connectViewControls } from "./view_controls.js";
+import { feedView } from "./view_feed.js";
 
 const root = document.documentElement;
 const store = new Store();
 const eventStream = new EventStream(store);
 const messages = new Messages(byId("message"));
-const view = new View(byId("view"), {
-  onConnection: (state, details) => showConnection("connection", state, details),
-  onReady() {
-    if (sceneLayers.isComplete) root.dataset.scene = "ready";
-  },
+const view = new View(byId("view"), () => {
+  if (sceneLayers.isComplete) root.dataset.scene = "ready";
 });
 const sceneLayers = new SceneLayers(view, store);
 enablePathPicking(view, store, sceneLayers);
@@ -73,6 +73,7 @@ const context = {
   sceneLayers,
   overlay: view.overlay,
   messages,
+  readOnly: false,
   attempt: (order) => messages.attempt(order),
   open: (id) => tabs.select(id),
 };
@@ -94,13 +95,7 @@ byId("panels").addEventListener("click", (event) => {
   const { open } = closestData(event, "[data-open]");
   if (open) tabs.select(open);
 });
-for (const box of document.querySelectorAll("input[data-layer]")) {
-  const { dataset } = /** @type {HTMLInputElement} */ (box);
-  box.addEventListener("change", () => {
-    view.setLayerVisible(dataset.layer ?? "", /** @type {HTMLInputElement} */ (box).checked);
-  });
-}
-byId("home").addEventListener("click", () => view.resetCamera());
+connectViewControls(view);
 // The space bar stops the arm wherever the focus is, but in a text field.
 addEventListener(
   "keydown",
@@ -121,7 +116,7 @@ function stop() {
 }
 
 eventStream.start((state, details) => showConnection("events", state, details));
-view.connect();
+feedView(view, (state, details) => showConnection("connection", state, details));
 
 // What the browser tests may ask: the state, whether all of the task is drawn, paths drawn, where they are, how often
 // the view was drawn.

@@ -1,10 +1,7 @@
-// The 3-D view: meshcat's viewer as a library, fed by our own WebSocket.
-// Server to page: batches of [u32 little-endian length][umsgpack command]; the first batch of a connection is the
-// whole scene. Page to server: the number of batches drawn, as text, from the next animation frame.
+// The 3-D view: meshcat's viewer as a library. The service's part of it comes in batches, see view_feed.js.
 
 import { createEnvironment } from "./environment.js";
 import { Overlay } from "./overlay.js";
-import { ReconnectingSocket } from "./reconnecting_socket.js";
 
 const SERVICE_OBJECTS = ["robot", "object", "hand"]; // what the service draws; the rest is the page's own
 const LAYERS = ["demonstrations", "paths", "deviations", "spread", "hand"];
@@ -12,9 +9,9 @@ const LAYERS = ["demonstrations", "paths", "deviations", "spread", "hand"];
 export class View {
   /**
    * @param {HTMLElement} element
-   * @param {{onConnection: (state: ConnectionState, details: ConnectionDetails) => void, onReady: () => void}} callbacks
+   * @param {() => void} onReady called when the arm or a scene has been drawn
    */
-  constructor(element, { onConnection, onReady }) {
+  constructor(element, onReady) {
     this.viewer = new globalThis.MeshCat.Viewer(element);
     this.builtins = new Set(Object.keys(this.viewer.scene_tree.children)); // meshcat's own
     this.onReady = onReady;
@@ -22,7 +19,6 @@ export class View {
     /** @type {Set<string> | null} */
     this.highlightedNames = null;
     this.draws = 0;
-    this.undrawn = 0; // batches that have come since the last frame
     this.renderTime = 0; // [ms] that handing the newest draw to the graphics card took
     /** @type {Set<string>} */
     this.dimmedKinds = new Set(); // kinds that are drawn pale, so that what is edited stands out
@@ -33,20 +29,6 @@ export class View {
     this.environment = createEnvironment(this.viewer);
     this.#sizeTo(element);
     this.overlay = new Overlay(this.viewer, element);
-    this.socket = new ReconnectingSocket("view", {
-      onMessage: (batch) => this.#draw(batch),
-      onState: (state, details) => {
-        if (state === "live") {
-          this.undrawn = 0;
-          this.#clearServiceObjects(); // the first batch is the whole scene
-        }
-        onConnection(state, details);
-      },
-    });
-  }
-
-  connect() {
-    this.socket.open();
   }
 
   /** @param {string} layer @param {boolean} visible */
@@ -152,16 +134,10 @@ export class View {
   }
 
   /**
-   * Apply a batch, and tell with the next frame how many have been drawn since the last one.
+   * Apply a batch of commands, [u32 little-endian length][umsgpack command] one after the other.
    * @param {ArrayBuffer} batch
    */
-  #draw(batch) {
-    if (this.undrawn++ === 0) {
-      requestAnimationFrame(() => {
-        if (this.undrawn) this.socket.send(String(this.undrawn));
-        this.undrawn = 0;
-      });
-    }
+  draw(batch) {
     const bytes = new DataView(batch);
     for (let at = 0; at + 4 <= bytes.byteLength; ) {
       const length = bytes.getUint32(at, true);
@@ -171,8 +147,8 @@ export class View {
     this.viewer.set_dirty();
   }
 
-  // Only what exists: meshcat makes an empty group of every path it is asked for.
-  #clearServiceObjects() {
+  /** Remove what the service has drawn. Only what exists: meshcat makes an empty group of every path it is asked for. */
+  clearServiceObjects() {
     for (const name of SERVICE_OBJECTS) if (this.viewer.scene_tree.children[name]) this.viewer.delete_path([name]);
   }
 

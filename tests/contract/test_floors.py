@@ -59,6 +59,7 @@ DOORS = {
     "mcap": ["io/store"],
     "mcap_protobuf": ["io/store"],
     "foxglove_schemas_protobuf": ["io/store"],
+    "jinja2": ["offline/report/package.py"],
     "hmmlearn": ["learning/selection/hmm.py"],
     "geomdl": ["exchange.py"],
     "ruckig": ["motion/execution/governor.py", "motion/execution/teleop_follower.py", "motion/timing/joint_moves.py"],

@@ -20,7 +20,7 @@ const NOTHING = "No demonstrations yet. Show the task with a tracker, or let a s
 const ABOUT_MARKS = `${MARK_SYMBOLS[""]} marks one good, then bad: the bad ones are not learned from. × discards one; it can be brought back.`;
 
 /** @param {HTMLElement} place @param {Context} context @returns {Section} */
-export function demonstrationList(place, { store, sceneLayers, attempt }) {
+export function demonstrationList(place, { store, sceneLayers, attempt, readOnly }) {
   trackFocus(place, store);
   place.addEventListener("click", (event) => {
     const { verb, discard, restore, marked, mark } = closestData(event);
@@ -34,7 +34,7 @@ export function demonstrationList(place, { store, sceneLayers, attempt }) {
       const isNew = changesAny(changed, "demonstrations", "guidance", "task", "tasks", "runs", "run");
       if (isNew || changed.has("trajectoriesLoaded")) {
         const scrolled = place.querySelector("ol")?.scrollTop ?? 0;
-        patchChildren(place, content(state, sceneLayers.trajectories));
+        patchChildren(place, content(state, sceneLayers.trajectories, readOnly));
         place.querySelector("ol")?.scrollTo(0, scrolled);
       }
       markFocus(place, state.focus); // also on what has just been drawn anew
@@ -42,8 +42,13 @@ export function demonstrationList(place, { store, sceneLayers, attempt }) {
   };
 }
 
-/** @param {State} state @param {import("../trajectory_cache.js").TrajectoryCache} trajectories @returns {Child} */
-function content(state, trajectories) {
+/**
+ * @param {State} state
+ * @param {import("../trajectory_cache.js").TrajectoryCache} trajectories
+ * @param {boolean} readOnly
+ * @returns {Child}
+ */
+function content(state, trajectories, readOnly) {
   const { task, tasks, demonstrations, guidance } = state;
   if (demonstrations === null && tasks === null) return hint(AWAY);
   if (!demonstrations?.length) {
@@ -61,11 +66,13 @@ function content(state, trajectories) {
     element(
       "ol",
       { class: "demonstration-list", "aria-label": "demonstrations, newest first" },
-      newest.map((d) => demonstrationRow(d, draw(d.id))),
+      newest.map((d) => demonstrationRow(d, draw(d.id), readOnly)),
     ),
-    element("p", { class: "note" }, ABOUT_MARKS),
-    discardButtons(kept.length, demonstrations.length),
-    usable > 0 && exportLinks(task),
+    !readOnly && [
+      element("p", { class: "note" }, ABOUT_MARKS),
+      discardButtons(kept.length, demonstrations.length),
+      usable > 0 && exportLinks(task),
+    ],
   ];
 }
 
@@ -119,16 +126,11 @@ function exportLinks(task) {
   return element("p", { class: "note saved" }, "Save them to files: ", mcap, ", ", csv, " or ", lerobot, ".");
 }
 
-/** @param {Demonstration} demonstration @param {Child} preview */
-function demonstrationRow({ id, number, verdict, mark, trim, reasons, duration, discarded_ns, statistics }, preview) {
+/** @param {Demonstration} demonstration @param {Child} preview @param {boolean} readOnly */
+function demonstrationRow(demonstration, preview, readOnly) {
+  const { id, number, verdict, mark, trim, reasons, duration, discarded_ns, statistics } = demonstration;
   const why = [mark && `marked ${mark}`, trim && "trimmed", ...reasons].filter(Boolean).join("; ");
   const word = discarded_ns ? "discarded" : verdict;
-  const [verb, sign, name] = discarded_ns ? ["restore", "↶", "Restore"] : ["discard", "×", "Discard"];
-  const next = NEXT_MARK[mark] ?? "";
-  const marking = `Mark demonstration ${number} ${next || "neither good nor bad"}`;
-  const markLabel = { "aria-label": marking, title: marking };
-  const discardLabel = { "aria-label": `${name} demonstration ${number}`, title: name };
-  const button = { type: "button", class: "close" };
   return element(
     "li",
     { class: word, value: String(number), "data-focus": `demonstrations ${id}` },
@@ -137,12 +139,25 @@ function demonstrationRow({ id, number, verdict, mark, trim, reasons, duration, 
     element("span", { class: "verdict" }, word),
     element("span", { class: "figure" }, statistics.lost > 0 && `${statistics.lost} lost`),
     element("span", { class: "figure" }, formatNumber(duration, 1, "s")),
+    !readOnly && rowButtons(demonstration),
+    why && element("span", { class: "why" }, capitalize(why)),
+  );
+}
+
+/** @param {Demonstration} demonstration */
+function rowButtons({ id, number, mark, discarded_ns }) {
+  const [verb, sign, name] = discarded_ns ? ["restore", "↶", "Restore"] : ["discard", "×", "Discard"];
+  const next = NEXT_MARK[mark] ?? "";
+  const marking = `Mark demonstration ${number} ${next || "neither good nor bad"}`;
+  const markLabel = { "aria-label": marking, title: marking };
+  const discardLabel = { "aria-label": `${name} demonstration ${number}`, title: name };
+  const button = { type: "button", class: "close" };
+  return [
     element(
       "button",
       { ...button, ...markLabel, "data-marked": id, "data-mark": next, "data-key": `mark ${id}` },
       MARK_SYMBOLS[mark] ?? MARK_SYMBOLS[""],
     ),
     element("button", { ...button, ...discardLabel, [`data-${verb}`]: id, "data-key": `discard ${id}` }, sign),
-    why && element("span", { class: "why" }, capitalize(why)),
-  );
+  ];
 }

@@ -92,7 +92,7 @@ class DendrogramCut {
     const make = { type: "button", class: "primary", "data-cut": "1", "data-key": "cut" };
     patchChildren(
       this.buttons,
-      differs && cut && element("button", make, `Make ${ways}`),
+      differs && cut && !this.context.readOnly && element("button", make, `Make ${ways}`),
       differs && element("button", { type: "button", "data-back": "1", "data-key": "back" }, "Put it back"),
     );
   }

@@ -4,8 +4,8 @@ import { latestPaths, selectedPath } from "../store.js";
 import { capitalize, formatNumber, pluralize } from "../texts.js";
 import { wayClass } from "../way_colors.js";
 
-/** @param {State} state @param {Cluster} cluster */
-export function pathCard(state, cluster) {
+/** @param {State} state @param {Cluster} cluster @param {boolean} readOnly */
+export function pathCard(state, cluster, readOnly) {
   const path = latestPaths(state).find((other) => other.cluster === cluster.index);
   if (!path) {
     const why = element("p", { class: "note" }, cluster.note || "No path was learned.");
@@ -21,7 +21,7 @@ export function pathCard(state, cluster) {
     definitionList([...facts(path, cluster), ...(summary.facts ?? [])]),
     summary.error && element("p", { class: "failed" }, capitalize(summary.error)),
     notes.map((note) => element("p", { class: "note" }, capitalize(note))),
-    actions(path, summary),
+    actions(path, summary, readOnly),
   );
 }
 
@@ -56,14 +56,15 @@ function facts({ version, curve, fit }, { scores, members, spread }) {
   ];
 }
 
-/** @param {LearnedPath} path @param {PathSummary} summary */
-function actions({ id, cluster }, { planning, planned }) {
+/** @param {LearnedPath} path @param {PathSummary} summary @param {boolean} readOnly */
+function actions({ id, cluster }, { planning, planned }, readOnly) {
   /** @param {string} verb @param {string} text @param {string} label @param {boolean} disabled */
   const button = (verb, text, label, disabled = false) => {
     const data = { [`data-${verb}`]: id, "data-key": `${verb} ${id}` };
     const attributes = { type: "button", "aria-label": `${label} way ${cluster}`, disabled: disabled && "" };
     return element("button", { ...attributes, ...data }, text);
   };
+  if (readOnly) return planned && element("p", { class: "buttons" }, button("run", "Motion", "See the motion of"));
   return element(
     "p",
     { class: "buttons" },

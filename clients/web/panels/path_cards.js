@@ -17,7 +17,7 @@ const NOTHING =
   "Nothing to learn from yet. Show the task a few times first, each way at least three times; then learn it here, or with:";
 
 /** @param {HTMLElement} place @param {Context} context @returns {Section} */
-export function pathCards(place, { store, attempt, open }) {
+export function pathCards(place, { store, attempt, open, readOnly }) {
   const pathSummaries = new PathSummaries(store);
   place.addEventListener("click", (event) => {
     const { learn, plan, edit, run, path } = closestData(event, BUTTONS);
@@ -38,14 +38,15 @@ export function pathCards(place, { store, attempt, open }) {
     update(state, changed) {
       if (isShown() && changesAny(changed, "runs", "run", "latestVersions", "jobs")) pathSummaries.refresh(state);
       const isNew = changesAny(changed, "runs", "run", "latestVersions", "path", "jobs", "task");
-      if (isNew || changesAny(changed, "demonstrations", "pathSummaries")) patchChildren(place, content(state));
+      if (isNew || changesAny(changed, "demonstrations", "pathSummaries"))
+        patchChildren(place, content(state, readOnly));
       markFocus(place, state.focus); // also on what has just been drawn anew
     },
   };
 }
 
-/** @param {State} state @returns {Child} */
-function content(state) {
+/** @param {State} state @param {boolean} readOnly @returns {Child} */
+function content(state, readOnly) {
   const { runs, task } = state;
   const run = selectedRun(state);
   const usable = (state.demonstrations ?? []).filter(isUsable);
@@ -60,11 +61,11 @@ function content(state) {
   const fresh = usable.filter((d) => !run.learned.demonstrations.includes(d.id)).length;
   return [
     runs && runs.length > 1 && runSelect(runs, run),
-    hint(ABOUT_CARDS),
+    !readOnly && hint(ABOUT_CARDS),
     run.learned.notes.map((note) => element("p", { class: "note" }, capitalize(note))),
-    run.learned.clusters.map((cluster) => pathCard(state, cluster)),
+    run.learned.clusters.map((cluster) => pathCard(state, cluster, readOnly)),
     run === runs?.[0] && fresh > 0 && hint(`${fresh} ${pluralize(fresh, "demonstration")} came after this run.`),
-    learnButton(state, fresh > 0 ? "Learn again" : "Learn anew"),
+    !readOnly && learnButton(state, fresh > 0 ? "Learn again" : "Learn anew"),
   ];
 }
 

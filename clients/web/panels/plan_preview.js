@@ -123,9 +123,12 @@ class PlanPreview {
     const newer = plan && this.#newestVersion > plan.path_version ? this.#newestVersion : 0;
     patchChildren(
       this.facts,
-      path ? content(path, plan, job, newer) : [hint(NOTHING), tabButton("ways", "Go to the ways")],
+      path
+        ? content(path, plan, job, newer, this.context.readOnly)
+        : [hint(NOTHING), tabButton("ways", "Go to the ways")],
     );
-    this.planButton.hidden = !path || plan === undefined || (plan !== null && !newer) || working;
+    const wanted = path !== null && (plan === null || newer > 0) && !working && !this.context.readOnly;
+    this.planButton.hidden = !wanted;
     this.planButton.textContent = newer ? `Plan version ${newer}` : "Plan the motion";
     this.previewButton.hidden = !plan || Boolean(this.player.motion);
   }
@@ -136,9 +139,10 @@ class PlanPreview {
  * @param {Plan | null | undefined} plan
  * @param {Job | null} job
  * @param {number} newer version that is not certified yet, or 0
+ * @param {boolean} readOnly
  * @returns {Child[]}
  */
-function content(path, plan, job, newer) {
+function content(path, plan, job, newer, readOnly) {
   const title = element("p", {}, `Way ${path.cluster}${plan ? `, version ${plan.path_version}` : ""}.`);
   if (job?.state === "queued" || job?.state === "running") {
     return [title, hint(job.message || "Planning …"), progressBar(job.fraction, "planning")];
@@ -147,7 +151,7 @@ function content(path, plan, job, newer) {
   if (plan) return [title, newer > 0 && hint(`Version ${newer} is newer and not certified yet.`), planFacts(plan)];
   if (job?.state !== "failed") return [title, hint("This path has no certified motion yet.")];
   const why = element("p", { class: "failed" }, `It cannot be run: ${job.message}`);
-  return [title, why, tabButton("edit", "Edit the path")];
+  return [title, why, !readOnly && tabButton("edit", "Edit the path")];
 }
 
 /** @param {Plan} plan */

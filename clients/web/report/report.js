@@ -1,87 +1,69 @@
-// The 3-D scene of a review package: draws the batch, and lets the arm move along the chosen way.
-(() => {
-  const { scene, motions } = JSON.parse(document.getElementById("data").textContent);
-  const byId = (id) => document.getElementById(id);
-  const view = byId("view");
-  const viewer = new MeshCat.Viewer(view);
-  const { THREE } = MeshCat;
-  viewer.gui.domElement.remove(); // meshcat's own control panel covers the view
-  const resize = Object.getPrototypeOf(viewer).set_3d_pane_size.bind(viewer);
-  viewer.set_3d_pane_size = () => resize(view.clientWidth, view.clientHeight);
-  for (const name of ["Axes", "Grid"]) viewer.set_property([name], "visible", false);
-  const dark = matchMedia("(prefers-color-scheme: dark)");
-  const backdrop = () => {
-    viewer.scene.background = new THREE.Color(dark.matches ? 0x171b20 : 0xe9edf1);
-    viewer.set_dirty();
-  };
-  dark.addEventListener("change", backdrop);
-  backdrop();
+// The review package: the operator's view and panels, reading an archive instead of the service.
+import { closestData } from "../elements.js";
+import { EventStream } from "../event_stream.js";
+import { Messages } from "../messages.js";
+import { demonstrationList } from "../panels/demonstration_list.js";
+import { planPreview } from "../panels/plan_preview.js";
+import { sectionedPanel } from "../panels/sectioned_panel.js";
+import { panel as ways } from "../panels/ways.js";
+import { enablePathPicking } from "../path_picking.js";
+import { SceneLayers } from "../scene_layers.js";
+import { Store } from "../store.js";
+import { Tabs } from "../tabs.js";
+import { View } from "../view.js";
+import { connectViewControls } from "../view_controls.js";
+import { certificate } from "./certificate.js";
+import { provenance } from "./provenance.js";
 
-  const bytes = Uint8Array.from(atob(scene), (letter) => letter.charCodeAt(0));
-  const lengths = new DataView(bytes.buffer);
-  for (let at = 0; at < bytes.length; ) {
-    const length = lengths.getUint32(at, true);
-    viewer.handle_command_bytearray(bytes.slice(at + 4, at + 4 + length));
-    at += 4 + length;
-  }
-  // Seen through what stands before them: departures lie among the paths that they depart from.
-  viewer.scene_tree.find(["departures"]).object.traverse((node) => {
-    if (!node.material) return;
-    Object.assign(node.material, { depthTest: false, transparent: true });
-    node.renderOrder = 2;
-  });
-  viewer.set_3d_pane_size();
-  viewer.camera.fov = 30;
-  viewer.camera.position.set(1.95, 1.55, 1.8); // three's frame: y up
-  viewer.controls.target.set(0.22, 0.5, 0);
-  viewer.camera.updateProjectionMatrix();
-  viewer.controls.update();
-  new ResizeObserver(() => viewer.set_3d_pane_size()).observe(view);
+const motion = sectionedPanel("run", "Motion", [
+  ["preview", "Preview", planPreview],
+  ["certificate", "What it is certified for", certificate],
+]);
+const demonstrations = sectionedPanel("demonstrations", "Demonstrations", [
+  ["task", "Demonstrations", demonstrationList],
+]);
+const origin = sectionedPanel("origin", "Origin", [["provenance", "Made with", provenance]]);
+const panels = [ways, motion, demonstrations, origin];
 
-  let motion = motions[0];
-  let playing = false;
-  const show = (share) => {
-    const last = motion.times.length - 1;
-    const at = Math.min(last, Math.max(0, share * last));
-    const [low, high, part] = [Math.floor(at), Math.min(last, Math.floor(at) + 1), at % 1];
-    const between = (a, b) => a.map((value, i) => value + part * (b[i] - value));
-    for (const [i, pose] of motion.links[low].entries()) {
-      viewer.set_transform(["robot", `link${i}`], between(pose, motion.links[high][i]));
-    }
-    if (motion.object) viewer.set_transform(["object"], between(motion.object[low], motion.object[high]));
-    const now = motion.times[low] + part * (motion.times[high] - motion.times[low]);
-    const segment = motion.segments.find((one) => now >= one.begin && now <= one.end);
-    byId("said").textContent =
-      `${now.toFixed(2)} of ${motion.times[last].toFixed(2)} s${segment ? `, ${segment.name}` : ""}`;
-    byId("time").value = String(share);
-    viewer.set_dirty();
-  };
-  const step = (before) => (now) => {
-    if (!playing) return;
-    const share = Math.min(1, Number(byId("time").value) + (now - before) / 1000 / motion.times.at(-1));
-    show(share);
-    if (share < 1) requestAnimationFrame(step(now));
-    else play(false);
-  };
-  const play = (on) => {
-    playing = on;
-    byId("play").textContent = on ? "Pause" : "Play";
-    if (on && Number(byId("time").value) >= 1) show(0);
-    if (on) requestAnimationFrame((now) => step(now)(now));
-  };
-  if (motion) {
-    byId("controls").hidden = false;
-    byId("motion").replaceChildren(...motions.map((one, i) => new Option(one.name, i)));
-    byId("motion").addEventListener("change", (event) => {
-      motion = motions[Number(event.target.value)];
-      show(0);
-    });
-    byId("play").addEventListener("click", () => play(!playing));
-    byId("time").addEventListener("input", (event) => {
-      play(false);
-      show(Number(event.target.value));
-    });
-    show(0);
-  }
-  document.documentElement.dataset.report = "ready";
-})();
+/** @param {string} id */
+const byId = (id) => /** @type {HTMLElement} */ (document.getElementById(id));
+
+const store = new Store();
+const eventStream = new EventStream(store);
+const messages = new Messages(byId("message"));
+const view = new View(byId("view"), () => {
+  if (sceneLayers.isComplete) document.documentElement.dataset.report = "ready";
+});
+const sceneLayers = new SceneLayers(view, store);
+const tabs = new Tabs(byId("tabs"), byId("panels"), (id) => {
+  for (const panel of panels) panel[panel.id === id ? "show" : "hide"]?.();
+});
+/** @type {Context} */
+const context = {
+  store,
+  eventStream,
+  view,
+  sceneLayers,
+  overlay: view.overlay,
+  messages,
+  readOnly: true,
+  attempt: (order) => messages.attempt(order),
+  open: (id) => tabs.select(id),
+};
+for (const panel of panels) panel.mount(tabs.add(panel.id, panel.title), context);
+store.subscribe((state, changed) => {
+  for (const panel of panels) panel.update(state, changed);
+  sceneLayers.update(state, changed);
+});
+byId("panels").addEventListener("click", (event) => {
+  const { open } = closestData(event, "[data-open]");
+  if (open) tabs.select(open);
+});
+enablePathPicking(view, store, sceneLayers);
+connectViewControls(view);
+const arm = Uint8Array.from(atob(byId("arm").textContent ?? ""), (letter) => letter.charCodeAt(0));
+view.draw(arm.buffer);
+eventStream.readAll();
+
+// What the browser tests may ask.
+Object.assign(globalThis, { teachpath: { state: () => store.state, objectPaths: () => view.objectPaths() } });

@@ -9,21 +9,16 @@ from fastapi import APIRouter, Response, WebSocket
 from fastapi.responses import FileResponse, PlainTextResponse
 
 from teachpath.api import sockets
-from teachpath.live.preview.asset_paths import viewer_files, web_files
+from teachpath.live.preview.asset_paths import VIEWER_STYLES, viewer_files, web_files
 from teachpath.live.preview.preview import Preview
 from teachpath.live.preview.scene_tree import Viewer
 
-# The two hashes are the style elements that meshcat's bundle puts into the page: its own (empty) one and dat.gui's.
-STYLE_HASHES: Final = (
-    "sha256-47DEQpj8HBSa+/TImW+5JCeuQeRkm5NMpJWZG3hSuFU=",
-    "sha256-K7kXOYqP8pf16L5/PaLZ4u9Lt5q3nTyjCvyGtO/Af2k=",
-)
 HEADERS: Final = {
     "Content-Security-Policy": "; ".join(
         (
             "default-src 'none'",
             "script-src 'self'",
-            "style-src 'self' " + " ".join(f"'{digest}'" for digest in STYLE_HASHES),
+            "style-src 'self' " + " ".join(f"'{digest}'" for digest in VIEWER_STYLES),
             "connect-src 'self'",
             "img-src 'self' data: blob:",
             "base-uri 'none'",

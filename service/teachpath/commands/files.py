@@ -123,11 +123,9 @@ def _demonstrations(
 
 
 def _review(run: str, file: Path, settings: Settings) -> None:
-    import numpy as np
-
     from teachpath.app import trajectory_of
     from teachpath.io.store.store import Store
-    from teachpath.offline.report import review_of, write
+    from teachpath.offline.report import review_of, write_package
 
     store = Store(settings.store)
     try:
@@ -138,12 +136,13 @@ def _review(run: str, file: Path, settings: Settings) -> None:
             trajectory=lambda row: trajectory_of(store, settings, row),
             motion=settings.motion,
             arm=settings.arm,
+            robot=settings.bus.robot,
             dwell=settings.executor.dwell,
         )
     finally:
         store.close()
-    size = write(review, file, home=np.array(settings.motion.home))
-    print(f"{file}: {size / 1e6:.1f} MB, {len(review.paths)} paths, {len(review.motions)} of them move")
+    size = write_package(review, file)
+    print(f"{file}: {size / 1e6:.1f} MB, {len(review.run.learned.paths)} paths, {review.count('motion')} of them move")
 
 
 def doctor(config: Config = None, data: Data = None) -> None:

@@ -1,108 +1,124 @@
-"""The review package: what it holds, that it fetches nothing, and that nothing of it can break out of its place."""
+"""The review package: what it holds, that its modules are the page's, that text from outside stays text."""
 
+import base64
+import json
 import re
 from collections.abc import Iterator
 from dataclasses import replace
+from html.parser import HTMLParser
 from pathlib import Path
 
-import numpy as np
 import pytest
 import umsgpack
 from typer.testing import CliRunner
 
 from teachpath.__main__ import app
 from teachpath.errors import NotFound, UnusableInput
-from teachpath.io.store.settings import StoreSettings
+from teachpath.io.documents import encode
 from teachpath.io.store.store import Store
-from teachpath.learning.learn import learn
-from teachpath.learning.settings import LearningSettings
-from teachpath.live.preview.commands import pose_of
-from teachpath.motion.arm.model import Arm
-from teachpath.motion.collision.builtin_scenes import paper_scene
-from teachpath.motion.settings import MotionSettings
-from teachpath.offline.report import Review, review_of, write
-from teachpath.offline.report.scene import scene_batch
-from teachpath.records import Demonstration, Deviation, Scene, Shape, Trajectory
-from tests.contract.rows import a_job, demonstration
-
-HOME = np.array(MotionSettings().home)
-NASTY = "</script><script>alert(1)</script>"
+from teachpath.live.preview.asset_paths import web_files
+from teachpath.offline.report import write_package
+from teachpath.offline.report.modules import import_map
+from teachpath.offline.report.package import INSTEAD, package_html
+from tests.unit.offline.reviews import COUNT, HOSTILE, learned_store, review
 
 
-def trajectory(shown: Demonstration) -> Trajectory:
-    t = np.linspace(0.0, 1.0, 120)
-    swing = (0.2 if shown.number % 2 else -0.1) + 0.004 * np.sin(7.0 * shown.number + 3 * t)
-    return Trajectory(3.0 * t, np.column_stack([0.35 + swing * np.sin(np.pi * t), 0.5 * t - 0.25, np.full(120, 0.6)]))
+class Elements(HTMLParser):
+    """The elements of a document, in their order, and the text in each."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.found: list[tuple[str, dict[str, str | None], str]] = []
+        self.feed(text)
+        self.close()
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.found.append((tag, dict(attrs), ""))
+
+    def handle_data(self, data: str) -> None:
+        if self.found:
+            tag, attributes, text = self.found[-1]
+            self.found[-1] = (tag, attributes, text + data)
+
+    def text(self, key: str) -> str:
+        """Return the text of the element with an id."""
+        return next(text for _, attributes, text in self.found if attributes.get("id") == key)
 
 
 @pytest.fixture(scope="module")
 def store(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Store]:
-    store = learned(Store(StoreSettings(str(tmp_path_factory.mktemp("report")))))
+    store = learned_store(str(tmp_path_factory.mktemp("report")))
     yield store
     store.close()
 
 
-def learned(store: Store) -> Store:
-    for name in ("t", "unlearned"):
-        store.ensure_task(name, scene="paper", calibration="identity")
-    shown = [store.add_demonstration(demonstration(f"d{i}", source=NASTY)) for i in range(8)]
-    store.add_job(a_job("learn-1"))
-    store.finish_learning("learn-1", learn({d.id: trajectory(d) for d in shown}, LearningSettings(repeats=1)))
-    return store
+def modules() -> dict[str, str]:
+    """Return the texts of the modules that a package imports, by their names there."""
+    web = web_files()
+    addresses = import_map("report/report.js", lambda path: (web / path).read_text(), instead=INSTEAD)["imports"]
+    return {name: base64.b64decode(address.partition(",")[2]).decode() for name, address in addresses.items()}
 
 
-def review(store: Store, what: str = "t") -> Review:
-    return review_of(
-        store,
-        what,
-        scene=lambda name: paper_scene(),
-        trajectory=trajectory,
-        motion=MotionSettings(),
-        arm=Arm.of_variant(),
-        dwell=0.5,
-    )
-
-
-def test_it_holds_every_way_demonstration_and_reason_and_fetches_nothing(store: Store, tmp_path: Path) -> None:
+def test_it_holds_the_answers_that_the_page_asks_for(store: Store) -> None:
     found = review(store)
-    size = write(found, tmp_path / "r.html", home=HOME)
-    text = (tmp_path / "r.html").read_text()
-    assert len(text.encode()) == size
-    assert text.count('class="mark"') >= 2 * len(found.run.learned.clusters)
-    assert all(digest in text for digest in found.run.learned.inputs.values())
-    assert "Content-Security-Policy" in text
-    outside = re.sub(r"<script.*?</script>", "", text, flags=re.S)
-    assert not re.findall(r"""(?:src|href)\s*=|url\(|@import""", outside)
+    archive = json.loads(Elements(package_html(found)).text("archive"))
+    assert archive == {path: json.loads(encode(record)) for path, record in found.answers.items()}
+    paths = [path.id for path in found.run.learned.paths]
+    trajectories = [f"demonstrations/d{i}/trajectory" for i in range(COUNT)]
+    assert {*trajectories, *(f"paths/{path}" for path in paths)} < set(archive)
+    assert [len(archive[f"paths/{path}/plans"]) for path in paths] == [1] + [0] * (len(paths) - 1)
+    assert archive["tasks/t/jobs"][0]["outcome"] == "plan-1"
+    assert found.count("motion") == 1
+    assert max(len(archive[name]["positions"]) for name in trajectories) <= 150
 
 
-def test_the_scene_is_drawn_as_it_stands_and_deviations_where_they_are(store: Store) -> None:
-    found = review(store)
-    corners = ((0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0))
-    wedge = Shape("wedge", "mesh", (0.1,), (0.3, 0.2, 0.4), orientation=(0.6, 0.0, 0.8, 0.0), vertices=corners)
-    cluster = found.run.learned.clusters[0]
-    departed = replace(cluster.scores[0], deviation=Deviation((0.25, 0.5), (0.0, 1.0), ""))
-    clusters = (replace(cluster, scores=(departed,)),)
-    run = replace(found.run, learned=replace(found.run.learned, clusters=clusters))
-    found = replace(found, scene=Scene("turned", (wedge,)), run=run)
-    drawn = {}
-    batch = scene_batch(found, HOME)
+def test_the_arm_and_its_object_are_drawn_by_the_views_own_commands(store: Store) -> None:
+    batch, drawn = review(store).arm, set()
     while batch:
         length = int.from_bytes(batch[:4], "little")
-        command = umsgpack.unpackb(batch[4 : 4 + length])
-        drawn[command["path"]] = command
+        drawn.add(umsgpack.unpackb(batch[4 : 4 + length])["path"].split("/")[1])
         batch = batch[4 + length :]
-    pose = np.reshape(drawn["/scene/wedge"]["object"]["object"]["matrix"], (4, 4)).T
-    np.testing.assert_allclose(pose, pose_of(wedge.position, wedge.orientation), atol=1e-12)
-    assert f"/departures/{departed.demonstration}" in drawn
-    assert sum(path.startswith("/departures") for path in drawn) == 1
+    assert drawn == {"robot", "object"}
 
 
-def test_a_name_that_is_a_script_stays_a_name(store: Store, tmp_path: Path) -> None:
-    write(review(store), tmp_path / "r.html", home=HOME)
-    text = (tmp_path / "r.html").read_text()
-    assert NASTY not in text
-    assert "&lt;script&gt;alert(1)" in text
-    assert text.count("</script>") == text.count("<script") == 3
+def test_its_modules_are_the_files_of_the_page_but_for_the_names_that_they_import() -> None:
+    found = modules()
+    for name, text in found.items():
+        path = INSTEAD.get(name.removeprefix("page/"), name.removeprefix("page/"))
+        bare = re.compile(r'"(?:page/|\.{1,2}/)[^"]*?(\w+\.(?:esm\.)?js)"')
+        assert bare.sub(r'"\1"', text) == bare.sub(r'"\1"', (web_files() / path).read_text())
+        assert not re.search(r'\b(from|import) "\.', text)
+    imported = {name for text in found.values() for name in re.findall(r'"(page/[^"]+)"', text)}
+    assert imported | {"page/report/report.js"} == set(found)
+    shared = {"dendrogram", "likelihood_plots", "path_card", "plan_preview", "selection_table"}
+    assert {f"page/panels/{name}.js" for name in shared} | {"page/tube_geometry.js", "page/meshes.js"} < set(found)
+
+
+def test_text_from_outside_stays_text(store: Store) -> None:
+    found = review(store)
+    task = replace(
+        found, run=replace(found.run, task=HOSTILE)
+    )  # as no name may be, but the template must not rely on it
+    plain, hostile = Elements(package_html(found)), Elements(package_html(task))
+    assert [tag for tag, _, _ in hostile.found] == [tag for tag, _, _ in plain.found]
+    assert json.loads(hostile.text("archive"))["tasks/t/runs"][0]["learned"]["notes"] == [HOSTILE]
+    assert next(text for tag, _, text in hostile.found if tag == "title").startswith(HOSTILE)
+
+
+def test_only_what_the_package_itself_brings_may_run(store: Store) -> None:
+    found = Elements(package_html(review(store))).found
+    policy = next(attributes["content"] or "" for _, attributes, _ in found if "http-equiv" in attributes)
+    nonce = re.search(r"script-src 'nonce-([\w-]+)';", policy)
+    assert nonce
+    assert "default-src 'none'" in policy
+    assert "unsafe" not in policy
+    scripts = [attributes for tag, attributes, _ in found if tag == "script"]
+    data = [one["id"] for one in scripts if one.get("type") in ("application/json", "text/plain")]
+    assert data == ["archive", "arm"]
+    assert [one.get("nonce") for one in scripts if "id" not in one] == [nonce[1]] * 3
+    assert nonce[1] not in package_html(review(store))  # another one each time: no text can know it
+    addresses = [one[name] or "" for _, one, _ in found for name in ("src", "href") if name in one]
+    assert all(address.startswith("data:") for address in addresses)
 
 
 def test_a_run_is_found_by_its_id_too_and_what_is_missing_is_named(store: Store) -> None:
@@ -116,21 +132,15 @@ def test_a_run_is_found_by_its_id_too_and_what_is_missing_is_named(store: Store)
 def test_a_file_that_is_there_stays_as_it_is(store: Store, tmp_path: Path) -> None:
     (tmp_path / "r.html").write_text("mine")
     with pytest.raises(UnusableInput, match="is there already"):
-        write(review(store), tmp_path / "r.html", home=HOME)
+        write_package(review(store), tmp_path / "r.html")
     with pytest.raises(UnusableInput, match="cannot write"):
-        write(review(store), tmp_path / "none" / "r.html", home=HOME)
+        write_package(review(store), tmp_path / "none" / "r.html")
     assert [file.name for file in tmp_path.iterdir()] == ["r.html"]
     assert (tmp_path / "r.html").read_text() == "mine"
 
 
-def test_a_demonstration_that_is_gone_is_shown_as_such(store: Store) -> None:
-    found = review(store)
-    without = replace(found, demonstrations=found.demonstrations[1:])
-    assert without.number(found.demonstrations[0].id) == 0
-
-
 def test_export_writes_a_package_of_a_whole_run_only(tmp_path: Path) -> None:
-    learned(Store(StoreSettings(str(tmp_path / "data")))).close()
+    learned_store(str(tmp_path / "data")).close()
     (tmp_path / "file").write_text("mine")
     refusals = [
         (["unlearned"], NotFound, "nothing was learned of task unlearned yet"),

@@ -62,6 +62,8 @@ declare global {
     sceneLayers: SceneLayers;
     overlay: Overlay;
     messages: Messages;
+    /** Nothing can be ordered: a review package. */
+    readOnly: boolean;
     attempt<T>(order: () => T | Promise<T>): Promise<T | undefined>;
     open(id: string): void;
   };

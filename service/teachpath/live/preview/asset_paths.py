@@ -1,11 +1,19 @@
-"""Where the files of the page and of meshcat's viewer lie."""
+"""Where the files of the page and of meshcat's viewer lie, and what a policy must allow the viewer."""
 
 from __future__ import annotations
 
 import importlib.util
 from pathlib import Path
+from typing import Final
 
 from teachpath.errors import NotFound
+
+# Hashes, for a content security policy, of the two style elements that meshcat's bundle puts into the page: its own
+# (empty) one and dat.gui's.
+VIEWER_STYLES: Final = (
+    "sha256-47DEQpj8HBSa+/TImW+5JCeuQeRkm5NMpJWZG3hSuFU=",
+    "sha256-K7kXOYqP8pf16L5/PaLZ4u9Lt5q3nTyjCvyGtO/Af2k=",
+)
 
 
 def viewer_files() -> Path:

@@ -1,0 +1,21 @@
+// How a request reaches the service; a review package has another transport, which answers from what it holds.
+const REQUEST_TIMEOUT = 30_000; // [ms]
+const NO_ANSWER = "The service does not answer. Is it running? This page connects again by itself.";
+
+/**
+ * Send a request to the REST API.
+ * @param {string} method
+ * @param {string} path below /api/v1
+ * @param {RequestInit} options
+ * @returns {Promise<Response>}
+ * @throws {Error} without an answer; its message is a sentence with a way out
+ */
+export async function send(method, path, options) {
+  const signal = AbortSignal.timeout(REQUEST_TIMEOUT);
+  try {
+    return await fetch(`/api/v1/${path}`, { method, signal, ...options });
+  } catch {
+    const late = `The service has not answered for ${REQUEST_TIMEOUT / 1000} s; it may be busy. Try again.`;
+    throw new Error(signal.aborted ? late : NO_ANSWER);
+  }
+}

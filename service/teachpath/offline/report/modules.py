@@ -1,0 +1,51 @@
+"""The page's modules as a browser imports them from within one file: an import map of `data:` addresses.
+
+A page that was opened from a file may not import other files, and a module under a `data:` address has no place that a
+relative specifier could start from. So every specifier becomes a bare name, which the import map knows.
+"""
+
+from __future__ import annotations
+
+import base64
+import posixpath
+import re
+from collections.abc import Callable, Mapping
+
+_SPECIFIER = re.compile(r"""(?<=\bfrom )"(\.{1,2}/[^"]+)"|(?<=^import )"(\.{1,2}/[^"]+)";""", re.MULTILINE)
+
+
+def import_map(entry: str, read: Callable[[str], str], *, instead: Mapping[str, str]) -> dict[str, dict[str, str]]:
+    """Return the import map of a module and all that it imports; their names are `page/` and the path.
+
+    Args:
+        entry: path of the module, relative to the page's folder.
+        read: gives the text of a module by its path.
+        instead: paths of modules, with the path of another one that takes their place.
+    """
+    texts: dict[str, str] = {}
+    waiting = [entry]
+    while waiting:
+        path = waiting.pop()
+        if path in texts:
+            continue
+        text = read(instead.get(path, path))
+        folder = posixpath.dirname(instead.get(path, path))
+        texts[path], imported = _with_bare_names(text, folder)
+        waiting += imported
+    return {"imports": {f"page/{path}": data_address(text, "text/javascript") for path, text in sorted(texts.items())}}
+
+
+def data_address(text: str, kind: str) -> str:
+    """Return the `data:` address of a text of a media type."""
+    return f"data:{kind};charset=utf-8;base64,{base64.b64encode(text.encode()).decode()}"
+
+
+def _with_bare_names(text: str, folder: str) -> tuple[str, list[str]]:
+    imported = []
+
+    def bare(found: re.Match[str]) -> str:
+        path = posixpath.normpath(posixpath.join(folder, found[1] or found[2]))
+        imported.append(path)
+        return f'"page/{path}"' + (";" if found[2] else "")
+
+    return _SPECIFIER.sub(bare, text), imported

@@ -1,0 +1,125 @@
+"""What a review package holds: a run as the REST API would answer about it, and the arm as the view would draw it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from contextlib import suppress
+from dataclasses import dataclass
+from urllib.parse import quote
+
+import numpy as np
+
+from teachpath.errors import NotFound, PathRefused
+from teachpath.io.memory_bus import MemoryBus
+from teachpath.io.store.store import Run, Store
+from teachpath.learning.clustering.cuts import dendrogram
+from teachpath.live.preview.preview import Preview
+from teachpath.motion.arm.description import describe_arm
+from teachpath.motion.arm.geometry import visual_solids
+from teachpath.motion.arm.model import Arm
+from teachpath.motion.execution.motion_preview import preview_motion
+from teachpath.motion.settings import MotionSettings
+from teachpath.records import Demonstration, LearnedPath, Plan, Scene, Trajectory
+from teachpath_proto.keys import Keys
+
+POINTS = 150  # of a demonstration, as many as the page asks for
+CLUSTERS = 30  # that a listed cut of the dendrogram leaves at most, as in the API
+
+
+@dataclass(frozen=True, eq=False)
+class Review:
+    """A run with all that is needed to look at it.
+
+    Attributes:
+        answers: records by the path of the REST API, below `/api/v1`, that answers with them.
+        arm: the view's commands that draw the arm and the object at rest, one batch.
+    """
+
+    run: Run
+    answers: Mapping[str, object]
+    arm: bytes
+
+    def count(self, kind: str) -> int:
+        """Return how many answers there are whose path ends so, e.g. `motion`."""
+        return sum(path.endswith(f"/{kind}") for path in self.answers)
+
+
+def review_of(
+    store: Store,
+    what: str,
+    *,
+    scene: Callable[[str], Scene],
+    trajectory: Callable[[Demonstration], Trajectory],
+    motion: MotionSettings,
+    arm: Arm,
+    robot: str,
+    dwell: float,
+) -> Review:
+    """Gather a review.
+
+    Args:
+        what: id of a run, or a task, whose newest run is meant.
+        scene: gives the scene of a name.
+        trajectory: gives the object's trajectory of a demonstration.
+        motion: settings for the arm's home and its ways there.
+        arm: that the plans are for.
+        robot: name of the arm.
+        dwell: how long the gripper takes [s].
+
+    Raises:
+        NotFound: no such run or task, or nothing was learned of the task yet.
+    """
+    run = _run(store, what)
+    task, surroundings = store.task(run.task), scene(store.task(run.task).scene)
+    used = set(run.learned.demonstrations)
+    demonstrations = [d for d in store.demonstrations(run.task) if d.id in used]
+    answers: dict[str, object] = {
+        "tasks": [task],
+        "scenes": [surroundings],
+        "executions": [],
+        "robot": describe_arm(arm, name=robot, home=motion.home),
+        _path("tasks", run.task, "runs"): [run],
+        _path("tasks", run.task, "runs", run.id, "dendrogram"): dendrogram(run.learned, CLUSTERS),
+        _path("tasks", run.task, "demonstrations"): demonstrations,
+    }
+    for demonstration in demonstrations:
+        answers[_path("demonstrations", demonstration.id, "trajectory")] = trajectory(demonstration).thinned(POINTS)
+    plans: set[str] = set()
+    for path in [store.path(learned.id) for learned in run.learned.paths]:
+        plan = _plan(store, path)
+        plans |= {plan.id} if plan else set()
+        answers |= {_path("paths", path.id): path, _path("paths", path.id, "plans"): [plan] if plan else []}
+        answers |= _planned(plan, motion, arm, dwell) if plan else {}
+    answers[_path("tasks", run.task, "jobs")] = [job for job in store.jobs(task=run.task) if job.outcome in plans]
+    return Review(run, answers, _drawn(arm, surroundings, motion))
+
+
+def _run(store: Store, what: str) -> Run:
+    if what not in {task.name for task in store.tasks()}:
+        return store.run(what)
+    runs = store.runs(what)
+    if not runs:
+        raise NotFound(f"nothing was learned of task {what} yet; learn it first: teachpath learn {what}")
+    return runs[0]
+
+
+def _plan(store: Store, path: LearnedPath) -> Plan | None:
+    return next((plan for plan in store.plans(path.id) if plan.path_version == path.version), None)
+
+
+def _planned(plan: Plan, motion: MotionSettings, arm: Arm, dwell: float) -> dict[str, object]:
+    answers: dict[str, object] = {_path("plans", plan.id): plan}
+    with suppress(PathRefused):  # a plan under other settings: its certificate is shown, its motion is not
+        answers[_path("plans", plan.id, "motion")] = preview_motion(plan, motion, arm, dwell=dwell)
+    return answers
+
+
+def _drawn(arm: Arm, scene: Scene, motion: MotionSettings) -> bytes:
+    home = np.array(motion.home)
+    preview = Preview(MemoryBus(), Keys(), visual_solids(), arm=arm, robot="", home=home, statuses=list)
+    preview.show_object(scene.carried)
+    return preview.connect(lambda: None).pop() or b""
+
+
+def _path(*pieces: str) -> str:
+    return "/".join(quote(piece, safe="!~*'()") for piece in pieces)  # as encodeURIComponent has it
