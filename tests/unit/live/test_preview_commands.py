@@ -22,24 +22,6 @@ def test_a_prism_is_closed_and_looks_outwards() -> None:
     assert np.allclose([vertices.min(axis=0), vertices.max(axis=0)], [[-0.5, -0.5, -1.0], [0.5, 0.5, 1.0]])
 
 
-def test_a_tube_keeps_its_distance_from_the_curve() -> None:
-    t = np.linspace(0, 4, 120)
-    spiral = np.column_stack([np.cos(t), np.sin(t), 0.2 * t])
-    vertices, faces = commands.tube_mesh(spiral, 0.05)
-    rings = vertices.reshape(len(spiral), -1, 3)
-    assert np.allclose(np.linalg.norm(rings - spiral[:, None], axis=2), 0.05)
-    length = np.sum(np.linalg.norm(np.diff(spiral, axis=0), axis=1))
-    assert outward(vertices, faces) == pytest.approx(np.pi * 0.05**2 * length, rel=0.1)
-    # neighbouring rings are not twisted against each other
-    assert np.max(np.linalg.norm(np.diff(rings, axis=0), axis=2)) < 0.06
-
-
-def test_a_straight_tube_needs_no_special_case() -> None:
-    line = np.linspace([0.0, 0, 0], [0, 0, 1.0], 5)
-    vertices, _ = commands.tube_mesh(line, 0.1)
-    assert np.all(np.isfinite(vertices))
-
-
 def test_a_cylinder_stands_upright() -> None:
     sent = umsgpack.unpackb(commands.solid("/c", "cylinder", (0.1, 0.4), pose=commands.pose_of((1.0, 2.0, 3.0))))
     matrix = np.reshape(sent["object"]["object"]["matrix"], (4, 4)).T

@@ -21,9 +21,6 @@ with without_init("meshcat"):  # which imports the server, and with it tornado, 
 
 Outline = Sequence[tuple[float, float]]
 
-# One colour per cluster, the same as --way-0 ... in the page's style sheet (Okabe & Ito's palette for all eyes).
-CLUSTER_COLORS = (0x0072B2, 0xD55E00, 0x009E73, 0xCC79A7, 0xE69F00, 0x56B4E9)
-
 BEVEL = 0.006  # [m] width of the broken edges of prisms
 
 # three.js lays a cylinder along y; ours stand along z.
@@ -37,7 +34,6 @@ def solid(
     *,
     pose: Array | None = None,
     color: int = 0x8090A0,
-    opacity: float = 1.0,
     outline: Outline = (),
     vertices: Sequence[Vector] = (),
 ) -> bytes:
@@ -50,7 +46,6 @@ def solid(
             metres, with `vertices`, three a triangle) [m].
         pose: (4, 4) to the frame of `path` from the body's centre; None is the identity.
         color: 0xRRGGBB.
-        opacity: 0 to 1.
 
     Raises:
         UnusableInput: the kind is unknown.
@@ -71,47 +66,13 @@ def solid(
         shape = geometry.TriangularMeshGeometry(corners, np.arange(len(corners)).reshape(-1, 3))
     else:
         raise UnusableInput(f"{path} cannot be drawn: {kind!r} is no box, cylinder, sphere, prism or mesh")
-    return _object(path, geometry.Mesh(shape, _paint(color, opacity)), pose)
+    return _object(path, geometry.Mesh(shape, _paint(color)), pose)
 
 
-def line(path: str, points: Array, *, color: int, opacity: float = 1.0) -> bytes:
+def line(path: str, points: Array, *, color: int) -> bytes:
     """Draw a thin line through `points`: (n, 3) [m], frame of `path`."""
-    material = geometry.LineBasicMaterial(color=color, opacity=opacity)
+    material = geometry.LineBasicMaterial(color=color)
     return _object(path, geometry.Line(geometry.PointsGeometry(points.T.astype(np.float32)), material))
-
-
-def tube(path: str, points: Array, *, radius: float, color: int, opacity: float = 1.0) -> bytes:
-    """Draw a round tube of `radius` [m] along `points`: (n, 3) [m], n at least 2, no two neighbours equal."""
-    vertices, faces = tube_mesh(points, radius)
-    shape = geometry.TriangularMeshGeometry(vertices, faces)
-    return _object(path, geometry.Mesh(shape, _paint(color, opacity)))
-
-
-def tube_mesh(points: Array, radius: float, sides: int = 10) -> tuple[Array, Array]:
-    """Return (n * sides, 3) vertices and (m, 3) faces of a tube whose rings do not twist.
-
-    Each ring's frame is the one before, reflected twice (Wang et al., Computation of rotation minimizing frames,
-    ACM Transactions on Graphics 27(1), 2008).
-    """
-    tangents = np.gradient(points, axis=0)
-    tangents /= np.linalg.norm(tangents, axis=1)[:, None]
-    least = np.eye(3)[np.argmin(np.abs(tangents[0]))]
-    normals = np.empty_like(points)
-    normals[0] = np.cross(tangents[0], least) / np.linalg.norm(np.cross(tangents[0], least))
-    for i in range(len(points) - 1):
-        step = points[i + 1] - points[i]
-        normal, tangent = (_reflect(v, step) for v in (normals[i], tangents[i]))
-        turn = tangents[i + 1] - tangent
-        normals[i + 1] = _reflect(normal, turn) if turn @ turn > 1e-18 else normal
-    binormals = np.cross(tangents, normals)
-    angles = np.linspace(0.0, 2.0 * np.pi, sides, endpoint=False)
-    rings = np.cos(angles)[:, None] * normals[:, None] + np.sin(angles)[:, None] * binormals[:, None]
-    vertices = (points[:, None] + radius * rings).reshape(-1, 3)
-    near = np.arange((len(points) - 1) * sides).reshape(-1, sides)
-    beside = np.roll(near, -1, axis=1)
-    first = np.stack([near, beside, near + sides], axis=-1)
-    second = np.stack([beside, beside + sides, near + sides], axis=-1)
-    return vertices, np.concatenate([first, second]).reshape(-1, 3)
 
 
 def prism_mesh(outline: Outline, thickness: float, bevel: float = BEVEL) -> tuple[Array, Array]:
@@ -180,8 +141,8 @@ def _object(path: str, drawn: geometry.Object, pose: Array | None = None) -> byt
     return _pack(command)
 
 
-def _paint(color: int, opacity: float) -> geometry.Material:
-    return geometry.MeshPhongMaterial(color=color, opacity=opacity, side=0, shininess=28, specular=0x2A2A2A)
+def _paint(color: int) -> geometry.Material:
+    return geometry.MeshPhongMaterial(color=color, side=0, shininess=28, specular=0x2A2A2A)
 
 
 def _tree(path: str) -> TreePath:
@@ -191,9 +152,3 @@ def _tree(path: str) -> TreePath:
 def _pack(command: dict[str, object]) -> bytes:
     packed: bytes = umsgpack.packb(command)
     return packed
-
-
-def _reflect(vector: Array, across: Array) -> Array:
-    """Mirror `vector` at the plane whose normal is `across`."""
-    mirrored: Array = vector - across * (2.0 * (across @ vector) / (across @ across))
-    return mirrored
