@@ -8,7 +8,7 @@ from typing import Any, TypeVar
 
 from teachpath_client.errors import ClientError, ExecutionFaulted, JobFailed, NotInTime
 from teachpath_client.events import Events
-from teachpath_client.models import Execution, Health, Job, Plan, Run
+from teachpath_client.models import Demonstration, Execution, Health, Job, Plan, Run
 from teachpath_client.task_resources import TaskResources
 from teachpath_client.work_resources import WorkResources
 from teachpath_proto.control import ExecutorState
@@ -42,6 +42,24 @@ class Station(TaskResources, WorkResources):
         operator: your name, for the journal.
         lease: token of the control over the arm, where somebody has taken it.
     """
+
+    def import_file(
+        self, task: str, content: bytes, *, on_change: Callable[[Job], object] = _nothing, **options: Any
+    ) -> list[Demonstration]:
+        """Import a file and return the demonstrations that were made of it.
+
+        Args:
+            task: whose demonstrations they become.
+            content: of the file.
+            on_change: called with the job whenever it has gone on.
+            options: name, format (csv, npy, robottasks or mcap), units, rate, scene, calibration.
+
+        Raises:
+            JobFailed: the file cannot be used; `job` says why, and nothing was stored.
+        """
+        outcome = self.outcome(self.begin_import(task, content, **options), on_change)
+        first, last = map(int, outcome.split("-"))
+        return [d for d in self.demonstrations(task) if first <= d.number <= last]
 
     def learn(
         self,

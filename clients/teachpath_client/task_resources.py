@@ -8,6 +8,7 @@ from typing import Any, Literal
 from teachpath_client.models import (
     Demonstration,
     Health,
+    Job,
     MeasuredCalibration,
     RecordingReport,
     Robot,
@@ -69,15 +70,15 @@ class TaskResources(Rest):
         """List a task's demonstrations in their order."""
         return self._ask(list[Demonstration], "GET", f"/tasks/{task}/demonstrations")
 
-    def import_file(self, task: str, content: bytes, **options: Any) -> list[Demonstration]:
-        """Import a file; every motion in it becomes a demonstration.
+    def begin_import(self, task: str, content: bytes, **options: Any) -> Job:
+        """Queue the import of a file; every motion in it becomes a demonstration, all of them or none.
 
         Args:
             task: whose demonstrations they become.
             content: of the file.
             options: name, format (csv, npy, robottasks or mcap), units, rate, scene, calibration.
         """
-        return self._ask(list[Demonstration], "POST", f"/tasks/{task}/demonstrations", content=content, **options)
+        return self._ask(Job, "POST", f"/tasks/{task}/demonstrations", content=content, **options)
 
     def amend(
         self,

@@ -28,6 +28,7 @@ from teachpath.live.event_hub import EventHub
 from teachpath.live.preview.preview import Preview
 from teachpath.live.state_poller import Poll, StatePoller
 from teachpath.motion.arm.geometry import visual_solids
+from teachpath.offline.import_job import ImportFolders
 from teachpath.offline.lock import StationLock
 from teachpath.recorder.annotations import Annotations
 from teachpath.recorder.calibrations import Calibrations
@@ -93,6 +94,7 @@ class Station:
             self._state_poller.start()
             for process in self.processes:
                 process.start()
+            self.imports.keep_only({str(job.request.get("upload")) for job in self.store.jobs(unfinished=True)})
             self.jobs.start()
             if tasks := self.store.tasks():
                 self._show_task(tasks[-1].name)
@@ -146,7 +148,10 @@ class Station:
 
     def _open_work(self) -> None:
         """Open what learns, plans and looks at curves."""
-        kinds = JobKinds(self.store, self.settings, self.calibrations, self.trajectory).by_name()
+        self.imports = ImportFolders(Path(self.settings.store.data_dir) / "imports")
+        kinds = JobKinds(
+            self.store, self.settings, self.calibrations, self.trajectory, self.imports, self._show_task
+        ).by_name()
         self.jobs = Jobs(self.bus, self.keys, self.store, self.settings.jobs, kinds)
         self.assessor = CurveAssessor()
 
@@ -231,7 +236,7 @@ class Station:
             joints=self.joints,
             trajectory=self.trajectory,
             health=self.health,
-            imported=lambda demonstration, trajectory: self._show_task(demonstration.task),
+            imports=self.imports,
         )
 
     def _show_task(self, task: str) -> None:

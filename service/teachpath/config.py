@@ -23,7 +23,7 @@ from teachpath.io.bus import BusSettings
 from teachpath.io.import_settings import ImportSettings
 from teachpath.io.meshes import read_hull
 from teachpath.io.store.settings import StoreSettings
-from teachpath.jobs.jobs import JobSettings
+from teachpath.jobs.settings import JobSettings
 from teachpath.learning.settings import LearningSettings
 from teachpath.live.preview.settings import PreviewSettings
 from teachpath.motion.arm.model import Arm

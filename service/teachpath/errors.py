@@ -10,7 +10,9 @@
     ├── NotFound               no task, demonstration, run, path, plan, job or execution of that name
     ├── Conflict               busy, already there, or a stale version
     │   ├── Outdated           a newer version was saved meanwhile; carries it
-    │   └── Cancelled          the operator cancelled the job
+    │   ├── Cancelled          the operator cancelled the job
+    │   └── QueueFull          too many jobs wait
+    ├── OverLimit              a job takes too much time or memory
     └── Unreachable            a process or peer does not answer
         └── NotStopped         the executor has not confirmed a stop: the arm may be moving
 
@@ -76,6 +78,14 @@ class Outdated(Conflict):
 
 class Cancelled(Conflict):
     """The operator cancelled the work."""
+
+
+class QueueFull(Conflict):
+    """Too many jobs wait or run."""
+
+
+class OverLimit(TeachpathError):
+    """A job takes more time or memory than it may."""
 
 
 class Unreachable(TeachpathError):

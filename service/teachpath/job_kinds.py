@@ -8,12 +8,15 @@ from typing import Any
 
 from teachpath.config import Settings
 from teachpath.errors import NotFound
+from teachpath.io.documents import from_document
+from teachpath.io.store.recordings import RECORDINGS
 from teachpath.io.store.store import Store
 from teachpath.jobs import worker
 from teachpath.jobs.jobs import JobKind
 from teachpath.learning.settings import LearningSettings
+from teachpath.offline.import_job import PREPARED, ImportFolders, ImportOrder, ImportRequest, prepare_import
 from teachpath.recorder.calibrations import Calibrations
-from teachpath.records import Demonstration, Job, Learned, Plan, Trajectory
+from teachpath.records import Demonstration, Job, Learned, Plan, Task, Trajectory
 
 
 @dataclass(frozen=True)
@@ -25,12 +28,16 @@ class JobKinds:
         settings: of the station.
         calibrations: that demonstrations have to be recorded under, in their present version.
         trajectory: returns the object's trajectory of a demonstration.
+        imports: folders of the files that are imported.
+        imported: called with the name of a task that an import has added to.
     """
 
     store: Store
     settings: Settings
     calibrations: Calibrations
     trajectory: Callable[[Demonstration], Trajectory]
+    imports: ImportFolders
+    imported: Callable[[str], None]
 
     def by_name(self) -> dict[str, JobKind]:
         """Return the kinds of jobs by the names that REST gives them."""
@@ -38,6 +45,9 @@ class JobKinds:
             "learn": JobKind(self._learning_input, worker.learn_paths, self._store_run),
             "recut": JobKind(self._recut_input, worker.recut_run, self._store_run),
             "plan": JobKind(self._planning_input, worker.plan_path, self._store_plan),
+            "import": JobKind(
+                self._import_input, prepare_import, self._store_import, lane="files", clean_up=self._remove_upload
+            ),
         }
 
     def _learning_input(self, job: Job) -> tuple[dict[str, Trajectory], LearningSettings]:
@@ -64,6 +74,35 @@ class JobKinds:
         learned = self.store.versions.get(path, version)[1] if isinstance(version, int) else self.store.path(path)
         scene = self.settings.scene(self.store.task(job.task).scene)
         return learned, scene, self.settings.motion, self.settings.arm
+
+    def _import_input(self, job: Job) -> tuple[ImportOrder]:
+        given = from_document(ImportRequest, job.request)
+        return (
+            ImportOrder(
+                self.imports.folder(given.upload),
+                job.task,
+                given.name,
+                given.format,
+                given.units,
+                given.rate,
+                self.settings.scene(given.scene),
+                self.calibrations.get(given.calibration),
+                self.settings.recording,
+                self.settings.imports,
+            ),
+        )
+
+    def _store_import(self, job: Job, made: list[Demonstration]) -> str:
+        given = from_document(ImportRequest, job.request)
+        task = Task(job.task, given.scene, made[0].calibration.name, 0)
+        outcome = self.store.finish_import(
+            job.id, task, made, self.imports.folder(given.upload) / PREPARED / RECORDINGS
+        )
+        self.imported(job.task)
+        return outcome
+
+    def _remove_upload(self, job: Job) -> None:
+        self.imports.remove(from_document(ImportRequest, job.request).upload)
 
     def _store_run(self, job: Job, learned: Learned) -> str:
         return self.store.finish_learning(job.id, learned)

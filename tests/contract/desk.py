@@ -3,6 +3,7 @@
 import asyncio
 import io
 import queue
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -24,6 +25,7 @@ class Desk:
         self.station, self._loop = station, loop
         app = ASGITransport(station.web, raise_app_exceptions=False)
         self._client = AsyncClient(transport=app, base_url="http://127.0.0.1:8765")
+        self.data_dir = Path(station.settings.store.data_dir)
         self._news: queue.SimpleQueue[bytes] = queue.SimpleQueue()
         station.bus.subscribe(station.keys.job("*"), lambda _, payload: self._news.put(payload))
 
@@ -50,8 +52,16 @@ class Desk:
     def post(self, resource: str, body: Any = None, **options: Any) -> Response:
         return self.send("POST", API + resource, **({"json": body} | options))
 
-    def import_(self, task: str, content: Any, **query: Any) -> Response:
+    def upload(self, task: str, content: Any, **query: Any) -> Response:
         return self.post(f"/tasks/{task}/demonstrations", json=None, content=content, params=query)
+
+    def import_(self, task: str, content: Any, **query: Any) -> list[dict[str, Any]]:
+        """Import a file, and return the demonstrations that were made of it."""
+        job = self.ended(self.upload(task, content, **query))
+        assert job["state"] == "succeeded", job["message"]
+        first, last = map(int, job["outcome"].split("-"))
+        made: list[dict[str, Any]] = self.get(f"/tasks/{task}/demonstrations").json()
+        return [d for d in made if first <= d["number"] <= last]
 
     def ended(self, accepted: Response) -> dict[str, Any]:
         """Wait for the job that was accepted to end."""

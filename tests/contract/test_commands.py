@@ -21,7 +21,7 @@ def said(url: str, *words: str) -> str:
 
 
 def test_a_demonstration_is_marked_trimmed_discarded_and_all_is_taken_back(desk: Desk, url: str) -> None:
-    (before,) = desk.import_(TASK, csv()).json()
+    (before,) = desk.import_(TASK, csv())
     one = ("amend", TASK, "1")
     assert "good" in said(url, *one, "--mark", "good")
     assert "good, trimmed" in said(url, *one, "--trim", "0.2,0.1")

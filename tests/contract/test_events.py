@@ -69,11 +69,11 @@ def test_every_kind_of_change_is_told_to_all_who_listen(served: Served) -> None:
     with served.listen() as one, served.listen() as other:
         served.call("PUT", "/tasks/told", json={"scene": "paper"})
         assert until(one, "tasks", "told")["sequence"] == until(other, "tasks", "told")["sequence"]
-        made = served.call("POST", "/tasks/told/demonstrations", content=csv(120, step=0.002)).json()
-        until(one, "demonstrations", made[0]["id"])
-        served.call("PATCH", f"/demonstrations/{made[0]['id']}", json={"mark": "bad"})
-        until(one, "demonstrations", made[0]["id"])
-        served.call("PATCH", f"/demonstrations/{made[0]['id']}", json={"mark": ""})
+        served.call("POST", "/tasks/told/demonstrations", content=csv(120, step=0.002))
+        made = until(one, "demonstrations")["id"]
+        served.call("PATCH", f"/demonstrations/{made}", json={"mark": "bad"})
+        until(one, "demonstrations", made)
+        served.call("PATCH", f"/demonstrations/{made}", json={"mark": ""})
         job = served.call("POST", "/tasks/told/jobs", json={"kind": "learn"}).json()
         until(one, "jobs", job["id"])
         run = until(one, "runs")["id"]

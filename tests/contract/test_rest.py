@@ -68,7 +68,7 @@ def test_a_wrong_address_and_a_wrong_method_say_where_to_look(desk: Desk) -> Non
 @pytest.mark.parametrize("name", ["..", "a..b", "%2e%2e", "a%2Fb", "%00", "a%0Ab", "a b", "é", "-a", "x" * 65, "%ff"])
 def test_a_bad_task_name_makes_nothing(desk: Desk, name: str) -> None:
     before = desk.get("/tasks").json()
-    for answer in (desk.put(f"/tasks/{name}", {}), desk.import_(name, csv())):
+    for answer in (desk.put(f"/tasks/{name}", {}), desk.upload(name, csv())):
         assert answer.status_code in (404, 405, 422), answer.text
         assert len(answer.json()["detail"]) > 20
     assert desk.get("/tasks").json() == before
@@ -124,8 +124,8 @@ def test_a_body_over_the_limit_is_413_whether_announced_or_not(desk: Desk) -> No
         for _ in range(0, size, 100_000):
             yield bytes(100_000)
 
-    refused(desk.import_("huge", bytes(2_000_001)), 413, "2000001 bytes is over the limit of 2000000; split the file")
-    refused(desk.import_("huge", chunks(2_100_000)), 413, "over the limit of 2000000")
+    refused(desk.upload("huge", bytes(2_000_001)), 413, "2000001 bytes is over the limit of 2000000; split the file")
+    refused(desk.upload("huge", chunks(2_100_000)), 413, "over the limit of 2000000")
     document = {"content-type": "application/json"}
     answer = desk.post("/executions", json=None, content=chunks(1_200_000), headers=document)
     refused(answer, 413, "over the limit of 1048576")

@@ -23,7 +23,7 @@ def test_a_calibration_is_measured_listed_and_used(desk: Desk) -> None:
         assert (made["version"], made["source"], len(made["points"])) == (version, "fastrak", 3)
     assert [m["version"] for m in desk.get("/calibrations/lab").json()] == [2, 1]
     assert "lab" in [m["calibration"]["name"] for m in desk.get("/calibrations").json()]
-    (demonstration,) = desk.import_("calibrated", csv(), calibration="lab").json()
+    (demonstration,) = desk.import_("calibrated", csv(), calibration="lab")
     assert demonstration["calibration"] == made["calibration"]
 
 
@@ -50,7 +50,7 @@ def test_a_calibration_that_cannot_be_is_a_sentence_and_leaves_nothing(
 
 def test_learning_refuses_a_former_version_until_it_is_converted_or_wanted(desk: Desk) -> None:
     desk.put("/calibrations/bench", points(0.0))
-    made = [desk.import_("moved", csv(step=0.01 + 0.0001 * i), calibration="bench").json()[0] for i in range(3)]
+    made = [desk.import_("moved", csv(step=0.01 + 0.0001 * i), calibration="bench")[0] for i in range(3)]
     desk.put("/calibrations/bench", points(0.2))
     job = desk.ended(desk.post("/tasks/moved/jobs", {"kind": "learn"}))
     assert job["state"] == "failed"

@@ -10,10 +10,10 @@ from tests.contract.desk import Desk, csv, refused
 
 @pytest.mark.parametrize("kind", ["csv", "mcap", "trajectory"])
 def test_a_demonstration_is_taken_away_and_brought_back(desk: Desk, kind: str) -> None:
-    (made,) = desk.import_("taken", csv()).json()
+    (made,) = desk.import_("taken", csv())
     file = desk.get(f"/demonstrations/{made['id']}/export", params={"format": kind})
     assert file.headers["content-disposition"].startswith(f'attachment; filename="taken-{made["number"]:03d}')
-    (again,) = desk.import_("taken", file.content, format="mcap" if kind == "mcap" else "csv").json()
+    (again,) = desk.import_("taken", file.content, format="mcap" if kind == "mcap" else "csv")
     assert (again["samples"], again["verdict"]) == (made["samples"], made["verdict"])
     ways = [desk.get(f"/demonstrations/{d['id']}/trajectory").json() for d in (made, again)]
     assert ways[0]["positions"] == ways[1]["positions"]
@@ -22,7 +22,7 @@ def test_a_demonstration_is_taken_away_and_brought_back(desk: Desk, kind: str) -
 @pytest.mark.parametrize("kind", ["csv", "mcap", "trajectory", "lerobot"])
 def test_a_task_is_taken_away_as_a_zip(desk: Desk, kind: str) -> None:
     task = f"zipped-{kind}"
-    made = [desk.import_(task, csv()).json()[0] for _ in range(2)]
+    made = [desk.import_(task, csv())[0] for _ in range(2)]
     desk.send("PATCH", f"/api/v1/demonstrations/{made[0]['id']}", json={"mark": "bad"})
     for all_, count in ((False, 1), (True, 2)):
         archive = zipfile.ZipFile(io.BytesIO(desk.get(f"/tasks/{task}/export?format={kind}&all={all_}").content))

@@ -1,5 +1,7 @@
 """Tasks over REST: recording, and importing files that can and cannot be used."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -72,13 +74,37 @@ SHORT = "t,x,y,z\n" + "".join(f"{i * 0.02},{i},0,0\n" for i in range(6))
 def test_a_file_that_cannot_be_used_is_a_sentence_and_leaves_nothing(
     desk: Desk, content: bytes | str, query: dict[str, str], sentence: str
 ) -> None:
-    refused(desk.import_("imported-badly", content, **query), 422, sentence)
+    answer = desk.upload("imported-badly", content, **query)
+    if answer.status_code == 202:
+        job = desk.ended(answer)
+        assert job["state"] == "failed"
+        assert sentence in job["message"]
+    else:
+        refused(answer, 422, sentence)
+    wait_until(lambda: list(desk.data_dir.glob("imports/*")) == [], "the upload is removed")
     left = desk.get("/tasks/imported-badly/demonstrations")
     assert left.status_code == 404 or left.json() == []
 
 
+def test_an_import_is_a_job_that_is_listed_with_its_task(desk: Desk) -> None:
+    accepted = desk.upload("import-job", csv(), name="mine.csv")
+    job = desk.ended(accepted)
+    assert (job["kind"], job["state"], job["outcome"], job["fraction"]) == ("import", "succeeded", "1-1", 1.0)
+    assert [each["id"] for each in desk.get("/tasks/import-job/jobs").json()] == [job["id"]]
+    assert desk.ended(desk.upload("import-job", npy(np.array([turned(0.1), turned(0.2)])), format="robottasks"))[
+        "outcome"
+    ] == ("2-3")
+    wait_until(lambda: list(desk.data_dir.glob("imports/*")) == [], "the upload is removed")
+
+
+def turned(reach: float) -> Any:
+    values = np.zeros((40, 7))
+    values[:, 3], values[:, 0] = 1.0, np.linspace(0.4, 0.4 + reach, 40)
+    return values
+
+
 def test_a_file_is_imported_in_its_units_and_read_back(desk: Desk) -> None:
-    (made,) = desk.import_("inches", csv(), units="in", name="mine.csv").json()
+    (made,) = desk.import_("inches", csv(), units="in", name="mine.csv")
     assert (made["source"], made["samples"], made["verdict"], made["number"]) == ("mine.csv", 60, "clean", 1)
     way = desk.get(f"/demonstrations/{made['id']}/trajectory").json()
     assert way["positions"][-1][0] - way["positions"][0][0] == pytest.approx(0.59 * 0.0254)
@@ -87,7 +113,7 @@ def test_a_file_is_imported_in_its_units_and_read_back(desk: Desk) -> None:
     assert recording.content.startswith(b"\x89MCAP0\r\n")
     turned = np.zeros((3, 40, 7))
     turned[..., 3], turned[..., 0] = 1.0, np.linspace(0.4, 0.6, 40)
-    assert len(desk.import_("array", npy(turned), format="robottasks").json()) == 3
+    assert len(desk.import_("array", npy(turned), format="robottasks")) == 3
 
 
 def test_an_empty_scene_of_tasks_shows_lists(desk: Desk) -> None:
@@ -116,7 +142,7 @@ def test_an_armed_recording_pauses_resumes_and_says_its_state(desk: Desk) -> Non
 
 
 def test_demonstrations_are_discarded_restored_marked_and_trimmed(desk: Desk) -> None:
-    made = [desk.import_("curated", csv()).json()[0] for _ in range(2)]
+    made = [desk.import_("curated", csv())[0] for _ in range(2)]
     refused(desk.post("/tasks/curated/recording/restore"), 404, "no discarded demonstration")
     gone = desk.post("/tasks/curated/recording/discard").json()
     assert (gone["id"], gone["discarded_ns"] > 0) == (made[1]["id"], True)
@@ -146,14 +172,14 @@ def test_trackers_that_are_there_are_in_the_health(desk: Desk) -> None:
 
 
 def test_what_is_not_usable_is_not_learned_from(desk: Desk) -> None:
-    (only,) = desk.import_("unusable", csv()).json()
+    (only,) = desk.import_("unusable", csv())
     desk.send("PATCH", f"/api/v1/demonstrations/{only['id']}", json={"mark": "bad"})
     job = desk.ended(desk.post("/tasks/unusable/jobs", {"kind": "learn"}))
     assert (job["state"], "no usable demonstrations" in job["message"]) == ("failed", True)
 
 
 def test_a_trajectory_is_thinned_to_what_is_asked_for(desk: Desk) -> None:
-    (made,) = desk.import_("thinned", csv(120, step=0.002)).json()
+    (made,) = desk.import_("thinned", csv(120, step=0.002))
     address = f"/demonstrations/{made['id']}/trajectory"
     whole, few = desk.get(address).json(), desk.get(address, params={"most": 10}).json()
     assert len(few["times"]) == len(few["positions"]) == 10

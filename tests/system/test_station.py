@@ -15,6 +15,7 @@ from mcap.reader import make_reader
 from websockets.sync.client import connect
 
 from teachpath_client import ClientError, HandReading, Link, Tracker
+from teachpath_client.errors import JobFailed
 from teachpath_client.synthetic import experiment_1
 from teachpath_proto import tracker_pb2
 from teachpath_proto.keys import Keys
@@ -158,8 +159,7 @@ def test_files_are_imported_while_the_service_is_up(service: Service, tmp_path: 
     whole = write_csv(tmp_path / "whole.csv")
     first = run("import", "files", str(whole), "--data", str(service.data), folder=tmp_path)
     assert first.process.returncode == 0, first.err
-    url = f"{service.url}/api/v1/tasks/files/demonstrations"
-    assert httpx.post(url, content=whole.read_bytes(), timeout=HANG, trust_env=False).status_code == 201
+    assert [d.number for d in service.station.import_file("files", whole.read_bytes())] == [2]
     assert [d.number for d in service.station.demonstrations("files")] == [1, 2]
     one, other = (trajectory(service, d.id) for d in service.station.demonstrations("files"))
     np.testing.assert_array_equal(one[1], other[1])
@@ -203,10 +203,9 @@ def test_a_file_that_cannot_be_used_is_refused_and_nothing_stored(
     service: Service, text: str, sentence: str, tmp_path: Path
 ) -> None:
     file = write_csv(tmp_path / "broken.csv", text=text)
-    url = f"{service.url}/api/v1/tasks/broken/demonstrations?name=broken.csv"
-    answer = httpx.post(url, content=file.read_bytes(), timeout=HANG, trust_env=False)
-    assert answer.status_code == 422
-    assert sentence in answer.json()["detail"]
+    with pytest.raises(JobFailed) as failed:
+        service.station.import_file("broken", file.read_bytes(), name="broken.csv")
+    assert sentence in failed.value.job.message
     known = {task.name for task in service.station.tasks()}
     assert "broken" not in known or service.station.demonstrations("broken") == []
     assert not list(service.data.rglob("*.part"))

@@ -5,7 +5,7 @@ import { patchChildren } from "../patch_children.js";
 import { capitalize } from "../texts.js";
 
 /** @type {Record<string, string>} */
-export const JOB_LABELS = { learn: "Learning", recut: "Cutting anew", plan: "Planning" };
+export const JOB_LABELS = { learn: "Learning", recut: "Cutting anew", plan: "Planning", import: "Import" };
 
 /** @param {HTMLElement} place @param {Context} context @returns {Section} */
 export function jobList(place, { attempt }) {

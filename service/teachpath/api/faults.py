@@ -16,7 +16,9 @@ from teachpath.errors import (
     Conflict,
     LearningFailed,
     NotFound,
+    OverLimit,
     PathRefused,
+    QueueFull,
     TeachpathError,
     Unreachable,
     UnusableInput,
@@ -28,9 +30,11 @@ MAX_FAULTS: Final = 20  # fields that a refusal lists
 STATUS: dict[type[TeachpathError], int] = {
     NotFound: 404,
     Conflict: 409,
+    QueueFull: 429,
     UnusableInput: 422,
     LearningFailed: 422,
     PathRefused: 422,
+    OverLimit: 422,
     Unreachable: 503,
 }
 
@@ -62,6 +66,7 @@ REFUSALS: Final[dict[int | str, dict[str, Any]]] = {
     409: {"model": Refusal, "description": "The thing is busy, already there, or has changed meanwhile."},
     413: {"model": Refusal, "description": "The body is too large."},
     422: {"model": Refusal, "description": "What came in cannot be used as it is."},
+    429: {"model": Refusal, "description": "Too many jobs wait."},
     503: {"model": Refusal, "description": "A process of the station does not answer."},
 }
 

@@ -10,6 +10,7 @@ from teachpath.io.bus import BusSettings
 from teachpath.io.store.store import Store
 from teachpath.jobs.curve_assessor import CurveAssessor
 from teachpath.jobs.jobs import Jobs
+from teachpath.offline.import_job import ImportFolders
 from teachpath.recorder.calibrations import Calibrations
 from teachpath.recorder.presence import Tracker
 from teachpath.recorder.recorder import Recorder
@@ -68,4 +69,4 @@ class Parts:
     joints: JointFeed
     trajectory: Callable[[Demonstration], Trajectory]
     health: Callable[[], Health]
-    imported: Callable[[Demonstration, Trajectory], None]
+    imports: ImportFolders

@@ -14,6 +14,7 @@ from teachpath.api.demonstrations import demonstrations_router
 from teachpath.api.executions import executions_router, stops_router
 from teachpath.api.exports import exports_router
 from teachpath.api.faults import REFUSALS, answer_errors
+from teachpath.api.imports import imports_router
 from teachpath.api.joints import joints_router
 from teachpath.api.middleware import RequestLimits
 from teachpath.api.parts import Health, Parts
@@ -43,6 +44,7 @@ def build_api(parts: Parts, *pages: APIRouter) -> FastAPI:
     answer_errors(app)
     routers = (
         tasks_router,
+        imports_router,
         demonstrations_router,
         recording_router,
         exports_router,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Final, Literal, Self
 
-from fastapi import APIRouter, Query, Response
+from fastapi import APIRouter, Query, Request, Response
 from pydantic import Field, model_validator
 from pydantic_core import PydanticCustomError
 
@@ -73,28 +73,27 @@ def jobs_router(parts: Parts) -> APIRouter:
         return store.jobs(task=store.task(task).name)
 
     @router.post("/tasks/{task}/jobs", status_code=202)
-    def begin_job(task: str, new: NewJob, response: Response) -> Job:
+    def begin_job(task: str, new: NewJob, request: Request, response: Response) -> Job:
         """Queue a job; `Location` names it. It survives a restart of the service."""
         stored = store.task(task)
         if new.kind == "learn":
             parts.settings.learning_with(new.settings)
-            job = jobs.submit(stored.name, "learn", {"settings": new.settings, "calibrations": new.calibrations})
+            order: dict[str, Any] = {"settings": new.settings, "calibrations": new.calibrations}
         elif new.kind == "recut":
             run = store.run(new.run)
             _of_task(stored.name, run.task, f"run {run.id!r}")
             recut_members(run.learned, threshold=new.threshold, clusters=new.clusters)
-            request = {"run": run.id, "threshold": new.threshold, "clusters": new.clusters}
-            job = jobs.submit(stored.name, "recut", request | {"calibrations": new.calibrations})
+            order = {"run": run.id, "threshold": new.threshold, "clusters": new.clusters}
+            order["calibrations"] = new.calibrations
         else:
             path = _versioned(store, new.path, new.version)
             _of_task(stored.name, store.run(path.run).task, f"path {path.id!r}")
-            job = jobs.submit(stored.name, "plan", {"path": path.id, "version": path.version})
-        response.headers["Location"] = f"/api/v1/jobs/{job.id}"
-        return job
+            order = {"path": path.id, "version": path.version}
+        return accepted(jobs.submit(stored.name, new.kind, order, submitter_of(request)), response)
 
     @router.get("/jobs/{job}")
     def get_job(job: str) -> Job:
-        """Return one job: its state, progress, and the id of its outcome (a run or a plan)."""
+        """Return one job: its state, progress, and its outcome (id of a run or a plan, numbers of demonstrations)."""
         return store.job(job)
 
     @router.post("/jobs/{job}/cancel")
@@ -157,17 +156,27 @@ def _add_paths(router: APIRouter, parts: Parts) -> None:
         return json_response(store.plans(store.path(path).id))
 
     @router.post("/paths/{path}/plans", status_code=202)
-    def begin_plan(path: str, response: Response, new: NewPlan | None = None) -> Job:
+    def begin_plan(path: str, request: Request, response: Response, new: NewPlan | None = None) -> Job:
         """Queue the planning of a version of a path; `Location` names the job, its outcome the plan."""
         stored = _versioned(store, path, new.version if new else None)
-        job = jobs.submit(store.run(stored.run).task, "plan", {"path": stored.id, "version": stored.version})
-        response.headers["Location"] = f"/api/v1/jobs/{job.id}"
-        return job
+        order = {"path": stored.id, "version": stored.version}
+        return accepted(jobs.submit(store.run(stored.run).task, "plan", order, submitter_of(request)), response)
 
     @router.get("/plans/{plan}", response_model=model_of(Plan))
     def get_plan(plan: str) -> Response:
         """Return one plan with its certificate."""
         return json_response(store.plan(plan))
+
+
+def submitter_of(request: Request) -> str:
+    """Return who counts as the submitter of a job: the address that the request comes from."""
+    return request.client.host if request.client else ""
+
+
+def accepted(job: Job, response: Response) -> Job:
+    """Return a queued job as the answer; `Location` names it."""
+    response.headers["Location"] = f"/api/v1/jobs/{job.id}"
+    return job
 
 
 def _versioned(store: Store, path: str, version: int | None) -> LearnedPath:

@@ -104,7 +104,12 @@ class _Demonstration:
         except OSError as error:
             raise UnusableRecording(f"cannot read {file}: {error.strerror}") from None
         task = file.stem
-        options = {"name": file.name, "format": "robottasks", "units": "cm", "calibration": "robottasks"}
+        options: dict[str, Any] = {
+            "name": file.name,
+            "format": "robottasks",
+            "units": "cm",
+            "calibration": "robottasks",
+        }
         stored = self._station.import_file(task, content, **options)
         console.print(f"imported {len(stored)} demonstrations from {file.name}; replaying them over Zenoh")
         command = replay_command(

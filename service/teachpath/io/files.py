@@ -36,6 +36,16 @@ class Track:
     orientations: Array | None
 
 
+def check_format(name: str, kind: str, units: str, rate: float) -> None:
+    """Raise UnusableRecording when a file `name` cannot be read as asked for; `kind` may also be mcap."""
+    if kind not in (*FORMATS, "mcap"):
+        raise UnusableRecording(f"{name}: format {kind!r} is unknown; known: {', '.join(FORMATS)}, mcap")
+    if units not in UNITS:
+        raise UnusableRecording(f"{name}: units {units!r} are unknown; known: {', '.join(UNITS)}")
+    if not 1.0 <= rate <= 10_000.0:
+        raise UnusableRecording(f"{name}: a rate of {rate:g} Hz is outside 1 to 10000")
+
+
 def read_tracks(
     content: bytes, name: str, limits: ImportSettings, *, kind: str, units: str, rate: float
 ) -> list[Track]:
@@ -54,12 +64,7 @@ def read_tracks(
     Raises:
         UnusableRecording: with the row and column that is wrong.
     """
-    if kind not in FORMATS:
-        raise UnusableRecording(f"{name}: format {kind!r} is unknown; known: {', '.join(FORMATS)}, mcap")
-    if units not in UNITS:
-        raise UnusableRecording(f"{name}: units {units!r} are unknown; known: {', '.join(UNITS)}")
-    if not 1.0 <= rate <= 10_000.0:
-        raise UnusableRecording(f"{name}: a rate of {rate:g} Hz is outside 1 to 10000")
+    check_format(name, kind, units, rate)
     if len(content) > LARGEST_FILE:
         raise UnusableRecording(f"{name}: {len(content)} bytes are over the limit of {LARGEST_FILE}; split the file")
     if not content:

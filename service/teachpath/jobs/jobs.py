@@ -1,26 +1,22 @@
-"""The jobs: learning and planning in a process of their own, in order; unfinished ones survive a restart."""
+"""The jobs: learning, planning and files in processes of their own, in order; unfinished ones survive a restart."""
 
 from __future__ import annotations
 
-import queue
 import threading
 import time
 import uuid
 from collections.abc import Callable
-from concurrent.futures import Future
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
 from multiprocessing import get_context
-from multiprocessing.synchronize import Event
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Any, Literal
 
-from annotated_types import Ge, Le
-
-from teachpath.errors import Cancelled, Conflict, LearningFailed, PathRefused, TeachpathError
+from teachpath.errors import Cancelled, Conflict, LearningFailed, PathRefused, QueueFull, TeachpathError
 from teachpath.io.documents import to_document
 from teachpath.io.wire import encode_progress
 from teachpath.jobs import worker
-from teachpath.jobs.pool import KillablePool
+from teachpath.jobs.job_lane import JobLane, LaneLimits
+from teachpath.jobs.settings import JobSettings
 from teachpath.records import Job, JobState
 from teachpath_proto.keys import Keys
 
@@ -35,24 +31,23 @@ Finish = Callable[[Job, Any], str]
 
 
 @dataclass(frozen=True)
-class JobSettings:
-    """How background work is done."""
-
-    # how often a job is begun anew after its process died
-    attempts: Annotated[int, Ge(1), Le(10)] = 3
-
-
-@dataclass(frozen=True)
 class JobKind:
-    """One kind of job."""
+    """One kind of job.
+
+    Attributes:
+        lane: the process that does it; jobs of one lane wait for each other.
+        clean_up: called when a job has ended, however it did.
+    """
 
     prepare: Prepare
     work: Callable[..., Any]
     finish: Finish
+    lane: Literal["learning", "files"] = "learning"
+    clean_up: Callable[[Job], None] = lambda job: None
 
 
 class Jobs:
-    """Runs the queued jobs of the store one after another.
+    """Runs the queued jobs of the store, those of each lane one after another.
 
     Args:
         kinds: kinds of jobs by their names.
@@ -75,85 +70,100 @@ class Jobs:
         self._settings = settings
         self._kinds = kinds
         self._on_finished = on_finished
-        self._queue: queue.SimpleQueue[str | None] = queue.SimpleQueue()
-        context = get_context("spawn")
-        self._progress = context.Queue()
-        self._cancel: Event = context.Event()
-        self._stopping = threading.Event()
-        self._running = ""
-        self._pool = KillablePool(worker.init_worker, self._progress, self._cancel)
-        self._threads: list[threading.Thread] = []
+        self._progress = get_context("spawn").Queue()
+        limits = {
+            "learning": LaneLimits(settings.max_memory, settings.max_duration),
+            "files": LaneLimits(settings.max_file_memory, settings.max_file_duration),
+        }
+        self._lanes = {name: JobLane(name, each, self._progress, self._run) for name, each in limits.items()}
+        self._lock = threading.Lock()
+        self._submitters: dict[str, str] = {}  # of the unfinished jobs: who submitted them
+        self._reporter = threading.Thread(target=self._pass_on_progress, name="job progress", daemon=True)
 
     def start(self) -> None:
         """Begin to work; jobs that an earlier service left unfinished come first."""
         for job in self._store.jobs(unfinished=True):
-            self._queue.put(job.id)
-        for run, name in ((self._run, "jobs"), (self._pass_on_progress, "job progress")):
-            thread = threading.Thread(target=run, name=name, daemon=True)
-            thread.start()
-            self._threads.append(thread)
-        self._pool.submit(worker.warm_up)
+            self._submitters[job.id] = ""
+            self._lane(job).put(job.id)
+        self._reporter.start()
+        self._lanes["learning"].start(worker.warm_up)
+        self._lanes["files"].start()
 
     def stop(self) -> None:
         """Stop at once; a running job stays unfinished in the store and is run again at the next start."""
-        self._stopping.set()
-        self._cancel.set()
-        self._queue.put(None)
+        for lane in self._lanes.values():
+            lane.stop()
         self._progress.put(None)
-        self._pool.close()
-        for thread in self._threads:
-            thread.join(timeout=10.0)
+        if self._reporter.ident is not None:
+            self._reporter.join(timeout=10.0)
         self._progress.close()
         self._progress.cancel_join_thread()
 
-    def submit(self, task: str, kind: str, request: dict[str, Any]) -> Job:
-        """Queue a job and return it."""
+    def require_room(self, submitter: str) -> None:
+        """Raise QueueFull when no further job of a submitter can be queued."""
+        with self._lock:
+            waiting, own = len(self._submitters), list(self._submitters.values()).count(submitter)
+        for count, limit, whose, setting in (
+            (waiting, self._settings.max_queued, "jobs wait or run", "max_queued"),
+            (own, self._settings.max_queued_by_one, f"jobs of {submitter} wait or run", "max_queued_by_one"),
+        ):
+            if count >= limit:
+                raise QueueFull(
+                    f"{count} {whose}, limit {limit} (jobs.{setting}); wait until one has ended, or cancel some"
+                )
+
+    def submit(self, task: str, kind: str, request: dict[str, Any], submitter: str = "") -> Job:
+        """Queue a job and return it.
+
+        Raises:
+            QueueFull: too many jobs wait, or too many of this submitter.
+        """
+        self.require_room(submitter)
         key = f"{kind}-{uuid.uuid4().hex[:12]}"
         job = Job(key, task, kind, request, JobState.QUEUED, 0.0, "", "", 0, time.time_ns(), 0)
         self._store.add_job(job)
-        self._queue.put(key)
+        with self._lock:
+            self._submitters[key] = submitter
+        self._lane(job).put(key)
         return job
 
     def cancel(self, key: str) -> Job:
         """Cancel a queued or running job; raises Conflict when it has already ended."""
-        if self._store.job(key).state is JobState.RUNNING and key == self._running:
-            self._cancel.set()
+        job = self._store.job(key)
+        if job.state is JobState.RUNNING and key == self._lane(job).running:
+            self._lane(job).cancel()
             return self._store.job(key)
         return self._finish(key, JobState.CANCELLED, "cancelled before it began")
 
-    def _run(self) -> None:
-        while (key := self._queue.get()) is not None and not self._stopping.is_set():
-            try:
-                self._process(key)
-            except Conflict:
-                continue  # cancelled while it was queued
-            except Exception as error:  # a fault of one job must not stop the others
-                if not self._stopping.is_set():
-                    self._finish(key, JobState.FAILED, f"this is a fault of teachpath, please report it: {error!r}")
+    def _lane(self, job: Job) -> JobLane:
+        return self._lanes[self._kinds[job.kind].lane]
 
-    def _process(self, key: str) -> None:
+    def _run(self, lane: JobLane, key: str) -> None:
+        try:
+            self._process(lane, key)
+        except Conflict:
+            return  # cancelled while it was queued
+        except Exception as error:  # a fault of one job must not stop the others
+            if not lane.is_stopping:
+                self._finish(key, JobState.FAILED, f"this is a fault of teachpath, please report it: {error!r}")
+
+    def _process(self, lane: JobLane, key: str) -> None:
         job = self._store.set_job(key, state=JobState.RUNNING.value, attempt=self._store.job(key).attempt + 1)
         if job.attempt > self._settings.attempts:
             self._finish(key, JobState.FAILED, f"its process died {self._settings.attempts} times; is memory short?")
             return
-        self._cancel.clear()
-        self._running = key
         kind = self._kinds[job.kind]
         try:
-            future: Future[Any] = self._pool.submit(worker.work, key, kind.work, kind.prepare(job))
-            kind.finish(job, future.result())
+            kind.finish(job, lane.work(kind.work, kind.prepare(job)))
             self._announce(self._store.job(key))
         except Cancelled as error:
-            if not self._stopping.is_set():
+            if not lane.is_stopping:
                 self._finish(key, JobState.CANCELLED, str(error))
         except TeachpathError as error:
             self._finish(key, JobState.FAILED, str(error), **_evidence(error))
         except BrokenProcessPool:
-            if not self._stopping.is_set():
-                self._pool.kill()
-                self._queue.put(key)
-        finally:
-            self._running = ""
+            if not lane.is_stopping:
+                lane.put(key)
 
     def _finish(self, key: str, state: JobState, message: str, **evidence: Any) -> Job:
         job = self._store.set_job(key, state=state.value, message=message, finished_ns=time.time_ns(), **evidence)
@@ -161,6 +171,10 @@ class Jobs:
         return job
 
     def _announce(self, job: Job) -> None:
+        if job.finished_ns:
+            with self._lock:
+                self._submitters.pop(job.id, None)
+            self._kinds[job.kind].clean_up(job)
         self._bus.publish(self._keys.job(job.id), encode_progress(job))
         if job.finished_ns:
             self._on_finished(job)

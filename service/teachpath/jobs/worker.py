@@ -6,6 +6,7 @@ The service only names these functions. What they call is loaded in this process
 from __future__ import annotations
 
 import os
+import resource
 import signal
 import threading
 import time
@@ -13,6 +14,7 @@ import uuid
 from collections.abc import Callable
 from multiprocessing import Queue, parent_process
 from multiprocessing.synchronize import Event
+from pathlib import Path
 from typing import Any
 
 from teachpath.errors import Cancelled
@@ -25,16 +27,19 @@ Progress = Callable[[float, str], None]
 
 # [s] between two reports of one sentence: each is a row in the store and a message to every page
 PROGRESS_INTERVAL = 0.05
+NICENESS = 5  # of the process, so that the control loop and the service go first
 
 _progress_queue: Queue[tuple[str, float, str]] | None = None
 _cancel: Event | None = None
+_memory_limit = 0  # bytes beside what the process has taken before its first job; 0: none, or set already
 
 
-def init_worker(progress: Queue[tuple[str, float, str]], cancel: Event) -> None:
+def init_worker(progress: Queue[tuple[str, float, str]], cancel: Event, memory_limit: int) -> None:
     """Prepare this process: it reports to `progress`, is cancelled by `cancel`, and ends with its parent."""
-    global _progress_queue, _cancel
-    _progress_queue, _cancel = progress, cancel
+    global _progress_queue, _cancel, _memory_limit
+    _progress_queue, _cancel, _memory_limit = progress, cancel, memory_limit
     exit_with_parent()
+    os.nice(NICENESS)
 
 
 def exit_with_parent() -> None:
@@ -65,6 +70,7 @@ def work(key: str, function: Callable[..., Any], inputs: tuple[Any, ...]) -> Any
     are passed on.
     """
     reported, due = "", 0.0
+    _limit_memory()
 
     def progress(fraction: float, sentence: str) -> None:
         nonlocal reported, due
@@ -76,6 +82,21 @@ def work(key: str, function: Callable[..., Any], inputs: tuple[Any, ...]) -> Any
             reported, due = sentence, now + PROGRESS_INTERVAL
 
     return function(*inputs, progress=progress)
+
+
+def _limit_memory() -> None:
+    """Limit what this process may take from now on, where the system tells what it has taken; libraries do not count.
+
+    Python and numpy raise MemoryError at the limit.
+    """
+    global _memory_limit
+    status = Path("/proc/self/status")
+    if not _memory_limit or not status.exists():
+        return
+    taken = int(status.read_text().partition("VmData:")[2].split()[0]) * 1024
+    limit, _memory_limit = taken + _memory_limit, 0
+    _, hard = resource.getrlimit(resource.RLIMIT_DATA)
+    resource.setrlimit(resource.RLIMIT_DATA, (limit if hard == resource.RLIM_INFINITY else min(limit, hard), hard))
 
 
 def learn_paths(demonstrations: dict[str, Trajectory], settings: LearningSettings, *, progress: Progress) -> Learned:

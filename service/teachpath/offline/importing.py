@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import time
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 from teachpath.errors import UnusableInput, UnusableRecording
@@ -56,6 +57,7 @@ def import_file(
     scene: Scene,
     calibration: Calibration,
     limits: ImportSettings,
+    progress: Callable[[float, str], None] = lambda fraction, what: None,
 ) -> list[tuple[Demonstration, Trajectory]]:
     """Make a demonstration of each motion in a file; the whole motion counts as grasped.
 
@@ -69,12 +71,14 @@ def import_file(
     if not is_name(task):
         raise UnusableInput(name_refusal("task", task))
     read = _read(source, calibration, limits)
+    progress(0.3, f"checking {len(read.motions)} motions")
     for number, samples in enumerate(read.motions, 1):
         where = source.name if len(read.motions) == 1 else f"{source.name}, motion {number} of {len(read.motions)}"
         _check_duration(samples, limits, where)
         _check(samples, settings, scene, read.calibration, where)
     store.ensure_task(task, scene=scene.name, calibration=read.calibration.name)
-    judged = [_judged(store, settings, each, read) for each in _recorded(store, settings, task, scene, read)]
+    made = _recorded(store, settings, task, scene, read, progress)
+    judged = [_judged(store, settings, each, read) for each in made]
     if read.stated is None:
         return judged
     annotations = Annotations(store, settings, lambda _: scene)
@@ -82,11 +86,17 @@ def import_file(
 
 
 def _recorded(
-    store: Store, settings: RecordingSettings, task: str, scene: Scene, read: _Read
+    store: Store,
+    settings: RecordingSettings,
+    task: str,
+    scene: Scene,
+    read: _Read,
+    progress: Callable[[float, str], None],
 ) -> list[tuple[Demonstration, Trajectory]]:
     """Record each motion as if live."""
     made: list[tuple[Demonstration, Trajectory]] = []
-    for samples in read.motions:
+    for number, samples in enumerate(read.motions):
+        progress(0.5 + 0.5 * number / len(read.motions), f"motion {number + 1} of {len(read.motions)}")
         rate = read.stated.statistics.declared_rate if read.stated else 0.0
         setup = RecordingSetup(task, read.tracker, read.calibration, scene, rate)
         session = RecordingSession(store, settings, setup)

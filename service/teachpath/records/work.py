@@ -20,11 +20,12 @@ class JobState(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Job:
-    """Background work on a task: `learn`, `recut` or `plan`.
+    """Background work on a task: `learn`, `recut`, `plan` or `import`.
 
     Attributes:
         message: what it does now, or why it failed.
-        outcome: id of the run or plan that it made.
+        outcome: id of the run or plan that it made; of an import the numbers of the first and the last
+            demonstration, e.g. `3-5`.
         failure: where a path fails that the arm cannot follow, why, and what to change.
         demonstration: id of the one because of which nothing could be learned.
     """

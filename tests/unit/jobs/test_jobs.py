@@ -2,7 +2,7 @@ import os
 import queue
 import signal
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
 import pytest
@@ -10,12 +10,14 @@ import pytest
 from teachpath.errors import Conflict, LearningFailed, PathRefused
 from teachpath.io.memory_bus import MemoryBus
 from teachpath.io.store.store import Store
-from teachpath.jobs.jobs import JobKind, Jobs, JobSettings
+from teachpath.jobs.jobs import JobKind, Jobs
+from teachpath.jobs.settings import JobSettings
 from teachpath.records import Failure, Job, JobState, Suggestion
 from teachpath_proto.keys import Keys
 from tests.waiting import HANG
 
 KEYS = Keys("test")
+SETTINGS = JobSettings(attempts=2)
 FAILURE = Failure("reach", 0.1, (0.1, 0.2), (0.5, 0.0, 0.5), "too far", Suggestion(3, (0.0, 0.0, -0.01), "lower it"))
 
 
@@ -50,13 +52,20 @@ def fault(word: str, *, progress: Callable[[float, str], None]) -> str:
 class Bench:
     """Jobs that work on words; `ended` gives them as they end."""
 
-    def __init__(self, store: Store, **instead: Callable[..., str]) -> None:
+    def __init__(
+        self,
+        store: Store,
+        settings: JobSettings = SETTINGS,
+        *,
+        files: Mapping[str, Callable[..., str]] | None = None,
+        **instead: Callable[..., str],
+    ) -> None:
         self.store, self.bus = store, MemoryBus()
         self.ended: queue.Queue[Job] = queue.Queue()
         self.outcomes: list[str] = []
         works = {f.__name__: f for f in (echo, refuse, block, crash, linger, fault)} | instead
         kinds = {name: JobKind(self.prepare, work, self.finish) for name, work in works.items()}
-        settings = JobSettings(attempts=2)
+        kinds |= {name: JobKind(self.prepare, work, self.finish, "files") for name, work in (files or {}).items()}
         self.jobs = Jobs(self.bus, KEYS, store, settings, kinds, on_finished=self.ended.put)
 
     def prepare(self, job: Job) -> tuple[Any, ...]:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import io
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -26,6 +26,7 @@ from teachpath.io.store.viewer_messages import ViewerMessages
 from teachpath.io.wire import decode_sample, encode_sample, message_types
 from teachpath.records import Calibration, Demonstration, Sample
 
+RECORDINGS = "recordings"  # their folder, in that of the data
 TOPIC = "samples"
 HEADER, FACTS = "teachpath", "facts"  # names of the metadata
 BATCH_SIZE = 400  # messages; small chunks, of about 64 KiB, lose less when a file is cut off
@@ -131,6 +132,17 @@ class Recordings:
         if not file.is_file():
             raise NotFound(f"recording {place} is missing under {self._root}; was the folder moved?")
         return file
+
+    def take_over(self, folder: Path, place: str) -> None:
+        """Move the finished recording at `place` within `folder` to the same place here; one disk must hold both."""
+        file = self._root / place
+        file.parent.mkdir(parents=True, exist_ok=True)
+        (folder / place).rename(file)
+
+    def remove(self, places: Sequence[str]) -> None:
+        """Remove recordings that no row names; those that are not there are passed over."""
+        for place in places:
+            (self._root / place).unlink(missing_ok=True)
 
     def samples(self, place: str) -> list[Sample]:
         """Read all samples of a finished recording, in the order they were received."""

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, TypeVar
 
-from sqlalchemy import func, select, update
+from sqlalchemy import select, update
 from sqlalchemy.orm import Session
 
 from teachpath.errors import Conflict, NotFound
@@ -19,7 +19,8 @@ from teachpath.io.store.changes import Changed, note, telling, unheard
 from teachpath.io.store.engine import open_engine
 from teachpath.io.store.journal import Journal
 from teachpath.io.store.motions import Motions
-from teachpath.io.store.recordings import Opener, Recordings, open_new
+from teachpath.io.store.recordings import RECORDINGS, Opener, Recordings, open_new
+from teachpath.io.store.rows import ensured_task, job_of, numbered_row, success, task_of
 from teachpath.io.store.settings import StoreSettings
 from teachpath.io.store.tables import (
     Base,
@@ -31,7 +32,7 @@ from teachpath.io.store.tables import (
     TaskRow,
 )
 from teachpath.io.store.versions import Versions, learned_row
-from teachpath.records import Demonstration, ExecutorStatus, Failure, Job, JobState, Learned, LearnedPath, Plan, Task
+from teachpath.records import Demonstration, ExecutorStatus, Job, JobState, Learned, LearnedPath, Plan, Task
 
 Row = TypeVar("Row", bound=Base)
 
@@ -63,7 +64,7 @@ class Store:
         """Open the database; `opener` opens the files of new recordings, `changed` hears of every changed row."""
         folder = Path(settings.data_dir)
         folder.mkdir(parents=True, exist_ok=True)
-        self.recordings = Recordings(folder / "recordings", opener)
+        self.recordings = Recordings(folder / RECORDINGS, opener)
         self.motions = Motions(folder / "executions", opener)
         self._engine = open_engine(settings.database or f"sqlite:///{folder / 'teachpath.sqlite'}")
         self._writing = self._engine.execution_options(writing=True)
@@ -101,38 +102,21 @@ class Store:
     def ensure_task(self, name: str, *, scene: str, calibration: str) -> Task:
         """Return the task `name`; made with `scene` and `calibration` when it does not exist."""
         with self._change() as session:
-            row = session.get(TaskRow, name)
-            if row is None:
-                row = TaskRow(name=name, scene=scene, calibration=calibration, created_ns=time.time_ns())
-                session.add(row)
-        return _task(row)
+            row = ensured_task(session, name, scene, calibration)
+        return task_of(row)
 
     def tasks(self) -> list[Task]:
         """List all tasks, oldest first."""
-        return [_task(row) for row in self._all(select(TaskRow).order_by(TaskRow.created_ns))]
+        return [task_of(row) for row in self._all(select(TaskRow).order_by(TaskRow.created_ns))]
 
     def task(self, name: str) -> Task:
         """Return one task; raises NotFound."""
-        return _task(self._one(TaskRow, name, "task"))
+        return task_of(self._one(TaskRow, name, "task"))
 
     def add_demonstration(self, demonstration: Demonstration) -> Demonstration:
         """Store a demonstration under the next number of its task and return it with that number."""
         with self._change() as session:
-            newest = session.scalar(
-                select(func.max(DemonstrationRow.number)).where(DemonstrationRow.task == demonstration.task)
-            )
-            numbered = replace(demonstration, number=(newest or 0) + 1)
-            session.add(
-                DemonstrationRow(
-                    id=numbered.id,
-                    task=numbered.task,
-                    number=numbered.number,
-                    created_ns=numbered.created_ns,
-                    verdict=numbered.verdict,
-                    document=to_document(numbered),
-                )
-            )
-        return numbered
+            return numbered_row(session, demonstration)
 
     def demonstrations(self, task: str) -> list[Demonstration]:
         """List the demonstrations of a task in their order."""
@@ -206,7 +190,7 @@ class Store:
 
     def job(self, key: str) -> Job:
         """Return one job; raises NotFound."""
-        return _job(self._one(JobRow, key, "job"))
+        return job_of(self._one(JobRow, key, "job"))
 
     def jobs(self, *, task: str | None = None, unfinished: bool = False) -> list[Job]:
         """List jobs, oldest first: all, those of a task, or those that are not finished."""
@@ -215,7 +199,7 @@ class Store:
             question = question.where(JobRow.task == task)
         if unfinished:
             question = question.where(JobRow.state.in_([JobState.QUEUED.value, JobState.RUNNING.value]))
-        return [_job(row) for row in self._all(question)]
+        return [job_of(row) for row in self._all(question)]
 
     def set_job(self, key: str, **changes: Any) -> Job:
         """Change fields of an unfinished job and return it; a finished job stays as it is.
@@ -234,7 +218,7 @@ class Store:
         """
         run, now = f"run-{key.partition('-')[2]}", time.time_ns()
         with self._change() as session:
-            self._claim(session, key, _success(run, now))
+            self._claim(session, key, success(run, now))
             job = session.get_one(JobRow, key)
             paths = tuple(replace(p, id=f"{run}-{p.cluster}", run=run) for p in learned.paths)
             named = replace(learned, paths=paths)
@@ -243,11 +227,38 @@ class Store:
             session.add_all(learned_row(path, now) for path in paths)
         return run
 
+    def finish_import(self, key: str, task: Task, made: Sequence[Demonstration], recordings: Path) -> str:
+        """Take over imported demonstrations with their recordings and mark the job succeeded, all or nothing.
+
+        Args:
+            key: of the job.
+            task: of the demonstrations; made when it does not exist.
+            made: in their order, one at least.
+            recordings: folder in which their recordings are, at the places that they say.
+
+        Returns:
+            The numbers that the first and the last one have now, e.g. `3-5`.
+        """
+        try:
+            with self._change() as session:
+                ensured_task(session, task.name, task.scene, task.calibration)
+                session.flush()
+                numbered = [numbered_row(session, demonstration) for demonstration in made]
+                outcome = f"{numbered[0].number}-{numbered[-1].number}"
+                self._claim(session, key, success(outcome, time.time_ns()))
+                session.flush()
+                for demonstration in made:
+                    self.recordings.take_over(recordings, demonstration.recording)
+        except BaseException:
+            self.recordings.remove([demonstration.recording for demonstration in made])
+            raise
+        return outcome
+
     def finish_planning(self, key: str, plan: Plan) -> str:
         """Store a plan and mark the job succeeded, all or nothing; return the plan's id."""
         now = time.time_ns()
         with self._change() as session:
-            self._claim(session, key, _success(plan.id, now))
+            self._claim(session, key, success(plan.id, now))
             session.add(PlanRow(id=plan.id, path=plan.path, created_ns=now, document=to_document(plan)))
         return plan.id
 
@@ -262,23 +273,9 @@ class Store:
         note(session, JobRow.__tablename__, key)
 
 
-def _success(outcome: str, now: int) -> dict[str, Any]:
-    return {"state": JobState.SUCCEEDED.value, "fraction": 1.0, "outcome": outcome, "finished_ns": now, "message": ""}
-
-
-def _task(row: TaskRow) -> Task:
-    return Task(row.name, row.scene, row.calibration, row.created_ns)
-
-
 def _run(row: RunTable) -> Run:
     return Run(row.id, row.task, row.created_ns, from_document(Learned, row.document))
 
 
 def _execution(row: ExecutionTable) -> Execution:
     return Execution(row.id, row.plan, row.created_ns, from_document(ExecutorStatus, row.document))
-
-
-def _job(row: JobRow) -> Job:
-    fields = {name: getattr(row, name) for name in Job.__dataclass_fields__}
-    failure = None if row.failure is None else from_document(Failure, row.failure)
-    return Job(**{**fields, "state": JobState(row.state), "failure": failure})

@@ -1,0 +1,28 @@
+"""How background work is done, and what it may take."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Annotated
+
+from annotated_types import Ge, Gt, Le
+
+
+@dataclass(frozen=True)
+class JobSettings:
+    """How background work is done."""
+
+    # how often a job is begun anew after its process died
+    attempts: Annotated[int, Ge(1), Le(10)] = 3
+    # jobs that may wait or run at a time
+    max_queued: Annotated[int, Ge(1)] = 100
+    # of them, jobs that came from one address
+    max_queued_by_one: Annotated[int, Ge(1)] = 25
+    # bytes of memory that learning or planning may take beside its libraries, where the system can limit it
+    max_memory: Annotated[int, Ge(67108864)] = 4294967296
+    # [s] that learning or planning may take
+    max_duration: Annotated[float, Gt(0)] = 3600.0
+    # bytes of memory that reading and writing files may take, likewise
+    max_file_memory: Annotated[int, Ge(67108864)] = 1073741824
+    # [s] that reading and writing a file may take
+    max_file_duration: Annotated[float, Gt(0)] = 600.0

@@ -1,0 +1,114 @@
+"""Imports as jobs: an uploaded file becomes demonstrations in a folder of its own; the service takes them over."""
+
+from __future__ import annotations
+
+import shutil
+import uuid
+from collections.abc import Callable, Collection
+from dataclasses import dataclass
+from pathlib import Path
+
+from teachpath.errors import NotFound, UnusableRecording
+from teachpath.io.import_settings import ImportSettings
+from teachpath.io.store.settings import StoreSettings
+from teachpath.io.store.store import Store
+from teachpath.offline.importing import Source, import_file
+from teachpath.recording.settings import RecordingSettings
+from teachpath.records import Calibration, Demonstration, Scene
+
+UPLOAD, PREPARED = "upload", "prepared"  # in the folder of an import: the file, and what was made of it
+
+
+class ImportFolders:
+    """The folders of imports that wait or run, beside the recordings, so that files are only renamed.
+
+    Args:
+        root: their folder; made when missing.
+    """
+
+    def __init__(self, root: Path) -> None:
+        self._root = root
+
+    def make(self) -> Path:
+        """Make a folder of a new name."""
+        folder = self._root / uuid.uuid4().hex
+        folder.mkdir(parents=True)
+        return folder
+
+    def folder(self, name: str) -> Path:
+        """Return the folder of that name."""
+        return self._root / name
+
+    def remove(self, name: str) -> None:
+        """Remove a folder with all that is in it."""
+        shutil.rmtree(self._root / name, ignore_errors=True)
+
+    def keep_only(self, names: Collection[str]) -> None:
+        """Remove the folders of imports that have ended, or were never queued."""
+        for folder in self._root.glob("*"):
+            if folder.name not in names:
+                self.remove(folder.name)
+
+
+@dataclass(frozen=True, slots=True)
+class ImportRequest:
+    """What a job of kind `import` keeps of its request; `upload` names the folder of the file."""
+
+    upload: str
+    name: str
+    format: str
+    units: str
+    rate: float
+    scene: str
+    calibration: str
+
+
+@dataclass(frozen=True)
+class ImportOrder:
+    """An uploaded file, and what demonstrations are made of it with; `folder` holds the file."""
+
+    folder: Path
+    task: str
+    name: str
+    kind: str
+    units: str
+    rate: float
+    scene: Scene
+    calibration: Calibration
+    recording: RecordingSettings
+    limits: ImportSettings
+
+
+def prepare_import(order: ImportOrder, *, progress: Callable[[float, str], None]) -> list[Demonstration]:
+    """Make the demonstrations of an uploaded file, with their recordings below `order.folder / PREPARED`.
+
+    Their numbers, and the places of their recordings, are those of a station that has nothing else.
+
+    Raises:
+        UnusableInput: the file cannot be used.
+        NotFound: the file is gone.
+    """
+    prepared = order.folder / PREPARED
+    shutil.rmtree(prepared, ignore_errors=True)  # of an attempt whose process died
+    progress(0.05, f"reading {order.name}")
+    try:
+        content = (order.folder / UPLOAD).read_bytes()
+    except OSError as error:
+        raise NotFound(f"the upload of {order.name} cannot be read: {error.strerror}; send it again") from None
+    store = Store(StoreSettings(data_dir=str(prepared), database="sqlite://"))
+    try:
+        made = import_file(
+            store,
+            order.recording,
+            Source(order.name, content, order.kind, order.units, order.rate),
+            task=order.task,
+            scene=order.scene,
+            calibration=order.calibration,
+            limits=order.limits,
+            progress=progress,
+        )
+    finally:
+        store.close()
+    if not made:
+        raise UnusableRecording(f"{order.name}: no recording could be written; is the disk full?")
+    return [demonstration for demonstration, _ in made]
