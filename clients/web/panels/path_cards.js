@@ -74,7 +74,9 @@ const isUsable = ({ verdict, mark, discarded_ns }) => verdict !== "reject" && ma
 
 /** @param {State} state @param {string} text */
 function learnButton({ jobs }, text) {
-  const busy = (jobs ?? []).some(({ state, kind }) => ["running", "queued"].includes(state) && ["learn", "recut"].includes(kind));
+  const busy = (jobs ?? []).some(
+    ({ state, kind }) => ["running", "queued"].includes(state) && ["learn", "recut"].includes(kind),
+  );
   const data = { "data-learn": "1", "data-key": "learn" };
   return element("p", {}, element("button", { type: "button", class: "primary", ...data, disabled: busy && "" }, text));
 }
