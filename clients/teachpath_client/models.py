@@ -362,7 +362,7 @@ class Health:
 
     Attributes:
         uptime: since the station was opened [s].
-        processes: of each process beside the service, whether it is `running` or has `ended`.
+        processes: of each process beside the service, whether it is `running`, `restarting` or has `ended`.
         recording: trackers that are being recorded.
         backlog: samples that wait for the recorder.
         executor: None until it has said something.

@@ -163,7 +163,7 @@ class Station(TaskResources, WorkResources):
         with self.events() as events:
             while (health := self.health()).executor is None:
                 on_change(health)
-                if health.notes or time.monotonic() > deadline:
+                if "ended" in health.processes.values() or time.monotonic() > deadline:
                     raise ClientError("; ".join(health.notes) or f"the executor has not come within {timeout:g} s")
                 _next_change(events, ("executor", "station"))
         return health

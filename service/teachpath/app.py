@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import logging
 import time
+from collections.abc import Callable
 from dataclasses import asdict
 from pathlib import Path
 from types import TracebackType
@@ -39,11 +40,15 @@ from teachpath.recorder.websocket_trackers import WebSocketTrackers
 from teachpath.records import Demonstration, Trajectory
 from teachpath.robot.executions import Executions
 from teachpath.robot.joint_feed import JointFeed
-from teachpath.robot.processes import WorkerProcess
+from teachpath.robot.processes import SupervisedProcess, attached_command
 from teachpath_proto.keys import Keys
 from teachpath_proto.logins import Role
 
 log = logging.getLogger("teachpath")
+
+# What an operator should do after the death of a process, as the end of a sentence.
+EXECUTOR_SUGGESTION = "its execution ended as faulted: look where the arm stands, then start again"
+SIMULATOR_SUGGESTION = "its arm stands at home and the object at its start: stop the execution, then start again"
 
 
 def trajectory_of(store: Store, settings: Settings, demonstration: Demonstration) -> Trajectory:
@@ -109,18 +114,17 @@ class Station:
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         self._state_poller.stop()
-        for process in self.processes:
-            process.request_stop()
+        self.processes[0].request_stop()
         self._queries.stop()
         self.recorder.stop()
         self.guidance.stop()
         self.jobs.stop()
         self.assessor.stop()
-        self.executions.stop()
-        self.joints.stop()
-        self.preview.stop()
         for process in self.processes:
             process.stop()
+        self.executions.stop()  # after the executor, whose last status is the end of what was under way
+        self.joints.stop()
+        self.preview.stop()
         self.bus.close()
         self.store.close()
         self._lock.__exit__(None, None, None)
@@ -172,13 +176,25 @@ class Station:
             statuses=self.recorder.shown_statuses,
             settings=settings.preview,
         )
-        roles = {"simulator": Role.ROBOT, "executor": Role.EXECUTOR}
-        if not settings.simulator.start:
-            del roles["simulator"]
+        # In the order in which they are stopped: the executor brings the arm to rest.
         self.processes = [
-            WorkerProcess(name, instructions(settings, access.login(role) if access else None))
-            for name, role in roles.items()
+            self._process("executor", Role.EXECUTOR, access, EXECUTOR_SUGGESTION, self.executions.end_lost)
         ]
+        if settings.simulator.start:
+            self.processes.append(self._process("simulator", Role.ROBOT, access, SIMULATOR_SUGGESTION))
+
+    def _process(
+        self,
+        name: str,
+        role: Role,
+        access: BusAccess | None,
+        suggestion: str,
+        on_death: Callable[[str], None] = lambda cause: None,
+    ) -> SupervisedProcess:
+        login = access.login(role) if access else None
+        return SupervisedProcess(
+            name, attached_command(name), instructions(self.settings, login), suggestion=suggestion, on_death=on_death
+        )
 
     def trajectory(self, demonstration: Demonstration) -> Trajectory:
         """Return the object's trajectory of a stored demonstration."""
@@ -190,7 +206,7 @@ class Station:
             version=__version__,
             uptime=round(time.monotonic() - self._started, 1),
             bus=self.settings.bus,
-            processes={p.name: "running" if p.is_alive() else "ended" for p in self.processes},
+            processes={process.name: process.state for process in self.processes},
             recording=tuple(sorted(status.tracker for status in self.recorder.statuses())),
             backlog=self.recorder.backlog,
             longest_backlog=self.settings.recording.longest_backlog,
@@ -202,7 +218,7 @@ class Station:
 
     def notes(self) -> list[str]:
         """Say what an operator should know."""
-        notes = [f"the {p.name} has ended: {p.last_error()}" for p in self.processes if not p.is_alive()]
+        notes = [note for process in self.processes if (note := process.note())]
         notes += self.recorder.faults() + self.executions.faults()
         unfinished = self.store.recordings.unfinished()
         if unfinished and not self.recorder.statuses():

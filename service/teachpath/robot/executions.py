@@ -1,10 +1,7 @@
-"""The executions: sends plans and commands to the executor's process, and stores its statuses and its journal."""
+"""The executions: sends plans and commands to the executor's process, and records what it does."""
 
 from __future__ import annotations
 
-import queue
-import threading
-import time
 import uuid
 from collections.abc import Callable
 from contextlib import suppress
@@ -12,16 +9,17 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Final
 
-from teachpath.errors import Conflict, NotFound, PathRefused, TeachpathError, Unreachable, UnusableInput
-from teachpath.io.bus import Bus, Handle
+from teachpath.errors import Conflict, NotFound, PathRefused, TeachpathError, UnusableInput
+from teachpath.io.bus import Bus
 from teachpath.io.documents import encode
 from teachpath.io.store.motions import MotionHeader, read_motion
 from teachpath.io.store.store import Execution, Store
-from teachpath.io.wire import decode_entry, decode_lease, decode_status, encode_command, encode_lease_request
+from teachpath.io.wire import decode_lease, encode_command, encode_lease_request
 from teachpath.motion.analysis.time_series import TimeSeries, time_series
 from teachpath.motion.arm.model import Arm
-from teachpath.records import Command, ExecutorStatus, JournalEntry, Lease, LeaseRequest, Plan, Scene, TeleopRequest
-from teachpath.robot.motion_recorder import MotionRecorder
+from teachpath.records import Command, ExecutorStatus, Lease, LeaseRequest, Plan, Scene, TeleopRequest
+from teachpath.robot.executor_monitor import ExecutorMonitor
+from teachpath.robot.motion_recorder import SETTLING_NS, STOPPING_NS, MotionRecorder
 from teachpath.robot.stopper import Stopper
 from teachpath_proto.control import CommandVerb, ExecutorState
 from teachpath_proto.keys import Keys
@@ -56,34 +54,23 @@ class Executions:
         self._recorder = MotionRecorder(bus, keys, store.motions, robot=robot)
         self._stopper = Stopper(bus, keys)
         self._starting: set[str] = set()  # executions that the executor has not answered for yet
-        self._changed = threading.Condition()
-        self._status: ExecutorStatus | None = None
-        self._last_seen = 0.0
-        self._plans: dict[str, str | None] = {}
-        self._handles: list[Handle] = []
-        self._received: queue.SimpleQueue[ExecutorStatus | JournalEntry | None] = queue.SimpleQueue()
-        self._writer: threading.Thread | None = None
+        self._monitor = ExecutorMonitor(bus, keys, store, on_status=self._stopper.on_status)
 
     def start(self) -> None:
         """Receive the executor's statuses and journal from now on."""
         self._recorder.start()
-        self._handles = [
-            self._bus.subscribe(self._keys.executor_status, self._receive),
-            self._bus.subscribe(self._keys.executor_journal, self._receive_entry),
-        ]
-        self._writer = threading.Thread(target=self._write, name="executions", daemon=True)
-        self._writer.start()
+        self._monitor.start()
 
     def stop(self) -> None:
         """Stop receiving; what came is stored first."""
-        for handle in self._handles:
-            handle.close()
+        self._monitor.stop()
         self._stopper.close()
-        if self._writer is not None:
-            self._received.put(None)
-            self._writer.join()
-            self._writer = None
         self._recorder.stop()
+
+    def end_lost(self, cause: str) -> None:
+        """End the execution that is under way as faulted, because the executor died of `cause`."""
+        self._monitor.end_lost(cause)
+        self._recorder.finish_after(STOPPING_NS)
 
     def faults(self) -> list[str]:
         """Return why an execution is not recorded, in sentences for the operator."""
@@ -107,7 +94,7 @@ class Executions:
     @property
     def status(self) -> ExecutorStatus | None:
         """The executor's newest status, or None when the executor has been silent for over a second."""
-        return self._status if time.monotonic() - self._last_seen < 1.0 else None
+        return self._monitor.status
 
     def execute(self, plan: str, *, override: float = 1.0, lease: str = "", who: str = "") -> Execution:
         """Move the robot along a plan.
@@ -213,43 +200,19 @@ class Executions:
 
     def get(self, execution: str) -> Execution:
         """Return an execution with its present status; raises NotFound."""
-        row = self._store.execution(execution)
-        status = self._status
-        if status is not None and status.execution == execution:
-            return Execution(row.id, row.plan, row.created_ns, status)
-        return row
-
-    def wait(self, execution: str, *, timeout: float) -> ExecutorStatus:
-        """Return the final status of an execution.
-
-        Raises:
-            Unreachable: it did not end within `timeout` [s].
-        """
-
-        def ended() -> bool:
-            return self._status is not None and self._status.execution == execution and self._status.state.is_resting
-
-        with self._changed:
-            if not self._changed.wait_for(ended, timeout):
-                state = self._status.state if self._status else "silent"
-                raise Unreachable(f"execution {execution} did not end within {timeout:g} s; the executor is {state}")
-            assert self._status is not None
-            return self._status
+        return self._monitor.get(execution)
 
     def _start_execution(self, command: Command, header: MotionHeader) -> Execution:
         key, plan = command.execution, header.plan.id if header.plan else None
-        self._store.put_execution(
-            key, plan, ExecutorStatus(execution=key, state=ExecutorState.STARTING, override=command.override)
-        )
-        self._plans[key] = plan
+        starting = ExecutorStatus(execution=key, state=ExecutorState.STARTING, override=command.override)
+        self._monitor.track(key, plan, starting)
         self._recorder.begin(header)
         self._starting.add(key)
         try:
             self._bus.ask(self._keys.executor_command, encode_command(command), timeout=30.0)
         except TeachpathError as error:
-            refused = ExecutorStatus(execution=key, state=ExecutorState.FAULTED, reason=str(error))
-            self._store.put_execution(key, plan, refused)
-            self._recorder.abandon()
+            self._monitor.refuse(key, str(error))
+            self._recorder.finish_after(SETTLING_NS)
             raise
         finally:
             self._starting.discard(key)
@@ -264,26 +227,3 @@ class Executions:
                 raise PathRefused(
                     f"scene {plan.scene.name} has changed since {plan.id} was certified; plan the path again"
                 )
-
-    def _receive(self, _: str, payload: bytes) -> None:
-        with suppress(UnusableInput):
-            status = decode_status(payload)
-            with self._changed:
-                before, self._status = self._status, status
-                self._last_seen = time.monotonic()
-                self._changed.notify_all()
-            self._stopper.on_status(status)
-            if before is None or (before.execution, before.state) != (status.execution, status.state):
-                self._received.put(status)
-
-    def _receive_entry(self, _: str, payload: bytes) -> None:
-        with suppress(UnusableInput):
-            self._received.put(decode_entry(payload))
-
-    def _write(self) -> None:
-        """Store what was received, on a thread of its own: the bus's threads must not wait for the disk."""
-        while (news := self._received.get()) is not None:
-            if isinstance(news, JournalEntry):
-                self._store.journal.write(news)
-            elif news.execution in self._plans:
-                self._store.put_execution(news.execution, self._plans[news.execution], news)

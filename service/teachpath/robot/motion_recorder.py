@@ -22,6 +22,7 @@ log = logging.getLogger(__name__)
 POLL_INTERVAL: Final = 0.05  # [s] between two rounds of writing
 FLUSH_NS: Final = 1_000_000_000  # between two flushes
 SETTLING_NS: Final = 500_000_000  # after the end of an execution, in which the arm still settles
+STOPPING_NS: Final = 2_000_000_000  # after the death of the executor, in which the arm follows its way to rest
 FILE_END_TIMEOUT: Final = 10.0  # [s] that somebody waits for the end of a file
 
 
@@ -97,10 +98,10 @@ class MotionRecorder:
             except OSError as error:
                 self._fail(error)
 
-    def abandon(self) -> None:
-        """End the recording of an execution that was refused."""
+    def finish_after(self, time_ns: int) -> None:
+        """End the recording in `time_ns` from now, because the executor will not say when the execution is over."""
         with self._lock:
-            self._end_ns = self._end_ns or self._clock() + SETTLING_NS
+            self._end_ns = self._end_ns or self._clock() + time_ns
 
     def wait_for_file(self, execution: str) -> None:
         """Wait until the file of an execution that is over is complete, but no longer than `FILE_END_TIMEOUT`."""

@@ -33,6 +33,7 @@ from teachpath.io.store.tables import (
 )
 from teachpath.io.store.versions import Versions, learned_row
 from teachpath.records import Demonstration, ExecutorStatus, Job, JobState, Learned, LearnedPath, Plan, Task
+from teachpath_proto.control import ExecutorState
 
 Row = TypeVar("Row", bound=Base)
 
@@ -179,6 +180,12 @@ class Store:
     def executions(self, limit: int = 50) -> list[Execution]:
         """List the newest executions, newest first."""
         question = select(ExecutionTable).order_by(ExecutionTable.created_ns.desc()).limit(limit)
+        return [_execution(row) for row in self._all(question)]
+
+    def unfinished_executions(self) -> list[Execution]:
+        """List the executions whose last stored status is not their end."""
+        resting = [state.value for state in ExecutorState if state.is_resting]
+        question = select(ExecutionTable).where(ExecutionTable.document["state"].as_string().not_in(resting))
         return [_execution(row) for row in self._all(question)]
 
     # jobs

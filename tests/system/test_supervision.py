@@ -1,0 +1,118 @@
+"""Executor, simulated arm or service die while the arm moves: what was under way ends, and the next start works."""
+
+import os
+import signal
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from teachpath.io.store.settings import StoreSettings
+from teachpath.io.store.store import Store
+from teachpath.motion.collision.builtin_scenes import empty_scene
+from teachpath.motion.planning.plan import plan
+from teachpath.robot.processes import MAX_DEATHS
+from teachpath_client.models import Execution
+from tests.contract.rows import a_job
+from tests.system.processes import Service
+from tests.unit.motion.ways import MIDDLE, way
+from tests.waiting import wait_until
+
+pytestmark = pytest.mark.system
+
+PLAN = "plan-1"
+
+
+@pytest.fixture(scope="module")
+def data(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A data folder with one certified plan."""
+    folder = tmp_path_factory.mktemp("station") / "data"
+    store = Store(StoreSettings(data_dir=str(folder)))
+    store.add_job(a_job(PLAN, kind="plan"))
+    store.finish_planning(PLAN, replace(plan(way(MIDDLE), empty_scene()), id=PLAN))
+    store.close()
+    return folder
+
+
+@pytest.fixture
+def service(data: Path) -> Iterator[Service]:
+    # An arm that has died is missed after this long.
+    with Service(data, TEACHPATH_EXECUTOR__SILENCE="1.0") as service:
+        yield service
+
+
+def begin(service: Service) -> Execution:
+    service.station.wait_for_arm()
+    return service.station.begin_execution(PLAN)
+
+
+def wait_state(service: Service, execution: Execution, *states: str) -> Execution:
+    def present() -> Execution | None:
+        found = service.station.get_execution(execution.id)
+        return found if found.status.state in states else None
+
+    found = wait_until(present, f"the execution is {' or '.join(states)}")
+    assert found is not None
+    return found
+
+
+def follow(service: Service) -> Execution:
+    """Start an execution and wait until it follows the path."""
+    return wait_state(service, begin(service), "following")
+
+
+def kill(service: Service, part: str) -> int:
+    (pid,) = service.find(f"{part} --attached")
+    os.kill(pid, signal.SIGKILL)
+    return pid
+
+
+def wait_note(service: Service, *words: str) -> str:
+    def note() -> str:
+        return next((n for n in service.station.health().notes if all(word in n for word in words)), "")
+
+    return wait_until(note, f"a note says {words}")
+
+
+def test_the_death_of_the_executor_ends_its_execution_and_another_executor_takes_its_place(service: Service) -> None:
+    execution = follow(service)
+    kill(service, "executor")
+    status = wait_state(service, execution, "faulted").status
+    assert status.reason.startswith("the executor died (killed by signal 9"), status.reason
+    wait_note(service, "the executor died (killed by signal 9", "look where the arm stands, then start again")
+    assert service.station.stop(execution.id).status.state == "faulted"
+    again = service.station.finish(begin(service))
+    assert (again.status.state, again.status.progress) == ("ended", pytest.approx(1.0))
+    assert service.station.get_execution(execution.id).status == status
+
+
+def test_an_executor_that_dies_again_and_again_is_given_up(service: Service) -> None:
+    killed: set[int] = set()
+    for _ in range(MAX_DEATHS):
+        wait_until(lambda: set(service.find("executor --attached")) - killed, "another executor is there")
+        killed.add(kill(service, "executor"))
+    note = wait_note(service, "the executor died", "is not started again", "then restart the service")
+    assert f"{MAX_DEATHS} times" in note
+    assert service.station.health().processes == {"executor": "ended", "simulator": "running"}
+    assert service.find("executor --attached") == []
+
+
+def test_nothing_is_under_way_after_the_service_was_killed(data: Path) -> None:
+    with Service(data) as killed:
+        execution = follow(killed)
+        killed.kill()
+        killed.wait_gone()
+    with Service(data) as next_one:
+        status = next_one.station.get_execution(execution.id).status
+        assert (status.state, status.execution) == ("faulted", execution.id)
+        assert status.reason.startswith("the service ended before the execution did")
+        assert all(one.status.state in ("ended", "faulted") for one in next_one.station.executions())
+
+
+def test_what_is_under_way_when_the_service_is_stopped_has_ended(data: Path) -> None:
+    with Service(data) as stopped:
+        execution = follow(stopped)
+    with Service(data) as next_one:
+        status = next_one.station.get_execution(execution.id).status
+        assert (status.state, status.reason) == ("ended", "the executor was told to stop")
