@@ -29,8 +29,9 @@ from teachpath.live.event_hub import EventHub
 from teachpath.live.preview.preview import Preview
 from teachpath.live.state_poller import Poll, StatePoller
 from teachpath.motion.arm.geometry import visual_solids
-from teachpath.offline.import_job import ImportFolders
+from teachpath.offline.exporter import Exporter, ExportSource
 from teachpath.offline.lock import StationLock
+from teachpath.offline.transfer_folders import TransferFolders
 from teachpath.recorder.annotations import Annotations
 from teachpath.recorder.calibrations import Calibrations
 from teachpath.recorder.guidance import GuidanceThread
@@ -99,7 +100,7 @@ class Station:
             self._state_poller.start()
             for process in self.processes:
                 process.start()
-            self.imports.keep_only({str(job.request.get("upload")) for job in self.store.jobs(unfinished=True)})
+            self.transfers.keep_only({str(job.request.get("upload")) for job in self.store.jobs(unfinished=True)})
             self.jobs.start()
             if tasks := self.store.tasks():
                 self._show_task(tasks[-1].name)
@@ -120,6 +121,7 @@ class Station:
         self.guidance.stop()
         self.jobs.stop()
         self.assessor.stop()
+        self.exporter.stop()
         for process in self.processes:
             process.stop()
         self.executions.stop()  # after the executor, whose last status is the end of what was under way
@@ -152,11 +154,13 @@ class Station:
 
     def _open_work(self) -> None:
         """Open what learns, plans and looks at curves."""
-        self.imports = ImportFolders(Path(self.settings.store.data_dir) / "imports")
+        settings = self.settings
+        self.transfers = TransferFolders(Path(settings.store.data_dir) / "transfers")
         kinds = JobKinds(
-            self.store, self.settings, self.calibrations, self.trajectory, self.imports, self._show_task
+            self.store, settings, self.calibrations, self.trajectory, self.transfers, self._show_task
         ).by_name()
-        self.jobs = Jobs(self.bus, self.keys, self.store, self.settings.jobs, kinds)
+        self.jobs = Jobs(self.bus, self.keys, self.store, settings.jobs, kinds)
+        self.exporter = Exporter(ExportSource(settings.store, settings.recording, settings.scenes), settings.jobs)
         self.assessor = CurveAssessor()
 
     def _open_robot(self, access: BusAccess | None) -> None:
@@ -252,7 +256,8 @@ class Station:
             joints=self.joints,
             trajectory=self.trajectory,
             health=self.health,
-            imports=self.imports,
+            transfers=self.transfers,
+            exporter=self.exporter,
         )
 
     def _show_task(self, task: str) -> None:

@@ -14,7 +14,8 @@ from teachpath.io.store.store import Store
 from teachpath.jobs import worker
 from teachpath.jobs.jobs import JobKind
 from teachpath.learning.settings import LearningSettings
-from teachpath.offline.import_job import PREPARED, ImportFolders, ImportOrder, ImportRequest, prepare_import
+from teachpath.offline.import_job import PREPARED, ImportOrder, ImportRequest, prepare_import
+from teachpath.offline.transfer_folders import TransferFolders
 from teachpath.recorder.calibrations import Calibrations
 from teachpath.records import Demonstration, Job, Learned, Plan, Task, Trajectory
 
@@ -28,7 +29,7 @@ class JobKinds:
         settings: of the station.
         calibrations: that demonstrations have to be recorded under, in their present version.
         trajectory: returns the object's trajectory of a demonstration.
-        imports: folders of the files that are imported.
+        transfers: folders of uploaded files.
         imported: called with the name of a task that an import has added to.
     """
 
@@ -36,7 +37,7 @@ class JobKinds:
     settings: Settings
     calibrations: Calibrations
     trajectory: Callable[[Demonstration], Trajectory]
-    imports: ImportFolders
+    transfers: TransferFolders
     imported: Callable[[str], None]
 
     def by_name(self) -> dict[str, JobKind]:
@@ -79,7 +80,7 @@ class JobKinds:
         given = from_document(ImportRequest, job.request)
         return (
             ImportOrder(
-                self.imports.folder(given.upload),
+                self.transfers.folder(given.upload),
                 job.task,
                 given.name,
                 given.format,
@@ -96,13 +97,13 @@ class JobKinds:
         given = from_document(ImportRequest, job.request)
         task = Task(job.task, given.scene, made[0].calibration.name, 0)
         outcome = self.store.finish_import(
-            job.id, task, made, self.imports.folder(given.upload) / PREPARED / RECORDINGS
+            job.id, task, made, self.transfers.folder(given.upload) / PREPARED / RECORDINGS
         )
         self.imported(job.task)
         return outcome
 
     def _remove_upload(self, job: Job) -> None:
-        self.imports.remove(from_document(ImportRequest, job.request).upload)
+        self.transfers.remove(from_document(ImportRequest, job.request).upload)
 
     def _store_run(self, job: Job, learned: Learned) -> str:
         return self.store.finish_learning(job.id, learned)

@@ -81,7 +81,7 @@ def test_a_file_that_cannot_be_used_is_a_sentence_and_leaves_nothing(
         assert sentence in job["message"]
     else:
         refused(answer, 422, sentence)
-    wait_until(lambda: list(desk.data_dir.glob("imports/*")) == [], "the upload is removed")
+    wait_until(lambda: list(desk.data_dir.glob("transfers/*")) == [], "the upload is removed")
     left = desk.get("/tasks/imported-badly/demonstrations")
     assert left.status_code == 404 or left.json() == []
 
@@ -94,7 +94,7 @@ def test_an_import_is_a_job_that_is_listed_with_its_task(desk: Desk) -> None:
     assert desk.ended(desk.upload("import-job", npy(np.array([turned(0.1), turned(0.2)])), format="robottasks"))[
         "outcome"
     ] == ("2-3")
-    wait_until(lambda: list(desk.data_dir.glob("imports/*")) == [], "the upload is removed")
+    wait_until(lambda: list(desk.data_dir.glob("transfers/*")) == [], "the upload is removed")
 
 
 def turned(reach: float) -> Any:

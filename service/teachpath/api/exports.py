@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-import shutil
-import tempfile
-import zipfile
-from pathlib import Path
+from functools import partial
 from typing import Annotated, Literal
 
-from fastapi import APIRouter, Query, Response
+from fastapi import APIRouter, Query, Request
 from fastapi.responses import FileResponse
 from starlette.background import BackgroundTask
+from starlette.concurrency import run_in_threadpool
 
 from teachpath.api.parts import Parts
-from teachpath.offline.exporting import SUFFIXES, chosen, content_of, export_demonstrations
+from teachpath.api.work import submitter_of
+from teachpath.offline.exporting import chosen
+from teachpath.records import Demonstration
 
 OneFormat = Literal["csv", "mcap", "trajectory"]
 Format = Literal["csv", "mcap", "trajectory", "lerobot"]
@@ -21,40 +21,43 @@ FORMAT = "csv or mcap: every sample, to be imported again; trajectory: the objec
 
 
 def exports_router(parts: Parts) -> APIRouter:
-    """Return the routes of exports."""
+    """Return the routes of exports; a process of their own writes the files."""
     router = APIRouter(tags=["exports"])
-    store = parts.store
 
-    @router.get("/demonstrations/{demonstration}/export", response_class=Response)
-    def export_demonstration(
-        demonstration: str, format: Annotated[OneFormat, Query(description=FORMAT)] = "mcap"
-    ) -> Response:
+    @router.get("/demonstrations/{demonstration}/export", response_class=FileResponse)
+    async def export_demonstration(
+        demonstration: str, request: Request, format: Annotated[OneFormat, Query(description=FORMAT)] = "mcap"
+    ) -> FileResponse:
         """Return one demonstration as a file."""
-        row = store.demonstration(demonstration)
-        name = f"{row.task}-{row.number:03d}{SUFFIXES[format]}"
-        headers = {"Content-Disposition": f'attachment; filename="{name}"'}
-        content = content_of(store, row, format, parts.trajectory)
-        return Response(content, media_type="application/octet-stream", headers=headers)
+        row = await run_in_threadpool(parts.store.demonstration, demonstration)
+        return await _export(parts, [row], format, "", submitter_of(request))
 
     @router.get("/tasks/{task}/export", response_class=FileResponse)
-    def export_task(
+    async def export_task(
         task: str,
+        request: Request,
         format: Annotated[Format, Query(description=FORMAT)] = "mcap",
         all: Annotated[bool, Query(description="also rejected, discarded and bad ones")] = False,
     ) -> FileResponse:
         """Return the demonstrations of a task as a zip file."""
-        rows = chosen(store, task, all_=all)
-        folder = Path(tempfile.mkdtemp(prefix="teachpath-export-"))
-        try:
-            written = export_demonstrations(store, rows, format, folder / "files", trajectory=parts.trajectory)
-            with zipfile.ZipFile(folder / "export.zip", "w", zipfile.ZIP_DEFLATED) as archive:
-                for file in written:
-                    for each in sorted(file.rglob("*")) if file.is_dir() else [file]:
-                        archive.write(each, each.relative_to(folder / "files"))
-        except BaseException:
-            shutil.rmtree(folder, ignore_errors=True)
-            raise
-        away = BackgroundTask(shutil.rmtree, folder, ignore_errors=True)
-        return FileResponse(folder / "export.zip", filename=f"{task}-{format}.zip", background=away)
+        rows = await run_in_threadpool(partial(chosen, parts.store, task, all_=all))
+        return await _export(parts, rows, format, f"{task}-{format}.zip", submitter_of(request))
 
     return router
+
+
+async def _export(parts: Parts, rows: list[Demonstration], kind: str, zip_name: str, submitter: str) -> FileResponse:
+    """Return the file of the only row, or a zip file of that name."""
+    folder = await run_in_threadpool(parts.transfers.make)
+    remove = partial(parts.transfers.remove, folder.name)
+    try:
+        file = await parts.exporter.write(rows, kind, folder, zipped=bool(zip_name), submitter=submitter)
+    except BaseException:
+        remove()
+        raise
+    return FileResponse(
+        file,
+        media_type="application/octet-stream",
+        filename=zip_name or file.name,
+        background=BackgroundTask(remove),
+    )

@@ -51,13 +51,13 @@ def imports_router(parts: Parts) -> APIRouter:
         await run_in_threadpool(parts.calibrations.get, calibration)
         submitter = submitter_of(request)
         parts.jobs.require_room(submitter)
-        folder = await run_in_threadpool(parts.imports.make)
+        folder = await run_in_threadpool(parts.transfers.make)
         order = ImportRequest(folder.name, name, format, units, rate, scene, calibration)
         try:
             await _receive(request, folder / UPLOAD, name)
             job = await run_in_threadpool(parts.jobs.submit, task, "import", asdict(order), submitter)
         except BaseException:
-            parts.imports.remove(folder.name)
+            parts.transfers.remove(folder.name)
             raise
         return accepted(job, response)
 

@@ -10,7 +10,8 @@ from teachpath.io.bus import BusSettings
 from teachpath.io.store.store import Store
 from teachpath.jobs.curve_assessor import CurveAssessor
 from teachpath.jobs.jobs import Jobs
-from teachpath.offline.import_job import ImportFolders
+from teachpath.offline.exporter import Exporter
+from teachpath.offline.transfer_folders import TransferFolders
 from teachpath.recorder.calibrations import Calibrations
 from teachpath.recorder.presence import Tracker
 from teachpath.recorder.recorder import Recorder
@@ -69,4 +70,5 @@ class Parts:
     joints: JointFeed
     trajectory: Callable[[Demonstration], Trajectory]
     health: Callable[[], Health]
-    imports: ImportFolders
+    transfers: TransferFolders
+    exporter: Exporter

@@ -128,7 +128,7 @@ def _numbers(row: list[str], count: int, where: str) -> list[float]:
 def _read_arrays(content: bytes, name: str, limits: ImportSettings, kind: str, rate: float) -> list[Track]:
     try:
         values = _load_array(content, name, limits)
-    except UnusableRecording:
+    except (UnusableRecording, MemoryError):
         raise
     except Exception as error:  # a damaged header ends in whatever its tokens and sizes make numpy raise
         raise UnusableRecording(f"{name}: not a whole .npy array of numbers: {error}") from None

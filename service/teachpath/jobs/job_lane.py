@@ -90,9 +90,8 @@ class JobLane:
             OverLimit: it took too much time or memory.
             BrokenProcessPool: its process died; another one starts with the next job.
         """
-        future: Future[Any] = self._pool.submit(worker.work, self.running, function, inputs)
         try:
-            return self._await(future)
+            return self._await(self._pool.submit(worker.work, self.running, function, inputs))
         except MemoryError:
             self._pool.kill()
             raise OverLimit(

@@ -26,3 +26,5 @@ class JobSettings:
     max_file_memory: Annotated[int, Ge(67108864)] = 1073741824
     # [s] that reading and writing a file may take
     max_file_duration: Annotated[float, Gt(0)] = 600.0
+    # exports that may wait or run at a time, half as many for one address
+    max_exports: Annotated[int, Ge(2)] = 8

@@ -36,8 +36,15 @@ _memory_limit = 0  # bytes beside what the process has taken before its first jo
 
 def init_worker(progress: Queue[tuple[str, float, str]], cancel: Event, memory_limit: int) -> None:
     """Prepare this process: it reports to `progress`, is cancelled by `cancel`, and ends with its parent."""
-    global _progress_queue, _cancel, _memory_limit
-    _progress_queue, _cancel, _memory_limit = progress, cancel, memory_limit
+    global _progress_queue, _cancel
+    _progress_queue, _cancel = progress, cancel
+    init_limited(memory_limit)
+
+
+def init_limited(memory_limit: int) -> None:
+    """Prepare this process: it ends with its parent, lets others go first, and knows its limit of memory [bytes]."""
+    global _memory_limit
+    _memory_limit = memory_limit
     exit_with_parent()
     os.nice(NICENESS)
 
@@ -70,7 +77,7 @@ def work(key: str, function: Callable[..., Any], inputs: tuple[Any, ...]) -> Any
     are passed on.
     """
     reported, due = "", 0.0
-    _limit_memory()
+    limit_memory()
 
     def progress(fraction: float, sentence: str) -> None:
         nonlocal reported, due
@@ -84,7 +91,7 @@ def work(key: str, function: Callable[..., Any], inputs: tuple[Any, ...]) -> Any
     return function(*inputs, progress=progress)
 
 
-def _limit_memory() -> None:
+def limit_memory() -> None:
     """Limit what this process may take from now on, where the system tells what it has taken; libraries do not count.
 
     Python and numpy raise MemoryError at the limit.

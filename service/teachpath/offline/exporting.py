@@ -68,7 +68,7 @@ def export_demonstrations(
         written = []
         for done, d in enumerate(demonstrations):
             progress(done / len(demonstrations), f"demonstration {d.number}")
-            content = content_of(store, d, kind, trajectory)
+            content = _content_of(store, d, kind, trajectory)
             file = into / f"{d.task}-{d.number:03d}{SUFFIXES[kind]}"
             written.append(_whole(file, lambda part, content=content: part.write_bytes(content)))  # type: ignore[misc]
     except OSError as error:
@@ -79,7 +79,7 @@ def export_demonstrations(
     return written
 
 
-def content_of(
+def _content_of(
     store: Store, demonstration: Demonstration, kind: str, trajectory: Callable[[Demonstration], Trajectory]
 ) -> bytes:
     """Return the content of a demonstration's file in the format csv, mcap or trajectory.

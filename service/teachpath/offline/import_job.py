@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import shutil
-import uuid
-from collections.abc import Callable, Collection
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -17,37 +16,6 @@ from teachpath.recording.settings import RecordingSettings
 from teachpath.records import Calibration, Demonstration, Scene
 
 UPLOAD, PREPARED = "upload", "prepared"  # in the folder of an import: the file, and what was made of it
-
-
-class ImportFolders:
-    """The folders of imports that wait or run, beside the recordings, so that files are only renamed.
-
-    Args:
-        root: their folder; made when missing.
-    """
-
-    def __init__(self, root: Path) -> None:
-        self._root = root
-
-    def make(self) -> Path:
-        """Make a folder of a new name."""
-        folder = self._root / uuid.uuid4().hex
-        folder.mkdir(parents=True)
-        return folder
-
-    def folder(self, name: str) -> Path:
-        """Return the folder of that name."""
-        return self._root / name
-
-    def remove(self, name: str) -> None:
-        """Remove a folder with all that is in it."""
-        shutil.rmtree(self._root / name, ignore_errors=True)
-
-    def keep_only(self, names: Collection[str]) -> None:
-        """Remove the folders of imports that have ended, or were never queued."""
-        for folder in self._root.glob("*"):
-            if folder.name not in names:
-                self.remove(folder.name)
 
 
 @dataclass(frozen=True, slots=True)

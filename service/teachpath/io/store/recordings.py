@@ -192,7 +192,7 @@ def salvage_stream(
                 written = sum(record.channel_message_counts.get(channel, 0) for channel in ours)
                 if written != len(samples):
                     fault = f"{len(samples)} of its {written} samples can be read"
-    except OSError:
+    except (OSError, MemoryError):
         raise
     except EndOfFile:
         fault = "it is cut off"
