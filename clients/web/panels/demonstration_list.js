@@ -8,7 +8,7 @@ import { fitProjection, thumbnail } from "../thumbnail.js";
 import { wayClass } from "../way_colors.js";
 import { markFocus, trackFocus } from "./focus.js";
 
-const MAX_LISTED = 60; // newest demonstrations
+const MAX_LISTED = 60; // newest demonstrations; a review package lists all of its run
 
 /** @type {Record<string, string>} */
 const MARK_SYMBOLS = { "": "☆", good: "★", bad: "⚑" };
@@ -56,7 +56,7 @@ function content(state, trajectories, readOnly) {
   }
   const kept = demonstrations.filter((d) => !d.discarded_ns);
   const draw = thumbnailMaker(state, demonstrations, trajectories);
-  const newest = demonstrations.slice(-MAX_LISTED).reverse();
+  const newest = demonstrations.slice(readOnly ? 0 : -MAX_LISTED).reverse();
   const count = element("strong", {}, String(kept.length));
   const usable = kept.filter(({ verdict }) => verdict !== "reject").length;
   return [

@@ -12,7 +12,8 @@ const documents = JSON.parse(place?.textContent ?? "{}");
 export async function send(method, path) {
   const [name] = path.split("?");
   if (method !== "GET") return refusal(405, "This is a review package: nothing can be changed or ordered in it.");
-  if (!Object.hasOwn(documents, name)) return refusal(404, `The review package does not hold ${name}.`);
+  if (!Object.hasOwn(documents, name))
+    return refusal(404, `The review package does not hold ${name}. Plan the path again and export another package.`);
   return Response.json(documents[name]);
 }
 

@@ -1,7 +1,7 @@
 // What a run was made with: settings, versions of the libraries, digests of what was learned from.
 import { definitionList, element } from "../elements.js";
 import { patchChildren } from "../patch_children.js";
-import { changesAny, demonstrationNumbers, selectedRun } from "../store.js";
+import { changesAny, selectedRun } from "../store.js";
 
 /** @param {HTMLElement} place @returns {Section} */
 export function provenance(place) {
@@ -9,14 +9,14 @@ export function provenance(place) {
     update(state, changed) {
       const run = selectedRun(state);
       if (run && changesAny(changed, "runs", "run", "demonstrations")) {
-        patchChildren(place, content(run, demonstrationNumbers(state)));
+        patchChildren(place, content(run, state.demonstrations ?? []));
       }
     },
   };
 }
 
-/** @param {Run} run @param {Map<string, number>} numbers @returns {Child[]} */
-function content({ id, task, created_ns, learned }, numbers) {
+/** @param {Run} run @param {Demonstration[]} demonstrations @returns {Child[]} */
+function content({ id, task, created_ns, learned }, demonstrations) {
   const { mode, settings, versions, inputs } = learned;
   const made = new Date(created_ns / 1e6).toISOString().slice(0, 16).replace("T", " ");
   /** @param {Record<string, unknown>} values */
@@ -24,9 +24,10 @@ function content({ id, task, created_ns, learned }, numbers) {
     definitionList(
       Object.entries(values).map(([name, value]) => /** @type {Fact} */ ([name, String(value ?? "automatic")])),
     );
-  const digests = Object.entries(inputs).map(([demonstration, digest]) =>
-    element("tr", {}, element("th", { scope: "row" }, numbers.get(demonstration) ?? demonstration), cell(digest)),
-  );
+  const rows = Object.entries(inputs).map(([key, digest]) => {
+    const { number = key, source = "" } = demonstrations.find((one) => one.id === key) ?? {};
+    return element("tr", {}, element("th", { scope: "row" }, number), element("td", {}, source, code(digest)));
+  });
   return [
     definitionList([
       ["Task", task],
@@ -38,10 +39,10 @@ function content({ id, task, created_ns, learned }, numbers) {
     facts(settings),
     element("h3", {}, "Versions"),
     facts(versions),
-    element("h3", {}, "SHA-256 of the demonstrations"),
-    element("table", { class: "digests" }, element("tbody", {}, digests)),
+    element("h3", {}, "Demonstrations: source, SHA-256"),
+    element("table", { class: "digests" }, element("tbody", {}, rows)),
   ];
 }
 
 /** @param {string} digest */
-const cell = (digest) => element("td", {}, element("code", {}, digest));
+const code = (digest) => element("code", {}, digest);

@@ -44,15 +44,15 @@ def learned_store(folder: str) -> Store:
     return store
 
 
-def review(store: Store, what: str = "t") -> Review:
-    """Return a review by default settings."""
+def review(store: Store, what: str = "t", *, arm: Arm | None = None) -> Review:
+    """Return a review by default settings, for the arm that was planned for unless another is given."""
     return review_of(
         store,
         what,
         scene=lambda name: paper_scene(),
         trajectory=trajectory,
         motion=MotionSettings(),
-        arm=Arm.of_variant(),
+        arm=arm or Arm.of_variant(),
         robot="puma560",
         dwell=0.5,
     )

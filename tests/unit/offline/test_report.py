@@ -17,6 +17,7 @@ from teachpath.errors import NotFound, UnusableInput
 from teachpath.io.documents import encode
 from teachpath.io.store.store import Store
 from teachpath.live.preview.asset_paths import web_files
+from teachpath.motion.arm.model import Arm
 from teachpath.offline.report import write_package
 from teachpath.offline.report.modules import import_map
 from teachpath.offline.report.package import INSTEAD, package_html
@@ -88,6 +89,7 @@ def test_its_modules_are_the_files_of_the_page_but_for_the_names_that_they_impor
         bare = re.compile(r'"(?:page/|\.{1,2}/)[^"]*?(\w+\.(?:esm\.)?js)"')
         assert bare.sub(r'"\1"', text) == bare.sub(r'"\1"', (web_files() / path).read_text())
         assert not re.search(r'\b(from|import) "\.', text)
+        assert not re.search(r"(?<![#.\w])fetch\(", text)  # its transport asks nobody
     imported = {name for text in found.values() for name in re.findall(r'"(page/[^"]+)"', text)}
     assert imported | {"page/report/report.js"} == set(found)
     shared = {"dendrogram", "likelihood_plots", "path_card", "plan_preview", "selection_table"}
@@ -119,6 +121,12 @@ def test_only_what_the_package_itself_brings_may_run(store: Store) -> None:
     assert nonce[1] not in package_html(review(store))  # another one each time: no text can know it
     addresses = [one[name] or "" for _, one, _ in found for name in ("src", "href") if name in one]
     assert all(address.startswith("data:") for address in addresses)
+
+
+def test_a_plan_for_another_arm_shows_its_certificate_and_no_motion(store: Store) -> None:
+    found = review(store, arm=Arm.of_variant("armstrong-khatib-burdick"))
+    assert "plans/plan-1" in found.answers
+    assert found.count("motion") == 0
 
 
 def test_a_run_is_found_by_its_id_too_and_what_is_missing_is_named(store: Store) -> None:

@@ -19,7 +19,7 @@ from teachpath.motion.arm.geometry import visual_solids
 from teachpath.motion.arm.model import Arm
 from teachpath.motion.execution.motion_preview import preview_motion
 from teachpath.motion.settings import MotionSettings
-from teachpath.records import Demonstration, LearnedPath, Plan, Scene, Trajectory
+from teachpath.records import Demonstration, LearnedPath, MotionPreview, Plan, Scene, Trajectory
 from teachpath_proto.keys import Keys
 
 POINTS = 150  # of a demonstration, as many as the page asks for
@@ -70,27 +70,18 @@ def review_of(
         NotFound: no such run or task, or nothing was learned of the task yet.
     """
     run = _run(store, what)
-    task, surroundings = store.task(run.task), scene(store.task(run.task).scene)
-    used = set(run.learned.demonstrations)
-    demonstrations = [d for d in store.demonstrations(run.task) if d.id in used]
+    task = store.task(run.task)
+    surroundings = scene(task.scene)
     answers: dict[str, object] = {
         "tasks": [task],
         "scenes": [surroundings],
         "executions": [],
         "robot": describe_arm(arm, name=robot, home=motion.home),
-        _path("tasks", run.task, "runs"): [run],
-        _path("tasks", run.task, "runs", run.id, "dendrogram"): dendrogram(run.learned, CLUSTERS),
-        _path("tasks", run.task, "demonstrations"): demonstrations,
+        _path("tasks", task.name, "runs"): [run],
+        _path("tasks", task.name, "runs", run.id, "dendrogram"): dendrogram(run.learned, CLUSTERS),
     }
-    for demonstration in demonstrations:
-        answers[_path("demonstrations", demonstration.id, "trajectory")] = trajectory(demonstration).thinned(POINTS)
-    plans: set[str] = set()
-    for path in [store.path(learned.id) for learned in run.learned.paths]:
-        plan = _plan(store, path)
-        plans |= {plan.id} if plan else set()
-        answers |= {_path("paths", path.id): path, _path("paths", path.id, "plans"): [plan] if plan else []}
-        answers |= _planned(plan, motion, arm, dwell) if plan else {}
-    answers[_path("tasks", run.task, "jobs")] = [job for job in store.jobs(task=run.task) if job.outcome in plans]
+    answers |= _demonstrations(store, run, trajectory)
+    answers |= _paths(store, run, lambda plan: preview_motion(plan, motion, arm, dwell=dwell))
     return Review(run, answers, _drawn(arm, surroundings, motion))
 
 
@@ -103,15 +94,33 @@ def _run(store: Store, what: str) -> Run:
     return runs[0]
 
 
+def _demonstrations(store: Store, run: Run, trajectory: Callable[[Demonstration], Trajectory]) -> dict[str, object]:
+    used = set(run.learned.demonstrations)
+    kept = [demonstration for demonstration in store.demonstrations(run.task) if demonstration.id in used]
+    answers: dict[str, object] = {_path("tasks", run.task, "demonstrations"): kept}
+    for demonstration in kept:
+        answers[_path("demonstrations", demonstration.id, "trajectory")] = trajectory(demonstration).thinned(POINTS)
+    return answers
+
+
+def _paths(store: Store, run: Run, motion: Callable[[Plan], MotionPreview]) -> dict[str, object]:
+    answers: dict[str, object] = {}
+    plans = set()
+    for path in [store.path(learned.id) for learned in run.learned.paths]:
+        plan = _plan(store, path)
+        answers |= {_path("paths", path.id): path, _path("paths", path.id, "plans"): [plan] if plan else []}
+        if plan is None:
+            continue
+        plans.add(plan.id)
+        answers[_path("plans", plan.id)] = plan
+        with suppress(PathRefused):  # a plan for another arm: its certificate is shown, its motion is not
+            answers[_path("plans", plan.id, "motion")] = motion(plan)
+    jobs = [job for job in store.jobs(task=run.task) if job.outcome in plans]
+    return answers | {_path("tasks", run.task, "jobs"): jobs}
+
+
 def _plan(store: Store, path: LearnedPath) -> Plan | None:
     return next((plan for plan in store.plans(path.id) if plan.path_version == path.version), None)
-
-
-def _planned(plan: Plan, motion: MotionSettings, arm: Arm, dwell: float) -> dict[str, object]:
-    answers: dict[str, object] = {_path("plans", plan.id): plan}
-    with suppress(PathRefused):  # a plan under other settings: its certificate is shown, its motion is not
-        answers[_path("plans", plan.id, "motion")] = preview_motion(plan, motion, arm, dwell=dwell)
-    return answers
 
 
 def _drawn(arm: Arm, scene: Scene, motion: MotionSettings) -> bytes:
