@@ -15,6 +15,7 @@ from tests.bench import (
     plans,
     recording,
     recording_load,
+    stop_latency,
     timing,
 )
 from tests.bench.report import Figure, machine, print_report
@@ -50,6 +51,7 @@ def main() -> None:
         "A served station: jobs in their process, executor and simulated arm in theirs",
         motion.measure(repeats=1 if quick else 3, seconds=2.0 if quick else math.inf),
     )
+    print_report("A stop while the station is busy", stop_latency.measure(stops=100 if quick else 600))
     print_report("The editor in the page", page.measure(drags=5 if quick else 20))
     print(f"took {time.monotonic() - began:.0f} s")
 
