@@ -156,9 +156,7 @@ class Station:
         """Open what learns, plans and looks at curves."""
         settings = self.settings
         self.transfers = TransferFolders(Path(settings.store.data_dir) / "transfers")
-        kinds = JobKinds(
-            self.store, settings, self.calibrations, self.trajectory, self.transfers, self._show_task
-        ).by_name()
+        kinds = JobKinds(self.store, settings, self.calibrations, self.transfers, self._show_task).by_name()
         self.jobs = Jobs(self.bus, self.keys, self.store, settings.jobs, kinds)
         self.exporter = Exporter(ExportSource(settings.store, settings.recording, settings.scenes), settings.jobs)
         self.assessor = CurveAssessor()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 from teachpath.config import Settings
@@ -15,9 +16,10 @@ from teachpath.jobs import worker
 from teachpath.jobs.jobs import JobKind
 from teachpath.learning.settings import LearningSettings
 from teachpath.offline.import_job import PREPARED, ImportOrder, ImportRequest, prepare_import
+from teachpath.offline.learning_job import StoredDemonstrations, learn_stored, recut_stored
 from teachpath.offline.transfer_folders import TransferFolders
 from teachpath.recorder.calibrations import Calibrations
-from teachpath.records import Demonstration, Job, Learned, Plan, Task, Trajectory
+from teachpath.records import Demonstration, Job, Learned, Plan, Task
 
 
 @dataclass(frozen=True)
@@ -28,7 +30,6 @@ class JobKinds:
         store: of demonstrations, runs, paths and plans.
         settings: of the station.
         calibrations: that demonstrations have to be recorded under, in their present version.
-        trajectory: returns the object's trajectory of a demonstration.
         transfers: folders of uploaded files.
         imported: called with the name of a task that an import has added to.
     """
@@ -36,22 +37,21 @@ class JobKinds:
     store: Store
     settings: Settings
     calibrations: Calibrations
-    trajectory: Callable[[Demonstration], Trajectory]
     transfers: TransferFolders
     imported: Callable[[str], None]
 
     def by_name(self) -> dict[str, JobKind]:
         """Return the kinds of jobs by the names that REST gives them."""
         return {
-            "learn": JobKind(self._learning_input, worker.learn_paths, self._store_run),
-            "recut": JobKind(self._recut_input, worker.recut_run, self._store_run),
+            "learn": JobKind(self._learning_input, learn_stored, self._store_run),
+            "recut": JobKind(self._recut_input, recut_stored, self._store_run),
             "plan": JobKind(self._planning_input, worker.plan_path, self._store_plan),
             "import": JobKind(
                 self._import_input, prepare_import, self._store_import, lane="files", clean_up=self._remove_upload
             ),
         }
 
-    def _learning_input(self, job: Job) -> tuple[dict[str, Trajectory], LearningSettings]:
+    def _learning_input(self, job: Job) -> tuple[StoredDemonstrations, LearningSettings]:
         demonstrations = [d for d in self.store.demonstrations(job.task) if d.is_usable]
         if not demonstrations:
             raise NotFound(f"task {job.task} has no usable demonstrations yet; show it a few times first")
@@ -59,7 +59,7 @@ class JobKinds:
             self.calibrations.require_current(demonstrations)
         wanted = job.request.get("settings")
         settings = self.settings.learning_with(wanted if isinstance(wanted, dict) else {})
-        return {d.id: self.trajectory(d) for d in demonstrations}, settings
+        return self._stored(job.task, demonstrations), settings
 
     def _recut_input(self, job: Job) -> tuple[Any, ...]:
         learned = self.store.run(str(job.request["run"])).learned
@@ -67,8 +67,13 @@ class JobKinds:
         chosen = {key: usable[key] for key in learned.demonstrations if key in usable}
         if job.request.get("calibrations") != "recorded":
             self.calibrations.require_current(list(chosen.values()), command="recut")
-        kept = {key: self.trajectory(d) for key, d in chosen.items()}
-        return learned, kept, job.request["threshold"], job.request["clusters"]
+        return learned, self._stored(job.task, list(chosen.values())), job.request["threshold"], job.request["clusters"]
+
+    def _stored(self, task: str, rows: list[Demonstration]) -> StoredDemonstrations:
+        carried = self.settings.scene(self.store.task(task).scene).carried
+        return StoredDemonstrations(
+            Path(self.settings.store.data_dir), tuple(rows), carried.position if carried else None
+        )
 
     def _planning_input(self, job: Job) -> tuple[Any, ...]:
         path, version = str(job.request["path"]), job.request.get("version")
