@@ -11,6 +11,8 @@ import threading
 import time
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager, suppress
+from multiprocessing import get_context
+from multiprocessing.synchronize import Event
 from pathlib import Path
 
 import httpx
@@ -76,27 +78,43 @@ def _load(service: Service, ended: list[str]) -> Iterator[None]:
     threads = [
         threading.Thread(target=_again, args=(service.url, name, work, over, ended)) for name, work in works.items()
     ]
-    address = service.url.removeprefix("http://")
+    context = get_context("spawn")  # what reads for the pages must not delay who measures
+    ready, left = context.Event(), context.Event()
+    pages = context.Process(target=_open_pages, args=(service.url.removeprefix("http://"), ready, left))
+    pages.start()
+    ready.wait()
+    try:
+        for thread in threads:
+            thread.start()
+        yield
+    finally:
+        over.set()
+        _cancel_jobs(service.url)
+        for thread in threads:
+            thread.join()
+        left.set()
+        pages.join()
+
+
+def _open_pages(address: str, ready: Event, left: Event) -> None:
+    """Open the pages and the connections that hang, until they may leave."""
     with ExitStack() as stack:
         for _ in range(PAGES):
             stack.enter_context(connect(f"ws://{address}/api/v1/events", max_queue=None))
         for _ in range(HALF_OPEN):
             half = stack.enter_context(socket.create_connection(("127.0.0.1", int(address.partition(":")[2]))))
             half.sendall(b"GET /api/v1/health HTTP/1.1\r\nHost: ")
-        for thread in threads:
-            thread.start()
-        try:
-            yield
-        finally:
-            over.set()
-            with Station(service.url) as station:
-                for task in ("bulk", "demo"):
-                    with suppress(ClientError):
-                        for job in station.jobs(task):
-                            if not job.finished_ns:
-                                station.cancel(job.id)
-            for thread in threads:
-                thread.join()
+        ready.set()
+        left.wait()
+
+
+def _cancel_jobs(url: str) -> None:
+    with Station(url) as station:
+        for task in ("bulk", "demo"):
+            with suppress(ClientError):
+                for job in station.jobs(task):
+                    if not job.finished_ns:
+                        station.cancel(job.id)
 
 
 def _again(url: str, name: str, work: Callable[[Station], object], over: threading.Event, ended: list[str]) -> None:

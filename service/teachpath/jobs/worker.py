@@ -26,7 +26,7 @@ from teachpath.records import Learned, LearnedPath, Plan, Scene, Trajectory
 Progress = Callable[[float, str], None]
 
 # [s] between two reports of one sentence: each is a row in the store and a message to every page
-PROGRESS_INTERVAL = 0.05
+PROGRESS_INTERVAL = 0.25
 NICENESS = 5  # of the process, so that the control loop and the service go first
 
 _progress_queue: Queue[tuple[str, float, str]] | None = None
