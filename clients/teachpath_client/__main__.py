@@ -42,6 +42,8 @@ ABOUT = {
     "synthetic": "Show the paper's experiments with a synthetic hand, so that all can be tried without a device. For "
     "example: teachpath-client synthetic --task demo --scene paper --speed 4",
     "replay": "Play stored demonstrations as if they were live: every sample again at its pace, recorded anew.",
+    "driver-check": "Check a driver of an arm before a station moves the arm by it: setpoints come late, doubled, in "
+    "bursts or not at all, and a verdict is given for every rule of the contract. No station is needed.",
 }
 
 
@@ -85,6 +87,7 @@ def _parser() -> argparse.ArgumentParser:
     replay.add_argument("sources", nargs="+", metavar="SOURCE", help="an MCAP file, or a demonstration's id")
     replay.add_argument("--url", default="http://127.0.0.1:8765", help="station that holds the ids (%(default)s)")
     replay.set_defaults(run=_replay)
+    _add_driver_check(commands.add_parser("driver-check", help="check a driver of an arm against the contract"))
     for command in (tracker, synthetic, replay):
         command.add_argument("--task", default="demo", help="what is demonstrated (%(default)s)")
         command.add_argument("--scene", default="", help="makes a new task with this scene, e.g. paper or empty")
@@ -119,6 +122,24 @@ def _add_tracker_calibrate(frame: argparse.ArgumentParser) -> None:
     frame.add_argument("--dry-run", action="store_true", help="only show the calibration and its residuals")
     frame.add_argument("--url", default="http://127.0.0.1:8765", help="of the station (%(default)s)")
     frame.set_defaults(run=_calibrate_tracker)
+
+
+def _add_driver_check(check: argparse.ArgumentParser) -> None:
+    check.add_argument("--listen", default="tcp/127.0.0.1:7557", help="where the driver connects (%(default)s)")
+    check.add_argument("--robot", default="puma560", help="name of the arm (%(default)s)")
+    check.add_argument("--prefix", default="teachpath/station", help="of the keys (%(default)s)")
+    tolerance = "that a joint may be off its setpoint while it follows (%(default)s)"
+    check.add_argument("--tolerance", type=float, default=0.02, metavar="RAD", help=tolerance)
+    check.add_argument("--yes", action="store_true", help="move the arm without asking")
+    check.set_defaults(run=_check_driver)
+
+
+def _check_driver(options: argparse.Namespace) -> None:
+    from teachpath_client.driver.check_bench import check_driver
+
+    given = options.listen, options.robot, options.prefix
+    if not check_driver(*given, tolerance=options.tolerance, confirmed=options.yes):
+        raise ClientError("the driver breaks a rule; a real arm should not be moved by it")
 
 
 def _place(text: str) -> Vector:

@@ -1,0 +1,82 @@
+"""The motion with which a driver is checked: a gentle move of all joints, and the way to rest from every setpoint."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from teachpath_client.driver.interpolation import Array
+from teachpath_proto.motion_pb2 import Setpoint
+
+PERIOD: Final = 0.004  # [s] between two setpoints
+DURATION: Final = 1.2  # [s] of a move from rest to rest
+BRAKING: Final = 0.3  # [s] that the way to rest takes
+STANDSTILL: Final = 5  # setpoints at rest before and behind a move
+COUNT: Final = round(DURATION / PERIOD) + 2 * STANDSTILL
+
+
+@dataclass(frozen=True, eq=False)
+class Move:
+    """A move in a straight line of joint space, as a stream of setpoints of one execution.
+
+    Attributes:
+        execution: id of the execution.
+        begin: (6,) where it begins [rad].
+        end: (6,) where it ends [rad].
+        first_cycle: number of its first setpoint.
+        gripper_closed: whether the gripper is to be closed.
+    """
+
+    execution: str
+    begin: Array
+    end: Array
+    first_cycle: int = 0
+    gripper_closed: bool = False
+
+    @property
+    def top_speed(self) -> Array:
+        """(6,) largest speeds [rad/s]."""
+        return np.asarray(1.875 * np.abs(self.end - self.begin) / DURATION)
+
+    def setpoint(self, index: int, begin_ns: int) -> Setpoint:
+        """Return the setpoint `index` of the move, of `COUNT`, when the first is due at `begin_ns`."""
+        time = (index - STANDSTILL) * PERIOD
+        moving = 0.0 < time < DURATION
+        share, rate, change = _profile(time)
+        travel = self.end - self.begin
+        return Setpoint(
+            cycle=self.first_cycle + index,
+            nominal_ns=begin_ns + round(1e9 * index * PERIOD),
+            sent_ns=begin_ns + round(1e9 * index * PERIOD),
+            position=self.begin + share * travel,
+            velocity=rate * travel,
+            acceleration=change * travel,
+            gripper_closed=self.gripper_closed,
+            execution=self.execution,
+            way_to_rest=self._way_to_rest(time).astype("<f8").tobytes() if moving else b"",
+        )
+
+    def rest_of(self, cycle: int) -> Array:
+        """Return where (6,) the way to rest of setpoint `cycle` ends [rad]."""
+        time = (cycle - self.first_cycle - STANDSTILL) * PERIOD
+        if not 0.0 < time < DURATION:
+            return self.begin if time <= 0.0 else self.end
+        return np.asarray(self._way_to_rest(time)[-1])
+
+    def _way_to_rest(self, time: float) -> Array:
+        """Return positions (n, 6) along the same line, on which the rate falls smoothly to zero."""
+        x = np.arange(1, round(BRAKING / PERIOD) + 1) * PERIOD / BRAKING
+        ahead = BRAKING * (x - (x**6 - 3 * x**5 + 2.5 * x**4))  # its rate is 1 - (10 x^3 - 15 x^4 + 6 x^5)
+        shares = np.array([_profile(time + each)[0] for each in ahead])
+        return np.asarray(self.begin + shares[:, None] * (self.end - self.begin))
+
+
+def _profile(time: float) -> tuple[float, float, float]:
+    """Return the share of the move that is done at `time` [s], and its first and second derivative."""
+    x = min(max(time / DURATION, 0.0), 1.0)
+    share = 10 * x**3 - 15 * x**4 + 6 * x**5
+    rate = (30 * x**2 - 60 * x**3 + 30 * x**4) / DURATION
+    change = (60 * x - 180 * x**2 + 120 * x**3) / DURATION**2
+    return share, rate, change

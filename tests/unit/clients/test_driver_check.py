@@ -1,0 +1,180 @@
+"""The check of drivers, in a time of its own: one that plays by the player passes, others fail where they are wrong."""
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from teachpath_client.driver import SetpointPlayer, decode_setpoint, joint_state
+from teachpath_client.driver.check import DriverCheck, Verdict
+from teachpath_client.driver.check_motion import COUNT, PERIOD, Move
+from teachpath_proto.motion_pb2 import JointState, Setpoint
+
+HOME = np.array([0.365, 1.663, -3.177, 0.0, -1.628, 0.365])  # [rad]
+NOW = 1_700_000_000 * 10**9
+STEP_NS = 1_000_000
+RULES = 9
+
+
+class PlayerDriver:
+    """As example 04: an arm that is where the player wants it."""
+
+    def __init__(self) -> None:
+        self.player = SetpointPlayer(HOME)
+
+    def receive(self, payload: bytes, now: int) -> None:
+        try:
+            setpoint = decode_setpoint(payload)
+        except ValueError:
+            return
+        self.player.add(setpoint, now)
+
+    def step(self, now: int) -> None:
+        self.player.advance(STEP_NS / 1e9, now)
+
+    def state(self) -> JointState:
+        target = self.player.target
+        return JointState.FromString(joint_state(self.player, target.position.tolist(), target.velocity.tolist()))
+
+
+class NaiveDriver:
+    """Goes where the newest setpoint is, as soon as it comes."""
+
+    def __init__(self) -> None:
+        self.newest = Setpoint(position=HOME, velocity=[0.0] * 6)
+
+    def receive(self, payload: bytes, _: int) -> None:
+        try:
+            self.newest = Setpoint.FromString(payload)
+        except Exception:  # whatever the parser raises
+            return
+
+    def step(self, _: int) -> None:
+        pass
+
+    def state(self) -> JointState:
+        m = self.newest
+        return JointState(
+            position=m.position, velocity=m.velocity, torque=[0.0] * 6, cycle=m.cycle, execution=m.execution,
+            enabled=True, gripper_closed=m.gripper_closed,
+        )  # fmt: skip
+
+
+class Deaf(PlayerDriver):
+    """Speaks, and hears nothing."""
+
+    def receive(self, payload: bytes, now: int) -> None:
+        pass
+
+
+class Silent(PlayerDriver):
+    """Says too rarely where the arm is."""
+
+    def state(self) -> JointState:
+        raise StopIteration
+
+
+class Faulty(PlayerDriver):
+    """Says that something is wrong with the arm."""
+
+    def state(self) -> JointState:
+        state = super().state()
+        state.fault = "joint 2 is hot"
+        return state
+
+
+class Reticent(PlayerDriver):
+    """Comes to rest as it should, and does not say so."""
+
+    def state(self) -> JointState:
+        state = super().state()
+        state.holding = state.stopped = False
+        return state
+
+
+class Clumsy(PlayerDriver):
+    """Never moves its gripper."""
+
+    def state(self) -> JointState:
+        state = super().state()
+        state.gripper_closed = False
+        return state
+
+
+class VirtualBench:
+    """Time that is no real time, and a driver in the same process."""
+
+    def __init__(self, driver: "PlayerDriver | NaiveDriver") -> None:
+        self.states: list[JointState] = []
+        self._driver, self._now = driver, NOW
+
+    def now_ns(self) -> int:
+        return self._now
+
+    def wait_until(self, time_ns: int) -> None:
+        while self._now < time_ns:
+            self._now += STEP_NS
+            self._driver.step(self._now)
+            if self._now % (10 * STEP_NS) == 0:
+                try:
+                    state = self._driver.state()
+                except StopIteration:
+                    continue
+                state.stamp_ns = self._now
+                self.states.append(state)
+
+    def publish(self, payload: bytes) -> None:
+        self._driver.receive(payload, self._now)
+
+
+def verdicts(driver: "PlayerDriver | NaiveDriver") -> list[Verdict]:
+    return list(DriverCheck(VirtualBench(driver)).run())
+
+
+def failed(driver: "PlayerDriver | NaiveDriver") -> dict[str, str]:
+    return {verdict.rule: verdict.fault for verdict in verdicts(driver) if verdict.fault}
+
+
+def test_a_driver_that_plays_by_the_player_keeps_every_rule() -> None:
+    found = verdicts(PlayerDriver())
+    assert len(found) == RULES
+    assert [verdict for verdict in found if verdict.fault] == []
+
+
+def test_a_naive_driver_fails_where_setpoints_come_late_and_where_they_are_wrong() -> None:
+    rules = " / ".join(failed(NaiveDriver()))
+    for part in ("comes to rest on the way", "burst of overdue", "no setpoint", "begins elsewhere"):
+        assert part in rules
+
+
+@pytest.mark.parametrize(
+    ("driver", "rule", "fault"),
+    [
+        (Silent, "where the arm is", "0 joint states came in a second"),
+        (Faulty, "where the arm is", "fault joint 2 is hot"),
+        (Deaf, "follows a move", "from where it should"),
+        (Reticent, "comes to rest on the way", "holding False, stopped False"),
+        (Clumsy, "gripper", "should be closed"),
+    ],
+)
+def test_what_a_driver_does_wrong_is_named(driver: Callable[[], PlayerDriver], rule: str, fault: str) -> None:
+    found = failed(driver())
+    (sentence,) = [said for name, said in found.items() if rule in name]
+    assert fault in sentence
+
+
+def test_an_arm_that_is_not_fit_is_not_moved() -> None:
+    driver = Faulty()
+    assert len(verdicts(driver)) == 1
+    np.testing.assert_array_equal(driver.player.target.position, HOME)
+
+
+def test_the_ways_to_rest_of_the_move_lie_on_its_line_and_end_at_rest() -> None:
+    move = Move("e", HOME, HOME + np.array([0.2, -0.2, 0.1, 0.0, 0.2, 0.2]))
+    for index in range(COUNT):
+        setpoint = decode_setpoint(move.setpoint(index, NOW).SerializeToString())
+        rows = np.vstack([setpoint.position, setpoint.way_to_rest])
+        off = np.linalg.norm(np.cross(rows[:, :3] - HOME[:3], (move.end - HOME)[:3]), axis=1)
+        assert off.max() < 1e-12
+        assert np.abs(np.diff(rows, axis=0)).max(initial=0.0) / PERIOD <= move.top_speed.max() * (1 + 1e-9)
+        np.testing.assert_allclose(rows[-1], move.rest_of(index), atol=1e-12)
