@@ -21,8 +21,9 @@ export class ApiError extends Error {
 /** @param {string} path */
 export const get = (path) => call("GET", path);
 
-/** @param {string} path @param {object} body @param {Record<string, string>} headers */
-export const post = (path, body = {}, headers = {}) => call("POST", path, body, headers);
+/** @param {string} path @param {object} body @param {Record<string, string>} headers @param {number} [timeout] [ms] */
+export const post = (path, body = {}, headers = {}, timeout = undefined) =>
+  call("POST", path, body, headers, timeout);
 
 /** @param {string} path @param {object} body */
 export const put = (path, body = {}) => call("PUT", path, body);
@@ -46,13 +47,15 @@ export function socketUrl(path) {
  * @param {string} path
  * @param {object} [body]
  * @param {Record<string, string>} further headers
+ * @param {number} [timeout] [ms]
  * @returns {Promise<any>} the document
  */
-async function call(method, path, body, further = {}) {
+async function call(method, path, body, further = {}, timeout = undefined) {
   /** @type {Record<string, string>} */
   const headers = { ...further, Accept: "application/json" };
   if (body !== undefined) headers["Content-Type"] = "application/json";
-  const answer = await send(method, path, { headers, body: body && JSON.stringify(body) }).catch((error) => {
+  const options = { headers, body: body && JSON.stringify(body) };
+  const answer = await send(method, path, options, timeout).catch((error) => {
     throw new ApiError(error.message);
   });
   const document = await answer.json().catch(() => null);

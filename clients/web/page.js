@@ -8,13 +8,16 @@
 // context = { store, eventStream, view, sceneLayers, overlay, messages,
 //             readOnly                  nothing can be ordered: a review package shows the panel
 //             attempt(order)            do an order; an error becomes a sentence in the message line
-//             open(id) }                choose another tab
+//             open(id),                 choose another tab
+//             armStop }                 stops the arm, and tries until it is confirmed (arm/stop.js)
 // A panel reads context.store.state, changes it with context.store.set(), and speaks REST through api.js.
-import { post, resourcePath } from "./api.js";
+import { post } from "./api.js";
+import { lease } from "./arm/lease.js";
+import { ArmStop } from "./arm/stop.js";
 import { closest, closestData } from "./elements.js";
 import { eventLog } from "./event_log.js";
 import { EventStream } from "./event_stream.js";
-import { header } from "./header.js";
+import { header, stopButton } from "./header.js";
 import { Messages } from "./messages.js";
 import { newTaskDialog } from "./new_task.js";
 import { panel as demonstrate } from "./panels/demonstrate.js";
@@ -28,6 +31,8 @@ import { Tabs } from "./tabs.js";
 import { View } from "./view.js";
 import { connectViewControls } from "./view_controls.js";
 import { feedView } from "./view_feed.js";
+
+const STOP_TIMEOUT = 3000; // [ms] of one try: the service says within 2 s that it has no confirmation
 
 const root = document.documentElement;
 const store = new Store();
@@ -65,6 +70,7 @@ function showConnection(which, state, { delay = 0 }) {
 const tabs = new Tabs(byId("tabs"), byId("panels"), (id) => {
   for (const panel of panels) panel[panel.id === id ? "show" : "hide"]?.();
 });
+const armStop = new ArmStop((path) => post(path, {}, lease.headers, STOP_TIMEOUT));
 /** @type {Context} */
 const context = {
   store,
@@ -76,6 +82,7 @@ const context = {
   readOnly: false,
   attempt: (order) => messages.attempt(order),
   open: (id) => tabs.select(id),
+  armStop,
 };
 /** @type {Panel[]} */
 const panels = [demonstrate, ways, edit, run];
@@ -83,9 +90,12 @@ for (const panel of panels) panel.mount(tabs.add(panel.id, panel.title), context
 newTaskDialog(byId("new-task"), context);
 eventLog(byId("events"), byId("events-button"), store);
 const taskSelect = /** @type {HTMLSelectElement} */ (byId("task"));
-const stopButton = /** @type {HTMLButtonElement} */ (byId("stop"));
-header(context, { task: taskSelect, stop: stopButton, control: byId("control") });
+const stop = /** @type {HTMLButtonElement} */ (byId("stop"));
+header(context, { task: taskSelect, control: byId("control") });
+stopButton(context, armStop, { stop, warning: byId("not-stopped") });
+let mayMove = false; // also while an executor is silent that moved the arm
 store.subscribe((state, changed) => {
+  if (state.executor) mayMove = activeExecution(state) !== null;
   for (const panel of panels) panel.update(state, changed);
   sceneLayers.update(state, changed);
 });
@@ -101,19 +111,13 @@ addEventListener(
   "keydown",
   (event) => {
     const isTyped = closest(event, "input[type=text], input[type=number], textarea");
-    if (event.code !== "Space" || isTyped || !activeExecution(store.state)) return;
+    if (event.code !== "Space" || isTyped || !mayMove) return;
     event.preventDefault();
     event.stopPropagation();
-    if (!event.repeat) stop();
+    if (!event.repeat) armStop.request();
   },
   { capture: true },
 );
-stopButton.addEventListener("click", () => stop());
-
-function stop() {
-  const status = activeExecution(store.state);
-  if (status) context.attempt(() => post(`${resourcePath("executions", status.execution)}/stop`));
-}
 
 eventStream.start((state, details) => showConnection("events", state, details));
 feedView(view, (state, details) => showConnection("connection", state, details));

@@ -7,15 +7,16 @@ const NO_ANSWER = "The service does not answer. Is it running? This page connect
  * @param {string} method
  * @param {string} path below /api/v1
  * @param {RequestInit} options
+ * @param {number} timeout [ms]
  * @returns {Promise<Response>}
  * @throws {Error} without an answer; its message is a sentence with a way out
  */
-export async function send(method, path, options) {
-  const signal = AbortSignal.timeout(REQUEST_TIMEOUT);
+export async function send(method, path, options, timeout = REQUEST_TIMEOUT) {
+  const signal = AbortSignal.timeout(timeout);
   try {
     return await fetch(`/api/v1/${path}`, { method, signal, ...options });
   } catch {
-    const late = `The service has not answered for ${REQUEST_TIMEOUT / 1000} s; it may be busy. Try again.`;
+    const late = `The service has not answered for ${timeout / 1000} s; it may be busy. Try again.`;
     throw new Error(signal.aborted ? late : NO_ANSWER);
   }
 }

@@ -39,8 +39,13 @@ def service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Service]:
 
 @pytest.fixture(scope="module")
 def plan(service: Service) -> Plan:
-    record(service, TASK, 12)
-    run = service.station.learn(TASK)
+    return ready_plan(service, TASK)
+
+
+def ready_plan(service: Service, task: str) -> Plan:
+    """Show the paper's first experiment, learn it, and certify a path of it."""
+    record(service, task, 12)
+    run = service.station.learn(task)
     for path in run.learned.paths:
         with suppress(JobFailed):  # not every way leads past the obstacles
             return service.station.plan(path.id)

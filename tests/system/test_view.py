@@ -66,7 +66,7 @@ class Server:
         self.preview = Preview(self.bus, KEYS, visual_solids(), arm=ARM, robot=ROBOT, home=HOME, statuses=list)
         self.preview.show_object(paper_scene().carried)
         self.preview.start()
-        app = FastAPI()
+        self.app = app = FastAPI()
         app.include_router(view_router(self.preview))
         app.include_router(events_router(EventHub()))
         for resource, document in documents(demonstrations).items():

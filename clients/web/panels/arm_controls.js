@@ -93,7 +93,8 @@ class ArmControls {
   /** @param {string} verb of a button */
   #sendCommand(verb) {
     const status = activeExecution(this.context.store.state);
-    if (!status || !verb) return;
+    if (verb === "stop") this.context.armStop.request();
+    if (!status || !verb || verb === "stop") return;
     const isStep = verb === "step" || verb === "back";
     const body = isStep ? { length: verb === "back" ? -STEP_LENGTH : STEP_LENGTH } : {};
     const path = resourcePath("executions", status.execution, isStep ? "step" : verb);

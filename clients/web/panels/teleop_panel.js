@@ -61,7 +61,7 @@ class TeleopPanel {
     const execution = this.#execution;
     if (!this.session) return;
     this.#close();
-    if (execution) await this.context.attempt(() => stop(execution));
+    if (execution) await this.context.armStop.request(stopPath(execution));
   }
 
   async #begin() {
@@ -110,7 +110,7 @@ class TeleopPanel {
     const tracker = usesPageHand ? { tracker: session.name } : { tracker: hand, calibration, clutch: session.name };
     const { id } = await post("teleoperation", { ...tracker, scene: scene.name }, lease.headers);
     if (isWanted()) this.#execution = id;
-    else await stop(id);
+    else await this.context.armStop.request(stopPath(id));
   }
 
   async #startHeadset() {
@@ -223,4 +223,4 @@ class TeleopPanel {
 }
 
 /** @param {string} execution */
-const stop = (execution) => post(resourcePath("executions", execution, "stop"), {}, lease.headers);
+const stopPath = (execution) => resourcePath("executions", execution, "stop");

@@ -1,4 +1,5 @@
 // Types that several modules of the page share.
+import type { ArmStop } from "../../../clients/web/arm/stop.js";
 import type { Editor as EditorClass } from "../../../clients/web/editor/editor.js";
 import type { EventStream } from "../../../clients/web/event_stream.js";
 import type { Messages } from "../../../clients/web/messages.js";
@@ -66,6 +67,7 @@ declare global {
     readOnly: boolean;
     attempt<T>(order: () => T | Promise<T>): Promise<T | undefined>;
     open(id: string): void;
+    armStop: ArmStop;
   };
 
   type Section = { update(state: State, changed: Changed): void; show?(): void; hide?(): void };

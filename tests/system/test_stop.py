@@ -1,0 +1,204 @@
+"""Stop on the page and on real processes: NOT STOPPED until the executor's own status shows it, whoever answers."""
+
+import os
+import signal
+import threading
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+import zenoh
+
+from teachpath.api.faults import answer_errors
+from teachpath.executor.loop import Executor
+from teachpath.executor.settings import ExecutorSettings
+from teachpath.io import wire
+from teachpath.io.bus import BusSettings, open_bus
+from teachpath.records import Command, ExecutorStatus
+from teachpath.robot.stopper import Stopper
+from teachpath_client.errors import NotStopped
+from teachpath_client.models import Plan
+from teachpath_proto.control import CommandVerb, ExecutorState
+from teachpath_proto.logins import Login, Role, find_login
+from tests.system.access import grave
+from tests.system.processes import Service, run
+from tests.system.test_lateness import executor, ready_plan
+from tests.system.test_view import KEYS, Server, Visit
+from tests.waiting import wait_until
+
+pytestmark = pytest.mark.system
+
+STOP = KEYS.executor_stop
+WARNING = "Press the emergency stop of the arm"
+
+
+def pressed(visit: Visit) -> str:
+    """What the button says."""
+    return str(visit.page.locator("#stop").inner_text())
+
+
+def wait_not_stopped(visit: Visit) -> None:
+    visit.wait(lambda: pressed(visit) == "NOT STOPPED")
+    warning = visit.page.locator("#not-stopped")
+    assert warning.is_visible()
+    assert WARNING in warning.inner_text()
+
+
+def wait_confirmed(visit: Visit) -> None:
+    visit.wait(lambda: pressed(visit) == "Stop the arm")
+    assert not visit.page.locator("#not-stopped").is_visible()
+    assert "has confirmed the stop" in visit.page.locator("#message").inner_text()
+
+
+class StopServer(Server):
+    """The page's server with the real stop and the real executor, on the bus within this process."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.stopper = Stopper(self.bus, KEYS)
+        self.bus.subscribe(KEYS.executor_status, lambda _, p: self.stopper.on_status(wire.decode_status(p)))
+        self._over = threading.Event()
+        self._executor = threading.Thread(
+            target=lambda: Executor(self.bus, KEYS, ExecutorSettings(realtime=False)).run(self._over)
+        )
+
+    def stop_arm(self) -> dict[str, Any]:
+        status = self.stopper.stop(Command(CommandVerb.STOP), lambda: False)
+        return {"state": status.state}
+
+    def start_executor(self) -> None:
+        self._executor.start()
+
+    def stop(self) -> None:
+        self._over.set()
+        self._executor.join()
+        self.stopper.close()
+        super().stop()
+
+
+@pytest.fixture
+def server() -> Iterator[StopServer]:
+    server = StopServer()
+    server.start(demonstrations=3)
+    server.app.add_api_route("/api/v1/stop", server.stop_arm, methods=["POST"])
+    answer_errors(server.app)
+    yield server
+    server.stop()
+
+
+def test_the_page_says_not_stopped_until_the_executor_confirms_it(browser: Any, server: StopServer) -> None:
+    visit = Visit(browser, server.address)
+    visit.page.locator("#stop").click()
+    wait_not_stopped(visit)
+    assert grave(visit.page, "not stopped") == []
+    server.start_executor()
+    wait_confirmed(visit)
+    visit.page.close()
+
+
+@pytest.fixture(scope="module")
+def service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Service]:
+    with Service(tmp_path_factory.mktemp("station") / "data") as service:
+        yield service
+
+
+@pytest.fixture(scope="module")
+def plan(service: Service) -> Plan:
+    return ready_plan(service, "stopped")
+
+
+def begin(service: Service, plan: Plan) -> str:
+    """Move the arm along a plan, slowly; return the execution once it is on its way."""
+    station = service.station
+    station.wait_for_arm()
+    execution = station.begin_execution(plan.id, override=0.3).id
+    wait_until(lambda: station.get_execution(execution).status.progress > 0.05, "it is on its way")
+    return execution
+
+
+def wait_ended(service: Service, execution: str) -> None:
+    wait_until(lambda: service.station.get_execution(execution).status.state == "ended", "the arm rests")
+
+
+def test_an_executor_that_does_not_answer_is_said_to_be_not_stopped(
+    browser: Any, service: Service, plan: Plan, tmp_path: Path
+) -> None:
+    visit = Visit(browser, service.url)
+    execution = begin(service, plan)
+    visit.wait(lambda: visit.page.evaluate("teachpath.state().executor?.state") == "following")
+    pid = executor(service)
+    os.kill(pid, signal.SIGSTOP)
+    try:
+        visit.page.keyboard.press("Space")
+        wait_not_stopped(visit)
+        with pytest.raises(NotStopped, match=WARNING.lower()):
+            service.station.stop(execution)
+        said = run("stop", "--url", service.url, folder=tmp_path)
+        assert said.process.returncode == 1
+        assert "NOT STOPPED" in said.err
+        assert "stopped:" not in said.out
+        visit.wait(lambda: visit.page.evaluate("teachpath.state().executor === null"))
+        assert pressed(visit) == "NOT STOPPED"
+    finally:
+        os.kill(pid, signal.SIGCONT)
+    wait_confirmed(visit)
+    wait_ended(service, execution)
+    visit.page.close()
+    assert run("stop", "--url", service.url, folder=tmp_path).out.startswith("stopped: ")
+
+
+# the attack
+
+
+def impostor(endpoint: str, login: Login | None) -> tuple[Any, list[bytes]]:
+    """A client that answers every stop in the executor's place, and all that it was asked."""
+    config = zenoh.Config()
+    config.insert_json5("mode", '"client"')
+    config.insert_json5("connect/endpoints", f'["{endpoint}"]')
+    config.insert_json5("scouting/multicast/enabled", "false")
+    if login is not None:
+        config.insert_json5("transport/auth/usrpwd", f'{{"user": "{login.user}", "password": "{login.password}"}}')
+    swallowed: list[bytes] = []
+
+    def answer(query: Any) -> None:
+        with query:
+            swallowed.append(query.payload.to_bytes() if query.payload else b"")
+            query.reply(STOP, wire.encode_status(ExecutorStatus(state=ExecutorState.ENDED)))
+
+    session = zenoh.open(config)
+    session.declare_queryable(STOP, answer, complete=True)
+    return session, swallowed
+
+
+def test_a_client_of_the_bus_cannot_swallow_a_stop(service: Service, plan: Plan) -> None:
+    session, swallowed = impostor(service.endpoint, find_login(service.endpoint, Role.TRACKER))
+    try:
+        execution = begin(service, plan)
+        assert service.station.stop(execution).status.ending
+        wait_ended(service, execution)
+        assert not swallowed
+    finally:
+        session.close()
+
+
+def test_whoever_answers_a_stop_on_an_open_bus_the_arm_stops(tmp_path: Path) -> None:
+    with Service(tmp_path / "data", TEACHPATH_BUS__ACCESS_CONTROL="false") as service:
+        plan = ready_plan(service, "open")
+        session, swallowed = impostor(service.endpoint, None)
+        bus = open_bus(BusSettings(endpoint=service.endpoint))
+
+        def is_asked() -> bool:
+            bus.ask(STOP, wire.encode_command(Command(CommandVerb.STOP, "nothing")))
+            return bool(swallowed)
+
+        wait_until(is_asked, "stops that are asked for come to the impostor")
+        try:
+            execution = begin(service, plan)
+            before = len(swallowed)
+            assert service.station.stop(execution).status.ending
+            assert len(swallowed) > before  # the question was swallowed
+            wait_ended(service, execution)
+        finally:
+            bus.close()
+            session.close()
