@@ -9,6 +9,7 @@ from typing import Any
 
 import pytest
 import zenoh
+from fastapi import FastAPI
 
 from teachpath.api.faults import answer_errors
 from teachpath.executor.loop import Executor
@@ -63,6 +64,12 @@ class StopServer(Server):
             target=lambda: Executor(self.bus, KEYS, ExecutorSettings(realtime=False)).run(self._over)
         )
 
+    def web_app(self, demonstrations: int) -> FastAPI:
+        app = super().web_app(demonstrations)
+        app.add_api_route("/api/v1/stop", self.stop_arm, methods=["POST"])
+        answer_errors(app)
+        return app
+
     def stop_arm(self) -> dict[str, Any]:
         status = self.stopper.stop(Command(CommandVerb.STOP), lambda: False)
         return {"state": status.state}
@@ -81,8 +88,6 @@ class StopServer(Server):
 def server() -> Iterator[StopServer]:
     server = StopServer()
     server.start(demonstrations=3)
-    server.app.add_api_route("/api/v1/stop", server.stop_arm, methods=["POST"])
-    answer_errors(server.app)
     yield server
     server.stop()
 

@@ -66,17 +66,22 @@ class Server:
         self.preview = Preview(self.bus, KEYS, visual_solids(), arm=ARM, robot=ROBOT, home=HOME, statuses=list)
         self.preview.show_object(paper_scene().carried)
         self.preview.start()
-        self.app = app = FastAPI()
-        app.include_router(view_router(self.preview))
-        app.include_router(events_router(EventHub()))
-        for resource, document in documents(demonstrations).items():
-            app.add_api_route(f"/api/v1/{resource}", lambda document=document: document)
-        app.add_api_route("/api/v1/paths/{path}/assessment", look, methods=["POST"])
+        app = self.web_app(demonstrations)
         config = uvicorn.Config(app, host="127.0.0.1", port=self.port, log_level="warning", ws="websockets-sansio")
         self._server = uvicorn.Server(config)
         self._thread = threading.Thread(target=self._server.run, daemon=True)
         self._thread.start()
         wait_until(lambda: self._server.started, "the server has started")
+
+    def web_app(self, demonstrations: int) -> FastAPI:
+        """The preview, and what the REST API says of a task with so many demonstrations."""
+        app = FastAPI()
+        app.include_router(view_router(self.preview))
+        app.include_router(events_router(EventHub()))
+        for resource, document in documents(demonstrations).items():
+            app.add_api_route(f"/api/v1/{resource}", lambda document=document: document)
+        app.add_api_route("/api/v1/paths/{path}/assessment", look, methods=["POST"])
+        return app
 
     def stop(self) -> None:
         self._server.should_exit = True
