@@ -93,6 +93,7 @@ class Certificate:
     torque_use: Extreme
     least_singular: Extreme
     clearance: Extreme
+    signature: Signature | None = None
 
 
 @dataclass(frozen=True)
@@ -762,6 +763,31 @@ class Shape:
     orientation: tuple[float, float, float, float] = (1.0, 0.0, 0.0, 0.0)
     file: str = ""
     vertices: list[tuple[float, float, float]] = field(default_factory=list)
+
+
+@dataclass(frozen=True)
+class Signature:
+    """What a station says with its key of a plan: that it made the plan, and what the certificate holds for.
+
+    Attributes:
+        arm: name of the published variant.
+        tool_length: from the flange to the grasp point [m].
+        settings: `motion` settings with which the plan was made.
+        calibrations: of the demonstrations that the path was learned from.
+        present_calibrations: the newest versions of these when the plan was made.
+        issued_ns: when the plan was made.
+        expires_ns: when the certificate holds no longer.
+        mac: HMAC-SHA256 (hex) over the whole plan and the arm, by the station's signing key.
+    """
+
+    arm: str
+    tool_length: float
+    settings: dict[str, Any]
+    calibrations: list[Calibration]
+    present_calibrations: list[Calibration]
+    issued_ns: int
+    expires_ns: int
+    mac: str
 
 
 @dataclass(frozen=True)

@@ -39,6 +39,7 @@ class Keys:
         self.executor_lease = f"{prefix}/executor/lease"
         self.executor_journal = f"{prefix}/executor/journal"
         self.executor_status = f"{prefix}/executor/status"
+        self.station_certificate = f"{prefix}/station/certificate"
         self.all_samples = f"{prefix}/trackers/*/samples"
         self.all_alive = f"{prefix}/alive/**"
         self.all_trackers_alive = f"{prefix}/alive/tracker/*"

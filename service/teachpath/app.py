@@ -17,9 +17,10 @@ from teachpath.api.events import events_router
 from teachpath.api.parts import Advice, Health, Parts
 from teachpath.api.station import build_api
 from teachpath.api.view import view_router
-from teachpath.config import Settings, instructions
+from teachpath.config import Instructions, Settings, instructions
 from teachpath.io.bus import Bus, listen_on_bus
 from teachpath.io.bus_access import BusAccess, prepare_access
+from teachpath.io.signing_key import prepare_signing_key
 from teachpath.io.store.store import Store
 from teachpath.io.wire import recording_document
 from teachpath.job_kinds import JobKinds
@@ -29,6 +30,7 @@ from teachpath.live.event_hub import EventHub
 from teachpath.live.preview.preview import Preview
 from teachpath.live.state_poller import Poll, StatePoller
 from teachpath.motion.arm.geometry import visual_solids
+from teachpath.motion.planning.signature import SigningKey
 from teachpath.offline.exporter import Exporter, ExportSource
 from teachpath.offline.lock import StationLock
 from teachpath.offline.transfer_folders import TransferFolders
@@ -39,6 +41,7 @@ from teachpath.recorder.queries import RecorderQueries
 from teachpath.recorder.recorder import DemonstrationCallbacks, Lookup, Recorder
 from teachpath.recorder.websocket_trackers import WebSocketTrackers
 from teachpath.records import Demonstration, Trajectory
+from teachpath.robot.certificate_status import CertificateStatus
 from teachpath.robot.executions import Executions
 from teachpath.robot.joint_feed import JointFeed
 from teachpath.robot.processes import SupervisedProcess, attached_command
@@ -72,6 +75,7 @@ class Station:
         self._lock = StationLock(Path(settings.store.data_dir))
         self._lock.__enter__()
         try:
+            self._signing_key = SigningKey(prepare_signing_key(settings.bus.endpoint))
             access = prepare_access(settings.bus.endpoint) if settings.bus.access_control else None
             self.bus: Bus = listen_on_bus(settings.bus, access)
         except BaseException:
@@ -96,6 +100,7 @@ class Station:
             self.recorder.start()
             self._queries.start()
             self.executions.start()
+            self.certificate_status.start()
             self.joints.start()
             self._state_poller.start()
             for process in self.processes:
@@ -122,6 +127,7 @@ class Station:
         self.jobs.stop()
         self.assessor.stop()
         self.exporter.stop()
+        self.certificate_status.stop()
         for process in self.processes:
             process.stop()
         self.executions.stop()  # after the executor, whose last status is the end of what was under way
@@ -156,7 +162,9 @@ class Station:
         """Open what learns, plans and looks at curves."""
         settings = self.settings
         self.transfers = TransferFolders(Path(settings.store.data_dir) / "transfers")
-        kinds = JobKinds(self.store, settings, self.calibrations, self.transfers, self._show_task).by_name()
+        kinds = JobKinds(
+            self.store, settings, self.calibrations, self.transfers, self._show_task, self._signing_key
+        ).by_name()
         self.jobs = Jobs(self.bus, self.keys, self.store, settings.jobs, kinds)
         self.exporter = Exporter(ExportSource(settings.store, settings.recording, settings.scenes), settings.jobs)
         self.assessor = CurveAssessor()
@@ -165,8 +173,9 @@ class Station:
         """Open the service's side of the arm, its picture, and the processes that move it."""
         settings, robot = self.settings, self.settings.bus.robot
         self.joints = JointFeed(self.bus, self.keys, robot=robot)
-        self.executions = Executions(
-            self.bus, self.keys, self.store, robot=robot, scene=settings.scene, arm=settings.arm
+        self.executions = Executions(self.bus, self.keys, self.store, robot=robot, arm=settings.arm)
+        self.certificate_status = CertificateStatus(
+            self.bus, self.keys, self.store, scene=settings.scene, calibration=self.calibrations.newest_numbered
         )
         self.preview = Preview(
             self.bus,
@@ -180,7 +189,14 @@ class Station:
         )
         # In the order in which they are stopped: the executor brings the arm to rest.
         self.processes = [
-            self._process("executor", Role.EXECUTOR, access, EXECUTOR_SUGGESTION, self.executions.end_lost)
+            self._process(
+                "executor",
+                Role.EXECUTOR,
+                access,
+                EXECUTOR_SUGGESTION,
+                self.executions.end_lost,
+                key=self._signing_key.secret,
+            )
         ]
         if settings.simulator.start:
             self.processes.append(self._process("simulator", Role.ROBOT, access, SIMULATOR_SUGGESTION))
@@ -192,11 +208,11 @@ class Station:
         access: BusAccess | None,
         suggestion: str,
         on_death: Callable[[str], None] = lambda cause: None,
+        *,
+        key: bytes = b"",
     ) -> SupervisedProcess:
-        login = access.login(role) if access else None
-        return SupervisedProcess(
-            name, attached_command(name), instructions(self.settings, login), suggestion=suggestion, on_death=on_death
-        )
+        given = instructions(Instructions(self.settings, access.login(role) if access else None, key))
+        return SupervisedProcess(name, attached_command(name), given, suggestion=suggestion, on_death=on_death)
 
     def trajectory(self, demonstration: Demonstration) -> Trajectory:
         """Return the object's trajectory of a stored demonstration."""

@@ -10,7 +10,7 @@ import math
 import os
 import tomllib
 from collections.abc import Iterable, Mapping
-from dataclasses import asdict, dataclass, is_dataclass, replace
+from dataclasses import asdict, dataclass, field, is_dataclass, replace
 from pathlib import Path
 from typing import Annotated, Any, get_args, get_type_hints
 
@@ -94,16 +94,41 @@ class Settings(BaseModel):
         return _checked({"learning": asdict(self.learning) | dict(changes)}).learning
 
 
-def instructions(settings: Settings, login: Login | None) -> str:
-    """Write one line of JSON for a process beside the service: its settings, and its login on the bus."""
-    return json.dumps({"settings": settings.model_dump(mode="json"), "login": asdict(login) if login else None})
+@dataclass(frozen=True)
+class Instructions:
+    """What a process beside the service is given through its standard input, and nowhere else.
+
+    Attributes:
+        settings: of the station.
+        login: on the bus; None without access control.
+        signing_key: of the station, for the executor alone; empty for others.
+    """
+
+    settings: Settings
+    login: Login | None
+    signing_key: bytes = field(default=b"", repr=False)
 
 
-def from_instructions(line: str) -> tuple[Settings, Login | None]:
+def instructions(given: Instructions) -> str:
+    """Write one line of JSON for a process beside the service."""
+    return json.dumps(
+        {
+            "settings": given.settings.model_dump(mode="json"),
+            "login": asdict(given.login) if given.login else None,
+            "signing_key": given.signing_key.hex(),
+        }
+    )
+
+
+def from_instructions(line: str) -> Instructions:
     """Read what `instructions` wrote."""
     document = json.loads(line)
     login = document["login"]
-    return load(document=document["settings"]), Login(**{**login, "role": Role(login["role"])}) if login else None
+    return Instructions(
+        load(document=document["settings"]),
+        Login(**{**login, "role": Role(login["role"])}) if login else None,
+        bytes.fromhex(document["signing_key"]),
+    )
 
 
 def load(file: Path | None = None, *, document: dict[str, Any] | None = None) -> Settings:

@@ -15,11 +15,12 @@ from teachpath.io.store.store import Store
 from teachpath.jobs import worker
 from teachpath.jobs.jobs import JobKind
 from teachpath.learning.settings import LearningSettings
+from teachpath.motion.planning.signature import CalibrationScope, SigningKey
 from teachpath.offline.import_job import PREPARED, ImportOrder, ImportRequest, prepare_import
 from teachpath.offline.learning_job import StoredDemonstrations, learn_stored, recut_stored
 from teachpath.offline.transfer_folders import TransferFolders
 from teachpath.recorder.calibrations import Calibrations
-from teachpath.records import Demonstration, Job, Learned, Plan, Task
+from teachpath.records import Demonstration, Job, Learned, LearnedPath, Plan, Task
 
 
 @dataclass(frozen=True)
@@ -32,6 +33,7 @@ class JobKinds:
         calibrations: that demonstrations have to be recorded under, in their present version.
         transfers: folders of uploaded files.
         imported: called with the name of a task that an import has added to.
+        signing_key: with which plans are signed.
     """
 
     store: Store
@@ -39,6 +41,7 @@ class JobKinds:
     calibrations: Calibrations
     transfers: TransferFolders
     imported: Callable[[str], None]
+    signing_key: SigningKey
 
     def by_name(self) -> dict[str, JobKind]:
         """Return the kinds of jobs by the names that REST gives them."""
@@ -79,7 +82,16 @@ class JobKinds:
         path, version = str(job.request["path"]), job.request.get("version")
         learned = self.store.versions.get(path, version)[1] if isinstance(version, int) else self.store.path(path)
         scene = self.settings.scene(self.store.task(job.task).scene)
-        return learned, scene, self.settings.motion, self.settings.arm
+        signer = worker.Signer(self.signing_key, self._calibrations_of(job.task, learned))
+        return learned, scene, self.settings.motion, self.settings.arm, signer
+
+    def _calibrations_of(self, task: str, path: LearnedPath) -> CalibrationScope:
+        """Return the calibrations, each once, of the demonstrations that a path was learned from."""
+        clusters = self.store.run(path.run).learned.clusters if path.run else ()
+        members = {member for cluster in clusters if cluster.index == path.cluster for member in cluster.members}
+        used = dict.fromkeys(d.calibration for d in self.store.demonstrations(task) if d.id in members)
+        recorded = tuple(map(self.calibrations.numbered, used))
+        return CalibrationScope(recorded, tuple(map(self.calibrations.newest_numbered, recorded)))
 
     def _import_input(self, job: Job) -> tuple[ImportOrder]:
         given = from_document(ImportRequest, job.request)

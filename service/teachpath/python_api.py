@@ -13,7 +13,8 @@ from teachpath.learning.learn import learn as learn_trajectories
 from teachpath.learning.settings import LearningSettings, Progress, no_progress
 from teachpath.motion.arm.model import Arm
 from teachpath.motion.collision.builtin_scenes import empty_scene
-from teachpath.motion.planning.certificate import plan_trajectory, verify
+from teachpath.motion.planning.certificate import plan_trajectory
+from teachpath.motion.planning.digest import verify
 from teachpath.motion.planning.plan import plan as plan_path
 from teachpath.motion.settings import MotionSettings
 from teachpath.nurbs import Curve
@@ -64,6 +65,7 @@ def plan(
     """Plan how the arm follows a path, and certify that it can.
 
     The tool points down. Where the scene has an object to carry, the arm picks it up at the start of the path.
+    The plan is not signed: a station executes plans alone that it made itself, so plan the path there to move its arm.
 
     Args:
         path: a learned path, or a curve of positions [m, world].

@@ -31,7 +31,8 @@ def station() -> Iterator[Station]:
     with tempfile.TemporaryDirectory() as folder:
         station = Station(settings(Path(folder)))
         try:
-            for part in (station.recorder, station.executions, station.joints, station.jobs):
+            parts = (station.recorder, station.executions, station.certificate_status, station.joints, station.jobs)
+            for part in parts:
                 part.start()
             yield station
         finally:

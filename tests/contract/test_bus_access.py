@@ -35,7 +35,7 @@ KEYS = [
         "recorder/start",
         "recorder/status",
         "jobs/job-1",
-        "station/plans",
+        "station/certificate",
         "elsewhere",
     )
 ]

@@ -8,6 +8,7 @@ from teachpath.io.store.store import Store
 from teachpath.motion.collision.builtin_scenes import paper_scene
 from teachpath.motion.planning.plan import plan
 from teachpath.records import Plan
+from tests.unit.executor.executors import signed
 from tests.unit.motion.ways import MIDDLE, way
 from tests.unit.recorder.recorders import Bench
 
@@ -28,5 +29,5 @@ def bench(store: Store) -> Iterator[Bench]:
 
 @pytest.fixture(scope="session")
 def middle() -> Plan:
-    """A plan between the obstacles of the paper's scene."""
-    return plan(way(MIDDLE), paper_scene())
+    """A signed plan between the obstacles of the paper's scene."""
+    return signed(plan(way(MIDDLE), paper_scene()))

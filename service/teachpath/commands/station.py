@@ -14,11 +14,12 @@ import typer
 
 from teachpath.commands.options import Config, Data, settings_of
 from teachpath.commands.serving import serving, until_signalled
-from teachpath.config import Settings, from_instructions, load
+from teachpath.config import Instructions, from_instructions, load
 from teachpath.io.bus import open_bus
+from teachpath.io.signing_key import read_signing_key
 from teachpath.robot.processes import STOP_TIMEOUT
 from teachpath_proto.keys import Keys
-from teachpath_proto.logins import Login, Role, find_login
+from teachpath_proto.logins import Role, find_login
 
 Attached = Annotated[bool, typer.Option("--attached", hidden=True)]
 
@@ -47,16 +48,20 @@ def executor(config: Config = None, attached: Attached = False) -> None:
     It streams the setpoints of certified plans.
     """
     from teachpath.executor.loop import Executor
+    from teachpath.motion.planning.signature import SigningKey
 
-    settings, login = _settings(config, attached, Role.EXECUTOR)
+    given = _instructions(config, attached, Role.EXECUTOR)
+    settings = given.settings
+    key = SigningKey(given.signing_key or read_signing_key(settings.bus.endpoint))
     with until_signalled() as stop:
         _leave_with_parent(stop, attached)
-        bus = open_bus(settings.bus, login)
+        bus = open_bus(settings.bus, given.login)
         try:
             Executor(
                 bus,
                 Keys(settings.bus.prefix),
                 settings.executor,
+                signing_key=key,
                 robot=settings.bus.robot,
                 motion=settings.motion,
                 arm=settings.arm,
@@ -72,10 +77,11 @@ def simulator(config: Config = None, attached: Attached = False) -> None:
     """
     from teachpath.simulator.loop import Simulator
 
-    settings, login = _settings(config, attached, Role.ROBOT)
+    given = _instructions(config, attached, Role.ROBOT)
+    settings = given.settings
     with until_signalled() as stop:
         _leave_with_parent(stop, attached)
-        bus = open_bus(settings.bus, login)
+        bus = open_bus(settings.bus, given.login)
         try:
             Simulator(
                 bus,
@@ -90,12 +96,12 @@ def simulator(config: Config = None, attached: Attached = False) -> None:
             bus.close()
 
 
-def _settings(config: Path | None, attached: bool, role: Role) -> tuple[Settings, Login | None]:
+def _instructions(config: Path | None, attached: bool, role: Role) -> Instructions:
     _log_to_stderr()
     if attached:
         return from_instructions(sys.stdin.readline())
     settings = load(config)
-    return settings, find_login(settings.bus.endpoint, role)
+    return Instructions(settings, find_login(settings.bus.endpoint, role))
 
 
 def _leave_with_parent(stop: threading.Event, attached: bool) -> None:

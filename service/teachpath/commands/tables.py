@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from datetime import datetime
+
 from rich.table import Table
 
-from teachpath_client.models import Dendrogram, Plan, Run
+from teachpath_client.models import Dendrogram, Plan, Run, Signature
 
 
 def clusters_table(run: Run, numbers: dict[str, int]) -> Table:
@@ -81,5 +83,16 @@ def plan_lines(plan: Plan) -> str:
     return (
         f"plan {plan.id}: {plan.duration:.2f} s along {plan.lengths[-1]:.3f} m, arm {c.branch}\n"
         f"  largest use of the limits: {', '.join(f'{name} {use.value:.0%}' for name, use in uses.items())}\n"
-        f"  least clearance {1e3 * c.clearance.value:.1f} mm ({c.clearance.place})"
+        f"  least clearance {1e3 * c.clearance.value:.1f} mm ({c.clearance.place})\n"
+        f"  {_scope(c.signature)}"
     )
+
+
+def _scope(signature: Signature | None) -> str:
+    """Return for what a certificate holds, and until when."""
+    if signature is None:
+        return "not signed: no arm follows it; plan the path again"
+    names = ", ".join(calibration.name for calibration in signature.calibrations)
+    until = datetime.fromtimestamp(signature.expires_ns / 1e9).astimezone()
+    under = f", calibration {names}" if names else ""
+    return f"holds for the {signature.arm}{under}, until {until:%Y-%m-%d %H:%M}"

@@ -164,13 +164,20 @@ class CommandHandler:
 
     def _steer(self, current: Execution, command: Command, who: str) -> None:
         if command.verb == CommandVerb.OVERRIDE:
+            if current.state is ExecutorState.HELD:  # at an override of zero: another one moves the arm again
+                current.confirm()
             self.pending.append(lambda execution: execution.set_override(command.override))
         elif command.verb == CommandVerb.HOLD:
             reason = "held by the operator" if who == DEFAULT_OPERATOR else f"held by {who}"
             self.pending.append(lambda execution: execution.hold(reason))
         elif current.revocation:
             raise Conflict(current.revocation)
-        elif command.verb == CommandVerb.STEP:
+        else:
+            current.confirm()
+            self._move_on(current, command)
+
+    def _move_on(self, current: Execution, command: Command) -> None:
+        if command.verb == CommandVerb.STEP:
             self._step(current, command)
         else:
             self._return_to_path(current)
@@ -244,6 +251,7 @@ class CommandHandler:
             execution,
             prepared.program,
             plan=prepared.plan,
+            confirm=prepared.confirm,
             rate=self._settings.rate,
             offset=self._time.wall_ns() - self._time.monotonic_ns(),
             limits=self._programs.arm.limits.motion,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
+from collections.abc import Callable
 from typing import Final
 
 from teachpath.executor.limit_meter import LimitMeter
@@ -29,6 +30,7 @@ class Execution:
         execution: id of the execution.
         program: what to run.
         plan: id of the plan; empty with a live hand.
+        confirm: checks that the certificate of the plan still holds; raises PathRefused.
         rate: setpoints a second [Hz].
         offset: what turns the loop's clock into nanoseconds since the Unix epoch, when added [ns].
         limits: of the joints, by which their use is measured.
@@ -42,11 +44,20 @@ class Execution:
     """
 
     def __init__(
-        self, execution: str, program: MotionProgram, *, plan: str, rate: float, offset: int, limits: MotionLimits
+        self,
+        execution: str,
+        program: MotionProgram,
+        *,
+        plan: str,
+        confirm: Callable[[], None],
+        rate: float,
+        offset: int,
+        limits: MotionLimits,
     ) -> None:
         self.id = execution
         self.program = program
         self.plan = plan
+        self.confirm = confirm
         self.state = ExecutorState.APPROACHING
         self.reason = ""
         self.tracking_error = 0.0

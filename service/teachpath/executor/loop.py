@@ -14,6 +14,7 @@ from typing import Final
 
 import numpy as np
 
+from teachpath.executor.certificate_check import CertificateCheck
 from teachpath.executor.command_handler import CommandHandler
 from teachpath.executor.execution import Execution
 from teachpath.executor.joint_state_monitor import JointStateMonitor, SetpointStallDetector
@@ -24,6 +25,7 @@ from teachpath.io import wire
 from teachpath.io.bus import Bus
 from teachpath.motion.arm.model import Arm
 from teachpath.motion.execution.governor import warm_up
+from teachpath.motion.planning.signature import SigningKey
 from teachpath.motion.settings import MotionSettings
 from teachpath.records import ExecutorStatus, JointState
 from teachpath.time_source import TimeSource
@@ -48,6 +50,7 @@ class Executor:
         keys: Keys,
         settings: ExecutorSettings | None = None,
         *,
+        signing_key: SigningKey,
         robot: str = "puma560",
         motion: MotionSettings | None = None,
         arm: Arm | None = None,
@@ -56,6 +59,7 @@ class Executor:
         """Prepare the executor; nothing runs before `run`.
 
         Args:
+            signing_key: of the station; plans that it did not sign are refused.
             robot: name of the arm in its keys.
             arm: that is moved; the published variant that `motion` names by default.
             time_source: paces the loop and stamps the setpoints; the machine's clocks by default.
@@ -71,7 +75,10 @@ class Executor:
         self._stall_detector = SetpointStallDetector()
         motion = motion or MotionSettings()
         self._arm = arm or Arm.of_variant(motion.variant)
-        programs = ProgramFactory(bus, keys, self._settings, motion, self._arm, self._joint_states, self._time)
+        certificates = CertificateCheck(bus, keys, signing_key, motion, self._arm, self._time)
+        programs = ProgramFactory(
+            bus, keys, self._settings, motion, self._arm, self._joint_states, self._time, certificates
+        )
         self._command_handler = CommandHandler(
             bus,
             keys,

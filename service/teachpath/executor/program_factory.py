@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Final
 
 from teachpath.errors import UnusableInput
+from teachpath.executor.certificate_check import CertificateCheck
 from teachpath.executor.joint_state_monitor import JointStateMonitor
 from teachpath.executor.settings import ExecutorSettings
 from teachpath.executor.teleop.hand_input import HandInput
@@ -27,11 +29,18 @@ SHARE_RANGE: Final = (0.05, 1.0)  # of the joints' limits
 
 @dataclass(frozen=True)
 class PreparedProgram:
-    """A program that may start; `plan` is its plan's id, empty with a live hand."""
+    """A program that may start.
+
+    Attributes:
+        plan: id of its plan; empty with a live hand.
+        scene: in which the arm moves.
+        confirm: checks that the plan's certificate still holds; raises PathRefused.
+    """
 
     program: MotionProgram
     plan: str
     scene: Scene
+    confirm: Callable[[], None]
 
 
 class ProgramFactory:
@@ -41,6 +50,7 @@ class ProgramFactory:
         motion: settings with which plans were made.
         arm: that programs move.
         joint_states: monitor of the arm.
+        certificates: refuses plans that may not move the arm.
     """
 
     def __init__(
@@ -52,6 +62,7 @@ class ProgramFactory:
         arm: Arm,
         joint_states: JointStateMonitor,
         time_source: TimeSource,
+        certificates: CertificateCheck,
     ) -> None:
         self._bus = bus
         self._keys = keys
@@ -60,6 +71,7 @@ class ProgramFactory:
         self.arm = arm
         self._joint_states = joint_states
         self._time = time_source
+        self._certificates = certificates
 
     def make(self, command: Command) -> PreparedProgram:
         """Return the program of a `start` or `teleoperate` command.
@@ -74,6 +86,7 @@ class ProgramFactory:
 
     def _follow_plan(self, command: Command) -> PreparedProgram:
         plan = documents.decode(Plan, command.plan)
+        self._certificates.verify(plan)
         program = PlanProgram(
             plan,
             self._joint_states.resting_q(self._settings.rest_speed),
@@ -83,7 +96,7 @@ class ProgramFactory:
             dwell=self._settings.dwell,
             period=1.0 / self._settings.rate,
         )
-        return PreparedProgram(program, plan.id, plan.scene)
+        return PreparedProgram(program, plan.id, plan.scene, lambda: self._certificates.confirm(plan))
 
     def _follow_hand(self, command: Command) -> PreparedProgram:
         request = documents.decode(TeleopRequest, command.teleop)
@@ -110,4 +123,4 @@ class ProgramFactory:
         except BaseException:
             hand.close()
             raise
-        return PreparedProgram(program, "", request.scene)
+        return PreparedProgram(program, "", request.scene, lambda: None)

@@ -12,6 +12,7 @@ import threading
 import time
 import uuid
 from collections.abc import Callable
+from dataclasses import dataclass
 from multiprocessing import Queue, parent_process
 from multiprocessing.synchronize import Event
 from pathlib import Path
@@ -20,6 +21,7 @@ from typing import Any
 from teachpath.errors import Cancelled
 from teachpath.learning.settings import LearningSettings
 from teachpath.motion.arm.model import Arm
+from teachpath.motion.planning.signature import CalibrationScope, SigningKey, sign_plan
 from teachpath.motion.settings import MotionSettings
 from teachpath.records import Learned, LearnedPath, Plan, Scene, Trajectory
 
@@ -127,9 +129,20 @@ def recut_run(
     return relearn(learned, demonstrations, threshold=threshold, clusters=clusters, progress=progress)
 
 
-def plan_path(path: LearnedPath, scene: Scene, settings: MotionSettings, arm: Arm, *, progress: Progress) -> Plan:
-    """Plan one path."""
+@dataclass(frozen=True)
+class Signer:
+    """What a plan is signed with as soon as it is certified."""
+
+    key: SigningKey
+    calibrations: CalibrationScope
+
+
+def plan_path(
+    path: LearnedPath, scene: Scene, settings: MotionSettings, arm: Arm, signer: Signer, *, progress: Progress
+) -> Plan:
+    """Plan one path, and sign the plan."""
     from teachpath.motion.planning.plan import plan
 
     progress(0.1, f"planning path {path.id}")
-    return plan(path, scene, settings, arm=arm, plan_id=f"plan-{uuid.uuid4().hex[:12]}")
+    made = plan(path, scene, settings, arm=arm, plan_id=f"plan-{uuid.uuid4().hex[:12]}")
+    return sign_plan(made, arm, settings, signer.key, issued_ns=time.time_ns(), calibrations=signer.calibrations)

@@ -40,3 +40,5 @@ class MotionSettings:
     node_spacing: Annotated[float, Gt(0), Le(0.01)] = 0.002
     # [Hz] of the setpoints with which limits are checked
     rate: Annotated[float, Ge(50), Le(1000)] = 250.0
+    # [days] that the certificate of a plan holds, from when it was made
+    certificate_validity: Annotated[float, Gt(0), Le(3650)] = 30.0

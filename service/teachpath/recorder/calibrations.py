@@ -124,6 +124,24 @@ class Calibrations:
         changes = {d.id: self._conversion_changes(d, self.get(name or d.calibration.name)) for d in demonstrations}
         return [self.store.change_demonstration(key, **changed) for key, changed in changes.items()]
 
+    def numbered(self, calibration: Calibration) -> Calibration:
+        """Return a calibration under the name of its version (lab@2), if it was measured here; else itself."""
+        for measured in self.store.calibrations.versions(calibration.name):
+            if measured.calibration == calibration:
+                return replace(calibration, name=f"{calibration.name}{VERSION_SEPARATOR}{measured.version}")
+        return calibration
+
+    def newest_numbered(self, calibration: Calibration) -> Calibration:
+        """Return the newest version of a calibration that `numbered` returned, likewise."""
+        name = calibration.name.partition(VERSION_SEPARATOR)[0]
+        return self.numbered(self._current_version(replace(calibration, name=name)))
+
+    def _current_version(self, calibration: Calibration) -> Calibration:
+        try:
+            return self.get(calibration.name)
+        except NotFound:  # of another station: nothing here contradicts it
+            return calibration
+
     def _conversion_changes(self, demonstration: Demonstration, calibration: Calibration) -> dict[str, Any]:
         if calibration == demonstration.calibration:
             return {}
@@ -133,9 +151,3 @@ class Calibrations:
         moved = replace(changed, **changes)
         times = Annotations(self.store, self.settings, self.scene).trajectory(moved).times
         return {"calibration": calibration, **changes, "duration": float(times[-1])}
-
-    def _current_version(self, calibration: Calibration) -> Calibration:
-        try:
-            return self.get(calibration.name)
-        except NotFound:  # of another station: nothing here contradicts it
-            return calibration

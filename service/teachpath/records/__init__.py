@@ -21,6 +21,7 @@ from teachpath.records.demonstrations import (
 from teachpath.records.learned import Cluster, Deviation, Fit, Learned, LearnedPath, Score
 from teachpath.records.motion import (
     Certificate,
+    CertificateQuery,
     ExecutorStatus,
     Extreme,
     JointState,
@@ -28,6 +29,7 @@ from teachpath.records.motion import (
     Scene,
     Setpoint,
     Shape,
+    Signature,
 )
 from teachpath.records.previews import MotionPreview, SegmentInterval
 from teachpath.records.recording import (
@@ -51,6 +53,7 @@ __all__ = [
     "Assessment",
     "Calibration",
     "Certificate",
+    "CertificateQuery",
     "Clock",
     "Cluster",
     "Command",
@@ -89,6 +92,7 @@ __all__ = [
     "SegmentInterval",
     "Setpoint",
     "Shape",
+    "Signature",
     "StopRequest",
     "StreamStatistics",
     "Suggestion",

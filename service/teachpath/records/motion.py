@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
 from teachpath.records.arrays import Array, Matrix, Quaternion, Vector
+from teachpath.records.calibrations import Calibration
 from teachpath_proto.control import ExecutorState
 
 
@@ -69,11 +71,44 @@ class Extreme:
     s: float  # arc length from the start of the path [m]
 
 
+@dataclass(frozen=True, slots=True)
+class Signature:
+    """What a station says with its key of a plan: that it made the plan, and what the certificate holds for.
+
+    Attributes:
+        arm: name of the published variant.
+        tool_length: from the flange to the grasp point [m].
+        settings: `motion` settings with which the plan was made.
+        calibrations: of the demonstrations that the path was learned from.
+        present_calibrations: the newest versions of these when the plan was made.
+        issued_ns: when the plan was made.
+        expires_ns: when the certificate holds no longer.
+        mac: HMAC-SHA256 (hex) over the whole plan and the arm, by the station's signing key.
+    """
+
+    arm: str
+    tool_length: float
+    settings: dict[str, Any]
+    calibrations: tuple[Calibration, ...]
+    present_calibrations: tuple[Calibration, ...]
+    issued_ns: int
+    expires_ns: int
+    mac: str
+
+
+@dataclass(frozen=True, slots=True)
+class CertificateQuery:
+    """The executor's question whether the certificate of a stored plan holds: the plan's id and its signature."""
+
+    plan: str
+    mac: str
+
+
 @dataclass(frozen=True, eq=False)
 class Certificate:
     """The proof that the arm can follow a plan; uses are shares of the limits, at most 1."""
 
-    digest: str  # SHA-256 over path, scene, limits and timing
+    digest: str  # SHA-256 over plan, certificate and arm, without the plan's id and the signature
     branch: str
     position_use: Extreme
     velocity_use: Extreme
@@ -82,6 +117,7 @@ class Certificate:
     torque_use: Extreme  # the most that any sequence of commands can ask for on the path
     least_singular: Extreme
     clearance: Extreme  # of arm and carried object to scene and self [m]
+    signature: Signature | None = None  # None: it was made outside a station, or before stations signed
 
 
 @dataclass(frozen=True, eq=False)

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import uuid
-from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 from typing import Final
 
-from teachpath.errors import Conflict, NotFound, PathRefused, TeachpathError, UnusableInput
+from teachpath.errors import Conflict, NotFound, TeachpathError, UnusableInput
 from teachpath.io.bus import Bus
 from teachpath.io.documents import encode
 from teachpath.io.store.motions import MotionHeader, read_motion
@@ -17,7 +16,7 @@ from teachpath.io.store.store import Execution, Store
 from teachpath.io.wire import decode_lease, encode_command, encode_lease_request
 from teachpath.motion.analysis.time_series import TimeSeries, time_series
 from teachpath.motion.arm.model import Arm
-from teachpath.records import Command, ExecutorStatus, Lease, LeaseRequest, Plan, Scene, TeleopRequest
+from teachpath.records import Command, ExecutorStatus, Lease, LeaseRequest, TeleopRequest
 from teachpath.robot.executor_monitor import ExecutorMonitor
 from teachpath.robot.motion_recorder import SETTLING_NS, STOPPING_NS, MotionRecorder
 from teachpath.robot.stopper import Stopper
@@ -38,18 +37,14 @@ class Executions:
 
     Args:
         robot: name of the robot.
-        scene: returns the present scene of a name; raises NotFound.
         arm: that is moved.
     """
 
-    def __init__(
-        self, bus: Bus, keys: Keys, store: Store, *, robot: str, scene: Callable[[str], Scene], arm: Arm
-    ) -> None:
+    def __init__(self, bus: Bus, keys: Keys, store: Store, *, robot: str, arm: Arm) -> None:
         self._bus = bus
         self._keys = keys
         self._store = store
         self._robot = robot
-        self._scene = scene
         self._arm = arm
         self._recorder = MotionRecorder(bus, keys, store.motions, robot=robot)
         self._stopper = Stopper(bus, keys)
@@ -112,7 +107,6 @@ class Executions:
             Unreachable: the executor does not answer.
         """
         stored = self._store.plan(plan)
-        self._check_certificate(stored)
         status = self.status
         if status is not None and not status.state.is_resting:
             raise Conflict(f"execution {status.execution} is {status.state}; stop it first")
@@ -193,8 +187,7 @@ class Executions:
         """
         stored = self._store.plan(plan)
         self._store.journal.revoke(stored.id, who=who, reason=reason)
-        status = self.status
-        if status is not None and not status.state.is_resting:
+        if self.status is not None:  # also at rest: a start that is being answered ends before the revocation is heard
             command = Command(CommandVerb.REVOKE, plan_id=stored.id, reason=reason, who=who)
             self._bus.ask(self._keys.executor_command, encode_command(command))
 
@@ -217,13 +210,3 @@ class Executions:
         finally:
             self._starting.discard(key)
         return self.get(key)
-
-    def _check_certificate(self, plan: Plan) -> None:
-        reason = self._store.journal.revoked(plan.id)
-        if reason:
-            raise PathRefused(f"the certificate of {plan.id} was revoked: {reason}; plan the path again")
-        with suppress(NotFound):
-            if self._scene(plan.scene.name) != plan.scene:
-                raise PathRefused(
-                    f"scene {plan.scene.name} has changed since {plan.id} was certified; plan the path again"
-                )

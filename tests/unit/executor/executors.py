@@ -12,6 +12,7 @@ from teachpath.io import wire
 from teachpath.io.documents import encode
 from teachpath.io.memory_bus import MemoryBus
 from teachpath.motion.arm.model import Arm
+from teachpath.motion.planning.signature import SigningKey, sign_plan
 from teachpath.motion.settings import MotionSettings
 from teachpath.records import Command, ExecutorStatus, JointState, JournalEntry, Lease, LeaseRequest, Plan, Setpoint
 from teachpath.time_source import TimeSource
@@ -24,11 +25,20 @@ KEYS = Keys()
 HOME = np.array(MotionSettings().home)
 PERIOD_NS = 4_000_000
 EPOCH = 1_700_000_000 * 10**9
+KEY = SigningKey(bytes(range(32)))
 STUCK = 60.0  # s, after which a test gives up
 
 
+def signed(plan: Plan, *, key: SigningKey = KEY, issued_ns: int = EPOCH) -> Plan:
+    """Return a plan as the station of these tests signs it."""
+    return sign_plan(plan, ARM, MotionSettings(), key, issued_ns=issued_ns)
+
+
 class Bench:
-    """An executor on a clock of its own, with an arm that is always exactly where its newest setpoint says."""
+    """An executor on a clock of its own, with an arm that is always exactly where its newest setpoint says.
+
+    Its service finds every certificate good, and answers by `confirm`.
+    """
 
     def __init__(self, position: np.ndarray = HOME) -> None:
         self.bus = MemoryBus()
@@ -52,10 +62,13 @@ class Bench:
         self.bus.subscribe(KEYS.setpoint("puma560"), lambda _, p: self.setpoints.append(wire.decode_setpoint(p)))
         self.bus.subscribe(KEYS.executor_status, lambda _, p: self.statuses.append(wire.decode_status(p)))
         self.bus.subscribe(KEYS.executor_journal, lambda _, p: self.journal.append(wire.decode_entry(p)))
+        self.confirm: Callable[[bytes], bytes] = lambda query: query
+        self.service = self.bus.serve(KEYS.station_certificate, lambda query: self.confirm(query))
         self.executor = Executor(
             self.bus,
             KEYS,
             ExecutorSettings(realtime=False),
+            signing_key=KEY,
             time_source=TimeSource(lambda: self.now, lambda: EPOCH + self.now, self.sleep),
         )
 

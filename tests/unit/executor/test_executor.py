@@ -209,7 +209,7 @@ def refusal(bench: Bench, kind: type[TeachpathError], **given: object) -> str:
 
 def test_a_changed_plan_is_refused(bench: Bench, middle: Plan) -> None:
     changed = replace(middle, scene=empty_scene())
-    assert "changed since it was certified" in refusal(bench, PathRefused, plan=encode(changed))
+    assert "the plan or its certificate was changed" in refusal(bench, PathRefused, plan=encode(changed))
 
 
 def test_what_is_no_plan_is_refused(bench: Bench) -> None:

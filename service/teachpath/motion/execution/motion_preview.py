@@ -13,7 +13,7 @@ from teachpath.motion.arm.kinematics import tool_pose
 from teachpath.motion.arm.model import Arm
 from teachpath.motion.arm.puma560 import Array
 from teachpath.motion.execution.segments import Segment, plan_segments
-from teachpath.motion.planning.certificate import verify
+from teachpath.motion.planning.digest import verify
 from teachpath.motion.settings import MotionSettings
 from teachpath.records import MotionPreview, Plan, SegmentInterval
 

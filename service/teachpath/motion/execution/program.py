@@ -12,7 +12,7 @@ from teachpath.motion.arm.model import Arm
 from teachpath.motion.arm.puma560 import Array
 from teachpath.motion.execution.governor import MIN_OVERRIDE, Governor, WayToRest
 from teachpath.motion.execution.segments import Detour, MotionState, RestPoint, Segment, plan_return_path, plan_segments
-from teachpath.motion.planning.certificate import verify
+from teachpath.motion.planning.digest import verify
 from teachpath.motion.settings import MotionSettings
 from teachpath.motion.timing.jog import jog_trajectory, node_length, time_at_length
 from teachpath.motion.timing.timed_trajectory import TimedTrajectory

@@ -1,56 +1,20 @@
-"""Certifies a plan: measures how much of each limit its setpoints use, and signs it with a digest."""
+"""Certifies a plan: measures how much of each limit its setpoints use."""
 
 from __future__ import annotations
-
-import hashlib
-import json
-from dataclasses import asdict
 
 import numpy as np
 
 from teachpath.errors import PathRefused
 from teachpath.motion.arm.joint_path import JointPath
 from teachpath.motion.arm.limits import JointLimits, MotionLimits
-from teachpath.motion.arm.model import Arm
-from teachpath.motion.arm.puma560 import TOOL_LENGTH, Array
+from teachpath.motion.arm.puma560 import Array
 from teachpath.motion.paths.ik_branches import Candidate
 from teachpath.motion.paths.tool_path import ToolPath
 from teachpath.motion.planning.torque_limited import TimedPath
 from teachpath.motion.settings import MotionSettings
 from teachpath.motion.timing.limit_margins import largest_use, limit_uses
 from teachpath.motion.timing.timed_trajectory import TimedTrajectory, time_joint_path
-from teachpath.records import Certificate, Extreme, Plan, Scene
-
-
-def digest(plan: Plan, arm: Arm) -> str:
-    """Compute the SHA-256 (hex) over all that decides the motion: arm, path, scene, configurations, limits, timing."""
-    total = hashlib.sha256()
-    total.update(repr(arm.links).encode())
-    if arm.tool_length != TOOL_LENGTH:  # with the tool of the table, plans keep the digests that they were stored with
-        total.update(repr(arm.tool_length).encode())
-    total.update(f"{plan.path}|{plan.path_version}|".encode())
-    total.update(_scene_text(plan.scene).encode())
-    numbers = (plan.lengths, plan.joints, plan.pace, plan.limits, plan.above_start, plan.above_goal, plan.duration)
-    limits = arm.limits
-    rows = (limits.lower, limits.upper, limits.speed, limits.acceleration, limits.jerk, limits.torque)
-    for value in (*numbers, *rows):
-        array = np.ascontiguousarray(value, dtype="<f8")
-        total.update(f"{array.shape}".encode())
-        total.update(array.tobytes())
-    return total.hexdigest()
-
-
-def verify(plan: Plan, arm: Arm) -> None:
-    """Check that a plan is the one that was certified, for this arm.
-
-    Raises:
-        PathRefused: the digest does not match: path, scene, limits or timing have changed since, or the arm is another.
-    """
-    if digest(plan, arm) != plan.certificate.digest:
-        raise PathRefused(
-            f"plan {plan.id} has changed since it was certified, or is for another arm than the {arm.name} "
-            "(motion.variant); plan the path again"
-        )
+from teachpath.records import Certificate, Extreme, Plan
 
 
 def plan_trajectory(plan: Plan) -> TimedTrajectory:
@@ -109,14 +73,3 @@ def largest_limit_uses(setpoints: Array, rate: float, limits: JointLimits) -> tu
     shares = [np.abs(setpoints[:, :6] - middle) / half, *limit_uses(setpoints, limits.motion, rate)]
     position, velocity, acceleration, jerk = (largest_use(share, setpoints[:, 6]) for share in shares)
     return position, velocity, acceleration, jerk
-
-
-def _scene_text(scene: Scene) -> str:
-    def plain(value: object) -> object:
-        if isinstance(value, dict):
-            return {key: plain(inner) for key, inner in value.items()}
-        if isinstance(value, list | tuple):
-            return [plain(inner) for inner in value]
-        return float(value) if isinstance(value, int | float) else value
-
-    return json.dumps(plain(asdict(scene)), sort_keys=True)

@@ -14,8 +14,9 @@ from teachpath.motion.paths.ik_branches import Candidate, enumerate_candidates
 from teachpath.motion.paths.tool_path import ToolPath, sample_tool_path
 from teachpath.motion.planning.approach import find_approach, find_retreat
 from teachpath.motion.planning.candidates import clear_candidates, usable_candidates
-from teachpath.motion.planning.certificate import certify, digest
+from teachpath.motion.planning.certificate import certify
 from teachpath.motion.planning.clearance import path_clearance
+from teachpath.motion.planning.digest import digest
 from teachpath.motion.planning.failure import check_start, no_candidate
 from teachpath.motion.planning.torque_limited import time_within_torques
 from teachpath.motion.refusals import first_accepted

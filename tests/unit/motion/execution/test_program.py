@@ -7,7 +7,8 @@ from teachpath.motion.arm.model import Arm
 from teachpath.motion.collision.builtin_scenes import paper_scene
 from teachpath.motion.execution.motion_preview import preview_motion
 from teachpath.motion.execution.program import PlanProgram
-from teachpath.motion.planning.certificate import digest, plan_trajectory
+from teachpath.motion.planning.certificate import plan_trajectory
+from teachpath.motion.planning.digest import digest
 from teachpath.motion.planning.plan import plan
 from teachpath.motion.settings import MotionSettings
 from teachpath.records import Plan

@@ -9,7 +9,8 @@ from teachpath.motion.arm.kinematics import tool_pose
 from teachpath.motion.arm.model import Arm
 from teachpath.motion.collision.builtin_scenes import empty_scene, paper_scene
 from teachpath.motion.paths.tool_path import ArcLength
-from teachpath.motion.planning.certificate import digest, largest_limit_uses, plan_trajectory, verify
+from teachpath.motion.planning.certificate import largest_limit_uses, plan_trajectory
+from teachpath.motion.planning.digest import digest, verify
 from teachpath.motion.planning.failure import describe
 from teachpath.motion.planning.plan import plan
 from teachpath.motion.settings import MotionSettings
