@@ -78,8 +78,8 @@ class Settings(BaseModel):
 
     @property
     def arm(self) -> Arm:
-        """The arm that they name: the published variant `motion.variant`."""
-        return Arm.of_variant(self.motion.variant)
+        """The arm that they describe: the published variant `motion.variant`, with its gripper."""
+        return Arm.of_settings(self.motion)
 
     def scene(self, name: str) -> Scene:
         """Return the scene `name`; raises NotFound with the known ones."""

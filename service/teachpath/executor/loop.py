@@ -74,7 +74,7 @@ class Executor:
         self._joint_states = JointStateMonitor(robot, self._settings.silence, self._time.monotonic_ns)
         self._stall_detector = SetpointStallDetector()
         motion = motion or MotionSettings()
-        self._arm = arm or Arm.of_variant(motion.variant)
+        self._arm = arm or Arm.of_settings(motion)
         certificates = CertificateCheck(bus, keys, signing_key, motion, self._arm, self._time)
         programs = ProgramFactory(
             bus, keys, self._settings, motion, self._arm, self._joint_states, self._time, certificates

@@ -20,8 +20,8 @@ class MotionSettings:
     clearance_min: Annotated[float, Ge(0)] = 0.005
     # [m] that the carried object may dip into what it stands on at its start
     contact_tolerance: Annotated[float, Ge(0), Le(0.02)] = 0.003
-    # [m] between the start of a path and where the scene's object stands
-    grasp_tolerance: Annotated[float, Ge(0), Le(0.1)] = 0.03
+    # [m] by which the fingers overlap an object that they take, or all of one that is smaller
+    grasp_depth: Annotated[float, Gt(0), Le(0.05)] = 0.01
     # [m] above start and goal, from where the gripper comes down straight; else nearer or from a side
     lift: Annotated[float, Gt(0), Le(0.5)] = 0.08
     # share of the joints' speed, acceleration and jerk limits that following a path may use

@@ -9,8 +9,9 @@ import mujoco
 import numpy as np
 
 from teachpath.errors import UnusableInput
-from teachpath.motion.arm.mjcf import CARRIED_BODY, GRASP_WELD, TOOL_SITE, write_mjcf
+from teachpath.motion.arm.mjcf import CARRIED_BODY, GRASP_WELD, write_mjcf
 from teachpath.motion.arm.model import Arm
+from teachpath.motion.collision.grasp import grasp_fault
 from teachpath.records import Array, Quaternion, Scene, Vector
 from teachpath.simulator.settings import SimulatorSettings
 
@@ -29,7 +30,7 @@ class SimulatedArm:
             raise UnusableInput(f"scene {scene.name!r} cannot be simulated: {error}") from None
         self._settings, self._start = settings, np.array(position)
         self._max_torque = arm.limits.torque
-        self._carries = scene.carried is not None
+        self._object, self._arm = scene.carried, arm
         self._friction = np.array(self._model.dof_frictionloss[:6])
         self._acceleration = np.zeros(self._model.nv)
         self._rate = np.zeros(self._model.nv)
@@ -68,7 +69,7 @@ class SimulatedArm:
     @property
     def object_pose(self) -> tuple[Vector, Quaternion]:
         """Position [m] and orientation of the carried object; all zeros when the scene has none."""
-        if not self._carries:
+        if self._object is None:
             return (0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 0.0)
         x, y, z, w, i, j, k = (float(v) for v in self.data.qpos[6:13])
         return (x, y, z), (w, i, j, k)
@@ -99,25 +100,27 @@ class SimulatedArm:
         return np.array(self._force[:6])
 
     def grasp(self) -> bool:
-        """Grasp the object as it lies between the fingers; return False when it is out of reach."""
-        if not self._carries:
-            return False
-        tool = self.data.site(TOOL_SITE).xpos
-        if np.linalg.norm(tool - self.data.body(CARRIED_BODY).xpos) > self._settings.reach:
+        """Grasp the object as it lies between the fingers; return False when the gripper does not take it there."""
+        if self._object is None:
             return False
         hand, carried = self.data.body("link6"), self.data.body(CARRIED_BODY)
         rotation = hand.xmat.reshape(3, 3)
+        pose = np.eye(4)
+        pose[:3, :3] = rotation.T @ carried.xmat.reshape(3, 3)
+        pose[:3, 3] = rotation.T @ (carried.xpos - hand.xpos)
+        if grasp_fault(self._object, pose, self._arm):
+            return False
         back, turn = np.empty(4), np.empty(4)
         mujoco.mju_negQuat(back, hand.xquat)
         mujoco.mju_mulQuat(turn, back, carried.xquat)
         weld = self._model.equality(GRASP_WELD)
         weld.data[:3] = 0.0  # anchor, in the object
-        weld.data[3:6] = rotation.T @ (carried.xpos - hand.xpos)
+        weld.data[3:6] = pose[:3, 3]
         weld.data[6:10] = turn
         self.data.eq_active[weld.id] = True
         return True
 
     def release(self) -> None:
         """Let the object go."""
-        if self._carries:
+        if self._object is not None:
             self.data.eq_active[self._model.equality(GRASP_WELD).id] = False

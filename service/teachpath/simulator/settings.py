@@ -18,5 +18,3 @@ class SimulatorSettings:
     bandwidth: Annotated[float, Gt(0), Le(150)] = 60.0
     # [s] that setpoints wait before they are played, so that one that was held up on its way still comes in time
     delay: Annotated[float, Ge(0.004), Le(0.2)] = 0.03
-    # [m] between grasp point and object's centre, up to which a closing gripper takes the object
-    reach: Annotated[float, Ge(0), Le(0.2)] = 0.03

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 from teachpath.errors import UnusableSettings
 from teachpath.motion.arm.limits import JointLimits
-from teachpath.motion.arm.puma560 import DEFAULT_VARIANT, TOOL_LENGTH, VARIANTS, Link
+from teachpath.motion.arm.puma560 import DEFAULT_VARIANT, GRASP_DEPTH, TOOL_LENGTH, VARIANTS, Link
+from teachpath.motion.settings import MotionSettings
 
 
 @dataclass(frozen=True)
@@ -18,11 +19,18 @@ class Arm:
         name: of the published variant.
         links: its six rows, from the base to the flange.
         tool_length: from the flange to the grasp point [m].
+        grasp_depth: by which the fingers overlap an object that they hold [m] (see `collision.grasp`).
     """
 
     name: str
     links: tuple[Link, ...]
     tool_length: float = TOOL_LENGTH
+    grasp_depth: float = GRASP_DEPTH
+
+    @classmethod
+    def of_settings(cls, settings: MotionSettings) -> Arm:
+        """Return the arm that settings describe: a published variant with its gripper."""
+        return replace(cls.of_variant(settings.variant), grasp_depth=settings.grasp_depth)
 
     @classmethod
     def of_variant(cls, name: str = DEFAULT_VARIANT) -> Arm:

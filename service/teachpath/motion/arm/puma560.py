@@ -159,4 +159,5 @@ TOOL_LENGTH: Final = 0.13  # m, flange to grasp point
 GRIPPER_MASS: Final = 0.25  # kg
 GRIPPER_COM: Final = (0.0, 0.0, 0.05)  # m, in frame 6
 GRIPPER_INERTIA: Final = (6e-4, 5e-4, 3e-4)  # kg m^2
+GRASP_DEPTH: Final = 0.01  # m, by which the fingers overlap an object that they hold
 FINGER_TRAVEL: Final = 0.015  # m, of each finger between closed and open

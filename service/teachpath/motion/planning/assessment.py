@@ -20,6 +20,7 @@ from teachpath.motion.planning.failure import (
     start_failure,
     support_failure,
 )
+from teachpath.motion.planning.start_grasp import grasping_candidates
 from teachpath.motion.settings import MotionSettings
 from teachpath.motion.timing.timing import estimate_duration
 from teachpath.nurbs import Curve
@@ -64,7 +65,7 @@ def assess(
         PathRefused: there is nothing to sample: the curve is no longer than a point, or stands still.
     """
     settings = settings or MotionSettings()
-    arm = arm or Arm.of_variant(settings.variant)
+    arm = arm or Arm.of_settings(settings)
     tool_path = sample_tool_path(curve, settings, orientation=orientation)
     inspection = _inspect(tool_path, CollisionModel(scene, arm), settings)
     nodes, candidate, failure = inspection.nodes, inspection.candidate, inspection.failure
@@ -92,13 +93,15 @@ def assess(
 def _inspect(tool_path: ToolPath, model: CollisionModel, settings: MotionSettings) -> _Inspection:
     """Choose a candidate as `plan` does, and find what fails first."""
     nodes = np.unique(np.linspace(0, len(tool_path.lengths) - 1, ASSESSED_SAMPLES + 1).round().astype(np.int64))
-    candidates = enumerate_candidates(tool_path, model.arm, settings)
+    every = enumerate_candidates(tool_path, model.arm, settings)
+    candidates = grasping_candidates(tool_path, every, model.scene) or every
     usable = usable_candidates(candidates, settings)
     clear = clear_candidates(tool_path, usable, model, settings)
     candidate = (clear or usable or [nearest_to_usable(candidates)])[0]
     load = grasped_load(model, candidate.joints[0])
     clearances = model.clearances(candidate.joints[nodes], load=load)
-    failure = start_failure(tool_path, model.scene, settings) or kinematic_failure(tool_path, candidate, settings)
+    failure = start_failure(tool_path, model.scene, model.arm, settings)
+    failure = failure or kinematic_failure(tool_path, candidate, settings)
     if failure is None and not clear:
         failure = clearance_failure(tool_path, candidate, model, settings)
     if failure is None and load is not None:

@@ -18,6 +18,7 @@ from teachpath.motion.planning.certificate import certify
 from teachpath.motion.planning.clearance import path_clearance
 from teachpath.motion.planning.digest import digest
 from teachpath.motion.planning.failure import check_start, no_candidate
+from teachpath.motion.planning.start_grasp import grasping_candidates
 from teachpath.motion.planning.torque_limited import time_within_torques
 from teachpath.motion.refusals import first_accepted
 from teachpath.motion.settings import MotionSettings
@@ -41,7 +42,7 @@ def plan(
         path: what to follow.
         scene: what stands around the arm.
         settings: what may be used of the arm; the defaults when None.
-        arm: that is to follow the path; the published variant that the settings name when None.
+        arm: that is to follow the path; the one that the settings describe when None.
         plan_id: of the plan that is made.
 
     Returns:
@@ -52,12 +53,12 @@ def plan(
         UnusableSettings: the arm's home is outside the joint limits.
     """
     settings = settings or MotionSettings()
-    arm = arm or Arm.of_variant(settings.variant)
+    arm = arm or Arm.of_settings(settings)
     _check_home(settings, arm)
     tool_path = sample_tool_path(path.curve, settings, orientation=path.orientation)
-    check_start(tool_path, scene, settings)
+    check_start(tool_path, scene, arm, settings)
     model = CollisionModel(scene, arm)
-    candidates = enumerate_candidates(tool_path, arm, settings)
+    candidates = grasping_candidates(tool_path, enumerate_candidates(tool_path, arm, settings), scene)
     usable = usable_candidates(candidates, settings)
     clear = clear_candidates(tool_path, usable, model, settings)
     if not clear:

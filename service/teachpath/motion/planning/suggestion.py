@@ -63,7 +63,7 @@ def suggest_move(
     x, y, z = (float(v) for v in move)
     about = max(5 * round(200 * float(np.linalg.norm(move))), 5)
     far = f"by about {about} mm" if len(enough) else f"by more than {about} mm"
-    sentence = f"move control point {point + 1} of {len(shares)} {far} {_direction((x, y, z))}"
+    sentence = f"move control point {point + 1} of {len(shares)} {far} {describe_direction((x, y, z))}"
     return Suggestion(point, (x, y, z), sentence)
 
 
@@ -114,7 +114,8 @@ def margin_shortfall(fault: str, candidate: Candidate, node: int, settings: Moti
     return settings.least_singular - float(candidate.singular_values[node])
 
 
-def _direction(move: Vector) -> str:
+def describe_direction(move: Vector) -> str:
+    """Describe the direction of a move in words, as seen from the robot."""
     largest = max(abs(v) for v in move)
     named = sorted(
         (-abs(value), words[0] if value > 0 else words[1])

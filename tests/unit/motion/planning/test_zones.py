@@ -53,12 +53,13 @@ def test_a_path_through_the_floor_is_refused_with_the_place_and_the_way_out(heig
 
 
 def test_doing_what_was_proposed_brings_the_path_off_the_floor() -> None:
-    points = dipping(0.0)
+    points = dipping(-0.05)
+    assert assess(clamped(points, degree=5), OPEN).failure is not None
     for _ in range(6):
         found = assess(clamped(points, degree=5), OPEN)
         if found.failure is None:
             break
-        points[found.failure.suggestion.control_point] += found.failure.suggestion.displacement
+        points[found.failure.suggestion.control_point] += found.failure.suggestion.move
     made = plan(learned(clamped(points, degree=5)), OPEN)
     assert made.certificate.clearance.value >= SETTINGS.clearance_min
 

@@ -1,0 +1,77 @@
+"""Decides whether the gripper takes an object: the rule of planning, and the one by which the simulated gripper holds.
+
+The object is measured by its extents along the fingers' axes: across their width (x), where they close (y) and along
+their length (z), in the frame of the flange. It must fit between the open fingers, and the fingers must overlap it
+along z and x by `Arm.grasp_depth`, or all of it where it is smaller. A round object touches each finger along a line or
+at a point, which must lie on the finger.
+"""
+
+from __future__ import annotations
+
+from itertools import product
+from typing import Final
+
+import numpy as np
+
+from teachpath.motion.arm.geometry import collision_solids
+from teachpath.motion.arm.model import Arm
+from teachpath.motion.arm.puma560 import Array
+from teachpath.motion.collision.boundaries import Extent
+from teachpath.records import Shape
+
+PLANNED_MARGIN: Final = 0.001  # m, by which a plan does more than the rule asks for: an arm is not exactly on its path
+ROUND_AXIS_SHARE: Final = 0.7  # of a cylinder's axis along a finger's axis, above which it counts as along it
+
+_FINGER: Final = next(solid for solid in collision_solids() if solid.opening_offset[1] > 0)
+HALF_OPENING: Final = _FINGER.position[1] - _FINGER.size[1] / 2 + _FINGER.opening_offset[1]  # m, to an open finger
+_LOW: Final = np.array(_FINGER.position) - np.array(_FINGER.size) / 2
+_HIGH: Final = np.array(_FINGER.position) + np.array(_FINGER.size) / 2
+
+
+def grasp_fault(shape: Shape, pose: Array, arm: Arm, *, margin: float = 0.0) -> str:
+    """Return why closing fingers do not take an object, in words; empty when they take it.
+
+    Args:
+        shape: of the object.
+        pose: (4, 4) to the flange's frame from the object.
+        arm: whose gripper closes.
+        margin: by which the rule must be exceeded [m].
+    """
+    extent, centre = shape_extent(shape), pose[:3, 3]
+    high, low = centre + extent.along(pose[:3, :3]), centre - extent.along(-pose[:3, :3])
+    room = HALF_OPENING - margin
+    if high[1] - low[1] > 2 * room:
+        return f"{shape.name} is {1000 * (high[1] - low[1]):.0f} mm wide there, the fingers open {2000 * room:.0f} mm"
+    if (out := max(high[1], -low[1]) - room) > 0:
+        return f"{shape.name} sticks out from between the open fingers by {1000 * out:.1f} mm"
+    for axis, where in ((2, "along their length"), (0, "across their width")):
+        overlap = min(high[axis], _HIGH[axis]) - max(low[axis], _LOW[axis])
+        if overlap < 0:
+            return f"the fingers miss {shape.name} by {-1000 * overlap:.1f} mm {where}"
+        needed = min(arm.grasp_depth + margin, high[axis] - low[axis], _HIGH[axis] - _LOW[axis])
+        if overlap < needed - 1e-9:
+            least = f"at least {1000 * needed:.1f} mm are needed (motion.grasp_depth)"
+            return f"the fingers overlap {shape.name} by {1000 * overlap:.1f} mm {where}, {least}"
+        if _is_round(shape, pose, axis):
+            beyond = max(_LOW[axis] - centre[axis], centre[axis] - _HIGH[axis]) + margin
+            if beyond > 0:
+                return f"the fingers end {1000 * beyond:.1f} mm before the middle of {shape.name} {where}"
+    return ""
+
+
+def shape_extent(shape: Shape) -> Extent:
+    """Return how far a shape of a scene reaches from its position."""
+    if shape.kind == "sphere":
+        return Extent(np.zeros((1, 3)), ball=shape.size[0])
+    if shape.kind == "cylinder":
+        return Extent(np.outer([-shape.size[1] / 2, shape.size[1] / 2], [0.0, 0.0, 1.0]), disc=shape.size[0])
+    if shape.kind == "box":
+        return Extent(np.array(list(product((-0.5, 0.5), repeat=3))) * shape.size)
+    return Extent(shape.size[0] * np.array(shape.vertices))
+
+
+def _is_round(shape: Shape, pose: Array, axis: int) -> bool:
+    """Tell whether an object curves away from the fingers along one of their axes."""
+    along = np.abs(pose[:3, 2])
+    lying = shape.kind == "cylinder" and max(along[axis], along[1]) < ROUND_AXIS_SHARE
+    return shape.kind == "sphere" or lying
