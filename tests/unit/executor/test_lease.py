@@ -95,7 +95,7 @@ def test_who_asks_and_goes_away_gets_nothing(desk: Desk) -> None:
         (LeaseRequest(LeaseAction.ACQUIRE, " "), "under a name"),
         (LeaseRequest(LeaseAction.ACQUIRE, "x" * 65), "more than 64"),
         (LeaseRequest(LeaseAction.ACQUIRE, "a\nb"), "unprintable"),
-        (LeaseRequest(LeaseAction.ACQUIRE, "Ada", seconds=float("nan")), "between two beats"),
+        (LeaseRequest(LeaseAction.ACQUIRE, "Ada", seconds=float("nan")), "seconds should be finite, got nan"),
         (LeaseRequest(LeaseAction.ACQUIRE, "Ada", seconds=1e9), "at most 60"),
     ],
 )
