@@ -16,6 +16,7 @@ from teachpath.executor.loop import Executor
 from teachpath.executor.settings import ExecutorSettings
 from teachpath.io import wire
 from teachpath.io.bus import BusSettings, open_bus
+from teachpath.motion.planning.signature import SigningKey
 from teachpath.records import Command, ExecutorStatus
 from teachpath.robot.stopper import Stopper
 from teachpath_client.errors import NotStopped
@@ -60,8 +61,9 @@ class StopServer(Server):
         self.stopper = Stopper(self.bus, KEYS)
         self.bus.subscribe(KEYS.executor_status, lambda _, p: self.stopper.on_status(wire.decode_status(p)))
         self._over = threading.Event()
+        settings, key = ExecutorSettings(realtime=False), SigningKey(bytes(32))
         self._executor = threading.Thread(
-            target=lambda: Executor(self.bus, KEYS, ExecutorSettings(realtime=False)).run(self._over)
+            target=lambda: Executor(self.bus, KEYS, settings, signing_key=key).run(self._over)
         )
 
     def web_app(self, demonstrations: int) -> FastAPI:

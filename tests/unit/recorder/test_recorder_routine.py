@@ -62,7 +62,7 @@ def test_one_by_one_waits_for_the_operator(bench: Bench) -> None:
 
 def test_a_countdown_without_an_end_is_refused(bench: Bench) -> None:
     for countdown in (-1.0, 1e9, float("nan")):
-        with pytest.raises(UnusableInput, match="a countdown of"):
+        with pytest.raises(UnusableInput, match=r"countdown (of|should be finite)"):
             bench.begin(countdown=countdown)
 
 

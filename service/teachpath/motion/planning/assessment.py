@@ -15,12 +15,11 @@ from teachpath.motion.paths.tool_path import ToolPath, sample_tool_path
 from teachpath.motion.planning.candidates import clear_candidates, usable_candidates
 from teachpath.motion.planning.failure import (
     clearance_failure,
-    describe,
     kinematic_failure,
-    start_failure,
     support_failure,
 )
-from teachpath.motion.planning.start_grasp import grasping_candidates
+from teachpath.motion.planning.start_grasp import grasping_candidates, start_failure
+from teachpath.motion.refusals import describe
 from teachpath.motion.settings import MotionSettings
 from teachpath.motion.timing.timing import estimate_duration
 from teachpath.nurbs import Curve

@@ -9,7 +9,8 @@ from teachpath.motion.collision.collision_model import CollisionModel, grasped_l
 from teachpath.motion.collision.continuous import ContinuousCheck, ProvedDistance, prove_distance
 from teachpath.motion.paths.ik_branches import Candidate
 from teachpath.motion.paths.tool_path import ToolPath
-from teachpath.motion.planning.failure import clearance_failure, refusal, support_failure
+from teachpath.motion.planning.failure import clearance_failure, support_failure
+from teachpath.motion.refusals import refusal
 from teachpath.motion.settings import MotionSettings
 from teachpath.records import Extreme
 

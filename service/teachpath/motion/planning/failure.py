@@ -9,21 +9,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from teachpath.errors import PathRefused
-from teachpath.motion.arm.model import Arm
 from teachpath.motion.arm.puma560 import Array
 from teachpath.motion.collision.collision_model import Clearance, CollisionModel, Load, grasped_load
 from teachpath.motion.collision.continuous import MIN_STEP
 from teachpath.motion.paths.ik_branches import Candidate, describe_fault, nearest_to_usable, node_faults
 from teachpath.motion.paths.tool_path import ToolPath
-from teachpath.motion.planning.start_grasp import start_grasp_fault
-from teachpath.motion.planning.suggestion import describe_direction, fault_margin, margin_shortfall, suggest_move
+from teachpath.motion.planning.suggestion import fault_margin, margin_shortfall, suggest_move
+from teachpath.motion.refusals import refusal
 from teachpath.motion.settings import MotionSettings
-from teachpath.records import Failure, Scene, Suggestion, Vector
+from teachpath.records import Failure, Suggestion, Vector
 
 # An arm at the end of its reach is singular shortly before; the reason why it cannot go on is the one to tell.
 FAULT_PRIORITY: Final = ("reach", "limit", "turn", "singular")
-
-CENTRED: Final = 0.002  # m, between the start of a path and an object's middle: there is nothing to move
 
 
 def first_failing_range(failing: NDArray[np.bool_]) -> tuple[int, int]:
@@ -33,17 +30,6 @@ def first_failing_range(failing: NDArray[np.bool_]) -> tuple[int, int]:
         raise ValueError("nothing fails")
     behind = np.flatnonzero(~failing[first:])
     return first, first + int(behind[0]) - 1 if len(behind) else len(failing) - 1
-
-
-def check_start(tool_path: ToolPath, scene: Scene, arm: Arm, settings: MotionSettings) -> None:
-    """Check that the fingers take the scene's object where a path starts.
-
-    Raises:
-        PathRefused: they do not.
-    """
-    failure = start_failure(tool_path, scene, arm, settings)
-    if failure is not None:
-        raise refusal(failure)
 
 
 def no_candidate(
@@ -59,11 +45,6 @@ def no_candidate(
     """
     failure = kinematic_failure(tool_path, nearest_to_usable(candidates), settings)
     return refusal(failure or clearance_failure(tool_path, candidates[0], model, settings))
-
-
-def refusal(failure: Failure) -> PathRefused:
-    """Return the error that tells of a failure."""
-    return PathRefused(describe(failure), failure)
 
 
 def kinematic_failure(tool_path: ToolPath, candidate: Candidate, settings: MotionSettings) -> Failure | None:
@@ -130,31 +111,6 @@ def _collision_failure(
     )
     reason = f"{row.describe_violation(row.distance, required)}, {tool_path.describe_node(worst)}"
     return _failure(tool_path, "collision", (first, last), reason, suggestion)
-
-
-def start_failure(tool_path: ToolPath, scene: Scene, arm: Arm, settings: MotionSettings) -> Failure | None:
-    """Return the failure of a path at whose start the fingers do not take the object, however the tool is rolled."""
-    carried = scene.carried
-    if carried is None:
-        return None
-    faults = [start_grasp_fault(tool_path, carried, roll, arm) for roll in settings.rolls]
-    if not all(faults):
-        return None
-    x, y, z = (float(v) for v in np.array(carried.position) - tool_path.positions[0])
-    off = float(np.linalg.norm((x, y, z)))
-    reason = f"the path starts {100 * off:.1f} cm from where {carried.name} stands, and there {faults[0]}"
-    sentence = f"put an object there that the gripper can take, or turn {carried.name}"
-    if off > CENTRED:
-        count = len(tool_path.curve.control_points)
-        sentence = f"move control point 1 of {count} by {1000 * off:.0f} mm {describe_direction((x, y, z))}"
-    return _failure(tool_path, "start", (0, 0), reason, Suggestion(0, (x, y, z), sentence))
-
-
-def describe(failure: Failure) -> str:
-    """Describe in one sentence why a path fails, and what to change."""
-    begin, end = failure.interval
-    over = f" (it fails from s = {begin:.3f} to {end:.3f} m)" if end > begin else ""
-    return f"{failure.reason}{over}; {failure.suggestion.sentence}"
 
 
 def _failure(tool_path: ToolPath, fault: str, nodes: tuple[int, int], reason: str, suggestion: Suggestion) -> Failure:

@@ -17,8 +17,8 @@ from teachpath.motion.planning.candidates import clear_candidates, usable_candid
 from teachpath.motion.planning.certificate import certify
 from teachpath.motion.planning.clearance import path_clearance
 from teachpath.motion.planning.digest import digest
-from teachpath.motion.planning.failure import check_start, no_candidate
-from teachpath.motion.planning.start_grasp import grasping_candidates
+from teachpath.motion.planning.failure import no_candidate
+from teachpath.motion.planning.start_grasp import check_start, grasping_candidates
 from teachpath.motion.planning.torque_limited import time_within_torques
 from teachpath.motion.refusals import first_accepted
 from teachpath.motion.settings import MotionSettings

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Final
 
 import numpy as np
 
@@ -11,7 +12,22 @@ from teachpath.motion.collision.collision_model import shape_pose
 from teachpath.motion.collision.grasp import PLANNED_MARGIN, grasp_fault
 from teachpath.motion.paths.ik_branches import Candidate
 from teachpath.motion.paths.tool_path import ToolPath
-from teachpath.records import Scene, Shape
+from teachpath.motion.refusals import describe_direction, refusal
+from teachpath.motion.settings import MotionSettings
+from teachpath.records import Failure, Scene, Shape, Suggestion
+
+CENTRED: Final = 0.002  # m, between the start of a path and an object's middle: there is nothing to move
+
+
+def check_start(tool_path: ToolPath, scene: Scene, arm: Arm, settings: MotionSettings) -> None:
+    """Check that the fingers take the scene's object where a path starts.
+
+    Raises:
+        PathRefused: they do not.
+    """
+    failure = start_failure(tool_path, scene, arm, settings)
+    if failure is not None:
+        raise refusal(failure)
 
 
 def grasping_candidates(tool_path: ToolPath, candidates: Sequence[Candidate], scene: Scene) -> list[Candidate]:
@@ -36,3 +52,22 @@ def start_grasp_fault(tool_path: ToolPath, carried: Shape, roll: float, arm: Arm
     turned[2, 3] = -arm.tool_length
     flange = tool_path.poses(tool_path.parameters[:1])[0] @ turned
     return grasp_fault(carried, np.linalg.inv(flange) @ shape_pose(carried), arm, margin=PLANNED_MARGIN)
+
+
+def start_failure(tool_path: ToolPath, scene: Scene, arm: Arm, settings: MotionSettings) -> Failure | None:
+    """Return the failure of a path at whose start the fingers do not take the object, however the tool is rolled."""
+    carried = scene.carried
+    if carried is None:
+        return None
+    faults = [start_grasp_fault(tool_path, carried, roll, arm) for roll in settings.rolls]
+    if not all(faults):
+        return None
+    x, y, z = (float(v) for v in np.array(carried.position) - tool_path.positions[0])
+    off = float(np.linalg.norm((x, y, z)))
+    reason = f"the path starts {100 * off:.1f} cm from where {carried.name} stands, and there {faults[0]}"
+    sentence = f"put an object there that the gripper can take, or turn {carried.name}"
+    if off > CENTRED:
+        count = len(tool_path.curve.control_points)
+        sentence = f"move control point 1 of {count} by {1000 * off:.0f} mm {describe_direction((x, y, z))}"
+    begin_x, begin_y, begin_z = (float(v) for v in tool_path.positions[0])
+    return Failure("start", 0.0, (0.0, 0.0), (begin_x, begin_y, begin_z), reason, Suggestion(0, (x, y, z), sentence))

@@ -12,15 +12,14 @@ from teachpath.motion.arm.kinematics import inverse_kinematics, min_singular_val
 from teachpath.motion.arm.puma560 import Array
 from teachpath.motion.paths.ik_branches import Candidate, roll_tool
 from teachpath.motion.paths.tool_path import ToolPath, control_point_weights
+from teachpath.motion.refusals import describe_direction
 from teachpath.motion.settings import MotionSettings
-from teachpath.records import Suggestion, Vector
+from teachpath.records import Suggestion
 
 PROBE_DISTANCE: Final = 0.004  # m, of the moves that measure the slope of a margin
 MIN_SLOPE: Final = 1e-9  # of a margin; a smaller one gives no direction
 TRIED_DISTANCES: Final = (0.005, 0.01, 0.015, 0.02, 0.03, 0.04, 0.06, 0.08, 0.12, 0.16, 0.24)  # m
 # For positive and negative x, y and z of the world, as seen from the robot.
-DIRECTION_WORDS: Final = (("away from the robot", "towards the robot"), ("to the left", "to the right"), ("up", "down"))
-NAMED_COMPONENT_SHARE: Final = 0.45  # of the largest component of a move, from which another one is named too
 
 # Returns margins (m,) of configurations (m, 6) whose wrist centres lie (m,) [m] out of reach; larger is better.
 FaultMargin = Callable[[Array, Array], Array]
@@ -112,14 +111,3 @@ def margin_shortfall(fault: str, candidate: Candidate, node: int, settings: Moti
     if fault == "turn":
         return 0.1
     return settings.least_singular - float(candidate.singular_values[node])
-
-
-def describe_direction(move: Vector) -> str:
-    """Describe the direction of a move in words, as seen from the robot."""
-    largest = max(abs(v) for v in move)
-    named = sorted(
-        (-abs(value), words[0] if value > 0 else words[1])
-        for value, words in zip(move, DIRECTION_WORDS, strict=True)
-        if abs(value) >= NAMED_COMPONENT_SHARE * largest
-    )
-    return " and ".join(words for _, words in named)

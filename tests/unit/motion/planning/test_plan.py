@@ -11,8 +11,8 @@ from teachpath.motion.collision.builtin_scenes import empty_scene, paper_scene
 from teachpath.motion.paths.tool_path import ArcLength
 from teachpath.motion.planning.certificate import largest_limit_uses, plan_trajectory
 from teachpath.motion.planning.digest import digest, verify
-from teachpath.motion.planning.failure import describe
 from teachpath.motion.planning.plan import plan
+from teachpath.motion.refusals import describe
 from teachpath.motion.settings import MotionSettings
 from teachpath.nurbs import Curve
 from teachpath.records import Plan, Shape

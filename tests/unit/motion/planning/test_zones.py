@@ -11,7 +11,7 @@ from teachpath.motion.collision.builtin_scenes import empty_scene, paper_scene
 from teachpath.motion.collision.collision_model import CollisionModel
 from teachpath.motion.execution.teleop_follower import TeleopFollower
 from teachpath.motion.planning.assessment import assess
-from teachpath.motion.planning.certificate import verify
+from teachpath.motion.planning.digest import verify
 from teachpath.motion.planning.plan import plan
 from teachpath.motion.settings import MotionSettings
 from teachpath.records import Plan, Scene, Shape
