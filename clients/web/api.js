@@ -22,8 +22,7 @@ export class ApiError extends Error {
 export const get = (path) => call("GET", path);
 
 /** @param {string} path @param {object} body @param {Record<string, string>} headers @param {number} [timeout] [ms] */
-export const post = (path, body = {}, headers = {}, timeout = undefined) =>
-  call("POST", path, body, headers, timeout);
+export const post = (path, body = {}, headers = {}, timeout = undefined) => call("POST", path, body, headers, timeout);
 
 /** @param {string} path @param {object} body */
 export const put = (path, body = {}) => call("PUT", path, body);

@@ -111,13 +111,8 @@ class Instructions:
 
 def instructions(given: Instructions) -> str:
     """Write one line of JSON for a process beside the service."""
-    return json.dumps(
-        {
-            "settings": given.settings.model_dump(mode="json"),
-            "login": asdict(given.login) if given.login else None,
-            "signing_key": given.signing_key.hex(),
-        }
-    )
+    settings, login = given.settings.model_dump(mode="json"), asdict(given.login) if given.login else None
+    return json.dumps({"settings": settings, "login": login, "signing_key": given.signing_key.hex()})
 
 
 def from_instructions(line: str) -> Instructions:

@@ -1,4 +1,6 @@
 // The review package: the operator's view and panels, reading an archive instead of the service.
+import { post } from "../api.js";
+import { ArmStop } from "../arm/stop.js";
 import { closestData } from "../elements.js";
 import { EventStream } from "../event_stream.js";
 import { Messages } from "../messages.js";
@@ -47,6 +49,7 @@ const context = {
   overlay: view.overlay,
   messages,
   readOnly: true,
+  armStop: new ArmStop((path) => post(path)), // no panel of a package offers it, and the archive refuses it
   attempt: (order) => messages.attempt(order),
   open: (id) => tabs.select(id),
 };
