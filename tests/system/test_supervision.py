@@ -10,27 +10,27 @@ import pytest
 
 from teachpath.io.store.settings import StoreSettings
 from teachpath.io.store.store import Store
-from teachpath.motion.collision.builtin_scenes import empty_scene
-from teachpath.motion.planning.plan import plan
 from teachpath.robot.processes import MAX_DEATHS
 from teachpath_client.models import Execution
-from tests.contract.rows import a_job
+from tests.contract.rows import a_job, learned
 from tests.system.processes import Service
 from tests.unit.motion.ways import MIDDLE, way
 from tests.waiting import wait_until
 
 pytestmark = pytest.mark.system
 
-PLAN = "plan-1"
+TASK = "t"
 
 
 @pytest.fixture(scope="module")
 def data(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A data folder with one certified plan."""
+    """A data folder with one learned path."""
     folder = tmp_path_factory.mktemp("station") / "data"
     store = Store(StoreSettings(data_dir=str(folder)))
-    store.add_job(a_job(PLAN, kind="plan"))
-    store.finish_planning(PLAN, replace(plan(way(MIDDLE), empty_scene()), id=PLAN))
+    store.ensure_task(TASK, scene="empty", calibration="identity")
+    store.add_job(a_job("learn-1", kind="learn"))
+    found = learned()
+    store.finish_learning("learn-1", replace(found, clusters=found.clusters[:1], paths=(way(MIDDLE),)))
     store.close()
     return folder
 
@@ -43,8 +43,11 @@ def service(data: Path) -> Iterator[Service]:
 
 
 def begin(service: Service) -> Execution:
+    """Plan the path at this station, for a certificate is of one station, and start it."""
+    (run,) = service.station.runs(TASK)
+    plan = service.station.plan(run.learned.paths[0].id)
     service.station.wait_for_arm()
-    return service.station.begin_execution(PLAN)
+    return service.station.begin_execution(plan.id)
 
 
 def wait_state(service: Service, execution: Execution, *states: str) -> Execution:
