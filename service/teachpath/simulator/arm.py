@@ -79,7 +79,7 @@ class SimulatedArm:
 
         Coulomb friction is compensated along the target's velocity, so that the motors do not chatter at rest. What is
         left of it there, an integral of the error takes up, which grows to twice the friction at most: without it an
-        arm that stops on its way rests 0.6 mm beside its path.
+        arm that stops on its way would rest beside its path.
         """
         mujoco.mj_step1(self._model, self.data)
         w = self._settings.bandwidth
