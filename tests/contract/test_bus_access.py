@@ -12,9 +12,9 @@ from typing import Any
 import pytest
 import zenoh
 
-from teachpath.errors import Unreachable
+from teachpath.errors import Unreachable, UnusableSettings
 from teachpath.io.bus import Bus, BusSettings, listen_on_bus, open_bus
-from teachpath.io.bus_access import BusAccess, granted, new_password, prepare_access
+from teachpath.io.bus_access import BusAccess, granted, local_login, new_password, prepare_access
 from teachpath_proto.logins import Login, Role, find_login, logins_path, read_logins, write_logins
 from tests.contract.test_bus import free_endpoint
 
@@ -230,6 +230,16 @@ def test_a_broken_file_of_logins_is_named(tmp_path: Path) -> None:
     path.write_text(path.read_text().replace("viewer", "king"))
     with pytest.raises(ValueError, match=f"{path} holds no logins"):
         read_logins(path)
+
+
+def test_a_station_with_a_broken_file_of_logins_refuses_with_a_sentence() -> None:
+    endpoint = free_endpoint()
+    path = logins_path(endpoint)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text("[]")
+    for read in (lambda: prepare_access(endpoint), lambda: local_login(endpoint, Role.ROBOT)):
+        with pytest.raises(UnusableSettings, match=f"{path} holds no logins .* remove it and start the service again"):
+            read()
 
 
 def drain(heard: queue.Queue[tuple[str, bytes]]) -> list[tuple[str, bytes]]:

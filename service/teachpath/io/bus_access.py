@@ -15,7 +15,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
-from teachpath_proto.logins import Login, Role, logins_path, read_logins, write_logins
+from teachpath.errors import UnusableSettings
+from teachpath_proto.logins import Login, Role, find_login, logins_path, read_logins, write_logins
 
 PASSWORD_BYTES = 24
 SERVICE = "service"  # user name of the listening session
@@ -100,15 +101,32 @@ def prepare_access(endpoint: str) -> BusAccess:
     itself. The executor's login is new each time and in no file.
 
     Raises:
-        ValueError: the file of logins cannot be read.
+        UnusableSettings: the file of logins cannot be read or written; the sentence has the way out.
     """
     path = logins_path(endpoint)
-    kept = read_logins(path)
-    missing = [Login(role.value, new_password(), role) for role in LOCAL if role.value not in {k.user for k in kept}]
-    if missing or not path.exists():
-        write_logins(path, [*kept, *missing])
+    try:
+        kept = read_logins(path)
+        missing = [Login(role.value, new_password(), role) for role in LOCAL if role not in {k.user for k in kept}]
+        if missing or not path.exists():
+            write_logins(path, [*kept, *missing])
+    except ValueError as error:
+        raise UnusableSettings(str(error)) from None
+    except OSError as error:
+        raise UnusableSettings(f"cannot write the logins {path}: {error.strerror}; make its folder writable") from None
     executor = Login(Role.EXECUTOR.value, new_password(), Role.EXECUTOR)
     return BusAccess(new_password(), (executor, *kept, *missing))
+
+
+def local_login(endpoint: str, role: Role) -> Login | None:
+    """Return this user's login of a role at `endpoint`; None where the station keeps none for this user.
+
+    Raises:
+        UnusableSettings: the file of logins cannot be read.
+    """
+    try:
+        return find_login(endpoint, role)
+    except ValueError as error:
+        raise UnusableSettings(str(error)) from None
 
 
 def new_password() -> str:
