@@ -95,6 +95,21 @@ def one_wiggles(seed: int, **hand: Any) -> Labelled:
     return shown, [*truth, 0]
 
 
+def every_other_rests(seed: int, count: int, rest: float = 3.0, noise: float = 0.0008) -> Labelled:
+    """One way; every other demonstration rests at a random share of its duration, tracker noise [m] goes on."""
+    shown, truth = one_way(seed, count, 0.2, noise=noise)
+    rng = np.random.default_rng([seed, 19])
+    return [rests(rng, each, rest, noise) if i % 2 else each for i, each in enumerate(shown)], truth
+
+
+def rests(rng: np.random.Generator, shown: Trajectory, rest: float, noise: float) -> Trajectory:
+    """The same with a rest [s] put in between 30 and 70 % of its samples."""
+    at, count = int(rng.uniform(0.3, 0.7) * len(shown)), round(rest / synthetic.PERIOD)
+    still = shown.positions[at] + rng.normal(0, noise, (count, 3))
+    positions = np.concatenate([shown.positions[:at], still, shown.positions[at:]])
+    return Trajectory(np.arange(len(positions)) * synthetic.PERIOD, positions)
+
+
 def _once(sizes: tuple[int, ...]) -> list[Case]:
     return [
         Case(f"{sizes}, the ways of the paper", partial(known_ways, sizes=sizes)),
@@ -120,6 +135,7 @@ ONE = (
     Case("one way, a tidy hand, 5 times", partial(one_way, count=5, **TIDY)),
     Case("one way, one of five wiggles", one_wiggles),
     Case("one way, a tidy hand, one of five wiggles", partial(one_wiggles, **TIDY)),
+    Case("one way, six times, every other one rests for 3 s", partial(every_other_rests, count=6)),
     Case("one way, four times with the mouse", partial(one_way, count=4, **MOUSE)),
 )
 
