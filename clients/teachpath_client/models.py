@@ -17,6 +17,32 @@ Verdict = Literal["clean", "repaired", "reject"]
 
 
 @dataclass(frozen=True)
+class Adaptation:
+    """A path that was adapted to another start and goal.
+
+    Attributes:
+        version: that was saved.
+        path: of that version.
+        spread: two standard deviations [m] of a demonstration between these ends from the path, at 100 equal
+            arc lengths.
+        demonstrations: how many the shape was learned from.
+        places: at how many different starts or goals these were shown.
+        extrapolates: what is beyond the shown range; empty within it.
+        note: how sure the adaptation is, in words.
+        job: that certifies the version; its outcome is a plan.
+    """
+
+    version: Version
+    path: LearnedPath
+    spread: list[float]
+    demonstrations: int
+    places: int
+    extrapolates: str
+    note: str
+    job: Job
+
+
+@dataclass(frozen=True)
 class Advice:
     """What the operator of a task should do next, in words."""
 

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import Any, Literal
 
 from teachpath_client.models import (
+    Adaptation,
     Dendrogram,
     Difference,
     Execution,
@@ -78,6 +79,10 @@ class WorkResources(Rest):
     def save_version(self, path: str, curve: Mapping[str, Any], *, base: int, **words: str) -> Version:
         """Save an edited curve as a new version; words: branch, name, author, note."""
         return self._ask(Version, "POST", f"/paths/{path}/versions", {"base": base, "curve": curve} | words)
+
+    def adapt(self, path: str, start: Mapping[str, Any], goal: Mapping[str, Any], **options: Any) -> Adaptation:
+        """Adapt a path to poses of the object; options: version, branch, name, author."""
+        return self._ask(Adaptation, "POST", f"/paths/{path}/adaptations", {"start": start, "goal": goal} | options)
 
     def difference(self, path: str, first: int, second: int) -> Difference:
         """Return how far the second of two versions lies from the first."""

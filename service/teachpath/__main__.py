@@ -36,6 +36,7 @@ for command in (
     work.learn,
     work.recut,
     work.plan,
+    work.adapt,
     work.run,
     work.stop,
     evaluate.evaluate,

@@ -67,8 +67,12 @@ class Desk:
         """Wait for the job that was accepted to end."""
         assert accepted.status_code == 202, accepted.text
         assert accepted.headers["location"] == f"{API}/jobs/{accepted.json()['id']}"
+        return self.job_ended(accepted.json()["id"])
+
+    def job_ended(self, key: str) -> dict[str, Any]:
+        """Wait for a job to end."""
         while True:
-            job: dict[str, Any] = self.send("GET", accepted.headers["location"]).json()
+            job: dict[str, Any] = self.get(f"/jobs/{key}").json()
             if job["finished_ns"]:
                 return job
             self._news.get(timeout=HANG)

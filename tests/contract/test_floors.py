@@ -32,7 +32,7 @@ GROUPS = {
     "learning": [
         ["settings", "resampling", "matching", "input_validation"],
         ["clustering", "selection", "fitting"],
-        ["summary", "compare"],
+        ["summary", "compare", "adaptation"],
         ["learn"],
         ["relearn"],
     ],

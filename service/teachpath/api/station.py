@@ -6,6 +6,7 @@ from fastapi import APIRouter, Depends, FastAPI
 from starlette.middleware.trustedhost import TrustedHostMiddleware
 
 from teachpath import __version__
+from teachpath.api.adaptations import adaptations_router
 from teachpath.api.assessments import assessments_router
 from teachpath.api.calibrations import calibrations_router
 from teachpath.api.control import control_router
@@ -53,6 +54,7 @@ def build_api(parts: Parts, *pages: APIRouter) -> FastAPI:
         results_router,
         versions_router,
         curves_router,
+        adaptations_router,
         assessments_router,
         executions_router,
         control_router,

@@ -140,6 +140,38 @@ def plan(
         print(plan_lines(station.plan(path, version, on_change=job_shown(show))))
 
 
+def adapt(
+    path: Annotated[str, typer.Argument(help="Id of a learned path.")],
+    start: Annotated[str, typer.Option(help="Where the object lies: x,y,z [m], or x,y,z,qw,qx,qy,qz.")],
+    goal: Annotated[str, typer.Option(help="Where it is to go, likewise.")],
+    version: Annotated[int | None, typer.Option(help="To adapt; the newest on its main branch.")] = None,
+    branch: Annotated[str, typer.Option(help="To continue or to begin; that of the version.")] = "",
+    url: Url = LOCAL,
+) -> None:
+    """Adapt a learned path to an object that lies elsewhere, and certify it.
+
+    Saves a new version with the shape of all demonstrations of the same way, between the new start and goal.
+    """
+    poses = _pose(start, "--start"), _pose(goal, "--goal")
+    with Station(url) as station:
+        adapted = station.adapt(path, *poses, version=version, branch=branch)
+        print(f"version {adapted.version.number} of {path}, on branch {adapted.version.branch}: {adapted.note}")
+        with progress_bar("planning") as show:
+            plan = station.get_plan(station.outcome(adapted.job, job_shown(show)))
+    print(plan_lines(plan))
+
+
+def _pose(text: str, option: str) -> dict[str, object]:
+    """Read x,y,z or x,y,z,qw,qx,qy,qz."""
+    try:
+        numbers = [float(part) for part in text.split(",")]
+    except ValueError:
+        numbers = []
+    if len(numbers) not in (3, 7):
+        raise UnusableInput(f"{option} {text!r} is not x,y,z or x,y,z,qw,qx,qy,qz; write for instance 0.4,-0.3,0.5")
+    return {"position": numbers[:3], "orientation": numbers[3:] or None}
+
+
 def run(
     plan: Annotated[str | None, typer.Argument(help="Id of a plan; with --check, the one that was meant.")] = None,
     url: Url = LOCAL,

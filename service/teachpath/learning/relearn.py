@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import fields, replace
-from typing import Any
+from dataclasses import replace
 
 from teachpath.errors import LearningFailed
 from teachpath.learning.clustering.cuts import recut_partition
@@ -12,7 +11,7 @@ from teachpath.learning.clustering.ends import end_groups
 from teachpath.learning.clustering.incomplete import find_incomplete
 from teachpath.learning.clustering.partition import Partition
 from teachpath.learning.learn import comparable_paths, learn_partition, metric_of
-from teachpath.learning.settings import LearningSettings, Progress, no_progress
+from teachpath.learning.settings import LearningSettings, Progress, no_progress, settings_of_run
 from teachpath.learning.summary import fingerprint
 from teachpath.records import Learned, Trajectory
 
@@ -43,7 +42,7 @@ def relearn(
     grouping = recut_partition(learned, threshold, clusters)
     _check_unchanged(learned, demonstrations)
     progress(0.0, f"cutting the dendrogram at {grouping.threshold * 100:.2f} cm")
-    settings = _with_cut(_settings_of(learned), grouping, clusters)
+    settings = _with_cut(settings_of_run(learned.settings), grouping, clusters)
     listed = {name: demonstrations[name] for name in learned.demonstrations}
     metric = metric_of(settings)
     courses, length = comparable_paths(listed, metric, settings.seed)
@@ -51,12 +50,6 @@ def relearn(
         groups = end_groups(courses, min_separation=settings.min_separation, length=length)
         grouping = replace(grouping, incomplete=find_incomplete(courses, groups, length))
     return learn_partition(listed, courses, grouping, settings, progress)
-
-
-def _settings_of(learned: Learned) -> LearningSettings:
-    known = {field.name for field in fields(LearningSettings)}
-    kept: dict[str, Any] = {name: value for name, value in learned.settings.items() if name in known}
-    return LearningSettings(**kept)
 
 
 def _with_cut(settings: LearningSettings, grouping: Partition, clusters: int | None) -> LearningSettings:

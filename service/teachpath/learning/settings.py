@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, fields
 from math import isfinite
-from typing import Annotated, get_args, get_type_hints
+from typing import Annotated, Any, get_args, get_type_hints
 
 from annotated_types import Ge, Gt, Le
 
@@ -107,6 +107,12 @@ class LearningSettings:
         hints = get_type_hints(type(self), include_extras=True)
         for field in fields(self):
             _check(field.name, getattr(self, field.name), hints[field.name])
+
+
+def settings_of_run(stored: Mapping[str, Any]) -> LearningSettings:
+    """Return the settings that are stored with a run, without those that have been replaced since."""
+    known = {field.name for field in fields(LearningSettings)}
+    return LearningSettings(**{name: value for name, value in stored.items() if name in known})
 
 
 def _check(name: str, value: object, hint: object) -> None:

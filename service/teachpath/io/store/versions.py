@@ -67,8 +67,14 @@ class Versions:
             row = _row(session, path, number)
         return _version(row), from_document(LearnedPath, row.document)
 
-    def save(self, path: str, curve: Curve, edit: Edit) -> Version:
+    def save(self, path: str, curve: Curve, edit: Edit, *, orientation: Curve | None = None) -> Version:
         """Save an edited curve as the next version of a path, and return it.
+
+        Args:
+            path: its id.
+            curve: of positions.
+            edit: what is said of it.
+            orientation: of quaternions; None = that of the base.
 
         Raises:
             NotFound: there is no such path or base.
@@ -87,12 +93,14 @@ class Versions:
                 newer = _version(head)
                 raise Outdated(_outdated(newer, edit.base), newer)
             learned = from_document(LearnedPath, base.document)
-            if head is not None and _same(learned.curve, curve):
+            turned = orientation is not None and orientation is not learned.orientation
+            if head is not None and _same(learned.curve, curve) and not turned:
                 raise UnusableInput(f"this is the curve of version {base.version}; edit it, or name another branch")
             number = 1 + (session.scalar(select(func.max(PathRow.version)).where(PathRow.id == path)) or 0)
             if number > MAX_VERSIONS:
                 raise UnusableInput(f"path {path} has {MAX_VERSIONS} versions, which is the limit; learn the task anew")
-            edited = replace(learned, version=number, curve=curve, fit=None, note="")
+            kept = learned.orientation if orientation is None else orientation
+            edited = replace(learned, version=number, curve=curve, fit=None, note="", orientation=kept)
             row = PathRow(
                 id=path,
                 version=number,

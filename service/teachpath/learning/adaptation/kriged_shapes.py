@@ -1,0 +1,150 @@
+"""Prediction of a path between a start and a goal that were not shown, from demonstrations between others.
+
+The shape of a demonstration is what it has beside the straight line from its start to its goal, per power of its
+horizontal distance. Shapes between such ends are predicted by ordinary kriging over direction and distance; the
+prediction is the mean of one with shapes turned with the direction and one with shapes kept in the world.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from teachpath.records import Array
+
+DISTANCE_POWER = 0.8  # of the horizontal distance, by which the height and width of a shape grow
+DISTANCE_SCALE = 0.7  # of the logarithm of a ratio of distances, for the covariance
+NUGGET = 1.0  # variance of the hand itself, relative to that between directions and distances
+MIN_DISTANCE_SHARE = 0.25  # of the length of the path; with nearer ends it is closed or vertical and is not turned
+MIN_DISTANCE = 1e-6  # m, for its logarithm
+MAX_DISTANCE_RATIO = 1.5  # to the shown distances, beyond which a prediction extrapolates
+MAX_TURN = np.radians(60)  # from the nearest shown direction, likewise
+SINGLE_SPREAD = 0.12  # standard deviation after one demonstration, as share of the distance
+
+
+@dataclass(frozen=True, eq=False)
+class Prediction:
+    """A predicted path.
+
+    Attributes:
+        path: (n, 3) [m] at equal shares of the arc length, from the start to the goal exactly.
+        deviation: (n,) [m] standard deviation of a demonstration between these ends from it.
+        extrapolates: what is beyond the shown range, in words; empty within it.
+    """
+
+    path: Array
+    deviation: Array
+    extrapolates: str
+
+
+class KrigedShapes:
+    """The shapes of m demonstrations, and their covariance.
+
+    Args:
+        paths: (m, n, 3) [m] at equal shares of the arc length.
+    """
+
+    def __init__(self, paths: Array) -> None:
+        starts, chords = paths[:, 0], paths[:, -1] - paths[:, 0]
+        self._share = np.linspace(0.0, 1.0, paths.shape[1])
+        self._distances = np.linalg.norm(chords[:, :2], axis=1)
+        self._yaws = np.arctan2(chords[:, 1], chords[:, 0])
+        lengths = np.linalg.norm(np.diff(paths, axis=1), axis=2).sum(axis=1)
+        self._turns = bool(np.all(self._distances > MIN_DISTANCE_SHARE * lengths))
+        residuals = paths - starts[:, None] - self._share[:, None] * chords[:, None]
+        scaled = residuals / self._scale(self._distances)[:, None, None]
+        self._in_world = scaled
+        self._turned = np.einsum("mji,mnj->mni", _rotations(self._yaws), scaled)
+        m = len(paths)
+        system = np.ones((m + 1, m + 1))
+        system[:m, :m] = self._covariances(self._yaws[:, None], self._distances[:, None]) + NUGGET * np.eye(m)
+        system[m, m] = 0.0
+        self._inverse = np.linalg.inv(system)
+        self._variance = self._left_out_variance()
+
+    def predict(self, start: Array, goal: Array) -> Prediction:
+        """Predict the path from a start to a goal (3,) [m]."""
+        chord = goal - start
+        distance, yaw = _chord(start, goal)
+        known = np.append(self._covariances(yaw, distance), 1.0)
+        solved = self._inverse @ known
+        weights = solved[:-1]
+        shape = self._world_shapes(yaw) if self._turns else self._in_world
+        scale = float(self._scale(np.array(distance)))
+        path = start + self._share[:, None] * chord + scale * np.tensordot(weights, shape, 1)
+        path[-1] = goal
+        if self._variance is None:
+            deviation = SINGLE_SPREAD * float(np.linalg.norm(chord)) * np.sin(np.pi * self._share)
+        else:
+            unexplained = max(1.0 + NUGGET - float(known @ solved), 0.0)
+            deviation = scale * np.sqrt(unexplained * self._variance)
+        return Prediction(path, deviation, self._beyond(yaw, distance))
+
+    def _world_shapes(self, yaw: float) -> Array:
+        """Return the mean of turned and unturned shapes for a direction (m, n, 3)."""
+        return np.asarray((self._turned @ _rotations(np.array([yaw]))[0].T + self._in_world) / 2)
+
+    def _scale(self, distance: Array) -> Array:
+        return distance**DISTANCE_POWER if self._turns else np.ones_like(distance)
+
+    def similarity(self, one: tuple[Array, Array], other: tuple[Array, Array]) -> float:
+        """Return the correlation, 0 to 1, of the shapes between two pairs of ends; 1 when their chords are equal."""
+        if not self._turns:
+            return 1.0
+        (distance, yaw), (distance_2, yaw_2) = _chord(*one), _chord(*other)
+        return float(_covariances(np.array(yaw), np.array(distance), np.array(yaw_2), np.array(distance_2)))
+
+    def _covariances(self, yaw: Array | float, distance: Array | float) -> Array:
+        """Return the covariance of ends in this direction and distance with those of the demonstrations."""
+        if not self._turns:
+            return np.ones(np.broadcast(yaw, self._yaws).shape)
+        return _covariances(np.asarray(yaw), np.asarray(distance), self._yaws, self._distances)
+
+    def _left_out_variance(self) -> Array | None:
+        """Return the variance (n,) per unit of scale and of kriging variance, from leaving each shape out in turn."""
+        m = len(self._distances)
+        if m < 2:
+            return None
+        own = np.diag(self._inverse)[:m]
+        errors = np.tensordot(self._inverse[:m, :m], self._in_world, 1) / own[:, None, None]
+        if self._turns:
+            turned = np.tensordot(self._inverse[:m, :m], self._turned, 1) / own[:, None, None]
+            errors = (errors + np.einsum("mij,mnj->mni", _rotations(self._yaws), turned)) / 2
+        freedom = 3 * (m - 1)  # the variance of Student's distribution, because few errors tell the variance badly
+        return np.asarray((np.square(errors).sum(axis=2) * own[:, None]).mean(axis=0) * freedom / (freedom - 2))
+
+    def _beyond(self, yaw: float, distance: float) -> str:
+        if not self._turns:
+            return ""
+        nearest, farthest = float(self._distances.min()), float(self._distances.max())
+        if not nearest / MAX_DISTANCE_RATIO <= distance <= farthest * MAX_DISTANCE_RATIO:
+            return f"start and goal are {distance * 100:.0f} cm apart, shown were {_span(nearest, farthest)}"
+        turns = np.abs((yaw - self._yaws + np.pi) % (2 * np.pi) - np.pi)
+        if turns.min() > MAX_TURN:
+            return f"the direction is {np.degrees(turns.min()):.0f}° from the nearest one that was shown"
+        return ""
+
+
+def _chord(start: Array, goal: Array) -> tuple[float, float]:
+    """Return the horizontal distance [m] from start to goal and the direction [rad]."""
+    x, y, _ = goal - start
+    return float(np.hypot(x, y)), float(np.arctan2(y, x))
+
+
+def _covariances(yaw: Array, distance: Array, yaw_2: Array, distance_2: Array) -> Array:
+    turn = 2 * np.sin((yaw - yaw_2) / 2)
+    ratio = np.log(np.maximum(distance, MIN_DISTANCE) / np.maximum(distance_2, MIN_DISTANCE)) / DISTANCE_SCALE
+    return np.asarray(np.exp(-(turn**2) / 2 - ratio**2 / 2))
+
+
+def _span(least: float, most: float) -> str:
+    one, other = f"{least * 100:.0f}", f"{most * 100:.0f}"
+    return f"{one} cm" if one == other else f"{one} to {other} cm"
+
+
+def _rotations(yaws: Array) -> Array:
+    """Return rotations about the vertical (m, 3, 3)."""
+    cos, sin, zero = np.cos(yaws), np.sin(yaws), np.zeros_like(yaws)
+    rows = [[cos, -sin, zero], [sin, cos, zero], [zero, zero, zero + 1]]
+    return np.moveaxis(np.array(rows), 2, 0)

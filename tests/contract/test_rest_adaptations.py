@@ -1,0 +1,128 @@
+"""Adaptations of a path over REST and on the command line: a new version with its certificate, or a sentence."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+from teachpath.__main__ import app
+from teachpath.errors import UnusableInput
+from tests.contract.desk import Desk, refused
+
+TASK = "elsewhere"
+START, GOAL = np.array([0.45, -0.2, 0.6]), np.array([0.45, 0.2, 0.6])
+
+
+def shown(goal: Any, seed: int) -> str:
+    """A bow from the start to a goal, as CSV."""
+    share = np.linspace(0, 1, 100)[:, None]
+    s = 10 * share**3 - 15 * share**4 + 6 * share**5
+    height = 0.1 + np.random.default_rng(seed).normal(0, 0.003)
+    points = START + s * (goal - START) + np.sin(np.pi * s) * [0, 0, height]
+    rows = [f"{0.02 * i},{x:.6f},{y:.6f},{z:.6f}\n" for i, (x, y, z) in enumerate(points)]
+    return "t,x,y,z\n" + "".join(rows)
+
+
+@dataclass(frozen=True)
+class Taught:
+    """A path that was learned from two goals, and its task."""
+
+    path: str
+    start: list[float]
+    goal: list[float]
+
+
+@pytest.fixture(scope="module")
+def taught(desk: Desk) -> Taught:
+    for number in range(6):
+        assert desk.import_(TASK, shown(GOAL + (number % 2) * np.array([0.1, 0.0, 0.0]), number))
+    job = desk.ended(desk.post(f"/tasks/{TASK}/jobs", {"settings": {"repeats": 0}}))
+    assert job["state"] == "succeeded", job["message"]
+    learned = desk.get(f"/tasks/{TASK}/runs/{job['outcome']}").json()["learned"]
+    assert len(learned["paths"]) == 2
+    path = learned["paths"][0]
+    points = path["curve"]["control_points"]
+    return Taught(path["id"], points[0], points[-1])
+
+
+def adapted(desk: Desk, taught: Taught, shift: Any, **more: Any) -> Any:
+    goal = np.add(taught.goal, shift).tolist()
+    body = {"start": {"position": taught.start}, "goal": {"position": goal}}
+    return desk.post(f"/paths/{taught.path}/adaptations", body | more)
+
+
+def test_an_adaptation_is_a_new_version_with_its_certificate(desk: Desk, taught: Taught) -> None:
+    before = desk.get(f"/paths/{taught.path}").json()
+    answer = adapted(desk, taught, [0.05, 0.0, 0.0])
+    assert answer.status_code == 201, answer.text
+    found = answer.json()
+    number = found["version"]["number"]
+    assert answer.headers["location"] == f"/api/v1/paths/{taught.path}/versions/{number}"
+    assert found["path"] == desk.get(f"/paths/{taught.path}").json()
+    assert found["version"]["parent"] == before["version"]
+    assert found["version"]["note"] == found["note"]
+    assert (found["demonstrations"], found["places"], found["extrapolates"]) == (6, 2, "")
+    assert max(found["spread"]) > 0
+    points = np.array(found["path"]["curve"]["control_points"])
+    shifted = np.add(taught.goal, [0.05, 0.0, 0.0])
+    np.testing.assert_allclose(points[[0, -1]], [taught.start, shifted], atol=1e-9)
+    job = desk.job_ended(found["job"]["id"])
+    assert job["state"] == "succeeded", job["message"]
+    assert job["request"]["version"] == number
+    assert desk.get(f"/plans/{job['outcome']}").json()["path"] == taught.path
+
+
+def test_what_was_not_shown_is_told(desk: Desk, taught: Taught) -> None:
+    found = adapted(desk, taught, [0.0, -0.35, 0.0], branch="near").json()
+    assert "cm apart, shown were" in found["extrapolates"]
+    assert found["note"] == f"beyond what was shown: {found['extrapolates']}"
+
+
+def test_the_ends_that_it_has_are_no_adaptation(desk: Desk, taught: Taught) -> None:
+    newest = desk.get(f"/paths/{taught.path}").json()
+    points = newest["curve"]["control_points"]
+    body = {"start": {"position": points[0]}, "goal": {"position": points[-1]}}
+    refused(desk.post(f"/paths/{taught.path}/adaptations", body), 422, "this is the curve of version")
+    assert desk.get(f"/paths/{taught.path}").json() == newest
+
+
+@pytest.mark.parametrize(
+    ("start", "sentence"),
+    [
+        ({"position": [0.4, 0.1]}, "body.start.position"),
+        ({"position": [0.4, 0.1, 400]}, "body.start.position.2: it should be less than or equal to 10"),
+        ({"position": [0.4, 0.1, None]}, "body.start.position.2"),
+        ({"position": [0.4, 0.1, 0.5], "orientation": [1, 1, 0, 0]}, "start.orientation has length 1.414"),
+        ({"position": [0.4, 0.1, 0.5], "orientation": [0, 0, 0, 0]}, "start.orientation has length 0"),
+        ({"position": [0.4, 0.1, 0.5], "orientation": [1, 0, 0, 0]}, "this path has learned no orientations"),
+        ({"positon": [0.4, 0.1, 0.5]}, "body.start.position"),
+    ],
+)
+def test_what_is_no_pose_is_refused(desk: Desk, taught: Taught, start: Any, sentence: str) -> None:
+    before = desk.get(f"/paths/{taught.path}/versions").json()
+    body = {"start": start, "goal": {"position": [0.4, 0.2, 0.6]}}
+    refused(desk.post(f"/paths/{taught.path}/adaptations", body), 422, sentence)
+    assert desk.get(f"/paths/{taught.path}/versions").json() == before
+
+
+def test_an_unknown_path_or_version_is_not_found(desk: Desk, taught: Taught) -> None:
+    refused(adapted(desk, taught, [0.05, 0, 0], version=999), 404, "no version 999")
+    body = {"start": {"position": [0.4, 0.1, 0.5]}, "goal": {"position": [0.4, 0.2, 0.6]}}
+    refused(desk.post("/paths/moon/adaptations", body), 404, "there is no path 'moon'")
+
+
+def test_a_path_is_adapted_on_the_command_line(desk: Desk, taught: Taught, port: int) -> None:
+    x, y, z = taught.goal
+    words = ["adapt", taught.path, "--start", ",".join(map(str, taught.start)), "--goal", f"{x + 0.03},{y},{z}"]
+    said = CliRunner().invoke(app, [*words, "--url", f"http://127.0.0.1:{port}"], catch_exceptions=False).stdout
+    newest = desk.get(f"/paths/{taught.path}").json()
+    assert f"version {newest['version']} of {taught.path}, on branch main: by 6 demonstrations at 2 places" in said
+    np.testing.assert_allclose(newest["curve"]["control_points"][-1], [x + 0.03, y, z], atol=1e-9)
+
+
+def test_ends_on_the_command_line_are_three_or_seven_numbers(taught: Taught) -> None:
+    for text in ("here", "0.4,0.1", "1,2,3,4"):
+        with pytest.raises(UnusableInput, match="is not x,y,z or x,y,z,qw,qx,qy,qz"):
+            CliRunner().invoke(app, ["adapt", taught.path, "--start", text, "--goal", text], catch_exceptions=False)
