@@ -11,6 +11,7 @@ import zenoh.ext
 
 from teachpath_client.errors import ClientError
 from teachpath_proto.logins import Login, Role, find_login, logins_path
+from teachpath_proto.sessions import joining, open_session
 
 CACHE_SIZE = 1024  # samples that a subscriber which missed some can still ask for
 HEARTBEAT = 0.2  # [s] after a put until a subscriber is told its number, so that a lost last one is missed too
@@ -32,25 +33,12 @@ class Link:
     def __init__(
         self, endpoint: str, *, role: Role = Role.TRACKER, login: Login | None = None, timeout: float = 10.0
     ) -> None:
-        values: dict[str, object] = {
-            "mode": "client",
-            "connect/endpoints": [endpoint],
-            "connect/timeout_ms": int(timeout * 1000),
-            "connect/exit_on_failure": True,
-            "scouting/multicast/enabled": False,
-            "scouting/gossip/enabled": False,
-        }
         try:
             login = login or find_login(endpoint, role)
         except ValueError as error:
             raise ClientError(str(error)) from None
-        if login is not None:
-            values["transport/auth/usrpwd"] = {"user": login.user, "password": login.password}
-        config = zenoh.Config()
-        for path, value in values.items():
-            config.insert_json5(path, json.dumps(value))
         try:
-            self._session = zenoh.open(config)
+            self._session = open_session(joining(endpoint, login, timeout=timeout))
         except zenoh.ZError as error:
             raise ClientError(_unreachable(endpoint, role, login, error)) from error
         self._publishers: list[zenoh.ext.AdvancedPublisher] = []

@@ -93,6 +93,8 @@ class BusSettings:
     prefix: str = "teachpath/station"
     robot: str = "puma560"
     access_control: bool = True
+    certificates: str = "teachpath-certificates"
+    router: bool = False
     connect_timeout: float = 10.0
 
 

@@ -11,7 +11,7 @@ import os
 import re
 import tempfile
 from collections.abc import Iterable
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from enum import StrEnum
 from pathlib import Path
 
@@ -19,21 +19,26 @@ from pathlib import Path
 class Role(StrEnum):
     """What a login may do on the bus; the service grants each role its keys (`teachpath.io.bus_access`)."""
 
+    SERVICE = "service"  # the station itself, that all others meet
     EXECUTOR = "executor"  # sends setpoints, answers commands
     ROBOT = "robot"  # the arm's driver: takes setpoints, publishes joint states
     TRACKER = "tracker"  # publishes samples, controls the recording of its hand
     OPERATOR = "operator"  # a program that commands the executor
     VIEWER = "viewer"  # looks on
+    ROUTER = "router"  # passes on between machines what the others say
 
 
 @dataclass(frozen=True, slots=True)
 class Login:
-    """A user name and password on the bus; a tracker's or robot's may be held to one name in its keys."""
+    """A user of the bus, with a password, or over TLS with a certificate; all in PEM, empty where there is none."""
 
     user: str
-    password: str
+    password: str = field(repr=False)
     role: Role
     only: str = ""  # the one tracker or robot it may be; empty: any
+    certificate: str = ""  # that names the user
+    key: str = field(default="", repr=False)  # private, of the certificate
+    authority: str = ""  # certificate of the authority that signs those of the station
 
 
 def logins_path(endpoint: str) -> Path:

@@ -10,7 +10,7 @@ from typing import NoReturn
 try:
     import typer
 
-    from teachpath.commands import curves, demo, demonstrations, evaluate, files, logins, station, work
+    from teachpath.commands import certificates, curves, demo, demonstrations, evaluate, files, logins, station, work
 except ModuleNotFoundError as missing:
     sys.exit(f"teachpath: {missing.name} is not installed; the service needs: pip install 'teachpath[service]'")
 
@@ -47,6 +47,7 @@ for command in (
     app.command(name=command.__name__.rstrip("_"))(command)
 app.add_typer(curves.app, name="curve")
 app.add_typer(logins.app, name="login")
+app.add_typer(certificates.app, name="station")
 for part in (station.executor, station.simulator):
     app.command(rich_help_panel="Parts that serve starts by itself")(part)
 

@@ -6,6 +6,7 @@ import logging
 import time
 from collections.abc import Callable
 from dataclasses import asdict
+from datetime import UTC, datetime
 from pathlib import Path
 from types import TracebackType
 
@@ -19,7 +20,7 @@ from teachpath.api.station import build_api
 from teachpath.api.view import view_router
 from teachpath.config import Instructions, Settings, instructions
 from teachpath.io.bus import Bus, listen_on_bus
-from teachpath.io.bus_access import BusAccess, prepare_access
+from teachpath.io.bus_logins import prepare_access
 from teachpath.io.signing_key import prepare_signing_key
 from teachpath.io.store.store import Store
 from teachpath.io.wire import recording_document
@@ -68,6 +69,7 @@ class Station:
     Raises:
         Conflict: another service uses the data folder.
         Unreachable: the Zenoh endpoint is taken.
+        UnusableSettings: of the bus, its logins, certificates or keys.
     """
 
     def __init__(self, settings: Settings) -> None:
@@ -76,8 +78,8 @@ class Station:
         self._lock.__enter__()
         try:
             self._signing_key = SigningKey(prepare_signing_key(settings.bus.endpoint))
-            access = prepare_access(settings.bus.endpoint) if settings.bus.access_control else None
-            self.bus: Bus = listen_on_bus(settings.bus, access)
+            self._access = prepare_access(settings.bus)
+            self.bus: Bus = listen_on_bus(settings.bus, self._access)
         except BaseException:
             self._lock.__exit__(None, None, None)
             raise
@@ -86,7 +88,7 @@ class Station:
         self._started = time.monotonic()
         self._open_recording()
         self._open_work()
-        self._open_robot(access)
+        self._open_robot()
         self.web: FastAPI = build_api(self._parts(), view_router(self.preview), events_router(self.event_hub))
         self._state_poller = StatePoller(self.event_hub, self._polls())
 
@@ -169,7 +171,7 @@ class Station:
         self.exporter = Exporter(ExportSource(settings.store, settings.recording, settings.scenes), settings.jobs)
         self.assessor = CurveAssessor()
 
-    def _open_robot(self, access: BusAccess | None) -> None:
+    def _open_robot(self) -> None:
         """Open the service's side of the arm, its picture, and the processes that move it."""
         settings, robot = self.settings, self.settings.bus.robot
         self.joints = JointFeed(self.bus, self.keys, robot=robot)
@@ -192,26 +194,25 @@ class Station:
             self._process(
                 "executor",
                 Role.EXECUTOR,
-                access,
                 EXECUTOR_SUGGESTION,
                 self.executions.end_lost,
                 key=self._signing_key.secret,
             )
         ]
         if settings.simulator.start:
-            self.processes.append(self._process("simulator", Role.ROBOT, access, SIMULATOR_SUGGESTION))
+            self.processes.append(self._process("simulator", Role.ROBOT, SIMULATOR_SUGGESTION))
 
     def _process(
         self,
         name: str,
         role: Role,
-        access: BusAccess | None,
         suggestion: str,
         on_death: Callable[[str], None] = lambda cause: None,
         *,
         key: bytes = b"",
     ) -> SupervisedProcess:
-        given = instructions(Instructions(self.settings, access.login(role) if access else None, key))
+        login = self._access.login(role) if self._access else None
+        given = instructions(Instructions(self.settings, login, key))
         return SupervisedProcess(name, attached_command(name), given, suggestion=suggestion, on_death=on_death)
 
     def trajectory(self, demonstration: Demonstration) -> Trajectory:
@@ -238,6 +239,7 @@ class Station:
         """Say what an operator should know."""
         notes = [note for process in self.processes if (note := process.note())]
         notes += self.recorder.faults() + self.executions.faults()
+        notes += self._access.notes(datetime.now(UTC)) if self._access else []
         unfinished = self.store.recordings.unfinished()
         if unfinished and not self.recorder.statuses():
             notes.append(f"{len(unfinished)} recordings were cut off; stop the service and run: teachpath doctor")

@@ -19,7 +19,7 @@ from pydantic import BaseModel, ConfigDict, ValidationError
 
 from teachpath.errors import NotFound, UnusableSettings
 from teachpath.executor.settings import ExecutorSettings
-from teachpath.io.bus import BusSettings
+from teachpath.io.bus_settings import BusSettings
 from teachpath.io.import_settings import ImportSettings
 from teachpath.io.meshes import read_hull
 from teachpath.io.store.settings import StoreSettings

@@ -14,7 +14,8 @@ import zenoh
 
 from teachpath.errors import Unreachable, UnusableSettings
 from teachpath.io.bus import Bus, BusSettings, listen_on_bus, open_bus
-from teachpath.io.bus_access import BusAccess, granted, local_login, new_password, prepare_access
+from teachpath.io.bus_access import BusAccess, granted
+from teachpath.io.bus_logins import local_login, new_password, prepare_access
 from teachpath_proto.logins import Login, Role, find_login, logins_path, read_logins, write_logins
 from tests.contract.test_bus import free_endpoint
 
@@ -40,6 +41,7 @@ KEYS = [
     )
 ]
 STOP = f"{PREFIX}/executor/stop"
+MEMBERS = (Role.EXECUTOR, Role.ROBOT, Role.TRACKER, Role.OPERATOR, Role.VIEWER)
 WAIT = 30.0  # [s] that only bounds a hang
 DENIED = 1.0  # [s] until a question that nobody lets through is given up
 
@@ -47,14 +49,14 @@ DENIED = 1.0  # [s] until a question that nobody lets through is given up
 @pytest.fixture(scope="module")
 def station() -> Iterator[tuple[BusSettings, BusAccess, Bus]]:
     settings = BusSettings(endpoint=free_endpoint())
-    logins = tuple(Login(role.value, new_password(), role) for role in Role)
-    access = BusAccess(new_password(), (*logins, Login("left", new_password(), Role.TRACKER, only="left")))
+    own, *logins = (Login(role.value, new_password(), role) for role in (Role.SERVICE, *MEMBERS))
+    access = BusAccess(own, (*logins, Login("left", new_password(), Role.TRACKER, only="left")))
     bus = listen_on_bus(settings, access)
     yield settings, access, bus
     bus.close()
 
 
-@pytest.fixture(params=list(Role))
+@pytest.fixture(params=MEMBERS)
 def member(request: pytest.FixtureRequest, station: tuple[BusSettings, BusAccess, Bus]) -> Iterator[tuple[Login, Bus]]:
     """A login of each role and its session."""
     settings, access, _ = station
@@ -213,7 +215,9 @@ def test_without_the_right_password_nobody_comes_in(
 
 def test_local_logins_are_made_once_and_only_their_owner_reads_them() -> None:
     endpoint = free_endpoint()
-    first, again = prepare_access(endpoint), prepare_access(endpoint)
+    first, again = prepare_access(BusSettings(endpoint)), prepare_access(BusSettings(endpoint))
+    assert first is not None
+    assert again is not None
     path = logins_path(endpoint)
     assert stat.S_IMODE(path.stat().st_mode) == 0o600
     local = {login.user: login.password for login in read_logins(path)}
@@ -237,7 +241,7 @@ def test_a_station_with_a_broken_file_of_logins_refuses_with_a_sentence() -> Non
     path = logins_path(endpoint)
     path.parent.mkdir(parents=True, exist_ok=True)
     path.write_text("[]")
-    for read in (lambda: prepare_access(endpoint), lambda: local_login(endpoint, Role.ROBOT)):
+    for read in (lambda: prepare_access(BusSettings(endpoint)), lambda: local_login(BusSettings(endpoint), Role.ROBOT)):
         with pytest.raises(UnusableSettings, match=f"{path} holds no logins .* remove it and start the service again"):
             read()
 

@@ -52,6 +52,7 @@ GENERATED = "teachpath_proto.*_pb2"  # the modules that protoc generates
 DOORS = {
     GENERATED: ["io/wire"],
     "zenoh": ["io/bus.py"],
+    "cryptography": ["io/certificates.py"],
     "google": ["io/wire"],
     "cattrs": ["io/documents.py"],
     "sqlalchemy": ["io/store"],
@@ -185,11 +186,21 @@ def test_ruckigs_network_service_is_never_asked() -> None:
         ("teachpath", {"numpy", "teachpath.errors"}),
         (
             "teachpath.__main__",
-            {"websockets", "scipy.linalg", "numba", "hmmlearn", "sqlalchemy", "fastapi", "mujoco", "meshcat"},
+            {
+                "websockets",
+                "scipy.linalg",
+                "numba",
+                "hmmlearn",
+                "sqlalchemy",
+                "fastapi",
+                "mujoco",
+                "meshcat",
+                "cryptography",
+            },
         ),
         ("teachpath.simulator.loop", {"scipy.linalg", "numba", "hmmlearn", "sqlalchemy", "fastapi"}),
         ("teachpath.executor.loop", {"hmmlearn", "sqlalchemy", "fastapi", "meshcat"}),
-        ("teachpath.app", {"numba", "hmmlearn", "mujoco"}),
+        ("teachpath.app", {"numba", "hmmlearn", "mujoco", "cryptography"}),
         ("teachpath.live.preview.commands", {"meshcat", "meshcat.visualizer", "IPython", "tornado", "zmq", "PIL"}),
     ],
 )

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import sys
 import time
 from types import TracebackType
@@ -14,6 +13,7 @@ from teachpath_client.driver.check import DriverCheck
 from teachpath_client.errors import ClientError
 from teachpath_proto.keys import Keys
 from teachpath_proto.motion_pb2 import JointState
+from teachpath_proto.sessions import listening, open_session
 
 WAIT_INTERVAL: Final = 0.2  # [s] between two looks for the driver
 WARNING = "The check moves every joint by 0.2 rad and back, ten times. Is the arm's space clear? [y/N] "
@@ -32,17 +32,9 @@ class BusBench:
     """
 
     def __init__(self, endpoint: str, robot: str, prefix: str) -> None:
-        values: dict[str, object] = {
-            "mode": "peer",
-            "listen/endpoints": [endpoint],
-            "scouting/multicast/enabled": False,
-            "scouting/gossip/enabled": False,
-        }
-        config, keys = zenoh.Config(), Keys(prefix)
-        for path, value in values.items():
-            config.insert_json5(path, json.dumps(value))
+        keys = Keys(prefix)
         try:
-            self._session = zenoh.open(config)
+            self._session = open_session(listening([endpoint]))
         except zenoh.ZError as error:
             raise ClientError(f"cannot listen at {endpoint}: is a station running there? ({error})") from error
         self.states: list[JointState] = []

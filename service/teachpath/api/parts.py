@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from teachpath.config import Settings
-from teachpath.io.bus import BusSettings
+from teachpath.io.bus_settings import BusSettings
 from teachpath.io.store.store import Store
 from teachpath.jobs.curve_assessor import CurveAssessor
 from teachpath.jobs.jobs import Jobs

@@ -11,9 +11,10 @@ from rich.table import Table
 
 from teachpath.commands.options import Config, settings_of
 from teachpath.errors import Conflict, NotFound, UnusableInput
-from teachpath.io.bus_access import LOCAL, new_password
+from teachpath.io.bus_logins import LOCAL, add_login, revoke_login, station_logins
 from teachpath_proto.keys import is_name, name_refusal
-from teachpath_proto.logins import Login, Role, logins_path, read_logins, write_logins
+from teachpath_proto.logins import Login, Role, write_logins
+from teachpath_proto.sessions import is_tls
 
 app = typer.Typer(
     help="Logins on the bus: create, list, revoke. This user's own programs need none: they find theirs themselves.",
@@ -33,16 +34,18 @@ def create(
 ) -> None:
     """Make a login for a program of another user or machine, and a file to give to it.
 
-    The other side names the file: teachpath-client --login FILE, or Link(endpoint, login=...) in Python.
+    The other side names the file: teachpath-client --login FILE, or Link(endpoint, login=...) in Python. Where the
+    station's endpoint is over TLS, it holds a certificate instead of a password.
     """
+    if role in (Role.SERVICE, Role.ROUTER):
+        raise UnusableInput(f"nobody else may be the {role} of a station; use another role")
     for what, text in (("login", name), ("tracker or robot", only)):
         if text and not is_name(text):
             raise UnusableInput(name_refusal(what, text))
-    path, logins = _logins(config)
-    if name in {login.user for login in logins} | {role.value for role in Role} | {"service"}:
+    bus = settings_of(config, None).bus
+    if name in {login.user for login in station_logins(bus)} | {role.value for role in Role} | {"authority"}:
         raise Conflict(f"there is a login {name!r} already; revoke it first, or take another name")
-    login = Login(name, new_password(), role, only)
-    write_logins(path, [*logins, login])
+    login = add_login(bus, Login(name, "", role, only))
     file = into or Path(f"{name}.login.json")
     write_logins(file, [login])
     print(f"login {name} ({role}{f', only {only}' if only else ''}) is in {file}: keep it secret; {RESTART}")
@@ -52,7 +55,7 @@ def create(
 def list_(config: Config = None) -> None:
     """List the logins of the station, without their passwords."""
     table = Table("name", "role", "only")
-    for login in _logins(config)[1]:
+    for login in station_logins(settings_of(config, None).bus):
         table.add_row(login.user, login.role.value, login.only)
     Console().print(table)
 
@@ -60,18 +63,11 @@ def list_(config: Config = None) -> None:
 @app.command("revoke")
 def revoke(name: Name, config: Config = None) -> None:
     """Take a login back; one of this user's own programs gets a new password."""
-    path, logins = _logins(config)
-    if name not in {login.user for login in logins}:
-        known = ", ".join(login.user for login in logins) or "none; start the service once"
+    bus = settings_of(config, None).bus
+    users = [login.user for login in station_logins(bus)]
+    if name not in users:
+        known = ", ".join(users) or "none; start the service once"
         raise NotFound(f"there is no login {name!r}; known: {known}")
-    write_logins(path, [login for login in logins if login.user != name])
-    renewed = name in {role.value for role in LOCAL}
+    revoke_login(bus, name)
+    renewed = name in LOCAL and not is_tls(bus.endpoint)
     print(f"login {name} is {'given a new password' if renewed else 'revoked'}; {RESTART}")
-
-
-def _logins(config: Path | None) -> tuple[Path, list[Login]]:
-    path = logins_path(settings_of(config, None).bus.endpoint)
-    try:
-        return path, read_logins(path)
-    except ValueError as error:
-        raise UnusableInput(str(error)) from None

@@ -16,7 +16,7 @@ from teachpath.commands.options import Config, Data, settings_of
 from teachpath.commands.serving import serving, until_signalled
 from teachpath.config import Instructions, from_instructions, load
 from teachpath.io.bus import open_bus
-from teachpath.io.bus_access import local_login
+from teachpath.io.bus_logins import local_login
 from teachpath.io.signing_key import read_signing_key
 from teachpath.robot.processes import STOP_TIMEOUT
 from teachpath_proto.keys import Keys
@@ -102,7 +102,7 @@ def _instructions(config: Path | None, attached: bool, role: Role) -> Instructio
     if attached:
         return from_instructions(sys.stdin.readline())
     settings = load(config)
-    return Instructions(settings, local_login(settings.bus.endpoint, role))
+    return Instructions(settings, local_login(settings.bus, role))
 
 
 def _leave_with_parent(stop: threading.Event, attached: bool) -> None:

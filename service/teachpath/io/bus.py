@@ -11,38 +11,22 @@ import queue
 import threading
 from collections.abc import Callable, Mapping
 from contextlib import AbstractContextManager, nullcontext
-from dataclasses import dataclass
-from typing import Annotated, Any, Protocol
+from typing import Any, Protocol
 
 import zenoh
 import zenoh.ext
-from annotated_types import Ge, Le
 
 from teachpath import errors
 from teachpath.errors import TeachpathError, Unreachable
 from teachpath.io.bus_access import BusAccess, listening_config
+from teachpath.io.bus_settings import BusSettings
 from teachpath_proto.logins import Login
+from teachpath_proto.sessions import joining, listening, open_session
 
 Receive = Callable[[str, bytes], None]
 Answer = Callable[[bytes], bytes]
 Changed = Callable[[str, bool], None]
 Missed = Callable[[int], None]
-
-
-@dataclass(frozen=True)
-class BusSettings:
-    """Where the Zenoh session of this process meets the others."""
-
-    # the service listens here as a Zenoh peer; workers and clients connect here
-    endpoint: str = "tcp/127.0.0.1:7447"
-    # first segments of every key; one per station
-    prefix: str = "teachpath/station"
-    # name of the arm in its keys
-    robot: str = "puma560"
-    # every role has its own login and its own keys; false lets every program that reaches the endpoint do everything
-    access_control: bool = True
-    # [s] how long to wait for the endpoint when connecting
-    connect_timeout: Annotated[float, Ge(0.1), Le(60)] = 10.0
 
 
 class Handle(Protocol):
@@ -87,20 +71,23 @@ class Bus(Protocol):
 
 
 def listen_on_bus(settings: BusSettings, access: BusAccess | None = None) -> Bus:
-    """Open the station's bus as its one listening peer.
+    """Open the station's bus as its one listening peer, or where a router listens, as the service among its clients.
 
     Args:
+        settings: where.
         access: the logins that are let in, each held to the keys of its role; None lets everybody do everything.
 
     Raises:
-        Unreachable: the endpoint is taken.
+        Unreachable: the endpoint is taken, or there is no router.
     """
+    if settings.router:
+        return open_bus(settings, access.own if access else None)
     guard: AbstractContextManager[dict[str, object]] = (
         nullcontext({}) if access is None else listening_config(access, settings.prefix)
     )
     with guard as guarded:
         return ZenohBus(
-            {**_session_config(settings, listen=True), **guarded},
+            {**listening([settings.endpoint]), **guarded},
             f"{settings.endpoint}: is it taken by another service?",
         )
 
@@ -111,10 +98,10 @@ def open_bus(settings: BusSettings, login: Login | None = None) -> Bus:
     Raises:
         Unreachable: nobody listens there, or the login is not let in.
     """
-    config = _session_config(settings, listen=False)
-    if login is not None:
-        config["transport/auth/usrpwd"] = {"user": login.user, "password": login.password}
-    return ZenohBus(config, f"{settings.endpoint}: is the service running there, and is the login one of its own?")
+    return ZenohBus(
+        joining(settings.endpoint, login, timeout=settings.connect_timeout),
+        f"{settings.endpoint}: is the service running there, and is the login one of its own?",
+    )
 
 
 class ZenohBus:
@@ -122,11 +109,8 @@ class ZenohBus:
 
     def __init__(self, values: Mapping[str, object], place: str) -> None:
         """Open a session with these values of Zenoh's configuration; `place` says where, for an error."""
-        config = zenoh.Config()
-        for path, value in values.items():
-            config.insert_json5(path, json.dumps(value))
         try:
-            self._session = zenoh.open(config)
+            self._session = open_session(values)
         except zenoh.ZError as error:
             raise Unreachable(f"no Zenoh session at {place} ({error})") from error
         self._lock = threading.Lock()
@@ -188,20 +172,6 @@ class ZenohBus:
     def _keep(self, handle: Handle) -> Handle:
         self._handles.append(handle)
         return handle
-
-
-def _session_config(settings: BusSettings, *, listen: bool) -> dict[str, object]:
-    # A peer does not route between other peers, but it does between its clients: one peer listens, all others are
-    # clients of it.
-    return {
-        "mode": "peer" if listen else "client",
-        "listen/endpoints": [settings.endpoint] if listen else [],
-        "connect/endpoints": [] if listen else [settings.endpoint],
-        "connect/timeout_ms": int(settings.connect_timeout * 1000),
-        "connect/exit_on_failure": True,
-        "scouting/multicast/enabled": False,
-        "scouting/gossip/enabled": False,
-    }
 
 
 class Declaration:

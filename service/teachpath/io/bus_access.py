@@ -7,21 +7,19 @@ does not grant is denied.
 from __future__ import annotations
 
 import os
-import secrets
 import tempfile
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from datetime import datetime, timedelta
 from pathlib import Path
 from typing import Final
 
 from teachpath.errors import UnusableSettings
-from teachpath_proto.logins import Login, Role, find_login, logins_path, read_logins, write_logins
+from teachpath_proto.logins import Login, Role
+from teachpath_proto.sessions import listening_over_tls
 
-PASSWORD_BYTES = 24
-SERVICE = "service"  # user name of the listening session
-# Roles whose logins lie in the file for this user's programs; the executor's is given to its process alone.
-LOCAL: Final = (Role.ROBOT, Role.TRACKER, Role.OPERATOR, Role.VIEWER)
+RENEWAL: Final = timedelta(days=30)  # before its end, from which a certificate is renewed
 
 # What each verb needs of the filter: messages from the client, and messages to it.
 MESSAGES: Final[dict[str, tuple[tuple[str, ...], tuple[str, ...]]]] = {
@@ -44,7 +42,13 @@ LOOK: Final = (
     "trackers/*/feedback",
     "jobs/*",
 )
+# Zenoh's advanced publishers keep a cache and tell their newest number on keys below their own.
+CACHE_KEYS: Final = "@adv/**"
+ALL: Final = ("**", f"**/{CACHE_KEYS}")
 GRANTS: Final[dict[Role, dict[str, tuple[str, ...]]]] = {
+    # Only a router asks what these two may do: without one, the service is the session that enforces the table.
+    Role.SERVICE: {**dict.fromkeys(MESSAGES, ALL), "put": ("**",), "serve": ("**",)},
+    Role.ROUTER: {},
     Role.EXECUTOR: {
         "put": ("executor/status", "executor/journal", "robot/*/setpoint"),
         "serve": ("executor/command", "executor/stop", "executor/lease"),
@@ -78,83 +82,70 @@ GRANTS: Final[dict[Role, dict[str, tuple[str, ...]]]] = {
         "watch": ("alive/**",),
     },
 }
-# Zenoh's advanced publishers keep a cache and tell their newest number on keys below their own.
-CACHE_KEYS: Final = "@adv/**"
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class BusAccess:
-    """All logins of a station, and its own password; the listening session enforces the table for them."""
+    """Who is let onto a station's bus; the listening session, or the router, enforces the table for them.
 
-    password: str
+    Attributes:
+        own: login of the service.
+        logins: of all others.
+        expiries: by user, when its certificate ends; without certificates empty.
+    """
+
+    own: Login
     logins: tuple[Login, ...]
+    expiries: Mapping[str, datetime] = field(default_factory=dict)
 
     def login(self, role: Role) -> Login:
-        """Return the first login of a role."""
-        return next(login for login in self.logins if login.role is role)
+        """Return the login of a role, for a process that the service starts.
 
+        Raises:
+            UnusableSettings: its private key is elsewhere.
+        """
+        login = next(login for login in self.logins if login.user == role.value)
+        if login.certificate and not login.key:
+            raise UnusableSettings(
+                f"the service starts the {role} itself, and has no private key for its certificate: copy {role}.key "
+                "beside it, with mode 0600"
+            )
+        return login
 
-def prepare_access(endpoint: str) -> BusAccess:
-    """Return the logins of the station at `endpoint`, and make those that are missing.
-
-    Local programs find theirs in the file of `logins_path`. They outlast a restart, so that a tracker comes back by
-    itself. The executor's login is new each time and in no file.
-
-    Raises:
-        UnusableSettings: the file of logins cannot be read or written; the sentence has the way out.
-    """
-    path = logins_path(endpoint)
-    try:
-        kept = read_logins(path)
-        missing = [Login(role.value, new_password(), role) for role in LOCAL if role not in {k.user for k in kept}]
-        if missing or not path.exists():
-            write_logins(path, [*kept, *missing])
-    except ValueError as error:
-        raise UnusableSettings(str(error)) from None
-    except OSError as error:
-        raise UnusableSettings(f"cannot write the logins {path}: {error.strerror}; make its folder writable") from None
-    executor = Login(Role.EXECUTOR.value, new_password(), Role.EXECUTOR)
-    return BusAccess(new_password(), (executor, *kept, *missing))
-
-
-def local_login(endpoint: str, role: Role) -> Login | None:
-    """Return this user's login of a role at `endpoint`; None where the station keeps none for this user.
-
-    Raises:
-        UnusableSettings: the file of logins cannot be read.
-    """
-    try:
-        return find_login(endpoint, role)
-    except ValueError as error:
-        raise UnusableSettings(str(error)) from None
-
-
-def new_password() -> str:
-    """Return a password that nobody guesses."""
-    return secrets.token_urlsafe(PASSWORD_BYTES)
+    def notes(self, now: datetime) -> list[str]:
+        """Say whose certificates end soon, and what to do."""
+        return [
+            f"the certificate of {user} ends on {end:%Y-%m-%d}; renew it with: teachpath station certificates, then "
+            "restart the service"
+            for user, end in self.expiries.items()
+            if end - now < RENEWAL
+        ]
 
 
 @contextmanager
 def listening_config(access: BusAccess, prefix: str) -> Iterator[dict[str, object]]:
     """Make the part of Zenoh's configuration that lets in these logins alone, and holds each to its role.
 
-    Zenoh reads the passwords from a file while the session opens; the file is removed on leaving.
+    Zenoh reads passwords from a file while the session opens; the file is removed on leaving.
     """
-    lines = [f"{SERVICE}:{access.password}", *(f"{login.user}:{login.password}" for login in access.logins)]
+    rules: dict[str, object] = {"access_control": access_rules(access.logins, prefix)}
+    if access.own.certificate:
+        yield {**rules, **listening_over_tls(access.own)}
+        return
+    own = access.own
+    lines = [*(f"{login.user}:{login.password}" for login in (own, *access.logins))]
     handle, name = tempfile.mkstemp()
     try:
         with os.fdopen(handle, "w") as file:
             file.write("\n".join(lines) + "\n")
-        yield {
-            "transport/auth/usrpwd": {"user": SERVICE, "password": access.password, "dictionary_file": name},
-            "access_control": access_rules(access.logins, prefix),
-        }
+        user = {"user": own.user, "password": own.password, "dictionary_file": name}
+        yield {**rules, "transport/auth/usrpwd": user}
     finally:
         Path(name).unlink(missing_ok=True)
 
 
 def access_rules(logins: Sequence[Login], prefix: str) -> dict[str, object]:
-    """Write the table as Zenoh's access control: default deny, one subject a login."""
+    """Write the table as Zenoh's access control: default deny, one subject a login, named by user or by certificate."""
     rules: list[dict[str, object]] = []
     policies = []
     for login in logins:
@@ -172,12 +163,16 @@ def access_rules(logins: Sequence[Login], prefix: str) -> dict[str, object]:
                             "key_exprs": list(keys),
                         }
                     )
-        policies.append({"rules": names, "subjects": [login.user]})
+        if names:
+            policies.append({"rules": names, "subjects": [login.user]})
     return {
         "enabled": True,
         "default_permission": "deny",
         "rules": rules,
-        "subjects": [{"id": login.user, "usernames": [login.user]} for login in logins],
+        "subjects": [
+            {"id": login.user, "cert_common_names" if login.certificate else "usernames": [login.user]}
+            for login in logins
+        ],
         "policies": policies,
     }
 

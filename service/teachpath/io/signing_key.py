@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import os
 import secrets
-import stat
 import tempfile
 from contextlib import suppress
 from pathlib import Path
 from typing import Final
 
 from teachpath.errors import UnusableSettings
+from teachpath.io.private_files import refuse_shared
 from teachpath_proto.logins import logins_path
 
 KEY_BYTES: Final = 32
@@ -48,7 +48,12 @@ def read_signing_key(endpoint: str) -> bytes:
     path = signing_key_path(endpoint)
     try:
         with path.open("rb") as file:
-            _refuse_shared(path, os.fstat(file.fileno()))
+            refuse_shared(
+                f"the signing key {path}",
+                os.fstat(file.fileno()),
+                "whoever has read it can sign plans; remove it and start the service again, then plan the paths again, "
+                f"or where nobody else can have read it: chmod 600 {path}",
+            )
             content = file.read(4 * KEY_BYTES)
         key = bytes.fromhex(content.decode("ascii").strip())
     except FileNotFoundError:
@@ -80,15 +85,3 @@ def _create(path: Path) -> None:
             os.link(name, path)
     finally:
         Path(name).unlink(missing_ok=True)
-
-
-def _refuse_shared(path: Path, found: os.stat_result) -> None:
-    if os.name == "nt":  # its file modes do not say who may read a file
-        return
-    mode = stat.S_IMODE(found.st_mode)
-    if mode & 0o077:
-        raise UnusableSettings(
-            f"others may read or write the signing key {path} (mode {mode:04o}, at most 0600): whoever has read it can "
-            "sign plans; remove it and start the service again, then plan the paths again, or where nobody else can "
-            f"have read it: chmod 600 {path}"
-        )

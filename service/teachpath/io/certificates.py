@@ -1,0 +1,215 @@
+"""The certificates of a station's bus: one authority, and one certificate for every role and every further program.
+
+A folder holds them in PEM, NAME.pem with its private key NAME.key, for its owner alone. The subject says who somebody
+is: the name (common name), the role (organizational unit), and the one tracker or robot it may be (DN qualifier).
+"""
+
+from __future__ import annotations
+
+import ipaddress
+from collections.abc import Iterable, Sequence
+from datetime import datetime, timedelta
+from pathlib import Path
+from typing import Final
+
+from cryptography import x509
+from cryptography.hazmat.primitives import hashes, serialization
+from cryptography.hazmat.primitives.asymmetric import ec
+from cryptography.x509.oid import ExtendedKeyUsageOID, NameOID, ObjectIdentifier
+
+from teachpath.errors import UnusableSettings
+from teachpath.io.private_files import refuse_shared, write_private
+from teachpath_proto.logins import Login, Role
+
+AUTHORITY: Final = "authority"
+AUTHORITY_LIFE: Final = timedelta(days=3650)
+LIFE: Final = timedelta(days=365)
+CLOCK_DIFFERENCE: Final = timedelta(hours=1)  # by which another machine's clock may be behind
+LOOPBACK: Final = ("127.0.0.1", "localhost")
+MAKE: Final = "teachpath station certificates"
+
+
+def prepare_authority(folder: Path, now: datetime) -> bool:
+    """Make the authority that signs a station's certificates, where there is none; returns whether it was made.
+
+    Raises:
+        UnusableSettings: the folder cannot be written.
+    """
+    if (folder / f"{AUTHORITY}.pem").exists():
+        return False
+    key = ec.generate_private_key(ec.SECP256R1())
+    name = x509.Name([x509.NameAttribute(NameOID.COMMON_NAME, "teachpath authority")])
+    builder = _builder(name, name, key, now, AUTHORITY_LIFE)
+    builder = builder.add_extension(x509.BasicConstraints(ca=True, path_length=0), critical=True)
+    builder = builder.add_extension(_usage(signs=True), critical=True)
+    _write(folder, AUTHORITY, builder.sign(key, hashes.SHA256()), key)
+    return True
+
+
+def issue(folder: Path, who: Login, now: datetime, *, hosts: Sequence[str] = ()) -> Login:
+    """Make a certificate and a private key, in place of those that there are, and return the login with them.
+
+    Args:
+        folder: of the authority; the files are written there.
+        who: name, role, and the one tracker or robot it may be.
+        now: from when it is valid, with a time zone.
+        hosts: addresses and names at which the holder may listen. Without any it may only connect, so that a stolen
+            one does not serve to play the station.
+
+    Raises:
+        UnusableSettings: there is no authority, others may read its key, or the folder cannot be written.
+    """
+    issuer, issuer_key = _authority(folder)
+    key = ec.generate_private_key(ec.SECP256R1())
+    builder = _builder(_subject(who), issuer.subject, key, now, min(LIFE, issuer.not_valid_after_utc - now))
+    builder = builder.add_extension(x509.BasicConstraints(ca=False, path_length=None), critical=True)
+    builder = builder.add_extension(_usage(signs=False), critical=True)
+    purposes: list[ObjectIdentifier] = [ExtendedKeyUsageOID.CLIENT_AUTH]
+    if hosts:
+        purposes.append(ExtendedKeyUsageOID.SERVER_AUTH)
+        names = x509.SubjectAlternativeName([_host(host) for host in sorted(set(hosts))])
+        builder = builder.add_extension(names, critical=False)
+    builder = builder.add_extension(x509.ExtendedKeyUsage(purposes), critical=False)
+    _write(folder, who.user, builder.sign(issuer_key, hashes.SHA256()), key)
+    return read_login(folder, who.user)
+
+
+def read_login(folder: Path, name: str) -> Login:
+    """Read one certificate, with its private key where that is there, too, and the authority's certificate.
+
+    Raises:
+        UnusableSettings: it is not there or cannot be read, or others may read its key.
+    """
+    pem, key = folder / f"{name}.pem", folder / f"{name}.key"
+    certificate = _certificate(pem)
+    try:
+        role, only = (
+            Role(_field(certificate, NameOID.ORGANIZATIONAL_UNIT_NAME)),
+            _field(certificate, NameOID.DN_QUALIFIER),
+        )
+    except ValueError as error:
+        raise UnusableSettings(f"{pem} names no role of a station ({error}); make another: {MAKE}") from None
+    private = _read_key(key) if key.exists() else ""
+    user = _field(certificate, NameOID.COMMON_NAME)
+    authority = _read(folder / f"{AUTHORITY}.pem")
+    return Login(user, "", role, only, certificate=_read(pem), key=private, authority=authority)
+
+
+def read_logins(folder: Path) -> list[Login]:
+    """Read all certificates of a folder but the authority's; raises UnusableSettings as `read_login`."""
+    return [read_login(folder, file.stem) for file in sorted(folder.glob("*.pem")) if file.stem != AUTHORITY]
+
+
+def expiry(login: Login) -> datetime:
+    """Return when the certificate of a login ends."""
+    return x509.load_pem_x509_certificate(login.certificate.encode()).not_valid_after_utc
+
+
+def hosts_of(login: Login) -> list[str]:
+    """Return the addresses and names at which the holder of a certificate may listen."""
+    certificate = x509.load_pem_x509_certificate(login.certificate.encode())
+    try:
+        names = certificate.extensions.get_extension_for_class(x509.SubjectAlternativeName).value
+    except x509.ExtensionNotFound:
+        return []
+    return [str(name.value) for name in names]
+
+
+def refuse_expired(logins: Iterable[Login], now: datetime) -> None:
+    """Raise UnusableSettings where a certificate has ended."""
+    for login in logins:
+        if expiry(login) <= now:
+            raise UnusableSettings(
+                f"the certificate of {login.user} ended on {expiry(login):%Y-%m-%d}; renew it with: {MAKE}"
+            )
+
+
+def _authority(folder: Path) -> tuple[x509.Certificate, ec.EllipticCurvePrivateKey]:
+    path = folder / f"{AUTHORITY}.key"
+    try:
+        key = serialization.load_pem_private_key(_read_key(path).encode(), password=None)
+    except ValueError:
+        key = None
+    if not isinstance(key, ec.EllipticCurvePrivateKey):
+        raise UnusableSettings(f"{path} is no key that {MAKE} made; name another folder in bus.certificates")
+    return _certificate(folder / f"{AUTHORITY}.pem"), key
+
+
+def _builder(
+    subject: x509.Name, issuer: x509.Name, key: ec.EllipticCurvePrivateKey, now: datetime, life: timedelta
+) -> x509.CertificateBuilder:
+    return (
+        x509.CertificateBuilder()
+        .subject_name(subject)
+        .issuer_name(issuer)
+        .public_key(key.public_key())
+        .serial_number(x509.random_serial_number())
+        .not_valid_before(now - CLOCK_DIFFERENCE)
+        .not_valid_after(now + life)
+    )
+
+
+def _subject(who: Login) -> x509.Name:
+    fields = [(NameOID.COMMON_NAME, who.user), (NameOID.ORGANIZATIONAL_UNIT_NAME, who.role.value)]
+    fields += [(NameOID.DN_QUALIFIER, who.only)] if who.only else []
+    return x509.Name([x509.NameAttribute(oid, value) for oid, value in fields])
+
+
+def _usage(*, signs: bool) -> x509.KeyUsage:
+    return x509.KeyUsage(
+        digital_signature=not signs,
+        key_cert_sign=signs,
+        crl_sign=signs,
+        content_commitment=False,
+        key_encipherment=False,
+        data_encipherment=False,
+        key_agreement=False,
+        encipher_only=False,
+        decipher_only=False,
+    )
+
+
+def _host(host: str) -> x509.GeneralName:
+    try:
+        return x509.IPAddress(ipaddress.ip_address(host))
+    except ValueError:
+        return x509.DNSName(host)
+
+
+def _field(certificate: x509.Certificate, oid: ObjectIdentifier) -> str:
+    found = certificate.subject.get_attributes_for_oid(oid)
+    return str(found[0].value) if found else ""
+
+
+def _write(folder: Path, name: str, certificate: x509.Certificate, key: ec.EllipticCurvePrivateKey) -> None:
+    private = key.private_bytes(
+        serialization.Encoding.PEM, serialization.PrivateFormat.PKCS8, serialization.NoEncryption()
+    )
+    try:
+        write_private(folder / f"{name}.key", private.decode())
+        write_private(folder / f"{name}.pem", certificate.public_bytes(serialization.Encoding.PEM).decode())
+    except OSError as error:
+        raise UnusableSettings(f"cannot write certificates into {folder}: {error.strerror}; name another") from None
+
+
+def _certificate(path: Path) -> x509.Certificate:
+    try:
+        return x509.load_pem_x509_certificate(_read(path).encode())
+    except ValueError as error:
+        raise UnusableSettings(f"{path} is no certificate in PEM ({error}); make another: {MAKE}") from None
+
+
+def _read_key(path: Path) -> str:
+    content = _read(path)
+    consequence = f"whoever has read it can take its holder's place; remove it and make another: {MAKE}"
+    refuse_shared(f"the private key {path}", path.stat(), consequence)
+    return content
+
+
+def _read(path: Path) -> str:
+    try:
+        return path.read_text()
+    except FileNotFoundError:
+        raise UnusableSettings(f"there is no {path}; make the certificates of the station with: {MAKE}") from None
+    except (OSError, UnicodeDecodeError) as error:
+        raise UnusableSettings(f"cannot read {path}: {error}; it has to be this user's, in PEM") from None
