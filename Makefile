@@ -82,8 +82,9 @@ browser:
 	@command -v chromium chromium-browser google-chrome >/dev/null 2>&1 || \
 		echo "no Chromium found: the browser tests will be skipped; get it with: sudo apt-get install chromium"
 
+# The system tests run one after the other, the rest beside them.
 test: check browser
-	$(BIN)/python -m pytest $(ARGS)
+	$(BIN)/python -m pytest -n 2 --no-loadscope-reorder $(ARGS)
 
 bench: $(READY)
 	@$(BIN)/python -m tests.bench.run $(ARGS)

@@ -8,6 +8,7 @@ from typing import Any
 
 import pytest
 from hypothesis import HealthCheck, settings
+from xdist.scheduler import LoadScopeScheduling
 
 # No example fails because the machine was busy.
 settings.register_profile("teachpath", deadline=None, suppress_health_check=[HealthCheck.too_slow])
@@ -37,6 +38,17 @@ def browser() -> Iterator[Any]:
         browser = playwright.chromium.launch(executable_path=found, headless=True, args=flags)
         yield browser
         browser.close()
+
+
+class SystemBesideTheRest(LoadScopeScheduling):
+    """One worker runs the system tests, one after the other, while others run whole modules of the rest."""
+
+    def _split_scope(self, nodeid: str) -> str:
+        return "tests/system" if nodeid.startswith("tests/system/") else nodeid.partition("::")[0]
+
+
+def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> SystemBesideTheRest:
+    return SystemBesideTheRest(config, log)
 
 
 @pytest.hookimpl(wrapper=True, tryfirst=True)  # around the terminal's own, so that nothing comes behind
