@@ -121,6 +121,7 @@ class Certificate:
     torque_use: Extreme
     least_singular: Extreme
     clearance: Extreme
+    tool_speed: Extreme | None = None
     signature: Signature | None = None
 
 
@@ -574,6 +575,7 @@ class Plan:
         above_start: (6,) configuration above the start, from where the object is grasped.
         above_goal: (6,) configuration above the goal, to where the arm retreats.
         duration: of the path at full speed [s].
+        tool_speed: limit of elbow, wrist and tool centre point [m/s], at any override; None: no limit.
     """
 
     id: str
@@ -588,6 +590,7 @@ class Plan:
     above_goal: list[float]
     duration: float
     certificate: Certificate
+    tool_speed: float | None
 
 
 @dataclass(frozen=True)

@@ -16,6 +16,7 @@ from teachpath.motion.collision.builtin_scenes import empty_scene
 from teachpath.motion.planning.certificate import plan_trajectory
 from teachpath.motion.planning.digest import verify
 from teachpath.motion.planning.plan import plan as plan_path
+from teachpath.motion.planning.signature import certified_arm
 from teachpath.motion.settings import MotionSettings
 from teachpath.nurbs import Curve
 from teachpath.records import Array, Learned, LearnedPath, Plan, Scene
@@ -84,7 +85,9 @@ def plan(
     return plan_path(_learned_path(path), scene or empty_scene(), settings, arm=arm, plan_id=plan_id)
 
 
-def setpoints(plan: Plan, rate: float = 250.0, *, arm: Arm | None = None) -> tuple[Array, Array]:
+def setpoints(
+    plan: Plan, rate: float = 250.0, *, settings: MotionSettings | None = None, arm: Arm | None = None
+) -> tuple[Array, Array]:
     """Return the times (n,) [s] and the joints (n, 6) [rad] of a plan's motion along its path, at full speed.
 
     The last one is the first at or behind the end, where the arm rests.
@@ -92,7 +95,8 @@ def setpoints(plan: Plan, rate: float = 250.0, *, arm: Arm | None = None) -> tup
     Args:
         plan: certified.
         rate: setpoints a second [Hz].
-        arm: that the plan is for; the default one when None.
+        settings: with which it was planned; where it is not signed, they name the arm. The defaults when None.
+        arm: that the plan is for; when None the one that its signature or the settings name.
 
     Raises:
         PathRefused: the plan has changed since it was certified, or is for another arm.
@@ -100,7 +104,7 @@ def setpoints(plan: Plan, rate: float = 250.0, *, arm: Arm | None = None) -> tup
     """
     if not 1.0 <= rate <= 10_000.0:
         raise UnusableInput(f"a rate of {rate:g} Hz is outside 1 to 10000")
-    verify(plan, arm or Arm.of_variant())
+    verify(plan, arm or certified_arm(plan) or Arm.of_settings(settings or MotionSettings()))
     trajectory = plan_trajectory(plan)
     count = int(np.ceil(trajectory.duration * rate)) + 1
     times = np.arange(count) / rate

@@ -32,7 +32,7 @@ OPTIMA = 4  # stops per path and repetition that are held against the best possi
 
 def measure(*, repeats: int) -> list[Figure]:
     """Return the figures; stops are from full speed; cycles, limits and answers over random commands."""
-    warm_up(DT, ARM.limits.motion)
+    warm_up(DT, ARM)
     figures: list[Figure] = []
     stops: list[float] = []
     ratios: list[float] = []

@@ -33,7 +33,7 @@ MORE = {
 }
 RARE = ("orientation", "file", "vertices")  # of a shape, not shown
 # A setting without a default shows one that it could have.
-EXAMPLES = {"learning.threshold": 0.06, "learning.clusters": 3, "learning.degree": 3}
+EXAMPLES = {"motion.tool_speed": 0.25, "learning.threshold": 0.06, "learning.clusters": 3, "learning.degree": 3}
 WORDS = {Ge: ("ge", "at least"), Gt: ("gt", "over"), Le: ("le", "at most"), Lt: ("lt", "under")}
 
 

@@ -21,6 +21,7 @@ A = (0.0, 0.4318, 0.0203, 0.0, 0.0, 0.0)
 D = (26.45 * 0.0254, 0.0, 0.15005, 0.4318, 0.0, 0.05625)
 TWIST = (90.0, 0.0, -90.0, 90.0, -90.0, 0.0)
 GRIP = 0.13
+ELBOW = 0.295  # from the plane in which joint 2 turns to the outer face of the upper arm
 LOW = np.radians([-160, -45, -225, -110, -100, -266])
 HIGH = np.radians([160, 225, 45, 170, 100, 266])
 SPEED = np.array([1.92, 1.51, 2.40, 5.34, 5.09, 5.74])
@@ -37,6 +38,7 @@ class Verdict:
     speed: float
     acceleration: float
     jerk: float
+    tool_speed: float  # m/s, of elbow, wrist and grasp point by differences
     off_path: float  # m, of the grasp point from the curve
     clearance: float  # m, of sampled points of arm and object from the obstacles
 
@@ -61,9 +63,18 @@ def judge(setpoints: np.ndarray, curve: Curve, scene: Scene, *, every: int = 12)
         float((use[0] / SPEED).max()),
         float((use[1] / ACCELERATION).max()),
         float((use[2] / JERK).max()),
+        tool_speed(setpoints),
         _off_path(tools, curve),
         least,
     )
+
+
+def tool_speed(setpoints: np.ndarray) -> float:
+    """Return the largest speed [m/s] of elbow, wrist and grasp point in setpoints (n, 6), by differences."""
+    marks = ((2, 0.0), (2, ELBOW), (5, 0.0), (6, GRIP))
+    chains = [frames(q) for q in setpoints]
+    points = np.array([[(chain[link] @ _shift(0, 0, along))[:3, 3] for link, along in marks] for chain in chains])
+    return float(np.linalg.norm(np.diff(points, axis=0), axis=2).max() * RATE)
 
 
 class Solids:

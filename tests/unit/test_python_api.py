@@ -12,6 +12,9 @@ import pytest
 import teachpath
 from teachpath.motion.arm.model import Arm
 from teachpath.motion.collision.builtin_scenes import paper_scene
+from teachpath.motion.planning.signature import sign_plan
+from teachpath.motion.settings import MotionSettings
+from tests.unit.executor.executors import EPOCH, KEY
 from tests.unit.motion.ways import MIDDLE, way
 
 ARM = Arm.of_variant()
@@ -152,6 +155,11 @@ def test_a_plan_is_of_its_arm_and_no_other(plan: teachpath.Plan, learned: teachp
     made = teachpath.plan(learned.paths[0], arm=other)
     assert made.certificate.digest != plan.certificate.digest
     assert len(teachpath.setpoints(made, arm=other)[0])
+    settings = MotionSettings(variant="corke-1996", grasp_depth=0.012, tool_speed=0.3)
+    configured = teachpath.plan(learned.paths[0], settings=settings)
+    assert len(teachpath.setpoints(configured, settings=settings)[0])
+    signed = sign_plan(configured, teachpath.Arm.of_settings(settings), settings, KEY, issued_ns=EPOCH)
+    assert len(teachpath.setpoints(signed)[0])  # its signature names the arm
     longer = replace(other, tool_length=other.tool_length + 0.01)
     for wrong in (None, longer):
         with pytest.raises(teachpath.PathRefused, match="another arm"):

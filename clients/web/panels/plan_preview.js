@@ -155,14 +155,19 @@ function content(path, plan, job, newer, readOnly) {
 }
 
 /** @param {Plan} plan */
-function planFacts({ duration, certificate }) {
+function planFacts({ duration, certificate, tool_speed: limit }) {
   const { position_use, velocity_use, acceleration_use, jerk_use, torque_use } = certificate;
   const uses = [position_use, velocity_use, acceleration_use, jerk_use, torque_use];
+  const toolSpeed = certificate.tool_speed;
   const most = uses.reduce((a, b) => (a.value >= b.value ? a : b));
   return definitionList([
     ["Time on the path", formatNumber(duration, 2, "s")],
     ["Least clearance", formatNumber(1000 * certificate.clearance.value, 0, "mm")],
     ["Nearest to a limit", `${formatPercent(most.value)}, ${most.place}`],
+    toolSpeed && [
+      "Fastest",
+      `${formatNumber(toolSpeed.value, 2, "m/s")}, ${toolSpeed.place}${limit ? `; limit ${formatNumber(limit, 2, "m/s")}` : ""}`,
+    ],
     ["Posture of the arm", certificate.branch],
   ]);
 }

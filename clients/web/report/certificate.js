@@ -24,13 +24,14 @@ export function certificate(place) {
 
 /** @param {Plan} plan @returns {Child[]} */
 function content({ certificate }) {
-  const { clearance, digest } = certificate;
+  const { clearance, digest, tool_speed } = certificate;
   return [
     definitionList([
       ...USES.map(([name, key]) => {
         const { value, place } = certificate[key];
         return /** @type {Fact} */ ([name, `${formatPercent(value)}, ${place}`]);
       }),
+      tool_speed && ["Speed in space", `${formatNumber(tool_speed.value, 3, "m/s")}, ${tool_speed.place}`],
       ["Clearance", `${formatNumber(1000 * clearance.value, 1, "mm")}, ${clearance.place}`],
     ]),
     element("p", { class: "note" }, "Shares of the limits, at most 100\u202f% of each, and where they are reached."),

@@ -8,32 +8,38 @@ from pathlib import Path
 
 import numpy as np
 
+from teachpath.config import load
 from teachpath.errors import UnusableRecording
 from teachpath.io.documents import from_document
 from teachpath.io.setpoints import read_setpoints
 from teachpath.io.store.motions import read_motion
 from teachpath.motion.analysis.log_check import SetpointLog, check_log
-from teachpath.motion.arm.model import Arm
+from teachpath.motion.planning.signature import certified_arm
 from teachpath.nurbs import Curve
+from teachpath.records import Plan
 from teachpath_client.station import Station
 
 
-def judge_file(file: Path, plan: str | None, url: str) -> None:
+def judge_file(file: Path, plan: str | None, url: str, config: Path | None) -> None:
     """Judge a log of setpoints, print what was measured, and end with status 1 and a sentence when it breaks something.
 
     Args:
         file: a recording of an execution (MCAP), or a CSV.
         plan: id of the plan that was meant, when the file does not say.
         url: of the service that has it.
+        config: settings file, which names the arm where no signed plan does.
     """
     try:
         content = file.read_bytes()
     except OSError as error:
         raise UnusableRecording(f"{file} cannot be read: {error.strerror}") from None
-    log, path = _read_motion(file) if content[1:5] == b"MCAP" else (_read_csv(content, file.name), None)
+    if content[1:5] == b"MCAP":
+        log, meant, path = _read_motion(file)
+    else:
+        log, meant, path = _read_csv(content, file.name), None, None
     if plan is not None:
-        path = _path_of(plan, url)
-    judgement = check_log(log, path, Arm.of_variant())
+        meant, path = _meant(plan, url)
+    judgement = check_log(log, path, (meant and certified_arm(meant)) or load(config).arm)
     for sentence in judgement.measured:
         print(sentence)
     if judgement.faults:
@@ -43,7 +49,7 @@ def judge_file(file: Path, plan: str | None, url: str) -> None:
     print(f"{file.name} keeps every limit" + (" and the path" if path is not None else ""))
 
 
-def _read_motion(file: Path) -> tuple[SetpointLog, Curve | None]:
+def _read_motion(file: Path) -> tuple[SetpointLog, Plan | None, Curve | None]:
     motion = read_motion(file)
     if len(motion.setpoints) < 4:
         why = motion.fault or f"it has {len(motion.setpoints)} setpoints"
@@ -59,7 +65,7 @@ def _read_motion(file: Path) -> tuple[SetpointLog, Curve | None]:
         missing=int(np.sum(np.diff(cycles) - 1)),
     )
     path = motion.header.path if motion.header else None
-    return log, path.curve if path else None
+    return log, motion.header.plan if motion.header else None, path.curve if path else None
 
 
 def _read_csv(content: bytes, name: str) -> SetpointLog:
@@ -67,8 +73,9 @@ def _read_csv(content: bytes, name: str) -> SetpointLog:
     return SetpointLog(times, positions, on_path != 0.0 if on_path is not None else None)
 
 
-def _path_of(plan: str, url: str) -> Curve:
+def _meant(plan: str, url: str) -> tuple[Plan, Curve]:
+    """Ask the service for a plan and its path."""
     with Station(url) as station:
         stored = station.get_plan(plan)
         curve = station.get_version(stored.path, stored.path_version).path.curve
-    return from_document(Curve, asdict(curve))
+    return from_document(Plan, asdict(stored)), from_document(Curve, asdict(curve))

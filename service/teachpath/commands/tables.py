@@ -80,9 +80,12 @@ def plan_lines(plan: Plan) -> str:
         "jerk": c.jerk_use,
         "torque": c.torque_use,
     }
+    limit = f", limit {plan.tool_speed:g}" if plan.tool_speed else ""
+    speed_line = f"  fastest: {c.tool_speed.place} at {c.tool_speed.value:.3f} m/s{limit}\n" if c.tool_speed else ""
     return (
         f"plan {plan.id}: {plan.duration:.2f} s along {plan.lengths[-1]:.3f} m, arm {c.branch}\n"
         f"  largest use of the limits: {', '.join(f'{name} {use.value:.0%}' for name, use in uses.items())}\n"
+        f"{speed_line}"
         f"  least clearance {1e3 * c.clearance.value:.1f} mm ({c.clearance.place})\n"
         f"  {_scope(c.signature)}"
     )

@@ -13,7 +13,7 @@ import typer
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
-from teachpath.commands.options import LOCAL, Url
+from teachpath.commands.options import LOCAL, Config, Url
 from teachpath.commands.tables import clusters_table, cuts_table, paths_table, plan_lines, reasons
 from teachpath.errors import UnusableInput
 from teachpath_client.models import BusSettings, Execution, Job
@@ -175,6 +175,7 @@ def _pose(text: str, option: str) -> dict[str, object]:
 def run(
     plan: Annotated[str | None, typer.Argument(help="Id of a plan; with --check, the one that was meant.")] = None,
     url: Url = LOCAL,
+    config: Config = None,
     override: Annotated[float, typer.Option(min=0.0, max=1.0, help="Share of the planned speed.")] = 1.0,
     check: Annotated[
         Path | None,
@@ -190,7 +191,7 @@ def run(
     from teachpath.commands.checking import judge_file
 
     if check is not None:
-        judge_file(check, plan, url)
+        judge_file(check, plan, url, config)
         return
     if plan is None:
         raise UnusableInput("name the plan to run; teachpath plan PATH makes one")

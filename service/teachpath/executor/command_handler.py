@@ -254,5 +254,5 @@ class CommandHandler:
             confirm=prepared.confirm,
             rate=self._settings.rate,
             offset=self._time.wall_ns() - self._time.monotonic_ns(),
-            limits=self._programs.arm.limits.motion,
+            arm=self._programs.arm,
         )

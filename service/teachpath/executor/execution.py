@@ -8,7 +8,7 @@ from typing import Final
 
 from teachpath.executor.limit_meter import LimitMeter
 from teachpath.executor.pacing import Pacer
-from teachpath.motion.arm.limits import MotionLimits
+from teachpath.motion.arm.model import Arm
 from teachpath.motion.execution.motion_program import MotionProgram
 from teachpath.motion.execution.segments import Detour, RestPoint
 from teachpath.records import Array, ExecutorStatus, JointState, Setpoint
@@ -33,7 +33,7 @@ class Execution:
         confirm: checks that the certificate of the plan still holds; raises PathRefused.
         rate: setpoints a second [Hz].
         offset: what turns the loop's clock into nanoseconds since the Unix epoch, when added [ns].
-        limits: of the joints, by which their use is measured.
+        arm: by whose limits their use is measured.
 
     Attributes:
         reason: why the execution is held, stopped or faulted, in words.
@@ -52,7 +52,7 @@ class Execution:
         confirm: Callable[[], None],
         rate: float,
         offset: int,
-        limits: MotionLimits,
+        arm: Arm,
     ) -> None:
         self.id = execution
         self.program = program
@@ -65,7 +65,7 @@ class Execution:
         self.displacement = 0.0
         self.arm_stops = False
         self._rate = rate
-        self._limits = limits
+        self._arm = arm
         self._epoch_offset = offset
         self._nominal_ns = 0  # of the newest setpoint, since the Unix epoch
         self._rest_setpoints = 0  # sent since the nominal motion came to rest
@@ -76,7 +76,7 @@ class Execution:
         self._standstill_is_kept = False  # the first setpoint of a standstill stands for all of them
         self._restarted = (-1, 0)  # from which setpoint's rest it went on, and when [ns of the loop's clock]
         self._standstill_left = STANDSTILL_SETPOINTS  # at rest, still to be sent: the arm takes up a stream from there
-        self._meter = LimitMeter(rate, program.current_q, limits)
+        self._meter = LimitMeter(rate, program.current_q, arm)
 
     @property
     def is_resting(self) -> bool:
@@ -128,7 +128,7 @@ class Execution:
         self._rest_setpoints = 2  # the arm knows that it rests, so the time that was lost is let go
         self._moving_setpoints = 0
         self.arm_stops = False
-        self._meter = LimitMeter(self._rate, self.program.current_q, self._limits, self._meter)
+        self._meter = LimitMeter(self._rate, self.program.current_q, self._arm, self._meter)
         return True
 
     def has_restarted(self, cycle: int, due: int) -> bool:
@@ -174,7 +174,7 @@ class Execution:
         if self._final_state or not self.program.at_rest:
             return
         if self.displacement:
-            self._meter = LimitMeter(self._rate, start_q, self._limits, self._meter)
+            self._meter = LimitMeter(self._rate, start_q, self._arm, self._meter)
         self.displacement, self.reason = 0.0, ""
         self.program.start_detour(detour)
 

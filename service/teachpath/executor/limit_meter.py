@@ -1,4 +1,4 @@
-"""Measures how much of the joints' limits the sent setpoints use."""
+"""Measures how much of the limits of joints and tool the sent setpoints use."""
 
 from __future__ import annotations
 
@@ -7,7 +7,8 @@ from typing import Final, Protocol
 
 import numpy as np
 
-from teachpath.motion.arm.limits import MotionLimits
+from teachpath.motion.arm.model import Arm
+from teachpath.motion.arm.tool_speed import POINT_NAMES, monitored_points
 from teachpath.records import Array
 
 _NAMES: Final = ("speed", "acceleration", "jerk")
@@ -24,10 +25,12 @@ class HasLocation(Protocol):
 class LimitMeter:
     """Compares first, second and third differences of setpoints with the limits of speed, acceleration and jerk.
 
+    Where the speed of the tool is limited, the first differences of elbow, wrist and tool are compared with that, too.
+
     Args:
         rate: setpoints a second [Hz].
         start_q: (6,) where the arm rests at the beginning [rad].
-        limits: of the joints.
+        arm: whose limits they are.
         previous: a meter whose largest use is kept; used when the arm was moved by hand since.
 
     Attributes:
@@ -35,7 +38,11 @@ class LimitMeter:
         max_use_location: which limit that was, and where, in words.
     """
 
-    def __init__(self, rate: float, start_q: Array, limits: MotionLimits, previous: LimitMeter | None = None) -> None:
+    def __init__(self, rate: float, start_q: Array, arm: Arm, previous: LimitMeter | None = None) -> None:
+        limits = arm.limits.motion
+        self._arm, self._rate = arm, rate
+        self._tool_speed = limits.tool_speed
+        self._points = monitored_points(start_q, arm)
         self._scale = np.array([rate, rate**2, rate**3])[:, None] / np.stack(
             [limits.speed, limits.acceleration, limits.jerk]
         )  # (3, 6)
@@ -56,3 +63,14 @@ class LimitMeter:
             kind, joint = divmod(worst, 6)
             self.max_use = float(use.flat[worst])
             self.max_use_location = f"{_NAMES[kind]} of joint {joint + 1} {where.location}"
+        if self._tool_speed < np.inf:
+            self._add_tool(position, where)
+
+    def _add_tool(self, position: Array, where: HasLocation) -> None:
+        points = monitored_points(position, self._arm)
+        use = np.linalg.norm(points - self._points, axis=1) * self._rate / self._tool_speed
+        self._points = points
+        worst = int(np.argmax(use))
+        if use[worst] > self.max_use:
+            self.max_use = float(use[worst])
+            self.max_use_location = f"speed of {POINT_NAMES[worst]} {where.location}"

@@ -94,7 +94,7 @@ class Executor:
 
     def run(self, stop: threading.Event) -> None:
         """Stream setpoints until `stop` is set; then bring the arm to rest on its path and return."""
-        warm_up(self._period, self._arm.limits.motion)
+        warm_up(self._period, self._arm)
         handles = [
             self._bus.subscribe(self._keys.state(self._robot), self._joint_states.receive),
             *self._command_handler.serve(),

@@ -28,6 +28,9 @@ class MotionSettings:
     path_share: Annotated[float, Gt(0), Le(1)] = 1.0
     # the same for moves to the path and away from it
     move_share: Annotated[float, Gt(0), Le(1)] = 0.5
+    # [m/s] that elbow, wrist and tool centre point keep in all motion; 0.25 is the usual reduced speed with people near
+    # the arm (ISO 10218-1, ISO/TS 15066); left out = as fast as the joints allow
+    tool_speed: Annotated[float, Ge(0.01), Le(10)] | None = None
     # [rad] turns of the gripper about the vertical to try before it turns on the way; 0 closes the fingers along y
     rolls: Annotated[tuple[float, ...], Len(1)] = (0.0, 1.5707963267948966, 3.141592653589793, -1.5707963267948966)
     # `fixed`: the gripper points down all the way; `demonstrated`: it turns as the carried object was turned

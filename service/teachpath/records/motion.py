@@ -117,6 +117,8 @@ class Certificate:
     torque_use: Extreme  # the most that any sequence of commands can ask for on the path
     least_singular: Extreme
     clearance: Extreme  # of arm and carried object to scene and self [m]
+    # the most of elbow, wrist and tool centre point on the path [m/s]; None: it was made before that was measured
+    tool_speed: Extreme | None = None
     signature: Signature | None = None  # None: it was made outside a station, or before stations signed
 
 
@@ -132,6 +134,7 @@ class Plan:
             intervals [1/s^2].
         limits: (3, 6) of the joints' speed [rad/s], acceleration [rad/s^2] and jerk [rad/s^3] while they follow the
             path, at any override.
+        tool_speed: limit of elbow, wrist and tool centre point [m/s], at any override; None: no limit.
         above_start: (6,) configuration above the start, from where the object is grasped.
         above_goal: (6,) configuration above the goal, to where the arm retreats.
         duration: of the path at full speed [s].
@@ -149,6 +152,7 @@ class Plan:
     above_goal: Array
     duration: float
     certificate: Certificate
+    tool_speed: float | None = None
 
 
 @dataclass(frozen=True, eq=False)

@@ -22,6 +22,7 @@ from teachpath_proto.keys import Keys
 ARM = Arm.of_variant()
 
 KEYS = Keys()
+MOTION = MotionSettings()
 HOME = np.array(MotionSettings().home)
 PERIOD_NS = 4_000_000
 EPOCH = 1_700_000_000 * 10**9
@@ -29,9 +30,9 @@ KEY = SigningKey(bytes(range(32)))
 STUCK = 60.0  # s, after which a test gives up
 
 
-def signed(plan: Plan, *, key: SigningKey = KEY, issued_ns: int = EPOCH) -> Plan:
+def signed(plan: Plan, *, key: SigningKey = KEY, issued_ns: int = EPOCH, motion: MotionSettings = MOTION) -> Plan:
     """Return a plan as the station of these tests signs it."""
-    return sign_plan(plan, ARM, MotionSettings(), key, issued_ns=issued_ns)
+    return sign_plan(plan, Arm.of_settings(motion), motion, key, issued_ns=issued_ns)
 
 
 class Bench:
@@ -40,7 +41,7 @@ class Bench:
     Its service finds every certificate good, and answers by `confirm`.
     """
 
-    def __init__(self, position: np.ndarray = HOME) -> None:
+    def __init__(self, position: np.ndarray = HOME, motion: MotionSettings | None = None) -> None:
         self.bus = MemoryBus()
         self.now = 0
         self.position = position
@@ -69,6 +70,7 @@ class Bench:
             KEYS,
             ExecutorSettings(realtime=False),
             signing_key=KEY,
+            motion=motion,
             time_source=TimeSource(lambda: self.now, lambda: EPOCH + self.now, self.sleep),
         )
 

@@ -3,13 +3,20 @@
 from collections.abc import Callable
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from teachpath.errors import PathRefused
 from teachpath.io.documents import encode
+from teachpath.motion.arm.model import Arm
+from teachpath.motion.arm.tool_speed import difference_speeds
+from teachpath.motion.collision.builtin_scenes import paper_scene
+from teachpath.motion.planning.plan import plan
 from teachpath.motion.planning.signature import SigningKey
+from teachpath.motion.settings import MotionSettings
 from teachpath.records import Plan
 from tests.unit.executor.executors import EPOCH, PERIOD_NS, Bench, signed
+from tests.unit.motion.ways import MIDDLE, way
 
 DAY = 86_400 * 10**9
 
@@ -102,3 +109,16 @@ def test_a_held_arm_does_not_go_on_under_a_certificate_that_holds_no_longer(
     assert said == ["the certificate of plan was revoked: the table was moved; plan the path again"]
     states = bench.states()
     assert "following" not in states[states.index("held") :]
+
+
+def test_the_speed_of_the_tool_is_that_of_the_certificate_and_its_use_is_measured(middle: Plan) -> None:
+    slow = MotionSettings(tool_speed=0.25)
+    bench = Bench(motion=slow)
+    assert "holds for motion.tool_speed = None, and it is 0.25 now" in refusal(bench, middle)
+    bench = Bench(motion=slow)
+    bench.start(signed(plan(way(MIDDLE), paper_scene(), slow), motion=slow))
+    bench.when(lambda: bench.state == "ended", bench.stop.set)
+    bench.run()
+    speeds = difference_speeds(np.array([s.position for s in bench.setpoints]), 250.0, Arm.of_settings(slow))
+    assert bench.statuses[-1].limit_use == pytest.approx(speeds.max() / 0.25, rel=1e-9)
+    assert "speed of the" in bench.statuses[-1].limit_place

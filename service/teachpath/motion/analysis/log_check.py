@@ -22,6 +22,8 @@ PATH_TOLERANCE: Final = 1e-4  # m, of the tool to the path
 LIMIT_TOLERANCE: Final = 1e-6  # of a limit, for the rounding of differences
 PERIOD_TOLERANCE: Final = 0.01  # of the period, between setpoints
 PATH_CHORDS: Final = 20_000  # that stand for the path in the measurement of distances
+UPPER_ARM_WIDTH: Final = 0.295  # m, to its outer face from the plane in which joint 2 turns
+POINT_NAMES: Final = ("the elbow", "the elbow's outside", "the wrist", "the tool")
 QUANTITIES: Final = ("speed", "acceleration", "jerk")
 
 
@@ -70,7 +72,8 @@ def check_log(log: SetpointLog, path: Curve | None, arm: Arm) -> LogCheck:
         faults.append(f"{log.missing} setpoints are missing, so it cannot be judged whole")
     limits = arm.limits
     on_path = _path(log, path, arm) if path is not None else []
-    for judged in (_positions(log, limits), *_differences(log, period, limits), *on_path):
+    speed = _tool_speed(log, period, arm)
+    for judged in (_positions(log, limits), *_differences(log, period, limits), speed, *on_path):
         (measured if judged[0] else faults).append(judged[1])
     if path is None:
         measured.append("without a path: only the limits were judged")
@@ -109,6 +112,18 @@ def _differences(log: SetpointLog, period: float, limits: JointLimits) -> list[t
         largest = float(uses[row, joint])
         found.append((largest <= 1.0 + LIMIT_TOLERANCE, f"{name} limit used to {100 * largest:.2f} % by {where}"))
     return found
+
+
+def _tool_speed(log: SetpointLog, period: float, arm: Arm) -> tuple[bool, str]:
+    """Check the speed of elbow, wrist and tool; a setpoint that was sent late does not make the arm slower."""
+    points = ((2, 0.0), (2, UPPER_ARM_WIDTH), (4, 0.0), (6, arm.tool_length))
+    speeds = np.array([np.linalg.norm(np.diff(_point(log.positions, arm, *p), axis=0), axis=1) for p in points])
+    point, row = np.unravel_index(int(np.argmax(speeds)), speeds.shape)
+    largest, name = float(speeds[point, row]) / period, POINT_NAMES[point]
+    limit = np.inf if arm.tool_speed is None else arm.tool_speed
+    allowed = "no limit is set" if arm.tool_speed is None else f"allowed {limit:g} m/s (motion.tool_speed)"
+    when = log.times[row] - log.times[0]
+    return largest <= limit * (1.0 + LIMIT_TOLERANCE), f"{name} at up to {largest:.4f} m/s at {when:.3f} s, {allowed}"
 
 
 def _use(positions: Array, order: int) -> Array:
@@ -163,9 +178,14 @@ def _distance(places: Array, points: Array) -> Array:
 
 
 def _tool(q: Array, arm: Arm) -> Array:
-    """Return the grasp point (n, 3) [m, world] at configurations (n, 6), link by link from the tip to the base."""
-    point = np.tile([0.0, 0.0, arm.tool_length], (len(q), 1))
-    for joint in reversed(range(6)):
+    """Return the grasp point (n, 3) [m, world] at configurations (n, 6)."""
+    return _point(q, arm, 6, arm.tool_length)
+
+
+def _point(q: Array, arm: Arm, number: int, along: float) -> Array:
+    """Return a point (n, 3) [m, world] on z of a link's frame at configurations (n, 6), link by link to the base."""
+    point = np.tile([0.0, 0.0, along], (len(q), 1))
+    for joint in reversed(range(number)):
         link = arm.links[joint]
         x, y, z = point.T
         ca, sa = np.cos(link.alpha), np.sin(link.alpha)

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from math import inf
 from typing import Final
 
 import numpy as np
@@ -16,15 +17,22 @@ JERK_PER_ACCELERATION: Final = 10.0  # 1/s
 
 @dataclass(frozen=True, eq=False)
 class MotionLimits:
-    """Largest speed [rad/s], acceleration [rad/s^2] and jerk [rad/s^3] of the joints: (6,) each."""
+    """Largest speed [rad/s], acceleration [rad/s^2] and jerk [rad/s^3] of the joints: (6,) each; and of the tool.
+
+    Attributes:
+        tool_speed: of elbow, wrist and tool centre point (`tool_speed`) [m/s]; infinite where none is set.
+    """
 
     speed: Array
     acceleration: Array
     jerk: Array
+    tool_speed: float = inf
 
     def scaled(self, speed: float, acceleration: float, jerk: float) -> MotionLimits:
-        """Return these limits times one factor each."""
-        return MotionLimits(speed * self.speed, acceleration * self.acceleration, jerk * self.jerk)
+        """Return the limits of the joints times one factor each, and that of the tool as it is."""
+        return replace(
+            self, speed=speed * self.speed, acceleration=acceleration * self.acceleration, jerk=jerk * self.jerk
+        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,6 +46,7 @@ class JointLimits:
         acceleration: [rad/s^2].
         jerk: [rad/s^3].
         torque: of the motor, at the joint [N m].
+        tool_speed: of elbow, wrist and tool centre point [m/s]; infinite where none is set.
     """
 
     lower: Array
@@ -46,10 +55,11 @@ class JointLimits:
     acceleration: Array
     jerk: Array
     torque: Array
+    tool_speed: float = inf
 
     @classmethod
-    def of_links(cls, links: Sequence[Link]) -> JointLimits:
-        """Read the limits from the rows of a table."""
+    def of_links(cls, links: Sequence[Link], tool_speed: float | None = None) -> JointLimits:
+        """Read the limits of the joints from the rows of a table."""
 
         def column(name: str, factor: float = 1.0) -> Array:
             values = factor * np.array([getattr(link, name) for link in links], dtype=np.float64)
@@ -63,9 +73,10 @@ class JointLimits:
             acceleration=column("acceleration"),
             jerk=column("acceleration", JERK_PER_ACCELERATION),
             torque=column("torque"),
+            tool_speed=inf if tool_speed is None else tool_speed,
         )
 
     @property
     def motion(self) -> MotionLimits:
         """The limits of speed, acceleration and jerk."""
-        return MotionLimits(self.speed, self.acceleration, self.jerk)
+        return MotionLimits(self.speed, self.acceleration, self.jerk, self.tool_speed)

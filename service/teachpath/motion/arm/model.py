@@ -20,17 +20,20 @@ class Arm:
         links: its six rows, from the base to the flange.
         tool_length: from the flange to the grasp point [m].
         grasp_depth: by which the fingers overlap an object that they hold [m] (see `collision.grasp`).
+        tool_speed: that elbow, wrist and tool centre point keep [m/s] (see `tool_speed`); None: no limit.
     """
 
     name: str
     links: tuple[Link, ...]
     tool_length: float = TOOL_LENGTH
     grasp_depth: float = GRASP_DEPTH
+    tool_speed: float | None = None
 
     @classmethod
     def of_settings(cls, settings: MotionSettings) -> Arm:
-        """Return the arm that settings describe: a published variant with its gripper."""
-        return replace(cls.of_variant(settings.variant), grasp_depth=settings.grasp_depth)
+        """Return the arm that settings describe: a published variant with its gripper and the limit of its speed."""
+        variant = cls.of_variant(settings.variant)
+        return replace(variant, grasp_depth=settings.grasp_depth, tool_speed=settings.tool_speed)
 
     @classmethod
     def of_variant(cls, name: str = DEFAULT_VARIANT) -> Arm:
@@ -45,5 +48,5 @@ class Arm:
 
     @cached_property
     def limits(self) -> JointLimits:
-        """What the joints may do."""
-        return JointLimits.of_links(self.links)
+        """What the joints may do, and how fast the tool may be."""
+        return JointLimits.of_links(self.links, self.tool_speed)

@@ -14,10 +14,11 @@ from typing import Final
 import numpy as np
 from ruckig import ControlInterface, InputParameter, Result, Ruckig, RuckigError, Trajectory
 
-from teachpath.motion.arm.limits import MotionLimits
+from teachpath.motion.arm.model import Arm
 from teachpath.motion.arm.puma560 import Array
 from teachpath.motion.timing import kernels
 from teachpath.motion.timing.joint_moves import straight_move
+from teachpath.motion.timing.limit_margins import SYMMETRIC_MARGINS
 from teachpath.motion.timing.timed_trajectory import TimedTrajectory
 
 MIN_OVERRIDE: Final = 0.01  # a smaller override holds
@@ -72,6 +73,8 @@ class Governor:
         self._limits = np.stack([limits.speed * dt, limits.acceleration * dt**2, limits.jerk * dt**3])
         # A player reads a way to rest between its positions too, where the jerk is a little larger than at them.
         self._stop_limits = self._limits * np.array([[1.0], [1.0], [STOP_JERK_SHARE]])
+        # A planned motion keeps this share of the tool's limit in reserve, for rates that overshoot the full speed.
+        self._max_rate = 1.0 / SYMMETRIC_MARGINS[0] if np.isfinite(limits.tool_speed) else np.inf
         self._override = _share(override)
         self._held = False
         self._reversing = False
@@ -198,19 +201,8 @@ class Governor:
             ended = kernels.lead_along(self._table, self._step, self._ramp, self._elapsed, self._dt, lead, sent, state)
             if ended:
                 return self._sampled(lead, np.zeros(8))
-            peak = kernels.find_ramp(
-                self._table,
-                self._step,
-                state,
-                0.0,
-                sent,
-                self._stop_limits,
-                self._dt,
-                MAX_STOP_TIME,
-                MAX_STOP_RAMPS,
-                trial,
-            )
-            if peak >= 0.0:
+            search = (self._stop_limits, self._dt, MAX_STOP_TIME, MAX_STOP_RAMPS, self._max_rate, trial)
+            if kernels.find_ramp(self._table, self._step, state, 0.0, sent, *search) >= 0.0:
                 return self._sampled(lead, trial)
         return self._sampled(int(self._end / self._dt / MIN_OVERRIDE), np.zeros(8))
 
@@ -233,18 +225,8 @@ class Governor:
             if kept[0] == kernels.KEPT:
                 self._accept_trial()
             return
-        peak = kernels.find_ramp(
-            self._table,
-            self._step,
-            state,
-            target,
-            self._sent,
-            self._limits,
-            self._dt,
-            within,
-            MAX_RAMPS_PER_PERIOD,
-            trial,
-        )
+        search = (self._limits, self._dt, within, MAX_RAMPS_PER_PERIOD, self._max_rate, trial)
+        peak = kernels.find_ramp(self._table, self._step, state, target, self._sent, *search)
         if peak >= 0.0 and self._ruckig_agrees(peak):
             self._accept_trial()
 
@@ -277,10 +259,10 @@ class Governor:
         return bool(result == Result.Working and abs(self._answer.duration - closed_form) <= DURATION_TOLERANCE)
 
 
-def warm_up(dt: float, limits: MotionLimits) -> None:
+def warm_up(dt: float, arm: Arm) -> None:
     """Compile the kernels, or load them from disk, so that the first motion does not wait for them."""
     turn = np.array([0.01, 0.0, 0.0, 0.0, 0.0, 0.0])
-    governor = Governor(straight_move(np.zeros(6), turn, limits, margins=(0.5, 0.5, 0.5)), dt)
+    governor = Governor(straight_move(np.zeros(6), turn, arm.limits.motion, arm=arm, margins=(0.5, 0.5, 0.5)), dt)
     for act in (governor.step, governor.way_to_rest, governor.hold, governor.step, governor.reverse, governor.step):
         act()
 

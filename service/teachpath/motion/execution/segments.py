@@ -8,7 +8,6 @@ from typing import Final
 
 import numpy as np
 
-from teachpath.motion.arm.limits import MotionLimits
 from teachpath.motion.arm.model import Arm
 from teachpath.motion.arm.puma560 import Array
 from teachpath.motion.collision.collision_model import CollisionModel, Load, grasped_load
@@ -105,14 +104,20 @@ def plan_segments(plan: Plan, start_q: Array, settings: MotionSettings, arm: Arm
     start, goal = plan.joints[0], plan.joints[-1]
     leave = waypoints_home(model, start, goal, plan.above_goal, settings)
     closed = not carries
+
+    def move(name: str, a: Array, b: Array, *, before: bool) -> list[Segment]:
+        if np.abs(b - a).max() < MIN_MOVE:
+            return []
+        return [Segment(name, before, closed, straight_move(a, b, limits, arm=arm, margins=SYMMETRIC_MARGINS))]
+
     return [
-        *[piece for a, b in pairwise(stops) for piece in _move("on the approach", a, b, True, closed, limits)],
-        *_move("on the way down", plan.above_start, start, True, closed, limits),
+        *[piece for a, b in pairwise(stops) for piece in move("on the approach", a, b, before=True)],
+        *move("on the way down", plan.above_start, start, before=True),
         Segment("closing the gripper", True, True, rest_time=dwell if carries else 0.0),
         Segment("on the path", False, True, plan_trajectory(plan), is_path=True),
         Segment("opening the gripper", False, closed, rest_time=dwell if carries else 0.0),
-        *_move("on the way up", goal, plan.above_goal, False, closed, limits),
-        *_move("on the way home", *leave, False, closed, limits),
+        *move("on the way up", goal, plan.above_goal, before=False),
+        *move("on the way home", *leave, before=False),
     ]
 
 
@@ -137,10 +142,4 @@ def plan_return_path(
     stops = joint_waypoints(model, start_q, goal_q, settings, load=load, gripper_open=opened, move_name=what)
     limits = arm.limits.motion.scaled(*[settings.move_share] * 3)
     legs = [(a, b) for a, b in pairwise(stops) if np.abs(b - a).max() >= MIN_MOVE]
-    return [straight_move(a, b, limits, margins=SYMMETRIC_MARGINS) for a, b in legs]
-
-
-def _move(name: str, start: Array, goal: Array, before: bool, closed: bool, limits: MotionLimits) -> list[Segment]:
-    if np.abs(goal - start).max() < MIN_MOVE:
-        return []
-    return [Segment(name, before, closed, straight_move(start, goal, limits, margins=SYMMETRIC_MARGINS))]
+    return [straight_move(a, b, limits, arm=arm, margins=SYMMETRIC_MARGINS) for a, b in legs]

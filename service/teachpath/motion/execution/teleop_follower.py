@@ -13,20 +13,18 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
-from ruckig import InputParameter, Result, Ruckig, RuckigError, Trajectory
 
 from teachpath.errors import PathRefused
 from teachpath.motion.arm.kinematics import BRANCH_NAMES, inverse_kinematics, min_singular_value, tool_pose
-from teachpath.motion.arm.limits import MotionLimits
 from teachpath.motion.arm.model import Arm
 from teachpath.motion.arm.puma560 import Array
 from teachpath.motion.collision.collision_model import CollisionModel, Load
+from teachpath.motion.execution.teleop_motion import Motion, MotionToRest, sampled, state_at
 from teachpath.motion.settings import MotionSettings
 
 LEAD_PERIODS: Final = 6  # control periods from the beginning of planning to the beginning of the motion
 CHECKS_PER_SLICE: Final = 3  # configurations that are checked in one slice of planning
 MAX_JOINT_LEAD: Final = 0.25  # [rad] of one motion: more could not be checked in time
-MAX_SAMPLE_STEP: Final = 0.03  # [rad] between two configurations that are checked
 POSES_PER_SOLVE: Final = 8  # poses on the way to the target for which inverse kinematics are solved at once
 MAX_TOOL_LEAD: Final = 0.2  # [m] of one motion
 MIN_SHARE: Final = 0.02  # of the way to the target that is tried at least
@@ -42,7 +40,7 @@ class _PlannedMotion:
     """A checked motion that begins in the control period `cycle`; `stamp` names the sample that it answers."""
 
     cycle: int
-    trajectory: Trajectory
+    trajectory: Motion
     stamp: int
 
 
@@ -80,13 +78,13 @@ class TeleopFollower:
         self._settings = settings
         self._scale = scale
         self._period = period
-        self._limits: MotionLimits = model.arm.limits.motion.scaled(share, share, share)
+        limits = model.arm.limits.motion.scaled(share, share, share)
+        self._motion_to_rest = MotionToRest(limits, model.arm, period)
         pose = tool_pose(start_q, model.arm)
         self._orientation = pose[:3, :3]
         self._branch = _branch(start_q, pose, model.arm)
-        self._ruckig = Ruckig(6)
         self._state: tuple[Array, Array, Array] = (np.array(start_q, dtype=np.float64), np.zeros(6), np.zeros(6))
-        self._trajectory: Trajectory | None = None
+        self._trajectory: Motion | None = None
         self._positions = np.empty((0, 6))  # of the trajectory, one period apart [rad]
         self._elapsed = 0.0  # [s] of the present motion
         self._cycle = 0
@@ -139,9 +137,9 @@ class TeleopFollower:
         self._elapsed += self._period
         if self._trajectory is not None and self._elapsed == self._period:
             count = int(np.ceil(self._trajectory.duration / self._period))
-            self._positions = np.array([_at(self._trajectory, (k + 1) * self._period)[0] for k in range(count)])
+            self._positions = np.array([state_at(self._trajectory, (k + 1) * self._period)[0] for k in range(count)])
         if self._trajectory is not None:
-            self._state = _at(self._trajectory, self._elapsed)
+            self._state = state_at(self._trajectory, self._elapsed)
             if self._elapsed >= self._trajectory.duration:
                 self._state, self._trajectory = (self._state[0], np.zeros(6), np.zeros(6)), None
         return self._state
@@ -172,10 +170,10 @@ class TeleopFollower:
         if self.at_rest and np.abs(goal - state[0]).max() < MIN_MOVE:
             self.reason = reason
             return
-        run = self._motion(state, goal)
+        run = self._motion_to_rest(state, goal)
         if run is None:
             return
-        samples = _samples(run)
+        samples = sampled(run)
         for first in range(0, len(samples), CHECKS_PER_SLICE):
             near = self._find_obstruction(samples[first : first + CHECKS_PER_SLICE])
             if near:
@@ -238,51 +236,20 @@ class TeleopFollower:
                 return f"the object would be pressed {-1000 * deep:.0f} mm into what it stood on; move the hand back"
         return ""
 
-    def _motion(self, state: tuple[Array, Array, Array], goal: Array) -> Trajectory | None:
-        inputs = InputParameter(6)
-        inputs.current_position, inputs.current_velocity, inputs.current_acceleration = (v.tolist() for v in state)
-        inputs.target_position = goal.tolist()
-        inputs.max_velocity = self._limits.speed.tolist()
-        inputs.max_acceleration = self._limits.acceleration.tolist()
-        inputs.max_jerk = self._limits.jerk.tolist()
-        run = Trajectory(6)
-        try:
-            result = self._ruckig.calculate(inputs, run)
-        except RuckigError:
-            return None
-        return run if result == Result.Working and run.duration > 0.0 else None
-
     def _after(self, cycles: int) -> tuple[Array, Array, Array]:
         """Return the state `cycles` control periods ahead."""
         if self._trajectory is None:
             return self._state
         t = self._elapsed + cycles * self._period
         return (
-            _at(self._trajectory, t)
+            state_at(self._trajectory, t)
             if t < self._trajectory.duration
-            else (_at(self._trajectory, t)[0], np.zeros(6), np.zeros(6))
+            else (state_at(self._trajectory, t)[0], np.zeros(6), np.zeros(6))
         )
 
     def _end(self) -> Array:
         """Return the configuration (6,) in which the present motion ends."""
-        return self._state[0] if self._trajectory is None else _at(self._trajectory, self._trajectory.duration)[0]
-
-
-def _at(run: Trajectory, t: float) -> tuple[Array, Array, Array]:
-    position, velocity, acceleration = run.at_time(min(t, run.duration))[:3]
-    return np.array(position), np.array(velocity), np.array(acceleration)
-
-
-def _samples(run: Trajectory) -> Array:
-    """Return configurations (n, 6) of a motion, no two neighbours farther apart than `MAX_SAMPLE_STEP`."""
-    times = np.linspace(0.0, run.duration, 33)[1:]
-    fine = np.array([run.at_time(float(t))[0] for t in times])
-    kept, last = [], fine[0]
-    for k, q in enumerate(fine):
-        if k == len(fine) - 1 or np.abs(fine[k + 1] - last).max() > MAX_SAMPLE_STEP:
-            kept.append(q)
-            last = q
-    return np.array(kept)
+        return self._state[0] if self._trajectory is None else state_at(self._trajectory, self._trajectory.duration)[0]
 
 
 def _branch(here: Array, pose: Array, arm: Arm) -> int:

@@ -7,20 +7,24 @@ import numpy as np
 from teachpath.errors import PathRefused
 from teachpath.motion.arm.joint_path import JointPath
 from teachpath.motion.arm.limits import JointLimits, MotionLimits
+from teachpath.motion.arm.model import Arm
 from teachpath.motion.arm.puma560 import Array
+from teachpath.motion.arm.tool_speed import POINT_NAMES
 from teachpath.motion.paths.ik_branches import Candidate
 from teachpath.motion.paths.tool_path import ToolPath
 from teachpath.motion.planning.torque_limited import TimedPath
 from teachpath.motion.settings import MotionSettings
 from teachpath.motion.timing.limit_margins import largest_use, limit_uses
-from teachpath.motion.timing.timed_trajectory import TimedTrajectory, time_joint_path
+from teachpath.motion.timing.timed_trajectory import SPEED_STRIDE, TimedTrajectory, time_joint_path
 from teachpath.records import Certificate, Extreme, Plan
 
 
 def plan_trajectory(plan: Plan) -> TimedTrajectory:
     """Return the motion of a plan along its path at full speed; it is the same wherever it is computed."""
     path = JointPath(np.linspace(0.0, 1.0, len(plan.lengths)), plan.lengths, plan.joints)
-    return time_joint_path(path, plan.pace, MotionLimits(*plan.limits))
+    tool_speed = np.inf if plan.tool_speed is None else plan.tool_speed
+    speed, acceleration, jerk = plan.limits
+    return time_joint_path(path, plan.pace, MotionLimits(speed, acceleration, jerk, tool_speed))
 
 
 def certify(
@@ -47,6 +51,13 @@ def certify(
             f"{100 * settings.path_share:.1f} %; smooth the path there: "
             f"move {tool_path.describe_control_point(worst.s)}"
         )
+    arm = candidate.branch.arm
+    speed = largest_speed(timed.trajectory, arm)
+    if speed.value > arm.limits.tool_speed:
+        raise PathRefused(
+            f"{speed.place} would move at {speed.value:.3f} m/s, limit {arm.limits.tool_speed:g} "
+            f"(motion.tool_speed); smooth the path there: move {tool_path.describe_control_point(speed.s)}"
+        )
     singular_s = float(tool_path.lengths[int(np.argmin(candidate.singular_values))])
     return Certificate(
         digest="",
@@ -56,9 +67,18 @@ def certify(
         acceleration_use=acceleration,
         jerk_use=jerk,
         torque_use=timed.torque_use,
+        tool_speed=speed,
         least_singular=Extreme(candidate.min_singular_value, f"s = {singular_s:.3f} m", singular_s),
         clearance=clearance,
     )
+
+
+def largest_speed(trajectory: TimedTrajectory, arm: Arm) -> Extreme:
+    """Return the largest speed [m/s] of elbow, wrist and tool on a trajectory, proved between its rows too."""
+    bounds = trajectory.speed_bounds(arm)
+    row, point = np.unravel_index(int(np.argmax(bounds)), bounds.shape)
+    s = float(trajectory.table[min(int(row) * SPEED_STRIDE, len(trajectory.table) - 1), 0, 6])
+    return Extreme(float(bounds[row, point]), f"{POINT_NAMES[point]} at s = {s:.3f} m", s)
 
 
 def largest_limit_uses(setpoints: Array, rate: float, limits: JointLimits) -> tuple[Extreme, Extreme, Extreme, Extreme]:

@@ -93,6 +93,7 @@ def _certified_plan(
         joints=timed.joints.joints,
         pace=timed.pace,
         limits=np.stack([timed.limits.speed, timed.limits.acceleration, timed.limits.jerk]),
+        tool_speed=model.arm.tool_speed,
         above_start=above_start,
         above_goal=above_goal,
         duration=timed.trajectory.duration,

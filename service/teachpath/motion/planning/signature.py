@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hmac
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import asdict, dataclass, field, fields, replace
 from typing import Any, Final
 
 from teachpath.errors import PathRefused, UnusableInput
@@ -92,7 +92,9 @@ def verify_signature(plan: Plan, arm: Arm, settings: MotionSettings, key: Signin
             f"plan {plan.id} is not signed: it was made outside a station, or before stations signed their plans; "
             "plan the path again at this station"
         )
+    # What it says it holds for is compared first, because another arm has another code, and the difference has a name.
     _check_arm(plan.id, signature, arm)
+    _check_settings(plan.id, signature, settings)
     unsigned = _with_signature(plan, replace(signature, mac=""))
     if not hmac.compare_digest(_mac(unsigned, arm, key).encode(), signature.mac.encode()):
         raise PathRefused(
@@ -100,8 +102,18 @@ def verify_signature(plan: Plan, arm: Arm, settings: MotionSettings, key: Signin
             "or another station (another signing key) made it; plan the path again at this station"
         )
     verify(plan, arm)
-    _check_settings(plan.id, signature, settings)
     check_validity(plan, now_ns)
+
+
+def certified_arm(plan: Plan) -> Arm | None:
+    """Return the arm that the signature of a plan says it is for; None where the plan is not signed."""
+    signature = plan.certificate.signature
+    if signature is None:
+        return None
+    known = {field.name for field in fields(MotionSettings)}
+    return Arm.of_settings(
+        MotionSettings(**{name: signature.settings[name] for name in known & set(signature.settings)})
+    )
 
 
 def check_validity(plan: Plan, now_ns: int) -> None:

@@ -17,7 +17,9 @@ from numpy.typing import NDArray
 
 from teachpath.motion.arm.joint_path import JointPath
 from teachpath.motion.arm.limits import MotionLimits
+from teachpath.motion.arm.model import Arm
 from teachpath.motion.arm.puma560 import Array
+from teachpath.motion.arm.tool_speed import squared_rate_ceiling
 from teachpath.motion.timing.interior_point import Derivatives, minimize
 from teachpath.motion.timing.limit_margins import Margins
 
@@ -42,16 +44,17 @@ def quadratic_basis(parameters: Array, intervals: int) -> Rows:
     return first, value, slope, curvature
 
 
-def minimize_duration(path: JointPath, limits: MotionLimits, intervals: int, margins: Margins) -> Array:
+def minimize_duration(path: JointPath, limits: MotionLimits, intervals: int, margins: Margins, *, arm: Arm) -> Array:
     """Return x(sigma) of the fastest motion from end to end, as coefficients (intervals + 2,) [1/s^2].
 
     Args:
         path: whose parameter is nearly proportional to time, with the third power of time at both ends.
-        limits: of the joints, which are kept at samples; the caller measures what happens between them.
+        limits: of joints and tool, which are kept at samples; the caller measures what happens between them.
         intervals: of the spline.
         margins: shares of the limits that may be used.
+        arm: that moves.
     """
-    return minimize(_DurationProblem.of(path, limits, intervals, margins))
+    return minimize(_DurationProblem.of(path, limits, intervals, margins, arm))
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,10 +74,11 @@ class _DurationProblem:
     margins: Margins
 
     @staticmethod
-    def of(path: JointPath, limits: MotionLimits, intervals: int, margins: Margins) -> _DurationProblem:
+    def of(path: JointPath, limits: MotionLimits, intervals: int, margins: Margins, arm: Arm) -> _DurationProblem:
         """Set up the problem of a joint path, for the joints that move on it."""
         places = ((np.arange(intervals)[:, None] + SAMPLE_POINTS) / intervals).ravel()
         one, two, three = (path(places, k)[:, :6] for k in (1, 2, 3))
+        tool_ceiling = squared_rate_ceiling(path(places)[:, :6], one, margins.speed * limits.tool_speed, arm)
         moves = np.abs(one).max(axis=0) > STILL_SPEED_SHARE * limits.speed
         forward = np.where(one >= 0.0, 1.0, -1.0)
         one, two, three = ((forward * part)[:, moves] for part in (one, two, three))
@@ -88,7 +92,7 @@ class _DurationProblem:
             intervals,
             rows[0],
             np.diff(edges),
-            np.min((margins.speed * speed / np.maximum(one, 1e-12)) ** 2, axis=1),
+            np.minimum(np.min((margins.speed * speed / np.maximum(one, 1e-12)) ** 2, axis=1), tool_ceiling),
             b * value + 0.5 * a * slope,
             k * value + 1.5 * j * slope + 0.5 * i * curvature,
             margins,

@@ -12,7 +12,9 @@ from ruckig import InputParameter, Ruckig, Trajectory
 from teachpath.errors import PathRefused
 from teachpath.motion.arm.kinematics import tool_pose
 from teachpath.motion.arm.limits import MotionLimits
+from teachpath.motion.arm.model import Arm
 from teachpath.motion.arm.puma560 import Array
+from teachpath.motion.arm.tool_speed import line_speed_bound
 from teachpath.motion.collision.collision_model import Clearance, CollisionModel, Load, shape_pose
 from teachpath.motion.collision.continuous import ContinuousCheck, prove_distance
 from teachpath.motion.refusals import first_accepted
@@ -23,7 +25,7 @@ MIN_FINGER_DISTANCE: Final = 0.001  # m, of open fingers to the object between t
 
 
 def straight_move(
-    start: Array, goal: Array, limits: MotionLimits, *, margins: tuple[float, float, float]
+    start: Array, goal: Array, limits: MotionLimits, *, arm: Arm, margins: tuple[float, float, float]
 ) -> TimedTrajectory:
     """Return the fastest motion from rest to rest on the straight line between two configurations (Ruckig).
 
@@ -31,24 +33,28 @@ def straight_move(
         start: configuration (6,) [rad].
         goal: configuration (6,) [rad].
         limits: to keep.
+        arm: that moves.
         margins: shares of speed, acceleration and jerk limits that the motion itself uses.
     """
     turn = float(np.abs(goal - start).max())
     direction = (goal - start) / turn
     slowest = np.maximum(np.abs(direction), 1e-12)
     shared = limits.scaled(*margins)
+    speed = float(np.min(shared.speed / slowest))
+    if np.isfinite(limits.tool_speed):
+        speed = min(speed, margins[0] * limits.tool_speed / line_speed_bound(start, direction, turn, arm))
     run = rest_to_rest(
         turn,
-        float(np.min(shared.speed / slowest)),
+        speed,
         float(np.min(shared.acceleration / slowest)),
         float(np.min(shared.jerk / slowest)),
         MAX_TABLE_STEP,
     )
-    place, speed, acceleration, jerk, step = run
+    place, rate, acceleration, jerk, step = run
     count = len(place) - 1
     ahead, still = np.append(direction, 1.0), np.zeros((count + 1, 7))
     line = [np.append(start, 0.0) + place[:, None] * ahead, np.tile(ahead, (count + 1, 1)), still, still]
-    return TimedTrajectory(apply_chain_rule(line, speed, acceleration, jerk), step, limits)
+    return TimedTrajectory(apply_chain_rule(line, rate, acceleration, jerk), step, limits)
 
 
 def rest_to_rest(

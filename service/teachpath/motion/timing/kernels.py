@@ -128,7 +128,7 @@ def check_ramp(table: Array, step: float, ramp: Array, sent: Array, limits: Arra
 @compiled
 def find_ramp(
     table: Array, step: float, state: Array, target: float, sent: Array, limits: Array, dt: float, within: float,
-    tries: int, ramp: Array,
+    tries: int, max_rate: float, ramp: Array,
 ) -> float:  # fmt: skip
     """Search for the shortest ramp to the constant rate `target` within all limits; return its peak |r'|, or -1.
 
@@ -138,6 +138,7 @@ def find_ramp(
     Args:
         within: duration of the present ramp [s]; a new one must be shorter by `MIN_TIME_SAVED`.
         tries: ramps that are checked at most.
+        max_rate: largest |r| that the limit of the tool's speed allows.
         ramp: (8,) where the best ramp is written.
     """
     steepest, hardest = _search_bounds(table, step, state, limits, dt)
@@ -146,6 +147,8 @@ def find_ramp(
     for _ in range(tries):
         peak = shortest_ramp(trial, state, target, steepest, hardest)
         if peak < 0.0 or trial[3] + trial[4] + trial[5] >= within - MIN_TIME_SAVED:
+            return best
+        if _largest_rate(trial) > max_rate:
             return best
         broken, when = check_ramp(table, step, trial, sent, limits, dt)
         if broken == SPEED_BROKEN:
@@ -165,6 +168,15 @@ def find_ramp(
         if best >= 0.0:
             steepest, hardest = sqrt(kept_a * failed_a), sqrt(kept_j * failed_j)
     return best
+
+
+@compiled
+def _largest_rate(ramp: Array) -> float:
+    """Return the largest |r| of a ramp; where r' first has to change its sign, that is before the ramp's end."""
+    turning: float = ramp[1]
+    if ramp[2] * ramp[6] < 0.0:
+        turning -= ramp[2] * ramp[2] / (2.0 * ramp[6])
+    return float(max(abs(ramp[1]), abs(turning), abs(ramp[7])))
 
 
 @compiled

@@ -15,11 +15,14 @@ from scipy.interpolate import CubicHermiteSpline
 
 from teachpath.motion.arm.joint_path import JointPath
 from teachpath.motion.arm.limits import MotionLimits
+from teachpath.motion.arm.model import Arm
 from teachpath.motion.arm.puma560 import Array
+from teachpath.motion.arm.tool_speed import speed_bounds
 from teachpath.motion.timing.jerk_limited_topp import quadratic_basis
 
 MAX_TABLE_STEP: Final = 0.0005  # s, between two rows of a table
 MAX_TABLE_ROWS: Final = 120_000  # of a longer trajectory, the rows are farther apart
+SPEED_STRIDE: Final = 4  # rows from one to the next whose speed is computed
 SUBINTERVALS: Final = 20  # of each interval of the pace, for the integration of time
 
 
@@ -60,6 +63,14 @@ class TimedTrajectory:
         """
         count = int(np.ceil(self.duration * rate / override))
         return self((np.arange(-3.0, count + 4) + phase) * (override / rate))
+
+    def speed_bounds(self, arm: Arm) -> Array:
+        """Return bounds (n, 4) [m/s] of the arm's speed at full speed of the trajectory (see `tool_speed`).
+
+        They are of every `SPEED_STRIDE`-th row of the table and of the last one.
+        """
+        rows = np.concatenate([self.table[:-1:SPEED_STRIDE], self.table[-1:]])
+        return speed_bounds(rows[:, :, :6], SPEED_STRIDE * self.step, arm)
 
 
 def time_joint_path(path: JointPath, pace: Array, limits: MotionLimits) -> TimedTrajectory:

@@ -17,7 +17,9 @@ from scipy.ndimage import uniform_filter1d
 from teachpath.errors import PathRefused
 from teachpath.motion.arm.joint_path import JointPath
 from teachpath.motion.arm.limits import MotionLimits
+from teachpath.motion.arm.model import Arm
 from teachpath.motion.arm.puma560 import Array
+from teachpath.motion.arm.tool_speed import squared_rate_ceiling
 from teachpath.motion.paths.ik_branches import Candidate, configurations
 from teachpath.motion.paths.tool_path import ToolPath
 from teachpath.motion.timing.jerk_limited_topp import minimize_duration
@@ -70,9 +72,10 @@ def time_tool_path(
     sigma = np.linspace(0.0, 1.0, max(MIN_SPLINE_NODES, intervals) + 1)
     u = np.asarray(warp(sigma), dtype=np.float64)
     path = JointPath(sigma, tool_path.arc.lengths(u), configurations(tool_path, candidate, u))
-    pace = minimize_duration(path, limits, intervals, margins)
+    arm = candidate.branch.arm
+    pace = minimize_duration(path, limits, intervals, margins, arm=arm)
     for _ in range(MAX_TIME_SCALINGS):
-        factor = _time_stretch(time_joint_path(path, pace, limits), rate, margins)
+        factor = _time_stretch(time_joint_path(path, pace, limits), rate, margins, arm)
         pace = pace / factor**2
         if abs(factor - 1.0) < STRETCH_TOLERANCE:
             break
@@ -82,10 +85,10 @@ def time_tool_path(
 
 
 def duration_lower_bound(tool_path: ToolPath, candidate: Candidate, limits: MotionLimits) -> float:
-    """Return the shortest duration [s] that speed and acceleration limits alone allow: no jerk limit, no margins."""
+    """Return the shortest duration [s] that limits of speed and acceleration alone allow: no jerk limit, no margins."""
     u = _guess_samples(tool_path, 4 * MIN_GUESS_SAMPLES)
     spline = make_interp_spline(u, configurations(tool_path, candidate, u), k=5)
-    free = np.full(len(u), np.inf)
+    free = squared_rate_ceiling(spline(u), spline(u, 1), limits.tool_speed, candidate.branch.arm)
     return float(
         reach_times(u, max_squared_rates(u, spline(u, 1), spline(u, 2), limits.speed, limits.acceleration, free))[-1]
     )
@@ -131,6 +134,8 @@ def _profile(tool_path: ToolPath, candidate: Candidate, limits: MotionLimits, pl
     u = _guess_samples(tool_path, places)
     spline = make_interp_spline(u, configurations(tool_path, candidate, u), k=5)
     slow = np.min(limits.jerk / np.maximum(np.abs(spline(u, 3)), 1e-9), axis=1) ** (2 / 3)
+    tool_speed = GUESS_LIMIT_SHARES[0] * limits.tool_speed
+    slow = np.minimum(slow, squared_rate_ceiling(spline(u), spline(u, 1), tool_speed, candidate.branch.arm))
     speed, acceleration = GUESS_LIMIT_SHARES[0] * limits.speed, GUESS_LIMIT_SHARES[1] * limits.acceleration
     reached = reach_times(u, max_squared_rates(u, spline(u, 1), spline(u, 2), speed, acceleration, slow))
     return u, reached
@@ -146,10 +151,13 @@ def _guess_samples(tool_path: ToolPath, least: int) -> Array:
     return np.unique(np.concatenate([np.linspace(a, b, count + 1) for a, b, count in spans]))
 
 
-def _time_stretch(trajectory: TimedTrajectory, rate: float, margins: Margins) -> float:
-    """Return the factor by which time must be stretched for setpoints to keep the limits with their margins."""
+def _time_stretch(trajectory: TimedTrajectory, rate: float, margins: Margins, arm: Arm) -> float:
+    """Return the factor by which time must be stretched for joints and tool to keep the limits with their margins."""
     runs = [(phase, 1.0) for phase in SETPOINT_PHASES] + [(0.0, override) for override in CHECKED_OVERRIDES]
-    return max(
+    factors = [
         margins.time_stretch(trajectory.setpoints(rate, phase=phase, override=override), trajectory.limits, rate)
         for phase, override in runs
-    )
+    ]
+    if np.isfinite(tool_speed := margins.speed * trajectory.limits.tool_speed):
+        factors.append(float(trajectory.speed_bounds(arm).max()) / tool_speed)
+    return max(factors)

@@ -77,6 +77,17 @@ def test_another_path_or_other_limits_are_broken(planned: Plan) -> None:
     assert any("never comes to the start" in f for f in check_log(rest, way(FAR).curve, ARM).faults)
 
 
+def test_a_tool_that_is_faster_than_its_limit_is_found() -> None:
+    slow = MotionSettings(tool_speed=0.25)
+    arm = Arm.of_settings(slow)
+    log = streamed(plan(way(MIDDLE), paper_scene(), slow))
+    kept = check_log(log, way(MIDDLE).curve, arm)
+    assert kept.faults == ()
+    assert any("allowed 0.25 m/s" in sentence for sentence in kept.measured)
+    faults = check_log(SetpointLog(log.times / 1.02, log.positions), way(MIDDLE).curve, arm).faults
+    assert sum("allowed 0.25 m/s (motion.tool_speed)" in fault for fault in faults) == 1
+
+
 def test_a_csv_is_read_back_and_a_broken_one_names_its_line() -> None:
     header = "t,q1,q2,q3,q4,q5,q6,on_path\n"
     rows = [f"{0.004 * k},0.1,0.2,0.3,0.4,0.5,{0.001 * k},1" for k in range(6)]

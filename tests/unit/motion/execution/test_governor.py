@@ -37,7 +37,7 @@ def track_of(curve: Curve) -> TimedTrajectory:
 @pytest.fixture(scope="module")
 def tracks() -> dict[str, TimedTrajectory]:
     line = straight_move(
-        np.zeros(6), np.array([1.0, -0.4, 0.2, 0.0, 0.9, 2.0]), ARM.limits.motion, margins=SYMMETRIC_MARGINS
+        np.zeros(6), np.array([1.0, -0.4, 0.2, 0.0, 0.9, 2.0]), ARM.limits.motion, arm=ARM, margins=SYMMETRIC_MARGINS
     )
     return {"line": line} | {name: track_of(curve) for name, curve in CURVES.items()}
 

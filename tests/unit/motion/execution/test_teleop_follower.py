@@ -1,10 +1,13 @@
 """The arm mirrors a hand: within all limits and clear of everything, whatever the hand does."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from teachpath.motion.arm.kinematics import tool_pose
 from teachpath.motion.arm.model import Arm
+from teachpath.motion.arm.tool_speed import difference_speeds
 from teachpath.motion.collision.builtin_scenes import empty_scene, paper_scene
 from teachpath.motion.collision.collision_model import CollisionModel
 from teachpath.motion.execution.teleop_follower import TeleopFollower
@@ -19,11 +22,14 @@ DT, EVERY = 0.004, 5  # control period, and periods between two samples of the h
 SHARE = 0.5
 
 
+SLOW_ARM = replace(ARM, tool_speed=0.1)
+
+
 class Session:
     """A follower, the setpoints that it made, and a hand."""
 
-    def __init__(self, scene: Scene | None = None, **given: float) -> None:
-        self.model = CollisionModel(scene or empty_scene(), ARM)
+    def __init__(self, scene: Scene | None = None, *, arm: Arm = ARM, **given: float) -> None:
+        self.model = CollisionModel(scene or empty_scene(), arm)
         self.follower = TeleopFollower(self.model, HOME, SETTINGS, share=SHARE, **given)
         self.sent = [HOME] * 3
         self.reasons: set[str] = set()
@@ -121,3 +127,17 @@ def test_what_cannot_be_reached_is_said_and_the_arm_stays_as_near_as_it_safely_m
     back = session.run(900, np.zeros(3))
     np.testing.assert_allclose(back, begin, atol=2e-3)
     assert session.follower.reason == ""
+
+
+def test_a_limit_of_the_tools_speed_holds_however_the_hand_moves_and_the_tool_still_arrives() -> None:
+    session = Session(arm=SLOW_ARM)
+    begin, hand = session.tool(), np.zeros(3)
+    session.follower.engage(hand)
+    rng = np.random.default_rng(5)
+    for _ in range(25):
+        session.run(int(rng.integers(5, 60)), hand + rng.uniform(-0.12, 0.12, 3))
+    way = np.array([0.04, 0.05, 0.03])
+    np.testing.assert_allclose(session.run(1200, hand + way) - begin, way, atol=1e-6)
+    speeds = difference_speeds(np.array(session.sent), 1 / DT, SLOW_ARM)
+    assert 0.09 < speeds.max() <= 0.1 * (1 + 1e-6)
+    assert session.within_limits()

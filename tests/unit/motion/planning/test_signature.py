@@ -156,6 +156,9 @@ def test_an_arm_of_the_same_name_with_other_links_is_refused(plan: Plan) -> None
 def test_settings_that_have_changed_are_named(plan: Plan) -> None:
     wider = replace(SETTINGS, clearance_min=0.02)
     assert "holds for motion.clearance_min = 0.005, and it is 0.02 now" in refusal(plan, settings=wider)
+    slower = replace(SETTINGS, tool_speed=0.25)
+    said = refusal(plan, arm=Arm.of_settings(slower), settings=slower)
+    assert "holds for motion.tool_speed = None, and it is 0.25 now" in said
     verify_signature(plan, ARM, replace(SETTINGS, certificate_validity=1.0), KEY, EPOCH)  # of plans to come
 
 

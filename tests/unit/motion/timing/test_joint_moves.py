@@ -39,7 +39,7 @@ def block_at(q: np.ndarray) -> Shape:
 @pytest.mark.parametrize("share", [1e-8, 1e-4, 0.1, 1.0])
 def test_a_straight_run_keeps_the_limits_and_ends_where_it_should(share: float) -> None:
     goal = LEFT + share * (RIGHT - LEFT)
-    track = straight_move(LEFT, goal, ARM.limits.motion, margins=(1.0, 1.0, 1.0))
+    track = straight_move(LEFT, goal, ARM.limits.motion, arm=ARM, margins=(1.0, 1.0, 1.0))
     np.testing.assert_allclose(track.table[[0, -1], 0, :6], [LEFT, goal], rtol=0, atol=1e-12)
     setpoints = track.setpoints(250.0)
     assert max(use.max() for use in limit_uses(setpoints, ARM.limits.motion, 250.0)) <= 1.0 + 1e-6

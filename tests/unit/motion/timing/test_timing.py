@@ -142,7 +142,7 @@ def test_one_joint_alone_takes_hardly_longer_than_its_closed_form(turn: float) -
         shortest = 4 * np.cbrt(turn / (2 * j))
     path = line(turn)
     duration = time_joint_path(
-        path, minimize_duration(path, ARM.limits.motion, 100, NO_MARGINS), ARM.limits.motion
+        path, minimize_duration(path, ARM.limits.motion, 100, NO_MARGINS, arm=ARM), ARM.limits.motion
     ).duration
     assert 0.999 * shortest < duration < 1.04 * shortest
 
