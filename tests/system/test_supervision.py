@@ -38,7 +38,7 @@ def data(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture
 def service(data: Path) -> Iterator[Service]:
     # An arm that has died is missed after this long.
-    with Service(data, TEACHPATH_EXECUTOR__SILENCE="1.0") as service:
+    with Service(data, TEACHPATH_EXECUTOR__SILENCE="1.0", TEACHPATH_EXECUTOR__REST_TIMEOUT="5") as service:
         yield service
 
 
@@ -119,3 +119,14 @@ def test_what_is_under_way_when_the_service_is_stopped_has_ended(data: Path) -> 
     with Service(data) as next_one:
         status = next_one.station.get_execution(execution.id).status
         assert (status.state, status.reason) == ("ended", "the executor was told to stop")
+
+
+def test_an_execution_that_has_ended_leaves_an_arm_that_may_start_at_once(service: Service) -> None:
+    execution = follow(service)
+    for _ in range(10):
+        service.station.stop(execution.id)
+        wait_state(service, execution, "ended")
+        execution = service.station.begin_execution(execution.plan)  # without another try
+        wait_state(service, execution, "approaching", "following")
+    service.station.stop(execution.id)
+    wait_state(service, execution, "ended")

@@ -18,6 +18,7 @@ from typing import Final
 import numpy as np
 
 from teachpath.errors import Conflict, TeachpathError, Unreachable, UnusableInput
+from teachpath.executor.arm_rest import ArmRest
 from teachpath.executor.execution import Execution
 from teachpath.executor.joint_state_monitor import JointStateMonitor
 from teachpath.executor.lease import ControlLease
@@ -255,4 +256,5 @@ class CommandHandler:
             rate=self._settings.rate,
             offset=self._time.wall_ns() - self._time.monotonic_ns(),
             arm=self._programs.arm,
+            arm_rest=ArmRest(self._settings.rest_speed, self._settings.rest_timeout),
         )

@@ -2,22 +2,22 @@
 
 from __future__ import annotations
 
-from collections import deque
 from collections.abc import Callable
 from typing import Final
 
+from teachpath.executor.arm_rest import ArmRest
 from teachpath.executor.limit_meter import LimitMeter
-from teachpath.executor.pacing import Pacer
+from teachpath.executor.pacing import NominalClock, Pacer
+from teachpath.executor.rest_points import RestPoints
 from teachpath.motion.arm.model import Arm
 from teachpath.motion.execution.motion_program import MotionProgram
-from teachpath.motion.execution.segments import Detour, RestPoint
+from teachpath.motion.execution.segments import Detour
 from teachpath.records import Array, ExecutorStatus, JointState, Setpoint
 from teachpath_proto.control import ExecutorState
 
 LATE_ARM_SUFFIX: Final = ", waiting for the arm, which is late"
 MAX_ARM_LAG: Final = 0.3  # [s] by which an arm may play its setpoints late; a driver's delay and the bus take less
 CAUGHT_UP_LAG: Final = 0.25  # [s] below which an arm that was late has caught up
-REST_POINT_AGE: Final = 4.0  # [s] for which the executor knows where the ways to rest of its setpoints end
 STANDSTILL_SETPOINTS: Final = 3  # sent at rest before an arm moves: one may be lost
 RESTART_TIMEOUT_NS: Final = 500_000_000  # [ns] within which an arm takes up setpoints that begin where it rests
 SETTLING_TIME: Final = 0.3  # [s] after which an arm that is held has come to rest
@@ -34,6 +34,7 @@ class Execution:
         rate: setpoints a second [Hz].
         offset: what turns the loop's clock into nanoseconds since the Unix epoch, when added [ns].
         arm: by whose limits their use is measured.
+        arm_rest: tells when the arm itself rests, which the execution waits for before it is over.
 
     Attributes:
         reason: why the execution is held, stopped or faulted, in words.
@@ -53,6 +54,7 @@ class Execution:
         rate: float,
         offset: int,
         arm: Arm,
+        arm_rest: ArmRest,
     ) -> None:
         self.id = execution
         self.program = program
@@ -66,14 +68,13 @@ class Execution:
         self.arm_stops = False
         self._rate = rate
         self._arm = arm
-        self._epoch_offset = offset
-        self._nominal_ns = 0  # of the newest setpoint, since the Unix epoch
+        self._arm_rest = arm_rest
+        self._nominal_clock = NominalClock(rate, offset)
         self._rest_setpoints = 0  # sent since the nominal motion came to rest
         self._moving_setpoints = 0  # sent since the nominal motion began
         self._final_state: ExecutorState | None = None  # in which the execution ends as soon as it is at rest
         self._sent_count = 0
-        self._rest_points: deque[tuple[int, RestPoint]] = deque(maxlen=round(REST_POINT_AGE * rate))
-        self._standstill_is_kept = False  # the first setpoint of a standstill stands for all of them
+        self._rest_points = RestPoints(rate)
         self._restarted = (-1, 0)  # from which setpoint's rest it went on, and when [ns of the loop's clock]
         self._standstill_left = STANDSTILL_SETPOINTS  # at rest, still to be sent: the arm takes up a stream from there
         self._meter = LimitMeter(rate, program.current_q, arm)
@@ -89,6 +90,11 @@ class Execution:
         return self._final_state is not None
 
     @property
+    def _is_over(self) -> bool:
+        """Whether the execution waits for nothing but the rest of the arm."""
+        return self.is_ending or self.program.finished
+
+    @property
     def is_settled(self) -> bool:
         """Whether the execution has been held for so long that the arm itself rests."""
         return self.state is ExecutorState.HELD and self._rest_setpoints > SETTLING_TIME * self._rate
@@ -96,6 +102,15 @@ class Execution:
     def arm_has_stopped(self, arm: JointState) -> bool:
         """Tell whether the arm has taken up a setpoint of the present standstill."""
         return arm.execution == self.id and arm.cycle >= self._sent_count - self._rest_setpoints
+
+    def watch_rest(self, arm: JointState | None, due: int) -> None:
+        """Look whether the arm rests, once the nominal motion does; `arm` is None while it is silent."""
+        if not self.program.at_rest:
+            self._arm_rest.begin_again()
+            return
+        cannot_follow = arm is not None and bool(self.displacement or arm.inability)
+        taken = cannot_follow or (arm is not None and self.arm_has_stopped(arm))
+        self._arm_rest.update(arm, has_taken_standstill=taken, now=due)
 
     def untaken(self, arm: JointState) -> int:
         """Return how many setpoints were sent that the arm has not taken up yet."""
@@ -119,7 +134,7 @@ class Execution:
         Returns:
             Whether it is known where that is.
         """
-        point = next((point for number, point in reversed(self._rest_points) if number <= cycle), None)
+        point = self._rest_points.find(cycle)
         if point is None:
             return False
         self.program.restart(point)
@@ -141,20 +156,20 @@ class Execution:
         self.program.set_override(share)
 
     def hold(self, reason: str) -> None:
-        """Come to rest on the path and stay there, unless the execution is being ended."""
-        if not self._final_state and not self.program.hold_requested:
+        """Come to rest on the path and stay there, unless the execution is over or being ended."""
+        if not self._is_over and not self.program.hold_requested:
             self.reason = reason
             self.program.hold()
 
     def resume(self) -> None:
-        """Go on, unless the execution is being ended."""
-        if not self._final_state:
+        """Go on, unless the execution is over or being ended."""
+        if not self._is_over:
             self.reason = ""
             self.program.resume()
 
     def reverse(self) -> None:
-        """Go back to the beginning of the segment, unless the execution is being ended."""
-        if not self._final_state:
+        """Go back to the beginning of the segment, unless the execution is over or being ended."""
+        if not self._is_over:
             self.reason = ""
             self.program.reverse()
 
@@ -166,12 +181,12 @@ class Execution:
             self.reason = self.revocation
 
     def start_detour(self, detour: Detour, start_q: Array) -> None:
-        """Begin a step or a way back, unless the execution is being ended or the nominal motion is not at rest.
+        """Begin a step or a way back, unless the execution is being ended, or the nominal motion is not at rest.
 
         Args:
             start_q: (6,) where the detour begins [rad].
         """
-        if self._final_state or not self.program.at_rest:
+        if self._is_over or not self.program.at_rest:
             return
         if self.displacement:
             self._meter = LimitMeter(self._rate, start_q, self._arm, self._meter)
@@ -202,17 +217,15 @@ class Execution:
         motion = self.program.step() if not self._standstill_left else self.program.state
         self._standstill_left = max(self._standstill_left - 1, 0)
         way_to_rest, point = self.program.way_to_rest()
-        if len(way_to_rest) or not self._standstill_is_kept:
-            self._rest_points.append((self._sent_count, point))
-        self._standstill_is_kept = not len(way_to_rest)
+        self._rest_points.add(self._sent_count, point, is_still=not len(way_to_rest))
         at_rest = self.program.at_rest
         self._meter.add(motion.position, self.program)
-        self._nominal_ns = self._nominal_time(due + self._epoch_offset, at_rest and self._rest_setpoints > 1)
+        nominal_ns = self._nominal_clock.stamp(due, at_rest=at_rest and self._rest_setpoints > 1)
         self._rest_setpoints = self._rest_setpoints + 1 if at_rest else 0
         self._moving_setpoints = 0 if at_rest else self._moving_setpoints + 1
         setpoint = Setpoint(
             cycle=self._sent_count,
-            nominal_ns=self._nominal_ns,
+            nominal_ns=nominal_ns,
             sent_ns=sent_ns,
             position=motion.position,
             velocity=motion.velocity,
@@ -225,19 +238,6 @@ class Execution:
         self._sent_count += 1
         self.state = self._current_state()
         return setpoint
-
-    def _nominal_time(self, now: int, at_rest: bool) -> int:
-        """Return the nominal time stamp of this setpoint [ns since the Unix epoch].
-
-        It advances by exactly one period per setpoint; time lost by an overslept loop is not made up. So position,
-        velocity and acceleration always belong to their times. At rest, after two setpoints of the standstill, the
-        stamp returns to the present.
-
-        Args:
-            now: present time [ns since the Unix epoch].
-            at_rest: whether two setpoints of the standstill were sent.
-        """
-        return now if at_rest or not self._sent_count else self._nominal_ns + round(1e9 / self._rate)
 
     def status(self, pacer: Pacer) -> ExecutorStatus:
         """Return the status, with the statistics of the loop that runs the execution."""
@@ -274,10 +274,18 @@ class Execution:
 
     def _current_state(self) -> ExecutorState:
         program = self.program
-        if self._final_state:
-            return self._final_state if program.at_rest else ExecutorState.STOPPING
-        if program.finished:
-            return ExecutorState.ENDED
+        if self._is_over:
+            return self._state_at_end()
         if program.held:
             return ExecutorState.HELD if program.at_rest else ExecutorState.STOPPING
         return ExecutorState.APPROACHING if program.before_path else ExecutorState.FOLLOWING
+
+    def _state_at_end(self) -> ExecutorState:
+        """Return the final state as soon as the arm itself rests; without that the end is a fault."""
+        if self.program.at_rest and self._arm_rest.is_reached:
+            return self._final_state or ExecutorState.ENDED
+        if self.program.at_rest and self._arm_rest.problem:
+            if self._final_state is not ExecutorState.FAULTED:
+                self.reason = "; ".join(filter(None, (self.reason, self._arm_rest.problem)))
+            return ExecutorState.FAULTED
+        return ExecutorState.STOPPING if self._final_state else ExecutorState.FOLLOWING

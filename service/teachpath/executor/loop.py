@@ -130,6 +130,8 @@ class Executor:
             while pending:
                 pending.popleft()(current)
             self._supervise(current, due)
+            latest = self._joint_states.latest(due)
+            current.watch_rest(latest[1] if latest and latest[0] <= self._settings.silence else None, due)
             if current.displacement or current.arm_stops:
                 current.skip_period()
             else:
@@ -147,6 +149,7 @@ class Executor:
             return
         silence, arm = latest
         if silence > self._settings.silence:
+            current.arm_stops = False  # nobody says any more that it comes to rest
             why = f"no joint state for {silence:.2f} s"
             self._hold(current, f"{why}: is the arm's driver running? resume when it is back")
             return

@@ -80,6 +80,34 @@ class Pacer:
         self._counts[min(behind // 1000, MAX_COUNTED_LATENESS_US)] += 1
 
 
+class NominalClock:
+    """Stamps the setpoints of one execution.
+
+    The stamp advances by exactly one period per setpoint; time lost by an overslept loop is not made up. So position,
+    velocity and acceleration always belong to their times.
+
+    Args:
+        rate: setpoints a second [Hz].
+        offset: what turns the loop's clock into nanoseconds since the Unix epoch, when added [ns].
+    """
+
+    def __init__(self, rate: float, offset: int) -> None:
+        self._period_ns = round(1e9 / rate)
+        self._offset = offset
+        self._newest_ns: int | None = None
+
+    def stamp(self, due: int, *, at_rest: bool) -> int:
+        """Return the nominal time of the next setpoint [ns since the Unix epoch].
+
+        Args:
+            due: when its period began [ns of the loop's clock].
+            at_rest: whether two setpoints of the standstill were sent; then the stamp returns to the present.
+        """
+        newest = self._newest_ns
+        self._newest_ns = due + self._offset if at_rest or newest is None else newest + self._period_ns
+        return self._newest_ns
+
+
 def request_realtime(priority: int = 50) -> str:
     """Ask the system to run this thread before all others; return in words whether it does."""
     try:

@@ -24,8 +24,10 @@ class ExecutorSettings:
     hand_silence: Annotated[float, Gt(0), Le(5)] = 0.15
     # [rad] tracking error of a joint at which the execution is given up
     largest_error: Annotated[float, Gt(0), Le(0.5)] = 0.05
-    # [rad/s] that the arm may still move when an execution starts
+    # [rad/s] that the arm may still move when an execution starts or has ended
     rest_speed: Annotated[float, Gt(0), Le(0.5)] = 0.05
+    # [s] from the last setpoint of a motion, in which the arm comes to rest; else its execution ends as faulted
+    rest_timeout: Annotated[float, Gt(0), Le(30)] = 2.0
     # [rad] that the arm may be off its setpoint when a held execution goes on; farther off it is brought back first
     regain: Annotated[float, Gt(0), Le(0.5)] = 0.02
     # whether to ask for real-time scheduling

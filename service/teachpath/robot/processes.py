@@ -19,7 +19,7 @@ from teachpath.robot.last_error import LastError
 
 log = logging.getLogger("teachpath")
 
-STOP_TIMEOUT: Final = 1.5  # [s] that a process may take to end before it is killed
+STOP_TIMEOUT: Final = 3.0  # [s] that a process may take to end before it is killed
 RESTART_DELAY: Final = 0.5  # [s] between a death and the next start
 MAX_DEATHS: Final = 5  # in a row, each within `SHORT_LIFE` of its start; then another start would not help
 SHORT_LIFE: Final = 60.0  # [s]
