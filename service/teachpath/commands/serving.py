@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import signal
 import socket
 import threading
@@ -24,6 +25,8 @@ SIGNALS = frozenset({signal.SIGINT, signal.SIGTERM})
 def serving(settings: Settings) -> Iterator[Station]:
     """Open a station and its web port; on leaving, everything it started has ended.
 
+    Whatever this process and those that it starts write meanwhile is for its user alone.
+
     Raises:
         Unreachable: the web port or the Zenoh endpoint is taken.
         Conflict: another service uses the data folder.
@@ -32,6 +35,7 @@ def serving(settings: Settings) -> Iterator[Station]:
 
     web = settings.web
     listener = listen(web.host, web.port)
+    umask = os.umask(0o077)
     try:
         with Station(settings) as station:
             config = uvicorn.Config(
@@ -46,6 +50,7 @@ def serving(settings: Settings) -> Iterator[Station]:
                 server.should_exit = True
                 thread.join(timeout=2.0)
     finally:
+        os.umask(umask)
         listener.close()
 
 

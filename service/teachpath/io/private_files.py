@@ -22,6 +22,25 @@ def write_private(path: Path, content: str) -> None:
         Path(name).unlink(missing_ok=True)
 
 
+def make_private(folder: Path) -> None:
+    """Make a folder where there is none, and let nobody but its owner into it.
+
+    Raises:
+        UnusableSettings: it is another user's, and others may enter it.
+    """
+    folder.mkdir(parents=True, exist_ok=True, mode=0o700)
+    mode = stat.S_IMODE(folder.stat().st_mode)
+    if os.name == "nt" or not mode & 0o077:
+        return
+    try:
+        folder.chmod(0o700)
+    except PermissionError:
+        raise UnusableSettings(
+            f"others may enter the folder {folder} (mode {mode:04o}), and it is another user's: make it 0700, or name "
+            "another with --data"
+        ) from None
+
+
 def refuse_shared(what: str, found: os.stat_result, consequence: str) -> None:
     """Raise UnusableSettings where others may read or write a file.
 

@@ -7,20 +7,22 @@ from pathlib import Path
 from types import TracebackType
 
 from teachpath.errors import Conflict
+from teachpath.io.private_files import make_private
 
 
 class StationLock:
-    """Holds the data folder; use it as a context manager.
+    """Holds the data folder, and keeps everybody else out of it; use it as a context manager.
 
     Raises:
         Conflict: another process holds it.
+        UnusableSettings: others may enter it, and it is not this user's to close.
     """
 
     def __init__(self, data_dir: Path) -> None:
         self._folder = data_dir
 
     def __enter__(self) -> StationLock:
-        self._folder.mkdir(parents=True, exist_ok=True)
+        make_private(self._folder)
         self._file = (self._folder / "service.lock").open("a")
         try:
             fcntl.flock(self._file, fcntl.LOCK_EX | fcntl.LOCK_NB)
