@@ -32,7 +32,7 @@ class Setpoint(_message.Message):
     def __init__(self, cycle: _Optional[int] = ..., nominal_ns: _Optional[int] = ..., sent_ns: _Optional[int] = ..., position: _Optional[_Iterable[float]] = ..., velocity: _Optional[_Iterable[float]] = ..., acceleration: _Optional[_Iterable[float]] = ..., gripper_closed: _Optional[bool] = ..., execution: _Optional[str] = ..., on_path: _Optional[bool] = ..., way_to_rest: _Optional[bytes] = ...) -> None: ...
 
 class JointState(_message.Message):
-    __slots__ = ("stamp_ns", "cycle", "position", "velocity", "torque", "tracking_error", "missed", "holding", "gripper_closed", "object_position", "object_orientation", "execution", "late", "stopped", "enabled", "protective_stop", "fault")
+    __slots__ = ("stamp_ns", "cycle", "position", "velocity", "torque", "tracking_error", "missed", "holding", "gripper_closed", "object_position", "object_orientation", "execution", "late", "stopped", "enabled", "protective_stop", "fault", "gripper_opening")
     STAMP_NS_FIELD_NUMBER: _ClassVar[int]
     CYCLE_FIELD_NUMBER: _ClassVar[int]
     POSITION_FIELD_NUMBER: _ClassVar[int]
@@ -50,6 +50,7 @@ class JointState(_message.Message):
     ENABLED_FIELD_NUMBER: _ClassVar[int]
     PROTECTIVE_STOP_FIELD_NUMBER: _ClassVar[int]
     FAULT_FIELD_NUMBER: _ClassVar[int]
+    GRIPPER_OPENING_FIELD_NUMBER: _ClassVar[int]
     stamp_ns: int
     cycle: int
     position: _containers.RepeatedScalarFieldContainer[float]
@@ -67,7 +68,8 @@ class JointState(_message.Message):
     enabled: bool
     protective_stop: bool
     fault: str
-    def __init__(self, stamp_ns: _Optional[int] = ..., cycle: _Optional[int] = ..., position: _Optional[_Iterable[float]] = ..., velocity: _Optional[_Iterable[float]] = ..., torque: _Optional[_Iterable[float]] = ..., tracking_error: _Optional[float] = ..., missed: _Optional[int] = ..., holding: _Optional[bool] = ..., gripper_closed: _Optional[bool] = ..., object_position: _Optional[_Iterable[float]] = ..., object_orientation: _Optional[_Iterable[float]] = ..., execution: _Optional[str] = ..., late: _Optional[int] = ..., stopped: _Optional[bool] = ..., enabled: _Optional[bool] = ..., protective_stop: _Optional[bool] = ..., fault: _Optional[str] = ...) -> None: ...
+    gripper_opening: float
+    def __init__(self, stamp_ns: _Optional[int] = ..., cycle: _Optional[int] = ..., position: _Optional[_Iterable[float]] = ..., velocity: _Optional[_Iterable[float]] = ..., torque: _Optional[_Iterable[float]] = ..., tracking_error: _Optional[float] = ..., missed: _Optional[int] = ..., holding: _Optional[bool] = ..., gripper_closed: _Optional[bool] = ..., object_position: _Optional[_Iterable[float]] = ..., object_orientation: _Optional[_Iterable[float]] = ..., execution: _Optional[str] = ..., late: _Optional[int] = ..., stopped: _Optional[bool] = ..., enabled: _Optional[bool] = ..., protective_stop: _Optional[bool] = ..., fault: _Optional[str] = ..., gripper_opening: _Optional[float] = ...) -> None: ...
 
 class ExecutorCommand(_message.Message):
     __slots__ = ("verb", "execution", "plan", "override", "length", "nodes", "lease", "who", "plan_id", "reason", "teleop", "id")

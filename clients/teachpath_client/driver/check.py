@@ -22,6 +22,8 @@ SETTLING_TIME: Final = 1.5  # [s] behind a move, in which every driver should ha
 SPEED_EXCESS: Final = 1.2  # share of the top speed that a measurement may show
 SPEED_NOISE: Final = 0.03  # [rad/s] of a measured speed at rest
 MIN_STATES: Final = 20  # joint states in a second, at rest
+OPENING_NOISE: Final = 0.002  # [m] of a measured distance between fingers
+MAX_OPENING: Final = 0.5  # [m] between fingers; more are millimetres or a share
 MAX_LATENESS: Final = 0.015  # [s] of the check itself, by which it may send a setpoint late
 MAX_ATTEMPTS: Final = 20  # at one rule, on a machine that is busy
 JUMP: Final = 0.4  # [rad] elsewhere, where an execution may not begin
@@ -88,7 +90,7 @@ class DriverCheck:
             "goes on over single setpoints that are lost": lambda: self._follows(with_losses),
             "leaves out what is no setpoint": lambda: self._follows(on_time, rubbish=True),
             "does not begin an execution that begins elsewhere": self._begins_nowhere_else,
-            "says whether the gripper is closed": self._reports_gripper,
+            "says whether the gripper is closed, and if it can, how far open": self._reports_gripper,
         }
 
     def _attempted(self, find_fault: Callable[[], str]) -> str:
@@ -147,12 +149,14 @@ class DriverCheck:
         return "" if moved <= self.tolerance else f"it moved by {moved:.3f} rad; it should have stayed where it was"
 
     def _reports_gripper(self) -> str:
+        openings: list[float | None] = []
         for closed in (True, False):
             move = self._next_move(gripper_closed=closed)
-            came = self._play(move, on_time)
-            if came[-1].gripper_closed != closed:
+            newest = self._play(move, on_time)[-1]
+            if newest.gripper_closed != closed:
                 return f"it should be {'closed' if closed else 'open'}, and is reported as the contrary"
-        return ""
+            openings.append(newest.gripper_opening if newest.HasField("gripper_opening") else None)
+        return _opening_fault(*openings)
 
     def _next_move(self, *, gripper_closed: bool = False) -> Move:
         """Return a move away from where the arm was first, or back."""
@@ -218,6 +222,20 @@ class DriverCheck:
         if not off <= self.tolerance:  # nor is it where it should be, if it is no number
             return f"it rests {off:.3f} rad from where it should, over {self.tolerance:g}"
         return f"it still moves at {speed:.2f} rad/s" if speed > SPEED_NOISE else ""
+
+
+def _opening_fault(closed: float | None, opened: float | None) -> str:
+    """Judge the distances between the fingers of an empty gripper [m]; None where it does not measure them."""
+    if closed is None and opened is None:
+        return ""
+    if closed is None or opened is None:
+        return "it says how far its fingers are apart at times only; it should do so always, or never"
+    if closed + OPENING_NOISE >= 0.0 and closed < opened <= MAX_OPENING:
+        return ""
+    return (
+        f"closed on nothing it measures {closed:g} m between its fingers, open {opened:g} m; it should be 0 m where "
+        f"they touch, more when they are open, and at most {MAX_OPENING:g} m"
+    )
 
 
 def on_time(_: int) -> list[float]:

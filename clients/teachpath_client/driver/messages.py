@@ -54,6 +54,7 @@ def joint_state(
     enabled: bool = True,
     protective_stop: bool = False,
     fault: str = "",
+    gripper_opening: float | None = None,
 ) -> bytes:
     """Return the joint state of an arm that plays setpoints and measures neither torques nor an object.
 
@@ -64,6 +65,8 @@ def joint_state(
         enabled: whether the drives are on.
         protective_stop: whether the arm's own controller has stopped it.
         fault: what is wrong with the arm, in words; empty: nothing.
+        gripper_opening: measured between the fingers [m], by which the executor sees that they hold nothing; None where
+            the arm does not measure it.
     """
     newest = player.last_reached
     return JointState(
@@ -81,6 +84,7 @@ def joint_state(
         enabled=enabled,
         protective_stop=protective_stop,
         fault=fault,
+        gripper_opening=gripper_opening,
         gripper_closed=newest.gripper_closed if newest else False,
         object_position=[0.0] * 3,
         object_orientation=[0.0] * 4,

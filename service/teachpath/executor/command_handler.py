@@ -253,6 +253,7 @@ class CommandHandler:
             prepared.program,
             plan=prepared.plan,
             confirm=prepared.confirm,
+            grasp=prepared.grasp,
             rate=self._settings.rate,
             offset=self._time.wall_ns() - self._time.monotonic_ns(),
             arm=self._programs.arm,

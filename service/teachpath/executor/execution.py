@@ -6,6 +6,7 @@ from collections.abc import Callable
 from typing import Final
 
 from teachpath.executor.arm_rest import ArmRest
+from teachpath.executor.grasp_monitor import GraspMonitor
 from teachpath.executor.limit_meter import LimitMeter
 from teachpath.executor.pacing import NominalClock, Pacer
 from teachpath.executor.rest_points import RestPoints
@@ -31,6 +32,7 @@ class Execution:
         program: what to run.
         plan: id of the plan; empty with a live hand.
         confirm: checks that the certificate of the plan still holds; raises PathRefused.
+        grasp: watches what the gripper holds.
         rate: setpoints a second [Hz].
         offset: what turns the loop's clock into nanoseconds since the Unix epoch, when added [ns].
         arm: by whose limits their use is measured.
@@ -51,6 +53,7 @@ class Execution:
         *,
         plan: str,
         confirm: Callable[[], None],
+        grasp: GraspMonitor,
         rate: float,
         offset: int,
         arm: Arm,
@@ -60,6 +63,7 @@ class Execution:
         self.program = program
         self.plan = plan
         self.confirm = confirm
+        self.grasp = grasp
         self.state = ExecutorState.APPROACHING
         self.reason = ""
         self.tracking_error = 0.0

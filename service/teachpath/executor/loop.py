@@ -160,6 +160,7 @@ class Executor:
             current.end(ExecutorState.FAULTED, f"{arm.inability}, then start again")
         elif arm.inability:
             self._hold(current, f"{arm.inability}; then resume")
+        self._judge_grasp(current, arm, due)
         if self._follows_way_to_rest(current, arm, due):
             return
         untaken = current.untaken(arm) / self._settings.rate
@@ -200,6 +201,13 @@ class Executor:
         if not current.program.hold_requested:
             self._command_handler.write_journal("the executor", CommandVerb.HOLD, reason)
         current.hold(reason)
+
+    def _judge_grasp(self, current: Execution, arm: JointState, due: int) -> None:
+        if arm.execution != current.id:
+            return
+        closed, carries = current.program.state.gripper_closed, not current.program.before_path
+        if fault := current.grasp.fault(arm, closed=closed, carries=carries, now=due):
+            current.end(ExecutorState.FAULTED, fault)
 
     def _judge_tracking(self, current: Execution, error: float) -> None:
         current.tracking_error = max(current.tracking_error, error)

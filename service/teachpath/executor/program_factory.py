@@ -8,6 +8,7 @@ from typing import Final
 
 from teachpath.errors import UnusableInput
 from teachpath.executor.certificate_check import CertificateCheck
+from teachpath.executor.grasp_monitor import GraspMonitor
 from teachpath.executor.joint_state_monitor import JointStateMonitor
 from teachpath.executor.settings import ExecutorSettings
 from teachpath.executor.teleop.hand_input import HandInput
@@ -35,12 +36,14 @@ class PreparedProgram:
         plan: id of its plan; empty with a live hand.
         scene: in which the arm moves.
         confirm: checks that the plan's certificate still holds; raises PathRefused.
+        grasp: watches what the gripper holds.
     """
 
     program: MotionProgram
     plan: str
     scene: Scene
     confirm: Callable[[], None]
+    grasp: GraspMonitor
 
 
 class ProgramFactory:
@@ -96,7 +99,8 @@ class ProgramFactory:
             dwell=self._settings.dwell,
             period=1.0 / self._settings.rate,
         )
-        return PreparedProgram(program, plan.id, plan.scene, lambda: self._certificates.confirm(plan))
+        grasp = GraspMonitor.of_plan(plan, self.arm)
+        return PreparedProgram(program, plan.id, plan.scene, lambda: self._certificates.confirm(plan), grasp)
 
     def _follow_hand(self, command: Command) -> PreparedProgram:
         request = documents.decode(TeleopRequest, command.teleop)
@@ -123,4 +127,4 @@ class ProgramFactory:
         except BaseException:
             hand.close()
             raise
-        return PreparedProgram(program, "", request.scene, lambda: None)
+        return PreparedProgram(program, "", request.scene, lambda: None, GraspMonitor())

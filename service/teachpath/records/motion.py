@@ -182,6 +182,7 @@ class JointState:
         enabled: whether the drives are on.
         protective_stop: whether the arm's own controller has stopped it.
         fault: what is wrong with the arm, in words; empty: nothing.
+        gripper_opening: measured between the fingers [m]; None where the arm does not measure it.
     """
 
     stamp_ns: int
@@ -201,6 +202,7 @@ class JointState:
     enabled: bool = True
     protective_stop: bool = False
     fault: str = ""
+    gripper_opening: float | None = None
 
     @property
     def inability(self) -> str:

@@ -11,7 +11,7 @@ import numpy as np
 from teachpath.errors import UnusableInput
 from teachpath.motion.arm.mjcf import CARRIED_BODY, GRASP_WELD, write_mjcf
 from teachpath.motion.arm.model import Arm
-from teachpath.motion.collision.grasp import grasp_fault
+from teachpath.motion.collision.grasp import HALF_OPENING, grasp_fault, grasp_width
 from teachpath.records import Array, Quaternion, Scene, Vector
 from teachpath.simulator.settings import SimulatorSettings
 
@@ -20,7 +20,11 @@ REST_SPEED: Final = 1e-3  # [rad/s and m/s] below which a body stands still
 
 
 class SimulatedArm:
-    """The physics: arm, gripper, object and obstacles, advanced by 1 ms a step."""
+    """The physics: arm, gripper, object and obstacles, advanced by 1 ms a step.
+
+    Attributes:
+        gripper_opening: between the fingers [m]: the object's width while they hold it, else all or nothing.
+    """
 
     def __init__(self, scene: Scene, arm: Arm, settings: SimulatorSettings, position: Sequence[float]) -> None:
         """Build the model of `scene`; raises UnusableInput when MuJoCo cannot."""
@@ -44,6 +48,7 @@ class SimulatedArm:
         mujoco.mj_resetData(self._model, self.data)
         self.data.qpos[:6] = self._start
         self._integral[:] = 0.0
+        self.gripper_opening = 2 * HALF_OPENING
         mujoco.mj_forward(self._model, self.data)
 
     @property
@@ -101,6 +106,7 @@ class SimulatedArm:
 
     def grasp(self) -> bool:
         """Grasp the object as it lies between the fingers; return False when the gripper does not take it there."""
+        self.gripper_opening = 0.0
         if self._object is None:
             return False
         hand, carried = self.data.body("link6"), self.data.body(CARRIED_BODY)
@@ -110,6 +116,7 @@ class SimulatedArm:
         pose[:3, 3] = rotation.T @ (carried.xpos - hand.xpos)
         if grasp_fault(self._object, pose, self._arm):
             return False
+        self.gripper_opening = grasp_width(self._object, pose)
         back, turn = np.empty(4), np.empty(4)
         mujoco.mju_negQuat(back, hand.xquat)
         mujoco.mju_mulQuat(turn, back, carried.xquat)
@@ -122,5 +129,6 @@ class SimulatedArm:
 
     def release(self) -> None:
         """Let the object go."""
+        self.gripper_opening = 2 * HALF_OPENING
         if self._object is not None:
             self.data.eq_active[self._model.equality(GRASP_WELD).id] = False

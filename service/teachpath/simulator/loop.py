@@ -230,6 +230,7 @@ class Simulator:
             missed=player.missed,
             holding=holding,
             gripper_closed=self._gripper_closed,
+            gripper_opening=self._arm.gripper_opening,
             object_position=position,
             object_orientation=orientation,
             execution=newest.execution if newest is not None else "",

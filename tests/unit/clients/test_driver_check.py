@@ -101,6 +101,29 @@ class Clumsy(PlayerDriver):
         return state
 
 
+class Measuring(PlayerDriver):
+    """Measures how far its fingers are apart [m]: closed, and open."""
+
+    openings = (0.0, 0.085)
+
+    def state(self) -> JointState:
+        state = super().state()
+        state.gripper_opening = self.openings[not state.gripper_closed]
+        return state
+
+
+class Inverted(Measuring):
+    """Takes the distance for the closure."""
+
+    openings = (0.085, 0.0)
+
+
+class InMillimetres(Measuring):
+    """Says it in another unit."""
+
+    openings = (0.0, 85.0)
+
+
 class VirtualBench:
     """Time that is no real time, and a driver in the same process."""
 
@@ -135,8 +158,9 @@ def failed(driver: "PlayerDriver | NaiveDriver") -> dict[str, str]:
     return {verdict.rule: verdict.fault for verdict in verdicts(driver) if verdict.fault}
 
 
-def test_a_driver_that_plays_by_the_player_keeps_every_rule() -> None:
-    found = verdicts(PlayerDriver())
+@pytest.mark.parametrize("driver", [PlayerDriver, Measuring])
+def test_a_driver_that_plays_by_the_player_keeps_every_rule(driver: Callable[[], PlayerDriver]) -> None:
+    found = verdicts(driver())
     assert len(found) == RULES
     assert [verdict for verdict in found if verdict.fault] == []
 
@@ -155,6 +179,8 @@ def test_a_naive_driver_fails_where_setpoints_come_late_and_where_they_are_wrong
         (Deaf, "follows a move", "from where it should"),
         (Reticent, "comes to rest on the way", "holding False, stopped False"),
         (Clumsy, "gripper", "should be closed"),
+        (Inverted, "gripper", "closed on nothing it measures 0.085 m between its fingers, open 0 m"),
+        (InMillimetres, "gripper", "open 85 m; it should be 0 m where they touch"),
     ],
 )
 def test_what_a_driver_does_wrong_is_named(driver: Callable[[], PlayerDriver], rule: str, fault: str) -> None:

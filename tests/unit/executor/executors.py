@@ -25,6 +25,7 @@ KEYS = Keys()
 MOTION = MotionSettings()
 HOME = np.array(MotionSettings().home)
 PERIOD_NS = 4_000_000
+OPENING = 0.08  # [m] between the open fingers of a gripper that measures them
 EPOCH = 1_700_000_000 * 10**9
 KEY = SigningKey(bytes(range(32)))
 STUCK = 60.0  # s, after which a test gives up
@@ -47,6 +48,7 @@ class Bench:
         self.position = position
         self.error = 0.0
         self.drives: dict[str, Any] = {}  # what the joint state says of them; they are on
+        self.closed_opening: float | None = None  # [m] between its fingers when they have closed; None: not measured
         self.pushed = 0.0  # [rad] that somebody keeps all joints off their setpoints
         self.velocity = 0.0
         self.speaking = True
@@ -123,11 +125,15 @@ class Bench:
             missed=0,
             holding=False,
             gripper_closed=bool(newest and newest.gripper_closed),
+            gripper_opening=self._opening(newest),
             object_position=(0.0, 0.0, 0.0),
             object_orientation=(1.0, 0.0, 0.0, 0.0),
             execution=newest.execution if newest else "",
             **self.drives,
         )
+
+    def _opening(self, newest: Setpoint | None) -> float | None:
+        return self.closed_opening if self.closed_opening is None or (newest and newest.gripper_closed) else OPENING
 
     def command(self, verb: str, execution: str = "run-1", **given: object) -> ExecutorStatus:
         return wire.decode_status(

@@ -13,6 +13,7 @@ from teachpath.io.memory_bus import MemoryBus
 from teachpath.motion.arm.kinematics import downward_poses, inverse_kinematics, link_frames, tool_pose
 from teachpath.motion.arm.model import Arm
 from teachpath.motion.collision.builtin_scenes import empty_scene, paper_scene
+from teachpath.motion.collision.grasp import HALF_OPENING
 from teachpath.motion.settings import MotionSettings
 from teachpath.records import ExecutorStatus, JointState, Scene, Setpoint, Shape
 from teachpath.simulator.loop import Simulator
@@ -235,12 +236,15 @@ def test_carries_the_object_only_when_gripped_near_it() -> None:
         states = bench.move(above((x + offset, y, z + 0.15)), 1.0, closed=True)
         lifted = states[-1].object_position[2] - z
         assert states[-1].gripper_closed
+        assert states[-1].gripper_opening == pytest.approx(0.04 if carried else 0.0, abs=1e-3)
         assert lifted == pytest.approx(0.15 if carried else 0.0, abs=2e-3)
         if carried:
             tool = tool_pose(states[-1].position, ARM)[:3, 3]
             assert np.allclose(states[-1].object_position, tool, atol=2e-3)
+            assert states[0].gripper_opening == pytest.approx(0.04, abs=1e-3)
             dropped = bench.move(above((x + offset, y, z + 0.15)), 1.0, closed=False)
             assert dropped[-1].object_position[2] == pytest.approx(z, abs=2e-3)  # it falls back onto the table
+            assert dropped[-1].gripper_opening == pytest.approx(2 * HALF_OPENING)
 
 
 def test_an_object_without_a_table_falls_onto_the_floor_of_its_scene() -> None:

@@ -78,6 +78,7 @@ def encode_state(state: JointState) -> bytes:
         enabled=state.enabled,
         protective_stop=state.protective_stop,
         fault=state.fault,
+        gripper_opening=state.gripper_opening,
     ).SerializeToString()
 
 
@@ -107,6 +108,7 @@ def decode_state(payload: bytes) -> JointState:
         enabled=m.enabled,
         protective_stop=m.protective_stop,
         fault=m.fault,
+        gripper_opening=m.gripper_opening if m.HasField("gripper_opening") else None,
     )
 
 

@@ -37,8 +37,8 @@ def grasp_fault(shape: Shape, pose: Array, arm: Arm, *, margin: float = 0.0) -> 
         arm: whose gripper closes.
         margin: by which the rule must be exceeded [m].
     """
-    extent, centre = shape_extent(shape), pose[:3, 3]
-    high, low = centre + extent.along(pose[:3, :3]), centre - extent.along(-pose[:3, :3])
+    centre = pose[:3, 3]
+    low, high = _bounds(shape, pose)
     room = HALF_OPENING - margin
     if high[1] - low[1] > 2 * room:
         return f"{shape.name} is {1000 * (high[1] - low[1]):.0f} mm wide there, the fingers open {2000 * room:.0f} mm"
@@ -57,6 +57,17 @@ def grasp_fault(shape: Shape, pose: Array, arm: Arm, *, margin: float = 0.0) -> 
             if beyond > 0:
                 return f"the fingers end {1000 * beyond:.1f} mm before the middle of {shape.name} {where}"
     return ""
+
+
+def grasp_width(shape: Shape, pose: Array) -> float:
+    """Return how far an object keeps the fingers apart [m]; `pose` (4, 4) is to the flange's frame from the object."""
+    low, high = _bounds(shape, pose)
+    return float(high[1] - low[1])
+
+
+def _bounds(shape: Shape, pose: Array) -> tuple[Array, Array]:
+    extent, centre = shape_extent(shape), pose[:3, 3]
+    return centre - extent.along(-pose[:3, :3]), centre + extent.along(pose[:3, :3])
 
 
 def shape_extent(shape: Shape) -> Extent:
