@@ -16,32 +16,41 @@ from teachpath.errors import Unreachable, UnusableSettings
 from teachpath.io.bus import Bus, BusSettings, listen_on_bus, open_bus
 from teachpath.io.bus_access import BusAccess, granted
 from teachpath.io.bus_logins import local_login, new_password, prepare_access
+from teachpath_proto.keys import Keys
 from teachpath_proto.logins import Login, Role, find_login, logins_path, read_logins, write_logins
 from tests.contract.test_bus import free_endpoint
 
 PREFIX = "teachpath/station"
-KEYS = [
-    f"{PREFIX}/{key}"
-    for key in (
-        "executor/command",
-        "executor/stop",
-        "executor/lease",
-        "executor/status",
-        "executor/journal",
-        "robot/puma560/setpoint",
-        "robot/puma560/state",
-        "robot/puma560/reset",
-        "trackers/glove/samples",
-        "trackers/glove/feedback",
-        "recorder/start",
-        "recorder/status",
-        "jobs/job-1",
-        "station/certificate",
-        "elsewhere",
-    )
-]
-STOP = f"{PREFIX}/executor/stop"
 MEMBERS = (Role.EXECUTOR, Role.ROBOT, Role.TRACKER, Role.OPERATOR, Role.VIEWER)
+# Who may put (p), hear (h), serve (s) and ask (a) on which key; nobody deletes.
+TABLE = """
+key                      executor  robot  tracker  operator  viewer
+executor/command         s         -      -        a         -
+executor/stop            hs        pa     pa       pa        pa
+executor/lease           s         -      -        a         -
+executor/status          p         h      -        h         h
+executor/journal         p         -      -        h         h
+robot/puma560/setpoint   p         h      -        h         h
+robot/puma560/state      h         p      -        h         h
+robot/puma560/reset      a         s      -        -         -
+trackers/glove/samples   h         -      p        h         h
+trackers/glove/feedback  -         -      h        h         h
+recorder/start           -         -      a        a         -
+recorder/stop            -         -      a        a         -
+recorder/pause           -         -      a        a         -
+recorder/resume          -         -      a        a         -
+recorder/discard         -         -      a        a         -
+recorder/restore         -         -      a        a         -
+recorder/amend           -         -      a        a         -
+recorder/status          -         -      a        a         a
+jobs/job-1               -         -      -        h         h
+station/certificate      a         -      -        -         -
+elsewhere                -         -      -        -         -
+"""
+VERBS = {"p": "put", "h": "subscribe", "s": "serve", "a": "ask"}
+ROWS = [line.split() for line in TABLE.strip().splitlines()]
+KEYS = [f"{PREFIX}/{key}" for key, *_ in ROWS[1:]]
+STOP = f"{PREFIX}/executor/stop"
 WAIT = 30.0  # [s] that only bounds a hang
 DENIED = 1.0  # [s] until a question that nobody lets through is given up
 
@@ -67,8 +76,43 @@ def member(request: pytest.FixtureRequest, station: tuple[BusSettings, BusAccess
 
 
 def allowed(login: Login, verb: str) -> set[str]:
+    """Return the keys on which the table gives a login's role a verb."""
+    column = ROWS[0].index(login.role)
+    return {key for key, row in zip(KEYS, ROWS[1:], strict=True) if verb in map(VERBS.get, row[column])}
+
+
+def test_the_table_has_every_key_and_every_role() -> None:
+    keys = Keys(PREFIX)
+    named = {value for value in vars(keys).values() if value != PREFIX and "*" not in value}
+    named |= {keys.samples("glove"), keys.feedback("glove"), keys.job("job-1")}
+    named |= {make("puma560") for make in (keys.setpoint, keys.state, keys.reset)}
+    assert named | {f"{PREFIX}/elsewhere"} == set(KEYS)
+    assert ROWS[0][1:] == list(MEMBERS)
+    assert set(MEMBERS) == set(Role) - {Role.SERVICE, Role.ROUTER}
+
+
+@pytest.mark.parametrize("role", MEMBERS)
+@pytest.mark.parametrize("verb", VERBS.values())
+def test_what_is_granted_is_the_table(role: Role, verb: str) -> None:
+    login = Login(role.value, "", role)
     patterns = [zenoh.KeyExpr(key) for key in granted(login, PREFIX).get(verb, [])]
-    return {key for key in KEYS if any(pattern.includes(zenoh.KeyExpr(key)) for pattern in patterns)}
+    assert {key for key in KEYS if any(p.includes(zenoh.KeyExpr(key)) for p in patterns)} == allowed(login, verb)
+
+
+def test_a_part_shows_that_it_is_alive_under_its_own_kind_alone(
+    station: tuple[BusSettings, BusAccess, Bus], member: tuple[Login, Bus]
+) -> None:
+    (_, _, service), (login, bus) = station, member
+    kinds = ("executor", "robot", "tracker")
+    seen: queue.Queue[str] = queue.Queue()
+    handle = service.watch(f"{PREFIX}/alive/**", lambda key, alive: seen.put(key) if alive else None)
+    for kind in kinds:
+        bus.announce(f"{PREFIX}/alive/{kind}/it")
+    came = {seen.get(timeout=WAIT)} if login.role in kinds else set()
+    time.sleep(0.1)  # whatever else would come, in threads of their own
+    came |= {seen.get() for _ in range(seen.qsize())}
+    assert came == {f"{PREFIX}/alive/{kind}/it" for kind in kinds if kind == login.role}
+    handle.close()
 
 
 def test_puts_arrive_from_those_who_may(station: tuple[BusSettings, BusAccess, Bus], member: tuple[Login, Bus]) -> None:
