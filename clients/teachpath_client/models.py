@@ -332,7 +332,7 @@ class ExecutorStatus:
     limit_place: str = ""
     duration: float = 0.0
     length: float = 0.0
-    stretch: str = ""
+    activity: str = ""
     operator: str = ""
     asking: str = ""
     scheduling: str = ""
@@ -568,8 +568,8 @@ class Plan:
         lengths: (n,) arc length of the nodes [m], from 0, strictly increasing.
         joints: (n, 6) configurations at the nodes [rad]; between them a quintic spline runs, on even parameters
             from 0 to 1.
-        pace: (m,) coefficients of the square of the parameter's rate at full speed, a quadratic spline on even
-            intervals [1/s^2].
+        squared_rates: (m,) coefficients of the square of the parameter's rate at full speed, a quadratic spline
+            on even intervals [1/s^2].
         limits: (3, 6) of the joints' speed [rad/s], acceleration [rad/s^2] and jerk [rad/s^3] while they follow
             the path, at any override.
         above_start: (6,) configuration above the start, from where the object is grasped.
@@ -584,7 +584,7 @@ class Plan:
     scene: Scene
     lengths: list[float]
     joints: list[list[float]]
-    pace: list[float]
+    squared_rates: list[float]
     limits: list[list[float]]
     above_start: list[float]
     above_goal: list[float]

@@ -99,9 +99,9 @@ def _path(name: str, curve: Curve, repeats: int) -> _Found:
     seconds = []
     for _ in range(repeats):
         began = time.perf_counter()
-        path, pace = time_tool_path(found, candidate, ARM.limits.motion, rate=RATE)
+        path, squared_rates = time_tool_path(found, candidate, ARM.limits.motion, rate=RATE)
         seconds.append(time.perf_counter() - began)
-    track = time_joint_path(path, pace, ARM.limits.motion)
+    track = time_joint_path(path, squared_rates, ARM.limits.motion)
     label = f"{name}, {found.lengths[-1]:.2f} m"
     bound = duration_lower_bound(found, candidate, ARM.limits.motion)
     stopped = _stops(track)
@@ -126,8 +126,8 @@ def _path(name: str, curve: Curve, repeats: int) -> _Found:
 
 def _bounds(label: str, found: ToolPath, candidate: Candidate, bound: float) -> list[Figure]:
     """Return what the jerk limit and the reserve cost, and what a scheme with one box of limits takes."""
-    path, pace = time_tool_path(found, candidate, ARM.limits.motion, rate=RATE, margins=NO_MARGINS)
-    whole = time_joint_path(path, pace, ARM.limits.motion).duration
+    path, squared_rates = time_tool_path(found, candidate, ARM.limits.motion, rate=RATE, margins=NO_MARGINS)
+    whole = time_joint_path(path, squared_rates, ARM.limits.motion).duration
     free = ARM.limits.motion.scaled(1.0, 1.0, 20.0)
     easy = time_joint_path(*time_tool_path(found, candidate, free, rate=RATE, margins=NO_MARGINS), free)
     figures = (

@@ -8,6 +8,7 @@ from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 import sqlalchemy as sa
 from alembic import command
@@ -21,7 +22,7 @@ from teachpath.errors import Conflict, NotFound
 from teachpath.io.documents import decode_demonstration, encode
 from teachpath.io.store.settings import StoreSettings
 from teachpath.io.store.store import Store
-from teachpath.io.store.tables import Base, DemonstrationRow, JobRow, RunTable
+from teachpath.io.store.tables import Base, DemonstrationRow, ExecutionTable, JobRow, PlanRow, RunTable
 from teachpath.records import (
     Calibration,
     Deviation,
@@ -126,6 +127,23 @@ def test_a_migration_renames_what_demonstrations_say_of_their_samples(store: Sto
     with migrating(url, command.upgrade, "head"):
         pass
     assert store.demonstration(now.id) == now
+
+
+def test_a_migration_renames_what_plans_and_executions_say_of_motion(store: Store, url: str) -> None:
+    store.add_job(a_job("plan-1", kind="plan"))
+    plan, status = store.finish_planning("plan-1", a_plan()), ExecutorStatus(activity="on the path")
+    store.put_execution("e", plan, status)
+    now = store.plan(plan)
+    with migrating(url, command.downgrade, "0007") as connection:
+        (before,) = connection.scalars(sa.select(PlanRow.document))
+        (execution,) = connection.scalars(sa.select(ExecutionTable.document))
+    assert before["pace"] == now.squared_rates.tolist()
+    assert "squared_rates" not in before
+    assert (execution["stretch"], "activity" in execution) == ("on the path", False)
+    with migrating(url, command.upgrade, "head"):
+        pass
+    assert store.execution("e").status == status
+    assert np.array_equal(store.plan(plan).squared_rates, now.squared_rates)
 
 
 # tasks and demonstrations

@@ -79,8 +79,10 @@ def _duration(curve: Curve) -> float | None:
     able = [candidate for candidate in enumerate_candidates(way, ARM, settings) if is_usable(candidate, settings)]
     if not able:
         return None
-    path, pace = time_tool_path(way, max(able, key=lambda c: c.min_singular_value), ARM.limits.motion, rate=RATE)
-    return float(time_joint_path(path, pace, ARM.limits.motion).duration)
+    path, squared_rates = time_tool_path(
+        way, max(able, key=lambda c: c.min_singular_value), ARM.limits.motion, rate=RATE
+    )
+    return float(time_joint_path(path, squared_rates, ARM.limits.motion).duration)
 
 
 def summary(outcomes: Sequence[tuple[str, dict[int, Row] | None]]) -> dict[str, Any]:

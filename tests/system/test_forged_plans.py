@@ -142,7 +142,7 @@ def of_another_station(plan: Plan) -> Plan:
 
 
 FORGED: dict[str, Callable[[Plan], Plan]] = {
-    "faster": lambda plan: certified(plan, pace=4.0 * plan.pace),
+    "faster": lambda plan: certified(plan, squared_rates=4.0 * plan.squared_rates),
     "other joints": lambda plan: certified(plan, joints=plan.joints + 1e-9),
     "without obstacles": lambda plan: certified(plan, scene=Scene(plan.scene.name)),
     "under another id": lambda plan: replace(plan, id="plan-000000000000"),

@@ -15,7 +15,7 @@ export const STATE_LABELS = {
 };
 
 /** @param {ExecutorStatus} status */
-export const isTeleoperated = ({ stretch }) => stretch.startsWith("mirroring");
+export const isTeleoperated = ({ activity }) => activity.startsWith("mirroring");
 
 /**
  * @param {ExecutorStatus | undefined} status of the execution that runs, else of the last one
@@ -42,8 +42,8 @@ const stateLine = (...children) => element("p", { class: "state" }, children);
  * @param {ExecutorStatus} status
  */
 function stateText(status) {
-  const { state, stretch } = status;
-  if (state === "held" && stretch) return stretch.startsWith("on ") ? `Held ${stretch}` : `Held while ${stretch}`;
+  const { state, activity } = status;
+  if (state === "held" && activity) return activity.startsWith("on ") ? `Held ${activity}` : `Held while ${activity}`;
   if (state === "following" && isTeleoperated(status)) return "Following a live hand";
   return STATE_LABELS[state] ?? capitalize(state);
 }

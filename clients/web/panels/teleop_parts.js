@@ -65,8 +65,8 @@ export function refill(select, names) {
  * @param {ExecutorStatus} status
  * @param {import("../hand/teleop_session.js").TeleopSession} session
  */
-export function teleopText({ state, reason, stretch }, { usesPageHand, usesHeadset }) {
-  const hindrance = stretch.split(": ").slice(1).join(": ");
+export function teleopText({ state, reason, activity }, { usesPageHand, usesHeadset }) {
+  const hindrance = activity.split(": ").slice(1).join(": ");
   if (state === "following") return hindrance ? `The arm follows. ${capitalize(hindrance)}.` : "The arm follows.";
   if (state === "stopping") return "Let go: the arm comes to rest.";
   if (!reason.startsWith(WAITING_FOR_CLUTCH)) return `The arm is held: ${reason}.`;

@@ -264,7 +264,7 @@ class Execution:
             tracking_error=self.tracking_error,
             duration=self._sent_count / self._rate,
             length=self.program.arc_length,
-            stretch=self.program.activity + (LATE_ARM_SUFFIX if self.program.waiting else ""),
+            activity=self.program.activity + (LATE_ARM_SUFFIX if self.program.waiting else ""),
             hand_latency_p50_us=latency_p50,
             hand_latency_p99_us=latency_p99,
             ending=self.is_ending,

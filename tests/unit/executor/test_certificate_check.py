@@ -50,7 +50,7 @@ def unsigned(plan: Plan) -> Plan:
 @pytest.mark.parametrize(
     ("forge", "sentence"),
     [
-        (lambda plan: replace(plan, pace=4.0 * plan.pace), "the plan or its certificate was changed"),
+        (lambda plan: replace(plan, squared_rates=4.0 * plan.squared_rates), "the plan or its certificate was changed"),
         (unsigned, "is not signed: it was made outside a station"),
         (lambda plan: signed(unsigned(plan), issued_ns=EPOCH - 31 * DAY), "expired 1.00 days ago"),
         (lambda plan: signed(unsigned(plan), key=SigningKey(b"another station's key, 32 bytes.")), "another station"),

@@ -198,7 +198,7 @@ def test_an_arm_that_was_pushed_away_stays_there_and_is_brought_back(bench: Benc
     np.testing.assert_allclose(again[0].position, held[-1].position + 0.1, atol=1e-3)
     assert within_limits(held)
     assert within_limits(again)
-    assert "on the way back to the path" in {s.stretch for s in bench.statuses}
+    assert "on the way back to the path" in {s.activity for s in bench.statuses}
     assert min(np.abs(s.position - held[-1].position).max() for s in again) < 1e-9
     assert bench.statuses[-1].progress == pytest.approx(1.0)
 
@@ -258,7 +258,7 @@ def test_an_arm_that_cannot_keep_up_is_waited_for_so_that_a_stop_does_not_wait(
     bench.when(ended, bench.stop.set)
     bench.run()
     assert max(late) * PERIOD_NS < 0.9e9  # 0.3 s and what it takes to come to rest
-    assert any("waiting for the arm" in status.stretch for status in bench.statuses) == (pace < 0.9)
+    assert any("waiting for the arm" in status.activity for status in bench.statuses) == (pace < 0.9)
     assert not any(status.state in ("held", "faulted") for status in bench.statuses)
     assert bench.statuses[-1].progress == pytest.approx(1.0)
     assert within_limits(bench.setpoints)

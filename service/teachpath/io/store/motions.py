@@ -25,6 +25,7 @@ from teachpath.records import ExecutorStatus, JointState, JournalEntry, LearnedP
 
 HEADER, FACTS = "teachpath-motion", "facts"  # names of the metadata
 CHUNK: Final = 64 * 1024  # bytes; small chunks lose less when a file is cut off
+FORMER_NAMES: Final = {"pace": "squared_rates"}  # what files that were recorded earlier call the fields of a plan
 TOPICS: Final[dict[str, tuple[Any, Any]]] = {  # message, decoder
     "setpoints": (message_types.SETPOINT, wire.decode_setpoint),
     "states": (message_types.JOINT_STATE, wire.decode_state),
@@ -167,7 +168,9 @@ def _messages(stream: BinaryIO, motion: Motion) -> Any:
         if number == 0 and not isinstance(record, Header):
             raise UnusableRecording("it has no MCAP header")
         if isinstance(record, Metadata) and record.name == HEADER:
-            motion.header = documents.decode(MotionHeader, record.metadata["header"].encode())
+            motion.header = documents.decode(
+                MotionHeader, record.metadata["header"].encode(), former_names=FORMER_NAMES
+            )
         elif isinstance(record, Metadata) and record.name == FACTS:
             motion.facts = dict(record.metadata)
         elif isinstance(record, Channel) and record.topic in TOPICS:

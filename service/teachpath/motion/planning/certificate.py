@@ -24,7 +24,7 @@ def plan_trajectory(plan: Plan) -> TimedTrajectory:
     path = JointPath(np.linspace(0.0, 1.0, len(plan.lengths)), plan.lengths, plan.joints)
     tool_speed = np.inf if plan.tool_speed is None else plan.tool_speed
     speed, acceleration, jerk = plan.limits
-    return time_joint_path(path, plan.pace, MotionLimits(speed, acceleration, jerk, tool_speed))
+    return time_joint_path(path, plan.squared_rates, MotionLimits(speed, acceleration, jerk, tool_speed))
 
 
 def certify(

@@ -91,7 +91,7 @@ def _certified_plan(
         scene=model.scene,
         lengths=timed.joints.lengths,
         joints=timed.joints.joints,
-        pace=timed.pace,
+        squared_rates=timed.squared_rates,
         limits=np.stack([timed.limits.speed, timed.limits.acceleration, timed.limits.jerk]),
         tool_speed=model.arm.tool_speed,
         above_start=above_start,

@@ -35,14 +35,14 @@ class TimedPath:
 
     Attributes:
         joints: by a parameter from 0 to 1.
-        pace: coefficients of the square of the parameter's rate (see `timed_trajectory.time_joint_path`) [1/s^2].
+        squared_rates: coefficients of the parameter's squared rate (see `timed_trajectory.time_joint_path`) [1/s^2].
         limits: that the motion keeps.
         trajectory: the motion at full speed.
         torque_use: the largest use of a motor's torque.
     """
 
     joints: JointPath
-    pace: Array
+    squared_rates: Array
     limits: MotionLimits
     trajectory: TimedTrajectory
     torque_use: Extreme
@@ -59,14 +59,14 @@ def time_within_torques(
     arm = candidate.branch.arm
     limits = arm.limits.motion.scaled(*[settings.path_share] * 3)
     for _ in range(MAX_RETIMINGS):
-        joints, pace = time_tool_path(tool_path, candidate, limits, rate=settings.rate)
-        trajectory = time_joint_path(joints, pace, limits)
+        joints, squared_rates = time_tool_path(tool_path, candidate, limits, rate=settings.rate)
+        trajectory = time_joint_path(joints, squared_rates, limits)
         rows = trajectory.table[::TORQUE_STRIDE]
         q, velocity = rows[:, 0, :6], rows[:, 1, :6]
         worst = largest_use(dynamics.torque_bounds(q, velocity, limits.acceleration), rows[:, 0, 6], arm.limits.torque)
         if worst.value <= 1.0:
             _check_tolerance(tool_path, joints, arm, settings)
-            return TimedPath(joints, pace, limits, trajectory, worst)
+            return TimedPath(joints, squared_rates, limits, trajectory, worst)
         left = dynamics.acceleration_share(q, velocity, limits.acceleration)
         if left < MIN_ACCELERATION_SHARE:
             break

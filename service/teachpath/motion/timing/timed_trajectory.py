@@ -23,7 +23,7 @@ from teachpath.motion.timing.jerk_limited_topp import quadratic_basis
 MAX_TABLE_STEP: Final = 0.0005  # s, between two rows of a table
 MAX_TABLE_ROWS: Final = 120_000  # of a longer trajectory, the rows are farther apart
 SPEED_STRIDE: Final = 4  # rows from one to the next whose speed is computed
-SUBINTERVALS: Final = 20  # of each interval of the pace, for the integration of time
+SUBINTERVALS: Final = 20  # of each interval of the squared rates, for the integration of time
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,28 +73,30 @@ class TimedTrajectory:
         return speed_bounds(rows[:, :, :6], SPEED_STRIDE * self.step, arm)
 
 
-def time_joint_path(path: JointPath, pace: Array, limits: MotionLimits) -> TimedTrajectory:
+def time_joint_path(path: JointPath, squared_rates: Array, limits: MotionLimits) -> TimedTrajectory:
     """Return the trajectory along a path whose parameter sigma goes from 0 to 1 at (d sigma / dt)^2 = x(sigma).
 
     Args:
         path: of the joints, as a function of sigma.
-        pace: coefficients of x (see `jerk_limited_topp.quadratic_basis`) [1/s^2].
+        squared_rates: coefficients of x (see `jerk_limited_topp.quadratic_basis`) [1/s^2].
         limits: that the arm must keep.
     """
-    intervals = len(pace) - 2
+    intervals = len(squared_rates) - 2
     grid = np.linspace(0.0, 1.0, SUBINTERVALS * intervals + 1)
     nodes, weights = np.polynomial.legendre.leggauss(4)
     half = 0.5 / (SUBINTERVALS * intervals)
     inner = ((grid[:-1] + half)[:, None] + half * nodes).ravel()
-    pieces = half * ((1.0 / np.sqrt(_pace(pace, inner)[0])).reshape(-1, 4) @ weights)
+    pieces = half * ((1.0 / np.sqrt(_squared_rate_at(squared_rates, inner)[0])).reshape(-1, 4) @ weights)
     elapsed = np.concatenate([[0.0], np.cumsum(pieces)])
-    clock = CubicHermiteSpline(grid, elapsed, 1.0 / np.sqrt(_pace(pace, grid)[0]))
+    clock = CubicHermiteSpline(grid, elapsed, 1.0 / np.sqrt(_squared_rate_at(squared_rates, grid)[0]))
     count = min(int(np.ceil(elapsed[-1] / MAX_TABLE_STEP)), MAX_TABLE_ROWS)
     instants = np.linspace(0.0, elapsed[-1], count + 1)
     sigma = np.interp(instants, elapsed, grid)
     for _ in range(3):
-        sigma = np.clip(sigma - (clock(sigma) - instants) * np.sqrt(_pace(pace, sigma)[0]), 0.0, 1.0)
-    x, slope, curvature = _pace(pace, sigma)
+        sigma = np.clip(
+            sigma - (clock(sigma) - instants) * np.sqrt(_squared_rate_at(squared_rates, sigma)[0]), 0.0, 1.0
+        )
+    x, slope, curvature = _squared_rate_at(squared_rates, sigma)
     one, two, three = np.sqrt(x), slope / 2, curvature * np.sqrt(x) / 2  # d sigma / dt and so on
     return TimedTrajectory(
         apply_chain_rule([path(sigma, k) for k in range(4)], one, two, three), float(elapsed[-1]) / count, limits
@@ -117,8 +119,8 @@ def apply_chain_rule(values: list[Array], one: Array, two: Array, three: Array) 
     )
 
 
-def _pace(pace: Array, sigma: Array) -> tuple[Array, Array, Array]:
-    first, *shares = quadratic_basis(sigma, len(pace) - 2)
-    near = pace[first[:, None] + np.arange(3)]
+def _squared_rate_at(squared_rates: Array, sigma: Array) -> tuple[Array, Array, Array]:
+    first, *shares = quadratic_basis(sigma, len(squared_rates) - 2)
+    near = squared_rates[first[:, None] + np.arange(3)]
     x, slope, curvature = (np.einsum("ij,ij->i", near, share) for share in shares)
     return x, slope, curvature

@@ -37,8 +37,10 @@ FILTER_WINDOW: Final = 0.05  # s, of the filter that smooths jumps of accelerati
 GUESS_KNOT_SPACING: Final = 0.05  # s, between two knots of the smoothed guess
 MIN_GUESS_INTERVALS: Final = 24  # of the smoothed guess
 MAX_GUESS_INTERVALS: Final = 80
-RATE_INTERVALS: Final = 10  # of the pace, for each interval of the guess
-KINKED_RATE_INTERVALS: Final = 16  # the same for a curve with kinks of acceleration, which the pace must follow
+RATE_INTERVALS: Final = 10  # of the squared rates, for each interval of the guess
+KINKED_RATE_INTERVALS: Final = (
+    16  # the same for a curve with kinks of acceleration, which the squared rates must follow
+)
 SMOOTH_DERIVATIVES: Final = 3  # continuous derivatives of a curve without such kinks
 MIN_SPLINE_NODES: Final = 400  # of the joints' spline
 SETPOINT_PHASES: Final = (0.0, 0.25, 0.5, 0.75)  # of the first setpoint, in control periods
@@ -73,15 +75,15 @@ def time_tool_path(
     u = np.asarray(warp(sigma), dtype=np.float64)
     path = JointPath(sigma, tool_path.arc.lengths(u), configurations(tool_path, candidate, u))
     arm = candidate.branch.arm
-    pace = minimize_duration(path, limits, intervals, margins, arm=arm)
+    squared_rates = minimize_duration(path, limits, intervals, margins, arm=arm)
     for _ in range(MAX_TIME_SCALINGS):
-        factor = _time_stretch(time_joint_path(path, pace, limits), rate, margins, arm)
-        pace = pace / factor**2
+        factor = _time_stretch(time_joint_path(path, squared_rates, limits), rate, margins, arm)
+        squared_rates = squared_rates / factor**2
         if abs(factor - 1.0) < STRETCH_TOLERANCE:
             break
-    if not np.all(np.isfinite(pace)):
+    if not np.all(np.isfinite(squared_rates)):
         raise PathRefused("the path turns too sharply for the joints; smooth it by moving its control points apart")
-    return path, pace
+    return path, squared_rates
 
 
 def duration_lower_bound(tool_path: ToolPath, candidate: Candidate, limits: MotionLimits) -> float:

@@ -76,7 +76,7 @@ def test_the_block_is_taken_carried_through_the_clutch_and_put_down() -> None:
     see("carried on")
     bench.go(0.0, 0.0, -0.25, seconds=1.0)
     see("pressed down")
-    bench.when(lambda: True, lambda: seen.update({"why": np.array(bench.statuses[-1].stretch)}))
+    bench.when(lambda: True, lambda: seen.update({"why": np.array(bench.statuses[-1].activity)}))
     bench.go(0.0, 0.0, 0.0, buttons=CLUTCH | 1, seconds=0.2)
     bench.go(0.0, 0.0, 0.0, seconds=0.2)
     bench.go(0.0, 0.0, 0.25)

@@ -23,7 +23,7 @@ SETTINGS = MotionSettings()
 def slower() -> list[Plan]:
     """One plan at several paces; the tables of some end a last bit away from the length of the path."""
     made = plan(way(MIDDLE), paper_scene())
-    paces = [replace(made, pace=made.pace * share) for share in np.linspace(0.5, 1.0, 20)]
+    paces = [replace(made, squared_rates=made.squared_rates * share) for share in np.linspace(0.5, 1.0, 20)]
     timed = [replace(one, duration=plan_trajectory(one).duration) for one in paces]
     return [replace(one, certificate=replace(one.certificate, digest=digest(one, ARM))) for one in timed]
 

@@ -60,7 +60,7 @@ def test_a_plan_survives_json_and_any_change_of_it_is_noticed(middle: Plan) -> N
     for changed in (
         replace(back, joints=bent),
         replace(back, scene=moved),
-        replace(back, pace=back.pace * 1.01),
+        replace(back, squared_rates=back.squared_rates * 1.01),
         replace(back, limits=back.limits * 1.01),
         replace(back, duration=back.duration * 0.99),
         replace(back, path_version=2),

@@ -28,7 +28,7 @@ Place = tuple[str | int, ...]
 @pytest.fixture(scope="module")
 def plan(middle: Plan) -> Plan:
     """A signed plan of few numbers: all of them can be changed, one after the other."""
-    few = replace(middle, lengths=middle.lengths[:3], joints=middle.joints[:3], pace=middle.pace[:3])
+    few = replace(middle, lengths=middle.lengths[:3], joints=middle.joints[:3], squared_rates=middle.squared_rates[:3])
     certified = replace(few, certificate=replace(few.certificate, digest=digest(few, ARM)))
     lab = Calibration("lab@1", scale=0.5, offset=(0.1, 0.2, 0.3))
     scope = CalibrationScope((lab,), (replace(lab, name="lab@2"),))
@@ -99,7 +99,7 @@ def test_every_single_change_of_a_signed_plan_is_refused(plan: Plan) -> None:
 def test_rows_cannot_be_left_out_doubled_or_exchanged(plan: Plan, data: st.DataObject) -> None:
     text = encode(plan)
     document = json.loads(text)
-    name = data.draw(st.sampled_from(["lengths", "joints", "pace", "limits", "above_start", "above_goal"]))
+    name = data.draw(st.sampled_from(["lengths", "joints", "squared_rates", "limits", "above_start", "above_goal"]))
     rows = data.draw(st.lists(st.sampled_from(document[name]), max_size=len(document[name]) + 1))
     assert (rows == document[name]) != is_refused(with_value(text, (name,), rows))
 
@@ -126,7 +126,7 @@ def test_a_plan_without_a_signature_is_refused(plan: Plan) -> None:
 
 
 def test_a_digest_that_was_computed_again_helps_nobody(plan: Plan) -> None:
-    faster = replace(plan, pace=4.0 * plan.pace)
+    faster = replace(plan, squared_rates=4.0 * plan.squared_rates)
     forged = replace(faster, certificate=replace(faster.certificate, digest=digest(faster, ARM)))
     assert "not one of this station's" in refusal(forged)
 
@@ -173,7 +173,7 @@ def test_a_certificate_holds_from_its_issue_to_its_expiry(plan: Plan) -> None:
 
 def test_what_was_not_certified_is_not_signed(plan: Plan) -> None:
     with pytest.raises(PathRefused, match="changed since it was certified"):
-        sign_plan(replace(plan, pace=2.0 * plan.pace), ARM, SETTINGS, KEY, issued_ns=EPOCH)
+        sign_plan(replace(plan, squared_rates=2.0 * plan.squared_rates), ARM, SETTINGS, KEY, issued_ns=EPOCH)
 
 
 def test_a_key_is_not_shown_and_not_short() -> None:

@@ -33,8 +33,8 @@ def on_a_branch(curve: Curve) -> tuple[ToolPath, Candidate]:
 def fastest(curve: Curve, limits: MotionLimits = ARM.limits.motion) -> tuple[TimedTrajectory, float]:
     """The track along a curve and the lower bound of its duration."""
     found, candidate = on_a_branch(curve)
-    path, pace = time_tool_path(found, candidate, limits, rate=RATE)
-    return time_joint_path(path, pace, limits), duration_lower_bound(found, candidate, limits)
+    path, squared_rates = time_tool_path(found, candidate, limits, rate=RATE)
+    return time_joint_path(path, squared_rates, limits), duration_lower_bound(found, candidate, limits)
 
 
 @pytest.mark.parametrize("seed", range(6))
@@ -80,8 +80,8 @@ def test_the_ways_of_the_paper_take_little_longer_than_without_jerk_limit_and_re
 
 def test_a_sharp_bend_slows_only_itself() -> None:
     found, candidate = on_a_branch(hooked())
-    path, pace = time_tool_path(found, candidate, ARM.limits.motion, rate=RATE)
-    track = time_joint_path(path, pace, ARM.limits.motion)
+    path, squared_rates = time_tool_path(found, candidate, ARM.limits.motion, rate=RATE)
+    track = time_joint_path(path, squared_rates, ARM.limits.motion)
     # No constant box of limits for the length runs faster than the steepest place allows everywhere.
     by_length = JointPath(found.lengths, found.lengths, candidate.joints)
     first, second, third = (np.abs(by_length(by_length.dense_parameters(), k)[:, :6]).max(axis=0) for k in (1, 2, 3))
@@ -96,8 +96,8 @@ def test_a_sharp_bend_slows_only_itself() -> None:
 @pytest.mark.parametrize("curve", [way(MIDDLE).curve, way(FAR, degree=5).curve, hooked()])
 def test_the_tool_stays_on_the_curve(curve: Curve) -> None:
     found, candidate = on_a_branch(curve)
-    path, pace = time_tool_path(found, candidate, ARM.limits.motion, rate=RATE)
-    setpoints = time_joint_path(path, pace, ARM.limits.motion).setpoints(RATE, phase=0.3)
+    path, squared_rates = time_tool_path(found, candidate, ARM.limits.motion, rate=RATE)
+    setpoints = time_joint_path(path, squared_rates, ARM.limits.motion).setpoints(RATE, phase=0.3)
     wanted = found.curve(found.arc.parameters(setpoints[:, 6]))
     assert np.linalg.norm(tool_pose(setpoints[:, :6], ARM)[:, :3, 3] - wanted, axis=1).max() < 1e-5
 
