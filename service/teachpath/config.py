@@ -12,9 +12,8 @@ import tomllib
 from collections.abc import Iterable, Mapping
 from dataclasses import asdict, dataclass, field, is_dataclass, replace
 from pathlib import Path
-from typing import Annotated, Any, get_args, get_type_hints
+from typing import Any, get_args, get_type_hints
 
-from annotated_types import Ge, Le
 from pydantic import BaseModel, ConfigDict, ValidationError
 
 from teachpath.errors import NotFound, UnusableSettings
@@ -32,6 +31,7 @@ from teachpath.motion.settings import MotionSettings
 from teachpath.recording.settings import RecordingSettings
 from teachpath.records import Calibration, Scene, Shape
 from teachpath.simulator.settings import SimulatorSettings
+from teachpath.web.settings import WebSettings
 from teachpath_proto.keys import is_name, name_refusal
 from teachpath_proto.logins import Login, Role
 
@@ -41,20 +41,6 @@ REPLACED = dict.fromkeys(("learning.guard", "learning.min_silhouette"), "learnin
 SIZES = {"box": 3, "cylinder": 2, "sphere": 1, "mesh": 1}  # numbers in the size of a shape
 # RoboTasks (clfd datasets) was recorded in the frame of another arm; this maps it, shrunk, onto the Puma's table.
 ROBOTTASKS = Calibration("robottasks", scale=0.8, rotation=(1.0, 0.0, 0.0, 0.0), offset=(0.15, 0.17, 0.42))
-
-
-@dataclass(frozen=True)
-class WebSettings:
-    """Where the REST API and the page are served."""
-
-    # address to listen on; loopback unless a proxy with a login stands before it
-    host: str = "127.0.0.1"
-    # TCP port of the REST API, the page and its WebSocket
-    port: Annotated[int, Ge(1), Le(65535)] = 8765
-    # further names under which browsers may reach this station, e.g. behind a proxy
-    hosts: tuple[str, ...] = ()
-    # bytes of the largest file that may be imported over REST
-    largest_upload: Annotated[int, Ge(1024)] = 67108864
 
 
 class Settings(BaseModel):

@@ -4,9 +4,9 @@ import time
 from collections.abc import Iterator
 
 import pytest
-import uvicorn
 
-from teachpath.commands.serving import free_port
+from teachpath.commands.serving import free_port, listen
+from teachpath.web.server import web_server
 from tests.contract import stations
 from tests.contract.desk import Desk
 
@@ -22,9 +22,8 @@ def desk() -> Iterator[Desk]:
 def port(desk: Desk) -> Iterator[int]:
     """The same station on a real port."""
     port = free_port()
-    config = uvicorn.Config(desk.station.web, host="127.0.0.1", port=port, log_level="warning", ws="websockets-sansio")
-    server = uvicorn.Server(config)
-    thread = threading.Thread(target=server.run, daemon=True)
+    server = web_server(desk.station.web, desk.station.settings.web)
+    thread = threading.Thread(target=server.run, kwargs={"sockets": [listen("127.0.0.1", port)]}, daemon=True)
     thread.start()
     while not server.started:
         time.sleep(0.01)

@@ -9,12 +9,12 @@ from typing import Any
 
 import httpx
 import pytest
-import uvicorn
 from websockets.exceptions import ConnectionClosed, InvalidStatus
 from websockets.sync.client import ClientConnection, connect
 
 from teachpath.app import Station
-from teachpath.commands.serving import free_port
+from teachpath.commands.serving import free_port, listen
+from teachpath.web.server import web_server
 from tests.contract.desk import csv
 from tests.contract.stations import station
 from tests.waiting import HANG
@@ -26,11 +26,9 @@ class Served:
     def __init__(self, opened: Station) -> None:
         self.station = opened
         self.address = f"127.0.0.1:{free_port()}"
-        config = uvicorn.Config(
-            opened.web, port=int(self.address.split(":")[1]), log_level="warning", ws="websockets-sansio"
-        )
-        self.server = uvicorn.Server(config)
-        self.thread = threading.Thread(target=self.server.run, daemon=True)
+        self.server = web_server(opened.web, opened.settings.web)
+        listener = listen("127.0.0.1", int(self.address.split(":")[1]))
+        self.thread = threading.Thread(target=self.server.run, kwargs={"sockets": [listener]}, daemon=True)
         self.thread.start()
         while not self.server.started:
             time.sleep(0.01)

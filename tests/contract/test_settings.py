@@ -202,7 +202,8 @@ def test_the_command_line_ends_with_the_sentence(tmp_path: Path) -> None:
     )
     assert (ended.returncode, ended.stderr) == (
         1,
-        "teachpath: there is no setting web.prot; known here: host, port, hosts, largest_upload\n",
+        "teachpath: there is no setting web.prot; known here: host, port, hosts, largest_upload, "
+        "request_timeout, max_connections\n",
     )
 
 

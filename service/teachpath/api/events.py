@@ -9,12 +9,10 @@ paths, plans, jobs, executions), and, with `now`, `station`, `executor` (also wh
 
 from __future__ import annotations
 
-import json
-
 from fastapi import APIRouter, WebSocket
 
 from teachpath.api import sockets
-from teachpath.live.event_hub import Document, EventHub, Subscriber
+from teachpath.live.event_hub import Event, EventHub, Subscriber
 
 
 def events_router(hub: EventHub) -> APIRouter:
@@ -23,8 +21,8 @@ def events_router(hub: EventHub) -> APIRouter:
 
     @router.websocket("/api/v1/events")
     async def events(socket: WebSocket) -> None:
-        async def send(event: Document) -> None:
-            await socket.send_text(json.dumps(event, separators=(",", ":"), allow_nan=False, default=str))
+        async def send(event: Event) -> None:
+            await socket.send_text(event.text)
 
         if await sockets.accept(socket):
             await sockets.serve(socket, hub.subscribe, hub.unsubscribe, send, _refuse)

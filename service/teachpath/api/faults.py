@@ -63,6 +63,7 @@ class Refusal(BaseModel):
 REFUSALS: Final[dict[int | str, dict[str, Any]]] = {
     403: {"model": Refusal, "description": "The request comes from a page of another origin."},
     404: {"model": Refusal, "description": "There is nothing of that name."},
+    408: {"model": Refusal, "description": "The body comes too slowly."},
     409: {"model": Refusal, "description": "The thing is busy, already there, or has changed meanwhile."},
     413: {"model": Refusal, "description": "The body is too large."},
     422: {"model": Refusal, "description": "What came in cannot be used as it is."},

@@ -1,7 +1,8 @@
-"""Middleware: refuses commands from pages of another origin, and bodies that are too large."""
+"""Middleware: refuses commands from pages of another origin, and bodies that are too large or come too slowly."""
 
 from __future__ import annotations
 
+import asyncio
 from typing import Final
 
 from starlette.datastructures import Headers
@@ -10,31 +11,33 @@ from starlette.responses import JSONResponse
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from teachpath.api.sockets import same_origin
+from teachpath.web.settings import WebSettings
 
 MAX_DOCUMENT_SIZE: Final = 1024 * 1024  # bytes of a request that is no upload
+MIN_UPLOAD_RATE: Final = 1000.0  # [bytes/s] of a body, after the time that every request has
 SAFE_METHODS: Final = ("GET", "HEAD", "OPTIONS")
 
 
 class RequestLimits:
-    """Refuses a request that a page of another origin sent, or whose body is over the limit.
+    """Refuses a request that a page of another origin sent, or whose body is over the limit or comes too slowly.
 
     Browsers send simple requests across origins without asking; their Origin header tells them apart.
 
     Args:
         app: receives what is not refused.
-        largest_upload: bytes of a body sent to `.../demonstrations`; all others are documents.
+        settings: `largest_upload` is for a body sent to `.../demonstrations`; all others are documents.
     """
 
-    def __init__(self, app: ASGIApp, *, largest_upload: int) -> None:
-        self._app, self._largest_upload = app, largest_upload
+    def __init__(self, app: ASGIApp, *, settings: WebSettings) -> None:
+        self._app, self._settings = app, settings
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Pass the request on, or answer 403 or 413."""
+        """Pass the request on, or answer 403, 408 or 413."""
         if scope["type"] != "http" or scope["method"] in SAFE_METHODS:
             await self._app(scope, receive, send)
             return
         headers = Headers(scope=scope)
-        limit = self._largest_upload if scope["path"].endswith("/demonstrations") else MAX_DOCUMENT_SIZE
+        limit = self._settings.largest_upload if scope["path"].endswith("/demonstrations") else MAX_DOCUMENT_SIZE
         announced = headers.get("content-length", "0")
         if not same_origin(headers):
             sentence = f"a page of {headers['origin']} may not give orders here; use the station's own address"
@@ -42,21 +45,37 @@ class RequestLimits:
         elif not announced.isascii() or not announced.isdigit() or int(announced[:20]) > limit:
             await _refuse(413, _too_large(announced, limit))(scope, receive, send)
         else:
-            await self._app(scope, _Counted(receive, limit), send)
+            await self._app(scope, _LimitedBody(receive, limit, self._settings.request_timeout), send)
 
 
-class _Counted:
-    """Counts the bytes of a body of unknown length while they are received."""
+class _LimitedBody:
+    """Counts the bytes of a body while they are received, and the time that is waited for them."""
 
-    def __init__(self, receive: Receive, limit: int) -> None:
-        self._receive, self._limit, self._count = receive, limit, 0
+    def __init__(self, receive: Receive, limit: int, timeout: float) -> None:
+        self._receive, self._limit, self._timeout = receive, limit, timeout
+        self._count, self._waited, self._more = 0, 0.0, True
 
     async def __call__(self) -> Message:
-        message = await self._receive()
+        loop = asyncio.get_running_loop()
+        start, allowed = loop.time(), self._timeout + self._count / MIN_UPLOAD_RATE
+        try:
+            async with asyncio.timeout(allowed - self._waited if self._more else None):
+                message = await self._receive()
+        except TimeoutError:
+            raise HTTPException(408, _too_slow(self._count, allowed), headers={"Connection": "close"}) from None
+        self._waited += loop.time() - start
         self._count += len(message.get("body", b""))
+        self._more = message.get("more_body", False)
         if self._count > self._limit:
             raise HTTPException(413, _too_large(f"over {self._limit}", self._limit))
         return message
+
+
+def _too_slow(count: int, allowed: float) -> str:
+    return (
+        f"{count} bytes of the body came within {allowed:g} s; it may take web.request_timeout, and a second for every "
+        f"{MIN_UPLOAD_RATE:g} bytes; send it over a faster line, or use: teachpath import"
+    )
 
 
 def _too_large(count: str, limit: int) -> str:

@@ -5,12 +5,14 @@ from __future__ import annotations
 import asyncio
 from collections.abc import Awaitable, Callable, Mapping
 from contextlib import suppress
+from functools import partial
 from typing import Any, Final, Protocol, TypeVar
 from urllib.parse import urlsplit
 
 from fastapi import WebSocket, WebSocketDisconnect
 from starlette.websockets import WebSocketState
 
+from teachpath.api.send_pacer import pacer_of_running_loop
 from teachpath.api.strict_requests import unknown_name
 
 NORMAL_CLOSURE: Final = 1000  # close codes: normal closure, and policy violation
@@ -65,7 +67,7 @@ async def serve(
     send: Callable[[Any], Awaitable[None]],
     receive: Callable[[str, Source], str],
 ) -> None:
-    """Send messages as they come, until the page leaves.
+    """Send messages as they come, one after another and in turn with other sockets, until the page leaves.
 
     Args:
         connect: makes the source; its argument is to be called, from any thread, when a message waits.
@@ -73,11 +75,8 @@ async def serve(
         send: sends one message.
         receive: called with each text of the page; returns why it cannot be used, which closes the socket, or nothing.
     """
-    loop, waiting = asyncio.get_running_loop(), asyncio.Event()
-
-    def wake() -> None:
-        with suppress(RuntimeError):  # the loop has ended meanwhile
-            loop.call_soon_threadsafe(waiting.set)
+    waiting = asyncio.Event()
+    wake = partial(pacer_of_running_loop().wake, waiting)
 
     async def listen() -> None:
         with suppress(WebSocketDisconnect, KeyError):  # KeyError: bytes where text belongs
@@ -90,11 +89,12 @@ async def serve(
             while True:
                 await waiting.wait()
                 waiting.clear()
-                while (message := source.pop()) is not None:
+                if (message := source.pop()) is not None:
                     await send(message)
+                    wake()  # for the next message, behind the other sockets
 
     source = connect(wake)
-    waiting.set()
+    wake()
     tasks = [asyncio.create_task(listen()), asyncio.create_task(forward())]
     try:
         await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)

@@ -40,7 +40,7 @@ def build_api(parts: Parts, *pages: APIRouter) -> FastAPI:
     app = FastAPI(title="teachpath", version=__version__, description=DESCRIPTION, docs_url=None, redoc_url=None)
     # Another name for this address is how a foreign page would reach a loopback service (DNS rebinding).
     hosts = ["127.0.0.1", "localhost", "[::1]", parts.settings.web.host, *parts.settings.web.hosts]
-    app.add_middleware(RequestLimits, largest_upload=parts.settings.web.largest_upload)
+    app.add_middleware(RequestLimits, settings=parts.settings.web)
     app.add_middleware(TrustedHostMiddleware, allowed_hosts=hosts)
     answer_errors(app)
     routers = (

@@ -10,8 +10,6 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
-import uvicorn
-
 from teachpath.config import Settings
 from teachpath.errors import Unreachable
 
@@ -32,16 +30,14 @@ def serving(settings: Settings) -> Iterator[Station]:
         Conflict: another service uses the data folder.
     """
     from teachpath.app import Station
+    from teachpath.web.server import web_server
 
     web = settings.web
     listener = listen(web.host, web.port)
     umask = os.umask(0o077)
     try:
         with Station(settings) as station:
-            config = uvicorn.Config(
-                station.web, log_level="warning", access_log=False, timeout_graceful_shutdown=1, ws="websockets-sansio"
-            )
-            server = uvicorn.Server(config)
+            server = web_server(station.web, web)
             thread = threading.Thread(target=server.run, kwargs={"sockets": [listener]}, name="web", daemon=True)
             thread.start()
             try:

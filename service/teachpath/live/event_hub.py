@@ -6,8 +6,10 @@ changes many times a second (`now`). A subscriber that falls behind gets one eve
 
 from __future__ import annotations
 
+import json
 import threading
 from collections.abc import Callable
+from functools import cached_property
 from typing import Any, Final
 
 Document = dict[str, Any]
@@ -16,16 +18,28 @@ RESYNC_TOPIC: Final = "all"  # of the first event, and of the one after an overf
 MAX_PENDING_CHANGES: Final = 256  # changed resources that wait for one subscriber
 
 
+class Event:
+    """One event, the same object for every subscriber."""
+
+    def __init__(self, document: Document) -> None:
+        self.document = document
+
+    @cached_property
+    def text(self) -> str:
+        """Its JSON, encoded once for all subscribers."""
+        return json.dumps(self.document, separators=(",", ":"), allow_nan=False, default=str)
+
+
 class Subscriber:
     """The events that one subscriber has not received yet: of each topic and id, the newest."""
 
-    def __init__(self, wake: Callable[[], None], first: Document, states: dict[Key, Document]) -> None:
+    def __init__(self, wake: Callable[[], None], first: Event, states: dict[Key, Event]) -> None:
         self.wake = wake
         self._lock = threading.Lock()
-        self._changes: dict[Key, Document] = {(RESYNC_TOPIC, ""): first}
+        self._changes: dict[Key, Event] = {(RESYNC_TOPIC, ""): first}
         self._states = dict(states)
 
-    def pop(self) -> Document | None:
+    def pop(self) -> Event | None:
         """Remove and return the oldest event, changes of resources before states; None: none waits."""
         with self._lock:
             for pending in (self._changes, self._states):
@@ -39,15 +53,15 @@ class Subscriber:
         with self._lock:
             return len(self._changes) + len(self._states)
 
-    def _add(self, key: Key, event: Document, max_pending: int) -> None:
+    def _add(self, key: Key, event: Event, max_pending: int) -> None:
         with self._lock:
-            pending = self._states if "now" in event else self._changes
+            pending = self._states if "now" in event.document else self._changes
             pending.pop(key, None)
             if (RESYNC_TOPIC, "") in self._changes and pending is self._changes:
                 return  # the subscriber will read everything after this change
             pending[key] = event
             if len(self._changes) > max_pending:
-                resync = _resync(event["sequence"], "too much has changed to tell it one by one")
+                resync = _resync(event.document["sequence"], "too much has changed to tell it one by one")
                 self._changes = {(RESYNC_TOPIC, ""): resync}
 
 
@@ -63,7 +77,7 @@ class EventHub:
         self._max_pending = max_pending
         self._sequence = 0
         self._subscribers: set[Subscriber] = set()
-        self._states: dict[Key, Document] = {}
+        self._states: dict[Key, Event] = {}
 
     def subscribe(self, wake: Callable[[], None]) -> Subscriber:
         """Add a subscriber; `wake()` is called, from any thread, when an event waits for it.
@@ -91,7 +105,7 @@ class EventHub:
     def _publish(self, key: Key, content: Document) -> None:
         with self._lock:
             self._sequence += 1
-            event = {"sequence": self._sequence, "topic": key[0], "id": key[1], **content}
+            event = Event({"sequence": self._sequence, "topic": key[0], "id": key[1], **content})
             if content.get("now") is not None:
                 self._states[key] = event
             elif "now" in content:
@@ -103,5 +117,5 @@ class EventHub:
             subscriber.wake()
 
 
-def _resync(sequence: int, reason: str) -> Document:
-    return {"sequence": sequence, "topic": RESYNC_TOPIC, "id": "", "reason": reason}
+def _resync(sequence: int, reason: str) -> Event:
+    return Event({"sequence": sequence, "topic": RESYNC_TOPIC, "id": "", "reason": reason})

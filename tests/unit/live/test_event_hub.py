@@ -1,3 +1,4 @@
+import json
 import threading
 
 from teachpath.live.event_hub import RESYNC_TOPIC, Document, EventHub, Subscriber
@@ -12,7 +13,7 @@ def subscribed(hub: EventHub) -> Subscriber:
 def popped(subscriber: Subscriber) -> list[Document]:
     events = []
     while (event := subscriber.pop()) is not None:
-        events.append(event)
+        events.append(event.document)
     return events
 
 
@@ -121,3 +122,16 @@ def test_a_poll_that_fails_does_not_end_the_polling() -> None:
     poller.start()
     assert looked.wait(HANG)
     poller.stop()
+
+
+def test_an_event_is_encoded_once_for_all_subscribers() -> None:
+    hub = EventHub()
+    subscribers = [subscribed(hub), subscribed(hub)]
+    for subscriber in subscribers:
+        popped(subscriber)
+    hub.publish_state("executor", "", {"progress": 0.5})
+    one, other = (subscriber.pop() for subscriber in subscribers)
+    assert one is not None
+    assert other is not None
+    assert json.loads(one.text) == one.document
+    assert one.text is other.text

@@ -1,0 +1,1 @@
+"""The web port: its settings, and the server behind it."""

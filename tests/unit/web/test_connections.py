@@ -1,0 +1,144 @@
+"""Connections on real sockets: who sends a request slowly, or reads no answer, is closed, to make room for others."""
+
+import json
+import socket
+import threading
+from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager, suppress
+from typing import Any
+
+import pytest
+from starlette.applications import Starlette
+from starlette.requests import Request
+from starlette.responses import PlainTextResponse
+from starlette.routing import Route, WebSocketRoute
+from starlette.websockets import WebSocket
+
+from teachpath.api.middleware import RequestLimits
+from teachpath.commands.serving import free_port, listen
+from teachpath.web.server import web_server
+from teachpath.web.settings import WebSettings
+from tests.waiting import HANG, wait_until
+
+SHORT = 0.3  # [s] after which a client of these tests is too slow
+NEVER = 3600.0
+LARGE = 16 * 1024 * 1024  # bytes; more than all buffers on the way hold
+HANDSHAKE = (
+    b"GET /messages HTTP/1.1\r\nHost: x\r\nConnection: Upgrade\r\nUpgrade: websocket\r\n"
+    b"Sec-WebSocket-Version: 13\r\nSec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n\r\n"
+)
+
+
+async def answer(request: Request) -> PlainTextResponse:
+    return PlainTextResponse(f"{len(await request.body())} bytes")
+
+
+async def pour(request: Request) -> PlainTextResponse:
+    return PlainTextResponse("x" * LARGE)
+
+
+async def pour_messages(page: WebSocket) -> None:
+    await page.accept()
+    with suppress(Exception):  # the page has gone
+        while True:
+            await page.send_text("x" * 65536)
+
+
+@contextmanager
+def served(**settings: Any) -> Iterator[int]:
+    """Serve an application with these settings; yields the port."""
+    routes = [
+        Route("/", answer, methods=["GET", "POST"]),
+        Route("/large", pour),
+        WebSocketRoute("/messages", pour_messages),
+    ]
+    port, chosen = free_port(), WebSettings(**settings)
+    server = web_server(RequestLimits(Starlette(routes=routes), settings=chosen), chosen)
+    with listen("127.0.0.1", port) as listener:
+        thread = threading.Thread(target=server.run, kwargs={"sockets": [listener]}, daemon=True)
+        thread.start()
+        wait_until(lambda: server.started, "the server has started")
+        yield port
+        server.should_exit = True
+        thread.join(HANG)
+
+
+def opened(port: int, sent: bytes = b"") -> socket.socket:
+    connection = socket.create_connection(("127.0.0.1", port), timeout=HANG)
+    connection.sendall(sent)
+    return connection
+
+
+def rest(connection: socket.socket) -> bytes:
+    """Read until the server closes the connection."""
+    pieces = []
+    with suppress(ConnectionResetError):
+        while piece := connection.recv(65536):
+            pieces.append(piece)
+    return b"".join(pieces)
+
+
+def refusal(answered: bytes, status: int) -> str:
+    head, _, body = answered.partition(b"\r\n\r\n")
+    assert head.startswith(f"HTTP/1.1 {status} ".encode())
+    sentence: str = json.loads(body)["detail"] if body.startswith(b"{") else body.decode()
+    return sentence
+
+
+def is_answered(port: int) -> bool:
+    with opened(port, b"GET / HTTP/1.1\r\nHost: x\r\nConnection: close\r\n\r\n") as connection:
+        return rest(connection).endswith(b"0 bytes")
+
+
+@pytest.mark.parametrize("sent", [b"", b"GET / HTTP/1.1\r\nHost: "])
+def test_a_request_whose_head_does_not_come_is_closed(sent: bytes) -> None:
+    with served(request_timeout=SHORT) as port, opened(port, sent) as connection:
+        assert "web.request_timeout" in refusal(rest(connection), 408)
+        assert is_answered(port)
+
+
+def test_so_is_the_second_request_of_a_connection() -> None:
+    with served(request_timeout=SHORT) as port, opened(port, b"GET / HTTP/1.1\r\nHost: x\r\n\r\n") as connection:
+        assert connection.recv(65536).startswith(b"HTTP/1.1 200")
+        connection.sendall(b"GET / HTTP/1.1\r\nHost: ")
+        answered = rest(connection)
+        assert "web.request_timeout" in refusal(answered[answered.rindex(b"HTTP/1.1") :], 408)
+
+
+def test_a_body_that_does_not_come_is_refused() -> None:
+    head = b"POST / HTTP/1.1\r\nHost: x\r\nContent-Length: 100\r\nConnection: close\r\n\r\n"
+    with served(request_timeout=SHORT) as port:
+        with opened(port, head + b"x" * 60) as connection:
+            assert "60 bytes of the body came" in refusal(rest(connection), 408)
+        with opened(port, head + b"x" * 100) as connection:
+            assert rest(connection).endswith(b"100 bytes")
+
+
+def test_a_reader_that_takes_nothing_is_closed() -> None:
+    with served(request_timeout=SHORT) as port, opened(port, b"GET /large HTTP/1.1\r\nHost: x\r\n\r\n") as connection:
+        threading.Event().wait(3 * SHORT)
+        assert len(rest(connection)) < LARGE
+
+
+def test_a_page_that_reads_no_message_is_closed() -> None:
+    with served(request_timeout=SHORT) as port, opened(port, HANDSHAKE) as connection:
+        threading.Event().wait(3 * SHORT)
+        assert rest(connection).startswith(b"HTTP/1.1 101")  # and it ends
+
+
+def test_for_a_new_connection_the_oldest_without_a_request_is_closed() -> None:
+    with served(request_timeout=NEVER, max_connections=10) as port, ExitStack() as stack:
+        hanging = [stack.enter_context(opened(port, b"GET / HTTP/1.1\r\nHost: ")) for _ in range(10)]
+        assert is_answered(port)
+        assert rest(hanging[0]) == b""
+        hanging[-1].sendall(b"x\r\nConnection: close\r\n\r\n")
+        assert rest(hanging[-1]).endswith(b"0 bytes")
+
+
+def test_when_all_connections_are_used_another_is_refused_with_a_sentence() -> None:
+    with served(request_timeout=NEVER, max_connections=10) as port, ExitStack() as stack:
+        for _ in range(10):
+            page = stack.enter_context(opened(port, HANDSHAKE))
+            assert page.recv(12) == b"HTTP/1.1 101"
+        with opened(port) as connection:
+            assert "10 connections are open, the limit" in refusal(rest(connection), 503)
