@@ -97,6 +97,7 @@ class JobKinds:
         given = from_document(ImportRequest, job.request)
         return (
             ImportOrder(
+                job.id,
                 self.transfers.folder(given.upload),
                 job.task,
                 given.name,

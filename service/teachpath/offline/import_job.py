@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import itertools
 import shutil
+import uuid
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -33,8 +35,13 @@ class ImportRequest:
 
 @dataclass(frozen=True)
 class ImportOrder:
-    """An uploaded file, and what demonstrations are made of it with; `folder` holds the file."""
+    """An uploaded file, and what demonstrations are made of it with; `folder` holds the file.
 
+    The ids of the demonstrations follow from `key`, that of the job, so that a job which is run again makes the same
+    ones, and never a second set beside recordings that were taken over just before a crash.
+    """
+
+    key: str
     folder: Path
     task: str
     name: str
@@ -74,9 +81,16 @@ def prepare_import(order: ImportOrder, *, progress: Callable[[float, str], None]
             calibration=order.calibration,
             limits=order.limits,
             progress=progress,
+            new_id=derived_ids(order.key),
         )
     finally:
         store.close()
     if not made:
         raise UnusableRecording(f"{order.name}: no recording could be written; is the disk full?")
     return [demonstration for demonstration, _ in made]
+
+
+def derived_ids(key: str) -> Callable[[], str]:
+    """Return a function that returns one id after another, which follow from `key`."""
+    numbers = itertools.count()
+    return lambda: f"demo-{uuid.uuid5(uuid.NAMESPACE_OID, f'{key} {next(numbers)}').hex[:12]}"

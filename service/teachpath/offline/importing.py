@@ -16,6 +16,7 @@ from teachpath.io.store.recordings import read_facts_stream, salvage_stream
 from teachpath.io.store.store import Store
 from teachpath.recorder.annotations import MARKS, Annotations
 from teachpath.recorder.session import RecordingSession, RecordingSetup
+from teachpath.recorder.take import random_id
 from teachpath.recording.demonstration import point_to_world
 from teachpath.recording.phase_statistics import PhaseStatistics, phase_statistics
 from teachpath.recording.phases import GRASP_BUTTON, Segmenter, TransportSpan
@@ -58,12 +59,14 @@ def import_file(
     calibration: Calibration,
     limits: ImportSettings,
     progress: Callable[[float, str], None] = lambda fraction, what: None,
+    new_id: Callable[[], str] = random_id,
 ) -> list[tuple[Demonstration, Trajectory]]:
     """Make a demonstration of each motion in a file; the whole motion counts as grasped.
 
     A recording of ours (mcap, or a CSV file of samples) brings its own samples, tracker and calibration, is cut as it
     was live, is judged no better than it was, and keeps what an operator said of it: mark, trim, discarded. The task is
-    made when it does not exist. The file is read and checked whole before the first one is stored.
+    made when it does not exist. The file is read and checked whole before the first one is stored. `new_id` returns the
+    id of the next one.
 
     Raises:
         UnusableInput: a bad task name, or a file that cannot be used (with its row and column).
@@ -77,7 +80,9 @@ def import_file(
         _check_duration(samples, limits, where)
         _check(samples, settings, scene, read.calibration, where)
     store.ensure_task(task, scene=scene.name, calibration=read.calibration.name)
-    made = _recorded(store, settings, task, scene, read, progress)
+    made = _recorded(
+        store, settings, RecordingSetup(task, read.tracker, read.calibration, scene, new_id=new_id), read, progress
+    )
     judged = [_judged(store, settings, each, read) for each in made]
     if read.stated is None:
         return judged
@@ -88,8 +93,7 @@ def import_file(
 def _recorded(
     store: Store,
     settings: RecordingSettings,
-    task: str,
-    scene: Scene,
+    setup: RecordingSetup,
     read: _Read,
     progress: Callable[[float, str], None],
 ) -> list[tuple[Demonstration, Trajectory]]:
@@ -98,8 +102,7 @@ def _recorded(
     for number, samples in enumerate(read.motions):
         progress(0.5 + 0.5 * number / len(read.motions), f"motion {number + 1} of {len(read.motions)}")
         rate = read.stated.statistics.declared_rate if read.stated else 0.0
-        setup = RecordingSetup(task, read.tracker, read.calibration, scene, rate)
-        session = RecordingSession(store, settings, setup)
+        session = RecordingSession(store, settings, replace(setup, rate=rate))
         for _ in range(min(read.stated.statistics.refused, MAX_REFUSED) if read.stated else 0):
             session.counter.count_refused("some samples were refused when it was recorded")
         finished = [session.add(sample) for sample in samples]

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 
 from teachpath.io.store.recordings import RecordingHeader
 from teachpath.io.store.store import Store
-from teachpath.recorder.take import FinishedTake, Take
+from teachpath.recorder.take import FinishedTake, Take, random_id
 from teachpath.recording.demonstration import object_pose, point_to_world
 from teachpath.recording.fist_gesture import FistGesture
 from teachpath.recording.phases import TOGGLE_BUTTON, Segmenter, TransportSpan, hand_closure
@@ -36,6 +36,7 @@ class RecordingSetup:
     Attributes:
         rate: [Hz] that the client declares; 0: it declares none.
         routine: how takes follow each other.
+        new_id: returns the id of the next take.
     """
 
     task: str
@@ -44,6 +45,7 @@ class RecordingSetup:
     scene: Scene
     rate: float = 0.0
     routine: Routine = field(default_factory=Routine)
+    new_id: Callable[[], str] = random_id
 
 
 class RecordingSession:
@@ -292,4 +294,4 @@ class RecordingSession:
     def _new_take(self) -> Take:
         self._take_number += 1
         header = RecordingHeader(self.task, self.tracker, self._setup.calibration)
-        return Take(self._store, self._settings, header, self.counter.note)
+        return Take(self._store, self._settings, header, self.counter.note, self._setup.new_id)

@@ -16,6 +16,11 @@ from teachpath.records import Demonstration, Sample, StreamStatistics, Trajector
 FinishedTake = tuple[Demonstration, Trajectory]
 
 
+def random_id() -> str:
+    """Return a new id of a demonstration."""
+    return f"demo-{uuid.uuid4().hex[:12]}"
+
+
 class Take:
     """Keeps and writes samples until they become a demonstration or are discarded.
 
@@ -23,6 +28,7 @@ class Take:
 
     Args:
         note: called with sentences for the operator.
+        new_id: returns the id of the demonstration that it may become.
 
     Attributes:
         samples: in the order received.
@@ -30,7 +36,12 @@ class Take:
     """
 
     def __init__(
-        self, store: Store, settings: RecordingSettings, header: RecordingHeader, note: Callable[[str], None]
+        self,
+        store: Store,
+        settings: RecordingSettings,
+        header: RecordingHeader,
+        note: Callable[[str], None],
+        new_id: Callable[[], str] = random_id,
     ) -> None:
         self._store = store
         self._settings = settings
@@ -38,7 +49,7 @@ class Take:
         self._note = note
         self.samples: list[Sample] = []
         self.fault = ""
-        self._id = f"demo-{uuid.uuid4().hex[:12]}"
+        self._id = new_id()
         self._file: RecordingFile | None = None
 
     @property

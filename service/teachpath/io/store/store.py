@@ -237,6 +237,9 @@ class Store:
     def finish_import(self, key: str, task: Task, made: Sequence[Demonstration], recordings: Path) -> str:
         """Take over imported demonstrations with their recordings and mark the job succeeded, all or nothing.
 
+        Those that are stored already stay: a crash came between their recordings and their rows, and the doctor made
+        the rows.
+
         Args:
             key: of the job.
             task: of the demonstrations; made when it does not exist.
@@ -246,18 +249,25 @@ class Store:
         Returns:
             The numbers that the first and the last one have now, e.g. `3-5`.
         """
+        added: list[str] = []  # places of the recordings whose rows are new
         try:
             with self._change() as session:
                 ensured_task(session, task.name, task.scene, task.calibration)
                 session.flush()
-                numbered = [numbered_row(session, demonstration) for demonstration in made]
-                outcome = f"{numbered[0].number}-{numbered[-1].number}"
+                numbers = []
+                for demonstration in made:
+                    row = session.get(DemonstrationRow, demonstration.id)
+                    if row is None:
+                        added.append(demonstration.recording)
+                    numbers.append(row.number if row else numbered_row(session, demonstration).number)
+                    session.flush()
+                outcome = f"{min(numbers)}-{max(numbers)}"
                 self._claim(session, key, success(outcome, time.time_ns()))
                 session.flush()
-                for demonstration in made:
-                    self.recordings.take_over(recordings, demonstration.recording)
+                for place in added:
+                    self.recordings.take_over(recordings, place)
         except BaseException:
-            self.recordings.remove([demonstration.recording for demonstration in made])
+            self.recordings.remove(added)
             raise
         return outcome
 
