@@ -27,6 +27,7 @@ from teachpath.io.wire import recording_document
 from teachpath.job_kinds import JobKinds
 from teachpath.jobs.curve_assessor import CurveAssessor
 from teachpath.jobs.jobs import Jobs
+from teachpath.jobs.limited_process import LimitedProcess
 from teachpath.live.event_hub import EventHub
 from teachpath.live.preview.preview import Preview
 from teachpath.live.state_poller import Poll, StatePoller
@@ -37,11 +38,11 @@ from teachpath.offline.lock import StationLock
 from teachpath.offline.transfer_folders import TransferFolders
 from teachpath.recorder.annotations import Annotations
 from teachpath.recorder.calibrations import Calibrations
-from teachpath.recorder.guidance import GuidanceThread
+from teachpath.recorder.guidance import GuidanceThread, read_course
 from teachpath.recorder.queries import RecorderQueries
 from teachpath.recorder.recorder import DemonstrationCallbacks, Lookup, Recorder
 from teachpath.recorder.websocket_trackers import WebSocketTrackers
-from teachpath.records import Demonstration, Trajectory
+from teachpath.records import Array, Demonstration, Trajectory
 from teachpath.robot.certificate_status import CertificateStatus
 from teachpath.robot.executions import Executions
 from teachpath.robot.joint_feed import JointFeed
@@ -125,6 +126,7 @@ class Station:
         self.processes[0].request_stop()
         self._queries.stop()
         self.recorder.stop()
+        self.reader.stop()
         self.guidance.stop()
         self.jobs.stop()
         self.assessor.stop()
@@ -144,7 +146,10 @@ class Station:
         settings = self.settings
         self.event_hub = EventHub()
         self.store = Store(settings.store, changed=self.event_hub.publish_change)
-        self.calibrations = Calibrations(self.store, settings.recording, settings.calibrations, settings.scene)
+        self.reader = LimitedProcess(settings.jobs)
+        self.calibrations = Calibrations(
+            self.store, settings.recording, settings.calibrations, settings.scene, self.reader.call
+        )
         self.recorder = Recorder(
             self.bus,
             self.keys,
@@ -155,9 +160,10 @@ class Station:
                 added=lambda demonstration, trajectory: self._show_task(demonstration.task),
                 changed=lambda demonstration: self._show_task(demonstration.task),
             ),
+            call=self.reader.call,
         )
         self._queries = RecorderQueries(self.bus, self.keys, self.recorder)
-        self.guidance = GuidanceThread(self.store.demonstrations, self.trajectory, settings.learning)
+        self.guidance = GuidanceThread(self.store.demonstrations, self._course, settings.learning, self.reader.call)
         self.websocket_trackers = WebSocketTrackers(self.bus, self.keys, self.recorder)
 
     def _open_work(self) -> None:
@@ -175,7 +181,7 @@ class Station:
         """Open the service's side of the arm, its picture, and the processes that move it."""
         settings, robot = self.settings, self.settings.bus.robot
         self.joints = JointFeed(self.bus, self.keys, robot=robot)
-        self.executions = Executions(self.bus, self.keys, self.store, robot=robot, arm=settings.arm)
+        self.executions = Executions(self.bus, self.keys, self.store, robot=robot)
         self.certificate_status = CertificateStatus(
             self.bus, self.keys, self.store, scene=settings.scene, calibration=self.calibrations.newest_numbered
         )
@@ -216,8 +222,12 @@ class Station:
         return SupervisedProcess(name, attached_command(name), given, suggestion=suggestion, on_death=on_death)
 
     def trajectory(self, demonstration: Demonstration) -> Trajectory:
-        """Return the object's trajectory of a stored demonstration."""
-        return trajectory_of(self.store, self.settings, demonstration)
+        """Return the object's trajectory of a stored demonstration; another process reads it."""
+        return self.recorder.annotations.trajectory(demonstration)
+
+    def _course(self, demonstration: Demonstration) -> Array:
+        carried = self.recorder.annotations.carried(demonstration)
+        return self.reader.call(read_course, self.store.recordings, demonstration, carried)
 
     def health(self) -> Health:
         """Say which parts run, and what an operator should know."""
@@ -271,6 +281,7 @@ class Station:
             websocket_trackers=self.websocket_trackers,
             joints=self.joints,
             trajectory=self.trajectory,
+            reader=self.reader,
             health=self.health,
             transfers=self.transfers,
             exporter=self.exporter,

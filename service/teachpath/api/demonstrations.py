@@ -4,13 +4,16 @@ from __future__ import annotations
 
 from typing import Annotated, Literal
 
+from anyio import CapacityLimiter
+from anyio.to_thread import run_sync
 from fastapi import APIRouter, Query, Response
 from fastapi.responses import FileResponse
 from pydantic import Field
 
-from teachpath.api.answers import json_response, model_of
-from teachpath.api.parts import Parts
+from teachpath.api.answers import model_of
+from teachpath.api.parts import MAX_READERS, Parts
 from teachpath.api.strict_requests import Body
+from teachpath.recorder.recording_work import encode_trajectory
 from teachpath.records import Amendment, Demonstration, Trajectory
 
 
@@ -28,6 +31,7 @@ def demonstrations_router(parts: Parts) -> APIRouter:
     """Return the routes of single demonstrations."""
     router = APIRouter(tags=["tasks"])
     store = parts.store
+    readers = CapacityLimiter(MAX_READERS)
 
     @router.get("/demonstrations/{demonstration}")
     def get_demonstration(demonstration: str) -> Demonstration:
@@ -42,12 +46,18 @@ def demonstrations_router(parts: Parts) -> APIRouter:
         )
 
     @router.get("/demonstrations/{demonstration}/trajectory", response_model=model_of(Trajectory))
-    def get_trajectory(
+    async def get_trajectory(
         demonstration: str,
         most: Annotated[int, Query(ge=2, le=100_000, description="points; further ones are left out evenly")] = 100_000,
     ) -> Response:
         """Return the object's trajectory in its transport phase: times [s], positions [m], orientations, world."""
-        return json_response(parts.trajectory(store.demonstration(demonstration)).thinned(most))
+
+        def encoded() -> bytes:
+            row = store.demonstration(demonstration)
+            carried = parts.recorder.annotations.carried(row)
+            return parts.reader.call(encode_trajectory, store.recordings, row, carried, most)
+
+        return Response(await run_sync(encoded, limiter=readers), media_type="application/json")
 
     @router.get("/demonstrations/{demonstration}/recording", response_class=FileResponse)
     def get_recording(demonstration: str) -> FileResponse:

@@ -11,15 +11,15 @@ from fastapi import APIRouter, Header, Query, Response
 from fastapi.responses import FileResponse
 from pydantic import AfterValidator, Field
 
-from teachpath.api.answers import json_response, model_of
+from teachpath.api.answers import model_of
 from teachpath.api.names import TrackerName, TrackerNameOrEmpty
-from teachpath.api.parts import Parts
+from teachpath.api.parts import MAX_READERS, Parts
 from teachpath.api.strict_requests import Body
 from teachpath.errors import UnusableInput
 from teachpath.io.store.store import Execution
 from teachpath.motion.analysis.time_series import TimeSeries
 from teachpath.records import Command, ExecutorStatus, TeleopRequest
-from teachpath.robot.executions import Executions
+from teachpath.robot.executions import Executions, encode_series
 from teachpath_proto.control import CommandVerb
 
 MAX_HEADER_LENGTH: Final = 64  # characters of a name or a token
@@ -127,6 +127,7 @@ def _add_beginnings(router: APIRouter, parts: Parts) -> None:
 
 def _add_looks(router: APIRouter, parts: Parts) -> None:
     executions, store = parts.executions, parts.store
+    readers = CapacityLimiter(MAX_READERS)
 
     @router.get("/executions")
     def list_executions() -> list[Execution]:
@@ -148,14 +149,18 @@ def _add_looks(router: APIRouter, parts: Parts) -> None:
         return FileResponse(file, media_type="application/octet-stream", filename=f"{execution}.mcap")
 
     @router.get("/executions/{execution}/series", response_model=model_of(TimeSeries))
-    def get_series(
+    async def get_series(
         execution: str, points: Annotated[int, Query(ge=2, le=20_000, description="at most")] = 500
     ) -> Response:
         """Return what the arm did over time, for plots and for a replay.
 
         Joints, velocities, torques, tool and object, tracking error, and the lateness of setpoints; no peak is lost.
         """
-        return json_response(executions.series(execution, points))
+
+        def encoded() -> bytes:
+            return parts.reader.call(encode_series, executions.recording(execution), points, parts.settings.arm)
+
+        return Response(await run_sync(encoded, limiter=readers), media_type="application/json")
 
 
 def _add_steering(router: APIRouter, executions: Executions) -> None:

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Final
 
 from teachpath.config import Settings
 from teachpath.io.bus_settings import BusSettings
 from teachpath.io.store.store import Store
 from teachpath.jobs.curve_assessor import CurveAssessor
 from teachpath.jobs.jobs import Jobs
+from teachpath.jobs.limited_process import LimitedProcess
 from teachpath.offline.exporter import Exporter
 from teachpath.offline.transfer_folders import TransferFolders
 from teachpath.recorder.calibrations import Calibrations
@@ -19,6 +21,8 @@ from teachpath.recorder.websocket_trackers import WebSocketTrackers
 from teachpath.records import Demonstration, ExecutorStatus, Trajectory
 from teachpath.robot.executions import Executions
 from teachpath.robot.joint_feed import JointFeed
+
+MAX_READERS: Final = 4  # threads of a resource that wait for recordings to be read
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,6 +73,7 @@ class Parts:
     websocket_trackers: WebSocketTrackers
     joints: JointFeed
     trajectory: Callable[[Demonstration], Trajectory]
+    reader: LimitedProcess
     health: Callable[[], Health]
     transfers: TransferFolders
     exporter: Exporter

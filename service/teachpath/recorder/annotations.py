@@ -9,11 +9,9 @@ from typing import Any, Final
 
 from teachpath.errors import NotFound, UnusableInput
 from teachpath.io.store.store import Store
-from teachpath.recorder.take_completion import reassess
-from teachpath.recording.demonstration import object_trajectory
-from teachpath.recording.phases import TransportSpan
+from teachpath.recorder.recording_work import Call, call_directly, read_trajectory, reassess_recording
 from teachpath.recording.settings import RecordingSettings
-from teachpath.records import Amendment, Demonstration, Scene, Trajectory
+from teachpath.records import Amendment, Demonstration, Scene, Trajectory, Vector
 
 MARKS: Final = ("", "good", "bad")
 
@@ -25,23 +23,26 @@ class Annotations:
     Attributes:
         scene: returns the scene of a name; raises NotFound.
         on_change: called with every demonstration that has changed.
+        call: calls what reads a whole recording.
     """
 
     store: Store
     settings: RecordingSettings
     scene: Callable[[str], Scene]
     on_change: Callable[[Demonstration], None] = field(default=lambda demonstration: None)
+    call: Call = call_directly
 
     def trajectory(self, demonstration: Demonstration) -> Trajectory:
         """Return the object's trajectory of a stored demonstration, from its recording."""
-        carried = self.scene(self.store.task(demonstration.task).scene).carried
-        return object_trajectory(
-            self.store.recordings.samples(demonstration.recording),
-            TransportSpan(*demonstration.transport),
-            demonstration.calibration,
-            carried.position if carried else None,
-            left_out=demonstration.left_out,
+        trajectory: Trajectory = self.call(
+            read_trajectory, self.store.recordings, demonstration, self.carried(demonstration)
         )
+        return trajectory
+
+    def carried(self, demonstration: Demonstration) -> Vector | None:
+        """Return the start of the object's centre [m, world] in a demonstration, or None."""
+        carried = self.scene(self.store.task(demonstration.task).scene).carried
+        return carried.position if carried else None
 
     def discard_last(self, task: str) -> Demonstration:
         """Discard the newest demonstration of a task that is kept; raises NotFound when there is none."""
@@ -87,8 +88,11 @@ class Annotations:
                 f"{begin} to {end} is no transport phase of a recording with {stored.samples} samples: it needs at "
                 f"least {least} of them"
             )
-        samples = self.store.recordings.samples(stored.recording)
-        changed = replace(stored, trim=chosen)
-        changes = reassess(stored, changed, samples, self.settings)
-        times = self.trajectory(replace(changed, **changes)).times
-        return {"trim": chosen, **changes, "duration": float(times[-1])}
+        return {"trim": chosen, **self.reassessed(stored, replace(stored, trim=chosen))}
+
+    def reassessed(self, before: Demonstration, after: Demonstration) -> dict[str, Any]:
+        """Return what else changes in the row of a demonstration whose calibration or trim changes."""
+        changes: dict[str, Any] = self.call(
+            reassess_recording, self.store.recordings, self.settings, before, after, self.carried(before)
+        )
+        return changes

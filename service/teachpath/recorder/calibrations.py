@@ -9,7 +9,7 @@ from typing import Any
 from teachpath.errors import Conflict, NotFound, UnusableInput
 from teachpath.io.store.store import Store
 from teachpath.recorder.annotations import Annotations
-from teachpath.recorder.take_completion import reassess
+from teachpath.recorder.recording_work import Call, call_directly
 from teachpath.recording.frame_fit import fit_frame
 from teachpath.recording.settings import RecordingSettings
 from teachpath.records import Calibration, Demonstration, MeasuredCalibration, Scene, TaughtPoint
@@ -25,12 +25,14 @@ class Calibrations:
     Attributes:
         configured: the calibrations of the settings, which cannot be measured.
         scene: returns the scene of a name; raises NotFound.
+        call: calls what reads a whole recording.
     """
 
     store: Store
     settings: RecordingSettings
     configured: Sequence[Calibration]
     scene: Callable[[str], Scene]
+    call: Call = call_directly
 
     def __post_init__(self) -> None:
         for calibration in self.configured:
@@ -145,9 +147,6 @@ class Calibrations:
     def _conversion_changes(self, demonstration: Demonstration, calibration: Calibration) -> dict[str, Any]:
         if calibration == demonstration.calibration:
             return {}
-        samples = self.store.recordings.samples(demonstration.recording)
+        annotations = Annotations(self.store, self.settings, self.scene, call=self.call)
         changed = replace(demonstration, calibration=calibration)
-        changes = reassess(demonstration, changed, samples, self.settings)
-        moved = replace(changed, **changes)
-        times = Annotations(self.store, self.settings, self.scene).trajectory(moved).times
-        return {"calibration": calibration, **changes, "duration": float(times[-1])}
+        return {"calibration": calibration, **annotations.reassessed(demonstration, changed)}

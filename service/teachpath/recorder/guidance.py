@@ -8,13 +8,15 @@ from collections.abc import Callable
 import numpy as np
 
 from teachpath.errors import TeachpathError
+from teachpath.io.store.recordings import Recordings
 from teachpath.learning.clustering.distances import pairwise_distances
 from teachpath.learning.clustering.subsampled_clustering import cluster_paths
 from teachpath.learning.resampling import arc_lengths, at_equal_arc_length, smoothed
 from teachpath.learning.settings import LearningSettings
 from teachpath.periodic_thread import PeriodicThread
+from teachpath.recorder.recording_work import Call, call_directly, read_trajectory
 from teachpath.recording.guidance import ClusterSummary, advise
-from teachpath.records import Array, Demonstration, Trajectory
+from teachpath.records import Array, Demonstration, Trajectory, Vector
 
 MAX_DEMONSTRATIONS = 60  # newest ones that are compared
 RESAMPLED_POINTS = 50  # of each demonstration, at equal arc length
@@ -26,19 +28,22 @@ class GuidanceThread:
 
     Args:
         demonstrations: returns the demonstrations of a task.
-        trajectory: returns the object's trajectory of a demonstration.
+        course: returns the course (RESAMPLED_POINTS, 3) [m] of the object in a demonstration; see `read_course`.
         settings: of learning, whose clustering is used.
+        call: calls what compares the courses.
     """
 
     def __init__(
         self,
         demonstrations: Callable[[str], list[Demonstration]],
-        trajectory: Callable[[Demonstration], Trajectory],
+        course: Callable[[Demonstration], Array],
         settings: LearningSettings,
+        call: Call = call_directly,
     ) -> None:
         self._demonstrations = demonstrations
-        self._trajectory = trajectory
+        self._read_course = course
         self._settings = settings
+        self._call = call
         self._requests: queue.SimpleQueue[str] = queue.SimpleQueue()
         self._courses: dict[tuple[str, tuple[int, int]], Array] = {}  # by id and transport phase
         self._advice: dict[str, str] = {}
@@ -71,8 +76,8 @@ class GuidanceThread:
         self._courses = {(d.id, d.transport): c for d, c in zip(usable, courses, strict=True)}
         if not courses:
             return ""
-        length = float(np.median([arc_lengths(course)[-1] for course in courses]))
-        return advise(_clusters(np.array(courses), self._settings, length), length)
+        sentence: str = self._call(advise_on, np.array(courses), self._settings)
+        return sentence
 
     def _serve_requests(self) -> None:
         """Compare every task that was requested since the last call, once."""
@@ -87,9 +92,23 @@ class GuidanceThread:
 
     def _course(self, demonstration: Demonstration) -> Array:
         known = self._courses.get((demonstration.id, demonstration.transport))
-        if known is not None:
-            return known
-        return at_equal_arc_length(smoothed(self._trajectory(demonstration)), RESAMPLED_POINTS)
+        return self._read_course(demonstration) if known is None else known
+
+
+def course_of(trajectory: Trajectory) -> Array:
+    """Return the course (RESAMPLED_POINTS, 3) [m] of a trajectory."""
+    return at_equal_arc_length(smoothed(trajectory), RESAMPLED_POINTS)
+
+
+def read_course(recordings: Recordings, demonstration: Demonstration, carried: Vector | None) -> Array:
+    """Return the course of the object in a demonstration; as `read_trajectory`."""
+    return course_of(read_trajectory(recordings, demonstration, carried))
+
+
+def advise_on(courses: Array, settings: LearningSettings) -> str:
+    """Return the advice for demonstrations of these courses (n, RESAMPLED_POINTS, 3) [m]."""
+    length = float(np.median([arc_lengths(course)[-1] for course in courses]))
+    return advise(_clusters(courses, settings, length), length)
 
 
 def _clusters(courses: Array, settings: LearningSettings, length: float) -> list[ClusterSummary]:

@@ -14,6 +14,7 @@ from teachpath.recorder.annotations import Annotations
 from teachpath.recorder.feedback import FeedbackPublisher
 from teachpath.recorder.presence import Presence, Tracker
 from teachpath.recorder.recording_thread import RecordingThread
+from teachpath.recorder.recording_work import Call, call_directly
 from teachpath.recorder.sample_queues import SampleQueues
 from teachpath.recorder.session import RecordingSession, RecordingSetup
 from teachpath.recorder.take import FinishedTake
@@ -63,6 +64,7 @@ class Recorder:
     """Turns sample streams into demonstrations; one running recording a tracker.
 
     Args:
+        call: calls what reads a whole recording.
         clock: [s] monotonic.
 
     Attributes:
@@ -78,6 +80,7 @@ class Recorder:
         lookup: Lookup,
         callbacks: DemonstrationCallbacks | None = None,
         *,
+        call: Call = call_directly,
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
         self._bus = bus
@@ -87,7 +90,7 @@ class Recorder:
         self._lookup = lookup
         self._callbacks = callbacks or DemonstrationCallbacks()
         self._clock = clock
-        self.annotations = Annotations(store, settings, lookup.scene, self._callbacks.changed)
+        self.annotations = Annotations(store, settings, lookup.scene, self._callbacks.changed, call)
         self._presence = Presence(clock)
         self._queues = SampleQueues(keys, self._presence, settings.longest_backlog)
         self._recording = RecordingThread(

@@ -14,7 +14,7 @@ from teachpath.io.documents import encode
 from teachpath.io.store.motions import MotionHeader, read_motion
 from teachpath.io.store.store import Execution, Store
 from teachpath.io.wire import decode_lease, encode_command, encode_lease_request
-from teachpath.motion.analysis.time_series import TimeSeries, time_series
+from teachpath.motion.analysis.time_series import time_series
 from teachpath.motion.arm.model import Arm
 from teachpath.records import Command, ExecutorStatus, Lease, LeaseRequest, TeleopRequest
 from teachpath.robot.executor_monitor import ExecutorMonitor
@@ -37,15 +37,13 @@ class Executions:
 
     Args:
         robot: name of the robot.
-        arm: that is moved.
     """
 
-    def __init__(self, bus: Bus, keys: Keys, store: Store, *, robot: str, arm: Arm) -> None:
+    def __init__(self, bus: Bus, keys: Keys, store: Store, *, robot: str) -> None:
         self._bus = bus
         self._keys = keys
         self._store = store
         self._robot = robot
-        self._arm = arm
         self._recorder = MotionRecorder(bus, keys, store.motions, robot=robot)
         self._stopper = Stopper(bus, keys)
         self._starting: set[str] = set()  # executions that the executor has not answered for yet
@@ -80,11 +78,6 @@ class Executions:
         if row.status.state.is_resting:
             self._recorder.wait_for_file(row.id)
         return self._store.motions.path(row.id)
-
-    def series(self, execution: str, points: int) -> TimeSeries:
-        """Return what the arm did over time in an execution; raises NotFound."""
-        motion = read_motion(self.recording(execution))
-        return time_series(motion.setpoints, motion.states, points, self._arm)
 
     @property
     def status(self) -> ExecutorStatus | None:
@@ -210,3 +203,9 @@ class Executions:
         finally:
             self._starting.discard(key)
         return self.get(key)
+
+
+def encode_series(recording: Path, points: int, arm: Arm) -> bytes:
+    """Return the JSON of what the arm did over time (`TimeSeries`), from the recording of an execution."""
+    motion = read_motion(recording)
+    return encode(time_series(motion.setpoints, motion.states, points, arm))

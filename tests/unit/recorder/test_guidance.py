@@ -5,8 +5,8 @@ import numpy as np
 
 from teachpath.errors import UnusableRecording
 from teachpath.learning.settings import LearningSettings
-from teachpath.recorder.guidance import GuidanceThread
-from teachpath.records import Demonstration, Trajectory
+from teachpath.recorder.guidance import GuidanceThread, course_of
+from teachpath.records import Array, Demonstration, Trajectory
 from tests.contract.rows import demonstration
 from tests.waiting import HANG
 
@@ -17,14 +17,14 @@ def stored(count: int = len(SHOWN)) -> list[Demonstration]:
     return [demonstration(f"d{i}", number=i + 1) for i in range(count)]
 
 
-def trajectory(shown: Demonstration) -> Trajectory:
+def course(shown: Demonstration) -> Array:
     t = np.linspace(0.0, 1.0, 150)
     swing = SHOWN[shown.number - 1] + 0.008 * np.sin(7.0 * shown.number)
-    return Trajectory(3.0 * t, np.column_stack([0.6 * t, swing * np.sin(np.pi * t), np.full(150, 0.5)]))
+    return course_of(Trajectory(3.0 * t, np.column_stack([0.6 * t, swing * np.sin(np.pi * t), np.full(150, 0.5)])))
 
 
 def test_it_tells_the_ways_apart_and_asks_for_the_one_that_is_thin() -> None:
-    guidance = GuidanceThread(lambda _: stored(), trajectory, LearningSettings())
+    guidance = GuidanceThread(lambda _: stored(), course, LearningSettings())
     advice = guidance.compare("t")
     assert advice.startswith("6 demonstrations show 2 ways and agree within 0.")
     assert advice.endswith("; the second way has only two, show it again")
@@ -33,19 +33,19 @@ def test_it_tells_the_ways_apart_and_asks_for_the_one_that_is_thin() -> None:
 def test_discarded_marked_and_rejected_ones_do_not_count() -> None:
     changes = ({"discarded_ns": 5}, {"mark": "bad"}, {"verdict": "reject"})
     kept = [replace(d, **change) for d, change in zip(stored(3), changes, strict=True)]  # type: ignore[arg-type]
-    assert GuidanceThread(lambda _: kept, trajectory, LearningSettings()).compare("t") == ""
-    assert "one demonstration" in GuidanceThread(
-        lambda _: [*kept, stored()[3]], trajectory, LearningSettings()
-    ).compare("t")
+    assert GuidanceThread(lambda _: kept, course, LearningSettings()).compare("t") == ""
+    assert "one demonstration" in GuidanceThread(lambda _: [*kept, stored()[3]], course, LearningSettings()).compare(
+        "t"
+    )
 
 
 def test_each_demonstration_is_read_once_and_again_when_it_was_trimmed() -> None:
     read: list[tuple[str, tuple[int, int]]] = []
     rows = stored()
 
-    def reading(shown: Demonstration) -> Trajectory:
+    def reading(shown: Demonstration) -> Array:
         read.append((shown.id, shown.transport))
-        return trajectory(shown)
+        return course(shown)
 
     guidance = GuidanceThread(lambda _: rows, reading, LearningSettings())
     guidance.compare("t")
@@ -66,7 +66,7 @@ def test_it_answers_from_its_own_thread_and_outlives_what_cannot_be_read() -> No
         answered.release()
         return stored(1)
 
-    guidance = GuidanceThread(rows, trajectory, LearningSettings())
+    guidance = GuidanceThread(rows, course, LearningSettings())
     guidance.start()
     assert guidance.advice("t") == ""
     guidance.request("broken")
@@ -88,7 +88,7 @@ def test_of_a_burst_every_task_is_compared() -> None:
             done.set()
         return stored(1)
 
-    guidance = GuidanceThread(rows, trajectory, LearningSettings())
+    guidance = GuidanceThread(rows, course, LearningSettings())
     for task in ("a", "b", "a"):
         guidance.request(task)
     guidance.start()

@@ -10,7 +10,7 @@ from teachpath.live.preview.preview import Preview
 from teachpath.motion.arm.geometry import visual_solids
 from teachpath.motion.arm.model import Arm
 from teachpath.recorder.guidance import GuidanceThread
-from teachpath.records import Demonstration, Trajectory
+from teachpath.records import Array, Demonstration
 from tests.unit.recorder.recorders import KEYS, Bench
 from tests.unit.recording.hands import demonstration
 from tests.waiting import HANG
@@ -47,7 +47,7 @@ def test_a_page_that_sleeps_does_not_delay_the_recorder(bench: Bench) -> None:
 def test_guidance_that_stalls_does_not_delay_the_recorder(store: object) -> None:
     go_on, asked = threading.Event(), threading.Event()
 
-    def stall(_: Demonstration) -> Trajectory:
+    def stall(_: Demonstration) -> Array:
         asked.set()
         go_on.wait()
         raise UnusableRecording("nobody needs it any more")
