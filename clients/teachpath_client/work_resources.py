@@ -107,7 +107,10 @@ class WorkResources(Rest):
         return self._ask(Execution, "POST", "/executions", {"plan": plan, "override": override})
 
     def begin_teleoperation(self, tracker: str, **options: Any) -> Execution:
-        """Let the arm mirror a live hand; options: calibration, scene, scale, share, clutch. Return at once."""
+        """Let the arm mirror a live hand and return at once.
+
+        Options: calibration, scene, scale, share, clutch, orientation (`keep` or `follow`).
+        """
         return self._ask(Execution, "POST", "/teleoperation", {"tracker": tracker} | options)
 
     def executions(self) -> list[Execution]:

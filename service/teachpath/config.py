@@ -18,6 +18,7 @@ from pydantic import BaseModel, ConfigDict, ValidationError
 
 from teachpath.errors import NotFound, UnusableSettings
 from teachpath.executor.settings import ExecutorSettings
+from teachpath.executor.teleop.settings import TeleoperationSettings
 from teachpath.io.bus_settings import BusSettings
 from teachpath.io.import_settings import ImportSettings
 from teachpath.io.meshes import read_hull
@@ -56,6 +57,7 @@ class Settings(BaseModel):
     learning: LearningSettings = LearningSettings()
     motion: MotionSettings = MotionSettings()
     executor: ExecutorSettings = ExecutorSettings()
+    teleoperation: TeleoperationSettings = TeleoperationSettings()
     simulator: SimulatorSettings = SimulatorSettings()
     jobs: JobSettings = JobSettings()
     preview: PreviewSettings = PreviewSettings()

@@ -63,7 +63,7 @@ DOORS = {
     "jinja2": ["offline/report/package.py"],
     "hmmlearn": ["learning/selection/hmm.py"],
     "geomdl": ["exchange.py"],
-    "ruckig": ["motion/execution/governor.py", "motion/execution/teleop_motion.py", "motion/timing/joint_moves.py"],
+    "ruckig": ["motion/execution/governor.py", "motion/execution/tool_motion.py", "motion/timing/joint_moves.py"],
     "numba": ["learning/clustering/kernels.py", "motion/timing/kernels.py"],
     "mujoco": ["motion/collision/collision_model.py", "motion/arm/dynamics.py", "simulator/arm.py"],
     "meshcat": ["live/preview"],

@@ -73,6 +73,10 @@ class NewTeleoperation(Body):
     clutch: TrackerNameOrEmpty = Field(
         "", description="tracker whose button bit 2 is the clutch, e.g. that of a page; empty: the hand's own"
     )
+    orientation: Literal["keep", "follow"] | None = Field(
+        None,
+        description="whether the tool keeps its orientation or turns with the hand; left out: as the settings say",
+    )
 
 
 class Override(Body):
@@ -113,13 +117,16 @@ def _add_beginnings(router: APIRouter, parts: Parts) -> None:
 
         The clutch may be another tracker's: whoever looks on presses it then, and lets go to hold the arm.
 
-        The tool keeps its orientation; the gripper closes and opens with the hand, or with its grasp button (bit 0).
+        The tool keeps its orientation on the whole way, or turns as the hand has turned since the clutch was pressed;
+        the gripper closes and opens with the hand, or with its grasp button (bit 0). Where the arm cannot do both, a
+        tool that keeps its orientation stays short of the hand, and one that turns with the hand turns less first.
         The arm keeps its limits, it and what it carries stay clear of the scene, and all rests when the clutch is let
         go or the hand is lost.
         """
         calibration = parts.calibrations.get(new.calibration)
         scene = parts.settings.scene(new.scene)
-        order = TeleopRequest(new.tracker, calibration, scene, new.scale, new.share, new.clutch)
+        orientation = new.orientation or parts.settings.teleoperation.orientation
+        order = TeleopRequest(new.tracker, calibration, scene, new.scale, new.share, new.clutch, orientation)
         row = executions.teleoperate(order, lease=lease, who=who)
         response.headers["Location"] = f"/api/v1/executions/{row.id}"
         return row

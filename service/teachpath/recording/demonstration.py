@@ -9,7 +9,7 @@ from scipy.spatial.transform import Rotation
 
 from teachpath.errors import UnusableRecording
 from teachpath.recording.phases import TransportSpan
-from teachpath.records import Array, Calibration, Pose, Sample, Trajectory, Vector
+from teachpath.records import Array, Calibration, Pose, Quaternion, Sample, Trajectory, Vector
 
 
 def to_world(calibration: Calibration, positions: Array) -> Array:
@@ -17,6 +17,12 @@ def to_world(calibration: Calibration, positions: Array) -> Array:
     rotation = Rotation.from_quat(calibration.rotation, scalar_first=True)
     flat = rotation.apply(np.atleast_2d(positions)) * calibration.scale + np.array(calibration.offset)
     return np.asarray(flat.reshape(np.shape(positions)), dtype=np.float64)
+
+
+def turn_to_world(calibration: Calibration, orientation: Quaternion) -> Array:
+    """Return an orientation of the tracker's frame as a rotation matrix (3, 3) to the world."""
+    turns = Rotation.from_quat([calibration.rotation, orientation], scalar_first=True).as_matrix()
+    return np.asarray(turns[0] @ turns[1], dtype=np.float64)
 
 
 def point_to_world(calibration: Calibration) -> Callable[[Vector], Vector]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Literal
 
 from teachpath.records.calibrations import Calibration
 from teachpath.records.motion import Scene
@@ -38,6 +39,8 @@ class TeleopRequest:
         scale: of the tool's way over the hand's, 0.05 to 5.
         share: of the joints' speed, acceleration and jerk limits, 0.05 to 1.
         clutch: tracker whose button bit 2 is the clutch; empty: the hand's own.
+        orientation: whether the tool keeps its orientation or follows the hand's, from where both were when the clutch
+            was pressed.
     """
 
     tracker: str
@@ -46,6 +49,7 @@ class TeleopRequest:
     scale: float = 1.0
     share: float = 0.5
     clutch: str = ""
+    orientation: Literal["keep", "follow"] = "keep"
 
 
 @dataclass(frozen=True, slots=True)

@@ -18,11 +18,12 @@ from teachpath.motion.collision.collision_model import CollisionModel, Load
 from teachpath.motion.execution.segments import Detour, MotionState, RestPoint
 from teachpath.motion.execution.teleop_follower import TeleopFollower
 from teachpath.motion.settings import MotionSettings
-from teachpath.recording.demonstration import to_world
+from teachpath.recording.demonstration import to_world, turn_to_world
 from teachpath.records import Array, Sample, TeleopRequest
 
 MAX_LATENCIES: Final = 5000  # newest latencies of which the percentiles are taken
 LATE_ARM_HINT: Final = "the arm is late; let the clutch go and press it again"
+NO_TURN_HINT: Final = "the hand's own turns are not measured, so the tool keeps its orientation"
 
 
 class TeleopProgram:
@@ -69,6 +70,7 @@ class TeleopProgram:
         self._clutch = Clutch()
         self._latencies: deque[float] = deque(maxlen=MAX_LATENCIES)
         self._answered_stamp = 0
+        self._turn_hint = ""
 
     before_path = waiting = False
     finished = False
@@ -105,8 +107,8 @@ class TeleopProgram:
     def activity(self) -> str:
         """What the arm does, and why the tool is not where the hand is."""
         following = f"mirroring {self._request.tracker}"
-        hindered = self._clutch.engaged and self._follower.reason
-        return f"{following}: {self._follower.reason}" if hindered else following
+        hindrance = (self._follower.reason or self._turn_hint) if self._clutch.engaged else ""
+        return f"{following}: {hindrance}" if hindrance else following
 
     @property
     def location(self) -> str:
@@ -213,12 +215,19 @@ class TeleopProgram:
         if latest is not None and self._request.scene.carried is not None:
             self._follower.load = observed_load(latest[1], self._arm, self._follower.load)
         was_engaged = self._clutch.engaged
-        hand = to_world(self._request.calibration, np.array(sample.position))
+        hand, orientation = to_world(self._request.calibration, np.array(sample.position)), self._orientation(sample)
         if self._clutch.update(self._hand.is_clutch_pressed(sample)):
             self._gripper.engage(sample)
-            self._follower.engage(hand)
+            self._follower.engage(hand, orientation)
         elif self._clutch.engaged:
             self._gripper.follow(sample)
-            self._follower.set_hand(hand, came_ns)
+            self._follower.set_hand(hand, came_ns, orientation)
         elif was_engaged:
             self._follower.disengage()
+
+    def _orientation(self, sample: Sample) -> Array | None:
+        """Return the orientation (3, 3) of the hand in the world, if the tool is to turn with it and it is measured."""
+        if self._request.orientation == "keep":
+            return None
+        self._turn_hint = NO_TURN_HINT if sample.orientation is None else ""
+        return None if sample.orientation is None else turn_to_world(self._request.calibration, sample.orientation)

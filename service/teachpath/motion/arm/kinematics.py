@@ -135,9 +135,40 @@ def inverse_kinematics(poses: Array, arm: Arm, *, previous_q4: float = 0.0) -> I
         side = 1.0 if branch < 4 else -1.0
         up = (branch // 2) % 2 == 0
         joints[:, branch, :3] = reach.shoulder_and_elbow(side, (-1.0 if up else 1.0) * side)
-        joints[:, branch, 3:] = _wrist(joints[:, branch, :3], poses, arm, flip=branch % 2 == 1, before=previous_q4)
+        joints[:, branch, 3:] = wrist_joints(
+            joints[:, branch, :3], poses[:, :3, :3], arm, flip=branch % 2 == 1, previous_q4=previous_q4
+        )
     joints = np.pi - np.mod(np.pi - joints, 2 * np.pi)
     return IkSolutions(joints, np.repeat(reach.excess[:, None], 8, axis=1), reach.beyond)
+
+
+def wrist_joints(arm_joints: Array, orientations: Array, arm: Arm, *, flip: bool, previous_q4: float = 0.0) -> Array:
+    """Solve for joints 4 to 6, which give the tool its orientation where joints 1 to 3 are known.
+
+    Args:
+        arm_joints: (n, 3) joints 1 to 3 [rad].
+        orientations: (n, 3, 3) to world from the tool.
+        flip: which of the two solutions.
+        previous_q4: joint 4 before the first row [rad], for a way that begins at a singular wrist.
+
+    Returns:
+        (n, 3) joints 4 to 6 [rad], each in (-pi, pi] but for rounding.
+    """
+    frame = np.broadcast_to(np.eye(4), (len(arm_joints), 4, 4))
+    for i, link in enumerate(arm.links[:3]):
+        frame = frame @ _link_matrix(arm_joints[:, i], link.d, link.a, link.alpha)
+    turn = np.swapaxes(frame[:, :3, :3], 1, 2) @ orientations  # R of joints 4, 5, 6: Rz(q4) Ry(-q5) Rz(q6)
+    sign = -1.0 if flip else 1.0
+    sine = np.hypot(turn[:, 0, 2], turn[:, 1, 2])
+    q5 = np.arctan2(sign * sine, turn[:, 2, 2])
+    q4 = np.arctan2(-sign * turn[:, 1, 2], -sign * turn[:, 0, 2])
+    for k in np.flatnonzero(sine < SINGULAR_WRIST_SINE):
+        q4[k] = q4[k - 1] if k else previous_q4
+        q5[k] = 0.0 if turn[k, 2, 2] > 0 else np.pi
+    # With joint 4 known, the rest of the turn is Ry(-q5) Rz(q6), whose middle row is that of Rz(q6).
+    c4, s4 = np.cos(q4), np.sin(q4)
+    row = -s4[:, None] * turn[:, 0, :] + c4[:, None] * turn[:, 1, :]
+    return np.column_stack([q4, q5, np.arctan2(row[:, 0], row[:, 1])])
 
 
 def min_singular_value(q: Array, arm: Arm) -> Array:
@@ -211,24 +242,6 @@ class _Reach:
         across, onward = of.forearm * np.sin(inside), of.upper_arm + of.forearm * np.cos(inside)
         q2 = np.arctan2(self.height, side * self.along) - np.arctan2(across, onward)
         return np.column_stack([q1, q2, inside - of.forearm_angle])
-
-
-def _wrist(arm_joints: Array, poses: Array, arm: Arm, *, flip: bool, before: float) -> Array:
-    frame = np.broadcast_to(np.eye(4), (len(arm_joints), 4, 4))
-    for i, link in enumerate(arm.links[:3]):
-        frame = frame @ _link_matrix(arm_joints[:, i], link.d, link.a, link.alpha)
-    turn = np.swapaxes(frame[:, :3, :3], 1, 2) @ poses[:, :3, :3]  # R of joints 4, 5, 6: Rz(q4) Ry(-q5) Rz(q6)
-    sign = -1.0 if flip else 1.0
-    sine = np.hypot(turn[:, 0, 2], turn[:, 1, 2])
-    q5 = np.arctan2(sign * sine, turn[:, 2, 2])
-    q4 = np.arctan2(-sign * turn[:, 1, 2], -sign * turn[:, 0, 2])
-    for k in np.flatnonzero(sine < SINGULAR_WRIST_SINE):
-        q4[k] = q4[k - 1] if k else before
-        q5[k] = 0.0 if turn[k, 2, 2] > 0 else np.pi
-    # With joint 4 known, the rest of the turn is Ry(-q5) Rz(q6), whose middle row is that of Rz(q6).
-    c4, s4 = np.cos(q4), np.sin(q4)
-    row = -s4[:, None] * turn[:, 0, :] + c4[:, None] * turn[:, 1, :]
-    return np.column_stack([q4, q5, np.arctan2(row[:, 0], row[:, 1])])
 
 
 def _link_matrix(angle: Array, d: float, a: float, alpha: float) -> Array:

@@ -1,9 +1,9 @@
 """Follows a hand with the tool: scaled, within the joints' limits, on one IK branch, and clear of the scene.
 
-The arm always follows one of Ruckig's motions, from its present state to rest, that was checked to its end against the
-joints' ranges and the scene. The next motion is planned for an instant ahead and replaces the present one only if its
-check is done by then. So an arm that loses the hand, or whose planning fails, comes to rest where it is safe. Planning
-is cut into slices of a millisecond or two; the control loop does one after each setpoint.
+The arm always follows a motion of `tool_motion`, from its present state to rest, that was checked to its end against
+the joints' limits and the scene. The next motion is planned for an instant ahead and replaces the present one only if
+its check is done by then. So an arm that loses the hand, or whose planning fails, comes to rest where it is safe.
+Planning is cut into slices of a millisecond or two; the control loop does one after each setpoint.
 """
 
 from __future__ import annotations
@@ -13,24 +13,34 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 from teachpath.errors import PathRefused
-from teachpath.motion.arm.kinematics import BRANCH_NAMES, inverse_kinematics, min_singular_value, tool_pose
-from teachpath.motion.arm.model import Arm
+from teachpath.motion.arm.kinematics import tool_pose
 from teachpath.motion.arm.puma560 import Array
 from teachpath.motion.collision.collision_model import CollisionModel, Load
-from teachpath.motion.execution.teleop_motion import Motion, MotionToRest, sampled, state_at
+from teachpath.motion.execution.teleop_checks import limit_passed, obstruction, samples_to_check
+from teachpath.motion.execution.teleop_goal import (
+    MIN_TURN,
+    STAYS_SHORT,
+    TURNS_LESS,
+    ReachableGoal,
+    branch_at,
+    nearest_reachable,
+)
+from teachpath.motion.execution.teleop_pace import Pace
+from teachpath.motion.execution.tool_motion import ToolMotion, ToolState, plan_tool_motion
 from teachpath.motion.settings import MotionSettings
 
-LEAD_PERIODS: Final = 6  # control periods from the beginning of planning to the beginning of the motion
-CHECKS_PER_SLICE: Final = 3  # configurations that are checked in one slice of planning
-MAX_JOINT_LEAD: Final = 0.25  # [rad] of one motion: more could not be checked in time
-POSES_PER_SOLVE: Final = 8  # poses on the way to the target for which inverse kinematics are solved at once
-MAX_TOOL_LEAD: Final = 0.2  # [m] of one motion
+LEAD_PERIODS: Final = 5  # control periods from the beginning of planning to the beginning of the motion
+CHECKS_PER_SLICE: Final = 5  # configurations that are checked in one slice of planning
 MIN_SHARE: Final = 0.02  # of the way to the target that is tried at least
-MAX_JOINT_JUMP: Final = 0.6  # [rad] between two neighbouring poses; a larger turn would be another motion of the arm
-SAMPLING_CLEARANCE: Final = 0.015  # [m] besides `clearance_min`, for what lies between two checked configurations
 BACKOFF_FACTOR: Final = 0.5  # on the share of the way that is tried, after something was too near
+GROWTH_FACTOR: Final = 1.5  # on what was reduced, after a motion that passed its checks
+MIN_TURN_SHARE: Final = 0.1  # of the hand's turn; below it none is tried
+MAX_TOOL_LEAD: Final = 0.2  # [m] of one motion
+MAX_TURN_LEAD: Final = 0.3  # [rad] of the tool in one motion
+TRIALS_PER_PLAN: Final = 3  # of a motion, each slower than the one before
 MIN_MOVE: Final = 1e-4  # [rad] below which there is nothing to move
 REST_SPEED: Final = 1e-9  # [rad/s]
 
@@ -40,8 +50,16 @@ class _PlannedMotion:
     """A checked motion that begins in the control period `cycle`; `stamp` names the sample that it answers."""
 
     cycle: int
-    trajectory: Motion
+    motion: ToolMotion
     stamp: int
+
+
+@dataclass(frozen=True, eq=False)
+class _Pose:
+    """Position (3,) [m] and orientation (3, 3) of hand or tool, in the world."""
+
+    position: Array
+    orientation: Array
 
 
 class TeleopFollower:
@@ -49,7 +67,7 @@ class TeleopFollower:
 
     Args:
         model: of the scene.
-        start_q: (6,) where the arm rests [rad]; the tool keeps the orientation that it has there.
+        start_q: (6,) where the arm rests [rad].
         settings: home, clearances and singularities.
         scale: of the tool's way over the hand's.
         share: of the joints' speed, acceleration and jerk limits.
@@ -78,22 +96,22 @@ class TeleopFollower:
         self._settings = settings
         self._scale = scale
         self._period = period
-        limits = model.arm.limits.motion.scaled(share, share, share)
-        self._motion_to_rest = MotionToRest(limits, model.arm, period)
+        self._pace = Pace(model.arm.limits.motion.scaled(share, share, share), model.arm, period)
         pose = tool_pose(start_q, model.arm)
-        self._orientation = pose[:3, :3]
-        self._branch = _branch(start_q, pose, model.arm)
+        self._branch = branch_at(start_q, pose, model.arm)
+        self._orientation = pose[:3, :3]  # (3, 3) of the tool where it rests, or where the present motion ends
         self._state: tuple[Array, Array, Array] = (np.array(start_q, dtype=np.float64), np.zeros(6), np.zeros(6))
-        self._trajectory: Motion | None = None
-        self._positions = np.empty((0, 6))  # of the trajectory, one period apart [rad]
-        self._elapsed = 0.0  # [s] of the present motion
+        self._motion: ToolMotion | None = None
+        self._sample = -1  # of the present motion; -1 before its first
         self._cycle = 0
         self._planned: _PlannedMotion | None = None
         self._planning: Iterator[None] | None = None
-        self._anchor: tuple[Array, Array] | None = None  # positions of hand and tool when following began [m]
-        self._target: Array | None = None  # where the tool should be [m]
+        self._anchor: tuple[Array, _Pose] | None = None  # the hand's position [m], and the tool, when following began
+        self._hand_orientation: Array | None = None  # (3, 3) when its turns began to be followed
+        self._target: _Pose | None = None  # where the tool should be
         self._target_stamp = 0
         self._share = 1.0  # of the way to the target that is tried
+        self._turn_share = 1.0  # of the hand's turn that is tried
         self.load: Load | None = None
         self.reason = ""
         self.answered_stamp = 0
@@ -108,23 +126,42 @@ class TeleopFollower:
     @property
     def at_rest(self) -> bool:
         """Whether the arm's nominal motion is at rest."""
-        return bool(np.all(np.abs(self._state[1]) < REST_SPEED)) and self._trajectory is None
+        return bool(np.all(np.abs(self._state[1]) < REST_SPEED)) and self._motion is None
 
-    def engage(self, hand: Array) -> None:
-        """Begin to follow: the tool moves from where it is as the hand moves from `hand` (3,) [m, world]."""
-        goal = self._end()
-        self._anchor = (np.array(hand), tool_pose(goal, self._model.arm)[:3, 3])
+    def engage(self, hand: Array, orientation: Array | None = None) -> None:
+        """Begin to follow: the tool moves from where it is as the hand moves from where it is now.
+
+        Args:
+            hand: (3,) position [m, world].
+            orientation: (3, 3) of the hand; None when the tool is not to turn.
+        """
+        place = self._state[0] if self._motion is None else self._motion.positions[-1]
+        tool = _Pose(tool_pose(place, self._model.arm)[:3, 3], self._orientation)
+        self._anchor, self._hand_orientation = (np.array(hand), tool), orientation
 
     def disengage(self) -> None:
         """Cease to follow: the arm finishes its present motion, and rests."""
         self._anchor = self._target = self._planning = self._planned = None
         self.reason = ""
 
-    def set_hand(self, hand: Array, stamp: int) -> None:
-        """Take where the hand is now (3,) [m, world], if it is followed; `stamp` names the sample."""
-        if self._anchor is not None:
-            began, tool = self._anchor
-            self._target, self._target_stamp = tool + self._scale * (hand - began), stamp
+    def set_hand(self, hand: Array, stamp: int, orientation: Array | None = None) -> None:
+        """Take where the hand is now, if it is followed.
+
+        Args:
+            hand: (3,) position [m, world].
+            stamp: names the sample.
+            orientation: (3, 3) of the hand, by which the tool turns; None when it is not to turn.
+        """
+        if self._anchor is None:
+            return
+        began, tool = self._anchor
+        turned = tool.orientation if self._target is None else self._target.orientation
+        if self._hand_orientation is None:
+            self._hand_orientation = orientation
+        elif orientation is not None:
+            turned = orientation @ self._hand_orientation.T @ tool.orientation
+        self._target = _Pose(tool.position + self._scale * (hand - began), turned)
+        self._target_stamp = stamp
 
     def step(self) -> tuple[Array, Array, Array]:
         """Advance by one control period and return the newest setpoint's position, velocity and acceleration."""
@@ -132,26 +169,26 @@ class TeleopFollower:
         following = self._planned
         if following is not None and following.cycle <= self._cycle:
             if following.cycle == self._cycle:
-                self._trajectory, self._elapsed, self.answered_stamp = following.trajectory, 0.0, following.stamp
+                self._motion, self._sample, self.answered_stamp = following.motion, -1, following.stamp
+                self._orientation = following.motion.final_orientation
             self._planned = None
-        self._elapsed += self._period
-        if self._trajectory is not None and self._elapsed == self._period:
-            count = int(np.ceil(self._trajectory.duration / self._period))
-            self._positions = np.array([state_at(self._trajectory, (k + 1) * self._period)[0] for k in range(count)])
-        if self._trajectory is not None:
-            self._state = state_at(self._trajectory, self._elapsed)
-            if self._elapsed >= self._trajectory.duration:
-                self._state, self._trajectory = (self._state[0], np.zeros(6), np.zeros(6)), None
+        if self._motion is not None:
+            self._sample += 1
+            run, k = self._motion, self._sample
+            self._state = (run.positions[k], run.velocities[k], run.accelerations[k])
+            if k == len(run) - 1:
+                self._motion = None
         return self._state
 
     def way_to_rest(self) -> Array:
         """Return the positions (n, 6) that are left of the motion that is followed; it ends at rest [rad]."""
-        return self._positions[round(self._elapsed / self._period) :] if self._trajectory else np.empty((0, 6))
+        return self._motion.positions[self._sample + 1 :] if self._motion else np.empty((0, 6))
 
     def rest_at(self, position: Array) -> None:
         """Stand at a configuration (6,) at once; only for an arm that rests there already."""
         self._state = (position, np.zeros(6), np.zeros(6))
-        self._trajectory = self._planned = self._planning = None
+        self._orientation = tool_pose(position, self._model.arm)[:3, :3]
+        self._motion = self._planned = self._planning = None
 
     def advance_planning(self) -> None:
         """Do one slice of the planning of the next motion; takes a millisecond or two."""
@@ -162,101 +199,95 @@ class TeleopFollower:
         if next(self._planning, self) is self:
             self._planning = None
 
-    def _plan(self, target: Array, stamp: int) -> Iterator[None]:
-        begins = self._cycle + LEAD_PERIODS
-        state = self._after(LEAD_PERIODS - 1)
-        goal, reason = self._reachable_goal(target, state[0])
+    def _plan(self, target: _Pose, stamp: int) -> Iterator[None]:
+        begins, begin = self._cycle + LEAD_PERIODS, self._state_after(LEAD_PERIODS - 1)
+        sent = np.array([self._position_after(LEAD_PERIODS - k) for k in (3, 2, 1)])
+        arm, here = self._model.arm, sent[-1]
+        pose = tool_pose(here, arm)
+        pose[:3, :3] = begin.orientation
+        wanted = _turn(begin.orientation, target.orientation)
+        goal = nearest_reachable(
+            here,
+            pose,
+            self._share * _capped(target.position - pose[:3, 3], MAX_TOOL_LEAD),
+            self._turn_share * _capped(wanted, MAX_TURN_LEAD),
+            arm,
+            self._branch,
+            self._settings.least_singular,
+        )
         yield
-        if self.at_rest and np.abs(goal - state[0]).max() < MIN_MOVE:
-            self.reason = reason
+        if not goal.moves:
+            self._share = max(BACKOFF_FACTOR * self._share, MIN_SHARE)
+        if self.at_rest and np.abs(goal.joints - here).max() < MIN_MOVE:
+            self.reason = goal.reason
             return
-        run = self._motion_to_rest(state, goal)
-        if run is None:
+        for _ in range(TRIALS_PER_PLAN):
+            motion = self._motion_to(begin, goal)
+            if motion is None:
+                return
+            if self._pace.keeps(sent, motion):
+                break
+            yield
+        else:
             return
-        samples = sampled(run)
+        samples = samples_to_check(motion.positions)
         for first in range(0, len(samples), CHECKS_PER_SLICE):
-            near = self._find_obstruction(samples[first : first + CHECKS_PER_SLICE])
+            near = limit_passed(motion.positions, arm) or obstruction(
+                self._model, samples[first : first + CHECKS_PER_SLICE], self.load, self._settings
+            )
             if near:
-                self.reason, self._share = near, max(BACKOFF_FACTOR * self._share, MIN_SHARE)
+                self._back_off(near, turns=bool(np.any(goal.turn)))
                 return
             yield
         if self._cycle < begins and self._anchor is not None:
-            self.reason, self._share = reason, min(1.5 * self._share, 1.0)
-            self._planned = _PlannedMotion(begins, run, stamp)
+            self._take_up(_PlannedMotion(begins, motion, stamp), self._hindrance(goal, wanted))
 
-    def _reachable_goal(self, target: Array, here: Array) -> tuple[Array, str]:
-        """Return the configuration nearest to the target that is reached from `here` (6,), and what is in the way."""
-        arm = self._model.arm
-        begin = tool_pose(here, arm)[:3, 3]
-        lead = min(1.0, MAX_TOOL_LEAD / max(float(np.linalg.norm(target - begin)), 1e-12))
-        shares = lead * self._share * np.arange(1, POSES_PER_SOLVE + 1) / POSES_PER_SOLVE
-        poses = np.tile(np.eye(4), (POSES_PER_SOLVE, 1, 1))
-        poses[:, :3, :3] = self._orientation
-        poses[:, :3, 3] = begin + shares[:, None] * (target - begin)
-        solved = inverse_kinematics(poses, arm, previous_q4=float(here[3]))
-        joints = np.unwrap(np.concatenate([here[None], solved.joints[:, self._branch]]), axis=0)
-        turns = np.abs(np.diff(joints, axis=0)).max(axis=1)
-        joints = joints[1:]
-        low, high = joints - arm.limits.lower, arm.limits.upper - joints
-        checks = (
-            (solved.reach_excess[:, self._branch] > 0, "the arm does not reach that far"),
-            (np.minimum(low, high).min(axis=1) < 0, "a joint is at its limit"),
-            (
-                min_singular_value(joints, arm) < self._settings.least_singular,
-                "the arm is stretched out: a singular pose",
-            ),
-            (turns > MAX_JOINT_JUMP, "the arm would have to turn over"),
-        )
-        good, reason = POSES_PER_SOLVE, ""
-        for bad, sentence in checks:
-            if bad.any() and int(np.argmax(bad)) < good:
-                good, reason = int(np.argmax(bad)), f"{sentence}; move the hand back"
-        near = int(
-            np.searchsorted(np.maximum.accumulate(np.abs(joints[:good] - here).max(axis=1)), MAX_JOINT_LEAD, "right")
-        )
-        if good == 0:
+    def _motion_to(self, begin: ToolState, goal: ReachableGoal) -> ToolMotion | None:
+        flip = self._branch % 2 == 1
+        limits, reach, arm = self._pace.limits, self._pace.reach, self._model.arm
+        joints = begin.joints[0] + reach * (goal.joints[:3] - begin.joints[0])
+        return plan_tool_motion(begin, joints, reach * goal.turn, limits, arm, flip=flip, period=self._period)
+
+    def _hindrance(self, goal: ReachableGoal, wanted: Array) -> str:
+        """Say why the tool will not be where the hand is although a motion passed its checks; else nothing."""
+        if goal.reason:
+            return goal.reason
+        if self._turn_share < 1.0 and np.linalg.norm(wanted) > MIN_TURN:
+            return self.reason  # of the turn that was too near to something
+        return self._pace.reason
+
+    def _take_up(self, planned: _PlannedMotion, reason: str) -> None:
+        self._planned, self.reason = planned, reason
+        self._share = min(GROWTH_FACTOR * self._share, 1.0)
+        self._turn_share = min(max(GROWTH_FACTOR * self._turn_share, MIN_TURN_SHARE), 1.0)
+        self._pace.recover()
+
+    def _back_off(self, near: str, *, turns: bool) -> None:
+        """Try less next time: less of the hand's turn first, and less of its way only when there is no turn."""
+        if turns:
+            share = BACKOFF_FACTOR * self._turn_share
+            self._turn_share = share if share >= MIN_TURN_SHARE else 0.0
+        else:
             self._share = max(BACKOFF_FACTOR * self._share, MIN_SHARE)
-            return here, reason
-        goal = joints[max(near, 1) - 1]
-        turn = float(np.abs(goal - here).max())
-        return here + (goal - here) * min(1.0, MAX_JOINT_LEAD / max(turn, 1e-12)), reason if near >= good else ""
+        self.reason = f"{near}, {TURNS_LESS if turns else STAYS_SHORT}"
 
-    def _find_obstruction(self, samples: Array) -> str:
-        limits = self._model.arm.limits
-        if np.any(samples < limits.lower) or np.any(samples > limits.upper):
-            return "a joint would pass its limit; move the hand back"
-        rows = self._model.clearances(samples, load=self.load, gripper_open=True)  # the wider of both
-        least = min(rows, key=lambda row: row.distance)
-        if least.distance < self._settings.clearance_min + SAMPLING_CLEARANCE:
-            near = f"{least.body} would come within {1000 * least.distance:.0f} mm of {least.other_body}"
-            return f"{near}; move the hand back"
-        if self.load is not None and self.load.grasp_pose is not None:
-            deep = min(row.distance for row in self._model.support_distances(samples, self.load))
-            if deep < -self._settings.contact_tolerance:
-                return f"the object would be pressed {-1000 * deep:.0f} mm into what it stood on; move the hand back"
-        return ""
-
-    def _after(self, cycles: int) -> tuple[Array, Array, Array]:
+    def _state_after(self, cycles: int) -> ToolState:
         """Return the state `cycles` control periods ahead."""
-        if self._trajectory is None:
-            return self._state
-        t = self._elapsed + cycles * self._period
-        return (
-            state_at(self._trajectory, t)
-            if t < self._trajectory.duration
-            else (state_at(self._trajectory, t)[0], np.zeros(6), np.zeros(6))
-        )
+        if self._motion is None:
+            return ToolState.resting(self._state[0], self._orientation)
+        return self._motion.tool_state(self._sample + cycles)
 
-    def _end(self) -> Array:
-        """Return the configuration (6,) in which the present motion ends."""
-        return self._state[0] if self._trajectory is None else state_at(self._trajectory, self._trajectory.duration)[0]
+    def _position_after(self, cycles: int) -> Array:
+        if self._motion is None:
+            return self._state[0]
+        row: Array = self._motion.positions[min(self._sample + cycles, len(self._motion) - 1)]
+        return row
 
 
-def _branch(here: Array, pose: Array, arm: Arm) -> int:
-    solved = inverse_kinematics(pose[None], arm, previous_q4=float(here[3])).joints[0]
-    off = np.abs(np.angle(np.exp(1j * (solved - here)))).max(axis=1)
-    if off.min() > 1e-3:
-        raise PathRefused(
-            f"the arm stands on none of its {len(BRANCH_NAMES)} branches; bring it nearer to its home first"
-        )
-    return int(np.argmin(off))
+def _turn(orientation: Array, target: Array) -> Array:
+    """Return the rotation vector (3,) between two orientations (3, 3), in axes of the world [rad]."""
+    return np.asarray(Rotation.from_matrix(target @ orientation.T).as_rotvec(), dtype=np.float64)
+
+
+def _capped(vector: Array, limit: float) -> Array:
+    return np.asarray(vector * min(1.0, limit / max(float(np.linalg.norm(vector)), 1e-12)), dtype=np.float64)

@@ -4,8 +4,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
-from teachpath.motion.arm.kinematics import tool_pose
+from teachpath.motion.arm.kinematics import min_singular_value, tool_pose
 from teachpath.motion.arm.model import Arm
 from teachpath.motion.arm.tool_speed import difference_speeds
 from teachpath.motion.collision.builtin_scenes import empty_scene, paper_scene
@@ -20,28 +21,33 @@ SETTINGS = MotionSettings()
 HOME = np.array(SETTINGS.home)
 DT, EVERY = 0.004, 5  # control period, and periods between two samples of the hand
 SHARE = 0.5
-
-
 SLOW_ARM = replace(ARM, tool_speed=0.1)
 
 
 class Session:
     """A follower, the setpoints that it made, and a hand."""
 
-    def __init__(self, scene: Scene | None = None, *, arm: Arm = ARM, **given: float) -> None:
+    def __init__(self, scene: Scene | None = None, begin: np.ndarray = HOME, *, arm: Arm = ARM, **given: float) -> None:
         self.model = CollisionModel(scene or empty_scene(), arm)
-        self.follower = TeleopFollower(self.model, HOME, SETTINGS, share=SHARE, **given)
-        self.sent = [HOME] * 3
+        self.follower = TeleopFollower(self.model, begin, SETTINGS, share=SHARE, **given)
+        self.sent = [begin] * 3
         self.reasons: set[str] = set()
 
-    def run(self, periods: int, hand: np.ndarray | None = None) -> np.ndarray:
+    def run(self, periods: int, hand: np.ndarray | None = None, turn: np.ndarray | None = None) -> np.ndarray:
+        """Hold the hand at a place, turned by a rotation vector, for some periods; return the tool's place."""
+        orientation = None if turn is None else Rotation.from_rotvec(turn).as_matrix()
         for k in range(periods):
             if hand is not None and k % EVERY == 0:
-                self.follower.set_hand(hand, len(self.sent))
+                self.follower.set_hand(hand, len(self.sent), orientation)
             self.sent.append(self.follower.step()[0])
             self.follower.advance_planning()
             self.reasons.add(self.follower.reason)
         return self.tool()
+
+    def turned(self) -> np.ndarray:
+        """Return the rotation vectors (n, 3) [rad] of the tool from where it began, at all setpoints."""
+        turns = tool_pose(np.array(self.sent), ARM)[:, :3, :3]
+        return np.asarray(Rotation.from_matrix(turns @ turns[0].T).as_rotvec())
 
     def tool(self) -> np.ndarray:
         return tool_pose(self.sent[-1], ARM)[:3, 3]
@@ -127,6 +133,81 @@ def test_what_cannot_be_reached_is_said_and_the_arm_stays_as_near_as_it_safely_m
     back = session.run(900, np.zeros(3))
     np.testing.assert_allclose(back, begin, atol=2e-3)
     assert session.follower.reason == ""
+
+
+ROOMY = np.array([0.365, 1.3, -2.9, 0.0, -1.2, 0.365])  # far from the limits of the joints, the tool tilted ahead
+
+
+@pytest.mark.parametrize("seed", range(2))
+def test_the_tool_keeps_its_orientation_on_the_way_of_a_random_hand(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    session = Session()
+    session.follower.engage(np.zeros(3))
+    for _ in range(30):  # a new place every 40 to 200 ms: the arm is always on its way
+        session.run(int(rng.integers(10, 50)), rng.uniform([-0.1, -0.15, -0.02], [0.05, 0.15, 0.1]))
+    assert np.degrees(np.linalg.norm(session.turned(), axis=1)).max() < 1.0
+    assert session.within_limits()
+
+
+@pytest.mark.parametrize("turn", [(0.3, 0.0, 0.0), (0.0, 0.2, 0.0), (0.0, 0.0, -0.6), (0.15, 0.2, 0.3)])
+def test_the_tool_turns_as_the_hand_turned_since_the_clutch(turn: tuple[float, float, float]) -> None:
+    session = Session(begin=ROOMY)
+    began, way = Rotation.from_rotvec([2.0, -1.0, 0.5]), np.array([0.02, 0.03, 0.05])
+    place = session.tool()
+    session.follower.engage(np.zeros(3), began.as_matrix())
+    session.run(600, way, (Rotation.from_rotvec(turn) * began).as_rotvec())
+    np.testing.assert_allclose(session.turned()[-1], turn, atol=1e-6)
+    np.testing.assert_allclose(session.tool() - place, way, atol=1e-6)
+    assert session.within_limits()
+    assert session.reasons == {""}
+
+
+def test_a_turn_that_the_joints_do_not_have_gives_way_and_the_place_is_kept() -> None:
+    session = Session(begin=ROOMY)
+    place, way = session.tool(), np.array([0.0, 0.05, 0.02])
+    session.follower.engage(np.zeros(3), np.eye(3))
+    session.run(900, way, np.array([0.0, 1.5, 0.0]))
+    np.testing.assert_allclose(session.tool() - place, way, atol=1e-3)
+    assert 0.1 < np.linalg.norm(session.turned()[-1]) < 1.4
+    assert any("joint 5 is at its limit" in reason and "turns less" in reason for reason in session.reasons)
+    assert session.within_limits()
+    session.run(900, way, np.zeros(3))
+    np.testing.assert_allclose(session.turned()[-1], 0.0, atol=1e-6)
+    assert session.follower.reason == ""
+
+
+@pytest.mark.parametrize("seed", range(2))
+def test_a_hand_that_turns_wildly_exceeds_no_limit_passes_no_singular_pose_and_is_told_why(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    session = Session(paper_scene())
+    session.follower.engage(np.zeros(3), np.eye(3))
+    for _ in range(30):
+        session.run(int(rng.integers(3, 60)), rng.normal(0.0, 0.3, 3), rng.normal(0.0, 1.0, 3))
+    session.follower.disengage()
+    session.run(125)  # half a second
+    sent = np.array(session.sent)
+    assert session.within_limits()
+    assert session.follower.at_rest
+    assert min(row.distance for row in session.model.clearances(sent[::4])) >= SETTINGS.clearance_min
+    assert min_singular_value(sent, ARM).min() > 0.5 * SETTINGS.least_singular
+    assert any("turns less" in reason for reason in session.reasons)
+    assert any("stays short" in reason for reason in session.reasons)
+
+
+def test_setpoints_say_how_fast_they_move() -> None:
+    session = Session(begin=ROOMY)
+    session.follower.engage(np.zeros(3), np.eye(3))
+    session.run(40, np.array([0.03, 0.05, 0.05]), np.array([0.2, 0.1, -0.3]))
+    motion = []
+    for _ in range(100):
+        motion.append(session.follower.step())
+        session.follower.advance_planning()
+    positions, speeds, accelerations = (np.array(rows) for rows in zip(*motion, strict=True))
+    jerk = ARM.limits.jerk
+    assert np.abs(np.gradient(positions, DT, axis=0) - speeds)[1:-1].max(axis=0) == pytest.approx(
+        0, abs=jerk.max() * DT**2
+    )
+    assert np.abs(np.gradient(speeds, DT, axis=0) - accelerations)[1:-1].max() < jerk.max() * DT
 
 
 def test_a_limit_of_the_tools_speed_holds_however_the_hand_moves_and_the_tool_still_arrives() -> None:

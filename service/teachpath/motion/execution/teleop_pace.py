@@ -1,0 +1,104 @@
+"""Slows a live hand's motions down until the wrist keeps its limits, and the arm the limit of its speed in space."""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+
+from teachpath.motion.arm.limits import MotionLimits
+from teachpath.motion.arm.model import Arm
+from teachpath.motion.arm.puma560 import Array
+from teachpath.motion.arm.tool_speed import difference_speeds
+from teachpath.motion.execution.tool_motion import ToolMotion
+
+MIN_SHARE: Final = 0.05  # of the limits that is tried at least
+MIN_SPEED: Final = 1e-3  # [rad/s] that is tried at least
+MARGIN: Final = 0.97  # on what would just keep the limits
+TOOL_SPEED_SHARE: Final = 0.99  # of the limit of the speed in space that a motion may use
+MAX_DURATION: Final = 0.5  # [s] of a motion: the arm finishes it when the clutch is let go
+USUAL_DURATION: Final = 0.45  # [s] of the next trial after one that lasts longer
+MIN_REACH: Final = 0.05  # of the way to the goal that is tried at least
+RECOVERY: Final = 1.5  # factor on what is allowed, after a motion that kept all limits
+REACH_RECOVERY: Final = 1.1  # the same for the reach
+SLOW_SHARE: Final = 0.25  # below which it is said that the wrist slows the tool down
+
+
+class Pace:
+    """The limits that joints 1 to 3 and the tool's turn are given, so that what follows from them keeps its own.
+
+    Args:
+        limits: of the joints and of the speed in space.
+        period: between two setpoints [s].
+
+    Attributes:
+        reach: share of the way to the goal that a motion goes, so that it is soon at rest.
+    """
+
+    def __init__(self, limits: MotionLimits, arm: Arm, period: float) -> None:
+        self._limits = limits
+        self._arm = arm
+        self._period = period
+        # The tool turns within the limits of the slowest joint of the wrist.
+        self._widest = np.array(
+            [[*row[:3], *[row[3:].min()] * 3] for row in (limits.speed, limits.acceleration, limits.jerk)]
+        )
+        self._speeds = self._widest[0]
+        self._share = 1.0  # of speed, acceleration and jerk, for the wrist's sake
+        self.reach = 1.0
+        self._joint = 0
+
+    @property
+    def limits(self) -> Array:
+        """Speed, acceleration and jerk (3, 6) that may be used now."""
+        limits = self._share * self._widest
+        limits[0] = np.minimum(limits[0], self._speeds)
+        return limits
+
+    @property
+    def reason(self) -> str:
+        """That the wrist slows the tool down, in words, while it slows it much; else empty."""
+        return f"joint {self._joint} turns as fast as it may, so the tool is slow" if self._share < SLOW_SHARE else ""
+
+    def keeps(self, sent: Array, motion: ToolMotion) -> bool:
+        """Tell whether a motion keeps all limits, by differences of its setpoints, and is soon over; else adapt.
+
+        Args:
+            sent: (3, 6) the positions before the motion, one period apart [rad].
+        """
+        positions = np.concatenate([sent, motion.positions, np.tile(motion.positions[-1], (3, 1))])
+        uses, speeding, duration = (
+            self._wrist_uses(positions),
+            self._speeding(positions[2:]),
+            len(motion) * self._period,
+        )
+        if uses.max() > 1.0:
+            self._joint = 4 + int(np.argmax(uses))
+            self._share = max(MARGIN * self._share / float(uses.max()), MIN_SHARE)
+        if speeding > 1.0:
+            self._speeds = np.maximum(motion.leading_speeds * MARGIN / speeding, MIN_SPEED)
+        if duration > MAX_DURATION:
+            self.reach = max(self.reach * USUAL_DURATION / duration, MIN_REACH)
+        return max(uses.max(), speeding, duration / MAX_DURATION) <= 1.0
+
+    def recover(self) -> None:
+        """Allow more again, after a motion that is followed."""
+        self._share = min(RECOVERY * self._share, 1.0)
+        self._speeds = np.minimum(RECOVERY * self._speeds, self._widest[0])
+        self.reach = min(REACH_RECOVERY * self.reach, 1.0)
+
+    def _wrist_uses(self, positions: Array) -> Array:
+        """Return the largest use (3,) that joints 4 to 6 make of a limit in positions (n, 6), by differences."""
+        every = []
+        for k, limit in enumerate((self._limits.speed, self._limits.acceleration, self._limits.jerk)):
+            every.append(
+                np.abs(np.diff(positions[:, 3:], k + 1, axis=0)).max(axis=0) / self._period ** (k + 1) / limit[3:]
+            )
+        return np.max(every, axis=0)
+
+    def _speeding(self, positions: Array) -> float:
+        """Return by what factor the arm exceeds its speed in space in positions (n, 6)."""
+        limit = TOOL_SPEED_SHARE * self._limits.tool_speed
+        if np.isinf(limit):
+            return 0.0
+        return float(difference_speeds(positions, 1.0 / self._period, self._arm).max()) / limit

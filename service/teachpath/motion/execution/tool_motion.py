@@ -1,0 +1,150 @@
+"""Motions to rest on which the tool turns only as it is told to: the wrist makes up for what joints 1 to 3 turn.
+
+Ruckig leads joints 1 to 3 and the rotation vector of the tool; joints 4 to 6 follow from both. So the tool keeps its
+orientation on the whole way, and not at its ends alone, where no turn is asked for.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from ruckig import InputParameter, Result, Ruckig, RuckigError, Trajectory
+from scipy.spatial.transform import Rotation
+
+from teachpath.motion.arm.kinematics import wrist_joints
+from teachpath.motion.arm.model import Arm
+from teachpath.motion.arm.puma560 import Array
+
+DIFFERENCE_STEP: Final = 1e-4  # [s] of the differences that give velocity and acceleration of the wrist
+STILL: Final = np.zeros(3)
+
+
+@dataclass(frozen=True, eq=False)
+class ToolState:
+    """Where joints 1 to 3 and the tool's orientation are at one instant, and how they move.
+
+    Attributes:
+        joints: (3, 3) position [rad], velocity and acceleration of joints 1 to 3, one a row.
+        orientation: (3, 3) to world from the tool.
+        turning: (2, 3) angular velocity [rad/s] and acceleration of the tool, in axes of the world.
+        wrist: (3,) joints 4 to 6 [rad].
+    """
+
+    joints: Array
+    orientation: Array
+    turning: Array
+    wrist: Array
+
+    @classmethod
+    def resting(cls, q: Array, orientation: Array) -> ToolState:
+        """Return the state of an arm that rests at a configuration (6,)."""
+        return cls(np.array([q[:3], STILL, STILL]), orientation, np.zeros((2, 3)), np.array(q[3:]))
+
+
+@dataclass(frozen=True, eq=False)
+class ToolMotion:
+    """A motion to rest, in samples one control period apart; the first is one period after its beginning.
+
+    Attributes:
+        positions: (n, 6) [rad]; velocities, accelerations: likewise.
+    """
+
+    positions: Array
+    velocities: Array
+    accelerations: Array
+    _turns: Array  # (n, 3, 3) rotation vector of the tool from `_reference`, its rate and second derivative
+    _reference: Array  # (3, 3)
+
+    def __len__(self) -> int:
+        return len(self.positions)
+
+    def tool_state(self, sample: int) -> ToolState:
+        """Return the state at a sample, counted from 0; beyond the last one the arm rests."""
+        if sample >= len(self) - 1:
+            return ToolState.resting(self.positions[-1], self.final_orientation)
+        before, now, after = _orientations(self._turns[sample : sample + 1], self._reference)[0]
+        ahead, behind = (Rotation.from_matrix(m).as_rotvec() for m in (after @ now.T, now @ before.T))
+        turning = np.array([(ahead + behind) / 2, (ahead - behind) / DIFFERENCE_STEP]) / DIFFERENCE_STEP
+        rows = np.array([every[sample] for every in (self.positions, self.velocities, self.accelerations)])
+        return ToolState(rows[:, :3], now, turning, rows[0, 3:])
+
+    @property
+    def leading_speeds(self) -> Array:
+        """Largest speeds (6,) of joints 1 to 3 and of the tool's turn [rad/s]."""
+        return np.abs(np.hstack([self.velocities[:, :3], self._turns[:, 1]])).max(axis=0)
+
+    @property
+    def final_orientation(self) -> Array:
+        """Orientation (3, 3) of the tool at rest, to world from the tool."""
+        return np.asarray(Rotation.from_rotvec(self._turns[-1, 0]).as_matrix() @ self._reference)
+
+
+def plan_tool_motion(
+    begin: ToolState, goal: Array, turn: Array, limits: Array, arm: Arm, *, flip: bool, period: float
+) -> ToolMotion | None:
+    """Plan the motion to a place and an orientation; the wrist's own limits are not kept yet, see `Pace`.
+
+    Args:
+        goal: (3,) where joints 1 to 3 come to rest [rad].
+        turn: (3,) rotation vector of the tool from its present orientation, in axes of the world [rad].
+        limits: (3, 6) of speed, acceleration and jerk of joints 1 to 3 and of the tool's turn.
+        flip: which of the wrist's two solutions the arm is on.
+        period: between two samples [s].
+
+    Returns:
+        The motion, or None when there is nothing to move or Ruckig finds none.
+    """
+    run = _state_to_rest(begin, goal, turn, limits)
+    if run is None:
+        return None
+    count = max(1, int(np.ceil(run.duration / period)))
+    instants = [min((k + 1) * period, run.duration) for k in range(count)]
+    rows = np.array([run.at_time(t)[:3] for t in instants])  # (n, 3 derivatives, 6)
+    rows[-1, 1:] = 0.0
+    arm_joints = _neighbours(rows[:, :, :3])  # (n, 3 instants, 3)
+    orientations = _orientations(rows[:, :, 3:], begin.orientation)
+    solved = wrist_joints(
+        arm_joints.reshape(-1, 3), orientations.reshape(-1, 3, 3), arm, flip=flip, previous_q4=float(begin.wrist[0])
+    )
+    wrist = np.unwrap(np.concatenate([begin.wrist[None], solved]), axis=0)[1:].reshape(count, 3, 3)
+    before, now, after = wrist[:, 0], wrist[:, 1], wrist[:, 2]
+    speed, acceleration = (after - before) / (2 * DIFFERENCE_STEP), (after - 2 * now + before) / DIFFERENCE_STEP**2
+    speed[-1] = acceleration[-1] = 0.0
+    return ToolMotion(
+        np.hstack([rows[:, 0, :3], now]),
+        np.hstack([rows[:, 1, :3], speed]),
+        np.hstack([rows[:, 2, :3], acceleration]),
+        rows[:, :, 3:],
+        begin.orientation,
+    )
+
+
+def _state_to_rest(begin: ToolState, goal: Array, turn: Array, limits: Array) -> Trajectory | None:
+    inputs = InputParameter(6)
+    inputs.current_position = [*begin.joints[0], 0.0, 0.0, 0.0]
+    inputs.current_velocity = [*begin.joints[1], *begin.turning[0]]
+    inputs.current_acceleration = [*begin.joints[2], *begin.turning[1]]
+    inputs.target_position = [*goal, *turn]
+    inputs.max_velocity, inputs.max_acceleration, inputs.max_jerk = limits.tolist()
+    run = Trajectory(6)
+    try:
+        result = Ruckig(6).calculate(inputs, run)
+    except RuckigError:
+        return None
+    return run if result == Result.Working and run.duration > 0.0 else None
+
+
+def _neighbours(rows: Array) -> Array:
+    """Return values (n, 3 instants, m) just before, at and just after the instants of rows (n, 3 derivatives, m)."""
+    place, rate, second = rows[:, 0], rows[:, 1], rows[:, 2] / 2
+    h = DIFFERENCE_STEP
+    return np.stack([place - h * rate + h * h * second, place, place + h * rate + h * h * second], axis=1)
+
+
+def _orientations(turns: Array, reference: Array) -> Array:
+    """Return orientations (n, 3 instants, 3, 3) just before, at and just after the instants of turns (n, 3, 3)."""
+    vectors = _neighbours(turns)
+    matrices = Rotation.from_rotvec(vectors.reshape(-1, 3)).as_matrix() @ reference
+    return np.asarray(matrices.reshape(*vectors.shape[:2], 3, 3))
