@@ -339,6 +339,7 @@ class ExecutorStatus:
     hand_latency_p50_us: float = 0.0
     hand_latency_p99_us: float = 0.0
     ending: bool = False
+    unasked_motion: str = ""
 
 
 @dataclass(frozen=True)

@@ -180,7 +180,7 @@ class JournalEntry(_message.Message):
     def __init__(self, at_ns: _Optional[int] = ..., who: _Optional[str] = ..., verb: _Optional[str] = ..., execution: _Optional[str] = ..., answer: _Optional[str] = ...) -> None: ...
 
 class ExecutorStatus(_message.Message):
-    __slots__ = ("execution", "state", "reason", "progress", "override", "cycles", "late", "missed", "lateness_p50_us", "lateness_p99_us", "lateness_max_us", "limit_use", "tracking_error", "limit_place", "duration", "length", "activity", "operator", "asking", "hand_latency_p50_us", "hand_latency_p99_us", "scheduling", "ending")
+    __slots__ = ("execution", "state", "reason", "progress", "override", "cycles", "late", "missed", "lateness_p50_us", "lateness_p99_us", "lateness_max_us", "limit_use", "tracking_error", "limit_place", "duration", "length", "activity", "operator", "asking", "hand_latency_p50_us", "hand_latency_p99_us", "scheduling", "ending", "unasked_motion")
     EXECUTION_FIELD_NUMBER: _ClassVar[int]
     STATE_FIELD_NUMBER: _ClassVar[int]
     REASON_FIELD_NUMBER: _ClassVar[int]
@@ -204,6 +204,7 @@ class ExecutorStatus(_message.Message):
     HAND_LATENCY_P99_US_FIELD_NUMBER: _ClassVar[int]
     SCHEDULING_FIELD_NUMBER: _ClassVar[int]
     ENDING_FIELD_NUMBER: _ClassVar[int]
+    UNASKED_MOTION_FIELD_NUMBER: _ClassVar[int]
     execution: str
     state: str
     reason: str
@@ -227,4 +228,5 @@ class ExecutorStatus(_message.Message):
     hand_latency_p99_us: float
     scheduling: str
     ending: bool
-    def __init__(self, execution: _Optional[str] = ..., state: _Optional[str] = ..., reason: _Optional[str] = ..., progress: _Optional[float] = ..., override: _Optional[float] = ..., cycles: _Optional[int] = ..., late: _Optional[int] = ..., missed: _Optional[int] = ..., lateness_p50_us: _Optional[float] = ..., lateness_p99_us: _Optional[float] = ..., lateness_max_us: _Optional[float] = ..., limit_use: _Optional[float] = ..., tracking_error: _Optional[float] = ..., limit_place: _Optional[str] = ..., duration: _Optional[float] = ..., length: _Optional[float] = ..., activity: _Optional[str] = ..., operator: _Optional[str] = ..., asking: _Optional[str] = ..., hand_latency_p50_us: _Optional[float] = ..., hand_latency_p99_us: _Optional[float] = ..., scheduling: _Optional[str] = ..., ending: _Optional[bool] = ...) -> None: ...
+    unasked_motion: str
+    def __init__(self, execution: _Optional[str] = ..., state: _Optional[str] = ..., reason: _Optional[str] = ..., progress: _Optional[float] = ..., override: _Optional[float] = ..., cycles: _Optional[int] = ..., late: _Optional[int] = ..., missed: _Optional[int] = ..., lateness_p50_us: _Optional[float] = ..., lateness_p99_us: _Optional[float] = ..., lateness_max_us: _Optional[float] = ..., limit_use: _Optional[float] = ..., tracking_error: _Optional[float] = ..., limit_place: _Optional[str] = ..., duration: _Optional[float] = ..., length: _Optional[float] = ..., activity: _Optional[str] = ..., operator: _Optional[str] = ..., asking: _Optional[str] = ..., hand_latency_p50_us: _Optional[float] = ..., hand_latency_p99_us: _Optional[float] = ..., scheduling: _Optional[str] = ..., ending: _Optional[bool] = ..., unasked_motion: _Optional[str] = ...) -> None: ...

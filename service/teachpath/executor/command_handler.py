@@ -48,6 +48,7 @@ class CommandHandler:
         joint_states: monitor of the arm.
         programs: makes the program of a start command.
         status: returns the status with which commands are answered.
+        hindrance: returns why nothing may start, or nothing.
         on_start: called before a new execution moves the arm.
 
     Attributes:
@@ -67,6 +68,7 @@ class CommandHandler:
         *,
         time_source: TimeSource,
         status: Callable[[], ExecutorStatus],
+        hindrance: Callable[[], str],
         on_start: Callable[[], None],
     ) -> None:
         self._bus = bus
@@ -76,6 +78,7 @@ class CommandHandler:
         self._programs = programs
         self._time = time_source
         self._status = status
+        self._hindrance = hindrance
         self._on_start = on_start
         self._start_lock = threading.Lock()
         self._lock = threading.Lock()  # held where a stop and the begin of an execution must not cross
@@ -101,9 +104,10 @@ class CommandHandler:
         """Whether no execution is under way."""
         return self.current is None or self.current.is_resting
 
-    def write_journal(self, who: str, verb: str, answer: str) -> None:
-        """Publish an entry of the journal: who did what, and the answer."""
-        execution = self.current.id if self.current else ""
+    def write_journal(self, who: str, verb: str, answer: str, *, execution: str | None = None) -> None:
+        """Publish an entry of the journal: who did what to an execution, by default the newest, and the answer."""
+        if execution is None:
+            execution = self.current.id if self.current else ""
         entry = JournalEntry(self._time.wall_ns(), who, verb, execution, answer)
         self._bus.publish(self._keys.executor_journal, wire.encode_entry(entry))
 
@@ -233,6 +237,8 @@ class CommandHandler:
         with self._start_lock:
             if self.current is not None and not self.current.is_resting:
                 raise Conflict(f"execution {self.current.id} is {self.current.state}; stop it first")
+            if hindrance := self._hindrance():
+                raise Conflict(hindrance)
             prepared = self._programs.make(command)
             with suppress(Unreachable):  # only the simulated robot has a scene to put back
                 reset = self._keys.reset(self._joint_states.robot)

@@ -21,6 +21,7 @@ from teachpath.executor.joint_state_monitor import JointStateMonitor, SetpointSt
 from teachpath.executor.pacing import Pacer, request_realtime
 from teachpath.executor.program_factory import ProgramFactory
 from teachpath.executor.settings import ExecutorSettings
+from teachpath.executor.unasked_motion import UnaskedMotionDetector
 from teachpath.io import wire
 from teachpath.io.bus import Bus
 from teachpath.motion.arm.model import Arm
@@ -36,6 +37,7 @@ log = logging.getLogger(__name__)
 
 IDLE_PERIODS: Final = 5  # control periods in one cycle of the loop while no execution is under way
 STALL_TIMEOUT: Final = 0.5  # [s] that an arm may take up no setpoint; a driver plays them up to 0.05 s late
+UNASKED_MOTION: Final = "unasked motion"  # in the journal, where verbs of commands stand
 # [Hz] at which the status is published at most while no execution is under way. The service takes an executor for gone
 # after a second.
 IDLE_STATUS_RATE: Final = 4.0
@@ -73,6 +75,7 @@ class Executor:
         self._pacer = Pacer(round(1e9 * self._period), self._time)
         self._joint_states = JointStateMonitor(robot, self._settings.silence, self._time.monotonic_ns)
         self._stall_detector = SetpointStallDetector()
+        self._unasked = UnaskedMotionDetector(self._settings.unasked_motion, self._settings.silence)
         motion = motion or MotionSettings()
         self._arm = arm or Arm.of_settings(motion)
         certificates = CertificateCheck(bus, keys, signing_key, motion, self._arm, self._time)
@@ -87,6 +90,7 @@ class Executor:
             programs,
             time_source=self._time,
             status=self._status,
+            hindrance=lambda: self._unasked.reason,
             on_start=self._pacer.reset,
         )
         self._scheduling = "real-time scheduling was not asked for"
@@ -138,7 +142,17 @@ class Executor:
                 setpoint = current.step(due, self._time.wall_ns())
                 self._bus.publish(self._keys.setpoint(self._robot), wire.encode_setpoint(setpoint))
                 current.advance_planning()
+            self._unasked.forget()
+        else:
+            self._watch_resting_arm(due)
         self._publish_status(due)
+
+    def _watch_resting_arm(self, due: int) -> None:
+        latest = self._joint_states.latest(due)
+        sentence = self._unasked.update(due, *latest) if latest is not None else ""
+        if sentence:
+            self._command_handler.write_journal("the arm", UNASKED_MOTION, sentence, execution="")
+            self._command_handler.status_is_due = True
 
     def _supervise(self, current: Execution, due: int) -> None:
         lost = self._command_handler.lease.pop_lost_holder()
@@ -234,4 +248,10 @@ class Executor:
     def _status(self) -> ExecutorStatus:
         current, lease = self._command_handler.current, self._command_handler.lease.public_view()
         status = current.status(self._pacer) if current is not None else ExecutorStatus()
-        return replace(status, operator=lease.holder, asking=lease.asking, scheduling=self._scheduling)
+        return replace(
+            status,
+            operator=lease.holder,
+            asking=lease.asking,
+            scheduling=self._scheduling,
+            unasked_motion=self._unasked.reason,
+        )

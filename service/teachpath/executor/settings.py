@@ -30,5 +30,7 @@ class ExecutorSettings:
     rest_timeout: Annotated[float, Gt(0), Le(30)] = 2.0
     # [rad] that the arm may be off its setpoint when a held execution goes on; farther off it is brought back first
     regain: Annotated[float, Gt(0), Le(0.5)] = 0.02
+    # [rad] that a joint may move while nothing is under way; an arm that moves farther is reported, and nothing starts
+    unasked_motion: Annotated[float, Gt(0), Le(0.5)] = 0.02
     # whether to ask for real-time scheduling
     realtime: bool = True

@@ -66,8 +66,9 @@ class Executions:
         self._recorder.finish_after(STOPPING_NS)
 
     def faults(self) -> list[str]:
-        """Return why an execution is not recorded, in sentences for the operator."""
-        return [self._recorder.fault] if self._recorder.fault else []
+        """Return why an execution is not recorded or cannot start, in sentences for the operator."""
+        unasked = self.status.unasked_motion if self.status else ""
+        return [fault for fault in (self._recorder.fault, unasked) if fault]
 
     def recording(self, execution: str) -> Path:
         """Return the file of an execution's setpoints, joint states, statuses and journal; raises NotFound.

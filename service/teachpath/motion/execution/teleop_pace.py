@@ -79,7 +79,7 @@ class Pace:
             self._speeds = np.maximum(motion.leading_speeds * MARGIN / speeding, MIN_SPEED)
         if duration > MAX_DURATION:
             self.reach = max(self.reach * USUAL_DURATION / duration, MIN_REACH)
-        return max(uses.max(), speeding, duration / MAX_DURATION) <= 1.0
+        return bool(uses.max() <= 1.0 and speeding <= 1.0 and duration <= MAX_DURATION)
 
     def recover(self) -> None:
         """Allow more again, after a motion that is followed."""
@@ -94,7 +94,7 @@ class Pace:
             every.append(
                 np.abs(np.diff(positions[:, 3:], k + 1, axis=0)).max(axis=0) / self._period ** (k + 1) / limit[3:]
             )
-        return np.max(every, axis=0)
+        return np.asarray(np.max(every, axis=0), dtype=np.float64)
 
     def _speeding(self, positions: Array) -> float:
         """Return by what factor the arm exceeds its speed in space in positions (n, 6)."""

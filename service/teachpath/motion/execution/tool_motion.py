@@ -73,7 +73,8 @@ class ToolMotion:
     @property
     def leading_speeds(self) -> Array:
         """Largest speeds (6,) of joints 1 to 3 and of the tool's turn [rad/s]."""
-        return np.abs(np.hstack([self.velocities[:, :3], self._turns[:, 1]])).max(axis=0)
+        rates = np.hstack([self.velocities[:, :3], self._turns[:, 1]])
+        return np.asarray(np.abs(rates).max(axis=0), dtype=np.float64)
 
     @property
     def final_orientation(self) -> Array:

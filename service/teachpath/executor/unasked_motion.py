@@ -1,0 +1,83 @@
+"""Notices an arm that moves although nothing is under way, and says when it rests again."""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+
+from teachpath.records import Array, JointState
+
+SETTLING_TIME: Final = 1.0  # [s] that an arm has after an execution, and after a silence, to come to rest
+REST_TIME: Final = 2.0  # [s] for which an arm that moved unasked must rest before something starts
+
+
+class UnaskedMotionDetector:
+    """Compares where the arm is with where it came to rest.
+
+    An arm that was silent is taken to rest where it is found: a driver that was started again may know no better.
+
+    Args:
+        threshold: that a joint may move [rad].
+        silence: without a joint state after which the arm counts as gone [s].
+
+    Attributes:
+        reason: that the arm moved unasked and why nothing starts, in words; empty while it rests where it was left.
+    """
+
+    def __init__(self, threshold: float, silence: float) -> None:
+        self.reason = ""
+        self._threshold = threshold
+        self._silence = silence
+        self._resting_since: int | None = None  # [ns of the clock] when it had to begin to come to rest
+        self._rest_q: Array | None = None  # (6,) where it came to rest
+        self._still_q: Array | None = None  # (6,) where an arm that moved unasked has been since `_still_since`
+        self._still_since = 0
+        self._largest = 0.0  # [rad] that a joint was away from `_rest_q`
+
+    def forget(self) -> None:
+        """Take no note of motion, because an execution is under way."""
+        self._resting_since = self._rest_q = self._still_q = None
+        self.reason = ""
+
+    def update(self, now: int, silence: float, arm: JointState) -> str:
+        """Take the newest joint state, and how old it is [s], while nothing is under way.
+
+        Args:
+            now: [ns of the clock].
+
+        Returns:
+            A sentence for the journal when the arm is first seen moving, and when it rests again; else nothing.
+        """
+        if silence > self._silence:
+            self._resting_since = self._rest_q = None
+            return ""
+        if self._resting_since is None:
+            self._resting_since = now
+        if self._rest_q is None:
+            self._rest_q = arm.position if now - self._resting_since > SETTLING_TIME * 1e9 else None
+            return ""
+        if self._still_q is not None:
+            return self._wait_for_rest(now, arm.position, self._rest_q, self._still_q)
+        away = float(np.abs(arm.position - self._rest_q).max())
+        if away <= self._threshold:
+            return ""
+        self._still_q, self._still_since, self._largest = arm.position, now, away
+        self._describe()
+        return f"a joint is {away:.3f} rad from where the arm came to rest; nothing starts meanwhile"
+
+    def _wait_for_rest(self, now: int, position: Array, rest_q: Array, still_q: Array) -> str:
+        self._largest = max(self._largest, float(np.abs(position - rest_q).max()))
+        if np.abs(position - still_q).max() > self._threshold / 2:
+            self._still_q, self._still_since = position, now
+        if now - self._still_since < REST_TIME * 1e9:
+            self._describe()
+            return ""
+        self._rest_q, self._still_q, self.reason = position, None, ""
+        return f"the arm rests again; it moved by up to {self._largest:.3f} rad"
+
+    def _describe(self) -> None:
+        self.reason = (
+            f"the arm moved by {self._largest:.2f} rad although no execution is under way: does somebody push it, or "
+            f"another program send setpoints? nothing starts before it has rested for {REST_TIME:g} s"
+        )

@@ -1,0 +1,109 @@
+"""An arm that moves although nothing is under way: noticed, written down, and held until it rests."""
+
+import numpy as np
+import pytest
+
+from teachpath.errors import Conflict
+from teachpath.executor.settings import ExecutorSettings
+from teachpath.executor.unasked_motion import REST_TIME, SETTLING_TIME
+from teachpath.io.documents import encode
+from teachpath.records import Plan
+from tests.unit.executor.executors import HOME, Bench
+
+THRESHOLD = ExecutorSettings().unasked_motion
+
+
+class Pushed(Bench):
+    """A bench whose arm moves by what is added to `foreign`, whoever does it."""
+
+    def __init__(self, plan: Plan) -> None:
+        super().__init__()
+        self.plan = encode(plan)
+        self.foreign = np.zeros(6)
+        self.refusals: list[str] = []
+
+    def sleep(self, duration: float) -> None:
+        if self.setpoints:
+            self.pushed = self.foreign
+        else:
+            self.position = HOME + self.foreign
+        super().sleep(duration)
+
+    def wait(self, seconds: float) -> None:
+        """Let time pass."""
+        begin: list[int] = []
+        self.when(lambda: True, lambda: begin.append(self.now))
+        self.when(lambda: self.now - begin[0] > seconds * 1e9, lambda: None)
+
+    def push(self, joint: int, angle: float) -> None:
+        """Move a joint, a tenth of the angle at a time."""
+        for _ in range(10):
+            self.when(lambda: True, lambda: self.foreign.__setitem__(joint, self.foreign[joint] + angle / 10))
+
+    def try_to_start(self) -> None:
+        self.when(lambda: True, self._refused_start)
+
+    def _refused_start(self) -> None:
+        with pytest.raises(Conflict) as refused:
+            self.start_now()
+        self.refusals.append(str(refused.value))
+
+    def start_now(self) -> None:
+        self.command("start", plan=self.plan)
+
+    @property
+    def unasked(self) -> list[str]:
+        return [entry.answer for entry in self.journal if entry.verb == "unasked motion"]
+
+
+def test_an_arm_that_moves_unasked_is_noticed_written_down_and_held_until_it_rests(middle: Plan) -> None:
+    bench = Pushed(middle)
+    bench.wait(SETTLING_TIME + 0.1)
+    bench.push(2, 5 * THRESHOLD)
+    bench.when(lambda: bench.statuses[-1].unasked_motion != "", lambda: None)
+    bench.try_to_start()
+    bench.wait(REST_TIME / 2)
+    bench.push(2, -THRESHOLD)  # it moves again: the rest begins anew
+    bench.wait(REST_TIME * 0.9)
+    bench.try_to_start()
+    bench.when(lambda: bench.statuses[-1].unasked_motion == "", bench.start_now)
+    bench.when(lambda: bench.state == "approaching", lambda: bench.command("stop"))
+    bench.when(lambda: bench.state == "ended", bench.stop.set)
+    bench.run()
+    assert len(bench.refusals) == 2
+    assert all("although no execution is under way" in refusal for refusal in bench.refusals)
+    noticed, rested = bench.unasked
+    assert f"{5 * THRESHOLD:.3f}" in rested
+    assert "rests again" in rested
+    assert "nothing starts" in noticed
+    assert next(entry.execution for entry in bench.journal if entry.answer == noticed) == ""
+
+
+def test_an_arm_that_moves_after_an_execution_is_noticed_and_one_that_follows_it_is_not(middle: Plan) -> None:
+    bench = Pushed(middle)
+    bench.start(middle, override=0.5)
+    bench.when(lambda: bench.state == "following", lambda: bench.command("stop"))
+    bench.when(lambda: bench.state == "ended", lambda: None)
+    bench.wait(SETTLING_TIME + 0.1)
+    bench.when(lambda: True, lambda: bench.refusals.extend(bench.unasked))  # none until here
+    bench.push(0, -3 * THRESHOLD)
+    bench.when(lambda: bench.statuses[-1].unasked_motion != "", bench.stop.set)
+    bench.run()
+    assert bench.refusals == []
+    assert len(bench.unasked) == 1
+
+
+def test_what_stays_below_the_threshold_or_was_not_seen_is_no_motion(middle: Plan) -> None:
+    bench = Pushed(middle)
+    bench.wait(SETTLING_TIME + 0.1)
+    bench.push(1, 0.9 * THRESHOLD)
+    bench.wait(0.5)
+    bench.when(lambda: True, lambda: setattr(bench, "speaking", False))
+    bench.wait(1.0)
+    bench.push(1, 1.0)  # its driver is started again, and finds it elsewhere
+    bench.when(lambda: True, lambda: setattr(bench, "speaking", True))
+    bench.wait(SETTLING_TIME + 0.5)
+    bench.when(lambda: True, bench.stop.set)
+    bench.run()
+    assert bench.unasked == []
+    assert {status.unasked_motion for status in bench.statuses} == {""}
