@@ -234,6 +234,16 @@ def test_a_certificate_is_renewed_in_time_and_a_station_without_one_says_how_to_
     assert {one.user for one in station_logins(bus)} == {"service", "robot", "tracker", "operator", "viewer", "left"}
 
 
+def test_an_authority_signs_nothing_that_would_outlive_it(tmp_path: Path) -> None:
+    certificates.prepare_authority(tmp_path, NOW)
+    end = NOW + certificates.AUTHORITY_LIFE
+    who = Login("executor", "", Role.EXECUTOR)
+    late = certificates.issue(tmp_path, who, end - timedelta(days=40))
+    assert certificates.expiry(late) <= end
+    with pytest.raises(UnusableSettings, match=r"ends on .* move the folder away, then make all certificates anew"):
+        certificates.issue(tmp_path, who, end - timedelta(days=20))
+
+
 @pytest.mark.parametrize(
     ("settings", "sentence"),
     [

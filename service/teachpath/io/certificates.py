@@ -18,6 +18,7 @@ from cryptography.hazmat.primitives.asymmetric import ec
 from cryptography.x509.oid import ExtendedKeyUsageOID, NameOID, ObjectIdentifier
 
 from teachpath.errors import UnusableSettings
+from teachpath.io.bus_access import RENEWAL
 from teachpath.io.private_files import refuse_shared, write_private
 from teachpath_proto.logins import Login, Role
 
@@ -57,9 +58,10 @@ def issue(folder: Path, who: Login, now: datetime, *, hosts: Sequence[str] = ())
             one does not serve to play the station.
 
     Raises:
-        UnusableSettings: there is no authority, others may read its key, or the folder cannot be written.
+        UnusableSettings: there is no authority, or it ends soon, others may read its key, or the folder cannot be
+            written.
     """
-    issuer, issuer_key = _authority(folder)
+    issuer, issuer_key = _authority(folder, now)
     key = ec.generate_private_key(ec.SECP256R1())
     builder = _builder(_subject(who), issuer.subject, key, now, min(LIFE, issuer.not_valid_after_utc - now))
     builder = builder.add_extension(x509.BasicConstraints(ca=False, path_length=None), critical=True)
@@ -124,7 +126,7 @@ def refuse_expired(logins: Iterable[Login], now: datetime) -> None:
             )
 
 
-def _authority(folder: Path) -> tuple[x509.Certificate, ec.EllipticCurvePrivateKey]:
+def _authority(folder: Path, now: datetime) -> tuple[x509.Certificate, ec.EllipticCurvePrivateKey]:
     path = folder / f"{AUTHORITY}.key"
     try:
         key = serialization.load_pem_private_key(_read_key(path).encode(), password=None)
@@ -132,7 +134,13 @@ def _authority(folder: Path) -> tuple[x509.Certificate, ec.EllipticCurvePrivateK
         key = None
     if not isinstance(key, ec.EllipticCurvePrivateKey):
         raise UnusableSettings(f"{path} is no key that {MAKE} made; name another folder in bus.certificates")
-    return _certificate(folder / f"{AUTHORITY}.pem"), key
+    certificate = _certificate(folder / f"{AUTHORITY}.pem")
+    if (end := certificate.not_valid_after_utc) - now <= RENEWAL:
+        raise UnusableSettings(
+            f"the authority in {folder} ends on {end:%Y-%m-%d} and signs no further: move the folder away, then make "
+            f"all certificates anew with: {MAKE}"
+        )
+    return certificate, key
 
 
 def _builder(
