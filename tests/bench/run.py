@@ -7,6 +7,7 @@ import time
 from teachpath.records import Trajectory
 from tests.bench import (
     inverse,
+    lateness,
     learning,
     learning_peers,
     learning_scale,
@@ -46,6 +47,10 @@ def main() -> None:
     print_report(
         "Random paths, planned and judged by an independent checker",
         plans.measure(count=10 if quick else 100),
+    )
+    print_report(
+        "An executor that oversleeps or dies, setpoints that are lost, at random moments on random paths",
+        lateness.measure(paths=2 if quick else 10, moments=2 if quick else 10),
     )
     print_report(
         "A served station: jobs in their process, executor and simulated arm in theirs",

@@ -4,38 +4,12 @@ import numpy as np
 import pytest
 
 from teachpath.records import Plan
-from teachpath.simulator.arm import SimulatedArm
-from teachpath.simulator.settings import SimulatorSettings
-from tests.unit.executor.executors import HOME
-from tests.unit.executor.test_lateness import ARM, Arrivals, PlayedBench, at_once, off_path, path
+from tests.unit.executor.played_setpoints import ARM, MovedBench, off_path
+from tests.unit.executor.test_lateness import path
 
 __all__ = ["path"]  # the fixture
 
 OFF_PATH = 3e-4  # m
-
-
-class MovedBench(PlayedBench):
-    """An executor whose setpoints move the simulated arm, one step a millisecond."""
-
-    def __init__(self, plan: Plan, arrivals: Arrivals = at_once) -> None:
-        super().__init__(arrivals)
-        self._arm = SimulatedArm(plan.scene, ARM, SimulatorSettings(), HOME)
-        self._closed = False
-        self.positions: list[np.ndarray] = []
-        self.velocities: list[np.ndarray] = []
-
-    def _play_on(self) -> None:
-        super()._play_on()
-        target, reached = self.player.target, self.player.last_reached
-        closed = reached is not None and reached.gripper_closed
-        if closed and not self._closed:
-            assert self._arm.grasp()
-        elif self._closed and not closed:
-            self._arm.release()
-        self._closed = closed
-        self._arm.step(target.position, target.velocity, target.acceleration)
-        self.positions.append(self._arm.position)
-        self.velocities.append(self._arm.velocity)
 
 
 def stays_on_the_path(bench: MovedBench, path: np.ndarray) -> None:
