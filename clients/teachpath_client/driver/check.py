@@ -18,7 +18,7 @@ from teachpath_client.driver.interpolation import Array
 from teachpath_proto.motion_pb2 import JointState
 
 TRAVEL: Final = 0.2  # [rad] of every joint
-SETTLING_TIME: Final = 1.5  # [s] behind a move, in which every driver should have played it to its end
+SETTLING_TIME: Final = 1.0  # [s] behind a move, in which every driver should have played it to its end
 SPEED_EXCESS: Final = 1.2  # share of the top speed that a measurement may show
 SPEED_NOISE: Final = 0.03  # [rad/s] of a measured speed at rest
 MIN_STATES: Final = 20  # joint states in a second, at rest
