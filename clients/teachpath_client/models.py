@@ -603,7 +603,8 @@ class RecordingReport:
         missing: first and last of the numbers that never came, of the first 20 gaps.
         idle: samples that belong to no demonstration.
         gaps: stretches of numbers that never came.
-        conflicts: numbers that came twice with different device times.
+        conflicts: samples whose number was taken, or contradicts their device time.
+        late: samples that came after the demonstration they belong to was cut, which is made without them.
         declared_rate: [Hz] that the client said; 0: none.
         seen_rate: [Hz] numbers a second of the device's clock.
         clock_offset_ns: host clock minus device clock, with the least transit in it.
@@ -624,6 +625,7 @@ class RecordingReport:
     lost: int
     duplicated: int
     reordered: int
+    late: int
     refused: int
     untracked: int
     gaps: int
@@ -826,14 +828,17 @@ class Signature:
 class StreamStatistics:
     """Counts of the samples of one recording or demonstration.
 
-    Outliers, level shifts and samples out of the workspace are counted in the transport phase only.
+    All from `outliers` to `measured_rate` are of the transport phase only. Numbers that were sent are received, less
+    the duplicated and conflicting, or lost, or refused.
     """
 
     received: int = 0
     lost: int = 0
     duplicated: int = 0
     reordered: int = 0
+    late: int = 0
     refused: int = 0
+    refused_numbers: list[tuple[int, int]] = field(default_factory=list)
     untracked: int = 0
     gaps: int = 0
     missing: list[tuple[int, int]] = field(default_factory=list)
@@ -841,6 +846,11 @@ class StreamStatistics:
     outliers: int = 0
     level_shifts: int = 0
     out_of_workspace: int = 0
+    reversals: int = 0
+    repeated: int = 0
+    longest_freeze_ns: int = 0
+    freeze_at_ns: int = 0
+    measured_rate: float = 0.0
     conflicts: int = 0
     clock_jumps: int = 0
     declared_rate: float = 0.0

@@ -79,7 +79,7 @@ class StopRecording(_message.Message):
     def __init__(self, tracker: _Optional[str] = ..., last_sequence: _Optional[int] = ..., discard: _Optional[bool] = ...) -> None: ...
 
 class RecordingReport(_message.Message):
-    __slots__ = ("task", "tracker", "demonstrations", "received", "lost", "duplicated", "reordered", "refused", "untracked", "longest_gap_ns", "notes", "phase", "idle", "gaps", "conflicts", "clock_jumps", "declared_rate", "seen_rate", "clock_offset_ns", "clock_uncertainty_ns", "clock_rate", "state", "pedal_used", "countdown_left", "takes_left", "pending_command", "missing")
+    __slots__ = ("task", "tracker", "demonstrations", "received", "lost", "duplicated", "reordered", "refused", "untracked", "longest_gap_ns", "notes", "phase", "idle", "gaps", "conflicts", "clock_jumps", "declared_rate", "seen_rate", "clock_offset_ns", "clock_uncertainty_ns", "clock_rate", "state", "pedal_used", "countdown_left", "takes_left", "pending_command", "missing", "late")
     TASK_FIELD_NUMBER: _ClassVar[int]
     TRACKER_FIELD_NUMBER: _ClassVar[int]
     DEMONSTRATIONS_FIELD_NUMBER: _ClassVar[int]
@@ -107,6 +107,7 @@ class RecordingReport(_message.Message):
     TAKES_LEFT_FIELD_NUMBER: _ClassVar[int]
     PENDING_COMMAND_FIELD_NUMBER: _ClassVar[int]
     MISSING_FIELD_NUMBER: _ClassVar[int]
+    LATE_FIELD_NUMBER: _ClassVar[int]
     task: str
     tracker: str
     demonstrations: _containers.RepeatedScalarFieldContainer[str]
@@ -134,7 +135,8 @@ class RecordingReport(_message.Message):
     takes_left: int
     pending_command: str
     missing: _containers.RepeatedCompositeFieldContainer[SequenceRange]
-    def __init__(self, task: _Optional[str] = ..., tracker: _Optional[str] = ..., demonstrations: _Optional[_Iterable[str]] = ..., received: _Optional[int] = ..., lost: _Optional[int] = ..., duplicated: _Optional[int] = ..., reordered: _Optional[int] = ..., refused: _Optional[int] = ..., untracked: _Optional[int] = ..., longest_gap_ns: _Optional[int] = ..., notes: _Optional[_Iterable[str]] = ..., phase: _Optional[str] = ..., idle: _Optional[int] = ..., gaps: _Optional[int] = ..., conflicts: _Optional[int] = ..., clock_jumps: _Optional[int] = ..., declared_rate: _Optional[float] = ..., seen_rate: _Optional[float] = ..., clock_offset_ns: _Optional[int] = ..., clock_uncertainty_ns: _Optional[int] = ..., clock_rate: _Optional[float] = ..., state: _Optional[str] = ..., pedal_used: _Optional[bool] = ..., countdown_left: _Optional[float] = ..., takes_left: _Optional[int] = ..., pending_command: _Optional[str] = ..., missing: _Optional[_Iterable[_Union[SequenceRange, _Mapping]]] = ...) -> None: ...
+    late: int
+    def __init__(self, task: _Optional[str] = ..., tracker: _Optional[str] = ..., demonstrations: _Optional[_Iterable[str]] = ..., received: _Optional[int] = ..., lost: _Optional[int] = ..., duplicated: _Optional[int] = ..., reordered: _Optional[int] = ..., refused: _Optional[int] = ..., untracked: _Optional[int] = ..., longest_gap_ns: _Optional[int] = ..., notes: _Optional[_Iterable[str]] = ..., phase: _Optional[str] = ..., idle: _Optional[int] = ..., gaps: _Optional[int] = ..., conflicts: _Optional[int] = ..., clock_jumps: _Optional[int] = ..., declared_rate: _Optional[float] = ..., seen_rate: _Optional[float] = ..., clock_offset_ns: _Optional[int] = ..., clock_uncertainty_ns: _Optional[int] = ..., clock_rate: _Optional[float] = ..., state: _Optional[str] = ..., pedal_used: _Optional[bool] = ..., countdown_left: _Optional[float] = ..., takes_left: _Optional[int] = ..., pending_command: _Optional[str] = ..., missing: _Optional[_Iterable[_Union[SequenceRange, _Mapping]]] = ..., late: _Optional[int] = ...) -> None: ...
 
 class SequenceRange(_message.Message):
     __slots__ = ("first", "last")

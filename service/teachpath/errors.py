@@ -33,7 +33,15 @@ class UnusableInput(TeachpathError):
 
 
 class UnusableSample(UnusableInput):
-    """One hand sample cannot be used."""
+    """One hand sample cannot be used.
+
+    Attributes:
+        sequence: its number; None: it cannot be read.
+    """
+
+    def __init__(self, message: str, *, sequence: int | None = None) -> None:
+        super().__init__(message)
+        self.sequence = sequence
 
 
 class UnusableRecording(UnusableInput):

@@ -50,7 +50,8 @@ class RecordingReport:
         missing: first and last of the numbers that never came, of the first 20 gaps.
         idle: samples that belong to no demonstration.
         gaps: stretches of numbers that never came.
-        conflicts: numbers that came twice with different device times.
+        conflicts: samples whose number was taken, or contradicts their device time.
+        late: samples that came after the demonstration they belong to was cut, which is made without them.
         declared_rate: [Hz] that the client said; 0: none.
         seen_rate: [Hz] numbers a second of the device's clock.
         clock_offset_ns: host clock minus device clock, with the least transit in it.
@@ -71,6 +72,7 @@ class RecordingReport:
     lost: int
     duplicated: int
     reordered: int
+    late: int
     refused: int
     untracked: int
     gaps: int

@@ -22,7 +22,7 @@ from teachpath.recording.phase_statistics import PhaseStatistics, phase_statisti
 from teachpath.recording.phases import GRASP_BUTTON, Segmenter, TransportSpan
 from teachpath.recording.quality import QualityReport, reassess_quality
 from teachpath.recording.settings import RecordingSettings
-from teachpath.records import Amendment, Calibration, Demonstration, Sample, Scene, Trajectory
+from teachpath.records import Amendment, Calibration, Demonstration, Sample, Scene, StreamStatistics, Trajectory
 from teachpath_proto.keys import is_name, name_refusal
 
 MAX_REFUSED = 100_000  # of a file that says so
@@ -103,11 +103,19 @@ def _recorded(
         progress(0.5 + 0.5 * number / len(read.motions), f"motion {number + 1} of {len(read.motions)}")
         rate = read.stated.statistics.declared_rate if read.stated else 0.0
         session = RecordingSession(store, settings, replace(setup, rate=rate))
-        for _ in range(min(read.stated.statistics.refused, MAX_REFUSED) if read.stated else 0):
-            session.counter.count_refused("some samples were refused when it was recorded")
+        for refused in _refused(read.stated.statistics) if read.stated else ():
+            session.counter.count_refused("some samples were refused when it was recorded", refused)
         finished = [session.add(sample) for sample in samples]
         made += [f for f in finished if f is not None] + session.finish()
     return made
+
+
+def _refused(statistics: StreamStatistics) -> list[int | None]:
+    """Return the numbers of the samples that were refused when a file was recorded; None where it is not known."""
+    numbers: list[int | None] = []
+    for first, last in statistics.refused_numbers:
+        numbers += range(first, min(last + 1, first + MAX_REFUSED))
+    return (numbers + [None] * max(min(statistics.refused, MAX_REFUSED) - len(numbers), 0))[:MAX_REFUSED]
 
 
 def _read(source: Source, calibration: Calibration, limits: ImportSettings) -> _Read:

@@ -11,8 +11,8 @@ from scipy.spatial.transform import Rotation
 
 from teachpath.io.lerobot import Dataset, Feature, write_dataset
 from teachpath.io.store.store import Store
-from teachpath.recording.demonstration import to_world
-from teachpath.recording.phases import GRASP_BUTTON
+from teachpath.recording.demonstration import carried_numbers, to_world
+from teachpath.recording.phases import GRASP_BUTTON, TransportSpan
 from teachpath.records import Array, Demonstration, Sample
 
 RATE = 50  # [Hz] said of demonstrations whose own rate is not known
@@ -100,5 +100,5 @@ def _states(demonstration: Demonstration, take: list[Sample], *, turned: bool) -
 
 
 def _transport(demonstration: Demonstration, received: Sequence[Sample], take: list[Sample]) -> Any:
-    carried = {sample.sequence for sample in received[slice(*demonstration.transport)]}
-    return np.array([[sample.sequence in carried] for sample in take])
+    grasp, after = carried_numbers(received, TransportSpan(*demonstration.transport))
+    return np.array([[grasp <= sample.sequence < after] for sample in take])

@@ -124,7 +124,7 @@ class RecordingThread:
                 return session.on_tracker_lost("the tracker has gone" + " in mid-take" * session.is_carrying)
             return session.add(decode_sample(session.tracker, payload, receive_ns), payload)
         except UnusableSample as error:
-            session.counter.count_refused(str(error))
+            session.counter.count_refused(str(error), error.sequence)
         except Exception as error:  # one take's fault must not end the others
             session.fail(f"recording failed: {error!r}")
         return None

@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 from teachpath.io.store.recordings import RecordingHeader
 from teachpath.io.store.store import Store
 from teachpath.recorder.take import FinishedTake, Take, random_id
+from teachpath.recording.arrival import Arrival
 from teachpath.recording.demonstration import object_pose, point_to_world
 from teachpath.recording.fist_gesture import FistGesture
 from teachpath.recording.phases import TOGGLE_BUTTON, Segmenter, TransportSpan, hand_closure
@@ -117,7 +118,8 @@ class RecordingSession:
 
     def add(self, sample: Sample, payload: bytes = b"") -> FinishedTake | None:
         """Write one sample, `payload` as it came; return the demonstration that it completes."""
-        fresh = self.counter.observe(sample)
+        arrival = self.counter.observe(sample)
+        fresh = arrival is Arrival.IN_ORDER
         if self.counter.has_restarted:
             self._idle += 1
             return self.interrupt("the device began to count anew in mid-take")
@@ -129,7 +131,8 @@ class RecordingSession:
             self._follow_commands(sample, position)
         if self.state is RecordingState.COUNTDOWN and self._state_machine.poll_countdown(self._clock()):
             self._drop_take()
-        if not self.state.is_writing:
+        past = arrival is not Arrival.CONFLICTING and self.counter.is_before_interval(sample.sequence)
+        if past or not self.state.is_writing:
             self._idle += 1
             return None
         if not fresh:

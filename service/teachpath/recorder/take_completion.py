@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from bisect import bisect_left
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
@@ -12,11 +13,12 @@ import numpy as np
 from teachpath.errors import UnusableRecording
 from teachpath.io.store.recordings import RecordingFile, facts_of
 from teachpath.io.store.store import Store
-from teachpath.recording.demonstration import object_trajectory, to_world, usable_samples
-from teachpath.recording.phase_statistics import PhaseStatistics, phase_statistics
+from teachpath.recording.demonstration import carried_numbers, object_trajectory, to_world, usable_samples
+from teachpath.recording.phase_statistics import PhaseStatistics, phase_statistics, tell_arrivals
 from teachpath.recording.phases import TransportSpan
 from teachpath.recording.position_outliers import find_outliers
 from teachpath.recording.quality import QualityReport, assess_quality, reassess_quality
+from teachpath.recording.repeated_readings import find_repeated_readings
 from teachpath.recording.settings import RecordingSettings
 from teachpath.records import Calibration, Demonstration, Sample, StreamStatistics, Trajectory, Vector, Verdict
 
@@ -60,7 +62,7 @@ def complete_take(
             f"a transport phase of {cut.release - cut.grasp} samples is under the least of "
             f"{settings.shortest_transport}: the object was let go at once"
         )
-    statistics, left_out = add_position_outliers(take, settings)
+    statistics, left_out = add_content_faults(take, settings)
     trajectory = object_trajectory(take.samples, cut, take.calibration, take.carried, left_out=left_out)
     quality = _assess(phase_statistics(take.samples, cut, statistics, settings), take, settings)
     demonstration = Demonstration(
@@ -85,20 +87,35 @@ def complete_take(
     return stored, trajectory
 
 
-def add_position_outliers(take: SegmentedTake, settings: RecordingSettings) -> tuple[StreamStatistics, tuple[int, ...]]:
-    """Return the statistics of a take with the outliers of its positions, and the numbers of the samples that jump."""
-    ordered = usable_samples(take.samples[take.cut.grasp : take.cut.release])
-    if not ordered:
-        return take.statistics, ()
-    positions = to_world(take.calibration, np.array([s.position for s in ordered]))
-    found = find_outliers(ordered, positions, settings)
+def add_content_faults(take: SegmentedTake, settings: RecordingSettings) -> tuple[StreamStatistics, tuple[int, ...]]:
+    """Return the statistics of a take with the faults of what it shows, and the numbers of samples to leave out.
+
+    Left out are positions that jump, readings that repeat the one before, and samples of another source.
+    """
+    arrivals = tell_arrivals(take.samples, take.statistics, settings)
+    own = {s.sequence for s, arrival in zip(take.samples, arrivals, strict=True) if arrival.belongs}
+    foreign = {s.sequence for s in take.samples} - own
+    ordered = [s for s in usable_samples(take.samples) if s.sequence in own]
+    grasp, after = carried_numbers(take.samples, take.cut)
+    span = bisect_left(ordered, grasp, key=_number), bisect_left(ordered, after, key=_number)
+    if span[0] == span[1]:
+        return take.statistics, tuple(sorted(foreign))
+    carried = ordered[slice(*span)]
+    found = find_outliers(carried, to_world(take.calibration, np.array([s.position for s in carried])), settings)
+    repeated = find_repeated_readings(ordered, *span)
     statistics = replace(
         take.statistics,
         outliers=len(found.outliers),
         level_shifts=found.level_shifts,
         out_of_workspace=found.out_of_workspace,
+        reversals=found.reversals,
+        repeated=len(repeated.indices),
+        longest_freeze_ns=round(1e9 * repeated.longest),
+        freeze_at_ns=ordered[repeated.longest_at].device_ns - carried[0].device_ns if repeated.indices else 0,
+        measured_rate=repeated.measured_rate,
     )
-    return statistics, found.outliers
+    left_out = {*found.outliers, *(ordered[k].sequence for k in repeated.indices), *foreign}
+    return statistics, tuple(sorted(left_out))
 
 
 def reassess(
@@ -113,7 +130,7 @@ def reassess(
     """
     cut = TransportSpan(*after.transport)
     take = SegmentedTake(samples, cut, before.statistics, after.calibration, None)
-    statistics, left_out = add_position_outliers(take, settings)
+    statistics, left_out = add_content_faults(take, settings)
     quality = reassess_quality(
         QualityReport(before.verdict, before.reasons),
         phase_statistics(samples, TransportSpan(*before.transport), before.statistics, settings),
@@ -129,3 +146,7 @@ def _assess(statistics: PhaseStatistics, take: SegmentedTake, settings: Recordin
         return quality
     rejected = take.cut.open_ended or quality.verdict == Verdict.REJECT
     return QualityReport(Verdict.REJECT if rejected else Verdict.REPAIRED, (take.fault, *quality.reasons))
+
+
+def _number(sample: Sample) -> int:
+    return sample.sequence

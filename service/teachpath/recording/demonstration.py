@@ -11,6 +11,8 @@ from teachpath.errors import UnusableRecording
 from teachpath.recording.phases import TransportSpan
 from teachpath.records import Array, Calibration, Pose, Quaternion, Sample, Trajectory, Vector
 
+NO_END = 2**64  # over every number
+
 
 def to_world(calibration: Calibration, positions: Array) -> Array:
     """Map tracker positions (..., 3) to the world [m]: p_world = scale * R p + offset."""
@@ -47,6 +49,21 @@ def usable_samples(samples: Sequence[Sample]) -> list[Sample]:
     return [used[k] for k in sorted(used)]
 
 
+def carried_numbers(samples: Sequence[Sample], cut: TransportSpan) -> tuple[int, int]:
+    """Return the number of the first sample of the transport phase, and that of the first sample after it.
+
+    A sample belongs to the phase by its number, whenever it came.
+    """
+    after = samples[cut.release].sequence if cut.release < len(samples) else NO_END
+    return samples[cut.grasp].sequence, after
+
+
+def transport_samples(samples: Sequence[Sample], cut: TransportSpan) -> list[Sample]:
+    """Return the tracked samples of the transport phase in the order of their numbers, each once."""
+    grasp, after = carried_numbers(samples, cut)
+    return [sample for sample in usable_samples(samples) if grasp <= sample.sequence < after]
+
+
 def object_trajectory(
     samples: Sequence[Sample],
     cut: TransportSpan,
@@ -66,14 +83,12 @@ def object_trajectory(
             are sorted in.
         cut: its transport phase.
         carried: start of the object's centre [m, world], or None.
-        left_out: numbers of samples whose position is an outlier.
+        left_out: numbers of samples whose position is an outlier, repeats the one before or is another source's.
 
     Raises:
         UnusableRecording: fewer than 2 usable samples.
     """
-    ordered = _forward_in_time(
-        [s for s in usable_samples(samples[cut.grasp : cut.release]) if s.sequence not in left_out]
-    )
+    ordered = _forward_in_time([s for s in transport_samples(samples, cut) if s.sequence not in left_out])
     if len(ordered) < 2:
         raise UnusableRecording(
             f"only {len(ordered)} usable samples between grasp and release; is the tracker in view of its source?"

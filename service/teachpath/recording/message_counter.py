@@ -32,3 +32,25 @@ class MessageCounter:
         return [
             first if count == 1 else f"{first} (and {count - 1} more like it)" for first, count in self._kinds.values()
         ]
+
+
+class IntervalMessages:
+    """Counts messages: all of them, and those of the current interval.
+
+    Args:
+        rest: as of `MessageCounter`.
+    """
+
+    def __init__(self, rest: str) -> None:
+        self._rest = rest
+        self.all = MessageCounter(rest)
+        self.interval = MessageCounter(rest)
+
+    def add(self, sentence: str) -> None:
+        """Count one message."""
+        self.all.add(sentence)
+        self.interval.add(sentence)
+
+    def begin_interval(self) -> None:
+        """Begin another interval."""
+        self.interval = MessageCounter(self._rest)

@@ -2,13 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from bisect import bisect_left
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
+from typing import Any, Final
 
+from teachpath.recording.arrival import Arrival
+from teachpath.recording.demonstration import NO_END, carried_numbers
 from teachpath.recording.phases import TransportSpan
 from teachpath.recording.settings import RecordingSettings
 from teachpath.recording.stream_statistics import StreamCounter
 from teachpath.records import Sample, StreamStatistics
+
+COUNTED_AS: Final = {
+    Arrival.REORDERED: "reordered",
+    Arrival.LATE: "late",
+    Arrival.DUPLICATED: "duplicated",
+    Arrival.CONFLICTING: "conflicts",
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,22 +48,92 @@ def phase_statistics(
 ) -> PhaseStatistics:
     """Return the statistics of each phase of a take.
 
-    A sample of the transport that came only after the release counts as lost there, because the trajectory is learned
-    without it. Samples whose loss only the handshake at the end has shown belong behind all others.
+    A sample belongs where its number puts it, whenever it came. Samples whose loss only the handshake at the end has
+    shown belong behind all others; refused payloads whose number could not be read belong to the transport.
 
     Args:
         samples: in the order received.
         cut: its transport phase.
         whole: the statistics of the take.
     """
+    arrivals = tell_arrivals(samples, whole, settings)
+    came = list(zip(range(len(samples)), samples, arrivals, strict=True))
+    placed = sorted((sample for _, sample, arrival in came if arrival.belongs), key=_number)
+    grasp, after = carried_numbers(samples, cut)
+    end = placed[min(bisect_left(placed, after, key=_number), len(placed) - 1)].sequence if after < NO_END else NO_END
+    phases = _placed(placed, (grasp, end + 1), _counter(whole, settings))
+    unplaced: list[dict[str, Any]] = [dict.fromkeys(COUNTED_AS.values(), 0) for _ in phases]
+    for index, sample, arrival in came:
+        if arrival is Arrival.CONFLICTING:  # its number says nothing about its place
+            unplaced[(index >= cut.grasp) + (index > cut.release)]["conflicts"] += 1
+        elif arrival is not Arrival.IN_ORDER:
+            unplaced[(sample.sequence >= grasp) + (sample.sequence > end)][COUNTED_AS[arrival]] += 1
+    refused = [_overlap(whole.refused_numbers, *span) for span in ((0, grasp - 1), (grasp, end), (end + 1, NO_END))]
+    refused[1] += max(whole.refused - sum(refused), 0)
+    reach, transport, return_ = (
+        replace(
+            phase,
+            received=phase.received + counts["duplicated"] + counts["conflicts"],
+            refused=lacking,
+            **counts,
+        )
+        for phase, counts, lacking in zip(phases, unplaced, refused, strict=True)
+    )
+    difference = whole.lost - (reach.lost + transport.lost + return_.lost)
+    if difference > 0 and after < NO_END:
+        return_ = replace(return_, lost=return_.lost + difference)
+    elif difference > 0:
+        transport = replace(transport, lost=transport.lost + difference)
+    else:
+        transport, reach, return_ = _without(-difference, transport, reach, return_)
+    return PhaseStatistics(whole, reach, transport, return_)
+
+
+def tell_arrivals(samples: Sequence[Sample], whole: StreamStatistics, settings: RecordingSettings) -> Sequence[Arrival]:
+    """Tell how each sample of a take came.
+
+    Args:
+        samples: in the order received.
+        whole: the statistics of the take.
+    """
+    if all(one.sequence < next_.sequence for one, next_ in pairwise(samples)):
+        return [Arrival.IN_ORDER] * len(samples)
+    counter = _counter(whole, settings)
+    return [counter.observe(sample) for sample in samples]
+
+
+def _counter(whole: StreamStatistics, settings: RecordingSettings) -> StreamCounter:
     counter = StreamCounter(declared_rate=whole.declared_rate, largest_clock_step=settings.largest_clock_step)
-    borders, phases = (cut.grasp, cut.release + 1), []
-    for index, sample in enumerate(samples):
-        if index in borders:
+    for first, last in whole.refused_numbers:
+        for number in range(first, last + 1):
+            counter.count_refused("refused", number)
+    return counter
+
+
+def _placed(samples: Sequence[Sample], borders: tuple[int, int], counter: StreamCounter) -> list[StreamStatistics]:
+    """Return the statistics of samples in the order of their numbers, up to each border and after the last."""
+    phases: list[StreamStatistics] = []
+    for sample in samples:
+        while len(phases) < len(borders) and sample.sequence >= borders[len(phases)]:
             phases.append(counter.interval())
             counter.begin_interval(counts_loss_before=True)
         counter.observe(sample)
-    unseen = max(whole.lost - counter.statistics().lost, 0)
-    last = counter.interval()
-    reach, transport, return_ = [*phases, replace(last, lost=last.lost + unseen), StreamStatistics()][:3]
-    return PhaseStatistics(whole, reach, transport, return_)
+    phases.append(counter.interval())
+    return (phases + [StreamStatistics()] * 2)[:3]
+
+
+def _without(explained: int, *phases: StreamStatistics) -> Iterator[StreamStatistics]:
+    """Yield phases without the lost samples that refused payloads explain, of the first ones first."""
+    for phase in phases:
+        fewer = min(explained, phase.lost)
+        explained -= fewer
+        yield replace(phase, lost=phase.lost - fewer)
+
+
+def _overlap(stretches: Sequence[tuple[int, int]], first: int, last: int) -> int:
+    """Return how many numbers of some stretches lie from `first` to `last`."""
+    return sum(max(min(b, last) - max(a, first) + 1, 0) for a, b in stretches)
+
+
+def _number(sample: Sample) -> int:
+    return sample.sequence

@@ -13,6 +13,7 @@ from teachpath.records import Array, Sample
 
 HALF_WINDOW = 3  # neighbours on each side
 OUTLIER_THRESHOLD = 4.0  # standard deviations of the neighbours
+OPPOSITE = -0.5  # cosine of the angle between two steps, under which the second turns back
 MAD_TO_SIGMA = 1.4826  # standard deviation over median absolute deviation, for a normal distribution
 
 
@@ -23,6 +24,7 @@ class PositionOutliers:
     outliers: tuple[int, ...]  # numbers of the samples whose neighbours contradict them
     level_shifts: int  # places where the position jumps and stays
     out_of_workspace: int  # number of samples
+    reversals: int = 0  # samples between which no hand could swing back and forth
 
 
 def find_outliers(samples: Sequence[Sample], positions: Array, settings: RecordingSettings) -> PositionOutliers:
@@ -52,7 +54,22 @@ def find_outliers(samples: Sequence[Sample], positions: Array, settings: Recordi
         speed = _medians((steps / dt)[:, None])[:, 0]
         level_shifts = int(np.count_nonzero(_exceeds_scatter(steps - speed * dt, settings.largest_jump)))
     numbers = tuple(s.sequence for s, bad in zip(samples, outliers, strict=True) if bad)
-    return PositionOutliers(numbers, level_shifts, out_of_workspace)
+    return PositionOutliers(numbers, level_shifts, out_of_workspace, _count_reversals(stayed, dt, settings))
+
+
+def _count_reversals(positions: Array, dt: Array, settings: RecordingSettings) -> int:
+    """Count the samples at which a hand would turn back by over `largest_jump`, faster than `largest_acceleration`.
+
+    The samples of two hands under one name do so wherever one follows the other.
+    """
+    steps = np.diff(positions, axis=0)
+    if len(steps) < 2 or np.any(dt <= 0):
+        return 0
+    lengths, velocities = np.linalg.norm(steps, axis=1), steps / dt[:, None]
+    far = (lengths[1:] > settings.largest_jump) & (lengths[:-1] > settings.largest_jump)
+    opposite = np.sum(steps[1:] * steps[:-1], axis=1) < OPPOSITE * lengths[1:] * lengths[:-1]
+    acceleration = np.linalg.norm(np.diff(velocities, axis=0), axis=1) / (0.5 * (dt[1:] + dt[:-1]))
+    return int(np.count_nonzero(far & opposite & (acceleration > settings.largest_acceleration)))
 
 
 def _medians(values: Array) -> Array:

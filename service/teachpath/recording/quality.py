@@ -15,11 +15,11 @@ FAULTS = {
     "outliers": "jumping",
     "out_of_workspace": "out of the workspace",
     "conflicts": "in conflict",
+    "reversals": "swinging back and forth faster than a hand",
 }
 REPAIRS = {"duplicated": "came twice", "reordered": "came late"}
-# Statistics that belong to a place within a take. Refused payloads have no place, and outliers of the position are
-# counted in the transport phase alone.
-LOCATED = ("lost", "untracked", "conflicts", "duplicated", "reordered", "longest_gap_ns", "clock_jumps")
+# Statistics that belong to a place within a take; those of the positions are counted in the transport phase alone.
+LOCATED = ("lost", "refused", "untracked", "conflicts", "duplicated", "reordered", "longest_gap_ns", "clock_jumps")
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,22 +69,19 @@ def reassess_quality(
 
 
 def _with_unlocated(statistics: PhaseStatistics) -> StreamStatistics:
-    """Return the statistics of the transport phase, together with all that has no place within the take."""
+    """Return the statistics of the transport phase, together with those of its positions."""
     return replace(statistics.whole, **{name: getattr(statistics.transport, name) for name in LOCATED})
 
 
 def _excessive_faults(
     statistics: PhaseStatistics, transport: StreamStatistics, settings: RecordingSettings
 ) -> list[str]:
-    limit, found = settings.largest_loss, []
-    total = statistics.transport.received + statistics.transport.lost
-    faults = sum(getattr(transport, name) for name in FAULTS if name != "refused")
-    if faults > limit * total:
-        found.append(f"{faults} of {_samples(total)} are faulty, {faults / total:.1%}, limit {limit:.1%}")
-    refused, came = statistics.whole.refused, statistics.whole.received + statistics.whole.refused
-    if refused > limit * came:
-        found.append(f"{refused} of {_samples(came)} were refused, {refused / came:.1%}, limit {limit:.1%}")
-    return found
+    limit = settings.largest_loss
+    total = statistics.transport.received + statistics.transport.lost + statistics.transport.refused
+    faults = sum(getattr(transport, name) for name in FAULTS)
+    if faults <= limit * total:
+        return []
+    return [f"{faults} of {_samples(total)} are faulty, {faults / total:.1%}, limit {limit:.1%}"]
 
 
 def _unusable(statistics: StreamStatistics, settings: RecordingSettings) -> list[str]:
@@ -92,7 +89,20 @@ def _unusable(statistics: StreamStatistics, settings: RecordingSettings) -> list
     if statistics.level_shifts:
         times, jump = _times(statistics.level_shifts), 100 * settings.largest_jump
         found.append(f"the position leaps {times} by over {jump:.3g} cm and stays")
+    if statistics.longest_freeze_ns > settings.longest_freeze * 1e9:
+        found.append(f"{_freeze(statistics)}, limit {settings.longest_freeze:.2g} s")
+    if 0.0 < statistics.measured_rate < settings.lowest_pose_rate:
+        found.append(f"{_slow_tracker(statistics)}, limit {settings.lowest_pose_rate:.3g} Hz")
     return found
+
+
+def _freeze(statistics: StreamStatistics) -> str:
+    seconds, at = statistics.longest_freeze_ns * 1e-9, statistics.freeze_at_ns * 1e-9
+    return f"the tracker repeats one reading for {seconds:.2f} s while the hand moves, {at:.2f} s after the grasp"
+
+
+def _slow_tracker(statistics: StreamStatistics) -> str:
+    return f"the tracker measures {statistics.measured_rate:.3g} times a second; {statistics.repeated} readings repeat"
 
 
 def _breaks(statistics: StreamStatistics, settings: RecordingSettings, limit: str = "") -> list[str]:
@@ -105,11 +115,12 @@ def _breaks(statistics: StreamStatistics, settings: RecordingSettings, limit: st
 
 
 def _repairs(statistics: StreamStatistics) -> list[str]:
-    return [
+    found = [
         f"{_samples(getattr(statistics, name))} {words}"
         for name, words in (FAULTS | REPAIRS).items()
         if getattr(statistics, name)
     ]
+    return [*found, _slow_tracker(statistics)] if statistics.repeated else found
 
 
 def _faults_elsewhere(statistics: PhaseStatistics, settings: RecordingSettings) -> list[str]:

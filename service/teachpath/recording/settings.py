@@ -38,11 +38,15 @@ class RecordingSettings:
     longest_reach: Positive = 60.0
     # samples: a shorter transport phase is no demonstration
     shortest_transport: Annotated[int, Ge(5)] = 20
-    # share of the samples from grasp to release that may be lost, untracked, in conflict, jumping or out of the
-    # workspace before a demonstration is rejected; of what was refused, the share of all that came
+    # share of the samples from grasp to release that may be lost, refused, untracked, in conflict, jumping, swinging
+    # back and forth or out of the workspace before a demonstration is rejected
     largest_loss: Share = 0.05
     # [s] longest gap in the device's clock from grasp to release before it is rejected
     longest_gap: Positive = 0.25
+    # [s] longest time for which the tracker may repeat one reading while the hand carries before it is rejected
+    longest_freeze: Positive = 0.1
+    # [Hz] readings that differ, from grasp to release; a tracker that measures more rarely than that is rejected
+    lowest_pose_rate: Positive = 20.0
     # [m] lowest corner of the workspace, world; a hand that transports outside it is counted as a fault
     workspace_low: Corner = (-1.5, -1.5, -0.5)
     # [m] its highest corner
@@ -51,10 +55,12 @@ class RecordingSettings:
     largest_residual: Positive = 0.02
     # [m] a position farther than this from where its neighbours put it has jumped
     largest_jump: Positive = 0.05
+    # [m/s^2] a hand that turns back by over `largest_jump` cannot do it faster than this
+    largest_acceleration: Positive = 50.0
     # share by which the rate may differ from the one that the client declared
     rate_tolerance: Share = 0.1
     # [s] a step of the device's clock that neither the numbers nor our clock explain is a clock jump
-    largest_clock_step: Positive = 0.25
+    largest_clock_step: Positive = 0.1
     # [s] a tracker that is silent for longer in mid-take is lost
     longest_silence: Positive = 2.0
     # [s] counted down before each take, unless a recording says otherwise

@@ -114,14 +114,17 @@ class Clock:
 class StreamStatistics:
     """Counts of the samples of one recording or demonstration.
 
-    Outliers, level shifts and samples out of the workspace are counted in the transport phase only.
+    All from `outliers` to `measured_rate` are of the transport phase only. Numbers that were sent are received, less
+    the duplicated and conflicting, or lost, or refused.
     """
 
     received: int = 0
     lost: int = 0
     duplicated: int = 0
-    reordered: int = 0
+    reordered: int = 0  # came after newer ones, and were put in their place
+    late: int = 0  # came after the demonstration they belong to was cut, which is made without them
     refused: int = 0
+    refused_numbers: tuple[tuple[int, int], ...] = ()  # first and last of those in a row, where they can be read
     untracked: int = 0
     gaps: int = 0  # stretches of numbers that never came
     missing: tuple[tuple[int, int], ...] = ()  # first and last number of each of them, of the first 20
@@ -129,7 +132,12 @@ class StreamStatistics:
     outliers: int = 0  # positions that their neighbours contradict; left out of the trajectory
     level_shifts: int = 0  # places where the position jumps and stays
     out_of_workspace: int = 0
-    conflicts: int = 0  # numbers that came twice with different device times
+    reversals: int = 0  # samples between which no hand could swing back and forth
+    repeated: int = 0  # readings that repeat the one before while the hand moves; left out of the trajectory
+    longest_freeze_ns: int = 0  # longest time for which one of them stood, device clock
+    freeze_at_ns: int = 0  # since the grasp
+    measured_rate: float = 0.0  # [Hz] readings that differ, where some repeat; 0: none does
+    conflicts: int = 0  # came with a number that was taken, or that their device time contradicts
     clock_jumps: int = 0
     declared_rate: float = 0.0  # [Hz] 0: the client said none
     seen_rate: float = 0.0  # [Hz] numbers a second of the device's clock

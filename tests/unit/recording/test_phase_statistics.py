@@ -92,14 +92,35 @@ def test_a_late_sample_of_the_reach_hides_no_loss_of_the_carried() -> None:
     samples = [s for s in sent() if s.sequence not in (late, lost)]
     samples.insert(REACH + 20, sample(late, (0.0, 0.0, 0.0)))
     made = parts(samples)
-    assert (made.whole.lost, made.transport.lost, made.transport.reordered) == (1, 1, 1)
+    assert (made.whole.lost, made.transport.lost, made.transport.reordered, made.reach.reordered) == (1, 1, 0, 1)
 
 
-def test_a_sample_that_comes_after_the_release_is_missing_from_what_is_learned() -> None:
+def test_a_sample_that_comes_after_the_release_is_put_in_its_place() -> None:
     late = REACH + 10
     samples = [s for s in sent() if s.sequence != late] + [sample(late, (0.0, 0.0, 0.0))]
     made = parts(samples)
-    assert (made.whole.lost, made.transport.lost, made.return_.reordered) == (0, 1, 1)
+    assert (made.whole.lost, made.transport.lost, made.transport.reordered, made.return_.reordered) == (0, 0, 1, 0)
+    assert made.transport.longest_gap_ns == PERIOD_NS
+
+
+@given(refused=st.sets(st.integers(1, SENT - 2), max_size=40), unread=st.integers(0, 3))
+def test_what_was_refused_is_not_lost_as_well(refused: set[int], unread: int) -> None:
+    stream = StreamCounter()
+    for each in sent():
+        if each.sequence in refused:
+            stream.count_refused("no unit quaternion", each.sequence)
+        else:
+            stream.observe(each)
+    for _ in range(unread):
+        stream.count_refused("rubbish")
+    samples = [s for s in sent() if s.sequence not in refused]
+    grasp = next(i for i, s in enumerate(samples) if s.sequence >= REACH)
+    release = next(i for i, s in enumerate(samples) if s.sequence >= REACH + CARRY)
+    made = phase_statistics(samples, TransportSpan(grasp, release), stream.statistics(), SETTINGS)
+    assert made.whole.refused == len(refused) + unread
+    for name in ("refused", "lost"):
+        assert sum(getattr(p, name) for p in (made.reach, made.transport, made.return_)) == getattr(made.whole, name)
+    assert made.whole.lost == 0
 
 
 @pytest.mark.parametrize("opened", [True, False])

@@ -2,6 +2,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from teachpath.recording.arrival import Arrival
 from teachpath.recording.stream_statistics import StreamCounter
 from tests.unit.recording.hands import PERIOD_NS, START_NS, sample
 
@@ -88,6 +89,9 @@ AT = START_NS + 3 * PERIOD_NS
         (AT + 5 * 10**9, AT + 5 * 10**9, 0),  # both clocks waited: a gap, not a jump
         (AT + 3600 * 10**9, AT + 1_000_000, 1),
         (AT - 10**9, AT + 1_000_000, 1),
+        (AT + 2 * 10**8, AT + 1_000_000, 1),  # the clock is set ahead by 0.2 s
+        (AT + 5 * 10**7, AT + 1_000_000, 0),  # by less than the limit
+        (AT - 3 * 10**7, AT + 1_000_000, 1),  # it runs back
         (AT, AT + 3 * 10**9, 0),  # a slow transit
         (AT, AT - 10**9, 0),  # our own clock was set back
     ],
@@ -98,7 +102,7 @@ def test_a_clock_jump_is_what_neither_the_numbers_nor_our_clock_explain(
     statistics = stream({}, {}, {"device_ns": device_ns, "receive_ns": receive_ns}).statistics()
     assert statistics.clock_jumps == jumps
     assert any("clock jumps" in note for note in statistics.notes) == bool(jumps)
-    assert statistics.longest_gap_ns == (PERIOD_NS if jumps or device_ns == AT else 5 * 10**9 + PERIOD_NS)
+    assert statistics.longest_gap_ns == (PERIOD_NS if jumps else max(device_ns - AT, 0) + PERIOD_NS)
 
 
 def test_loss_at_many_times_real_time_is_no_clock_jump() -> None:
@@ -114,7 +118,9 @@ def test_one_number_with_two_times_is_a_conflict() -> None:
     statistics = counter_of([1, 2, 3, 3])
     assert (statistics.statistics().duplicated, statistics.statistics().conflicts) == (1, 0)
     statistics.observe(sample(3, (0.1, 0.0, 0.0), device_ns=START_NS + 3 * PERIOD_NS + 7))
-    assert (statistics.statistics().duplicated, statistics.statistics().conflicts) == (2, 1)
+    assert (statistics.statistics().duplicated, statistics.statistics().conflicts) == (1, 1)
+    statistics.observe(sample(3, (0.1, 0.0, 0.0)))  # the same time, another place
+    assert (statistics.statistics().duplicated, statistics.statistics().conflicts) == (1, 2)
     assert any("two trackers" in note for note in statistics.statistics().notes)
 
 
@@ -161,3 +167,60 @@ def test_the_parts_of_a_stream_add_up_but_for_what_was_lost_between_them() -> No
     assert [interval.notes for interval in parts] == [("up to a",), ("up to b",), ("up to c",)]
     assert total.notes == ("up to a", "up to b", "up to c")
     assert all(interval.seen_rate == pytest.approx(50.0) for interval in parts)
+
+
+def test_a_pause_behind_a_slow_transit_is_no_clock_jump() -> None:
+    delayed = {"receive_ns": AT + 300_000_000}  # the machine stood still: this one came with the next
+    after = {"device_ns": AT + 300_000_000, "receive_ns": AT + 301_000_000}
+    assert stream({}, {}, delayed, after).statistics().clock_jumps == 0
+
+
+def test_a_clock_that_stands_still_while_the_numbers_go_on_is_a_clock_jump() -> None:
+    statistics = stream(*[{}] * 10, *[{"device_ns": START_NS + 10 * PERIOD_NS}] * 10, rate=50.0).statistics()
+    assert statistics.clock_jumps == 1
+    assert "the device's clock stands still at sample 16" in statistics.notes
+
+
+@pytest.mark.parametrize("order", [[3, 1, 2, 4, 5], [5, 4, 3, 2, 1]])
+def test_what_comes_before_the_first_number_is_late_not_twice(order: list[int]) -> None:
+    statistics = counter_of(order, 5).statistics()
+    assert (statistics.reordered, statistics.duplicated, statistics.lost, statistics.conflicts) == (
+        sum(n < max(order[:i], default=0) for i, n in enumerate(order)),
+        0,
+        0,
+        0,
+    )
+
+
+@pytest.mark.parametrize("ahead", [-500, -7, 0, 7, 500, 1_000_000])
+@pytest.mark.parametrize("clock_ns", [0, 7, -3600 * 10**9, 3600 * 10**9])
+def test_two_trackers_under_one_name_are_in_conflict_whatever_their_numbers_and_clocks(
+    ahead: int, clock_ns: int
+) -> None:
+    statistics = StreamCounter(declared_rate=50.0)
+    for n in range(1000, 1200):
+        stamp = START_NS + n * PERIOD_NS
+        statistics.observe(sample(n, (0.0, 0.0, 0.0)))
+        other = stamp + PERIOD_NS // 2 + clock_ns
+        statistics.observe(sample(n + ahead, (0.5, 0.0, 0.0), device_ns=other, receive_ns=stamp + PERIOD_NS // 2))
+    found = statistics.statistics()
+    assert found.conflicts >= 0.4 * found.received or found.clock_jumps >= 0.4 * found.received
+
+
+def test_what_comes_late_to_an_interval_that_has_ended_is_counted_once_and_as_late() -> None:
+    statistics = counter_of([1, 2, 4, 5])
+    before = statistics.interval()
+    statistics.begin_interval()
+    arrivals = [statistics.observe(sample(n, (0.0, 0.0, 0.0))) for n in (3, 2, 6, 7, 4)]
+    assert arrivals == [
+        Arrival.LATE,
+        Arrival.DUPLICATED,
+        Arrival.IN_ORDER,
+        Arrival.IN_ORDER,
+        Arrival.DUPLICATED,
+    ]
+    after, whole = statistics.interval(), statistics.statistics()
+    assert (before.lost, before.received) == (1, 4)
+    assert (after.received, after.late, after.reordered, after.duplicated, after.lost) == (2, 0, 0, 0, 0)
+    assert (whole.received, whole.late, whole.reordered, whole.duplicated, whole.lost) == (9, 1, 0, 2, 0)
+    assert any("sample 3 came after its part of the recording was cut" in note for note in whole.notes)

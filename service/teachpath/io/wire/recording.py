@@ -109,6 +109,7 @@ def _report(status: RecordingStatus) -> tracker_pb2.RecordingReport:
         lost=statistics.lost,
         duplicated=statistics.duplicated,
         reordered=statistics.reordered,
+        late=statistics.late,
         refused=statistics.refused,
         untracked=statistics.untracked,
         gaps=statistics.gaps,

@@ -33,7 +33,7 @@ def decode_sample(tracker: str, payload: bytes, receive_ns: int) -> Sample:
     fault = _fault(position, flexions, message.device_ns)
     if fault or (orientation is None and turn != NOT_MEASURED):
         fault = fault or "orientation ({:g}, {:g}, {:g}, {:g}) is no unit quaternion".format(*turn)
-        raise UnusableSample(f"sample {message.sequence} of {tracker}: {fault}")
+        raise UnusableSample(f"sample {message.sequence} of {tracker}: {fault}", sequence=message.sequence)
     return Sample(
         tracker=tracker,
         sequence=message.sequence,
