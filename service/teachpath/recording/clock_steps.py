@@ -17,7 +17,7 @@ class ClockSteps:
         largest_step: [s] by which a step may exceed what explains it.
 
     Attributes:
-        jumps: steps that nothing explains.
+        clock_jumps: steps that nothing explains.
         steps: numbers passed by all other steps.
         device_ns: the time that they took by the device's clock.
         step_ns: newest of them; 0: it was a jump, or there is none.
@@ -26,7 +26,7 @@ class ClockSteps:
     def __init__(self, declared_rate: float, largest_step: float) -> None:
         self._declared_rate = declared_rate
         self._limit_ns = round(largest_step * 1e9)
-        self.jumps = 0
+        self.clock_jumps = 0
         self.steps = 0
         self.device_ns = 0
         self.step_ns = 0
@@ -60,7 +60,7 @@ class ClockSteps:
         device, receive = sample.device_ns - last.device_ns, sample.receive_ns - last.receive_ns
         jump = self._jump(sample, numbers, device, receive)
         if jump is not None:
-            self.jumps += 1
+            self.clock_jumps += 1
             self._forget_transits()
         else:
             self.steps += numbers

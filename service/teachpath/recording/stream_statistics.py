@@ -169,7 +169,7 @@ class StreamCounter:
         return {
             **self._counts,
             "gaps": len(self._gaps.all),
-            "clock_jumps": clock.jumps,
+            "clock_jumps": clock.clock_jumps,
             "steps": clock.steps,
             "device_ns": clock.device_ns,
         }
