@@ -1,10 +1,13 @@
 """How soon a stop is answered while the station is busy: POST /stop, from the request to the executor's own status.
 
 The load: a file of 64 MB is imported again and again, a job learns, pages listen on WebSockets, and connections hang
-that have sent half a request.
+that have sent half a request; one that the station closes is opened anew.
 """
 
+from __future__ import annotations
+
 import io
+import selectors
 import socket
 import tempfile
 import threading
@@ -12,6 +15,7 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager, suppress
 from multiprocessing import get_context
+from multiprocessing.queues import Queue
 from multiprocessing.synchronize import Event
 from pathlib import Path
 
@@ -69,43 +73,61 @@ def _stops(url: str, count: int) -> list[float]:
 
 @contextmanager
 def _load(service: Service, ended: list[str]) -> Iterator[None]:
-    content = _file()
-    over = threading.Event()
+    """Load the service from another process, so that nothing delays who measures; fills `ended` on leaving."""
+    context = get_context("spawn")
+    ready, left, outcomes = context.Event(), context.Event(), context.Queue()
+    process = context.Process(target=_work, args=(service.url, ready, left, outcomes))
+    process.start()
+    ready.wait()
+    try:
+        yield
+    finally:
+        left.set()
+        _cancel_jobs(service.url)
+        ended += iter(outcomes.get, "")
+        process.join()
+
+
+def _work(url: str, ready: Event, left: Event, outcomes: Queue[str]) -> None:
+    """Import and learn again and again while pages listen and connections hang, until it is over."""
+    content, ended = _file(), list[str]()
     works: dict[str, Callable[[Station], object]] = {
         "import": lambda station: station.import_file("bulk", content, name="bulk.csv"),
         "learn": lambda station: station.learn("demo"),
     }
-    threads = [
-        threading.Thread(target=_again, args=(service.url, name, work, over, ended)) for name, work in works.items()
-    ]
-    context = get_context("spawn")  # what reads for the pages must not delay who measures
-    ready, left = context.Event(), context.Event()
-    pages = context.Process(target=_open_pages, args=(service.url.removeprefix("http://"), ready, left))
-    pages.start()
-    ready.wait()
-    try:
-        for thread in threads:
-            thread.start()
-        yield
-    finally:
-        over.set()
-        _cancel_jobs(service.url)
-        for thread in threads:
-            thread.join()
-        left.set()
-        pages.join()
-
-
-def _open_pages(address: str, ready: Event, left: Event) -> None:
-    """Open the pages and the connections that hang, until they may leave."""
-    with ExitStack() as stack:
+    threads = [threading.Thread(target=_again, args=(url, name, work, left, ended)) for name, work in works.items()]
+    address = url.removeprefix("http://")
+    with ExitStack() as stack, selectors.DefaultSelector() as hanging:
         for _ in range(PAGES):
             stack.enter_context(connect(f"ws://{address}/api/v1/events", max_queue=None))
         for _ in range(HALF_OPEN):
-            half = stack.enter_context(socket.create_connection(("127.0.0.1", int(address.partition(":")[2]))))
-            half.sendall(b"GET /api/v1/health HTTP/1.1\r\nHost: ")
+            hanging.register(_half_open(address), selectors.EVENT_READ)
+        for thread in threads:
+            thread.start()
         ready.set()
-        left.wait()
+        while not left.is_set():
+            for closed, _ in hanging.select(timeout=0.1):
+                _leave(hanging, closed.fileobj)
+                hanging.register(_half_open(address), selectors.EVENT_READ)
+        for thread in threads:
+            thread.join()
+        for each in list(hanging.get_map().values()):
+            _leave(hanging, each.fileobj)
+    for name in (*ended, ""):
+        outcomes.put(name)
+
+
+def _half_open(address: str) -> socket.socket:
+    """Open a connection and send half a request."""
+    connection = socket.create_connection(("127.0.0.1", int(address.partition(":")[2])))
+    connection.sendall(b"GET /api/v1/health HTTP/1.1\r\nHost: ")
+    return connection
+
+
+def _leave(hanging: selectors.BaseSelector, connection: object) -> None:
+    assert isinstance(connection, socket.socket)
+    hanging.unregister(connection)
+    connection.close()
 
 
 def _cancel_jobs(url: str) -> None:
@@ -117,7 +139,7 @@ def _cancel_jobs(url: str) -> None:
                         station.cancel(job.id)
 
 
-def _again(url: str, name: str, work: Callable[[Station], object], over: threading.Event, ended: list[str]) -> None:
+def _again(url: str, name: str, work: Callable[[Station], object], over: Event, ended: list[str]) -> None:
     with Station(url, timeout=120.0) as station:
         while not over.is_set():
             try:

@@ -5,10 +5,11 @@ from __future__ import annotations
 import os
 import signal
 import socket
+import sys
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from teachpath.config import Settings
 from teachpath.errors import Unreachable
@@ -16,6 +17,8 @@ from teachpath.errors import Unreachable
 if TYPE_CHECKING:
     from teachpath.app import Station
 
+# [s] for which one thread keeps the interpreter while another waits for it; a stop passes through several threads
+SWITCH_INTERVAL: Final = 0.0005
 SIGNALS = frozenset({signal.SIGINT, signal.SIGTERM})
 
 
@@ -32,6 +35,7 @@ def serving(settings: Settings) -> Iterator[Station]:
     from teachpath.app import Station
     from teachpath.web.server import web_server
 
+    sys.setswitchinterval(SWITCH_INTERVAL)
     web = settings.web
     listener = listen(web.host, web.port)
     umask = os.umask(0o077)

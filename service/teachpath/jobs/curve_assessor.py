@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import threading
 from concurrent.futures import CancelledError
 from concurrent.futures.process import BrokenProcessPool
@@ -17,7 +16,6 @@ from teachpath.nurbs import Curve
 from teachpath.records import Assessment, LearnedPath, Scene
 
 ASSESSMENT_TIMEOUT: Final = 60.0  # [s] after which an assessment counts as stuck; the first one loads its libraries
-NICENESS: Final = 5  # of the process, so that the control loop goes first
 
 
 class CurveAssessor:
@@ -56,7 +54,7 @@ class CurveAssessor:
 
 def _init_worker() -> None:
     worker.exit_with_parent()
-    os.nice(NICENESS)
+    worker.lower_priority()
 
 
 def _assess(curve: Curve, scene: Scene, settings: MotionSettings, arm: Arm, orientation: Curve | None) -> Assessment:

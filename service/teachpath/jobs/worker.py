@@ -12,6 +12,7 @@ import threading
 import time
 import uuid
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass
 from multiprocessing import Queue, parent_process
 from multiprocessing.synchronize import Event
@@ -29,7 +30,7 @@ Progress = Callable[[float, str], None]
 
 # [s] between two reports of one sentence: each is a row in the store and a message to every page
 PROGRESS_INTERVAL = 0.25
-NICENESS = 5  # of the process, so that the control loop and the service go first
+NICENESS = 10  # of the process, so that the control loop and the service go first
 
 _progress_queue: Queue[tuple[str, float, str]] | None = None
 _cancel: Event | None = None
@@ -48,7 +49,18 @@ def init_limited(memory_limit: int) -> None:
     global _memory_limit
     _memory_limit = memory_limit
     exit_with_parent()
+    lower_priority()
+
+
+def lower_priority() -> None:
+    """Let the control loop and the service go first.
+
+    Linux may share time between sessions before it looks at the niceness of a process (autogroups). There, a worker in
+    the session of the service would use up the time of the service; so it begins a session of its own.
+    """
     os.nice(NICENESS)
+    with suppress(OSError):  # it leads a session already
+        os.setsid()
 
 
 def exit_with_parent() -> None:
