@@ -14,6 +14,7 @@ from teachpath_client.structuring import structured
 T = TypeVar("T")
 
 LOCAL = "http://127.0.0.1:8765"
+LEASE_HEADER = "Teachpath-Lease"
 STOP_TIMEOUT = 5.0  # [s] for the answer to a stop; a station that lives says within 2 s that nothing was confirmed
 
 
@@ -29,15 +30,26 @@ class Rest:
 
     def __init__(self, url: str = LOCAL, *, timeout: float = 60.0, operator: str = "", lease: str = "") -> None:
         self.url = url.rstrip("/")
-        named = {"Teachpath-Operator": operator, "Teachpath-Lease": lease}
-        headers = {name: value for name, value in named.items() if value}
+        self._operator = operator
+        headers = {"Teachpath-Operator": operator} if operator else {}
         self._http = httpx.Client(base_url=f"{self.url}/api/v1", timeout=timeout, headers=headers, trust_env=False)
+        self.set_lease(lease)
 
     def __enter__(self) -> Self:
         return self
 
     def __exit__(self, *_: object) -> None:
         self._http.close()
+
+    def set_lease(self, token: str) -> None:
+        """Command the arm by this lease from now on; an empty token: by none."""
+        self._http.headers.pop(LEASE_HEADER, None)
+        if token:
+            self._http.headers[LEASE_HEADER] = token
+
+    @property
+    def _has_lease(self) -> bool:
+        return LEASE_HEADER in self._http.headers
 
     def call(
         self,

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
+from contextlib import contextmanager
 from typing import Any, TypeVar
 
+from teachpath_client.control import ControlKeeper
 from teachpath_client.errors import ClientError, ExecutionFaulted, JobFailed, NotInTime
 from teachpath_client.events import Events
 from teachpath_client.models import Demonstration, Execution, Health, Job, Plan, Run
@@ -15,6 +17,7 @@ from teachpath_proto.control import ExecutorState
 
 Awaited = TypeVar("Awaited", Job, Execution)
 
+DEFAULT_OPERATOR = "a program"  # who is in control where nobody gave a name
 ENDED_JOBS = ("succeeded", "failed", "cancelled")
 REREAD_INTERVAL = 1.0  # [s] after which what is awaited is read again though no event came
 MIN_READ_INTERVAL = 0.1  # [s] between two readings of what is awaited
@@ -101,6 +104,9 @@ class Station(TaskResources, WorkResources):
     ) -> Execution:
         """Move the arm along a plan, and return the execution when it has ended.
 
+        This program is in control meanwhile (see `control`): when it ends or is broken off, the arm is held on its
+        path. `begin_execution` begins a motion that goes on without it.
+
         Args:
             plan: id of a plan.
             override: share of the planned speed.
@@ -108,8 +114,46 @@ class Station(TaskResources, WorkResources):
 
         Raises:
             ExecutionFaulted: the arm has stopped by itself.
+            Refused: somebody else is in control, or the plan does not hold.
         """
-        return self.finish(self.begin_execution(plan, override=override), on_change)
+        with self.control():
+            return self.finish(self.begin_execution(plan, override=override), on_change)
+
+    @contextmanager
+    def control(self) -> Iterator[None]:
+        """Be in control of the arm: nobody else moves it, and it is held when this program ends or hangs.
+
+        That is noticed 3 s after the last sign of life, which a thread gives; when the block is left by an exception,
+        the arm is held at once. Somebody who asks for control gets it, and then decides what the arm does; everybody
+        may stop it. A client that was made with a lease keeps to that one.
+
+        Raises:
+            Refused: somebody else is in control.
+        """
+        if self._has_lease:
+            yield
+            return
+        keeper = ControlKeeper(self.url, self._operator or DEFAULT_OPERATOR, self.set_lease)
+        keeper.start()
+        try:
+            yield
+        except BaseException as error:
+            if self._hold_arm() and isinstance(error, ClientError):
+                keeper.stop()
+            else:  # a request may be under way still: when control lapses, the arm is held
+                keeper.abandon()
+            raise
+        else:
+            keeper.stop()
+
+    def _hold_arm(self) -> bool:
+        """Hold the arm if this program moves it, and return whether the station has answered so far."""
+        try:
+            if self._begun and not _has_ended(self.get_execution(self._begun)):
+                self.steer(self._begun, "hold")
+        except ClientError:
+            return False
+        return True
 
     def finish(self, execution: Execution, on_change: Callable[[Execution], object] = _nothing) -> Execution:
         """Wait for an execution and return it; raises ExecutionFaulted when the arm has stopped by itself."""

@@ -28,6 +28,8 @@ from teachpath_client.rest import Rest
 class WorkResources(Rest):
     """What a station learns, plans and executes; every method raises Unreachable or Refused."""
 
+    _begun = ""  # id of the execution that this client began last
+
     # jobs, and what they make
 
     def begin_job(self, task: str, kind: Literal["learn", "recut", "plan"], **request: Any) -> Job:
@@ -104,14 +106,19 @@ class WorkResources(Rest):
 
     def begin_execution(self, plan: str, *, override: float = 1.0) -> Execution:
         """Move the arm along a plan, at a share of the planned speed; return at once."""
-        return self._ask(Execution, "POST", "/executions", {"plan": plan, "override": override})
+        return self._begin("/executions", {"plan": plan, "override": override})
 
     def begin_teleoperation(self, tracker: str, **options: Any) -> Execution:
         """Let the arm mirror a live hand and return at once.
 
         Options: calibration, scene, scale, share, clutch, orientation (`keep` or `follow`).
         """
-        return self._ask(Execution, "POST", "/teleoperation", {"tracker": tracker} | options)
+        return self._begin("/teleoperation", {"tracker": tracker} | options)
+
+    def _begin(self, resource: str, request: Mapping[str, Any]) -> Execution:
+        execution = self._ask(Execution, "POST", resource, request)
+        self._begun = execution.id
+        return execution
 
     def executions(self) -> list[Execution]:
         """List the newest executions, newest first."""
@@ -154,6 +161,22 @@ class WorkResources(Rest):
     def get_lease(self) -> Lease:
         """Return who is in control of the arm; with an empty `holder` everybody may command."""
         return self._ask(Lease, "GET", "/lease")
+
+    def claim_lease(self, name: str, *, seconds: float = 5.0, hold_when_lost: bool = False, ask: bool = False) -> Lease:
+        """Take control of the arm, or ask its holder for it, and return the lease with its token.
+
+        Args:
+            name: under which everybody sees who is in control.
+            seconds: between two beats at most; then the lease lapses.
+            hold_when_lost: whether a moving arm is held on its path then.
+            ask: the holder, who loses control when nothing is answered; else it is refused while somebody holds it.
+        """
+        claim = {"name": name, "seconds": seconds, "hold_when_lost": hold_when_lost}
+        return self._ask(Lease, "POST", "/lease/ask" if ask else "/lease", claim)
+
+    def act_on_lease(self, action: Literal["beat", "release", "keep"]) -> Lease:
+        """Say that the holder of this client's lease is still there, give control back, or keep it from who asks."""
+        return self._ask(Lease, "POST", f"/lease/{action}")
 
     def journal(self, execution: str = "", *, limit: int = 100) -> list[JournalEntry]:
         """List who did what to the arm, newest first."""

@@ -111,9 +111,10 @@ def test_what_is_refused_raises_with_status_and_record(station: Station) -> None
 def test_an_execution_is_begun_and_read(desk: Desk, station: Station) -> None:
     plan = planned(desk.station, "plan-client")
     assert station.get_plan(plan).id == plan
-    with pytest.raises(Refused, match="nobody answered") as refused:
-        station.run(plan)
-    assert refused.value.status == 503
+    for begin in (station.run, station.begin_execution):
+        with pytest.raises(Refused, match="nobody answered") as refused:
+            begin(plan)
+        assert refused.value.status == 503
     newest = station.executions()[0]
     assert (newest.plan, newest.status.state) == (plan, "faulted")
     assert station.get_execution(newest.id) == station.stop(newest.id) == newest

@@ -11,9 +11,10 @@ import pytest
 from teachpath.io.store.settings import StoreSettings
 from teachpath.io.store.store import Store
 from teachpath.robot.processes import MAX_DEATHS
+from teachpath_client.errors import Refused
 from teachpath_client.models import Execution
 from tests.contract.rows import a_job, learned
-from tests.system.processes import Service
+from tests.system.processes import Command, Service
 from tests.unit.motion.ways import MIDDLE, way
 from tests.waiting import wait_until
 
@@ -35,19 +36,23 @@ def data(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-@pytest.fixture
+@pytest.fixture(scope="module")
 def service(data: Path) -> Iterator[Service]:
-    # An arm that has died is missed after this long.
-    with Service(data, TEACHPATH_EXECUTOR__SILENCE="1.0", TEACHPATH_EXECUTOR__REST_TIMEOUT="5") as service:
+    """The station of those tests that leave it as it was."""
+    with Service(data) as service:
         yield service
 
 
-def begin(service: Service) -> Execution:
-    """Plan the path at this station, for a certificate is of one station, and start it."""
+def planned(service: Service) -> str:
+    """Plan the path at this station, for a certificate is of one station."""
     (run,) = service.station.runs(TASK)
     plan = service.station.plan(run.learned.paths[0].id)
     service.station.wait_for_arm()
-    return service.station.begin_execution(plan.id)
+    return plan.id
+
+
+def begin(service: Service) -> Execution:
+    return service.station.begin_execution(planned(service))
 
 
 def wait_state(service: Service, execution: Execution, *states: str) -> Execution:
@@ -90,15 +95,16 @@ def test_the_death_of_the_executor_ends_its_execution_and_another_executor_takes
     assert service.station.get_execution(execution.id).status == status
 
 
-def test_an_executor_that_dies_again_and_again_is_given_up(service: Service) -> None:
+def test_an_executor_that_dies_again_and_again_is_given_up(data: Path) -> None:
     killed: set[int] = set()
-    for _ in range(MAX_DEATHS):
-        wait_until(lambda: set(service.find("executor --attached")) - killed, "another executor is there")
-        killed.add(kill(service, "executor"))
-    note = wait_note(service, "the executor died", "is not started again", "then restart the service")
-    assert f"{MAX_DEATHS} times" in note
-    assert service.station.health().processes == {"executor": "ended", "simulator": "running"}
-    assert service.find("executor --attached") == []
+    with Service(data) as service:
+        for _ in range(MAX_DEATHS):
+            wait_until(lambda: set(service.find("executor --attached")) - killed, "another executor is there")
+            killed.add(kill(service, "executor"))
+        note = wait_note(service, "the executor died", "is not started again", "then restart the service")
+        assert f"{MAX_DEATHS} times" in note
+        assert service.station.health().processes == {"executor": "ended", "simulator": "running"}
+        assert service.find("executor --attached") == []
 
 
 def test_nothing_is_under_way_after_the_service_was_killed(data: Path) -> None:
@@ -123,6 +129,7 @@ def test_what_is_under_way_when_the_service_is_stopped_has_ended(data: Path) -> 
 
 def test_an_execution_that_has_ended_leaves_an_arm_that_may_start_at_once(service: Service) -> None:
     execution = follow(service)
+    assert execution.plan is not None
     for _ in range(10):
         service.station.stop(execution.id)
         wait_state(service, execution, "ended")
@@ -130,3 +137,48 @@ def test_an_execution_that_has_ended_leaves_an_arm_that_may_start_at_once(servic
         wait_state(service, execution, "approaching", "following")
     service.station.stop(execution.id)
     wait_state(service, execution, "ended")
+
+
+@pytest.fixture
+def command(service: Service, tmp_path: Path) -> Iterator[Command]:
+    """A `teachpath run` that moves the arm slowly."""
+    words = ("run", planned(service), "--override", "0.1", "--url", service.url)
+    command = Command(*words, folder=tmp_path)
+    yield command
+    command.clean_up()
+
+
+def moved_by(command: Command, service: Service) -> Execution:
+    """Return the execution of a running command as soon as the arm follows the path."""
+
+    def begun() -> Execution | None:
+        assert command.process.poll() is None, command.err
+        newest = service.station.executions()[0]
+        return newest if newest.status.state == "following" else None
+
+    found = wait_until(begun, "the arm follows the path")
+    assert found is not None
+    return found
+
+
+def test_the_arm_holds_when_the_command_that_moves_it_is_killed(service: Service, command: Command) -> None:
+    execution = moved_by(command, service)
+    assert service.station.get_lease().holder == "teachpath run"
+    with pytest.raises(Refused, match="teachpath run is in control"):
+        service.station.override(execution.id, 1.0)
+    command.process.kill()
+    held = wait_state(service, execution, "held").status
+    assert held.reason.startswith("nothing was heard of teachpath run, who was in control; resume"), held.reason
+    service.station.steer(execution.id, "resume")
+    wait_state(service, execution, "following")
+    service.station.stop(execution.id)
+    wait_state(service, execution, "ended")
+
+
+def test_ctrl_c_stops_the_arm_and_gives_control_back(service: Service, command: Command) -> None:
+    execution = moved_by(command, service)
+    command.interrupt()
+    assert command.wait() == 0
+    assert f"{execution.id} ended" in command.out
+    assert service.station.get_execution(execution.id).status.reason == "stopped by teachpath run"
+    assert service.station.get_lease().holder == ""

@@ -35,7 +35,7 @@ def control_router(parts: Parts) -> APIRouter:
 
     @router.get("/lease")
     def get_lease() -> Lease:
-        """Say who is in control. With an empty `holder` everybody may command, as scripts do."""
+        """Say who is in control. With an empty `holder` everybody may command."""
         return executions.request_lease(LeaseRequest(LeaseAction.LOOK))
 
     @router.post("/lease", status_code=201)

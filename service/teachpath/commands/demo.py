@@ -58,7 +58,7 @@ def demo(
         stack.enter_context(serving(settings))
         url = f"http://{settings.web.host}:{settings.web.port}"
         console.print(f"teachpath serves [bold]{url}[/bold]: open it to watch; API docs at {url}/docs", highlight=False)
-        station = stack.enter_context(Station(url))
+        station = stack.enter_context(Station(url, operator="teachpath demo"))
         summary = _Demonstration(station, settings, stop).run(speed=speed, seed=seed, recordings=recordings)
         if as_json or once:
             print(json.dumps(summary, indent=2), flush=True)

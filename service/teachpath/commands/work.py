@@ -183,10 +183,14 @@ def run(
             help="Move nothing; judge this log of setpoints against limits and path: MCAP, or CSV t,q1,...,q6."
         ),
     ] = None,
+    detach: Annotated[
+        bool, typer.Option(help="Only start it: the arm goes on without this command, and anybody may command it.")
+    ] = False,
 ) -> None:
     """Move the arm along a certified plan, or judge what was sent to one.
 
-    Ctrl-C stops it on the path. This is not an emergency stop.
+    This command is in control meanwhile. Ctrl-C stops the arm on its path; when the command is killed or hangs, the arm
+    is held there within 4 s. None of this is an emergency stop.
     """
     from teachpath.commands.checking import judge_file
 
@@ -195,18 +199,27 @@ def run(
         return
     if plan is None:
         raise UnusableInput("name the plan to run; teachpath plan PATH makes one")
-    with Station(url) as station, progress_bar("running") as show:
-        execution = station.begin_execution(plan, override=override)
-        try:
-            execution = station.finish(execution, execution_shown(show))
-        except KeyboardInterrupt:
-            execution = station.finish(station.stop(execution.id), execution_shown(show))
+    with Station(url, operator="teachpath run") as station:
+        if detach:
+            execution = station.begin_execution(plan, override=override)
+            print(f"{execution.id} {execution.status.state}; teachpath stop {execution.id} stops it")
+            return
+        execution = _run_to_its_end(station, plan, override)
     status = execution.status
     print(
         f"{execution.id} {status.state}: {status.cycles} setpoints, {status.late} late, "
         f"{status.missed} missed; limits used to {status.limit_use:.1%}, "
         f"tracking error up to {1e3 * status.tracking_error:.2f} mrad"
     )
+
+
+def _run_to_its_end(station: Station, plan: str, override: float) -> Execution:
+    with station.control(), progress_bar("running") as show:
+        execution = station.begin_execution(plan, override=override)
+        try:
+            return station.finish(execution, execution_shown(show))
+        except KeyboardInterrupt:
+            return station.finish(station.stop(execution.id), execution_shown(show))
 
 
 def stop(

@@ -156,6 +156,14 @@ def test_while_somebody_is_in_control_others_may_only_stop(bench: Bench, middle:
     assert [(e.who, e.verb) for e in bench.journal if e.answer != "done"] == [("Bea", "start"), ("somebody", "hold")]
 
 
+def test_an_operator_who_was_lost_while_nothing_moved_holds_no_later_motion(bench: Bench, middle: Plan) -> None:
+    bench.when(lambda: True, lambda: bench.control("acquire", "Ada", seconds=0.5, hold_when_lost=True))
+    bench.when(lambda: bench.now > 1e9, lambda: bench.command("start", plan=encode(middle)))
+    bench.when(lambda: bench.state == "ended", bench.stop.set)
+    bench.run()
+    assert "held" not in bench.states()
+
+
 def test_a_lost_operator_leaves_an_arm_that_holds_and_may_be_resumed(bench: Bench, middle: Plan) -> None:
     bench.start(middle)
     bench.when(
