@@ -54,7 +54,7 @@ log = logging.getLogger("teachpath")
 
 # What an operator should do after the death of a process, as the end of a sentence.
 EXECUTOR_SUGGESTION = "its execution ended as faulted: look where the arm stands, then start again"
-SIMULATOR_SUGGESTION = "its arm stands at home and the object at its start: stop the execution, then start again"
+SIMULATOR_SUGGESTION = "its execution ended as faulted; its arm stands at home and the object at its start: start again"
 
 
 def trajectory_of(store: Store, settings: Settings, demonstration: Demonstration) -> Trajectory:

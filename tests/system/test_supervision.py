@@ -5,6 +5,7 @@ import signal
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
+from shutil import copytree
 
 import pytest
 
@@ -24,9 +25,9 @@ TASK = "t"
 
 
 @pytest.fixture(scope="module")
-def data(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A data folder with one learned path."""
-    folder = tmp_path_factory.mktemp("station") / "data"
+def template(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A data folder with one learned path, of which every station gets a copy."""
+    folder = tmp_path_factory.mktemp("template") / "data"
     store = Store(StoreSettings(data_dir=str(folder)))
     store.ensure_task(TASK, scene="empty", calibration="identity")
     store.add_job(a_job("learn-1", kind="learn"))
@@ -36,10 +37,16 @@ def data(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
+@pytest.fixture
+def data(template: Path, tmp_path: Path) -> Path:
+    """A data folder for stations of one test."""
+    return copytree(template, tmp_path / "data")
+
+
 @pytest.fixture(scope="module")
-def service(data: Path) -> Iterator[Service]:
+def service(template: Path, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Service]:
     """The station of those tests that leave it as it was."""
-    with Service(data) as service:
+    with Service(copytree(template, tmp_path_factory.mktemp("station") / "data")) as service:
         yield service
 
 
@@ -53,6 +60,21 @@ def planned(service: Service) -> str:
 
 def begin(service: Service) -> Execution:
     return service.station.begin_execution(planned(service))
+
+
+def begin_when_arm_speaks(service: Service) -> Execution:
+    """Start the path as soon as another simulated arm publishes its joint state."""
+    plan = planned(service)
+
+    def begun() -> Execution | None:
+        try:
+            return service.station.begin_execution(plan)
+        except Refused:  # it is silent until then
+            return None
+
+    found = wait_until(begun, "the arm speaks again")
+    assert found is not None
+    return found
 
 
 def wait_state(service: Service, execution: Execution, *states: str) -> Execution:
@@ -93,6 +115,17 @@ def test_the_death_of_the_executor_ends_its_execution_and_another_executor_takes
     again = service.station.finish(begin(service))
     assert (again.status.state, again.status.progress) == ("ended", pytest.approx(1.0))
     assert service.station.get_execution(execution.id).status == status
+
+
+def test_the_death_of_the_simulated_arm_ends_its_execution_and_another_one_takes_its_place(service: Service) -> None:
+    execution = follow(service)
+    kill(service, "simulator")
+    status = wait_state(service, execution, "faulted").status
+    assert status.reason == "the driver of puma560 has ended: look where the arm stands, then start again"
+    wait_note(service, "the simulator died (killed by signal 9", "its execution ended as faulted", "start again")
+    wait_until(lambda: service.station.health().processes["simulator"] == "running", "another arm is there")
+    again = service.station.finish(begin_when_arm_speaks(service))
+    assert (again.status.state, again.status.progress) == ("ended", pytest.approx(1.0))
 
 
 def test_an_executor_that_dies_again_and_again_is_given_up(data: Path) -> None:

@@ -239,7 +239,9 @@ class CommandHandler:
                 raise Conflict(f"execution {self.current.id} is {self.current.state}; stop it first")
             if hindrance := self._hindrance():
                 raise Conflict(hindrance)
-            self.lease.pop_lost_holder()  # who was lost while nothing moved holds no motion of somebody else
+            # Who was lost while nothing moved matters no more.
+            self.lease.pop_lost_holder()
+            self._joint_states.has_lost_driver = False
             prepared = self._programs.make(command)
             with suppress(Unreachable):  # only the simulated robot has a scene to put back
                 reset = self._keys.reset(self._joint_states.robot)

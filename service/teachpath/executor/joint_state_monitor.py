@@ -22,6 +22,9 @@ class JointStateMonitor:
         robot: name of the arm.
         silence: without a joint state after which the arm counts as gone [s].
         clock: returns monotonic nanoseconds.
+
+    Attributes:
+        has_lost_driver: whether an announced driver of the arm left the bus since this was last set to False.
     """
 
     def __init__(self, robot: str, silence: float, clock: Callable[[], int]) -> None:
@@ -30,6 +33,13 @@ class JointStateMonitor:
         self._clock = clock
         self._payloads: deque[tuple[int, bytes]] = deque(maxlen=1)
         self._latest: tuple[int, JointState] | None = None
+        self._lost_ns = -1  # when its driver left: what came before is no state of the next one
+        self.has_lost_driver = False
+
+    def on_liveliness(self, _: str, alive: bool) -> None:
+        """Take note of a driver that comes or goes."""
+        if not alive:
+            self._lost_ns, self.has_lost_driver = self._clock(), True
 
     def receive(self, _: str, payload: bytes) -> None:
         """Take a message from the bus; `poll` decodes it, on the caller's thread."""
@@ -46,8 +56,10 @@ class JointStateMonitor:
             log.warning("left out: %s", error)
 
     def latest(self, now: int) -> tuple[float, JointState] | None:
-        """Return the age of the newest joint state at `now` [s] and the state itself, or None when none ever came."""
-        return None if self._latest is None else ((now - self._latest[0]) / 1e9, self._latest[1])
+        """Return the age of the present driver's newest joint state at `now` [s] and the state, or None without one."""
+        if self._latest is None or self._latest[0] <= self._lost_ns:
+            return None
+        return (now - self._latest[0]) / 1e9, self._latest[1]
 
     def current(self) -> JointState:
         """Return the arm's present joint state.

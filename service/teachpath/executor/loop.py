@@ -101,6 +101,7 @@ class Executor:
         warm_up(self._period, self._arm)
         handles = [
             self._bus.subscribe(self._keys.state(self._robot), self._joint_states.receive),
+            self._bus.watch(self._keys.alive("robot", self._robot), self._joint_states.on_liveliness),
             *self._command_handler.serve(),
             self._bus.announce(self._keys.alive("executor", self._robot)),
         ]
@@ -134,8 +135,7 @@ class Executor:
             while pending:
                 pending.popleft()(current)
             self._supervise(current, due)
-            latest = self._joint_states.latest(due)
-            current.watch_rest(latest[1] if latest and latest[0] <= self._settings.silence else None, due)
+            current.watch_rest(self._speaking_arm(due), due)
             if current.displacement or current.arm_stops:
                 current.skip_period()
             else:
@@ -149,8 +149,9 @@ class Executor:
 
     def _watch_resting_arm(self, due: int) -> None:
         latest = self._joint_states.latest(due)
-        sentence = self._unasked.update(due, *latest) if latest is not None else ""
-        if sentence:
+        if latest is None:  # no arm spoke yet, or its driver has ended: the next one rests where it is found
+            self._unasked.forget()
+        elif sentence := self._unasked.update(due, *latest):
             self._command_handler.write_journal("the arm", UNASKED_MOTION, sentence, execution="")
             self._command_handler.status_is_due = True
 
@@ -158,16 +159,33 @@ class Executor:
         lost = self._command_handler.lease.pop_lost_holder()
         if lost:
             self._hold(current, f"nothing was heard of {lost}, who was in control; resume when somebody is there again")
+        arm = self._speaking_arm(due)
+        if arm is None:
+            self._supervise_silence(current, due)
+        else:
+            self._supervise_arm(current, arm, due)
+
+    def _speaking_arm(self, due: int) -> JointState | None:
+        """Return the newest joint state, or None when the arm is silent or its driver has ended."""
         latest = self._joint_states.latest(due)
-        if latest is None:
-            return
-        silence, arm = latest
-        if silence > self._settings.silence:
-            current.arm_stops = False  # nobody says any more that it comes to rest
+        if latest is None or latest[0] > self._settings.silence or self._joint_states.has_lost_driver:
+            return None
+        return latest[1]
+
+    def _supervise_silence(self, current: Execution, due: int) -> None:
+        """Hold an arm that is silent; end its execution when it stays so, and at once when its driver has ended."""
+        current.arm_stops = False  # nobody says any more that it comes to rest
+        latest = self._joint_states.latest(due)
+        silence = latest[0] if latest else 0.0
+        if self._joint_states.has_lost_driver:
+            why = f"the driver of {self._robot} has ended"
+            current.end(ExecutorState.FAULTED, f"{why}: look where the arm stands, then start again")
+        elif silence > self._settings.silence_timeout:
+            why = f"no joint state for {silence:.1f} s: is the arm's driver running?"
+            current.end(ExecutorState.FAULTED, f"{why} look where the arm stands, then start again")
+        else:
             why = f"no joint state for {silence:.2f} s"
             self._hold(current, f"{why}: is the arm's driver running? resume when it is back")
-            return
-        self._supervise_arm(current, arm, due)
 
     def _supervise_arm(self, current: Execution, arm: JointState, due: int) -> None:
         if arm.fault:

@@ -20,6 +20,8 @@ class ExecutorSettings:
     dwell: Annotated[float, Ge(0), Le(10)] = 0.5
     # [s] without a joint state after which the arm is held
     silence: Annotated[float, Gt(0), Le(5)] = 0.2
+    # [s] without a joint state after which the execution that was held for it ends as faulted
+    silence_timeout: Annotated[float, Gt(0), Le(600)] = 10.0
     # [s] without a tracked sample after which a live hand is lost, or who presses its clutch
     hand_silence: Annotated[float, Gt(0), Le(5)] = 0.15
     # [rad] tracking error of a joint at which the execution is given up

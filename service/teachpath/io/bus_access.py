@@ -55,6 +55,7 @@ GRANTS: Final[dict[Role, dict[str, tuple[str, ...]]]] = {
         "subscribe": ("executor/stop", "robot/*/state", "trackers/*/samples"),
         "ask": ("robot/*/reset", "station/*"),
         "announce": ("alive/executor/*",),
+        "watch": ("alive/robot/*",),
     },
     Role.ROBOT: {
         "put": ("robot/{only}/state", *STOP["put"]),
