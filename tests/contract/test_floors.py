@@ -13,7 +13,7 @@ SERVICE = ROOT / "service" / "teachpath"
 
 # A room may import rooms of lower floors, and itself. Rooms of one floor are strangers.
 FLOORS = [
-    ["errors", "periodic_thread", "time_source"],
+    ["errors", "periodic_thread", "realtime", "time_source"],
     ["nurbs"],
     ["exchange", "records"],
     ["editing", "trajectories"],

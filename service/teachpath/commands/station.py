@@ -18,9 +18,12 @@ from teachpath.config import Instructions, from_instructions, load
 from teachpath.io.bus import open_bus
 from teachpath.io.bus_logins import local_login
 from teachpath.io.signing_key import read_signing_key
+from teachpath.realtime import SIMULATOR_PRIORITY, request_realtime
 from teachpath.robot.processes import STOP_TIMEOUT
 from teachpath_proto.keys import Keys
 from teachpath_proto.logins import Role
+
+log = logging.getLogger("teachpath")
 
 Attached = Annotated[bool, typer.Option("--attached", hidden=True)]
 
@@ -83,6 +86,8 @@ def simulator(config: Config = None, attached: Attached = False) -> None:
     with until_signalled() as stop:
         _leave_with_parent(stop, attached)
         bus = open_bus(settings.bus, given.login)
+        if settings.simulator.realtime:
+            log.info("%s", request_realtime(SIMULATOR_PRIORITY))
         try:
             Simulator(
                 bus,

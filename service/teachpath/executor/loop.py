@@ -18,7 +18,7 @@ from teachpath.executor.certificate_check import CertificateCheck
 from teachpath.executor.command_handler import CommandHandler
 from teachpath.executor.execution import Execution
 from teachpath.executor.joint_state_monitor import JointStateMonitor, SetpointStallDetector
-from teachpath.executor.pacing import Pacer, request_realtime
+from teachpath.executor.pacing import Pacer
 from teachpath.executor.program_factory import ProgramFactory
 from teachpath.executor.settings import ExecutorSettings
 from teachpath.executor.unasked_motion import UnaskedMotionDetector
@@ -28,6 +28,7 @@ from teachpath.motion.arm.model import Arm
 from teachpath.motion.execution.governor import warm_up
 from teachpath.motion.planning.signature import SigningKey
 from teachpath.motion.settings import MotionSettings
+from teachpath.realtime import EXECUTOR_PRIORITY, request_realtime
 from teachpath.records import ExecutorStatus, JointState
 from teachpath.time_source import TimeSource
 from teachpath_proto.control import CommandVerb, ExecutorState
@@ -106,7 +107,7 @@ class Executor:
             self._bus.announce(self._keys.alive("executor", self._robot)),
         ]
         if self._settings.realtime:
-            self._scheduling = request_realtime()
+            self._scheduling = request_realtime(EXECUTOR_PRIORITY)
         log.info("%s", self._scheduling)
         # A collection in the loop can last a hundred periods; nothing in this process makes cyclic garbage in bulk.
         gc.collect()

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from dataclasses import dataclass
 from typing import Final
 
@@ -106,12 +105,3 @@ class NominalClock:
         newest = self._newest_ns
         self._newest_ns = due + self._offset if at_rest or newest is None else newest + self._period_ns
         return self._newest_ns
-
-
-def request_realtime(priority: int = 50) -> str:
-    """Ask the system to run this thread before all others; return in words whether it does."""
-    try:
-        os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(priority))
-    except (AttributeError, OSError) as error:
-        return f"no real-time scheduling ({error}): the loop shares the processor, watch its lateness"
-    return f"real-time scheduling SCHED_FIFO {priority}"

@@ -34,5 +34,5 @@ class ExecutorSettings:
     regain: Annotated[float, Gt(0), Le(0.5)] = 0.02
     # [rad] that a joint may move while nothing is under way; an arm that moves farther is reported, and nothing starts
     unasked_motion: Annotated[float, Gt(0), Le(0.5)] = 0.02
-    # whether to ask for real-time scheduling
+    # whether to ask for real-time scheduling; nice -10 where it is refused
     realtime: bool = True

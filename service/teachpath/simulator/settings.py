@@ -18,3 +18,5 @@ class SimulatorSettings:
     bandwidth: Annotated[float, Gt(0), Le(150)] = 60.0
     # [s] that setpoints wait before they are played, so that one that was held up on its way still comes in time
     delay: Annotated[float, Ge(0.004), Le(0.2)] = 0.03
+    # whether to ask for real-time scheduling, below that of the executor; nice -10 where it is refused
+    realtime: bool = True
