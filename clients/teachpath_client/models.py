@@ -683,9 +683,12 @@ class Robot:
         acceleration: (6,) limits [rad/s^2].
         jerk: (6,) limits [rad/s^3].
         torque: (6,) limits [N m].
-        tool_length: from the wrist's centre to the grasp point [m].
+        tool_length: from the flange to the tool centre point [m].
         finger_travel: of each finger [m].
         home: configuration in which the arm waits [rad].
+        tool_speed: limit of elbow, wrist and tool centre point [m/s]; None: no limit.
+        payload_mass: of what the flange carries besides the gripper and the scene's object [kg].
+        payload_center: its centre of mass in the flange's frame [m].
     """
 
     name: str
@@ -700,6 +703,9 @@ class Robot:
     tool_length: float
     finger_travel: float
     home: list[float]
+    tool_speed: float | None
+    payload_mass: float
+    payload_center: list[float]
 
 
 @dataclass(frozen=True)

@@ -14,6 +14,13 @@ class MotionSettings:
 
     # published table of the Puma 560; they differ in lengths (the arm's offset by 25 mm), inertia and friction
     variant: Literal["corke-armstrong", "armstrong-khatib-burdick", "fu-gonzalez-lee", "corke-1996"] = "corke-armstrong"
+    # [m] from the flange to the tool centre point, which follows the path, on the axis of joint 6; what reaches beyond
+    # the gripper's fingers (0.135) is not checked for collisions
+    tool_length: Annotated[float, Ge(0.05), Le(0.5)] = 0.13
+    # [kg] of what the flange carries besides the gripper and the scene's object, e.g. a camera or another tool
+    payload_mass: Annotated[float, Ge(0), Le(10)] = 0.0
+    # [m] its centre of mass in the flange's frame: z along the axis of joint 6, y as the fingers close
+    payload_center: Annotated[tuple[Annotated[float, Ge(-0.5), Le(0.5)], ...], Len(3, 3)] = (0.0, 0.0, 0.05)
     # [rad] joints 1 to 6 where the arm waits: elbow up, tool down, above the table
     home: Annotated[tuple[float, ...], Len(6, 6)] = (0.365, 1.663, -3.177, 0.0, -1.628, 0.365)
     # [m] that arm and carried object stay away from obstacles and the arm from itself

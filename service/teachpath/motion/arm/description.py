@@ -32,7 +32,10 @@ class Robot:
         acceleration: (6,) limits [rad/s^2].
         jerk: (6,) limits [rad/s^3].
         torque: (6,) limits [N m].
-        tool_length: from the wrist's centre to the grasp point [m].
+        tool_length: from the flange to the tool centre point [m].
+        tool_speed: limit of elbow, wrist and tool centre point [m/s]; None: no limit.
+        payload_mass: of what the flange carries besides the gripper and the scene's object [kg].
+        payload_center: its centre of mass in the flange's frame [m].
         finger_travel: of each finger [m].
         home: configuration in which the arm waits [rad].
     """
@@ -49,6 +52,9 @@ class Robot:
     tool_length: float
     finger_travel: float
     home: tuple[float, ...]
+    tool_speed: float | None
+    payload_mass: float
+    payload_center: tuple[float, ...]
 
 
 def describe_arm(arm: Arm, *, name: str, home: tuple[float, ...]) -> Robot:
@@ -72,4 +78,7 @@ def describe_arm(arm: Arm, *, name: str, home: tuple[float, ...]) -> Robot:
         tool_length=arm.tool_length,
         finger_travel=FINGER_TRAVEL,
         home=home,
+        tool_speed=arm.tool_speed,
+        payload_mass=arm.payload.mass,
+        payload_center=arm.payload.center,
     )

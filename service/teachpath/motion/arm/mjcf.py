@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import pi
 from typing import Final
 from xml.sax.saxutils import quoteattr
 
@@ -10,13 +11,12 @@ import numpy as np
 from teachpath.errors import UnusableInput
 from teachpath.motion.arm.geometry import LinkSolid, collision_solids
 from teachpath.motion.arm.kinematics import link_frames
-from teachpath.motion.arm.model import Arm
+from teachpath.motion.arm.model import Arm, Payload
 from teachpath.motion.arm.puma560 import GRIPPER_COM, GRIPPER_INERTIA, GRIPPER_MASS, Array, Link
 from teachpath.records import Scene, Shape
 
 CARRIED_BODY: Final = "carried"  # body and geom of the carried object
 GRASP_WELD: Final = "grasp"  # the weld that holds it: set its relative pose, then eq_active
-TOOL_SITE: Final = "tool"  # site at the grasp point
 OBJECT_DENSITY: Final = 300.0  # kg/m^3, of the carried object: a light wooden block
 
 # The arm has contacts with obstacles, but not with itself or its object: the certificate keeps it clear of itself.
@@ -99,12 +99,22 @@ def _arm(arm: Arm) -> list[str]:
             *_solids_of(i),
         ]
     lines += [
-        f'<site name="{TOOL_SITE}" pos="0 0 {arm.tool_length}" size="0.004"/>',
         '<body name="gripper">',
         f'<inertial pos="{_text(GRIPPER_COM)}" mass="{GRIPPER_MASS}" diaginertia="{_text(GRIPPER_INERTIA)}"/>',
         "</body>",
+        *_payload(arm.payload),
     ]
     return lines + ["</body>"] * len(arm.links)
+
+
+def _payload(payload: Payload) -> list[str]:
+    """Return the payload as a ball of the carried object's density, without any solid; nothing where it has no mass."""
+    if payload.mass == 0.0:
+        return []
+    radius = (3.0 * payload.mass / (4.0 * pi * OBJECT_DENSITY)) ** (1 / 3)
+    moments = np.full(3, 0.4 * payload.mass * radius**2)
+    inertial = f'pos="{_text(payload.center)}" mass="{payload.mass!r}" diaginertia="{_text(moments)}"'
+    return [f'<body name="payload"><inertial {inertial}/></body>']
 
 
 def _solids_of(link: int) -> list[str]:

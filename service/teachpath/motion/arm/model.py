@@ -12,14 +12,28 @@ from teachpath.motion.settings import MotionSettings
 
 
 @dataclass(frozen=True)
+class Payload:
+    """What the flange carries besides the gripper and the scene's object.
+
+    Attributes:
+        mass: [kg].
+        center: of mass in the flange's frame [m].
+    """
+
+    mass: float = 0.0
+    center: tuple[float, ...] = (0.0, 0.0, 0.0)
+
+
+@dataclass(frozen=True)
 class Arm:
     """One arm with its gripper; equal arms compute equal motions, and a plan is of one arm and no other.
 
     Attributes:
         name: of the published variant.
         links: its six rows, from the base to the flange.
-        tool_length: from the flange to the grasp point [m].
+        tool_length: from the flange to the tool centre point, between the fingers, on the axis of joint 6 [m].
         grasp_depth: by which the fingers overlap an object that they hold [m] (see `collision.grasp`).
+        payload: that the flange carries.
         tool_speed: that elbow, wrist and tool centre point keep [m/s] (see `tool_speed`); None: no limit.
     """
 
@@ -27,13 +41,20 @@ class Arm:
     links: tuple[Link, ...]
     tool_length: float = TOOL_LENGTH
     grasp_depth: float = GRASP_DEPTH
+    payload: Payload = Payload()
     tool_speed: float | None = None
 
     @classmethod
     def of_settings(cls, settings: MotionSettings) -> Arm:
-        """Return the arm that settings describe: a published variant with its gripper and the limit of its speed."""
-        variant = cls.of_variant(settings.variant)
-        return replace(variant, grasp_depth=settings.grasp_depth, tool_speed=settings.tool_speed)
+        """Return the arm that settings describe: a published variant with its tool, payload and limit of speed."""
+        mass = settings.payload_mass
+        return replace(
+            cls.of_variant(settings.variant),
+            tool_length=settings.tool_length,
+            grasp_depth=settings.grasp_depth,
+            payload=Payload(mass, tuple(settings.payload_center)) if mass else Payload(),  # nothing is nowhere
+            tool_speed=settings.tool_speed,
+        )
 
     @classmethod
     def of_variant(cls, name: str = DEFAULT_VARIANT) -> Arm:

@@ -8,14 +8,15 @@ from typing import Final
 
 import numpy as np
 
+from teachpath.motion.arm.dynamics import Dynamics
 from teachpath.motion.arm.model import Arm
 from teachpath.motion.arm.puma560 import Array
 from teachpath.motion.collision.collision_model import CollisionModel, Load, grasped_load
 from teachpath.motion.execution.governor import Governor
 from teachpath.motion.planning.certificate import plan_trajectory
+from teachpath.motion.planning.torque_limited import move_within_torques
 from teachpath.motion.settings import MotionSettings
-from teachpath.motion.timing.joint_moves import joint_waypoints, placed_load, straight_move, waypoints_home
-from teachpath.motion.timing.limit_margins import SYMMETRIC_MARGINS
+from teachpath.motion.timing.joint_moves import joint_waypoints, placed_load, waypoints_home
 from teachpath.motion.timing.timed_trajectory import TimedTrajectory
 from teachpath.records import Plan
 
@@ -94,7 +95,8 @@ def plan_segments(plan: Plan, start_q: Array, settings: MotionSettings, arm: Arm
     """Return the segments of an execution that begins in the configuration `start_q` (6,).
 
     Raises:
-        PathRefused: the way from there to the start of the path, or home from its goal, is not free.
+        PathRefused: the way from there to the start of the path, or home from its goal, is not free, or the motors are
+            too weak for it.
     """
     carries = plan.scene.carried is not None
     load = Load(position=plan.scene.carried.position) if plan.scene.carried else None
@@ -103,12 +105,12 @@ def plan_segments(plan: Plan, start_q: Array, settings: MotionSettings, arm: Arm
     stops = joint_waypoints(model, start_q, plan.above_start, settings, load=load, gripper_open=carries)
     start, goal = plan.joints[0], plan.joints[-1]
     leave = waypoints_home(model, start, goal, plan.above_goal, settings)
-    closed = not carries
+    closed, dynamics = not carries, Dynamics(arm)
 
     def move(name: str, a: Array, b: Array, *, before: bool) -> list[Segment]:
         if np.abs(b - a).max() < MIN_MOVE:
             return []
-        return [Segment(name, before, closed, straight_move(a, b, limits, arm=arm, margins=SYMMETRIC_MARGINS))]
+        return [Segment(name, before, closed, move_within_torques(a, b, limits, dynamics, arm, name))]
 
     return [
         *[piece for a, b in pairwise(stops) for piece in move("on the approach", a, b, before=True)],
@@ -127,7 +129,7 @@ def plan_return_path(
     """Plan a slow way from `start_q` (6,) back to `goal_q` (6,), where the arm was held in a segment.
 
     Raises:
-        PathRefused: the way is not free.
+        PathRefused: the way is not free, or the motors are too weak for it.
     """
     carried, model = plan.scene.carried, CollisionModel(plan.scene, arm)
     load = None
@@ -142,4 +144,5 @@ def plan_return_path(
     stops = joint_waypoints(model, start_q, goal_q, settings, load=load, gripper_open=opened, move_name=what)
     limits = arm.limits.motion.scaled(*[settings.move_share] * 3)
     legs = [(a, b) for a, b in pairwise(stops) if np.abs(b - a).max() >= MIN_MOVE]
-    return [straight_move(a, b, limits, arm=arm, margins=SYMMETRIC_MARGINS) for a, b in legs]
+    dynamics = Dynamics(arm, carried if load is not None and load.grasp_pose is not None else None)
+    return [move_within_torques(a, b, limits, dynamics, arm, what) for a, b in legs]

@@ -1,4 +1,4 @@
-"""What stands in the way of a motion that a live hand asks for: the joints' ranges, and what is near."""
+"""What stands in the way of a motion that a live hand asks for: the joints' ranges, the motors, and what is near."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from typing import Final
 
 import numpy as np
 
+from teachpath.motion.arm.dynamics import Dynamics
 from teachpath.motion.arm.model import Arm
 from teachpath.motion.arm.puma560 import Array
 from teachpath.motion.collision.collision_model import CollisionModel, Load
@@ -33,6 +34,26 @@ def limit_passed(positions: Array, arm: Arm) -> str:
         return ""
     row, joint = np.unravel_index(int(np.argmax(beyond)), beyond.shape)
     return describe_limit(int(joint), float(positions[row, joint]), arm)
+
+
+class PayloadCheck:
+    """Says where the motors are too weak for the payload; a live hand carries no other load that weighs on them.
+
+    Args:
+        accelerations: (6,) that motions may use [rad/s^2].
+    """
+
+    def __init__(self, arm: Arm, accelerations: Array) -> None:
+        self._dynamics = Dynamics(arm) if arm.payload.mass else None
+        self._accelerations = accelerations
+        self._torque = arm.limits.torque
+
+    def __call__(self, samples: Array) -> str:
+        """Say that the motors are too weak in one of configurations (n, 6), however they accelerate, or nothing."""
+        if self._dynamics is None:
+            return ""
+        torques = self._dynamics.torque_bounds(samples, np.zeros_like(samples), self._accelerations)
+        return "the motors are too weak for the payload there" if np.any(torques > self._torque) else ""
 
 
 def obstruction(model: CollisionModel, samples: Array, load: Load | None, settings: MotionSettings) -> str:

@@ -19,7 +19,7 @@ from teachpath.errors import PathRefused
 from teachpath.motion.arm.kinematics import tool_pose
 from teachpath.motion.arm.puma560 import Array
 from teachpath.motion.collision.collision_model import CollisionModel, Load
-from teachpath.motion.execution.teleop_checks import limit_passed, obstruction, samples_to_check
+from teachpath.motion.execution.teleop_checks import PayloadCheck, limit_passed, obstruction, samples_to_check
 from teachpath.motion.execution.teleop_goal import (
     MIN_TURN,
     STAYS_SHORT,
@@ -96,7 +96,9 @@ class TeleopFollower:
         self._settings = settings
         self._scale = scale
         self._period = period
-        self._pace = Pace(model.arm.limits.motion.scaled(share, share, share), model.arm, period)
+        limits = model.arm.limits.motion.scaled(share, share, share)
+        self._pace = Pace(limits, model.arm, period)
+        self._payload_check = PayloadCheck(model.arm, limits.acceleration)
         pose = tool_pose(start_q, model.arm)
         self._branch = branch_at(start_q, pose, model.arm)
         self._orientation = pose[:3, :3]  # (3, 3) of the tool where it rests, or where the present motion ends
@@ -232,9 +234,9 @@ class TeleopFollower:
             return
         samples = samples_to_check(motion.positions)
         for first in range(0, len(samples), CHECKS_PER_SLICE):
-            near = limit_passed(motion.positions, arm) or obstruction(
-                self._model, samples[first : first + CHECKS_PER_SLICE], self.load, self._settings
-            )
+            some = samples[first : first + CHECKS_PER_SLICE]
+            near = limit_passed(motion.positions, arm) or self._payload_check(some)
+            near = near or obstruction(self._model, some, self.load, self._settings)
             if near:
                 self._back_off(near, turns=bool(np.any(goal.turn)))
                 return

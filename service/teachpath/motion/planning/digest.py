@@ -29,5 +29,6 @@ def verify(plan: Plan, arm: Arm) -> None:
     if digest(plan, arm) != plan.certificate.digest:
         raise PathRefused(
             f"plan {plan.id} has changed since it was certified, or is for another arm than the {arm.name} "
-            "(motion.variant); plan the path again"
+            "with this tool, payload and limit of speed (motion.variant, tool_length, payload_mass, payload_center, "
+            "tool_speed); plan the path again"
         )

@@ -145,7 +145,7 @@ def _check_arm(plan: str, signature: Signature, arm: Arm) -> None:
         raise PathRefused(
             f"the certificate of plan {plan} holds for the {signature.arm} with a tool of "
             f"{1e3 * signature.tool_length:g} mm, and this arm is the {arm.name} with one of "
-            f"{1e3 * arm.tool_length:g} mm (motion.variant); plan the path again for this arm"
+            f"{1e3 * arm.tool_length:g} mm (motion.variant, motion.tool_length); plan the path again for this arm"
         )
 
 

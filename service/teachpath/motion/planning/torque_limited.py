@@ -17,7 +17,8 @@ from teachpath.motion.arm.puma560 import Array
 from teachpath.motion.paths.ik_branches import Candidate
 from teachpath.motion.paths.tool_path import ToolPath
 from teachpath.motion.settings import MotionSettings
-from teachpath.motion.timing.limit_margins import largest_use
+from teachpath.motion.timing.joint_moves import straight_move
+from teachpath.motion.timing.limit_margins import SYMMETRIC_MARGINS, largest_use
 from teachpath.motion.timing.timed_trajectory import TimedTrajectory, time_joint_path
 from teachpath.motion.timing.timing import time_tool_path
 from teachpath.records import Extreme
@@ -26,6 +27,7 @@ TORQUE_STRIDE: Final = 8  # rows of a trajectory's table from one torque check t
 MAX_RETIMINGS: Final = 4  # timings of a path at most, each with lower acceleration limits than the one before
 # Share of the acceleration that the torques leave; less than all of it, because a slower path has other torques.
 ACCELERATION_SAFETY_SHARE: Final = 0.97
+MOVE_SAMPLES: Final = 25  # of a straight move, at which its torques are bounded
 MIN_ACCELERATION_SHARE: Final = 0.05  # of the acceleration limits, with which a path is still worth following
 
 
@@ -71,10 +73,43 @@ def time_within_torques(
         if left < MIN_ACCELERATION_SHARE:
             break
         limits = limits.scaled(1.0, ACCELERATION_SAFETY_SHARE * left, 1.0)
+    move = tool_path.describe_control_point(worst.s)
     raise PathRefused(
-        f"the motors would have to give {100 * worst.value:.0f} % of their torque at {worst.place}; carry less, or "
-        f"bring the path nearer to the robot there, by {tool_path.describe_control_point(worst.s)}"
+        f"the motors would have to give {100 * worst.value:.0f} % of their torque at {worst.place}; carry less"
+        f"{_payload_hint(arm)}, or bring the path nearer to the robot there, by {move}"
     )
+
+
+def move_within_torques(
+    start: Array, goal: Array, limits: MotionLimits, dynamics: Dynamics, arm: Arm, move_name: str
+) -> TimedTrajectory:
+    """Time a straight move of the joints with accelerations that are within the motors' torques everywhere on it.
+
+    Args:
+        start: configuration (6,) [rad].
+        goal: configuration (6,) [rad].
+        limits: to keep.
+        dynamics: of the arm with its payload and what it carries.
+        arm: that moves.
+        move_name: of the move, for the error.
+
+    Raises:
+        PathRefused: the motors are too weak at any speed.
+    """
+    line = start + np.linspace(0.0, 1.0, MOVE_SAMPLES)[:, None] * (goal - start)
+    direction = np.abs(goal - start) / np.abs(goal - start).max()
+    speed = direction * float(np.min(limits.speed / np.maximum(direction, 1e-12)))
+    left = dynamics.acceleration_share(line, np.tile(speed, (MOVE_SAMPLES, 1)), limits.acceleration)
+    if left < MIN_ACCELERATION_SHARE:
+        raise PathRefused(
+            f"{move_name}: the motors are too weak for what the arm carries; carry less{_payload_hint(arm)}"
+        )
+    limits = limits.scaled(1.0, min(1.0, ACCELERATION_SAFETY_SHARE * left), 1.0)
+    return straight_move(start, goal, limits, arm=arm, margins=SYMMETRIC_MARGINS)
+
+
+def _payload_hint(arm: Arm) -> str:
+    return f" (motion.payload_mass is {arm.payload.mass:g} kg)" if arm.payload.mass else ""
 
 
 def _check_tolerance(tool_path: ToolPath, joints: JointPath, arm: Arm, settings: MotionSettings) -> None:

@@ -7,7 +7,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from teachpath.motion.arm.kinematics import min_singular_value, tool_pose
-from teachpath.motion.arm.model import Arm
+from teachpath.motion.arm.model import Arm, Payload
 from teachpath.motion.arm.tool_speed import difference_speeds
 from teachpath.motion.collision.builtin_scenes import empty_scene, paper_scene
 from teachpath.motion.collision.collision_model import CollisionModel
@@ -208,6 +208,14 @@ def test_setpoints_say_how_fast_they_move() -> None:
         0, abs=jerk.max() * DT**2
     )
     assert np.abs(np.gradient(speeds, DT, axis=0) - accelerations)[1:-1].max() < jerk.max() * DT
+
+
+def test_an_arm_whose_payload_is_too_heavy_stays_where_it_is_and_says_so() -> None:
+    session = Session(arm=replace(ARM, payload=Payload(10.0, (0.3, 0.0, 0.5))))
+    session.follower.engage(np.zeros(3))
+    session.run(100, np.array([0.05, 0.0, 0.0]))
+    np.testing.assert_array_equal(session.sent[-1], HOME)
+    assert any("too weak for the payload" in reason for reason in session.reasons)
 
 
 def test_a_limit_of_the_tools_speed_holds_however_the_hand_moves_and_the_tool_still_arrives() -> None:
