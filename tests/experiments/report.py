@@ -9,12 +9,15 @@ from typing import Any
 
 from scipy.stats import binom
 
-from tests.experiments import degrees, quoted, rule, scale
+from tests.experiments import adaptation_report, degrees, quoted, rule, scale
 from tests.experiments.markup import STYLE, figure, listed, short
 from tests.experiments.results import Found, by_place, outranked, revived, right, uneven
 from tests.experiments.scenarios import GROUPINGS, SCENARIOS
 from tests.experiments.targets import targets, worst
 from tests.experiments.trials import BY_KEY, MODES, THRESHOLD, Rate
+
+HANDS = "the recordings of a hand"
+SYNTHETIC = "36 synthetic demonstrations with scattered starts and goals"
 
 
 def page(found: Found, folder: Path) -> str:
@@ -36,6 +39,7 @@ def page(found: Found, folder: Path) -> str:
             *_grouping(found, folder),
             *_shapes(found, folder),
             *_degrees(found),
+            *adaptation_report.section(found["adaptation"], HANDS if found["made"]["hands"] else SYNTHETIC),
             *_verdicts(found),
             *_method(found),
             "</html>\n",

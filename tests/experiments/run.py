@@ -19,7 +19,7 @@ from typing import Any
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
-from tests.experiments import degrees, figures, report, results, rule, scale, targets, trials
+from tests.experiments import adaptation, degrees, figures, report, results, rule, scale, targets, trials
 from tests.experiments.scenarios import GROUPINGS, SCENARIOS, SHAPES
 
 REPORTS = Path(__file__).parents[2] / "reports"
@@ -39,15 +39,17 @@ class Sizes:
     degree: int = 12
     datasets: int = 30
     repetitions: int = 40
+    adaptation: int = 50
 
 
-QUICK = Sizes(selection=8, grouping=4, shape=1, degree=1, datasets=3, repetitions=8)
+QUICK = Sizes(selection=8, grouping=4, shape=1, degree=1, datasets=3, repetitions=8, adaptation=2)
 
 
 def main() -> None:
     """Run everything and write the report."""
     parser = argparse.ArgumentParser(description="Run the experiments of the paper in every mode.")
     parser.add_argument("--quick", action="store_true", help="few runs: to see the report, not to believe it")
+    parser.add_argument("--hands", type=Path, help="folder of hand-polhemus, for adapted paths; else synthetic ones")
     parser.add_argument("--out", type=Path, default=REPORTS, help="folder of the report")
     asked = parser.parse_args()
     for name in THREADS:
@@ -55,7 +57,9 @@ def main() -> None:
     sizes = QUICK if asked.quick else Sizes()
     asked.out.mkdir(parents=True, exist_ok=True)
     began = time.monotonic()
-    found = results.summary(*_repeated(sizes), sizes=sizes)
+    *repeated, adapted = _repeated(sizes, asked.hands)
+    found = results.summary(*repeated, sizes=sizes)
+    found["adaptation"] = adaptation.summary({count: outcome for (_, count, *_), outcome in adapted})
     shown_1, learned_1 = trials.table_1(SEED)
     shown_2, learned_2 = trials.experiment_2(SEED)
     found = {**found, "experiment_1": results.single(learned_1), "experiment_2": results.single(learned_2)}
@@ -71,15 +75,19 @@ def main() -> None:
         "shapes": figures.shapes,
     }
     _draw(asked.out, pictures)
-    found["made"] = {**_circumstances(asked.quick), "seconds": round(time.monotonic() - began)}
+    found["made"] = {
+        **_circumstances(asked.quick),
+        "hands": asked.hands is not None,
+        "seconds": round(time.monotonic() - began),
+    }
     (asked.out / "experiments.json").write_text(json.dumps(found, indent=1, allow_nan=False) + "\n")
     (asked.out / "experiments.html").write_text(report.page(found, asked.out))
     targets.print_short(found)
     print(f"{asked.out / 'experiments.html'}, {found['made']['seconds']} s")
 
 
-def _repeated(sizes: Sizes) -> tuple[list[Any], ...]:
-    """Run all that is repeated, in processes: selections, groupings, shapes, repetitions, scales, degrees."""
+def _repeated(sizes: Sizes, hands: Path | None) -> tuple[list[Any], ...]:
+    """Run all that is repeated, in processes, and return the outcomes of each kind, see `results.summary`."""
     work: list[tuple[int, Callable[..., Any], tuple[Any, ...]]] = []
     work += [(0, trials.select_once, (scenario.key, run)) for scenario in SCENARIOS for run in range(sizes.selection)]
     work += [(1, trials.group_once, (ways.key, seed)) for ways in GROUPINGS for seed in range(sizes.grouping)]
@@ -87,6 +95,7 @@ def _repeated(sizes: Sizes) -> tuple[list[Any], ...]:
     work += [(3, trials.repeat_once, (dataset, sizes.repetitions)) for dataset in range(sizes.datasets)]
     work += [(4, scale.scale_once, (dataset,)) for dataset in range(sizes.datasets)]
     work += [(5, degrees.degrees_once, (kind, seed)) for kind in degrees.KINDS for seed in range(sizes.degree)]
+    work += [(6, adaptation.measure, (hands, count, sizes.adaptation, SEED)) for count in adaptation.COUNTS]
     chunks = [work[at : at + CHUNK] for at in range(0, len(work), CHUNK)]
     gathered: dict[Future[list[Any]], int] = {}
     context = multiprocessing.get_context("spawn")
@@ -96,7 +105,7 @@ def _repeated(sizes: Sizes) -> tuple[list[Any], ...]:
             gathered[pool.submit(_chunk, chunk)] = number
         for done in as_completed(gathered):
             bar.advance(row, len(done.result()))
-    found: tuple[list[Any], ...] = ([], [], [], [], [], [])
+    found: tuple[list[Any], ...] = ([], [], [], [], [], [], [])
     for done, number in gathered.items():
         for (kind, _, arguments), outcome in zip(chunks[number], done.result(), strict=True):
             found[kind].append((arguments, outcome))

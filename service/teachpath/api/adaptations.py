@@ -16,7 +16,8 @@ from teachpath.api.versions import BRANCH_PATTERN, LINE_PATTERN
 from teachpath.editing import MAX_COORDINATE, check_editable
 from teachpath.errors import UnusableInput
 from teachpath.io.store.versions import Edit
-from teachpath.learning.adaptation.adapt import AdaptedPath, Target, adapt
+from teachpath.learning.adaptation.adapt import AdaptedPath, adapt
+from teachpath.learning.adaptation.target import Target
 from teachpath.learning.settings import settings_of_run
 from teachpath.learning.summary import fingerprint
 from teachpath.records import Array, Job, LearnedPath, Trajectory, Version
@@ -126,7 +127,8 @@ def _adapted(parts: Parts, base: LearnedPath, target: Target) -> tuple[AdaptedPa
         raise UnusableInput(
             f"the demonstrations that path {base.id} was learned from have changed or are gone; learn the task anew"
         )
-    return adapt(base, members, others, target, settings_of_run(run.learned.settings)), run.task
+    learned = parts.store.versions.get(base.id, 1)[1].curve
+    return adapt(base, learned, members, others, target, settings_of_run(run.learned.settings)), run.task
 
 
 def _target(wanted: NewAdaptation) -> Target:

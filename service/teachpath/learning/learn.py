@@ -8,6 +8,7 @@ from importlib.metadata import version
 
 import numpy as np
 
+from teachpath.learning.adaptation.same_way import moving_ends
 from teachpath.learning.clustering.dendrogram import Labels, members_by_label
 from teachpath.learning.clustering.incomplete import Stop, describe
 from teachpath.learning.clustering.partition import Partition
@@ -112,7 +113,9 @@ def learn_partition(
     ]
     inputs = {name: fingerprint(trajectory) for name, trajectory in demonstrations.items()}
     incomplete = [f"demonstration {name} {describe(stop)}" for name, stop in stops.items()]
-    told = copies(inputs) if settings.mode == "default" else []
+    told = []
+    if settings.mode == "default":
+        told = [*moving_ends(courses[central], min_separation=settings.min_separation), *copies(inputs)]
     progress(1.0, f"learned {len(paths)} {'path' if len(paths) == 1 else 'paths'}")
     return Learned(
         mode=settings.mode,

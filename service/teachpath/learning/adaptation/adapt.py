@@ -6,40 +6,24 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
-from teachpath.errors import UnusableInput
+from teachpath.learning.adaptation.adapted_course import CourseModel
+from teachpath.learning.adaptation.adapted_orientation import adapted_orientation
 from teachpath.learning.adaptation.displaced_curve import displaced
 from teachpath.learning.adaptation.kriged_shapes import KrigedShapes, Prediction
-from teachpath.learning.clustering.average_linkage import average_linkage
-from teachpath.learning.clustering.distances import pairwise_distances
+from teachpath.learning.adaptation.same_way import labels_of_ways
+from teachpath.learning.adaptation.target import Target
 from teachpath.learning.clustering.ends import end_groups
-from teachpath.learning.clustering.partition import cut_by_separation
-from teachpath.learning.fitting.orientation_fit import fit_orientations
-from teachpath.learning.resampling import arc_lengths, at_equal_arc_length, sign_aligned, smoothed
+from teachpath.learning.fitting.orientation_fit import rotation_angles
+from teachpath.learning.resampling import arc_lengths, at_equal_arc_length, smoothed
 from teachpath.learning.settings import LearningSettings
 from teachpath.nurbs import Curve, unit_quaternions
 from teachpath.records import Array, LearnedPath, Trajectory
 
 STATIONS = 100  # at equal arc length
 CURVE_SAMPLES = 2000
-
-
-@dataclass(frozen=True, eq=False)
-class Target:
-    """Where the object lies and where it is to go, in the world.
-
-    Attributes:
-        start: (3,) [m].
-        goal: (3,) [m].
-        start_orientation: (4,) unit quaternion w, x, y, z; None = as learned.
-        goal_orientation: likewise.
-    """
-
-    start: Array
-    goal: Array
-    start_orientation: Array | None = None
-    goal_orientation: Array | None = None
+SAME_PLACE = 1e-9  # m
+SAME_TURN = 1e-7  # rad, what rounding leaves of an angle
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,6 +50,7 @@ class AdaptedPath:
 
 def adapt(
     path: LearnedPath,
+    learned: Curve,
     members: Sequence[Trajectory],
     others: Sequence[Trajectory],
     target: Target,
@@ -74,11 +59,11 @@ def adapt(
     """Adapt a version of a learned path to another start and goal.
 
     The path is predicted from the shapes of all demonstrations that do the task in the same way, wherever (see
-    `kriged_shapes.py`). What the version has beside such a prediction for its own ends is kept as far as the new ends
-    are like them: with its own ends the version stays as it is.
+    `kriged_shapes.py`), and its orientations from theirs. With its own ends the version stays as it is.
 
     Args:
         path: the version.
+        learned: the path as it was learned, before any edit or adaptation.
         members: demonstrations that it was learned from.
         others: further demonstrations of the task, of the same way or of others.
         target: where the new path begins and ends.
@@ -88,74 +73,54 @@ def adapt(
         UnusableInput: an orientation is asked for and none was learned.
         LearningFailed: the orientations cannot be followed within `turn_bound`.
     """
-    u = _even_parameters(path.curve)
-    base = path.curve(u)
-    ends, wanted = (base[0], base[-1]), (target.start, target.goal)
-    shown = _same_way(base, _courses(members), _courses(others), settings)
-    shapes = KrigedShapes(shown)
-    found = shapes.predict(*wanted)
-    own = base - shapes.predict(*ends).path
-    adapted = found.path + shapes.similarity(ends, wanted) * own
-    curve, missed = displaced(path.curve, u, adapted - base, settings.error_bound, settings.most_control_points)
-    orientation = _adapted_orientation(path, u, target, settings)
-    places = int(end_groups(shown, min_separation=settings.min_separation, length=_length(base)).max())
-    note = _note(found, len(shown), places)
+    alike, courses = _same_way(learned, members, others, settings)
+    u = even_parameters(path.curve)
+    model = CourseModel(KrigedShapes(courses), learned(even_parameters(learned)), path.curve(u))
+    found = model.predict(target.start, target.goal)
+    curve, orientation, missed = path.curve, path.orientation, 0.0
+    if not _is_own(path, target):
+        displacements = found.path - model.version
+        curve, missed = displaced(path.curve, u, displacements, settings.error_bound, settings.most_control_points)
+        closeness = model.closeness(target.start, target.goal)
+        orientation = adapted_orientation(path, alike, u, closeness, target, settings)
+    length = float(arc_lengths(model.version)[-1])
+    places = int(end_groups(courses, min_separation=settings.min_separation, length=length).max())
+    note = _note(found, len(alike), places)
     if missed > settings.error_bound:
         note += f"; {len(curve.control_points)} control points follow it within {missed * 1e3:.3g} mm only"
-    return AdaptedPath(curve, orientation, 2 * found.deviation, len(shown), places, found.extrapolates, note)
+    return AdaptedPath(curve, orientation, 2 * found.deviation, len(alike), places, found.extrapolates, note)
 
 
-def _courses(trajectories: Sequence[Trajectory]) -> Array:
-    courses = [at_equal_arc_length(smoothed(trajectory), STATIONS) for trajectory in trajectories]
-    return np.array(courses).reshape(-1, STATIONS, 3)
+def _is_own(path: LearnedPath, target: Target) -> bool:
+    """Tell whether a version begins and ends as it is asked to already."""
+    ends = path.curve(np.array([0.0, 1.0]))
+    if not np.allclose(ends, [target.start, target.goal], rtol=0.0, atol=SAME_PLACE):
+        return False
+    asked = [target.start_orientation, target.goal_orientation]
+    if path.orientation is None or all(wanted is None for wanted in asked):
+        return all(wanted is None for wanted in asked)
+    own = unit_quaternions(path.orientation, np.array([0.0, 1.0]))
+    wanted = np.array([end if ask is None else ask for end, ask in zip(own, asked, strict=True)])
+    return bool(rotation_angles(own, wanted).max() <= SAME_TURN)
 
 
-def _same_way(base: Array, members: Array, others: Array, settings: LearningSettings) -> Array:
-    """Return the members, and the others that take the same way as the path once they are brought to its ends."""
-    if not len(others):
-        return members
-    everyone = np.concatenate([members, others])
-    brought = np.array([KrigedShapes(course[None]).predict(base[0], base[-1]).path for course in everyone])
-    tree = average_linkage(pairwise_distances(brought, "arc"), len(brought))
-    labels = cut_by_separation(tree, min_separation=settings.min_separation, length=_length(base)).labels
-    alike = labels == labels[0]
+def _same_way(
+    learned: Curve, members: Sequence[Trajectory], others: Sequence[Trajectory], settings: LearningSettings
+) -> tuple[list[Trajectory], Array]:
+    """Return the members and the others that take the same way, and their courses (m, 100, 3) [m]."""
+    everyone = [*members, *others]
+    courses = np.array([at_equal_arc_length(smoothed(trajectory), STATIONS) for trajectory in everyone])
+    ways = labels_of_ways(courses, learned(0.0), learned(1.0), min_separation=settings.min_separation)
+    alike = ways == ways[0]
     alike[: len(members)] = True
-    return np.asarray(everyone[alike])
+    return [everyone[number] for number in np.flatnonzero(alike)], courses[alike]
 
 
-def _adapted_orientation(path: LearnedPath, u: Array, target: Target, settings: LearningSettings) -> Curve | None:
-    """Turn the learned orientations so that they begin and end as wanted; the turns are blended along the path."""
-    asked = (target.start_orientation, target.goal_orientation)
-    if all(wanted is None for wanted in asked):
-        return path.orientation
-    if path.orientation is None:
-        raise UnusableInput("this path has learned no orientations; leave them out of start and goal")
-    learned = unit_quaternions(path.orientation, u)
-    turns = [_turn(end, wanted) for end, wanted in zip(learned[[0, -1]], asked, strict=True)]
-    share = np.linspace(0.0, 1.0, len(u))[:, None]
-    blended = Rotation.from_rotvec((1 - share) * turns[0] + share * turns[1])
-    turned = blended * Rotation.from_quat(learned, scalar_first=True)
-    quaternions = sign_aligned(np.asarray(turned.as_quat(scalar_first=True)))
-    return fit_orientations(path.cluster, quaternions, u, path.orientation.degree, settings)[0]
-
-
-def _turn(end: Array, wanted: Array | None) -> Array:
-    """Return the rotation vector (3,) [rad] in the world from an orientation to the wanted one."""
-    if wanted is None:
-        return np.zeros(3)
-    turn = Rotation.from_quat(wanted, scalar_first=True) * Rotation.from_quat(end, scalar_first=True).inv()
-    return np.asarray(turn.as_rotvec())
-
-
-def _even_parameters(curve: Curve) -> Array:
+def even_parameters(curve: Curve) -> Array:
     """Return the parameters (100,) of points at equal arc length."""
     fine = np.linspace(0.0, 1.0, CURVE_SAMPLES)
     s = arc_lengths(curve(fine))
     return np.asarray(np.interp(np.linspace(0.0, s[-1], STATIONS), s, fine))
-
-
-def _length(course: Array) -> float:
-    return float(arc_lengths(course)[-1])
 
 
 def _note(found: Prediction, demonstrations: int, places: int) -> str:

@@ -19,6 +19,7 @@ NUGGET = 1.0  # variance of the hand itself, relative to that between directions
 MIN_DISTANCE_SHARE = 0.25  # of the length of the path; with nearer ends it is closed or vertical and is not turned
 MIN_DISTANCE = 1e-6  # m, for its logarithm
 MAX_DISTANCE_RATIO = 1.5  # to the shown distances, beyond which a prediction extrapolates
+MAX_RISE_SHARE = 0.25  # of the largest shown distance, by which a goal may lie higher or lower than shown, likewise
 MAX_TURN = np.radians(60)  # from the nearest shown direction, likewise
 SINGLE_SPREAD = 0.12  # standard deviation after one demonstration, as share of the distance
 
@@ -47,10 +48,12 @@ class KrigedShapes:
 
     def __init__(self, paths: Array) -> None:
         starts, chords = paths[:, 0], paths[:, -1] - paths[:, 0]
+        self._chords = chords
         self._share = np.linspace(0.0, 1.0, paths.shape[1])
         self._distances = np.linalg.norm(chords[:, :2], axis=1)
         self._yaws = np.arctan2(chords[:, 1], chords[:, 0])
         lengths = np.linalg.norm(np.diff(paths, axis=1), axis=2).sum(axis=1)
+        self._length = float(np.median(lengths))
         self._turns = bool(np.all(self._distances > MIN_DISTANCE_SHARE * lengths))
         residuals = paths - starts[:, None] - self._share[:, None] * chords[:, None]
         scaled = residuals / self._scale(self._distances)[:, None, None]
@@ -66,7 +69,7 @@ class KrigedShapes:
     def predict(self, start: Array, goal: Array) -> Prediction:
         """Predict the path from a start to a goal (3,) [m]."""
         chord = goal - start
-        distance, yaw = _chord(start, goal)
+        distance, yaw = _chord(chord)
         known = np.append(self._covariances(yaw, distance), 1.0)
         solved = self._inverse @ known
         weights = solved[:-1]
@@ -79,7 +82,7 @@ class KrigedShapes:
         else:
             unexplained = max(1.0 + NUGGET - float(known @ solved), 0.0)
             deviation = scale * np.sqrt(unexplained * self._variance)
-        return Prediction(path, deviation, self._beyond(yaw, distance))
+        return Prediction(path, deviation, self._beyond(chord))
 
     def _world_shapes(self, yaw: float) -> Array:
         """Return the mean of turned and unturned shapes for a direction (m, n, 3)."""
@@ -92,7 +95,7 @@ class KrigedShapes:
         """Return the correlation, 0 to 1, of the shapes between two pairs of ends; 1 when their chords are equal."""
         if not self._turns:
             return 1.0
-        (distance, yaw), (distance_2, yaw_2) = _chord(*one), _chord(*other)
+        (distance, yaw), (distance_2, yaw_2) = _chord(one[1] - one[0]), _chord(other[1] - other[0])
         return float(_covariances(np.array(yaw), np.array(distance), np.array(yaw_2), np.array(distance_2)))
 
     def _covariances(self, yaw: Array | float, distance: Array | float) -> Array:
@@ -114,21 +117,29 @@ class KrigedShapes:
         freedom = 3 * (m - 1)  # the variance of Student's distribution, because few errors tell the variance badly
         return np.asarray((np.square(errors).sum(axis=2) * own[:, None]).mean(axis=0) * freedom / (freedom - 2))
 
-    def _beyond(self, yaw: float, distance: float) -> str:
+    def _beyond(self, chord: Array) -> str:
         if not self._turns:
-            return ""
+            apart = float(np.linalg.norm(self._chords - chord, axis=1).min())
+            if apart <= MIN_DISTANCE_SHARE * self._length:
+                return ""
+            return f"from start to goal it is {apart * 100:.0f} cm otherwise than shown"
+        distance, yaw = _chord(chord)
         nearest, farthest = float(self._distances.min()), float(self._distances.max())
         if not nearest / MAX_DISTANCE_RATIO <= distance <= farthest * MAX_DISTANCE_RATIO:
             return f"start and goal are {distance * 100:.0f} cm apart, shown were {_span(nearest, farthest)}"
+        rises, allowed = self._chords[:, 2], MAX_RISE_SHARE * farthest
+        if not rises.min() - allowed <= chord[2] <= rises.max() + allowed:
+            shown = _span(float(rises.min()), float(rises.max()))
+            return f"the goal is {chord[2] * 100:.0f} cm higher than the start, shown were {shown}"
         turns = np.abs((yaw - self._yaws + np.pi) % (2 * np.pi) - np.pi)
         if turns.min() > MAX_TURN:
             return f"the direction is {np.degrees(turns.min()):.0f}° from the nearest one that was shown"
         return ""
 
 
-def _chord(start: Array, goal: Array) -> tuple[float, float]:
-    """Return the horizontal distance [m] from start to goal and the direction [rad]."""
-    x, y, _ = goal - start
+def _chord(chord: Array) -> tuple[float, float]:
+    """Return the horizontal distance [m] from a start to a goal and the direction [rad]."""
+    x, y, _ = chord
     return float(np.hypot(x, y)), float(np.arctan2(y, x))
 
 

@@ -79,12 +79,16 @@ def test_a_closed_path_is_moved_only() -> None:
     there = KrigedShapes(closed[None]).predict(GOAL, GOAL)
     np.testing.assert_allclose(there.path, closed + GOAL - START, atol=1e-12)
     assert there.extrapolates == ""
+    ahead = START + np.array([0.4, 0.0, 0.0])
+    assert "otherwise than shown" in KrigedShapes(closed[None]).predict(START, ahead).extrapolates
 
 
 def test_it_says_when_it_extrapolates() -> None:
     shapes = KrigedShapes(np.array([bow(*ends) for ends in places(6, 5)]))
     assert shapes.predict(START, GOAL).extrapolates == ""
     assert "cm apart, shown were" in shapes.predict(START, START + 2.5 * (GOAL - START)).extrapolates
+    higher = shapes.predict(START, GOAL + np.array([0, 0, 0.4])).extrapolates
+    assert higher.startswith("the goal is 42 cm higher than the start, shown were")
     assert "°" in shapes.predict(START, START + rotated(2.0) @ (GOAL - START)).extrapolates
 
 
