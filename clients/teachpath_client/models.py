@@ -21,7 +21,7 @@ class Adaptation:
     """A path that was adapted to another start and goal.
 
     Attributes:
-        version: that was saved.
+        version: that was saved, or the base itself when it begins and ends there already.
         path: of that version.
         spread: two standard deviations [m] of a demonstration between these ends from the path, at 100 equal
             arc lengths.
@@ -485,6 +485,7 @@ class LearnedPath:
         fit: None for an edited version, which follows no demonstrations.
         orientation: quaternions at the same parameter, which `nurbs.unit_quaternions` brings to unit length;
             None when not all selected demonstrations carry orientations.
+        object_pose: where an adapted path takes the object; None = where the scene has it.
     """
 
     id: str
@@ -495,6 +496,7 @@ class LearnedPath:
     fit: Fit | None
     note: str
     orientation: Curve | None
+    object_pose: ObjectPose | None
 
 
 @dataclass(frozen=True)
@@ -559,6 +561,14 @@ class MotionPreview:
     object_position: list[list[float]]
     object_orientation: list[list[float]]
     segments: list[SegmentInterval]
+
+
+@dataclass(frozen=True)
+class ObjectPose:
+    """Where the object of a scene lies: its centre [m, world], and its orientation w, x, y, z."""
+
+    position: tuple[float, float, float]
+    orientation: tuple[float, float, float, float] = (1.0, 0.0, 0.0, 0.0)
 
 
 @dataclass(frozen=True)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import Any, Literal
 
 from teachpath_client.models import (
@@ -10,6 +10,7 @@ from teachpath_client.models import (
     Health,
     Job,
     MeasuredCalibration,
+    ObjectPose,
     RecordingReport,
     Robot,
     Scene,
@@ -33,6 +34,18 @@ class TaskResources(Rest):
     def scenes(self) -> list[Scene]:
         """List the scenes."""
         return self._ask(list[Scene], "GET", "/scenes")
+
+    def get_object(self, scene: str) -> ObjectPose:
+        """Return where the object of a scene lies."""
+        return self._ask(ObjectPose, "GET", f"/scenes/{scene}/object")
+
+    def tell_object(self, scene: str, position: Sequence[float], **orientation: Sequence[float]) -> ObjectPose:
+        """Say where the object of a scene lies [m, world]; orientation: w, x, y, z."""
+        return self._ask(ObjectPose, "PUT", f"/scenes/{scene}/object", {"position": list(position)} | orientation)
+
+    def reset_object(self, scene: str) -> ObjectPose:
+        """Put the object of a scene back to where the settings have it."""
+        return self._ask(ObjectPose, "DELETE", f"/scenes/{scene}/object")
 
     def robot(self) -> Robot:
         """Return how the arm is built."""

@@ -82,8 +82,13 @@ class WorkResources(Rest):
         """Save an edited curve as a new version; words: branch, name, author, note."""
         return self._ask(Version, "POST", f"/paths/{path}/versions", {"base": base, "curve": curve} | words)
 
-    def adapt(self, path: str, start: Mapping[str, Any], goal: Mapping[str, Any], **options: Any) -> Adaptation:
-        """Adapt a path to poses of the object; options: version, branch, name, author."""
+    def adapt(
+        self, path: str, start: Mapping[str, Any] | None = None, goal: Mapping[str, Any] | None = None, **options: Any
+    ) -> Adaptation:
+        """Adapt a path to poses of the object, by default where it lies and where the path ends.
+
+        Options: version, branch, name, author.
+        """
         return self._ask(Adaptation, "POST", f"/paths/{path}/adaptations", {"start": start, "goal": goal} | options)
 
     def difference(self, path: str, first: int, second: int) -> Difference:

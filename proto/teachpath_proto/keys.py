@@ -40,6 +40,7 @@ class Keys:
         self.executor_journal = f"{prefix}/executor/journal"
         self.executor_status = f"{prefix}/executor/status"
         self.station_certificate = f"{prefix}/station/certificate"
+        self.all_objects = f"{prefix}/scenes/*/object"
         self.all_samples = f"{prefix}/trackers/*/samples"
         self.all_alive = f"{prefix}/alive/**"
         self.all_trackers_alive = f"{prefix}/alive/tracker/*"
@@ -55,6 +56,14 @@ class Keys:
     def tracker_of(self, key: str) -> str:
         """Name of the tracker that published on `key` (a key of `samples`)."""
         return key.removeprefix(f"{self.prefix}/trackers/").split("/", 1)[0]
+
+    def object(self, scene: str) -> str:
+        """Key on which a camera publishes where the object of `scene` lies: an `ObjectPose` as JSON."""
+        return f"{self.prefix}/scenes/{scene}/object"
+
+    def scene_of(self, key: str) -> str:
+        """Name of the scene whose object was told on `key` (a key of `object`)."""
+        return key.removeprefix(f"{self.prefix}/scenes/").split("/", 1)[0]
 
     def announced(self, key: str) -> str:
         """Name of the part that shows on `key` (a key of `alive`) that it is alive."""

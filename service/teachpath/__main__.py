@@ -10,7 +10,18 @@ from typing import NoReturn
 try:
     import typer
 
-    from teachpath.commands import certificates, curves, demo, demonstrations, evaluate, files, logins, station, work
+    from teachpath.commands import (
+        adaptation,
+        certificates,
+        curves,
+        demo,
+        demonstrations,
+        evaluate,
+        files,
+        logins,
+        station,
+        work,
+    )
 except ModuleNotFoundError as missing:
     sys.exit(f"teachpath: {missing.name} is not installed; the service needs: pip install 'teachpath[service]'")
 
@@ -36,7 +47,8 @@ for command in (
     work.learn,
     work.recut,
     work.plan,
-    work.adapt,
+    adaptation.adapt,
+    adaptation.object_,
     work.run,
     work.stop,
     evaluate.evaluate,

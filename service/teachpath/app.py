@@ -46,6 +46,7 @@ from teachpath.records import Array, Demonstration, Trajectory
 from teachpath.robot.certificate_status import CertificateStatus
 from teachpath.robot.executions import Executions
 from teachpath.robot.joint_feed import JointFeed
+from teachpath.robot.object_poses import ObjectPoses
 from teachpath.robot.processes import SupervisedProcess, attached_command
 from teachpath_proto.keys import Keys
 from teachpath_proto.logins import Role
@@ -103,6 +104,7 @@ class Station:
             self.recorder.start()
             self._queries.start()
             self.executions.start()
+            self.objects.start()
             self.certificate_status.start()
             self.joints.start()
             self._state_poller.start()
@@ -132,6 +134,7 @@ class Station:
         self.assessor.stop()
         self.exporter.stop()
         self.certificate_status.stop()
+        self.objects.stop()
         for process in self.processes:
             process.stop()
         self.executions.stop()  # after the executor, whose last status is the end of what was under way
@@ -169,9 +172,11 @@ class Station:
     def _open_work(self) -> None:
         """Open what learns, plans and looks at curves."""
         settings = self.settings
+        self.executions = Executions(self.bus, self.keys, self.store, robot=settings.bus.robot)
+        self.objects = ObjectPoses(self.bus, self.keys, settings.scene, self.executions.is_moving, self._show_object)
         self.transfers = TransferFolders(Path(settings.store.data_dir) / "transfers")
         kinds = JobKinds(
-            self.store, settings, self.calibrations, self.transfers, self._show_task, self._signing_key
+            self.store, settings, self.calibrations, self.transfers, self._show_task, self._signing_key, self.objects
         ).by_name()
         self.jobs = Jobs(self.bus, self.keys, self.store, settings.jobs, kinds)
         self.exporter = Exporter(ExportSource(settings.store, settings.recording, settings.scenes), settings.jobs)
@@ -181,9 +186,8 @@ class Station:
         """Open the service's side of the arm, its picture, and the processes that move it."""
         settings, robot = self.settings, self.settings.bus.robot
         self.joints = JointFeed(self.bus, self.keys, robot=robot)
-        self.executions = Executions(self.bus, self.keys, self.store, robot=robot)
         self.certificate_status = CertificateStatus(
-            self.bus, self.keys, self.store, scene=settings.scene, calibration=self.calibrations.newest_numbered
+            self.bus, self.keys, self.store, scene=self.objects.scene, calibration=self.calibrations.newest_numbered
         )
         self.preview = Preview(
             self.bus,
@@ -220,10 +224,6 @@ class Station:
         login = self._access.login(role) if self._access else None
         given = instructions(Instructions(self.settings, login, key))
         return SupervisedProcess(name, attached_command(name), given, suggestion=suggestion, on_death=on_death)
-
-    def trajectory(self, demonstration: Demonstration) -> Trajectory:
-        """Return the object's trajectory of a stored demonstration; another process reads it."""
-        return self.recorder.annotations.trajectory(demonstration)
 
     def _course(self, demonstration: Demonstration) -> Array:
         carried = self.recorder.annotations.carried(demonstration)
@@ -280,7 +280,8 @@ class Station:
             executions=self.executions,
             websocket_trackers=self.websocket_trackers,
             joints=self.joints,
-            trajectory=self.trajectory,
+            objects=self.objects,
+            trajectory=self.recorder.annotations.trajectory,
             reader=self.reader,
             health=self.health,
             transfers=self.transfers,
@@ -291,4 +292,9 @@ class Station:
         """Show a task whose demonstrations have changed: in the guidance, and its object in the preview."""
         self._shown = task
         self.guidance.request(task)
-        self.preview.show_object(self.settings.scene(self.store.task(task).scene).carried)
+        self._show_object()
+
+    def _show_object(self, _: str = "") -> None:
+        """Show the object of the task that is shown, where it lies."""
+        if self._shown:
+            self.preview.show_object(self.objects.scene(self.store.task(self._shown).scene).carried)

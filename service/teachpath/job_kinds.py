@@ -21,6 +21,7 @@ from teachpath.offline.learning_job import StoredDemonstrations, learn_stored, r
 from teachpath.offline.transfer_folders import TransferFolders
 from teachpath.recorder.calibrations import Calibrations
 from teachpath.records import Demonstration, Job, Learned, LearnedPath, Plan, Task
+from teachpath.robot.object_poses import ObjectPoses
 
 
 @dataclass(frozen=True)
@@ -34,6 +35,7 @@ class JobKinds:
         transfers: folders of uploaded files.
         imported: called with the name of a task that an import has added to.
         signing_key: with which plans are signed.
+        objects: where the objects lie that paths are planned for.
     """
 
     store: Store
@@ -42,6 +44,7 @@ class JobKinds:
     transfers: TransferFolders
     imported: Callable[[str], None]
     signing_key: SigningKey
+    objects: ObjectPoses
 
     def by_name(self) -> dict[str, JobKind]:
         """Return the kinds of jobs by the names that REST gives them."""
@@ -81,7 +84,7 @@ class JobKinds:
     def _planning_input(self, job: Job) -> tuple[Any, ...]:
         path, version = str(job.request["path"]), job.request.get("version")
         learned = self.store.versions.get(path, version)[1] if isinstance(version, int) else self.store.path(path)
-        scene = self.settings.scene(self.store.task(job.task).scene)
+        scene = self.objects.scene_for(self.store.task(job.task).scene, learned)
         signer = worker.Signer(self.signing_key, self._calibrations_of(job.task, learned))
         return learned, scene, self.settings.motion, self.settings.arm, signer
 

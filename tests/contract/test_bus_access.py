@@ -45,6 +45,7 @@ recorder/amend           -         -      a        a         -
 recorder/status          -         -      a        a         a
 jobs/job-1               -         -      -        h         h
 station/certificate      a         -      -        -         -
+scenes/paper/object      -         -      p        p         -
 elsewhere                -         -      -        -         -
 """
 VERBS = {"p": "put", "h": "subscribe", "s": "serve", "a": "ask"}
@@ -84,7 +85,7 @@ def allowed(login: Login, verb: str) -> set[str]:
 def test_the_table_has_every_key_and_every_role() -> None:
     keys = Keys(PREFIX)
     named = {value for value in vars(keys).values() if value != PREFIX and "*" not in value}
-    named |= {keys.samples("glove"), keys.feedback("glove"), keys.job("job-1")}
+    named |= {keys.samples("glove"), keys.feedback("glove"), keys.job("job-1"), keys.object("paper")}
     named |= {make("puma560") for make in (keys.setpoint, keys.state, keys.reset)}
     assert named | {f"{PREFIX}/elsewhere"} == set(KEYS)
     assert ROWS[0][1:] == list(MEMBERS)

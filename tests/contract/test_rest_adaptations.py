@@ -12,15 +12,16 @@ from teachpath.errors import UnusableInput
 from tests.contract.desk import Desk, refused
 
 TASK = "elsewhere"
+PAPER_START = np.array([0.58, -0.28, 0.52])  # where the scene has its object
 START, GOAL = np.array([0.45, -0.2, 0.6]), np.array([0.45, 0.2, 0.6])
 
 
-def shown(goal: Any, seed: int) -> str:
+def shown(goal: Any, seed: int, *, start: Any = START) -> str:
     """A bow from the start to a goal, as CSV."""
     share = np.linspace(0, 1, 100)[:, None]
     s = 10 * share**3 - 15 * share**4 + 6 * share**5
     height = 0.1 + np.random.default_rng(seed).normal(0, 0.003)
-    points = START + s * (goal - START) + np.sin(np.pi * s) * [0, 0, height]
+    points = start + s * (goal - start) + np.sin(np.pi * s) * [0, 0, height]
     rows = [f"{0.02 * i},{x:.6f},{y:.6f},{z:.6f}\n" for i, (x, y, z) in enumerate(points)]
     return "t,x,y,z\n" + "".join(rows)
 
@@ -80,12 +81,18 @@ def test_what_was_not_shown_is_told(desk: Desk, taught: Taught) -> None:
     assert found["note"] == f"beyond what was shown: {found['extrapolates']}"
 
 
-def test_the_ends_that_it_has_are_no_adaptation(desk: Desk, taught: Taught) -> None:
+def test_between_its_own_ends_a_version_stays_and_is_certified(desk: Desk, taught: Taught) -> None:
     newest = desk.get(f"/paths/{taught.path}").json()
     points = newest["curve"]["control_points"]
     body = {"start": {"position": points[0]}, "goal": {"position": points[-1]}}
-    refused(desk.post(f"/paths/{taught.path}/adaptations", body), 422, "this is the curve of version")
+    answer = desk.post(f"/paths/{taught.path}/adaptations", body)
+    assert (answer.status_code, answer.json()["path"]) == (200, newest)
     assert desk.get(f"/paths/{taught.path}").json() == newest
+    assert desk.job_ended(answer.json()["job"]["id"])["request"]["version"] == newest["version"]
+
+
+def test_a_start_that_nothing_tells_is_asked_for(desk: Desk, taught: Taught) -> None:
+    refused(desk.post(f"/paths/{taught.path}/adaptations", {}), 422, "scene empty has no object, so nothing tells")
 
 
 @pytest.mark.parametrize(
@@ -126,3 +133,50 @@ def test_ends_on_the_command_line_are_three_or_seven_numbers(taught: Taught) -> 
     for text in ("here", "0.4,0.1", "1,2,3,4"):
         with pytest.raises(UnusableInput, match="is not x,y,z or x,y,z,qw,qx,qy,qz"):
             CliRunner().invoke(app, ["adapt", taught.path, "--start", text, "--goal", text], catch_exceptions=False)
+
+
+def test_an_object_is_told_to_lie_elsewhere_and_a_path_adapted_to_it(desk: Desk) -> None:
+    start, goal = PAPER_START, PAPER_START + np.array([0.0, 0.5, 0.0])
+    for number in range(3):
+        assert desk.import_("moved", shown(goal, number, start=start), scene="paper")
+    job = desk.ended(desk.post("/tasks/moved/jobs", {"settings": {"repeats": 0}}))
+    key = desk.get(f"/tasks/moved/runs/{job['outcome']}").json()["learned"]["paths"][0]["id"]
+    lies = (start + np.array([-0.04, 0.05, 0.0])).tolist()
+    try:
+        assert desk.put("/scenes/paper/object", {"position": lies}).json()["position"] == lies
+        assert desk.get("/scenes").json()[0]["carried"]["position"] == lies
+        failed = desk.ended(desk.post(f"/paths/{key}/plans"))
+        assert (failed["state"], "from where block stands" in failed["message"]) == ("failed", True)
+        found = desk.post(f"/paths/{key}/adaptations", {}).json()
+        assert found["path"]["object_pose"]["position"] == lies
+        ends = np.array(found["path"]["curve"]["control_points"])[[0, -1]]
+        np.testing.assert_allclose(ends, [lies, goal], atol=0.006)
+        job = desk.job_ended(found["job"]["id"])
+        assert job["state"] == "succeeded", job["message"]
+        assert desk.get(f"/plans/{job['outcome']}").json()["scene"]["carried"]["position"] == lies
+    finally:
+        home = desk.send("DELETE", "/api/v1/scenes/paper/object").json()
+    assert home == desk.get("/scenes/paper/object").json()
+    assert home["position"] == PAPER_START.tolist()
+
+
+def test_an_object_is_told_and_asked_for_on_the_command_line(desk: Desk, port: int) -> None:
+    for option, place in (("--at=0.5,-0.25,0.52", "0.500, -0.250, 0.520"), ("--reset", "0.580, -0.280, 0.520")):
+        words = ["object", "paper", option, "--url", f"http://127.0.0.1:{port}"]
+        said = CliRunner().invoke(app, words, catch_exceptions=False).stdout
+        assert f"the object of scene paper lies at {place} m" in said
+
+
+@pytest.mark.parametrize(
+    ("scene", "body", "status", "sentence"),
+    [
+        ("moon", {"position": [0.5, 0, 0.5]}, 404, "there is no scene 'moon'"),
+        ("empty", {"position": [0.5, 0, 0.5]}, 404, "scene empty has no object"),
+        ("paper", {"position": [0.5, 0]}, 422, "body.position"),
+        ("paper", {"position": [0.5, 0, 11]}, 422, "body.position.2"),
+        ("paper", {"position": [0.5, 0, 0.5], "orientation": [0, 0, 0, 0]}, 422, "is no orientation"),
+        ("paper", {"positoin": [0.5, 0, 0.5]}, 422, "body.position"),
+    ],
+)
+def test_what_is_no_pose_of_an_object_is_refused(desk: Desk, scene: str, body: Any, status: int, sentence: str) -> None:
+    refused(desk.put(f"/scenes/{scene}/object", body), status, sentence)

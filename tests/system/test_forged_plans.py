@@ -19,7 +19,7 @@ from teachpath.motion.arm.model import Arm
 from teachpath.motion.planning.digest import digest
 from teachpath.motion.planning.signature import DAY_NS, SigningKey, sign_plan
 from teachpath.motion.settings import MotionSettings
-from teachpath.records import Certificate, Command, ExecutorStatus, Plan, Scene, Signature
+from teachpath.records import Certificate, Command, ExecutorStatus, ObjectPose, Plan, Scene, Signature
 from teachpath_client import ClientError, Link, Tracker
 from teachpath_client.errors import JobFailed
 from teachpath_proto.control import CommandVerb
@@ -197,6 +197,31 @@ def test_the_key_is_nowhere_but_in_its_file(service: Service, plans: list[Plan])
                 assert not any(s in Path(f"/proc/{pid}/{place}").read_bytes() for s in secrets)
     for place in ("/health", f"/plans/{plans[0].id}", "/journal", "/robot"):
         assert key not in request(service, "GET", place).text
+
+
+def test_an_object_that_lies_elsewhere_is_taken_there_or_not_at_all(
+    service: Service, plans: list[Plan], tmp_path: Path
+) -> None:
+    station, plan = service.station, plans[0]
+    x, y, z = station.get_object("paper").position
+    lies = [x - 0.03, y + 0.04, z]
+    bus = open_bus(BusSettings(endpoint=service.endpoint), find_login(service.endpoint, Role.TRACKER))
+    try:
+        bus.publish(KEYS.object("paper"), encode(ObjectPose(tuple(lies))))  # as a camera tells it
+        wait_until(lambda: list(station.get_object("paper").position) == lies, "the station knows where it lies")
+    finally:
+        bus.close()
+    try:
+        with pytest.raises(ClientError, match=f"{plan.id} takes block at .* but it lies at"):
+            station.begin_execution(plan.id)
+        command = run("run", plan.path, "--adapt", "--url", service.url, folder=tmp_path)
+        assert command.process.returncode == 0, command.err
+        assert " ended: " in command.out
+        adapted = station.plans(plan.path)[0]
+        assert adapted.path_version == plan.path_version + 1
+        assert list(adapted.scene.carried.position) == lies  # type: ignore[union-attr]
+    finally:
+        station.reset_object("paper")
 
 
 def test_the_plan_that_was_signed_moves_the_arm_over_the_bus(service: Service, plans: list[Plan]) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Annotated, Final
+from typing import Final
 
 import numpy as np
 from fastapi import APIRouter, Response
@@ -11,25 +11,25 @@ from pydantic import Field
 
 from teachpath.api.answers import json_response, model_of
 from teachpath.api.parts import Parts
+from teachpath.api.poses import Component, Coordinate
 from teachpath.api.strict_requests import Body
 from teachpath.api.versions import BRANCH_PATTERN, LINE_PATTERN
-from teachpath.editing import MAX_COORDINATE, check_editable
+from teachpath.editing import check_editable
 from teachpath.errors import UnusableInput
+from teachpath.io.store.store import Run, Store
 from teachpath.io.store.versions import Edit
 from teachpath.learning.adaptation.adapt import AdaptedPath, adapt
 from teachpath.learning.adaptation.target import Target
 from teachpath.learning.settings import settings_of_run
 from teachpath.learning.summary import fingerprint
-from teachpath.records import Array, Job, LearnedPath, Trajectory, Version
+from teachpath.records import Array, Job, LearnedPath, ObjectPose, Scene, Trajectory, Version
 
 MAX_NORM_ERROR: Final = 0.01  # of a quaternion that is brought to unit length
-
-Coordinate = Annotated[float, Field(ge=-MAX_COORDINATE, le=MAX_COORDINATE, allow_inf_nan=False)]
-Component = Annotated[float, Field(allow_inf_nan=False)]
+SAME_PLACE: Final = 0.001  # m, within which a path begins where its object lies
 
 
-class ObjectPose(Body):
-    """Where the object is, or is to be, in the world."""
+class TargetPose(Body):
+    """Where a path is to begin or to end, in the world."""
 
     position: tuple[Coordinate, Coordinate, Coordinate] = Field(description="x, y, z of its centre [m]")
     orientation: tuple[Component, Component, Component, Component] | None = Field(
@@ -40,8 +40,8 @@ class ObjectPose(Body):
 class NewAdaptation(Body):
     """Where the object lies and where it is to go."""
 
-    start: ObjectPose
-    goal: ObjectPose
+    start: TargetPose | None = Field(None, description="left out: where the object of the task's scene lies")
+    goal: TargetPose | None = Field(None, description="left out: where the version ends")
     version: int | None = Field(None, description="to adapt; without it the newest on the main branch")
     branch: str = Field(
         "", max_length=64, pattern=BRANCH_PATTERN, description="to continue or to begin; empty: the branch of the base"
@@ -55,7 +55,7 @@ class Adaptation:
     """A path that was adapted to another start and goal.
 
     Attributes:
-        version: that was saved.
+        version: that was saved, or the base itself when it begins and ends there already.
         path: of that version.
         spread: two standard deviations [m] of a demonstration between these ends from the path, at 100 equal arc
             lengths.
@@ -81,19 +81,26 @@ def adaptations_router(parts: Parts) -> APIRouter:
     router = APIRouter(tags=["versions"])
     store, versions = parts.store, parts.store.versions
 
-    @router.post("/paths/{path}/adaptations", status_code=201, response_model=model_of(Adaptation))
-    def adapt_path(path: str, wanted: NewAdaptation, response: Response) -> Response:
+    @router.post(
+        "/paths/{path}/adaptations",
+        status_code=201,
+        response_model=model_of(Adaptation),
+        responses={200: {"description": "It begins and ends there already: no new version."}},
+    )
+    def adapt_path(path: str, wanted: NewAdaptation) -> Response:
         """Adapt a path to another start and goal of the object: a new version, and a job that certifies it.
 
         The shape is learned from all demonstrations of the run that do the task in the same way, wherever they did it.
-        The path of the same ends stays as it is, which is refused as no change.
+        The version takes the object where it begins; its plans start when the object lies there (PUT
+        /scenes/{scene}/object).
         """
         base = store.path(path) if wanted.version is None else versions.get(path, wanted.version)[1]
-        adapted, task = _adapted(parts, base, _target(wanted))
-        curve = check_editable(adapted.curve)
-        edit = Edit(base.version, wanted.branch.strip(), wanted.name.strip(), wanted.author.strip(), adapted.note)
-        saved = versions.save(path, curve, edit, orientation=adapted.orientation)
-        job = parts.jobs.submit(task, "plan", {"path": path, "version": saved.number})
+        run = store.run(base.run)
+        scene = parts.objects.scene(store.task(run.task).scene)
+        target = _target(base, scene, wanted)
+        adapted = _adapted(parts, run, base, target)
+        saved = _saved(store, base, wanted, adapted, _object_pose(scene, target))
+        job = parts.jobs.submit(run.task, "plan", {"path": path, "version": saved.number})
         answer = Adaptation(
             saved,
             versions.get(path, saved.number)[1],
@@ -105,14 +112,27 @@ def adaptations_router(parts: Parts) -> APIRouter:
             job,
         )
         location = f"/api/v1/paths/{path}/versions/{saved.number}"
-        return json_response(answer, status=201, headers={"Location": location})
+        status = 200 if saved.number == base.version else 201
+        return json_response(answer, status=status, headers={"Location": location})
 
     return router
 
 
-def _adapted(parts: Parts, base: LearnedPath, target: Target) -> tuple[AdaptedPath, str]:
-    """Adapt a version by the selected demonstrations of its run, and return the task too."""
-    run = parts.store.run(base.run)
+def _saved(
+    store: Store, base: LearnedPath, wanted: NewAdaptation, adapted: AdaptedPath, object_pose: ObjectPose | None
+) -> Version:
+    """Save an adapted path, unless it is the base as it is; return the version."""
+    present = store.versions.get(base.id, base.version)[0]
+    same = adapted.curve is base.curve and adapted.orientation is base.orientation
+    if same and wanted.branch.strip() in ("", present.branch):
+        return present
+    edit = Edit(base.version, wanted.branch.strip(), wanted.name.strip(), wanted.author.strip(), adapted.note)
+    curve = check_editable(adapted.curve)
+    return store.versions.save(base.id, curve, edit, orientation=adapted.orientation, object_pose=object_pose)
+
+
+def _adapted(parts: Parts, run: Run, base: LearnedPath, target: Target) -> AdaptedPath:
+    """Adapt a version by the selected demonstrations of its run."""
     clusters = {cluster.index: cluster for cluster in run.learned.clusters}
     own = {score.demonstration for score in clusters[base.cluster].scores if score.selected}
     selected = {s.demonstration for cluster in clusters.values() for s in cluster.scores if s.selected}
@@ -128,15 +148,34 @@ def _adapted(parts: Parts, base: LearnedPath, target: Target) -> tuple[AdaptedPa
             f"the demonstrations that path {base.id} was learned from have changed or are gone; learn the task anew"
         )
     learned = parts.store.versions.get(base.id, 1)[1].curve
-    return adapt(base, learned, members, others, target, settings_of_run(run.learned.settings)), run.task
+    return adapt(base, learned, members, others, target, settings_of_run(run.learned.settings))
 
 
-def _target(wanted: NewAdaptation) -> Target:
-    (start, turned), (goal, turned_goal) = _pose(wanted.start, "start"), _pose(wanted.goal, "goal")
+def _target(base: LearnedPath, scene: Scene, wanted: NewAdaptation) -> Target:
+    start, goal = base.curve(np.array([0.0, 1.0]))
+    turned = turned_goal = None
+    if wanted.goal is not None:
+        goal, turned_goal = _pose(wanted.goal, "goal")
+    if wanted.start is not None:
+        start, turned = _pose(wanted.start, "start")
+    elif scene.carried is None:
+        raise UnusableInput(
+            f"scene {scene.name} has no object, so nothing tells where the path is to begin; give a start"
+        )
+    elif np.linalg.norm(np.array(scene.carried.position) - start) > SAME_PLACE:
+        start = np.array(scene.carried.position)
     return Target(start, goal, turned, turned_goal)
 
 
-def _pose(pose: ObjectPose, place: str) -> tuple[Array, Array | None]:
+def _object_pose(scene: Scene, target: Target) -> ObjectPose | None:
+    """Return where a path takes the object; None in a scene without one."""
+    if scene.carried is None:
+        return None
+    x, y, z = map(float, target.start)
+    return ObjectPose((x, y, z), scene.carried.orientation)
+
+
+def _pose(pose: TargetPose, place: str) -> tuple[Array, Array | None]:
     position = np.array(pose.position)
     if pose.orientation is None:
         return position, None

@@ -32,7 +32,7 @@ def assessments_router(parts: Parts) -> APIRouter:
         one still waits, the older one is refused with 409.
         """
         stored = store.path(path) if wanted.version is None else store.versions.get(path, wanted.version)[1]
-        scene = parts.settings.scene(store.task(store.run(stored.run).task).scene)
+        scene = parts.objects.scene_for(store.task(store.run(stored.run).task).scene, stored)
         curve = wanted.curve.curve() if wanted.curve else stored.curve
         settings = parts.settings
         return json_response(parts.assessor.assess(stored, scene, settings.motion, settings.arm, curve=curve))

@@ -124,7 +124,7 @@ def _add_beginnings(router: APIRouter, parts: Parts) -> None:
         go or the hand is lost.
         """
         calibration = parts.calibrations.get(new.calibration)
-        scene = parts.settings.scene(new.scene)
+        scene = parts.objects.scene(new.scene)
         orientation = new.orientation or parts.settings.teleoperation.orientation
         order = TeleopRequest(new.tracker, calibration, scene, new.scale, new.share, new.clutch, orientation)
         row = executions.teleoperate(order, lease=lease, who=who)

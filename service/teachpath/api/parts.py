@@ -21,6 +21,7 @@ from teachpath.recorder.websocket_trackers import WebSocketTrackers
 from teachpath.records import Demonstration, ExecutorStatus, Trajectory
 from teachpath.robot.executions import Executions
 from teachpath.robot.joint_feed import JointFeed
+from teachpath.robot.object_poses import ObjectPoses
 
 MAX_READERS: Final = 4  # threads of a resource that wait for recordings to be read
 
@@ -72,6 +73,7 @@ class Parts:
     executions: Executions
     websocket_trackers: WebSocketTrackers
     joints: JointFeed
+    objects: ObjectPoses
     trajectory: Callable[[Demonstration], Trajectory]
     reader: LimitedProcess
     health: Callable[[], Health]

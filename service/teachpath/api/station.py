@@ -18,6 +18,7 @@ from teachpath.api.faults import REFUSALS, answer_errors
 from teachpath.api.imports import imports_router
 from teachpath.api.joints import joints_router
 from teachpath.api.middleware import RequestLimits
+from teachpath.api.objects import objects_router
 from teachpath.api.parts import Health, Parts
 from teachpath.api.recording import recording_router
 from teachpath.api.robot import robot_router
@@ -55,6 +56,7 @@ def build_api(parts: Parts, *pages: APIRouter) -> FastAPI:
         versions_router,
         curves_router,
         adaptations_router,
+        objects_router,
         assessments_router,
         executions_router,
         control_router,
@@ -83,7 +85,7 @@ def station_router(parts: Parts) -> APIRouter:
 
     @router.get("/scenes")
     def list_scenes() -> list[Scene]:
-        """List the scenes: table, obstacles and the object at its start."""
-        return list(parts.settings.scenes)
+        """List the scenes: table, obstacles and the object where it lies."""
+        return [parts.objects.scene(scene.name) for scene in parts.settings.scenes]
 
     return router

@@ -140,40 +140,11 @@ def plan(
         print(plan_lines(station.plan(path, version, on_change=job_shown(show))))
 
 
-def adapt(
-    path: Annotated[str, typer.Argument(help="Id of a learned path.")],
-    start: Annotated[str, typer.Option(help="Where the object lies: x,y,z [m], or x,y,z,qw,qx,qy,qz.")],
-    goal: Annotated[str, typer.Option(help="Where it is to go, likewise.")],
-    version: Annotated[int | None, typer.Option(help="To adapt; the newest on its main branch.")] = None,
-    branch: Annotated[str, typer.Option(help="To continue or to begin; that of the version.")] = "",
-    url: Url = LOCAL,
-) -> None:
-    """Adapt a learned path to an object that lies elsewhere, and certify it.
-
-    Saves a new version with the shape of all demonstrations of the same way, between the new start and goal.
-    """
-    poses = _pose(start, "--start"), _pose(goal, "--goal")
-    with Station(url) as station:
-        adapted = station.adapt(path, *poses, version=version, branch=branch)
-        print(f"version {adapted.version.number} of {path}, on branch {adapted.version.branch}: {adapted.note}")
-        with progress_bar("planning") as show:
-            plan = station.get_plan(station.outcome(adapted.job, job_shown(show)))
-    print(plan_lines(plan))
-
-
-def _pose(text: str, option: str) -> dict[str, object]:
-    """Read x,y,z or x,y,z,qw,qx,qy,qz."""
-    try:
-        numbers = [float(part) for part in text.split(",")]
-    except ValueError:
-        numbers = []
-    if len(numbers) not in (3, 7):
-        raise UnusableInput(f"{option} {text!r} is not x,y,z or x,y,z,qw,qx,qy,qz; write for instance 0.4,-0.3,0.5")
-    return {"position": numbers[:3], "orientation": numbers[3:] or None}
-
-
 def run(
-    plan: Annotated[str | None, typer.Argument(help="Id of a plan; with --check, the one that was meant.")] = None,
+    plan: Annotated[
+        str | None,
+        typer.Argument(help="Id of a plan; with --check, the one that was meant; with --adapt, of a path."),
+    ] = None,
     url: Url = LOCAL,
     config: Config = None,
     override: Annotated[float, typer.Option(min=0.0, max=1.0, help="Share of the planned speed.")] = 1.0,
@@ -186,12 +157,17 @@ def run(
     detach: Annotated[
         bool, typer.Option(help="Only start it: the arm goes on without this command, and anybody may command it.")
     ] = False,
+    adapt: Annotated[
+        bool, typer.Option(help="First adapt a path to where the station knows its object to lie, and certify it.")
+    ] = False,
+    goal: Annotated[str, typer.Option(help="With --adapt: where it is to go, x,y,z [m]; where the path ends.")] = "",
 ) -> None:
     """Move the arm along a certified plan, or judge what was sent to one.
 
     This command is in control meanwhile. Ctrl-C stops the arm on its path; when the command is killed or hangs, the arm
     is held there within 4 s. None of this is an emergency stop.
     """
+    from teachpath.commands.adaptation import adapted_plan
     from teachpath.commands.checking import judge_file
 
     if check is not None:
@@ -199,7 +175,11 @@ def run(
         return
     if plan is None:
         raise UnusableInput("name the plan to run; teachpath plan PATH makes one")
+    if goal and not adapt:
+        raise UnusableInput("--goal is for --adapt; a plan has its goal")
     with Station(url, operator="teachpath run") as station:
+        if adapt:
+            plan = adapted_plan(station, plan, "", goal).id
         if detach:
             execution = station.begin_execution(plan, override=override)
             print(f"{execution.id} {execution.status.state}; teachpath stop {execution.id} stops it")

@@ -65,13 +65,13 @@ GRANTS: Final[dict[Role, dict[str, tuple[str, ...]]]] = {
         "announce": ("alive/robot/{only}",),
     },
     Role.TRACKER: {
-        "put": ("trackers/{only}/samples", *STOP["put"]),
+        "put": ("trackers/{only}/samples", "scenes/*/object", *STOP["put"]),
         "subscribe": ("trackers/{only}/feedback",),
         "ask": ("recorder/*", *STOP["ask"]),
         "announce": ("alive/tracker/{only}",),
     },
     Role.OPERATOR: {
-        "put": STOP["put"],
+        "put": ("scenes/*/object", *STOP["put"]),
         "subscribe": LOOK,
         "ask": ("executor/command", "executor/lease", "recorder/*", *STOP["ask"]),
         "watch": ("alive/**",),

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 
 from teachpath.nurbs import Curve
 from teachpath.records.arrays import Array, Matrix
+from teachpath.records.motion import ObjectPose
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,6 +90,7 @@ class LearnedPath:
         fit: None for an edited version, which follows no demonstrations.
         orientation: quaternions at the same parameter, which `nurbs.unit_quaternions` brings to unit length; None when
             not all selected demonstrations carry orientations.
+        object_pose: where an adapted path takes the object; None = where the scene has it.
     """
 
     id: str
@@ -99,6 +101,7 @@ class LearnedPath:
     fit: Fit | None
     note: str = ""
     orientation: Curve | None = None
+    object_pose: ObjectPose | None = None
 
 
 @dataclass(frozen=True, eq=False)

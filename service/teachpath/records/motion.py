@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -37,6 +37,14 @@ class Shape:
 
 
 @dataclass(frozen=True, slots=True)
+class ObjectPose:
+    """Where the object of a scene lies: its centre [m, world], and its orientation w, x, y, z."""
+
+    position: Vector
+    orientation: Quaternion = (1.0, 0.0, 0.0, 0.0)
+
+
+@dataclass(frozen=True, slots=True)
 class Scene:
     """What stands around the arm. Obstacles include the table; `carried` is the object at its start, or None.
 
@@ -60,6 +68,12 @@ class Scene:
     def bodies(self) -> tuple[Shape, ...]:
         """All that stands in the scene, and its zones."""
         return self.obstacles + ((self.carried,) if self.carried else ()) + self.keep_in + self.keep_out
+
+    def with_object(self, pose: ObjectPose) -> Scene:
+        """Return the scene with its object in another pose; the scene itself when it has none."""
+        if self.carried is None:
+            return self
+        return replace(self, carried=replace(self.carried, position=pose.position, orientation=pose.orientation))
 
 
 @dataclass(frozen=True, slots=True)

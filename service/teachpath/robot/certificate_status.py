@@ -10,7 +10,7 @@ from teachpath.errors import NotFound, PathRefused
 from teachpath.io import documents
 from teachpath.io.bus import Bus, Handle
 from teachpath.io.store.store import Store
-from teachpath.records import Calibration, CertificateQuery, Plan, Scene, Signature
+from teachpath.records import Calibration, CertificateQuery, Plan, Scene, Shape, Signature
 from teachpath_proto.keys import Keys
 
 
@@ -84,6 +84,13 @@ class CertificateStatus:
                 f"{plan.id} was certified in scene {name}: {error}; put the scene back into the settings, or plan the "
                 "path again in another one"
             ) from None
+        taken, lies = plan.scene.carried, present.carried
+        if taken and lies and present != plan.scene and replace(present, carried=taken) == plan.scene:
+            raise PathRefused(
+                f"plan {plan.id} takes {taken.name} at {_place(taken)}, but it lies at {_place(lies)}; put it there "
+                f"and say so (teachpath object {name} --at x,y,z), or adapt the path to where it lies (teachpath run "
+                "PATH --adapt)"
+            )
         if present != plan.scene:
             raise PathRefused(f"scene {name} has changed since {plan.id} was certified; plan the path again")
 
@@ -96,3 +103,7 @@ class CertificateStatus:
                     f"calibration {then.name} {change} since {plan} was certified for it; if it was wrong then, "
                     "recalibrate the task and learn anew (teachpath recalibrate), else plan the path again"
                 )
+
+
+def _place(shape: Shape) -> str:
+    return ", ".join(f"{value:.3f}" for value in shape.position)

@@ -85,6 +85,11 @@ class Executions:
         """The executor's newest status, or None when the executor has been silent for over a second."""
         return self._monitor.status
 
+    def is_moving(self) -> bool:
+        """Tell whether an execution is under way, held ones too."""
+        status = self.status
+        return status is not None and not status.state.is_resting
+
     def execute(self, plan: str, *, override: float = 1.0, lease: str = "", who: str = "") -> Execution:
         """Move the robot along a plan.
 

@@ -9,7 +9,7 @@ from teachpath.errors import NotFound, PathRefused
 from teachpath.io.documents import encode
 from teachpath.io.memory_bus import MemoryBus
 from teachpath.io.store.store import Store
-from teachpath.records import Calibration, CertificateQuery, Job, JobState, Plan, Scene, Signature
+from teachpath.records import Calibration, CertificateQuery, Job, JobState, ObjectPose, Plan, Scene, Signature
 from teachpath.robot.certificate_status import CertificateStatus
 from teachpath_proto.keys import Keys
 from tests.unit.io.test_documents import a_plan
@@ -89,6 +89,16 @@ def test_a_scene_that_has_changed_or_gone_is_refused(station: Station) -> None:
     assert "scene s has changed since id was certified; plan the path again" in station.refusal()
     station.scenes.clear()
     assert "there is no scene 's'; put the scene back" in station.refusal()
+
+
+def test_an_object_that_lies_elsewhere_is_named_with_both_places(station: Station) -> None:
+    scene = station.scenes["s"]
+    assert scene.carried is not None
+    station.scenes["s"] = scene.with_object(ObjectPose((0.5, 0.25, 0.52)))
+    said = station.refusal()
+    assert f"takes {scene.carried.name} at" in said
+    assert "it lies at 0.500, 0.250, 0.520; put it there and say so (teachpath object s --at x,y,z)" in said
+    assert "teachpath run PATH --adapt" in said
 
 
 @pytest.mark.parametrize(

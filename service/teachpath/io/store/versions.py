@@ -15,7 +15,7 @@ from teachpath.io.documents import from_document, to_document
 from teachpath.io.store.changes import Changed, telling, unheard
 from teachpath.io.store.tables import PathRow
 from teachpath.nurbs import Curve
-from teachpath.records import MAIN_BRANCH, LearnedPath, Version
+from teachpath.records import MAIN_BRANCH, LearnedPath, ObjectPose, Version
 
 MAX_VERSIONS: Final = 10_000  # versions of one path
 
@@ -67,7 +67,15 @@ class Versions:
             row = _row(session, path, number)
         return _version(row), from_document(LearnedPath, row.document)
 
-    def save(self, path: str, curve: Curve, edit: Edit, *, orientation: Curve | None = None) -> Version:
+    def save(
+        self,
+        path: str,
+        curve: Curve,
+        edit: Edit,
+        *,
+        orientation: Curve | None = None,
+        object_pose: ObjectPose | None = None,
+    ) -> Version:
         """Save an edited curve as the next version of a path, and return it.
 
         Args:
@@ -75,6 +83,7 @@ class Versions:
             curve: of positions.
             edit: what is said of it.
             orientation: of quaternions; None = that of the base.
+            object_pose: where the path takes the object; None = where the base takes it.
 
         Raises:
             NotFound: there is no such path or base.
@@ -100,7 +109,10 @@ class Versions:
             if number > MAX_VERSIONS:
                 raise UnusableInput(f"path {path} has {MAX_VERSIONS} versions, which is the limit; learn the task anew")
             kept = learned.orientation if orientation is None else orientation
-            edited = replace(learned, version=number, curve=curve, fit=None, note="", orientation=kept)
+            taken = object_pose or learned.object_pose
+            edited = replace(
+                learned, version=number, curve=curve, fit=None, note="", orientation=kept, object_pose=taken
+            )
             row = PathRow(
                 id=path,
                 version=number,

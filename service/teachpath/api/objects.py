@@ -1,0 +1,48 @@
+"""Where the objects of the scenes lie: told by whoever sees them."""
+
+from __future__ import annotations
+
+from fastapi import APIRouter
+from pydantic import Field
+
+from teachpath.api.parts import Parts
+from teachpath.api.poses import Component, Coordinate
+from teachpath.api.strict_requests import Body
+from teachpath.records import ObjectPose
+
+
+class SeenObject(Body):
+    """Where the object of a scene was seen."""
+
+    position: tuple[Coordinate, Coordinate, Coordinate] = Field(description="x, y, z of its centre [m, world]")
+    orientation: tuple[Component, Component, Component, Component] = Field(
+        (1.0, 0.0, 0.0, 0.0), description="quaternion w, x, y, z in the world"
+    )
+
+
+def objects_router(parts: Parts) -> APIRouter:
+    """Return the routes of the objects' poses."""
+    router = APIRouter(tags=["station"])
+    poses = parts.objects
+
+    @router.get("/scenes/{scene}/object")
+    def get_object(scene: str) -> ObjectPose:
+        """Return where the object of a scene lies."""
+        return poses.pose(scene)
+
+    @router.put("/scenes/{scene}/object")
+    def put_object(scene: str, seen: SeenObject) -> ObjectPose:
+        """Say where the object of a scene lies, and return where it lies now.
+
+        Plans that take it elsewhere do not start. While the arm moves, the scene stays as it was until it rests; a
+        difference of less than 1 mm and 1 degree is none. A camera may publish the same on the bus, as JSON. A restart
+        of the station forgets it.
+        """
+        return poses.tell(scene, ObjectPose(seen.position, seen.orientation))
+
+    @router.delete("/scenes/{scene}/object")
+    def reset_object(scene: str) -> ObjectPose:
+        """Put the object of a scene back to where the settings have it, and return where that is."""
+        return poses.forget(scene)
+
+    return router

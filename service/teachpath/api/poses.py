@@ -1,0 +1,12 @@
+"""Positions and quaternions in requests."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from pydantic import Field
+
+from teachpath.editing import MAX_COORDINATE
+
+Coordinate = Annotated[float, Field(ge=-MAX_COORDINATE, le=MAX_COORDINATE, allow_inf_nan=False)]  # m
+Component = Annotated[float, Field(allow_inf_nan=False)]  # of a quaternion
