@@ -149,8 +149,8 @@ class Station(TaskResources, WorkResources):
     def _hold_arm(self) -> bool:
         """Hold the arm if this program moves it, and return whether the station has answered so far."""
         try:
-            if self._begun and not _has_ended(self.get_execution(self._begun)):
-                self.steer(self._begun, "hold")
+            if self._newest_execution and not _has_ended(self.get_execution(self._newest_execution)):
+                self.steer(self._newest_execution, "hold")
         except ClientError:
             return False
         return True

@@ -28,7 +28,7 @@ from teachpath_client.rest import Rest
 class WorkResources(Rest):
     """What a station learns, plans and executes; every method raises Unreachable or Refused."""
 
-    _begun = ""  # id of the execution that this client began last
+    _newest_execution = ""  # id of the execution that this client began last
 
     # jobs, and what they make
 
@@ -122,7 +122,7 @@ class WorkResources(Rest):
 
     def _begin(self, resource: str, request: Mapping[str, Any]) -> Execution:
         execution = self._ask(Execution, "POST", resource, request)
-        self._begun = execution.id
+        self._newest_execution = execution.id
         return execution
 
     def executions(self) -> list[Execution]:
