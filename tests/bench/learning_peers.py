@@ -18,8 +18,8 @@ from teachpath.learning.clustering.distances import pairwise_distances
 from teachpath.learning.fitting.nurbs_fit import approximate, distances_to_curve
 from teachpath.learning.learn import learn
 from teachpath.learning.resampling import arc_lengths, at_equal_arc_length, smoothed
-from teachpath.learning.selection.consistency import MODEL_STATES
-from teachpath.learning.selection.features import extract_features
+from teachpath.learning.selection.features import positions_and_velocities
+from teachpath.learning.selection.likelihoods import COURSE_STATES
 from teachpath.learning.settings import LearningSettings
 from teachpath.records import Array, Trajectory
 from tests.bench.report import Figure, against
@@ -129,13 +129,11 @@ def usual(trajectories: dict[str, Trajectory]) -> tuple[int, int]:
     for way in np.unique(labels):
         members = np.flatnonzero(labels == way)
         listed = list(trajectories.values())
-        features = extract_features([listed[i] for i in members], 0.02, lambda: None)
-        for feature, states in MODEL_STATES.items():
-            sequences = features[feature].sequences
-            for left in range(len(members)):
-                models += 1
-                rest = [sequence for i, sequence in enumerate(sequences) if i != left]
-                broken += not _scored(rest, sequences[left], states)
+        sequences = positions_and_velocities([listed[i] for i in members])
+        for left in range(len(members)):
+            models += 1
+            rest = [sequence for i, sequence in enumerate(sequences) if i != left]
+            broken += not _scored(rest, sequences[left], COURSE_STATES)
         course = np.mean([at_equal_arc_length(paths[i], 200) for i in members], axis=0)
         for count in range(DEGREE + 1, MOST + 1):
             twin = geomdl_fitting.approximate_curve(course.tolist(), DEGREE, ctrlpts_size=count)

@@ -9,7 +9,7 @@ from typing import Any
 
 from scipy.stats import binom
 
-from tests.experiments import adaptation_report, degrees, quoted, rule, scale
+from tests.experiments import ablation, adaptation_report, degrees, quoted, rule, scale
 from tests.experiments.markup import STYLE, figure, listed, short
 from tests.experiments.results import Found, by_place, outranked, revived, right, uneven
 from tests.experiments.scenarios import GROUPINGS, SCENARIOS
@@ -36,6 +36,7 @@ def page(found: Found, folder: Path) -> str:
             *_clusters(found, folder),
             *_selection(found, folder),
             *_control(found, folder),
+            ablation.table(found["ablation"]),
             *_grouping(found, folder),
             *_shapes(found, folder),
             *_degrees(found),
@@ -125,8 +126,8 @@ def _table_1(modes: Mapping[str, Sequence[Mapping[str, Any]]]) -> str:
     return (
         "<table><caption><b>Table I.</b> Clusters, and the score of every demonstration in its cluster, best first; "
         "selected ones bold. “Published” is quoted from Aleotti &amp; Caselli 2005, whose recordings are not public: "
-        "scale and spread can be compared, single values cannot. Mode default ranks by the robust z of four kinds "
-        f"of features.</caption><tr>{head}{''.join(rows)}</table>"
+        "scale and spread can be compared, single values cannot. Mode default ranks by the worst robust z of seven "
+        f"kinds of faults.</caption><tr>{head}{''.join(rows)}</table>"
     )
 
 

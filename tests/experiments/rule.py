@@ -15,11 +15,11 @@ from tests.experiments.figures import INK, QUOTED, sheet
 from tests.experiments.scenarios import SCENARIOS
 from tests.experiments.trials import Outcome
 
-LIMITS = tuple(float(limit) for limit in np.arange(-20, -1.5, 0.5))
-SHIPPED = LearningSettings().inconsistent
+LIMITS = tuple(float(limit) for limit in np.arange(-8, -0.9, 0.25))
+SHIPPED = -LearningSettings().outlier_limit
 KEPT = 2  # best two are kept at any limit
 COLOURS = [f"C{i}" for i in range(len(SCENARIOS))]  # matplotlib's own cycle: more than there are modes and ways
-LISTED = (-4.0, -6.0, SHIPPED, -12.0)
+LISTED = (-2.0, SHIPPED, -4.0, -6.0)
 
 
 def summary(outcomes: Iterable[Outcome]) -> dict[str, Any]:

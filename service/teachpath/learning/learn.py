@@ -96,7 +96,7 @@ def learn_partition(
     choosing = Subprogress(progress, 0.0, 0.75)
     stops = {names[number]: stop for number, stop in grouping.incomplete.items()}
     if settings.mode == "default":
-        on_step = StepCounter(choosing, step_count([len(ids) for ids in members], settings.repeats), SELECTION_MESSAGE)
+        on_step = StepCounter(choosing, step_count([len(ids) for ids in members]), SELECTION_MESSAGE)
         clusters = tuple(
             _select_complete(index + 1, ids, demonstrations, stops, settings, on_step)
             for index, ids in enumerate(members)

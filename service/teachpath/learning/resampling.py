@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 from scipy.ndimage import uniform_filter1d
+from scipy.spatial.distance import pdist
 
 from teachpath.records import Array, Trajectory
 
 SMOOTHING_WINDOW = 0.18  # s, width of the moving average: nine samples of a 50 Hz tracker
+EXTENT_POINTS = 60  # of a path, whose distances tell its size
 
 
 def smoothed(trajectory: Trajectory) -> Array:
@@ -34,6 +36,11 @@ def sign_aligned(orientations: Array) -> Array:
 def arc_lengths(path: Array) -> Array:
     """Return the arc length from the start at every point of a polyline: (n,) [m]."""
     return np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(path, axis=0), axis=1))])
+
+
+def extent(path: Array) -> float:
+    """Return the size of a path: the largest distance [m] of two of some sixty of its points."""
+    return float(pdist(path[np.linspace(0, len(path) - 1, EXTENT_POINTS).astype(int)]).max())
 
 
 def at_equal_arc_length(path: Array, count: int) -> Array:

@@ -72,8 +72,8 @@ class LearningSettings:
     clusters: Annotated[int, Ge(1)] | None = None
     # least distance of two clusters, as a multiple of the scatter within clusters (mode default)
     min_separation: Annotated[float, Ge(1), Le(100)] = 2.0
-    # robust z below which a demonstration is inconsistent with its cluster (mode default)
-    inconsistent: Annotated[float, Le(0)] = -8.0
+    # robust z above which a demonstration is inconsistent with its cluster (mode default)
+    outlier_limit: Annotated[float, Gt(0)] = 3.0
     # repetitions that a demonstration's stability is counted in: other seeds, in mode default others left out
     repeats: Annotated[int, Ge(0), Le(10_000)] = 8
     # m, largest distance of the learned path from what it is fitted to
@@ -86,8 +86,6 @@ class LearningSettings:
     most_control_points: Annotated[int, Ge(8), Le(1000)] = 60
     # of all random choices
     seed: Annotated[int, Ge(0)] = 1
-    # s, sampling period of the spectra (mode default)
-    period: Annotated[float, Ge(0.001), Le(1)] = 0.02
     # states Q of the hidden Markov models (mode paper; repaired has 5)
     states: Annotated[int, Ge(1), Le(100)] = 10
     # Gaussians M per state (mode paper; repaired has 1)

@@ -27,7 +27,7 @@ class Score:
         rank: 1 = most consistent.
         note: why it was not selected, or not scored.
         margin: distance to the next in rank, in robust z in mode default, else in log-likelihood; None for the last.
-        z: sum of its robust z scores, each at most 0; 0 = consistent, None = not scored.
+        z: its worst robust z, at most 0; 0 = consistent, None = not scored.
         stability: share of the repetitions in which it was selected; None when there were none.
         deviation: where it deviates most; None when it is consistent.
     """

@@ -51,7 +51,7 @@ def test_merged_ways_are_told(run: Learned, twelve: dict[str, Trajectory]) -> No
 
 
 def test_selections_are_compared(run: Learned, twelve: dict[str, Trajectory]) -> None:
-    sentences = compare(run, learn(twelve, replace(SETTINGS, inconsistent=0.0)))
+    sentences = compare(run, learn(twelve, replace(SETTINGS, outlier_limit=1e-6)))
     assert any("no longer selected" in sentence for sentence in sentences)
 
 

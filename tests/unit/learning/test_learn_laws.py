@@ -87,7 +87,7 @@ def test_the_order_in_which_demonstrations_are_listed_changes_no_selection(setti
 def test_reversed_demonstrations_give_the_reversed_path() -> None:
     twelve = synthetic.experiment_1(5)
     back = {k: Trajectory(d.times, d.positions[::-1]) for k, d in twelve.items()}
-    settings = LearningSettings(inconsistent=-1e6, repeats=0)  # keeps everybody, so that only geometry is compared
+    settings = LearningSettings(outlier_limit=1e6, repeats=0)  # keeps everybody, so that only geometry is compared
     for one, other in zip(learn(twelve, settings).paths, learn(back, settings).paths, strict=True):
         u = np.linspace(0, 1, 50)
         there, again = one.curve(u), other.curve(1 - u)

@@ -28,7 +28,7 @@ from teachpath.learning.settings import LearningSettings
         ({"error_bound": -0.001}, "greater than 0"),
         ({"degree": 8}, "at most 7"),
         ({"min_separation": 0.5}, "at least 1"),
-        ({"inconsistent": 1.0}, "at most 0"),
+        ({"outlier_limit": 0.0}, "greater than 0"),
     ],
 )
 def test_a_setting_outside_its_limits_is_refused(change: dict[str, object], sentence: str) -> None:
@@ -38,6 +38,6 @@ def test_a_setting_outside_its_limits_is_refused(change: dict[str, object], sent
 
 def test_limits_themselves_are_allowed() -> None:
     settings = LearningSettings(
-        mode="paper", threshold=1e-6, keep=1, degree=7, min_separation=1.0, inconsistent=0.0, seed=0
+        mode="paper", threshold=1e-6, keep=1, degree=7, min_separation=1.0, outlier_limit=1e-6, seed=0
     )
     assert settings.degree == 7

@@ -17,8 +17,8 @@ from teachpath.learning.clustering.subsampled_clustering import cluster_paths
 from teachpath.learning.fitting.nurbs_fit import CurveDistance, approximate
 from teachpath.learning.learn import learn
 from teachpath.learning.resampling import at_equal_arc_length
-from teachpath.learning.selection.consistency import score_consistency
-from teachpath.learning.selection.features import Feature, extract_features
+from teachpath.learning.selection.consistency import measure
+from teachpath.learning.selection.features import extract_features, positions_and_velocities
 from teachpath.learning.selection.gaussian_hmm import TrainingBudget, train_model
 from teachpath.learning.settings import LearningSettings, StepCounter, Subprogress, no_progress
 from teachpath.records import Learned, Trajectory
@@ -54,22 +54,22 @@ def test_what_learning_makes_can_be_pickled() -> None:
     assert encode(again) == encode(learned)
     trajectories = list(demonstrations.values())
     paths = np.stack([at_equal_arc_length(each.positions, 50) for each in trajectories])
-    features = extract_features(trajectories, 0.02, int)
-    scores = score_consistency(features, range(5), 5, budget=TrainingBudget(), on_step=int)
+    features = [extract_features(trajectory) for trajectory in trajectories]
+    measures = measure(features, paths, 0.7, 0.005)
     made: list[Any] = [
         LearningSettings(),
         cluster_paths(paths, LearningSettings(), length=1.0, metric="arc"),
         dendrogram(learned, 3),
-        features,
-        scores,
+        features[0],
+        measures,
         approximate(paths[0], 0.01, degree=3, most=20),
     ]
     for one in made:
         assert type(pickle.loads(pickle.dumps(one))) is type(one)
-    np.testing.assert_array_equal(pickle.loads(pickle.dumps(scores)).total, scores.total)
+    np.testing.assert_equal(pickle.loads(pickle.dumps(measures)).scores(range(5)), measures.scores(range(5)))
     measured = CurveDistance(learned.paths[0].curve)
     np.testing.assert_array_equal(pickle.loads(pickle.dumps(measured))(paths[0]), measured(paths[0]))
-    sequences = features[Feature.COURSE].sequences
+    sequences = positions_and_velocities(trajectories)
     model = train_model(sequences, 5, TrainingBudget())
     copied = pickle.loads(pickle.dumps(model))
     np.testing.assert_array_equal(copied.log_likelihoods(sequences[0]), model.log_likelihoods(sequences[0]))

@@ -1,137 +1,216 @@
 """How consistent the members of a cluster are with one another.
 
-Each member gets a robust z score for course, shape, smoothness and excess bending. Positive scores are clipped to 0;
-the measure is their sum.
+Each part of the measure looks for one kind of fault and gives every member a robust z score against the others. A
+member is as consistent as its worst score: there is one limit for each fault instead of a sum, in which faultless
+demonstrations would add up small differences.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
+from enum import StrEnum
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.ndimage import uniform_filter1d
 
-from teachpath.learning.selection.features import Feature, FeatureSet
-from teachpath.learning.selection.gaussian_hmm import TrainingBudget, train_model
-from teachpath.learning.selection.shape_residuals import score_bending
-from teachpath.learning.settings import StepCallback
+from teachpath.learning.selection.features import CLOCK_POINTS, DEGREES, PATH_PARTS, POLYNOMIALS, MotionFeatures
+from teachpath.learning.selection.shape_residuals import MIN_COURSES, Bending, bending_surprises, measure_bending
 from teachpath.records import Array
 
-MODEL_STATES = {Feature.COURSE: 10, Feature.SHAPE: 10, Feature.SMOOTHNESS: 5}  # of the hidden Markov models
-MIN_MEMBERS_FOR_CORE = 4
-PRIOR_SPREAD = 1.0  # nats a frame, usual spread of the scores of consistent demonstrations
-PRIOR_MEMBERS = 4  # members that the usual spread counts for beside the measured one
+
+class Part(StrEnum):
+    """A part of the measure, by the kind of fault that it finds."""
+
+    WIGGLE = "wiggle"
+    TREMOR = "tremor"
+    NOISE = "noise"
+    BEND = "bend"
+    PAUSE = "pause"
+    JUMP = "jump"
+    FREEZE = "freeze"
+
+
+FAULTY = {  # what of a demonstration is inconsistent
+    Part.WIGGLE: "smoothness",
+    Part.TREMOR: "smoothness",
+    Part.NOISE: "smoothness",
+    Part.BEND: "bending",
+    Part.PAUSE: "timing",
+    Part.JUMP: "readings",
+    Part.FREEZE: "readings",
+}
+# Usual spreads of faultless demonstrations, in logarithms of amplitudes (BEND: nats, PAUSE: logarithm of a duration),
+# such that a score of 3 is the limit. Only BEND leaves out more than one in a thousand faultless ones: detours and the
+# hand's own bows overlap, and its limit is a compromise (`make experiments`).
+USUAL_SPREADS = {
+    Part.WIGGLE: 0.1,
+    Part.TREMOR: 0.09,
+    Part.NOISE: 0.085,
+    Part.BEND: 0.55,
+    Part.PAUSE: 0.23,
+    Part.JUMP: 0.1,
+    Part.FREEZE: 0.2,
+}
+USUAL_WEIGHT = 6  # members that the usual spread counts for beside the measured one
+PACE_SPREAD = 0.2  # of a logarithm of the pace, by which the amplitude of a tremor moves from one band to another
+WARP_SPREAD = 13.0  # nats of bending for each share of the duration by which the pace differs
+MEDIAN_VARIANCE = 1.57  # of the median of so many values, of their variance
+MAX_WITHOUT_OWN = 30  # members up to which each is compared with the others alone; in more its own value is lost
+BANDS = {Part.WIGGLE: (13, 24), Part.TREMOR: (24, 42), Part.NOISE: (42, 80)}  # degrees, first to one behind the last
+QUICK = slice(13, 80)  # the degrees of all of them
+SHAKING_WINDOW = CLOCK_POINTS // 12  # over which shaking is averaged
+NEGLIGIBLE = 0.001  # of the size of the path: an amplitude far below it says nothing
+NEGLIGIBLE_BEND = 0.01
+NEGLIGIBLE_JUMP = 0.01
+NEGLIGIBLE_PAUSE = 0.02  # of the mean duration of a part of the path
+MIN_PACE, MAX_PACE = 0.4, 2.3  # share of the median duration, beyond which a band is moved no further
 
 
 @dataclass(frozen=True, eq=False)
-class ConsistencyScores:
-    """The scores of m members of a cluster.
+class Measures:
+    """What is compared between m members, before it is: it does not depend on who else takes part.
 
     Attributes:
-        profiles: for each feature and member the log-likelihoods of its frames.
-        z: for each feature (m,) robust z scores; 0 = like the median member, negative = less consistent.
-        total: (m,) sum over the features of the z scores, each clipped to at most 0.
-        order: (m,) members from the most to the least consistent.
+        amplitudes: for each of the three bands (3 clocks, m) logarithms of amplitudes.
+        shakes: (m,) whether a member departs from its smooth course by more than the bound.
+        dwell: (24, m) logarithms of durations beside those of the neighbouring parts of the path.
+        jump_sizes, leap_sizes: (m,) logarithms.
+        paces: (m,) logarithms of the duration beside the median duration.
+        bending: None for fewer than four.
     """
 
-    profiles: dict[Feature, list[Array]]
-    z: dict[Feature, Array]
-    total: Array
-    order: NDArray[np.int64]
+    amplitudes: dict[Part, Array]
+    shakes: NDArray[np.bool_]
+    dwell: Array
+    jump_sizes: Array
+    leap_sizes: Array
+    paces: Array
+    bending: Bending | None
+
+    def scores(self, members: Sequence[int] | NDArray[np.int64]) -> dict[Part, Array]:
+        """Return for each part and each of these members by how many usual spreads it is worse than the others."""
+        at = np.asarray(members)
+        usual = {
+            part: np.hypot(spread, PACE_SPREAD * self.paces[at]) if part in BANDS else np.full(len(at), spread)
+            for part, spread in USUAL_SPREADS.items()
+        }
+        z = {part: self._band(part, at, usual[part]) for part in BANDS}
+        z[Part.BEND] = self._bend(at, usual[Part.BEND])
+        z[Part.PAUSE] = robust_z(self._pauses(at), usual[Part.PAUSE])
+        z[Part.JUMP] = robust_z(self.jump_sizes[at], usual[Part.JUMP])
+        z[Part.FREEZE] = robust_z(self.leap_sizes[at], usual[Part.FREEZE])
+        return z
+
+    def _band(self, part: Part, at: NDArray[np.int64], usual: Array) -> Array:
+        """Score a band on the clock on which the member is least suspicious: its pace alone says nothing."""
+        z = np.min([robust_z(values, usual) for values in self.amplitudes[part][:, at]], axis=0)
+        return np.asarray(np.where(self.shakes[at], z, np.minimum(z, 0.0)))
+
+    def _bend(self, at: NDArray[np.int64], usual: Array) -> Array:
+        if self.bending is None or len(at) < MIN_COURSES:
+            return np.zeros(len(at))
+        warp = float(np.sqrt(np.square(self.bending.warps[at]).mean()))
+        z = robust_z(bending_surprises(self.bending.energies[at]), np.hypot(usual, WARP_SPREAD * warp))
+        return np.asarray(np.where(self.bending.amplitudes[at] > NEGLIGIBLE_BEND, z, np.minimum(z, 0.0)))
+
+    def _pauses(self, at: NDArray[np.int64]) -> Array:
+        """Return for each member by how much it dwells longer than the others where it does so most: (m,)."""
+        dwell = self.dwell[:, at]
+        return np.asarray((dwell - np.stack([others_median(row)[0] for row in dwell])).max(axis=0))
 
 
-def score_consistency(
-    features: Mapping[Feature, FeatureSet],
-    members: Sequence[int],
-    folds: int,
-    *,
-    budget: TrainingBudget,
-    on_step: StepCallback,
-) -> ConsistencyScores:
-    """Score members of a cluster: course, shape, excess bending and, where it could be measured, smoothness.
-
-    Course, shape and smoothness are scored by hidden Markov models of the other members, excess bending against the
-    mean of the other members. Smoothness is scored a second time by models of the most consistent half (as in Hadi
-    1992), and the lower z score counts: of five members, two that shake would otherwise excuse each other.
+def measure(features: Sequence[MotionFeatures], courses: Array, size: float, bound: float) -> Measures:
+    """Measure the members of a cluster.
 
     Args:
-        features: of all members of the cluster.
-        members: which members take part.
-        folds: number of parts into which the members are split; models of the other parts score a part. As many folds
-            as members leave one member out at a time.
-        budget: of the training of each model.
-        on_step: called once per trained model, and once for the bending.
+        features: of every member.
+        courses: (m, n, 3) [m] at n equal shares of the duration.
+        size: of the path [m].
+        bound: amplitude [m] below which nobody shakes.
     """
-    sequences = {feature: [of.sequences[i] for i in members] for feature, of in features.items()}
-    profiles: dict[Feature, list[Array]] = {}
-    z: dict[Feature, Array] = {}
-    for feature, shown in sequences.items():
-        if feature is Feature.BENDING:
-            z[feature], rows = score_bending(np.stack(shown))
-            profiles[feature] = list(rows)
-            on_step()
-        else:
-            profiles[feature] = _cross_validate(feature, shown, range(len(members)), folds, budget, on_step)
-            z[feature] = robust_z(_mean_frames(profiles[feature]))
-    if Feature.SMOOTHNESS in sequences and len(members) >= MIN_MEMBERS_FOR_CORE:
-        core = np.sort(_order(z, profiles)[: len(members) // 2 + 1])
-        again = _cross_validate(Feature.SMOOTHNESS, sequences[Feature.SMOOTHNESS], core, folds, budget, on_step)
-        profiles[Feature.SMOOTHNESS] = again
-        z[Feature.SMOOTHNESS] = np.minimum(z[Feature.SMOOTHNESS], robust_z(_mean_frames(again), core))
-    return ConsistencyScores(profiles, z, _total(z), _order(z, profiles))
+    durations = np.array([of.duration for of in features])
+    paces = durations / np.median(durations)
+    timed = np.stack([of.timed for of in features]) / size
+    energies, even = _cumulative(timed), np.ones_like(paces)
+    clocks = (
+        (energies, even),
+        (energies, np.clip(paces, MIN_PACE, MAX_PACE)),
+        (_cumulative(np.stack([of.spaced for of in features]) / size), even),
+    )
+    shaking = np.stack([shaking_profile(of) for of in features])
+    excess = (shaking - np.median(shaking, axis=0)).max(axis=1)
+    spread = np.log(np.stack([np.diff(of.passing) / of.duration for of in features]).T * PATH_PARTS + NEGLIGIBLE_PAUSE)
+    return Measures(
+        amplitudes={part: np.stack([_amplitudes(*clock, *band) for clock in clocks]) for part, band in BANDS.items()},
+        shakes=shaking_amplitude(excess) > bound,
+        dwell=_beside_neighbours(spread),
+        jump_sizes=np.log(np.array([of.jump for of in features]) / size + NEGLIGIBLE_JUMP),
+        leap_sizes=np.log(np.array([of.leap for of in features]) / size + NEGLIGIBLE_JUMP),
+        paces=np.log(paces),
+        bending=measure_bending(courses, size) if len(features) >= MIN_COURSES else None,
+    )
 
 
-def robust_z(scores: Array, core: NDArray[np.int64] | None = None) -> Array:
-    """Return by how many spreads each score lies above the median.
+def shaking_profile(features: MotionFeatures) -> Array:
+    """Return the mean square of what is quicker than the intended motion, over a short window: (240,) [m^2]."""
+    quick = np.einsum("nd,dk->nk", POLYNOMIALS[:, QUICK], features.timed[QUICK])
+    return np.asarray(uniform_filter1d(np.square(quick).sum(axis=1), SHAKING_WINDOW, mode="nearest"))
 
-    The spread follows from the median absolute deviation. For few members it is mixed with the usual spread, because
-    the median absolute deviation of few scores is unreliable.
 
-    Args:
-        scores: (m,).
-        core: members whose median and spread are taken; None = all.
+def shaking_amplitude(excess: Array) -> Array:
+    """Return the amplitude [m] of a sine whose mean square [m^2] is so much more than that of the others."""
+    return np.asarray(np.sqrt(2 * np.maximum(excess, 0.0)))
+
+
+def robust_z(values: Array, usual: Array) -> Array:
+    """Return by how many spreads each value (m,) lies above the median of the others.
+
+    The spread is the usual one (m,), or the median absolute deviation where that is larger: that of few values is
+    unreliable, so the usual spread counts for some members.
     """
-    known = scores if core is None else scores[core]
-    measured = 1.4826 * float(np.median(np.abs(known - np.median(known))))
-    spread = np.sqrt((len(known) * measured**2 + PRIOR_MEMBERS * PRIOR_SPREAD**2) / (len(known) + PRIOR_MEMBERS))
-    return np.asarray((scores - np.median(known)) / spread)
+    median, measured = others_median(values)
+    others = len(values) - 1
+    mixed = (USUAL_WEIGHT * np.square(usual) + others * np.square(measured)) / (USUAL_WEIGHT + others)
+    spread = np.sqrt(np.maximum(mixed, np.square(usual)) * (1 + MEDIAN_VARIANCE / others))
+    return np.asarray((values - median) / spread)
 
 
-def _cross_validate(
-    feature: Feature,
-    sequences: list[Array],
-    core: Sequence[int] | NDArray[np.int64],
-    folds: int,
-    budget: TrainingBudget,
-    on_step: StepCallback,
-) -> list[Array]:
-    """Return the profile of every sequence under a model of the core members, never of the sequence itself."""
-    folds = min(folds, len(core))
-    fold_of = np.full(len(sequences), folds)
-    fold_of[core] = np.arange(len(core)) % folds
-    profiles = [np.empty(0)] * len(sequences)
-    for fold in range(folds + 1):
-        scored = np.flatnonzero(fold_of == fold)
-        if len(scored):
-            model = train_model([sequences[i] for i in core if fold_of[i] != fold], MODEL_STATES[feature], budget)
-            for i in scored:
-                profiles[i] = model.log_likelihoods(sequences[i])
-            on_step()
-    return profiles
+def others_median(values: Array) -> tuple[Array, Array]:
+    """Return for each of m values median and spread (from the median absolute deviation) of the others: (m,) each."""
+    m = len(values)
+    if m > MAX_WITHOUT_OWN:
+        median = np.full(m, np.median(values))
+        return median, np.full(m, 1.4826 * np.median(np.abs(values - median)))
+    others = np.broadcast_to(values, (m, m))[~np.eye(m, dtype=bool)].reshape(m, m - 1)
+    medians = np.median(others, axis=1)
+    return medians, 1.4826 * np.median(np.abs(others - medians[:, None]), axis=1)
 
 
-def _mean_frames(profiles: list[Array]) -> Array:
-    return np.array([profile.mean() for profile in profiles])
+def _cumulative(coefficients: Array) -> Array:
+    """Sum energies over the degrees below each degree: (m, degrees + 1)."""
+    energies = np.square(coefficients).sum(axis=2)
+    return np.concatenate([np.zeros((len(energies), 1)), np.cumsum(energies, axis=1)], axis=1)
 
 
-def _total(z: Mapping[Feature, Array]) -> Array:
-    return np.asarray(np.minimum(np.stack(list(z.values())), 0.0).sum(axis=0))
+def _amplitudes(cumulative: Array, paces: Array, low: int, high: int) -> Array:
+    """Return the logarithms of the amplitudes in a band whose degrees are multiplied by `paces` (m,)."""
+    paces = np.minimum(paces, DEGREES / high)
+    below, upto = (_interpolated(cumulative, degree * paces) for degree in (low, high))
+    return np.asarray(0.5 * np.log(np.maximum(upto - below, 0.0) + NEGLIGIBLE**2))
 
 
-def _order(z: Mapping[Feature, Array], profiles: Mapping[Feature, list[Array]]) -> NDArray[np.int64]:
-    """Rank by the measure, then by the unclipped sum of the z scores, then by likelihood."""
-    likelihoods = np.sum([_mean_frames(row) for row in profiles.values()], axis=0)
-    unclipped = np.stack(list(z.values())).sum(axis=0)
-    # Exact ties are common, because the median and the median deviation are members' own; rounding must not break them.
-    return np.lexsort((-likelihoods, -np.round(unclipped, 9), -np.round(_total(z), 9)))
+def _interpolated(cumulative: Array, degrees: Array) -> Array:
+    before = np.minimum(degrees.astype(int), cumulative.shape[1] - 2)
+    rows = np.arange(len(cumulative))
+    part = degrees - before
+    return np.asarray((1 - part) * cumulative[rows, before] + part * cumulative[rows, before + 1])
+
+
+def _beside_neighbours(dwell: Array) -> Array:
+    """Subtract from each row (24, m) the mean of the four around it; the first and the last are left out."""
+    padded = np.concatenate([dwell[:1], dwell[:1], dwell, dwell[-1:], dwell[-1:]])
+    count = len(dwell)
+    around = (padded[:count] + padded[1 : count + 1] + padded[3 : count + 3] + padded[4 : count + 4]) / 4
+    return np.asarray((dwell - around)[1:-1])

@@ -6,25 +6,25 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
-from teachpath.learning.selection.consistency import MODEL_STATES, ConsistencyScores, score_consistency
-from teachpath.learning.selection.deviations import describe_deviation
-from teachpath.learning.selection.features import Feature, FeatureSet, extract_features
-from teachpath.learning.selection.gaussian_hmm import TrainingBudget, train_model
+from teachpath.learning.resampling import at_equal_arc_length, at_equal_times, extent
+from teachpath.learning.selection.consistency import FAULTY, Measures, Part, measure, others_median
+from teachpath.learning.selection.deviations import describe_deviation, describe_length, describe_pace
+from teachpath.learning.selection.features import MotionFeatures, extract_features, positions_and_velocities
+from teachpath.learning.selection.likelihoods import convergence, fold_count, score_likelihoods
 from teachpath.learning.selection.paper_mode import unscored
 from teachpath.learning.settings import LearningSettings, StepCallback
-from teachpath.records import Cluster, Deviation, Score, Trajectory
+from teachpath.records import Array, Cluster, Deviation, Score, Trajectory
 
 MIN_RELIABLE_MEMBERS = 4  # below which the ranking is unreliable
 SMALL_CLUSTER_FACTOR = 1.5  # on the limit of z for so few members
-MAX_LEAVE_ONE_OUT = 30  # members up to which each is scored by models of all others
-MAX_FOLDS = 10  # above
-REPETITION_FOLDS = 5
-REPETITION_BUDGET = TrainingBudget(iterations=2, sequences=15)
+BENDING_POINTS = 100  # equal times at which a course is sampled for its bending
+COST_POINTS = 100  # of the paths whose means tell what leaving one out costs
+REPORTED_SHARE = 2 / 3  # of the limit, from which on the deviation of a selected member is reported
 MAX_COMPARED_MEMBERS = 50  # with which the words about a deviation compare
 HOLDOUT_SHARE = 0.2  # of the members that a repetition leaves out, at least one
-
-Ranking = list[tuple[int, bool]]  # member and whether it is selected, most consistent first
+BOUND_SHARE = 0.01  # of the size of the path, below which nobody shakes
 
 
 def select(
@@ -32,74 +32,106 @@ def select(
 ) -> Cluster:
     """Rank the members of a cluster by consistency and select all that are not inconsistent.
 
-    `consistency.py` defines the measure. A member is inconsistent when its measure is below `settings.inconsistent`;
-    with two or three members the limit is half as much again, because so few scores say little about their spread.
+    `consistency.py` defines the measure. A member is inconsistent when it is worse than the others by more than
+    `settings.outlier_limit`; with two or three members the limit is half as much again, because so few scores say
+    little about their spread. Hidden Markov models judge nothing here: their log-likelihoods are reported.
 
     Args:
         index: number of the cluster.
         members: id -> trajectory.
         settings: at least `keep` members are selected; `repeats` repetitions with other members left out count how
             stable the selection is.
-        on_step: called after each trained model, and three times for each member.
+        on_step: called twice for each member, and after each trained model.
     """
     names = sorted(members)
     if len(names) == 1:
         return unscored(index, names, "one demonstration only: nothing to compare it with")
     trajectories = [members[name] for name in names]
-    features = extract_features(trajectories, settings.period, on_step)
-    notes = []
-    if Feature.SMOOTHNESS not in features:
-        notes.append("a demonstration is shorter than the analysis window: judged by course, shape and bending only")
-    if len(names) < MIN_RELIABLE_MEMBERS:
-        notes.append(f"{len(names)} demonstrations: too few for a reliable ranking")
-    everybody = range(len(names))
-    consistency = score_consistency(features, everybody, _folds(len(names)), budget=TrainingBudget(), on_step=on_step)
-    stabilities = _stabilities(features, len(names), settings, on_step)
-    judged = _Judged(names, trajectories, features, consistency, _limit(len(names), settings))
+    features, measures = measure_members(trajectories, settings, on_step)
+    sequences = positions_and_velocities(trajectories)
+    likelihoods = score_likelihoods(sequences, on_step=on_step)
+    selection = _judge(measures, np.arange(len(names)), settings)
+    stabilities = _stabilities(measures, len(names), settings)
+    found = _described(names, trajectories, features, selection)
     scores = []
-    for rank, (i, selected) in enumerate(_ranking(consistency, settings)):
-        scores.append(_score(judged, i, rank, selected, stabilities[i]))
+    for rank, i in enumerate(selection.order):
+        scores.append(_score(found, int(i), rank, float(likelihoods[i]), stabilities[i]))
         on_step()
-    history = _convergence(features)
+    history = convergence(sequences)
     on_step()
-    return Cluster(index, tuple(score.demonstration for score in scores), tuple(scores), history, "; ".join(notes))
+    few = f"{len(names)} demonstrations: too few for a reliable ranking" if len(names) < MIN_RELIABLE_MEMBERS else ""
+    return Cluster(index, tuple(score.demonstration for score in scores), tuple(scores), history, few)
 
 
-def step_count(sizes: Sequence[int], repeats: int) -> int:
-    """Return how many steps `select` reports at most for clusters of these sizes."""
-    total = 0
-    for size in sizes:
-        if size > 1:
-            again = len(_holdouts(size, repeats, 0)) * (4 * min(size - 1, REPETITION_FOLDS) + 2)
-            total += 4 * _folds(size) + 2 + again + 1 + 3 * size
-    return total
+def measure_members(
+    trajectories: Sequence[Trajectory], settings: LearningSettings, on_step: StepCallback = lambda: None
+) -> tuple[list[MotionFeatures], Measures]:
+    """Measure the members of a cluster; `on_step` is called once for each."""
+    features = []
+    for trajectory in trajectories:
+        features.append(extract_features(trajectory))
+        on_step()
+    size = max(float(np.median([extent(of.path) for of in features])), 1e-9)
+    courses = [at_equal_times(t, BENDING_POINTS, of.path) for t, of in zip(trajectories, features, strict=True)]
+    return features, measure(features, np.stack(courses), size, min(settings.error_bound, BOUND_SHARE * size))
+
+
+def step_count(sizes: Sequence[int]) -> int:
+    """Return how many steps `select` reports for clusters of these sizes."""
+    return sum(2 * size + fold_count(size) + 1 for size in sizes if size > 1)
 
 
 @dataclass(frozen=True, eq=False)
-class _Judged:
-    """The members of a cluster with what is known of their consistency, and the limit of the measure."""
+class Selection:
+    """Which of m members are selected.
 
-    names: Sequence[str]
-    trajectories: Sequence[Trajectory]
-    features: Mapping[Feature, FeatureSet]
-    consistency: ConsistencyScores
+    Attributes:
+        z: for each part of the measure (m,).
+        worst: (m,) largest of them.
+        order: (m,) members from the most to the least consistent.
+        selected: (m,).
+        limit: of the worst score.
+    """
+
+    z: dict[Part, Array]
+    worst: Array
+    order: NDArray[np.int64]
+    selected: NDArray[np.bool_]
     limit: float
 
 
-def _folds(count: int) -> int:
-    return MAX_FOLDS if count > MAX_LEAVE_ONE_OUT else count
+@dataclass(frozen=True, eq=False)
+class _Members:
+    """The members of a cluster with what is known of them."""
+
+    names: Sequence[str]
+    trajectories: Sequence[Trajectory]
+    features: Sequence[MotionFeatures]
+    selection: Selection
+    durations: Array  # (m,) [s] median of the others
+    mean: Array  # (100, 3) [m] of the paths of the selected
 
 
-def _limit(count: int, settings: LearningSettings) -> float:
-    return settings.inconsistent * (SMALL_CLUSTER_FACTOR if count < MIN_RELIABLE_MEMBERS else 1)
+def _described(
+    names: Sequence[str],
+    trajectories: Sequence[Trajectory],
+    features: Sequence[MotionFeatures],
+    selection: Selection,
+) -> _Members:
+    paths = [at_equal_arc_length(features[i].path, COST_POINTS) for i in np.flatnonzero(selection.selected).tolist()]
+    durations = others_median(np.array([of.duration for of in features]))[0]
+    return _Members(names, trajectories, features, selection, durations, np.mean(paths, axis=0))
 
 
-def _ranking(consistency: ConsistencyScores, settings: LearningSettings) -> Ranking:
-    limit = _limit(len(consistency.order), settings)
-    return [
-        (int(i), rank < settings.keep or bool(consistency.total[i] >= limit))
-        for rank, i in enumerate(consistency.order)
-    ]
+def _judge(measures: Measures, at: NDArray[np.int64], settings: LearningSettings) -> Selection:
+    """Judge the members `at` by one another."""
+    z = measures.scores(at)
+    worst = np.max(list(z.values()), axis=0)
+    limit = settings.outlier_limit * (SMALL_CLUSTER_FACTOR if len(at) < MIN_RELIABLE_MEMBERS else 1)
+    order = np.argsort(np.round(worst, 9), kind="stable")  # rounding must not rank members that are alike
+    selected = worst <= limit
+    selected[order[: settings.keep]] = True
+    return Selection(z, worst, order, selected, limit)
 
 
 def _holdouts(count: int, repeats: int, seed: int) -> list[set[int]]:
@@ -113,54 +145,65 @@ def _holdouts(count: int, repeats: int, seed: int) -> list[set[int]]:
     return [{int(i) for i in rng.choice(count, size, replace=False)} for _ in range(repeats)]
 
 
-def _stabilities(
-    features: Mapping[Feature, FeatureSet], count: int, settings: LearningSettings, on_step: StepCallback
-) -> list[float | None]:
+def _stabilities(measures: Measures, count: int, settings: LearningSettings) -> list[float | None]:
     """Return for every member the share of the repetitions with it in which it is selected."""
     scored = np.zeros(count, dtype=int)
     selected = np.zeros(count, dtype=int)
     for holdout in _holdouts(count, settings.repeats, settings.seed):
-        rest = [i for i in range(count) if i not in holdout]
-        folds = min(len(rest), REPETITION_FOLDS)
-        consistency = score_consistency(features, rest, folds, budget=REPETITION_BUDGET, on_step=on_step)
-        for place, keep in _ranking(consistency, settings):
-            scored[rest[place]] += 1
-            selected[rest[place]] += keep
+        rest = np.array([i for i in range(count) if i not in holdout])
+        scored[rest] += 1
+        selected[rest] += _judge(measures, rest, settings).selected
     return [float(k / n) if n else None for k, n in zip(selected, scored, strict=True)]
 
 
-def _convergence(features: Mapping[Feature, FeatureSet]) -> tuple[float, ...]:
-    """Return the log-likelihoods while a model of the course of all members is trained (Fig. 4)."""
-    return train_model(features[Feature.COURSE].sequences, MODEL_STATES[Feature.COURSE], TrainingBudget()).history
-
-
-def _score(judged: _Judged, i: int, rank: int, selected: bool, stability: float | None) -> Score:
-    consistency = judged.consistency
-    measure, order = consistency.total, consistency.order
+def _score(cluster: _Members, i: int, rank: int, likelihood: float, stability: float | None) -> Score:
+    selection = cluster.selection
+    measure, order, limit = np.minimum(-selection.worst, 0.0), selection.order, selection.limit
     deviation, note = None, ""
-    if measure[i] < judged.limit / 2:
-        feature = _worst_feature(consistency, i, judged.limit)
-        deviation = _deviation(judged, i, feature)
-        if measure[i] < judged.limit:
-            note = f"inconsistent in its {feature} (z {measure[i]:.1f}): {deviation.sentence}"
-    likelihood = sum(float(row[i].sum()) for row in consistency.profiles.values())
+    if selection.worst[i] > REPORTED_SHARE * limit:
+        part = _worst_part(selection, i)
+        deviation = _deviation(cluster, i, part)
+        if not selection.selected[i]:
+            note = f"inconsistent in its {FAULTY[part]} (z {measure[i]:.1f}): {deviation.sentence}; {_cost(cluster, i)}"
+    else:
+        deviation = describe_pace(cluster.features[i].duration, float(cluster.durations[i]))
     margin = float(measure[i] - measure[order[rank + 1]]) if rank + 1 < len(order) else None
-    return Score(judged.names[i], likelihood, rank + 1, selected, note, margin, float(measure[i]), stability, deviation)
+    return Score(
+        cluster.names[i],
+        likelihood,
+        rank + 1,
+        bool(selection.selected[i]),
+        note,
+        margin,
+        float(measure[i]),
+        stability,
+        deviation,
+    )
 
 
-def _worst_feature(consistency: ConsistencyScores, i: int, limit: float) -> Feature:
-    """Return the feature in which a member differs most.
+def _worst_part(selection: Selection, i: int) -> Part:
+    """Return the part that tells best what is wrong with member i, where one fault shows in several."""
+    z = {part: float(scores[i]) for part, scores in selection.z.items()}
+    if z[Part.FREEZE] > selection.limit:
+        return Part.FREEZE  # its leap shakes and pauses as well
+    z[Part.JUMP] /= 2  # a hand that trembles jumps as well
+    worst = max(z, key=lambda part: z[part])
+    return Part.PAUSE if worst is Part.BEND and z[Part.PAUSE] > selection.limit else worst
 
-    Shaking shows in course and shape too, but not the other way round, so the last feature goes first.
-    """
-    features = list(consistency.z)
-    z = [float(of[i]) for of in consistency.z.values()]
-    return features[-1] if z[-1] < limit else features[int(np.argmin(z))]
+
+def _deviation(cluster: _Members, i: int, part: Part) -> Deviation:
+    others = [k for k in range(len(cluster.names)) if k != i][:MAX_COMPARED_MEMBERS]
+    return describe_deviation(
+        cluster.trajectories[i],
+        cluster.features[i],
+        [cluster.trajectories[k] for k in others],
+        [cluster.features[k] for k in others],
+        part,
+    )
 
 
-def _deviation(judged: _Judged, i: int, feature: Feature) -> Deviation:
-    others = [trajectory for k, trajectory in enumerate(judged.trajectories) if k != i][:MAX_COMPARED_MEMBERS]
-    profiles = judged.consistency.profiles[feature]
-    usual = float(np.median(np.concatenate([profile for k, profile in enumerate(profiles) if k != i])))
-    times = judged.features[feature].times[i]
-    return describe_deviation(judged.trajectories[i], others, feature, profile=profiles[i], times=times, usual=usual)
+def _cost(cluster: _Members, i: int) -> str:
+    """Say how far the mean of the selected members moves without one that is left out."""
+    apart = np.linalg.norm(at_equal_arc_length(cluster.features[i].path, COST_POINTS) - cluster.mean, axis=1)
+    moved = float(apart.max()) / (int(cluster.selection.selected.sum()) + 1)
+    return f"without it the path moves by up to {describe_length(moved)}"

@@ -5,147 +5,148 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from scipy.ndimage import binary_closing, median_filter
+from scipy.ndimage import binary_closing
 from scipy.signal import savgol_filter
 
-from teachpath.learning.resampling import arc_lengths, at_equal_arc_length, smoothed
-from teachpath.learning.selection.features import Feature
+from teachpath.learning.resampling import arc_lengths, at_equal_arc_length
+from teachpath.learning.selection.consistency import Part, shaking_amplitude, shaking_profile
+from teachpath.learning.selection.features import CLOCK_POINTS, MotionFeatures
 from teachpath.records import Array, Deviation, Trajectory
 
-MIN_DEFICIT_SHARE = 0.25  # of the largest deficit, from which on a frame deviates too
-MAX_BRIDGED_FRAMES = 2  # between deviating frames, that count as deviating
+MIN_DEFICIT_SHARE = 0.25  # of the largest deviation, from which on a point deviates too
+BRIDGED_PARTS = 12  # of the points: gaps of two of them between deviating points are bridged
 PATH_POINTS = 100  # of the paths that are compared
-MIN_JUMP = 0.01  # m, distance of one sample from its neighbours
-MIN_REPEATED_READINGS = 5  # in a row
 REST_SPEED_SHARE = 0.15  # of the mean speed, below which the hand rests
-MIN_STOP_DURATION = 0.2  # s, up to which a stop is not mentioned
+MIN_STOP_DURATION = 0.2  # s, below which a stop is told by what the others take there
 MOTION_WINDOW = 0.8  # s, within which an intended motion is nearly a cubic polynomial
+TREND_DEGREE = 3
 MIN_SHAKING_RATE = 1.0  # Hz
-MIN_SHAKING_SHARE = 0.4  # of the distance from the others, above which the deviation is shaking and no detour
 MIN_TREMOR_RATE = 8  # Hz
-SPAN_MARGIN = 0.4  # s, looked at before and after the span
+UNUSUAL_PACE = 1.5  # of the median duration, from which on a pace is told
+MIN_IN_CENTIMETRES = 0.01  # m; shorter lengths are told in millimetres
+
+Seconds = tuple[float, float]
 
 
 def describe_deviation(
     trajectory: Trajectory,
+    features: MotionFeatures,
     others: Sequence[Trajectory],
-    feature: Feature,
-    *,
-    profile: Array,
-    times: Array,
-    usual: float,
+    their_features: Sequence[MotionFeatures],
+    part: Part,
 ) -> Deviation:
-    """Find where a demonstration is least likely, and describe how it deviates there.
+    """Find where a demonstration deviates most in one part of the measure, and describe how.
 
     Args:
         trajectory: of the demonstration.
-        others: trajectories of the other members of its cluster.
-        feature: in which it differs most.
-        profile: (frames,) log-likelihoods of its frames in that feature.
-        times: (frames,) [s] since the first sample.
-        usual: median log-likelihood of a frame of the others.
+        features: of the demonstration.
+        others: other members of its cluster.
+        their_features: of these.
+        part: in which it is worst.
     """
     since = trajectory.times - trajectory.times[0]
-    s = arc_lengths(smoothed(trajectory))
-    away, within = _beside(trajectory, others)
-    if feature in (Feature.SHAPE, Feature.BENDING) and np.any(away > within):
-        # Subtracting the large-scale form spreads a detour along the whole path; the distance tells where it is.
-        profile, usual = within - away, 0.0
-        times = np.interp(np.linspace(0.0, s[-1], PATH_POINTS), s, since)
-    begin, end = _span(profile, times, usual)
-    share = (float(np.interp(begin, since, s) / s[-1]), float(np.interp(end, since, s) / s[-1]))
-    what = _sentence(trajectory, others, feature, (begin, end), _worst(away, within, share))
-    sentence = f"{what}, {begin:.1f} to {end:.1f} s after the grasp, at {share[0]:.0%} to {share[1]:.0%} of its way"
-    return Deviation(share, (begin, end), sentence)
+    match part:
+        case Part.FREEZE:
+            seconds = (float(since[features.frozen[0]]), float(since[features.frozen[1]]))
+            what = f"the tracker repeats one reading for {seconds[1] - seconds[0]:.2g} s"
+        case Part.JUMP:
+            seconds = _around(since, features.jump_at)
+            what = f"jumps by {describe_length(features.jump)}"
+        case Part.PAUSE:
+            seconds, what = _pause(trajectory, features, their_features)
+        case Part.BEND:
+            seconds, what = _bend(since, features, their_features)
+        case _:
+            seconds, what = _shaking(trajectory, features, their_features)
+    s = arc_lengths(features.path)
+    share = tuple(float(np.interp(at, since, s) / s[-1]) if s[-1] > 0 else 0.0 for at in seconds)
+    where = f"{seconds[0]:.1f} to {seconds[1]:.1f} s after the grasp, at {share[0]:.0%} to {share[1]:.0%} of its way"
+    return Deviation((share[0], share[1]), seconds, f"{what}, {where}")
 
 
-def _span(profile: Array, times: Array, usual: float) -> tuple[float, float]:
-    """Return the times [s] between which frames are clearly less likely than usual, around the least likely one."""
-    deficit = usual - profile
-    worst = int(np.argmax(deficit))
-    odd = binary_closing(
-        np.pad(deficit > MIN_DEFICIT_SHARE * deficit[worst], MAX_BRIDGED_FRAMES), iterations=MAX_BRIDGED_FRAMES
-    )[MAX_BRIDGED_FRAMES:-MAX_BRIDGED_FRAMES]
-    usual_ones = np.append(np.flatnonzero(~odd), len(profile))
-    first = int(np.max(usual_ones[usual_ones < worst], initial=-1)) + 1
-    last = int(np.min(usual_ones[usual_ones > worst])) - 1
-    edges = np.concatenate([[0.0], (times[1:] + times[:-1]) / 2, times[-1:]])
-    return float(edges[first]), float(edges[last + 1])
+def describe_pace(duration: float, usual: float) -> Deviation | None:
+    """Say when a demonstration is much quicker or slower than the others, who take `usual` [s]; its path counts."""
+    pace = usual / duration
+    if 1 / UNUSUAL_PACE < pace < UNUSUAL_PACE:
+        return None
+    word = f"{pace:.1f} times as fast" if pace > 1 else f"{1 / pace:.1f} times as slowly"
+    sentence = f"shown {word} as the others, which changes nothing: the path has no time"
+    return Deviation((0.0, 1.0), (0.0, duration), sentence)
 
 
-def _sentence(
-    trajectory: Trajectory,
-    others: Sequence[Trajectory],
-    feature: Feature,
-    seconds: tuple[float, float],
-    beside: tuple[float, float],
-) -> str:
+def describe_length(length: float) -> str:
+    """Return a length [m] in centimetres, or in millimetres with two significant digits."""
+    return f"{length * 100:.1f} cm" if length >= MIN_IN_CENTIMETRES else f"{length * 1e3:.2g} mm"
+
+
+def _around(since: Array, at: int) -> Seconds:
+    return float(since[max(at - 1, 0)]), float(since[min(at + 1, len(since) - 1)])
+
+
+def _pause(trajectory: Trajectory, features: MotionFeatures, theirs: Sequence[MotionFeatures]) -> tuple[Seconds, str]:
+    """Tell the part of the path on which the hand dwells longest beside the others, and for how long it rests there."""
+    own = np.diff(features.passing)
+    usual = np.median([np.diff(of.passing) * features.duration / of.duration for of in theirs], axis=0)
+    worst = 1 + int(np.argmax((own / np.maximum(usual, 1e-9))[1:-1]))
+    seconds = float(features.passing[worst]), float(features.passing[worst + 1])
     since = trajectory.times - trajectory.times[0]
-    steps = np.diff(since)
-    margin, step = max(SPAN_MARGIN, float(steps.max())), float(np.median(steps))
-    inside = (since >= seconds[0] - margin) & (since <= seconds[1] + margin)
-    positions = trajectory.positions[inside]
-    repeated = _longest(np.all(np.diff(positions, axis=0) == 0, axis=1))
-    if repeated + 1 >= MIN_REPEATED_READINGS:
-        return f"the tracker repeats one reading for {repeated * step:.1f} s"
-    jumps = np.linalg.norm(positions - median_filter(positions, size=(5, 1), mode="nearest"), axis=1)
-    jitter = float(np.median(jumps))
-    if jumps.max() > MIN_JUMP + 5 * jitter:
-        return f"jumps by {jumps.max() * 100:.0f} cm"
-    away, usual = beside
-    path = smoothed(trajectory)
-    speed = np.linalg.norm(np.gradient(path, since, axis=0), axis=1)
-    still = (
-        _longest(
-            (speed < REST_SPEED_SHARE * speed.mean())
-            & inside
-            & (since > SPAN_MARGIN)
-            & (since < since[-1] - SPAN_MARGIN)
-        )
-        * step
-    )
-    if still > MIN_STOP_DURATION:
-        return f"stands still for {still:.1f} s"
-    shake, rate = _shaking(trajectory.positions, since, inside)
-    normal = float(np.median([_shaking(other.positions, other.times - other.times[0])[0] for other in others]))
-    trembles = shake > 1.1 * normal and feature is Feature.SMOOTHNESS
-    if trembles or shake > max(2 * normal, MIN_SHAKING_SHARE * away):
-        word = "shakes" if rate < MIN_TREMOR_RATE else "trembles"
-        return f"{word} by {shake * 100:.1f} cm about {rate:.0f} times a second"
-    if away > 1.5 * usual:
-        return f"runs up to {away * 100:.1f} cm beside the others, who stay within {usual * 100:.1f} cm"
-    if feature is Feature.BENDING:
-        return "bends as none of the others does, though not far beside them"
-    return "is in another place than the others at that time: quicker, slower or beside them"
+    speed = np.linalg.norm(np.gradient(features.path, since, axis=0), axis=1)
+    still = speed < REST_SPEED_SHARE * speed.mean()
+    still &= (since >= seconds[0]) & (since <= seconds[1])
+    rest = float(still.sum() * np.median(np.diff(since)))
+    if rest > MIN_STOP_DURATION:
+        return seconds, f"stands still for {rest:.1f} s"
+    return seconds, f"takes {own[worst]:.2g} s where the others take {usual[worst]:.2g} s"
 
 
-def _beside(trajectory: Trajectory, others: Sequence[Trajectory]) -> tuple[Array, Array]:
-    """Return the distances of a demonstration and of the farthest other from the others' mean: (100,) [m] each."""
-    courses = np.stack([at_equal_arc_length(smoothed(other), PATH_POINTS) for other in others])
+def _bend(since: Array, features: MotionFeatures, theirs: Sequence[MotionFeatures]) -> tuple[Seconds, str]:
+    courses = np.stack([at_equal_arc_length(of.path, PATH_POINTS) for of in theirs])
     mean = courses.mean(axis=0)
-    away = np.linalg.norm(at_equal_arc_length(smoothed(trajectory), PATH_POINTS) - mean, axis=1)
-    return away, np.linalg.norm(courses - mean, axis=2).max(axis=0)
+    away = np.linalg.norm(at_equal_arc_length(features.path, PATH_POINTS) - mean, axis=1)
+    within = np.linalg.norm(courses - mean, axis=2).max(axis=0)
+    s = arc_lengths(features.path)
+    beside = np.any(away > within)
+    begin, end = _span(away - within if beside else away)
+    seconds = tuple(float(np.interp(at / (PATH_POINTS - 1) * s[-1], s, since)) for at in (begin, end))
+    worst = begin + int(np.argmax((away - within)[begin : end + 1]))
+    if beside:
+        what = (
+            f"runs up to {describe_length(float(away[worst]))} beside the others, who stay within "
+            f"{describe_length(float(within[worst]))}"
+        )
+    else:
+        what = "bends as none of the others does, though not far beside them"
+    return (seconds[0], seconds[1]), what
 
 
-def _worst(away: Array, within: Array, share: tuple[float, float]) -> tuple[float, float]:
-    begin, end = int(share[0] * (PATH_POINTS - 1)), int(np.ceil(share[1] * (PATH_POINTS - 1))) + 1
-    worst = begin + int(np.argmax(away[begin:end]))
-    return float(away[worst]), float(within[worst])
-
-
-def _shaking(positions: Array, since: Array, inside: Array | None = None) -> tuple[float, float]:
-    """Return amplitude [m] and rate [Hz] of the part of a motion that no cubic polynomial follows over 0.8 s."""
+def _shaking(trajectory: Trajectory, features: MotionFeatures, theirs: Sequence[MotionFeatures]) -> tuple[Seconds, str]:
+    """Tell where a motion is quicker than the intended motion, by what amplitude and how often."""
+    excess = shaking_profile(features) - np.median([shaking_profile(of) for of in theirs], axis=0)
+    begin, end = _span(excess)
+    seconds = begin / CLOCK_POINTS * features.duration, (end + 1) / CLOCK_POINTS * features.duration
+    since = trajectory.times - trajectory.times[0]
     step = float(np.median(np.diff(since)))
-    width = min(round(MOTION_WINDOW / step), len(positions) - 1) // 2 * 2 + 1
-    quick = positions - savgol_filter(positions, max(width, 5), 3, axis=0)
-    quick = quick if inside is None else quick[inside]
+    width = min(round(MOTION_WINDOW / step), len(since) - 1) // 2 * 2 + 1
+    quick = trajectory.positions
+    if width > TREND_DEGREE:
+        quick = quick - savgol_filter(quick, width, TREND_DEGREE, axis=0)
+    inside = (since >= seconds[0]) & (since <= seconds[1])
+    quick = quick[inside] if inside.sum() > 1 else quick
     power = np.square(np.abs(np.fft.rfft(quick, axis=0))).sum(axis=1)
     rates = np.fft.rfftfreq(len(quick), step)
     power[rates < MIN_SHAKING_RATE] = 0.0
-    return float(np.sqrt(2 * np.square(quick).sum(axis=1).mean())), float(rates[np.argmax(power)])
+    rate = float(rates[np.argmax(power)])
+    word = "shakes" if rate < MIN_TREMOR_RATE else "trembles"
+    amplitude = describe_length(float(shaking_amplitude(excess.max())))
+    return seconds, f"{word} by {amplitude} about {rate:.0f} times a second"
 
 
-def _longest(flags: Array) -> int:
-    """Return the length of the longest run of true values."""
-    edges = np.flatnonzero(np.diff(np.concatenate([[0], np.asarray(flags, dtype=int), [0]])))
-    return int(np.max(edges[1::2] - edges[::2], initial=0))
+def _span(excess: Array) -> tuple[int, int]:
+    """Return first and last point around the largest excess that have at least a quarter of it; gaps are bridged."""
+    worst = int(np.argmax(excess))
+    gap = len(excess) // BRIDGED_PARTS
+    odd = binary_closing(np.pad(excess >= MIN_DEFICIT_SHARE * excess[worst], gap), iterations=gap)[gap:-gap]
+    usual = np.flatnonzero(~odd)
+    first = int(np.max(usual[usual < worst], initial=-1)) + 1
+    last = int(np.min(usual[usual > worst], initial=len(excess))) - 1
+    return first, last

@@ -1,119 +1,87 @@
-"""What the consistency of demonstrations is measured on: their course, shape, bending and smoothness."""
+"""What the consistency of a demonstration is measured on: its motion on two clocks, its dwell times, its readings.
+
+Amounts are later taken as shares of the size of the path, and times as shares of the duration, so neither the size of a
+task nor the sampling rate matters.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from enum import StrEnum
 
 import numpy as np
-from numpy.lib.stride_tricks import sliding_window_view
-from scipy.signal.windows import hamming
+from scipy.ndimage import median_filter
 
-from teachpath.learning.resampling import arc_lengths, at_equal_arc_length, at_equal_times, smoothed
-from teachpath.learning.settings import StepCallback
+from teachpath.learning.resampling import arc_lengths, at_equal_times, smoothed
 from teachpath.records import Array, Trajectory
 
-WINDOW = 40  # samples of a spectrum, or fewer when a demonstration is shorter
-MIN_WINDOW = 20  # samples
-TREND_DEGREE = 3  # of the polynomial that stands for the intended motion within a window
-FFT_POINTS = 64  # of the zero-padded transform
-FREQUENCY_BANDS = ((1, 5), (5, 9), (9, 17), (17, 33))  # bins, first to one behind the last
-NOISE_AMPLITUDE = 2e-4  # m, below which motion is not told from tracker noise
-FEATURE_POINTS = 40  # equal times, or equal shares of the path, at which course and shape are sampled
-BENDING_POINTS = 100  # equal times at which a course is sampled for its bending
-SHAPE_POINTS = 200  # of a path while its large-scale form is subtracted
-SHAPE_TREND_DEGREE = 5  # of the polynomial that stands for the large-scale form of a path
+CLOCK_POINTS = 240  # equal shares of the duration, or of the path, over which positions are averaged
+DEGREES = 101  # of the Legendre polynomials that describe a motion on a clock
+PATH_PARTS = 24  # equal parts of the path whose durations are compared
+COURSE_POINTS = 40  # equal times at which a course is sampled for the hidden Markov model
 VELOCITY_WEIGHT = 0.03  # s, of velocity beside position
+MEDIAN_WINDOW = 7  # readings, from whose median a single one may jump
+MIN_REPEATS = 4  # exact repeats of a reading, from which on a tracker may have frozen
 
-
-class Feature(StrEnum):
-    """A kind of feature in which demonstrations of one cluster are compared."""
-
-    COURSE = "course"  # where the hand is at which time
-    SHAPE = "shape"  # the path at equal arc length, without its large-scale form
-    BENDING = "bending"  # what neither pace nor slow drift explains
-    SMOOTHNESS = "smoothness"  # energy in frequency bands, without the intended motion
+_EDGES = np.linspace(-1.0, 1.0, CLOCK_POINTS + 1)
+# Orthonormal over the points of a clock, so that squared coefficients sum to energies.
+POLYNOMIALS: Array = np.linalg.qr(np.polynomial.legendre.legvander((_EDGES[1:] + _EDGES[:-1]) / 2, DEGREES - 1))[
+    0
+] * np.sqrt(CLOCK_POINTS)
 
 
 @dataclass(frozen=True, eq=False)
-class FeatureSet:
-    """One kind of feature of every member of a cluster.
+class MotionFeatures:
+    """What is measured of one demonstration.
 
     Attributes:
-        sequences: for each member (frames, features).
-        times: for each member (frames,) [s] since its first sample.
+        duration: [s].
+        path: (n, 3) [m] smoothed positions.
+        timed: (101, 3) [m] Legendre coefficients over the share of the duration; their squares sum to mean squares.
+        spaced: (101, 3) [m] the same over the share of the path.
+        passing: (25,) [s] times at which the hand passes equal shares of its path.
+        jump: [m] largest distance of a reading from the median of the seven around it.
+        jump_at: number of that reading.
+        leap: [m] largest leap that ends a run of repeated readings; 0 when there is none.
+        frozen: first and last number of that run.
     """
 
-    sequences: list[Array]
-    times: list[Array]
+    duration: float
+    path: Array
+    timed: Array
+    spaced: Array
+    passing: Array
+    jump: float
+    jump_at: int
+    leap: float
+    frozen: tuple[int, int]
 
 
-def extract_features(
-    trajectories: Sequence[Trajectory], period: float, on_step: StepCallback
-) -> dict[Feature, FeatureSet]:
-    """Compute the features of the members of a cluster.
-
-    Args:
-        trajectories: of one cluster.
-        period: sampling period [s] of the spectra.
-        on_step: called at most twice for each trajectory.
-
-    Returns:
-        course, shape, bending and smoothness; smoothness is missing when a demonstration is shorter than its window.
-    """
-    durations = [float(trajectory.times[-1] - trajectory.times[0]) for trajectory in trajectories]
-    paths = []
-    for trajectory in trajectories:
-        paths.append(smoothed(trajectory))
-        on_step()
-    found = {
-        Feature.COURSE: FeatureSet(positions_and_velocities(trajectories), _even_times(durations, FEATURE_POINTS)),
-        Feature.SHAPE: FeatureSet(
-            shapes(paths), [_passing_times(t, path) for t, path in zip(trajectories, paths, strict=True)]
-        ),
-        Feature.BENDING: FeatureSet(courses(trajectories, paths), _even_times(durations, BENDING_POINTS)),
-    }
-    energies = band_energies(trajectories, period, on_step)
-    if energies is not None:
-        centres = [
-            (np.arange(len(frames)) + 0.5) * duration / len(frames)
-            for frames, duration in zip(energies, durations, strict=True)
-        ]
-        found[Feature.SMOOTHNESS] = FeatureSet(energies, centres)
-    return found
-
-
-def band_energies(trajectories: Sequence[Trajectory], period: float, on_step: StepCallback) -> list[Array] | None:
-    """Compute the log energy in four frequency bands in short windows, without the intended motion.
-
-    A cubic polynomial is subtracted in every window: the intended motion of a hand over 0.8 s is nearly a cubic, a
-    wiggle of 1.5 Hz is not. The energy is summed over the axes, so it does not depend on the direction of the frame.
-
-    Args:
-        trajectories: of one cluster.
-        period: sampling period [s] to which they are resampled.
-        on_step: called once for each trajectory.
-
-    Returns:
-        for each trajectory (frames, 4), or None when one is shorter than 20 periods.
-    """
-    counts = [round(float(trajectory.times[-1] - trajectory.times[0]) / period) + 1 for trajectory in trajectories]
-    width = min(WINDOW, *counts)
-    if width < MIN_WINDOW:
-        return None
-    window = hamming(width)
-    trend = np.linalg.qr(np.polynomial.legendre.legvander(np.linspace(-1.0, 1.0, width), TREND_DEGREE))[0]
-    floor = np.square(NOISE_AMPLITUDE * window.sum() / 2)
-    features = []
-    for trajectory, count in zip(trajectories, counts, strict=True):
-        windows = sliding_window_view(at_equal_times(trajectory, count), width, axis=0)[:: width // 5]
-        residual = (windows - (windows @ trend) @ trend.T) * window  # (frames, 3, width)
-        power = np.square(np.abs(np.fft.rfft(residual, FFT_POINTS, axis=2))).sum(axis=1)  # (frames, bins)
-        energies = np.column_stack([power[:, low:high].sum(axis=1) for low, high in FREQUENCY_BANDS])
-        features.append(np.log(energies + floor))
-        on_step()
-    return features
+def extract_features(trajectory: Trajectory) -> MotionFeatures:
+    """Measure one demonstration."""
+    since = trajectory.times - trajectory.times[0]
+    positions = trajectory.positions
+    path = smoothed(trajectory)
+    s = arc_lengths(path)
+    forward = np.concatenate([[True], np.diff(s) > 0])
+    forward[-1] = True
+    # Where the hand rests its path has no length; the times in between are left out.
+    shares = np.linspace(0.0, s[-1], CLOCK_POINTS + 1)
+    at_shares = np.interp(shares, s[forward], since[forward])
+    at_shares[0], at_shares[-1] = 0.0, since[-1]
+    departures = np.linalg.norm(positions - median_filter(positions, size=(MEDIAN_WINDOW, 1), mode="nearest"), axis=1)
+    leap, frozen = _largest_leap(positions)
+    return MotionFeatures(
+        duration=float(since[-1]),
+        path=path,
+        timed=_coefficients(since, positions, np.linspace(0.0, since[-1], CLOCK_POINTS + 1)),
+        spaced=_coefficients(since, positions, at_shares),
+        passing=at_shares[:: CLOCK_POINTS // PATH_PARTS],
+        jump=float(departures.max()),
+        jump_at=int(np.argmax(departures)),
+        leap=leap,
+        frozen=frozen,
+    )
 
 
 def positions_and_velocities(trajectories: Sequence[Trajectory]) -> list[Array]:
@@ -124,45 +92,45 @@ def positions_and_velocities(trajectories: Sequence[Trajectory]) -> list[Array]:
     Returns:
         for each trajectory (40, 6) [m].
     """
-    courses = [at_equal_times(trajectory, FEATURE_POINTS, smoothed(trajectory)) for trajectory in trajectories]
+    courses = [at_equal_times(trajectory, COURSE_POINTS, smoothed(trajectory)) for trajectory in trajectories]
     pooled = np.concatenate(courses)
     centre = pooled.mean(axis=0)
     axes = np.linalg.eigh(np.cov((pooled - centre).T))[1]
     features = []
     for trajectory, course in zip(trajectories, courses, strict=True):
         local = (course - centre) @ axes
-        step = float(trajectory.times[-1] - trajectory.times[0]) / (FEATURE_POINTS - 1)
+        step = float(trajectory.times[-1] - trajectory.times[0]) / (COURSE_POINTS - 1)
         features.append(np.column_stack([local, VELOCITY_WEIGHT * np.gradient(local, step, axis=0)]))
     return features
 
 
-def shapes(paths: Sequence[Array]) -> list[Array]:
-    """Sample each path at equal arc length and subtract its large-scale form, a polynomial of degree 5.
-
-    Demonstrations of one cluster differ in their large-scale form without being inconsistent; a local detour is no
-    part of it. The axes are the principal axes of all residuals, so the features do not depend on the frame.
-
-    Returns:
-        for each path (40, 3) [m].
-    """
-    trend = np.linalg.qr(np.polynomial.legendre.legvander(np.linspace(-1.0, 1.0, SHAPE_POINTS), SHAPE_TREND_DEGREE))[0]
-    stations = np.linspace(0, SHAPE_POINTS - 1, FEATURE_POINTS).round().astype(int)
-    courses = [at_equal_arc_length(path, SHAPE_POINTS) for path in paths]
-    residuals = [(course - trend @ (trend.T @ course))[stations] for course in courses]
-    axes = np.linalg.eigh(np.cov(np.concatenate(residuals).T))[1]
-    return [residual @ axes for residual in residuals]
-
-
-def courses(trajectories: Sequence[Trajectory], paths: Sequence[Array]) -> list[Array]:
-    """Sample smoothed paths at equal shares of their durations: for each (100, 3) [m]."""
-    return [at_equal_times(t, BENDING_POINTS, path) for t, path in zip(trajectories, paths, strict=True)]
+def _coefficients(since: Array, positions: Array, edges: Array) -> Array:
+    """Average positions over time between edges (241,) [s], and project them on the polynomials: (101, 3) [m]."""
+    steps = np.diff(since)
+    integral = np.concatenate(
+        [np.zeros((1, 3)), np.cumsum((positions[1:] + positions[:-1]) / 2 * steps[:, None], axis=0)]
+    )
+    k = np.clip(np.searchsorted(since, edges, side="right") - 1, 0, len(steps) - 1)
+    after = (edges - since[k])[:, None]
+    slopes = (positions[k + 1] - positions[k]) / steps[k, None]
+    at_edges = integral[k] + positions[k] * after + slopes * np.square(after) / 2
+    widths = np.diff(edges)[:, None]
+    instant = widths <= 1e-9 * since[-1]  # an edge of a leap: its position instead of an average
+    averages = np.where(
+        instant, (positions[k] + slopes * after)[:-1], np.diff(at_edges, axis=0) / np.where(instant, 1.0, widths)
+    )
+    # A matrix product would round differently with another number of threads.
+    return np.asarray(np.einsum("nd,nk->dk", POLYNOMIALS, averages) / CLOCK_POINTS)
 
 
-def _even_times(durations: Sequence[float], count: int) -> list[Array]:
-    return [np.linspace(0.0, duration, count) for duration in durations]
-
-
-def _passing_times(trajectory: Trajectory, path: Array) -> Array:
-    """Return the times [s] at which the hand passes equal shares of its path."""
-    s = arc_lengths(path)
-    return np.asarray(np.interp(np.linspace(0.0, s[-1], FEATURE_POINTS), s, trajectory.times - trajectory.times[0]))
+def _largest_leap(positions: Array) -> tuple[float, tuple[int, int]]:
+    """Return the largest leap [m] after a run of exact repeats, and the readings of the run."""
+    steps = np.linalg.norm(np.diff(positions, axis=0), axis=1)
+    edges = np.diff(np.concatenate([[0], np.asarray(steps == 0, dtype=int), [0]]))
+    begins, ends = np.flatnonzero(edges == 1), np.flatnonzero(edges == -1)
+    kept = (ends - begins >= MIN_REPEATS) & (ends < len(steps))
+    begins, ends = begins[kept], ends[kept]
+    if not len(begins):
+        return 0.0, (0, 0)
+    largest = int(np.argmax(steps[ends]))
+    return float(steps[ends[largest]]), (int(begins[largest]), int(ends[largest]))

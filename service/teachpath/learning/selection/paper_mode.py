@@ -11,7 +11,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from teachpath.learning.selection.consistency import robust_z
 from teachpath.learning.selection.mixture_hmm import MixtureHmm
 from teachpath.learning.selection.symbols import WINDOW, spectra, symbol_sequences
 from teachpath.learning.settings import LearningSettings, StepCallback
@@ -20,6 +19,8 @@ from teachpath.records import Array, Cluster, Score
 RIDGE = 0.01  # squared codeword numbers, added to every covariance
 ITERATIONS = 10
 TOLERANCE = 1e-4
+PRIOR_SPREAD = 1.0  # nats a frame, usual spread of the scores of consistent demonstrations
+PRIOR_MEMBERS = 4  # members that the usual spread counts for beside the measured one
 REPAIRED_STATES, REPAIRED_MIXTURES = 5, 1
 
 
@@ -110,7 +111,7 @@ def _selected(
     )
     model.train(list(symbols.values()))
     likelihoods = np.array([model.log_likelihood(sequence) for sequence in symbols.values()])
-    z = robust_z(likelihoods / len(next(iter(symbols.values()))))
+    z = _robust_z(likelihoods / len(next(iter(symbols.values()))))
     order = np.argsort(-likelihoods, kind="stable")
     margins = [*(float(step) for step in -np.diff(likelihoods[order])), None]
     scores = tuple(
@@ -122,3 +123,10 @@ def _selected(
 
 def _with_stability(score: Score, kept: Mapping[str, int], repeats: int) -> Score:
     return replace(score, stability=kept[score.demonstration] / repeats)
+
+
+def _robust_z(scores: Array) -> Array:
+    """Return by how many spreads each score lies above the median; the spread of few is mixed with the usual one."""
+    measured = 1.4826 * float(np.median(np.abs(scores - np.median(scores))))
+    spread = np.sqrt((len(scores) * measured**2 + PRIOR_MEMBERS * PRIOR_SPREAD**2) / (len(scores) + PRIOR_MEMBERS))
+    return np.asarray((scores - np.median(scores)) / spread)

@@ -7,6 +7,8 @@ stands for the drift; a detour shows as energy in the degrees above it.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from teachpath.records import Array
@@ -17,56 +19,72 @@ WARP_SCALE = 0.01  # share of the length of the path; a larger shift by the warp
 GAUSS_NEWTON_STEPS = 4
 MIN_DEGREE, END_DEGREE = 4, 9  # degrees whose energy counts, first to one behind the last
 ENERGY_EXPONENT = 8  # power of the degree by which the energy of a smooth hand falls
+NEGLIGIBLE_BEND = 0.001  # of the size of the path, root mean square; bends far below it say nothing
 TRIM_RATIO = 8  # of so many others, the one that bends most does not count
 MIN_COURSES = 4  # of which three tell the usual energy
-SURPRISE_ALLOWANCE = 2.2  # nats that count as usual
-Z_PER_NAT = 10.0  # above the allowance: one of twenty clean ones among five then exceeds the limit of z
 
 
-def score_bending(shown: Array) -> tuple[Array, Array]:
+@dataclass(frozen=True, eq=False)
+class Bending:
+    """What of m courses neither pace nor slow drift explains.
+
+    Attributes:
+        energies: (m, degrees) mean squares in the degrees that count, in squared sizes of the path.
+        warps: (m,) shares of the duration by which the pace of a course differs from that of the others.
+    """
+
+    energies: Array
+    warps: Array
+
+    @property
+    def amplitudes(self) -> Array:
+        """Root mean squares of the bends: (m,) in sizes of the path."""
+        return np.asarray(np.sqrt(self.energies.sum(axis=1)))
+
+
+def measure_bending(shown: Array, size: float) -> Bending:
     """Compare every course with the mean of the others.
 
     Args:
-        shown: (m, n, 3) [m] at n equal shares of the duration.
-
-    Returns:
-        (m,) z of the excess bending, at most 0, and 0 for fewer than four courses; (m, n) log-likelihoods of the
-        points of each course, up to a constant.
+        shown: (m, n, 3) [m] at n equal shares of the duration, m at least 4.
+        size: of the path [m].
     """
     m, n, _ = shown.shape
-    if m < MIN_COURSES:
-        return np.zeros(m), np.zeros((m, n))
     means = (shown.sum(axis=0) - shown) / (m - 1)
-    residuals, polynomials = _residuals(shown, means)
-    counted = polynomials[:, :, MIN_DEGREE:END_DEGREE]
-    coefficients = counted.transpose(0, 2, 1) @ residuals  # (m, degrees, 3)
-    energies = np.square(coefficients).sum(axis=2) * np.arange(MIN_DEGREE, END_DEGREE) ** float(ENERGY_EXPONENT)
-    usual = _usual(energies.mean(axis=1))
-    surprise = np.log1p(energies / (3 * usual[:, None])).sum(axis=1)
-    bending = counted @ coefficients
-    spread = np.square(bending).sum(axis=2).mean(axis=1)
-    profiles = -0.5 * np.square(bending).sum(axis=2) / np.maximum(_usual(spread), 1e-12)[:, None]
-    return -Z_PER_NAT * np.maximum(surprise - SURPRISE_ALLOWANCE, 0.0), profiles
+    residuals, polynomials, warps = _residuals(shown, means)
+    coefficients = polynomials[:, :, MIN_DEGREE:END_DEGREE].transpose(0, 2, 1) @ residuals  # (m, degrees, 3)
+    energies = np.square(coefficients).sum(axis=2) / (n * size**2)
+    return Bending(energies, np.linalg.norm(warps, axis=1))
+
+
+def bending_surprises(energies: Array) -> Array:
+    """Return how much more each course bends than the others, whose energy falls as a smooth hand's: (m,) nats."""
+    degrees = np.arange(MIN_DEGREE, END_DEGREE)
+    even = NEGLIGIBLE_BEND**2 / len(degrees)
+    weighted = (energies + even) * (degrees / MIN_DEGREE) ** float(ENERGY_EXPONENT)
+    return np.asarray(np.log1p(weighted / (3 * _usual(weighted.mean(axis=1))[:, None])).sum(axis=1))
 
 
 def _usual(energies: Array) -> Array:
     """Return for each course the mean energy of the others, without the largest of them: (m,)."""
     m = len(energies)
-    others = np.sort(np.broadcast_to(energies, (m, m))[~np.eye(m, dtype=bool)].reshape(m, m - 1), axis=1)
-    return np.asarray(others[:, : max(m - 1 - (m - 1) // TRIM_RATIO, 1)].mean(axis=1)) + 1e-12
+    kept = m - 1 - (m - 1) // TRIM_RATIO
+    order = np.sort(energies)
+    # Of all, the least but one more than are kept; without its own, or else without the largest of them.
+    return np.asarray((order[: kept + 1].sum() - np.minimum(energies, order[kept])) / kept)
 
 
-def _residuals(shown: Array, means: Array) -> tuple[Array, Array]:
+def _residuals(shown: Array, means: Array) -> tuple[Array, Array, Array]:
     """Warp the time of every course onto its mean by Gauss and Newton's method, and subtract the mean.
 
     Returns:
         (m, n, 3) [m] residuals; (m, n, degrees) polynomials in the share of the path of the mean, orthonormal over the
-        n points.
+        n points; (m, sines) the warps, in shares of the duration.
     """
     m, n, _ = shown.shape
     steps = np.linalg.norm(np.diff(means, axis=1), axis=2)
     share = np.concatenate([np.zeros((m, 1)), np.cumsum(steps, axis=1)], axis=1)
-    length = share[:, -1]
+    length = share[:, -1].copy()
     share /= np.maximum(length, 1e-12)[:, None]
     polynomials = np.linalg.qr(np.polynomial.legendre.legvander(2 * share - 1, END_DEGREE - 1))[0]
     drift = polynomials[:, :, : DRIFT_DEGREE + 1]
@@ -83,7 +101,7 @@ def _residuals(shown: Array, means: Array) -> tuple[Array, Array]:
         products = flat @ flat.transpose(0, 2, 1)
         normal = products[:, 1:, 1:] + stiffness[..., None] * np.eye(WARP_SINES)
         warp = warp - np.linalg.solve(normal, (products[:, 1:, 0] + stiffness * warp)[..., None])[..., 0]
-    return _shifted(shown, warp @ sines.T) - means, polynomials
+    return _shifted(shown, warp @ sines.T) - means, polynomials, warp
 
 
 def _shifted(shown: Array, shift: Array) -> Array:

@@ -87,7 +87,7 @@ def spoilt(seed: int, fault: Callable[[Array, np.random.Generator], Array]) -> d
     ("fault", "words", "least"),
     [
         (paused, "stands still for 0.", 4),
-        (frozen, "the tracker repeats one reading for 0.3 s", 4),
+        (frozen, "the tracker repeats one reading for 0.28 s", 4),
         (spiked, "jumps by", 4),
         (jittered, "times a second", 4),
         (detoured, "beside the others", 3),
@@ -114,9 +114,9 @@ def test_the_span_lies_around_the_fault() -> None:
     departure = selected(spoilt(7, frozen)).scores[-1].deviation  # frozen from 2.0 to 2.3 s
     assert departure is not None
     begin, end = departure.seconds
-    assert 1.4 < begin <= 2.1
-    assert 2.2 <= end < 3.0
-    assert 0.3 < departure.share[0] < departure.share[1] < 0.9
+    assert begin == pytest.approx(2.0)
+    assert end == pytest.approx(2.28)
+    assert 0.4 < departure.share[0] < departure.share[1] < 0.7
 
 
 def test_consistent_demonstrations_have_no_departure_and_a_score_of_nearly_nought() -> None:
@@ -159,7 +159,7 @@ def test_without_wiggle_the_marked_one_is_treated_like_the_others(without_wiggle
 
 def test_consistent_demonstrations_are_seldom_called_inconsistent(without_wiggle: list[Cluster]) -> None:
     flagged = np.mean([1 - len(kept(cluster)) / 5 for cluster in without_wiggle])
-    assert flagged <= 0.06  # one of twenty, the price of finding detours no larger than the hand's own scatter
+    assert flagged <= 0.02
 
 
 def test_in_clusters_of_three_false_alarms_are_rare_too() -> None:
@@ -186,7 +186,7 @@ def test_ranking_does_not_depend_on_the_order_or_the_frame() -> None:
 
 @pytest.mark.parametrize("keep", [1, 3, 5, 9])
 def test_at_least_the_demanded_number_is_kept(keep: int) -> None:
-    cluster = selected(synthetic.experiment_2(4), LearningSettings(keep=keep, inconsistent=0.0, repeats=0))
+    cluster = selected(synthetic.experiment_2(4), LearningSettings(keep=keep, outlier_limit=1e-6, repeats=0))
     assert len(kept(cluster)) >= min(keep, 5)
 
 
@@ -204,11 +204,62 @@ def test_identical_demonstrations_are_all_consistent() -> None:
         assert np.all(np.isfinite([score.log_likelihood for score in cluster.scores]))
 
 
-def test_demonstrations_shorter_than_the_window_are_judged_by_their_course() -> None:
+@pytest.mark.parametrize("duration", [0.06, 0.3])
+def test_short_demonstrations_are_judged_like_any_other(duration: float) -> None:
     rng = np.random.default_rng(5)
-    cluster = selected({str(i): synthetic.demonstration(rng, duration=0.3) for i in range(5)})
-    assert "shorter than the analysis window" in cluster.note
-    assert np.all(np.isfinite([score.log_likelihood for score in cluster.scores]))
+    cluster = selected({str(i): synthetic.demonstration(rng, duration=duration) for i in range(5)})
+    assert np.all(np.isfinite([(score.log_likelihood, score.z) for score in cluster.scores]))
+
+
+@pytest.mark.parametrize("pace", [0.5, 2.0])
+def test_pace_alone_leaves_nobody_out_and_is_told_as_what_it_is(pace: float) -> None:
+    for seed in range(4):
+        five = synthetic.experiment_2(seed, wiggle=0.0)
+        slow = five["3"]
+        cluster = selected({**five, "3": Trajectory(slow.times / pace, slow.positions)})
+        (score,) = [score for score in cluster.scores if score.demonstration == "3"]
+        assert score.selected
+        assert score.deviation is not None
+        assert f"2.0 times as {'fast' if pace > 1 else 'slowly'}" in score.deviation.sentence
+
+
+@pytest.mark.parametrize("rate", [25, 100, 200])
+def test_the_sampling_rate_of_one_tells_nothing(rate: int) -> None:
+    rng = np.random.default_rng(rate)
+    five = {str(i): synthetic.demonstration(rng, duration=3.98, noise=0.0) for i in range(5)}
+    times = np.arange(0.0, 3.98, 1 / rate)
+    columns = [np.interp(times, five["2"].times, five["2"].positions[:, k]) for k in range(3)]
+    noisy = {k: Trajectory(d.times, d.positions + rng.normal(0, 0.001, d.positions.shape)) for k, d in five.items()}
+    noisy["2"] = Trajectory(times, np.column_stack(columns) + rng.normal(0, 0.001, (len(times), 3)))
+    assert "2" in kept(selected(noisy))
+
+
+def test_the_size_of_the_task_changes_no_decision() -> None:
+    here = selected(spoilt(2, paused), LearningSettings(error_bound=100.0, repeats=0))
+    for factor in (0.07, 7.0):
+        moved = {k: Trajectory(d.times, factor * d.positions) for k, d in spoilt(2, paused).items()}
+        there = selected(moved, LearningSettings(error_bound=100.0, repeats=0))
+        np.testing.assert_allclose([s.z for s in there.scores], [s.z for s in here.scores], atol=1e-6)
+        assert kept(there) == kept(here)
+
+
+def test_nobody_shakes_below_the_bound_of_the_fit() -> None:
+    rng = np.random.default_rng(3)
+    still = {str(i): synthetic.demonstration(rng, tremor=0.0, noise=1e-5) for i in range(4)}
+    cluster = selected({**still, "9": synthetic.demonstration(rng, tremor=0.0, noise=1e-5, wiggle=0.002)})
+    (score,) = [score for score in cluster.scores if score.demonstration == "9"]
+    assert "shakes" not in score.note
+    closer = selected(
+        {**still, "9": synthetic.demonstration(rng, tremor=0.0, noise=1e-5, wiggle=0.002)},
+        replace(SETTINGS, error_bound=0.0005),
+    )
+    assert "9" not in kept(closer)
+
+
+def test_a_note_says_what_leaving_one_out_costs() -> None:
+    note = selected(synthetic.experiment_2(11)).scores[-1].note
+    assert "without it the path moves by up to" in note
+    assert " 0 mm" not in note
 
 
 def test_many_demonstrations_are_judged_in_folds() -> None:
@@ -217,7 +268,7 @@ def test_many_demonstrations_are_judged_in_folds() -> None:
     ticks: list[int] = []
     cluster = select(1, crowd, SETTINGS, on_step=lambda: ticks.append(1))
     assert cluster.members[-1] == "17"
-    assert len(ticks) == step_count([33], 0) < step_count([30], 0)
+    assert len(ticks) == step_count([33]) < step_count([30])
 
 
 def test_mode_paper_keeps_exactly_the_n_best_by_likelihood() -> None:
