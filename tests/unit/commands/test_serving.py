@@ -1,10 +1,12 @@
 """The web port: what listens there."""
 
+import gc
 import socket
+import sys
 
 import pytest
 
-from teachpath.commands.serving import free_port, listen
+from teachpath.commands.serving import free_port, listen, short_pauses
 from teachpath.errors import Unreachable
 
 
@@ -18,3 +20,11 @@ def test_answers_on_a_kept_connection_do_not_wait_for_acknowledgements() -> None
 def test_a_port_that_is_taken_is_said() -> None:
     with socket.create_server(("127.0.0.1", 0)) as taken, pytest.raises(Unreachable, match="Choose another: --port"):
         listen("127.0.0.1", taken.getsockname()[1])
+
+
+def test_the_collector_leaves_out_what_was_there_and_threads_take_turns_sooner_until_the_end() -> None:
+    interval, there = sys.getswitchinterval(), [[number] for number in range(1000)]
+    with short_pauses():
+        assert gc.get_freeze_count() >= len(there)
+        assert sys.getswitchinterval() < interval
+    assert (gc.get_freeze_count(), sys.getswitchinterval()) == (0, interval)
