@@ -1,4 +1,4 @@
-"""Middleware: refuses commands from pages of another origin, and bodies that are too large or come too slowly."""
+"""Middleware: refuses foreign pages' commands and bodies that are too large or slow, and answers when the service ends."""
 
 from __future__ import annotations
 
@@ -46,6 +46,33 @@ class RequestLimits:
             await _refuse(413, _too_large(announced, limit))(scope, receive, send)
         else:
             await self._app(scope, _LimitedBody(receive, limit, self._settings.request_timeout), send)
+
+
+class AnswersAtTheEnd:
+    """Answers 503 where the service ends before a request has its answer; what has begun is cut off.
+
+    Args:
+        app: is told to give up (cancelled) when the time for the service's end is over.
+    """
+
+    def __init__(self, app: ASGIApp) -> None:
+        self._app = app
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Pass the request on."""
+        begun = False
+
+        async def noted(message: Message) -> None:
+            nonlocal begun
+            begun = True
+            await send(message)
+
+        try:
+            await self._app(scope, receive, noted)
+        except asyncio.CancelledError:
+            if begun or scope["type"] != "http":
+                raise
+            await _refuse(503, "the service ends; ask again when it runs")(scope, receive, send)
 
 
 class _LimitedBody:

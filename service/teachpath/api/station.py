@@ -17,7 +17,7 @@ from teachpath.api.exports import exports_router
 from teachpath.api.faults import REFUSALS, answer_errors
 from teachpath.api.imports import imports_router
 from teachpath.api.joints import joints_router
-from teachpath.api.middleware import RequestLimits
+from teachpath.api.middleware import AnswersAtTheEnd, RequestLimits
 from teachpath.api.objects import objects_router
 from teachpath.api.parts import Health, Parts
 from teachpath.api.recording import recording_router
@@ -43,6 +43,7 @@ def build_api(parts: Parts, *pages: APIRouter) -> FastAPI:
     hosts = ["127.0.0.1", "localhost", "[::1]", parts.settings.web.host, *parts.settings.web.hosts]
     app.add_middleware(RequestLimits, settings=parts.settings.web)
     app.add_middleware(TrustedHostMiddleware, allowed_hosts=hosts)
+    app.add_middleware(AnswersAtTheEnd)
     answer_errors(app)
     routers = (
         tasks_router,

@@ -1,5 +1,6 @@
 """Connections on real sockets: who sends a request slowly, or reads no answer, is closed, to make room for others."""
 
+import asyncio
 import json
 import socket
 import threading
@@ -14,7 +15,7 @@ from starlette.responses import PlainTextResponse
 from starlette.routing import Route, WebSocketRoute
 from starlette.websockets import WebSocket
 
-from teachpath.api.middleware import RequestLimits
+from teachpath.api.middleware import AnswersAtTheEnd, RequestLimits
 from teachpath.commands.serving import free_port, listen
 from teachpath.web.server import web_server
 from teachpath.web.settings import WebSettings
@@ -22,6 +23,7 @@ from tests.waiting import HANG, wait_until
 
 SHORT = 0.3  # [s] after which a client of these tests is too slow
 NEVER = 3600.0
+ASKED = threading.Event()  # somebody waits for what never comes
 LARGE = 16 * 1024 * 1024  # bytes; more than all buffers on the way hold
 HANDSHAKE = (
     b"GET /messages HTTP/1.1\r\nHost: x\r\nConnection: Upgrade\r\nUpgrade: websocket\r\n"
@@ -31,6 +33,12 @@ HANDSHAKE = (
 
 async def answer(request: Request) -> PlainTextResponse:
     return PlainTextResponse(f"{len(await request.body())} bytes")
+
+
+async def wait_for_ever(request: Request) -> PlainTextResponse:
+    ASKED.set()
+    await asyncio.Event().wait()
+    raise AssertionError
 
 
 async def pour(request: Request) -> PlainTextResponse:
@@ -50,10 +58,11 @@ def served(**settings: Any) -> Iterator[int]:
     routes = [
         Route("/", answer, methods=["GET", "POST"]),
         Route("/large", pour),
+        Route("/never", wait_for_ever),
         WebSocketRoute("/messages", pour_messages),
     ]
     port, chosen = free_port(), WebSettings(**settings)
-    server = web_server(RequestLimits(Starlette(routes=routes), settings=chosen), chosen)
+    server = web_server(AnswersAtTheEnd(RequestLimits(Starlette(routes=routes), settings=chosen)), chosen)
     with listen("127.0.0.1", port) as listener:
         thread = threading.Thread(target=server.run, kwargs={"sockets": [listener]}, daemon=True)
         thread.start()
@@ -112,6 +121,14 @@ def test_a_body_that_does_not_come_is_refused() -> None:
             assert "60 bytes of the body came" in refusal(rest(connection), 408)
         with opened(port, head + b"x" * 100) as connection:
             assert rest(connection).endswith(b"100 bytes")
+
+
+def test_a_request_that_waits_when_the_service_ends_is_answered() -> None:
+    with ExitStack() as stack:
+        with served(request_timeout=NEVER) as port:
+            connection = stack.enter_context(opened(port, b"GET /never HTTP/1.1\r\nHost: x\r\n\r\n"))
+            assert ASKED.wait(HANG)
+        assert "the service ends" in refusal(rest(connection), 503)
 
 
 def test_a_reader_that_takes_nothing_is_closed() -> None:
