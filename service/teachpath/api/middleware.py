@@ -1,4 +1,4 @@
-"""Middleware: refuses foreign pages' commands and bodies that are too large or slow, and answers when the service ends."""
+"""Middleware: refuses commands of other origins, bodies too large or too slow, and answers when the service ends."""
 
 from __future__ import annotations
 
