@@ -43,6 +43,35 @@ class Adaptation:
 
 
 @dataclass(frozen=True)
+class AdaptationModel:
+    """What a course between other ends is computed from: the numbers of a `CourseModel`, for programs beside this one.
+
+    Attributes:
+        turns: False for closed or vertical paths, whose shapes s_i are added as they are, without D and R.
+        shapes: of each demonstration (n, 3), in the axes of the world.
+        distances: of each demonstration D [m].
+        yaws: of each demonstration y [rad].
+        inverse: of the kriging system.
+        variance: (n,) per unit of scale and of kriging variance; None after one demonstration.
+        learned: (n, 3) [m] the path as it was learned.
+        own: (n, 3) [m] what it has beside the prediction for its ends.
+        version: (n, 3) [m] the version that is adapted.
+        edits: (n, 3) [m] what it has beside the adapted learned path.
+    """
+
+    turns: bool
+    shapes: list[list[list[float]]]
+    distances: list[float]
+    yaws: list[float]
+    inverse: list[list[float]]
+    variance: list[float] | None
+    learned: list[list[float]]
+    own: list[list[float]]
+    version: list[list[float]]
+    edits: list[list[float]]
+
+
+@dataclass(frozen=True)
 class Advice:
     """What the operator of a task should do next, in words."""
 

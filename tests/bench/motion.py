@@ -20,6 +20,7 @@ from tests.bench.report import Figure, against
 
 POLL = 0.002  # [s]
 LONGEST_LEARNING = 0.5  # [s]
+LONGEST_ADAPTATION = 0.5  # [s]
 
 
 def measure(*, repeats: int, seconds: float) -> list[Figure]:
@@ -75,6 +76,7 @@ def _jobs(station: Station, repeats: int) -> tuple[list[Figure], str]:
     for _ in range(repeats):
         planned, seconds = _job(station, lambda: station.begin_planning(path))
         planning.append(seconds)
+    adapting = _adaptations(station, path, repeats)
     # A learning job that has nothing to learn from ends at once: what is left is the way there and back.
     station.make_task("nothing", scene="empty")
     begin = partial(station.begin_job, "nothing", "learn")
@@ -85,7 +87,22 @@ def _jobs(station: Station, repeats: int) -> tuple[list[Figure], str]:
         against("learning job in a warm worker, POST to outcome", warm, "s", name="limit", value=LONGEST_LEARNING),
         Figure("  the first one, which loads the libraries", (cold,), "s"),
         against("planning job, POST to outcome", planning, "s", name="round trip alone", value=round_trip),
+        against("a path adapted, POST to certificate", adapting, "s", name="asked for", value=LONGEST_ADAPTATION),
     ], planned.outcome
+
+
+def _adaptations(station: Station, path: str, repeats: int) -> list[float]:
+    """Adapt a path to a goal a little farther on, again and again; returns how long each took [s]."""
+    x, y, z = station.get_path(path).curve.control_points[-1]
+    taken = []
+    for count in range(1, repeats + 1):
+        goal = {"position": [x + 0.005 * count, y, z]}
+        taken.append(_job(station, partial(_adaptation, station, path, goal))[1])
+    return taken
+
+
+def _adaptation(station: Station, path: str, goal: dict[str, object]) -> Job:
+    return station.adapt(path, goal=goal).job
 
 
 def _job(station: Station, begin: Callable[[], Job], *, state: str = "succeeded") -> tuple[Job, float]:

@@ -36,7 +36,7 @@ def measure(*, drags: int) -> list[Figure]:
             path = _fine_path(station)
             with _page(browser, url) as page:
                 _open(page, path)
-                return _figures(_drag(page, drags))
+                return _figures(_drag(page, drags)) + _adaptation_figures(_drag_object(page, drags))
 
 
 def _fine_path(station: Station) -> str:
@@ -88,6 +88,32 @@ def _drag(page: Any, drags: int) -> dict[str, Any]:
             page.evaluate("teachpath.editor.timings.reset()")
     figures: dict[str, Any] = page.evaluate("teachpath.editor.timings.summary")
     return figures
+
+
+def _drag_object(page: Any, drags: int) -> dict[str, Any]:
+    """Drag the object to and fro; return what the page measured."""
+    page.locator("#edit-adapt").click()
+    page.wait_for_selector("#edit-adapt[aria-pressed=true]")
+    page.evaluate("teachpath.editor.timings.reset()")
+    for k in range(drags):
+        metres = "['x', 'y', 'z'].map((axis) => document.getElementById(`edit-start-${axis}`).value / 1000)"
+        x, y = page.evaluate(f"teachpath.project({metres})")
+        page.mouse.move(x, y)
+        page.mouse.down()
+        for step in range(1, 13):
+            page.mouse.move(x + (step if k % 2 else -step), y)
+            page.wait_for_timeout(16)
+        page.mouse.up()
+    figures: dict[str, Any] = page.evaluate("teachpath.editor.timings.summary")
+    return figures
+
+
+def _adaptation_figures(seen: dict[str, Any]) -> list[Figure]:
+    what = "a frame while the object is dragged, the page's own work"
+    return [
+        against(f"{what}, {share}", [seen["work"][share]], "ms", name="a frame", value=FRAME)
+        for share in ("p50", "p95")
+    ]
 
 
 def _figures(seen: dict[str, Any]) -> list[Figure]:

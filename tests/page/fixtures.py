@@ -13,6 +13,9 @@ from typing import Any
 
 import numpy as np
 
+from teachpath.io.documents import to_document
+from teachpath.learning.adaptation.adapted_course import CourseModel
+from teachpath.learning.adaptation.kriged_shapes import KrigedShapes
 from teachpath.motion.arm.kinematics import link_frames
 from teachpath.motion.arm.model import Arm
 from teachpath.motion.arm.puma560 import VARIANTS
@@ -141,11 +144,37 @@ def names() -> list[dict[str, Any]]:
     ]
 
 
+def adaptations() -> list[dict[str, Any]]:
+    """Models of paths of one demonstration, of several, and of a closed way, with paths that they predict."""
+    chance = np.random.default_rng(3)
+    return [_adaptation(chance, count, closed) for count, closed in ((1, False), (4, False), (3, True))]
+
+
+def _adaptation(chance: np.random.Generator, count: int, closed: bool) -> dict[str, Any]:
+    share = np.linspace(0.0, 1.0, 12)[:, None]
+    shown = []
+    for _ in range(count):
+        start = np.array([0.4, -0.3, 0.5]) + chance.normal(0, 0.05, 3)
+        goal = start if closed else np.array([0.5, 0.3, 0.55]) + chance.normal(0, 0.05, 3)
+        bow = np.sin(np.pi * share) * chance.normal([0.1, 0.0, 0.2], 0.02)
+        shown.append(start + share * (goal - start) + bow + np.sin(2 * np.pi * share) * chance.normal(0, 0.05, 3))
+    edited = shown[0] + 0.05 * np.sin(np.pi * share) ** 2 * chance.normal(0, 1, 3)
+    model = CourseModel(KrigedShapes(np.array(shown)), shown[0], edited)
+    predictions = []
+    for spread in (0.0, 0.005, 0.15):
+        start, goal = (shown[0][end] + chance.normal(0, 1, 3) * spread for end in (0, -1))
+        found = model.predict(start, goal)
+        named = {"start": start, "goal": goal, "path": found.path, "deviation": found.deviation}
+        predictions.append({name: values.tolist() for name, values in named.items()})
+    return {"model": to_document(model.export()), "predictions": predictions}
+
+
 FIXTURES: dict[str, Callable[[], list[dict[str, Any]]]] = {
     "curves": curves,
     "link_poses": link_poses,
     "hand_samples": hand_samples,
     "motions": motions,
+    "adaptations": adaptations,
     "names": names,
 }
 

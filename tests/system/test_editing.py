@@ -242,3 +242,33 @@ def test_knots_come_and_go_without_a_change_of_the_shape_and_versions_branch(des
     found = re.match(r"Version 1 \(orange\) and version 2 \(pink\): they lie up to ([\d.]+) mm apart", said)
     assert found, said
     assert float(found[1]) == pytest.approx(1000 * apart, abs=0.2)  # of 301 places
+
+
+def test_an_object_and_its_goal_are_moved_and_the_path_follows(desks: Any, service: Service, paths: list[str]) -> None:
+    desk, station = desks(paths[0]), service.station
+    base = station.get_path(paths[0])
+    ends = np.array(base.curve.control_points)[[0, -1]]
+    desk.page.get_by_role("button", name="Move object and goal").click()
+    desk.page.wait_for_selector("#edit-adapt[aria-pressed=true]")
+    x, y = desk.ask(f"teachpath.project({ends[0].tolist()})")
+    desk.page.mouse.move(x, y)
+    desk.page.mouse.down()
+    desk.page.mouse.move(x + 12, y - 8, steps=6)
+    desk.page.mouse.up()
+    start = [float(desk.page.input_value(f"#edit-start-{axis}")) / 1000 for axis in "xyz"]
+    assert np.linalg.norm(np.subtract(start, ends[0])) > 0.005
+    assert start[2] == pytest.approx(ends[0][2], abs=1e-4)  # on its level
+    assert "nineteen times of twenty" in desk.page.inner_text("#edit-adapted")
+    desk.page.fill("#edit-goal-x", f"{1000 * ends[1][0] + 30:.1f}")
+    desk.page.keyboard.press("Tab")
+    try:
+        desk.page.get_by_role("button", name="Adapt and certify").click()
+        desk.until(f"editor.draft.base.number === {base.version + 1}")
+        desk.page.wait_for_selector("#edit-certified :is(.good, .failed)")
+        adapted = station.get_path(paths[0])
+        points = np.array(adapted.curve.control_points)[[0, -1]]
+        np.testing.assert_allclose(points, [start, ends[1] + [0.03, 0, 0]], atol=1e-4)
+        assert list(station.get_object("paper").position) == pytest.approx(start, abs=1e-4)
+        assert "one place only" in desk.page.inner_text("#edit-adapted")
+    finally:
+        station.reset_object("paper")

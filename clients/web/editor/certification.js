@@ -14,15 +14,15 @@ export function certificationSection(place, editor) {
   const why = element("p", { class: "note" }, "Save the version first; only what is saved is certified.");
   place.append(element("div", { class: "row" }, certify), why, status);
   /** @type {Planning | null} */
-  let job = null; // that this section has begun
+  let job = null; // that is followed
   const { context } = editor;
 
   certify.addEventListener("click", () =>
     context.attempt(async () => {
       if (!editor.draft) return;
       const { path, base } = editor.draft;
-      job = { path, version: base, ...(await post(resourcePath("paths", path, "plans"), { version: base.number })) };
-      render();
+      const begun = await post(resourcePath("paths", path, "plans"), { version: base.number });
+      editor.followPlanning({ path, version: base, ...begun });
     }),
   );
   status.addEventListener("click", (event) => {
@@ -46,7 +46,11 @@ export function certificationSection(place, editor) {
   const render = () => patchChildren(status, ...(job && job.path === editor.draft?.path ? content(job) : []));
 
   return {
-    update({ draft }, what) {
+    update({ draft, planning }, what) {
+      if (what === "planning") {
+        job = planning;
+        render();
+      }
       if (!draft || what === "drag" || what === "feasibility") return;
       certify.textContent = `Certify version ${versionTitle(draft.base)}`;
       certify.disabled = draft.edited;

@@ -8,6 +8,7 @@ const SAMPLES = 201;
 const MAX_CONTROL_POINTS = 512; // control points
 const PARAMETERS = linspace(SAMPLES);
 const RADIUS = 0.0045; // [m]
+const LINES = ["edit-original", "edit-first", "edit-second", "edit-adapted"]; // that the editor draws
 
 export class CurveOverlay {
   /** @type {BasisFunctions | null} */
@@ -45,7 +46,7 @@ export class CurveOverlay {
   /** @param {boolean} visible */
   show(visible) {
     this.group.visible = visible;
-    if (!visible) for (const name of ["edit-original", "edit-first", "edit-second"]) this.overlay.setLine(name, null);
+    if (!visible) for (const name of LINES) this.overlay.setLine(name, null);
     this.overlay.requestDraw();
   }
 

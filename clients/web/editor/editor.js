@@ -1,7 +1,8 @@
 // The editor: one draft at a time, drawn and dragged in the 3-D view, assessed by the service after every step.
 //
 // Sections of the panel are { update(editor, what) }; `what` is "draft" (another path or version), "curve" (a step was made),
-// "selection" (of control points), "drag" (every frame of a drag), "versions" or "feasibility" (the service has answered).
+// "selection" (of control points), "drag" (every frame of a drag), "versions" or "feasibility" (the service has answered),
+// or "planning" (a version is being certified).
 import { post } from "../api.js";
 import { curvesEqual } from "./curve_edits.js";
 import { CurveOverlay } from "./curve_overlay.js";
@@ -24,6 +25,8 @@ export class Editor {
   versions = [];
   /** @type {number[] | null} */
   spread = null; // radii of the corridor around what was learned [m]
+  /** @type {import("./certification.js").Planning | null} */
+  planning = null; // begun last in this tab
   shown = false;
   timings = new TimingStats();
   #hasKeyboardLabel = false;
@@ -209,6 +212,12 @@ export class Editor {
     this.curveOverlay.setCurve(this.draft.curve);
     this.#placeGizmo();
     this.notify("drag");
+  }
+
+  /** @param {import("./certification.js").Planning} planning that was begun */
+  followPlanning(planning) {
+    this.planning = planning;
+    this.notify("planning");
   }
 
   /** @param {EditorChange} what */

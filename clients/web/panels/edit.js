@@ -1,4 +1,5 @@
 // Edit: the chosen path's control points, knots and versions; the curve itself is edited in the 3-D view.
+import { adaptationSection } from "../editor/adaptation.js";
 import { certificationSection } from "../editor/certification.js";
 import { controlPointsSection } from "../editor/control_points.js";
 import { Editor } from "../editor/editor.js";
@@ -52,6 +53,7 @@ class EditPanel {
     editor.add(
       steps,
       feasibilitySection(section(this.sections, "edit-arm", "Can the arm follow?"), editor),
+      adaptationSection(section(this.sections, "edit-adaptation", "An object that lies elsewhere"), editor),
       controlPointsSection(section(this.sections, "edit-place", "Control points"), editor),
       knotsSection(section(this.sections, "edit-knots", "Knots"), editor),
       saveForm(section(this.sections, "edit-saving", "Save"), editor),

@@ -9,6 +9,7 @@ import numpy as np
 from fastapi import APIRouter, Response
 from pydantic import Field
 
+from teachpath.api.adaptation_inputs import shown_for
 from teachpath.api.answers import json_response, model_of
 from teachpath.api.parts import Parts
 from teachpath.api.poses import Component, Coordinate
@@ -16,13 +17,12 @@ from teachpath.api.strict_requests import Body
 from teachpath.api.versions import BRANCH_PATTERN, LINE_PATTERN
 from teachpath.editing import check_editable
 from teachpath.errors import UnusableInput
-from teachpath.io.store.store import Run, Store
+from teachpath.io.store.store import Store
 from teachpath.io.store.versions import Edit
-from teachpath.learning.adaptation.adapt import AdaptedPath, adapt
+from teachpath.learning.adaptation.adapt import AdaptedPath, adapt, course_model
+from teachpath.learning.adaptation.adapted_course import AdaptationModel
 from teachpath.learning.adaptation.target import Target
-from teachpath.learning.settings import settings_of_run
-from teachpath.learning.summary import fingerprint
-from teachpath.records import Array, Job, LearnedPath, ObjectPose, Scene, Trajectory, Version
+from teachpath.records import Array, Job, LearnedPath, ObjectPose, Scene, Version
 
 MAX_NORM_ERROR: Final = 0.01  # of a quaternion that is brought to unit length
 SAME_PLACE: Final = 0.001  # m, within which a path begins where its object lies
@@ -98,7 +98,8 @@ def adaptations_router(parts: Parts) -> APIRouter:
         run = store.run(base.run)
         scene = parts.objects.scene(store.task(run.task).scene)
         target = _target(base, scene, wanted)
-        adapted = _adapted(parts, run, base, target)
+        shown = shown_for(parts, run, base)
+        adapted = adapt(base, shown.learned, shown.members, shown.others, target, shown.settings)
         saved = _saved(store, base, wanted, adapted, _object_pose(scene, target))
         job = parts.jobs.submit(run.task, "plan", {"path": path, "version": saved.number})
         answer = Adaptation(
@@ -115,6 +116,17 @@ def adaptations_router(parts: Parts) -> APIRouter:
         status = 200 if saved.number == base.version else 201
         return json_response(answer, status=status, headers={"Location": location})
 
+    @router.get(
+        "/paths/{path}/versions/{number}/adaptation-model",
+        response_model=model_of(AdaptationModel),
+    )
+    def get_adaptation_model(path: str, number: int) -> Response:
+        """Return what a version between other ends is computed from, so that a page can draw it while it is dragged."""
+        base = versions.get(path, number)[1]
+        shown = shown_for(parts, store.run(base.run), base)
+        model = course_model(base, shown.learned, shown.members, shown.others, shown.settings)[0]
+        return json_response(model.export())
+
     return router
 
 
@@ -129,26 +141,6 @@ def _saved(
     edit = Edit(base.version, wanted.branch.strip(), wanted.name.strip(), wanted.author.strip(), adapted.note)
     curve = check_editable(adapted.curve)
     return store.versions.save(base.id, curve, edit, orientation=adapted.orientation, object_pose=object_pose)
-
-
-def _adapted(parts: Parts, run: Run, base: LearnedPath, target: Target) -> AdaptedPath:
-    """Adapt a version by the selected demonstrations of its run."""
-    clusters = {cluster.index: cluster for cluster in run.learned.clusters}
-    own = {score.demonstration for score in clusters[base.cluster].scores if score.selected}
-    selected = {s.demonstration for cluster in clusters.values() for s in cluster.scores if s.selected}
-    members: list[Trajectory] = []
-    others: list[Trajectory] = []
-    for demonstration in parts.store.demonstrations(run.task):
-        if demonstration.is_usable and demonstration.id in selected:
-            trajectory = parts.trajectory(demonstration)
-            if fingerprint(trajectory) == run.learned.inputs.get(demonstration.id):
-                (members if demonstration.id in own else others).append(trajectory)
-    if not members:
-        raise UnusableInput(
-            f"the demonstrations that path {base.id} was learned from have changed or are gone; learn the task anew"
-        )
-    learned = parts.store.versions.get(base.id, 1)[1].curve
-    return adapt(base, learned, members, others, target, settings_of_run(run.learned.settings))
 
 
 def _target(base: LearnedPath, scene: Scene, wanted: NewAdaptation) -> Target:

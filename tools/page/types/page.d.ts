@@ -77,7 +77,7 @@ declare global {
   type Editor = EditorClass;
 
   /** What has changed in the editor, see editor.js. */
-  type EditorChange = "draft" | "curve" | "selection" | "drag" | "versions" | "feasibility";
+  type EditorChange = "draft" | "curve" | "selection" | "drag" | "versions" | "feasibility" | "planning";
 
   type EditorSection = { update(editor: Editor, what: EditorChange): void };
 

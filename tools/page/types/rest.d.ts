@@ -4,6 +4,8 @@ import type { components } from "./api";
 type Schemas = components["schemas"];
 
 declare global {
+  type Adaptation = Schemas["Adaptation"];
+  type AdaptationModel = Schemas["AdaptationModel"];
   type Assessment = Schemas["Assessment"];
   type Certificate = Schemas["Certificate"];
   type Cluster = Schemas["Cluster"];

@@ -73,9 +73,8 @@ def adapt(
         UnusableInput: an orientation is asked for and none was learned.
         LearningFailed: the orientations cannot be followed within `turn_bound`.
     """
-    alike, courses = _same_way(learned, members, others, settings)
+    model, alike, courses = course_model(path, learned, members, others, settings)
     u = even_parameters(path.curve)
-    model = CourseModel(KrigedShapes(courses), learned(even_parameters(learned)), path.curve(u))
     found = model.predict(target.start, target.goal)
     curve, orientation, missed = path.curve, path.orientation, 0.0
     if not _is_own(path, target):
@@ -89,6 +88,22 @@ def adapt(
     if missed > settings.error_bound:
         note += f"; {len(curve.control_points)} control points follow it within {missed * 1e3:.3g} mm only"
     return AdaptedPath(curve, orientation, 2 * found.deviation, len(alike), places, found.extrapolates, note)
+
+
+def course_model(
+    path: LearnedPath,
+    learned: Curve,
+    members: Sequence[Trajectory],
+    others: Sequence[Trajectory],
+    settings: LearningSettings,
+) -> tuple[CourseModel, list[Trajectory], Array]:
+    """Return what predicts the course of a version, the demonstrations that it rests on, and their courses.
+
+    The arguments are those of `adapt`; the courses are (m, 100, 3) [m].
+    """
+    alike, courses = _same_way(learned, members, others, settings)
+    version = path.curve(even_parameters(path.curve))
+    return CourseModel(KrigedShapes(courses), learned(even_parameters(learned)), version), alike, courses
 
 
 def _is_own(path: LearnedPath, target: Target) -> bool:

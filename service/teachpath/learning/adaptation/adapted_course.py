@@ -3,16 +3,50 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
 from teachpath.learning.adaptation.kriged_shapes import KrigedShapes, Prediction
 from teachpath.learning.resampling import arc_lengths
-from teachpath.records import Array
+from teachpath.records import Array, Matrix
 
 SAME_CHORD = (
     0.02  # of the length: a chord that differs by this little is that of the learned path, within a hand's scatter
 )
+
+
+@dataclass(frozen=True, eq=False)
+class AdaptationModel:
+    """What a course between other ends is computed from: the numbers of a `CourseModel`, for programs beside this one.
+
+    With the chord c from start a to goal b, its horizontal length D and direction y, and at shares u of the arc length,
+    the course is a + u c + D^0.8 sum_i w_i (R(y - yaw_i) s_i + s_i) / 2 + closeness * own + similarity * edits. The
+    weights w, and a multiplier, are `inverse` times the covariances of (D, y) with the demonstrations, and 1.
+
+    Attributes:
+        turns: False for closed or vertical paths, whose shapes s_i are added as they are, without D and R.
+        shapes: of each demonstration (n, 3), in the axes of the world.
+        distances: of each demonstration D [m].
+        yaws: of each demonstration y [rad].
+        inverse: of the kriging system.
+        variance: (n,) per unit of scale and of kriging variance; None after one demonstration.
+        learned: (n, 3) [m] the path as it was learned.
+        own: (n, 3) [m] what it has beside the prediction for its ends.
+        version: (n, 3) [m] the version that is adapted.
+        edits: (n, 3) [m] what it has beside the adapted learned path.
+    """
+
+    turns: bool
+    shapes: tuple[Matrix, ...]
+    distances: tuple[float, ...]
+    yaws: tuple[float, ...]
+    inverse: Matrix
+    variance: Array | None
+    learned: Matrix
+    own: Matrix
+    version: Matrix
+    edits: Matrix
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,10 +70,35 @@ class CourseModel:
         """Predict the course from a start to a goal (3,) [m]."""
         found = self._without_edits(start, goal)
         ends = (self.version[0], self.version[-1])
-        edits = self.version - self._without_edits(*ends).path
-        path = found.path + self.shapes.similarity(ends, (start, goal)) * edits
+        path = found.path + self.shapes.similarity(ends, (start, goal)) * self.edits
         path[[0, -1]] = start, goal
         return replace(found, path=path)
+
+    @cached_property
+    def own(self) -> Array:
+        """What the learned path has beside the prediction for its ends: (n, 3) [m]."""
+        return self.learned - self.shapes.predict(self.learned[0], self.learned[-1]).path
+
+    @cached_property
+    def edits(self) -> Array:
+        """What the version has beside the adapted learned path: (n, 3) [m]."""
+        return self.version - self._without_edits(self.version[0], self.version[-1]).path
+
+    def export(self) -> AdaptationModel:
+        """Return the numbers that a prediction needs."""
+        shapes = self.shapes
+        return AdaptationModel(
+            shapes.turns,
+            tuple(shapes.in_world),
+            tuple(map(float, shapes.distances)),
+            tuple(map(float, shapes.yaws)),
+            np.asarray(shapes.inverse, dtype=np.float64).reshape(len(shapes.inverse), -1),
+            shapes.variance,
+            self.learned,
+            self.own,
+            self.version,
+            self.edits,
+        )
 
     def closeness(self, start: Array, goal: Array) -> float:
         """Return how near, 0 to 1, a chord is to that of the learned path; 1 when it is the same."""
@@ -48,5 +107,4 @@ class CourseModel:
 
     def _without_edits(self, start: Array, goal: Array) -> Prediction:
         found = self.shapes.predict(start, goal)
-        own = self.learned - self.shapes.predict(self.learned[0], self.learned[-1]).path
-        return replace(found, path=found.path + self.closeness(start, goal) * own)
+        return replace(found, path=found.path + self.closeness(start, goal) * self.own)

@@ -44,94 +44,102 @@ class KrigedShapes:
 
     Args:
         paths: (m, n, 3) [m] at equal shares of the arc length.
+
+    Attributes:
+        turns: whether shapes turn and grow with the chord from start to goal; not on closed or vertical paths.
+        distances: (m,) [m] horizontal length of the chords.
+        yaws: (m,) [rad] direction of the chords.
+        in_world: (m, n, 3) shapes, in the axes of the world.
+        inverse: (m + 1, m + 1) of the kriging system.
+        variance: (n,) per unit of scale and of kriging variance, from leaving each shape out in turn; None for one.
     """
 
     def __init__(self, paths: Array) -> None:
         starts, chords = paths[:, 0], paths[:, -1] - paths[:, 0]
         self._chords = chords
         self._share = np.linspace(0.0, 1.0, paths.shape[1])
-        self._distances = np.linalg.norm(chords[:, :2], axis=1)
-        self._yaws = np.arctan2(chords[:, 1], chords[:, 0])
+        self.distances = np.linalg.norm(chords[:, :2], axis=1)
+        self.yaws = np.arctan2(chords[:, 1], chords[:, 0])
         lengths = np.linalg.norm(np.diff(paths, axis=1), axis=2).sum(axis=1)
         self._length = float(np.median(lengths))
-        self._turns = bool(np.all(self._distances > MIN_DISTANCE_SHARE * lengths))
+        self.turns = bool(np.all(self.distances > MIN_DISTANCE_SHARE * lengths))
         residuals = paths - starts[:, None] - self._share[:, None] * chords[:, None]
-        scaled = residuals / self._scale(self._distances)[:, None, None]
-        self._in_world = scaled
-        self._turned = np.einsum("mji,mnj->mni", _rotations(self._yaws), scaled)
+        scaled = residuals / self._scale(self.distances)[:, None, None]
+        self.in_world = scaled
+        self._turned = np.einsum("mji,mnj->mni", _rotations(self.yaws), scaled)
         m = len(paths)
         system = np.ones((m + 1, m + 1))
-        system[:m, :m] = self._covariances(self._yaws[:, None], self._distances[:, None]) + NUGGET * np.eye(m)
+        system[:m, :m] = self._covariances(self.yaws[:, None], self.distances[:, None]) + NUGGET * np.eye(m)
         system[m, m] = 0.0
-        self._inverse = np.linalg.inv(system)
-        self._variance = self._left_out_variance()
+        self.inverse = np.linalg.inv(system)
+        self.variance = self._left_out_variance()
 
     def predict(self, start: Array, goal: Array) -> Prediction:
         """Predict the path from a start to a goal (3,) [m]."""
         chord = goal - start
         distance, yaw = _chord(chord)
         known = np.append(self._covariances(yaw, distance), 1.0)
-        solved = self._inverse @ known
+        solved = self.inverse @ known
         weights = solved[:-1]
-        shape = self._world_shapes(yaw) if self._turns else self._in_world
+        shape = self._world_shapes(yaw) if self.turns else self.in_world
         scale = float(self._scale(np.array(distance)))
         path = start + self._share[:, None] * chord + scale * np.tensordot(weights, shape, 1)
         path[-1] = goal
-        if self._variance is None:
+        if self.variance is None:
             deviation = SINGLE_SPREAD * float(np.linalg.norm(chord)) * np.sin(np.pi * self._share)
         else:
             unexplained = max(1.0 + NUGGET - float(known @ solved), 0.0)
-            deviation = scale * np.sqrt(unexplained * self._variance)
+            deviation = scale * np.sqrt(unexplained * self.variance)
         return Prediction(path, deviation, self._beyond(chord))
 
     def _world_shapes(self, yaw: float) -> Array:
         """Return the mean of turned and unturned shapes for a direction (m, n, 3)."""
-        return np.asarray((self._turned @ _rotations(np.array([yaw]))[0].T + self._in_world) / 2)
+        return np.asarray((self._turned @ _rotations(np.array([yaw]))[0].T + self.in_world) / 2)
 
     def _scale(self, distance: Array) -> Array:
-        return distance**DISTANCE_POWER if self._turns else np.ones_like(distance)
+        return distance**DISTANCE_POWER if self.turns else np.ones_like(distance)
 
     def similarity(self, one: tuple[Array, Array], other: tuple[Array, Array]) -> float:
         """Return the correlation, 0 to 1, of the shapes between two pairs of ends; 1 when their chords are equal."""
-        if not self._turns:
+        if not self.turns:
             return 1.0
         (distance, yaw), (distance_2, yaw_2) = _chord(one[1] - one[0]), _chord(other[1] - other[0])
         return float(_covariances(np.array(yaw), np.array(distance), np.array(yaw_2), np.array(distance_2)))
 
     def _covariances(self, yaw: Array | float, distance: Array | float) -> Array:
         """Return the covariance of ends in this direction and distance with those of the demonstrations."""
-        if not self._turns:
-            return np.ones(np.broadcast(yaw, self._yaws).shape)
-        return _covariances(np.asarray(yaw), np.asarray(distance), self._yaws, self._distances)
+        if not self.turns:
+            return np.ones(np.broadcast(yaw, self.yaws).shape)
+        return _covariances(np.asarray(yaw), np.asarray(distance), self.yaws, self.distances)
 
     def _left_out_variance(self) -> Array | None:
         """Return the variance (n,) per unit of scale and of kriging variance, from leaving each shape out in turn."""
-        m = len(self._distances)
+        m = len(self.distances)
         if m < 2:
             return None
-        own = np.diag(self._inverse)[:m]
-        errors = np.tensordot(self._inverse[:m, :m], self._in_world, 1) / own[:, None, None]
-        if self._turns:
-            turned = np.tensordot(self._inverse[:m, :m], self._turned, 1) / own[:, None, None]
-            errors = (errors + np.einsum("mij,mnj->mni", _rotations(self._yaws), turned)) / 2
+        own = np.diag(self.inverse)[:m]
+        errors = np.tensordot(self.inverse[:m, :m], self.in_world, 1) / own[:, None, None]
+        if self.turns:
+            turned = np.tensordot(self.inverse[:m, :m], self._turned, 1) / own[:, None, None]
+            errors = (errors + np.einsum("mij,mnj->mni", _rotations(self.yaws), turned)) / 2
         freedom = 3 * (m - 1)  # the variance of Student's distribution, because few errors tell the variance badly
         return np.asarray((np.square(errors).sum(axis=2) * own[:, None]).mean(axis=0) * freedom / (freedom - 2))
 
     def _beyond(self, chord: Array) -> str:
-        if not self._turns:
+        if not self.turns:
             apart = float(np.linalg.norm(self._chords - chord, axis=1).min())
             if apart <= MIN_DISTANCE_SHARE * self._length:
                 return ""
             return f"from start to goal it is {apart * 100:.0f} cm otherwise than shown"
         distance, yaw = _chord(chord)
-        nearest, farthest = float(self._distances.min()), float(self._distances.max())
+        nearest, farthest = float(self.distances.min()), float(self.distances.max())
         if not nearest / MAX_DISTANCE_RATIO <= distance <= farthest * MAX_DISTANCE_RATIO:
             return f"start and goal are {distance * 100:.0f} cm apart, shown were {_span(nearest, farthest)}"
         rises, allowed = self._chords[:, 2], MAX_RISE_SHARE * farthest
         if not rises.min() - allowed <= chord[2] <= rises.max() + allowed:
             shown = _span(float(rises.min()), float(rises.max()))
             return f"the goal is {chord[2] * 100:.0f} cm higher than the start, shown were {shown}"
-        turns = np.abs((yaw - self._yaws + np.pi) % (2 * np.pi) - np.pi)
+        turns = np.abs((yaw - self.yaws + np.pi) % (2 * np.pi) - np.pi)
         if turns.min() > MAX_TURN:
             return f"the direction is {np.degrees(turns.min()):.0f}° from the nearest one that was shown"
         return ""
