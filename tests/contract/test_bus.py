@@ -3,6 +3,7 @@
 import itertools
 import queue
 import socket
+import time
 from collections.abc import Iterator
 from contextlib import suppress
 
@@ -35,6 +36,17 @@ def ends(request: pytest.FixtureRequest) -> Iterator[tuple[Bus, Bus]]:
     yield opened[-1], opened[-2] if len(opened) > 1 else opened[-1]
     for bus in reversed(opened):
         bus.close()
+
+
+def test_the_session_that_published_is_told(ends: tuple[Bus, Bus]) -> None:
+    sender, receiver = ends
+    came: queue.Queue[str] = queue.Queue()
+    handle = receiver.subscribe_with_source("who/sent", lambda _, payload, source: came.put(source))
+    while came.empty():  # until the sender's session knows who listens
+        sender.publish("who/sent", b"")
+        time.sleep(0.01)
+    assert came.get() != ""
+    handle.close()
 
 
 def wait_reachable(asker: Bus, server: Bus) -> None:

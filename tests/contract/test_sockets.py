@@ -23,8 +23,8 @@ from tests.waiting import HANG, wait_until
 START = (0.58, -0.28, 0.52)  # of the object in the paper's scene
 
 
-def come(port: int, name: str, **options: Any) -> ClientConnection:
-    return connect(f"ws://127.0.0.1:{port}/api/v1/trackers/{name}/samples", **options)
+def come(port: int, name: str, query: str = "", **options: Any) -> ClientConnection:
+    return connect(f"ws://127.0.0.1:{port}/api/v1/trackers/{name}/samples{query}", **options)
 
 
 def ask(socket: ClientConnection, order: Any) -> dict[str, Any]:
@@ -154,10 +154,15 @@ def test_foreign_pages_bad_names_and_taken_names_are_refused(desk: Desk, port: i
     token.close()
 
 
-def test_a_second_page_of_the_name_takes_over(port: int) -> None:
-    with come(port, "page-8") as first, come(port, "page-8") as second:
-        assert closed(first) == "another page came as page-8"
-        assert ask(second, {"ping": 1})["pong"] == 1
+def test_a_name_belongs_to_who_is_connected_and_only_its_session_comes_back(port: int) -> None:
+    with come(port, "page-8", "?session=mine") as first:
+        for other in ("", "?session=yours", "?session="):
+            with come(port, "page-8", other) as second:
+                assert "page-8 is connected already" in closed(second)
+        assert ask(first, {"ping": 1})["pong"] == 1
+        with come(port, "page-8", "?session=mine") as again:
+            assert closed(first) == "page-8 has connected again"
+            assert ask(again, {"ping": 1})["pong"] == 1
 
 
 def test_a_page_that_breaks_off_is_seen_to_have_gone(desk: Desk, port: int) -> None:

@@ -1,4 +1,6 @@
 // Sends the hand's samples from a web worker (sample_worker.js), so that neither drawing nor a busy machine leaves gaps.
+import { TRACKER_SESSION } from "./tracker_name.js";
+
 /**
  * @typedef {{ms: number, within: number}} ClockOffset service clock minus page clock, and how far off it may be [ms]
  *
@@ -27,7 +29,7 @@ export class SampleSender {
     this.#worker.onmessage = ({ data }) => this.#handleMessage(data);
     this.#worker.onerror = () =>
       this.#rejectAll(new Error("The page's own thread for samples does not run. Load the page again."));
-    this.#worker.postMessage({ name });
+    this.#worker.postMessage({ name, session: TRACKER_SESSION });
   }
 
   get live() {

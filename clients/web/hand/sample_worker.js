@@ -50,9 +50,9 @@ function stepTowards(from, to) {
 }
 
 addEventListener("message", async ({ data }) => {
-  const { name, pose, sample, order, number } = data;
+  const { name, session, pose, sample, order, number } = data;
   if (name)
-    socket = new TrackerSocket(name, {
+    socket = new TrackerSocket(name, session, {
       onChange: (state, sentence) => postStatus({ state, sentence }),
       onRejected: (rejected) => postStatus({ rejected }),
     });

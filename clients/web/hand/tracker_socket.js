@@ -24,11 +24,15 @@ export class TrackerSocket {
   /** @type {{resolve: (report: RecordingReport) => void, reject: (error: Error) => void} | null} */
   #report = null; // of end()
 
-  /** @param {string} name @param {import("./sample_sender.js").TrackerCallbacks} callbacks */
-  constructor(name, { onChange, onRejected }) {
+  /**
+   * @param {string} name
+   * @param {string} session the page's secret
+   * @param {import("./sample_sender.js").TrackerCallbacks} callbacks
+   */
+  constructor(name, session, { onChange, onRejected }) {
     this.onChange = onChange;
     this.onRejected = onRejected;
-    this.socket = new ReconnectingSocket(`${resourcePath("trackers", name)}/samples`, {
+    this.socket = new ReconnectingSocket(`${resourcePath("trackers", name)}/samples?session=${session}`, {
       onOpen: () => this.#ping(),
       onMessage: (text) => this.#handleMessage(JSON.parse(text)),
       onState: (state, { reason = "" }) => this.#handleState(state, reason),

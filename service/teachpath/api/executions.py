@@ -115,7 +115,8 @@ def _add_beginnings(router: APIRouter, parts: Parts) -> None:
     def begin_teleoperation(new: NewTeleoperation, response: Response, lease: Token = "", who: Who = "") -> Execution:
         """Let the arm mirror a live hand while its clutch (button bit 2) is pressed; steer and stop it as an execution.
 
-        The clutch may be another tracker's: whoever looks on presses it then, and lets go to hold the arm.
+        The clutch may be another tracker's: whoever looks on presses it then, and lets go to hold the arm. Both names
+        belong to the sessions on the bus that send under them now; the arm follows nobody else who uses them.
 
         The tool keeps its orientation on the whole way, or turns as the hand has turned since the clutch was pressed;
         the gripper closes and opens with the hand, or with its grasp button (bit 0). Where the arm cannot do both, a
@@ -126,7 +127,18 @@ def _add_beginnings(router: APIRouter, parts: Parts) -> None:
         calibration = parts.calibrations.get(new.calibration)
         scene = parts.objects.scene(new.scene)
         orientation = new.orientation or parts.settings.teleoperation.orientation
-        order = TeleopRequest(new.tracker, calibration, scene, new.scale, new.share, new.clutch, orientation)
+        owners = parts.recorder.owners
+        order = TeleopRequest(
+            new.tracker,
+            calibration,
+            scene,
+            new.scale,
+            new.share,
+            new.clutch,
+            orientation,
+            owners.owner(new.tracker),
+            owners.owner(new.clutch),
+        )
         row = executions.teleoperate(order, lease=lease, who=who)
         response.headers["Location"] = f"/api/v1/executions/{row.id}"
         return row

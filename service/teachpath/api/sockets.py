@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Awaitable, Callable, Mapping
+from collections.abc import Awaitable, Callable, Collection, Mapping
 from contextlib import suppress
 from functools import partial
 from typing import Any, Final, Protocol, TypeVar
@@ -38,18 +38,20 @@ def same_origin(headers: Mapping[str, str]) -> bool:
     return origin is None or urlsplit(origin).netloc.lower() == headers.get("host", "").lower()
 
 
-async def accept(socket: WebSocket) -> bool:
+async def accept(socket: WebSocket, *, parameters: Collection[str] = ()) -> bool:
     """Accept a WebSocket, and say whether it may stay.
 
-    A page of another origin is refused: its handshake is answered with 403. So is a query parameter: there are none.
+    A page of another origin is refused: its handshake is answered with 403. So is a query parameter that is not among
+    `parameters`.
     """
     if not same_origin(socket.headers):
         await socket.close()
         return False
     await socket.accept()
     for name in socket.query_params:
-        await close(socket, unknown_name("parameter", name, ()))
-        return False
+        if name not in parameters:
+            await close(socket, unknown_name("parameter", name, tuple(parameters)))
+            return False
     return True
 
 

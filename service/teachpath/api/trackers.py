@@ -6,6 +6,9 @@ Page to service, binary: a `HandSample` as protobuf. Text: a JSON object with on
   on and `refused`;
 - `end`: number of the last sample sent, with `discard` if the open demonstration is to be thrown away; answered with
   `report`, the account of the recording.
+A name belongs to who is connected under it: nobody else may connect under it meanwhile. With the query parameter
+`session`, a secret of its own, a page comes back before its broken connection is given up.
+
 Service to page, text: those answers, and `refused` (a sentence) for every message that cannot be used.
 """
 
@@ -28,6 +31,7 @@ from teachpath.io.wire import MAX_SAMPLE_SIZE
 from teachpath.recorder.websocket_trackers import WebSocketTracker
 
 SILENCE_TIMEOUT: Final = 10.0  # [s] after which a page that says nothing, not even a ping, has gone
+MAX_SESSION_LENGTH: Final = 64  # characters of the secret by which a page comes back
 MAX_PING: Final = 1e18  # what is no number, or infinite, could not be answered in JSON
 
 FIELDS_OF_KIND: Final = {"sample": ("sample",), "ping": ("ping",), "end": ("end", "discard")}  # of each kind of message
@@ -40,8 +44,8 @@ def trackers_router(parts: Parts, *, silence: float = SILENCE_TIMEOUT) -> APIRou
     router = APIRouter()
 
     @router.websocket("/trackers/{name}/samples")
-    async def samples(socket: WebSocket, name: str) -> None:
-        if not await sockets.accept(socket):
+    async def samples(socket: WebSocket, name: str, session: str = "") -> None:
+        if not await sockets.accept(socket, parameters=("session",)):
             return
         loop, dismissed = asyncio.get_running_loop(), asyncio.Queue[str]()
 
@@ -50,7 +54,7 @@ def trackers_router(parts: Parts, *, silence: float = SILENCE_TIMEOUT) -> APIRou
                 loop.call_soon_threadsafe(dismissed.put_nowait, why)
 
         try:
-            tracker = parts.websocket_trackers.register(name, leave)
+            tracker = parts.websocket_trackers.register(name, leave, session[:MAX_SESSION_LENGTH])
         except TeachpathError as error:
             await sockets.close(socket, str(error))
             return

@@ -24,6 +24,7 @@ from teachpath_proto.logins import Login
 from teachpath_proto.sessions import joining, listening, open_session
 
 Receive = Callable[[str, bytes], None]
+ReceiveWithSource = Callable[[str, bytes, str], None]
 Answer = Callable[[bytes], bytes]
 Changed = Callable[[str, bool], None]
 Missed = Callable[[int], None]
@@ -47,6 +48,13 @@ class Bus(Protocol):
 
         With `missed`, samples of publishers that keep a cache are asked for again when one is missing, and those that
         could not be had are counted: `missed(count)`. Plain publishers are served as well, without that.
+        """
+
+    def subscribe_with_source(self, key: str, receive: ReceiveWithSource) -> Handle:
+        """Call `receive(key, payload, source)` likewise; `source` names the session that published.
+
+        It is empty where a foreign program's plain publisher does not say. A session's name is a secret of those who
+        hear it, as a password is: whoever knows it can claim to be that session.
         """
 
     def serve(self, key: str, answer: Answer) -> Handle:
@@ -113,6 +121,7 @@ class ZenohBus:
             self._session = open_session(values)
         except zenoh.ZError as error:
             raise Unreachable(f"no Zenoh session at {place} ({error})") from error
+        self._source = str(self._session.zid())
         self._lock = threading.Lock()
         self._publishers: dict[str, Any] = {}
         self._handles: list[Handle] = []
@@ -123,7 +132,7 @@ class ZenohBus:
             if publisher is None:
                 publisher = self._session.declare_publisher(key, congestion_control=zenoh.CongestionControl.BLOCK)
                 self._publishers[key] = publisher
-        publisher.put(payload)
+        publisher.put(payload, attachment=self._source)
 
     def subscribe(self, key: str, receive: Receive, *, missed: Missed | None = None) -> Handle:
         def callback(sample: zenoh.Sample) -> None:
@@ -140,6 +149,12 @@ class ZenohBus:
             subscriber.undeclare()  # type: ignore[no-untyped-call]
 
         return self._keep(Declaration(undeclare))
+
+    def subscribe_with_source(self, key: str, receive: ReceiveWithSource) -> Handle:
+        def callback(sample: zenoh.Sample) -> None:
+            receive(str(sample.key_expr), sample.payload.to_bytes(), _source(sample))
+
+        return self._keep(Declaration(self._session.declare_subscriber(key, callback).undeclare))
 
     def serve(self, key: str, answer: Answer) -> Handle:
         return self._keep(_Server(self._session, key, answer))
@@ -172,6 +187,13 @@ class ZenohBus:
     def _keep(self, handle: Handle) -> Handle:
         self._handles.append(handle)
         return handle
+
+
+def _source(sample: zenoh.Sample) -> str:
+    """Return the session that published: publishers that keep a cache say it by themselves, ours in an attachment."""
+    if sample.source_info is not None:
+        return str(sample.source_info.source_id.zid)
+    return "" if sample.attachment is None else sample.attachment.to_bytes().decode(errors="replace")
 
 
 class Declaration:

@@ -6,7 +6,7 @@ import re
 import threading
 
 from teachpath.errors import Unreachable
-from teachpath.io.bus import Answer, Changed, Declaration, Handle, Missed, Receive
+from teachpath.io.bus import Answer, Changed, Declaration, Handle, Missed, Receive, ReceiveWithSource
 
 
 class MemoryBus:
@@ -14,18 +14,21 @@ class MemoryBus:
 
     def __init__(self) -> None:
         self._lock = threading.RLock()
-        self._receivers: dict[Declaration, tuple[re.Pattern[str], Receive]] = {}
+        self._receivers: dict[Declaration, tuple[re.Pattern[str], ReceiveWithSource]] = {}
         self._answers: dict[str, Answer] = {}
         self._tokens: list[str] = []
         self._watchers: dict[Declaration, tuple[re.Pattern[str], Changed]] = {}
 
-    def publish(self, key: str, payload: bytes) -> None:
+    def publish(self, key: str, payload: bytes, *, source: str = "this process") -> None:
         with self._lock:
             receivers = [receive for pattern, receive in self._receivers.values() if pattern.fullmatch(key)]
         for receive in receivers:
-            receive(key, payload)
+            receive(key, payload, source)
 
     def subscribe(self, key: str, receive: Receive, *, missed: Missed | None = None) -> Handle:
+        return self.subscribe_with_source(key, lambda key, payload, _: receive(key, payload))
+
+    def subscribe_with_source(self, key: str, receive: ReceiveWithSource) -> Handle:
         handle = Declaration(lambda: self._receivers.pop(handle, None))
         with self._lock:
             self._receivers[handle] = (_pattern(key), receive)

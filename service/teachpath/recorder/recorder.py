@@ -18,6 +18,7 @@ from teachpath.recorder.recording_work import Call, call_directly
 from teachpath.recorder.sample_queues import SampleQueues
 from teachpath.recorder.session import RecordingSession, RecordingSetup
 from teachpath.recorder.take import FinishedTake
+from teachpath.recorder.tracker_owners import TrackerOwners
 from teachpath.recording.settings import RecordingSettings
 from teachpath.records import (
     Amendment,
@@ -69,6 +70,7 @@ class Recorder:
 
     Attributes:
         annotations: changes stored demonstrations.
+        owners: which session each tracker's name belongs to.
     """
 
     def __init__(
@@ -91,6 +93,7 @@ class Recorder:
         self._callbacks = callbacks or DemonstrationCallbacks()
         self._clock = clock
         self.annotations = Annotations(store, settings, lookup.scene, self._callbacks.changed, call)
+        self.owners = TrackerOwners(keys, clock)
         self._presence = Presence(clock)
         self._queues = SampleQueues(keys, self._presence, settings.longest_backlog)
         self._recording = RecordingThread(
@@ -111,6 +114,7 @@ class Recorder:
         self._feedback.start()
         self._handles = [
             self._bus.subscribe(self._keys.all_samples, self._queues.on_sample, missed=self._count_missed),
+            self._bus.subscribe_with_source(self._keys.all_samples, self.owners.on_sample),
             self._bus.watch(self._keys.all_trackers_alive, self._queues.on_liveliness),
         ]
 
@@ -218,6 +222,7 @@ class Recorder:
             found = [f"{session.tracker}: {session.fault}" for session in sessions if session.fault]
         if self._missed:
             found.append(f"Zenoh reports {self._missed} samples that never came")
+        found += self.owners.faults()
         return found + [sentence for sentence in [self._queues.invalid_names()] if sentence]
 
     def task_of(self, tracker: str) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import secrets
 import threading
 import time
 from collections.abc import Callable, Sequence
@@ -43,16 +44,18 @@ class WebSocketTrackers:
         self._trackers: dict[str, WebSocketTracker] = {}
         self._unregistered: dict[str, float] = {}  # by name: when
 
-    def register(self, name: str, on_disconnect: OnDisconnect) -> WebSocketTracker:
-        """Register a tracker; one of the same name that was registered here before is disconnected.
+    def register(self, name: str, on_disconnect: OnDisconnect, session: str = "") -> WebSocketTracker:
+        """Register a tracker; an earlier connection of the same session is disconnected.
 
         Args:
             name: of the tracker, unique at the station.
             on_disconnect: called with a sentence, from any thread, when the tracker is disconnected.
+            session: secret of who connects, by which it comes back before its broken connection is given up; empty: it
+                has none, and waits for that.
 
         Raises:
             UnusableInput: the name cannot be a key.
-            Conflict: a tracker of that name is on the bus already, or too many are connected.
+            Conflict: a tracker of that name is there already, from another session, or too many are connected.
         """
         if not is_name(name):
             raise UnusableInput(name_refusal("tracker", name))
@@ -60,10 +63,12 @@ class WebSocketTrackers:
             before = self._trackers.get(name)
             if before is None:
                 self._check_free(name, self._recorder.trackers())
-            tracker = WebSocketTracker(self._bus, self._keys, self._recorder, name, on_disconnect, self._clock)
+            elif not secrets.compare_digest(before.session.encode(), session.encode()) or not session:
+                raise Conflict(f"a tracker {name} is connected already; choose another name")
+            tracker = WebSocketTracker(self._bus, self._keys, self._recorder, name, on_disconnect, self._clock, session)
             self._trackers[name] = tracker
         if before is not None:
-            before.disconnect(f"another page came as {name}")
+            before.disconnect(f"{name} has connected again")
         tracker.announce()
         return tracker
 
@@ -79,7 +84,7 @@ class WebSocketTrackers:
 
     def _check_free(self, name: str, trackers: Sequence[Tracker]) -> None:
         just_left = self._clock() - self._unregistered.get(name, -REANNOUNCE_GRACE) < REANNOUNCE_GRACE
-        if not just_left and any(tracker.name == name and tracker.announced for tracker in trackers):
+        if not just_left and any(tracker.name == name for tracker in trackers):
             raise Conflict(f"a tracker {name} is there already, not from a page; choose another name")
         if len(self._trackers) >= MAX_TRACKERS:
             raise Conflict(
@@ -92,6 +97,7 @@ class WebSocketTracker:
 
     Attributes:
         name: of the tracker.
+        session: secret of who is connected; empty when it has none.
         accepted: number of samples that were put on the bus and are sound.
         refused: number of messages that could not be used.
     """
@@ -104,8 +110,10 @@ class WebSocketTracker:
         name: str,
         on_disconnect: OnDisconnect,
         clock: Callable[[], float],
+        session: str,
     ) -> None:
         self.name = name
+        self.session = session
         self.accepted = 0
         self.refused = 0
         self._bus = bus

@@ -41,6 +41,8 @@ class TeleopRequest:
         clutch: tracker whose button bit 2 is the clutch; empty: the hand's own.
         orientation: whether the tool keeps its orientation or follows the hand's, from where both were when the clutch
             was pressed.
+        tracker_session: on the bus, whose samples under the tracker's name are followed; empty: that which sends first.
+        clutch_session: likewise for the clutch.
     """
 
     tracker: str
@@ -50,6 +52,8 @@ class TeleopRequest:
     share: float = 0.5
     clutch: str = ""
     orientation: Literal["keep", "follow"] = "keep"
+    tracker_session: str = ""
+    clutch_session: str = ""
 
 
 @dataclass(frozen=True, slots=True)

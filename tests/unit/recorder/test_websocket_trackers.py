@@ -19,8 +19,8 @@ class Desk:
         self.bench, self.now, self.reasons = bench, 0.0, list[str]()
         self.trackers = WebSocketTrackers(bench.bus, KEYS, bench.recorder, clock=lambda: self.now)
 
-    def register(self, name: str = "page") -> WebSocketTracker:
-        return self.trackers.register(name, self.reasons.append)
+    def register(self, name: str = "page", session: str = "secret") -> WebSocketTracker:
+        return self.trackers.register(name, self.reasons.append, session)
 
 
 @pytest.fixture
@@ -159,12 +159,22 @@ def test_one_that_comes_back_at_once_is_not_taken_for_another(desk: Desk) -> Non
         desk.register()
 
 
-def test_the_newest_page_of_a_name_wins_and_leaving_is_seen_on_the_bus(desk: Desk) -> None:
+@pytest.mark.parametrize(("mine", "other"), [("secret", "guess"), ("secret", ""), ("", "")])
+def test_nobody_else_connects_under_a_name_until_it_is_left(desk: Desk, mine: str, other: str) -> None:
+    page = desk.register(session=mine)
+    with pytest.raises(Conflict, match="page is connected already; choose another name"):
+        desk.register(session=other)
+    assert desk.reasons == []
+    desk.trackers.unregister(page)
+    desk.register(session=other)
+
+
+def test_a_page_that_comes_back_takes_its_own_place_and_leaving_is_seen_on_the_bus(desk: Desk) -> None:
     alive: list[tuple[str, bool]] = []
     desk.bench.bus.watch(KEYS.all_trackers_alive, lambda key, there: alive.append((key.rsplit("/")[-1], there)))
     first = desk.register()
     second = desk.register()
-    assert desk.reasons == ["another page came as page"]
+    assert desk.reasons == ["page has connected again"]
     desk.trackers.unregister(first)  # its connection ends later than the new one began
     assert alive == [("page", True), ("page", False), ("page", True)]
     desk.trackers.unregister(second)

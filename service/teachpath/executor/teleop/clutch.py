@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections import deque
 from collections.abc import Callable
 from typing import Final
 
 from teachpath.errors import UnusableSample
+from teachpath.executor.teleop.tracker_input import TrackerInput
 from teachpath.io.bus import Bus
 from teachpath.io.wire import decode_sample
 from teachpath.records import Sample
@@ -63,23 +63,26 @@ class Clutch:
 class RemoteClutch:
     """The button of another tracker, which somebody who watches presses while the hand has none.
 
+    Args:
+        session: whose samples count; empty: those of the session that sends first.
+        clock: returns monotonic nanoseconds.
+
     Attributes:
         pressed: whether the button was pressed in the newest tracked sample.
         last_seen_ns: when that sample came [ns of the clock].
     """
 
-    def __init__(self, bus: Bus, keys: Keys, tracker: str, clock: Callable[[], int]) -> None:
+    def __init__(self, bus: Bus, keys: Keys, tracker: str, session: str, clock: Callable[[], int]) -> None:
         self.pressed = False
         self.last_seen_ns = 0
         self._tracker = tracker
-        self._newest: deque[tuple[int, bytes]] = deque(maxlen=1)
-        self._handle = bus.subscribe(keys.samples(tracker), lambda _, payload: self._newest.append((clock(), payload)))
+        self._input = TrackerInput(bus, keys, tracker, session, clock)
 
     def poll(self) -> None:
         """Read the newest sample."""
-        if not self._newest:
+        if (newest := self._input.pop()) is None:
             return
-        came_ns, payload = self._newest.pop()
+        came_ns, payload = newest
         sample = decode_tracked(self._tracker, payload, came_ns)
         if sample is not None:
             self.pressed = bool(sample.buttons & CLUTCH_BUTTON)
@@ -87,7 +90,7 @@ class RemoteClutch:
 
     def close(self) -> None:
         """Stop listening."""
-        self._handle.close()
+        self._input.close()
 
 
 def decode_tracked(tracker: str, payload: bytes, came_ns: int) -> Sample | None:

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections import deque
 from collections.abc import Callable
 
 from teachpath.executor.teleop.clutch import CLUTCH_BUTTON, RemoteClutch, decode_tracked
+from teachpath.executor.teleop.tracker_input import TrackerInput
 from teachpath.io.bus import Bus
 from teachpath.records import Sample, TeleopRequest
 from teachpath_proto.keys import Keys
@@ -15,7 +15,7 @@ class HandInput:
     """Keeps the newest sample of a tracker, and notices when the hand or its clutch is lost.
 
     Args:
-        request: names the tracker, and whose button is its clutch.
+        request: names the tracker, whose button is its clutch, and the sessions that both belong to.
         silence: without a tracked sample after which hand or clutch count as lost [s].
         clock: returns monotonic nanoseconds.
     """
@@ -26,18 +26,19 @@ class HandInput:
         self._request = request
         self._silence_ns = silence * 1e9
         self._clock = clock
-        self._newest: deque[tuple[int, bytes]] = deque(maxlen=1)
         self._last_seen_ns = 0  # of the clock, when the newest tracked sample came
-        self._remote_clutch = RemoteClutch(bus, keys, request.clutch, clock) if request.clutch else None
-        self._handle = bus.subscribe(keys.samples(request.tracker), self._receive)
+        self._remote_clutch = (
+            RemoteClutch(bus, keys, request.clutch, request.clutch_session, clock) if request.clutch else None
+        )
+        self._input = TrackerInput(bus, keys, request.tracker, request.tracker_session, clock)
 
     def poll(self) -> tuple[int, Sample] | None:
         """Return the newest sample in which the hand was tracked, and when it came; None when no other has come."""
         if self._remote_clutch is not None:
             self._remote_clutch.poll()
-        if not self._newest:
+        if (newest := self._input.pop()) is None:
             return None
-        came_ns, payload = self._newest.pop()
+        came_ns, payload = newest
         sample = decode_tracked(self._request.tracker, payload, came_ns)
         if sample is None:
             return None
@@ -58,16 +59,22 @@ class HandInput:
     def loss(self, now: int) -> str:
         """Return why the arm must not follow the hand at `now` [ns of the clock], or an empty string."""
         if now - self._last_seen_ns > self._silence_ns:
+            if self._input.has_stranger(now):
+                name = self._request.tracker
+                return f"{name} was lost, and another session sends as {name}; stop, and begin again to follow that one"
             return "the hand was lost; let the clutch go and press it again"
         if self._remote_clutch is not None and now - self._remote_clutch.last_seen_ns > self._silence_ns:
             return f"nothing was heard of {self._request.clutch}, who presses the clutch; press it again"
         return ""
 
+    def intrusion(self, now: int) -> str:
+        """Return that another session sends under the tracker's name at `now` [ns of the clock], or an empty string."""
+        if not self._input.has_stranger(now):
+            return ""
+        return f"another session sends as {self._request.tracker} too, which the arm does not follow"
+
     def close(self) -> None:
         """Stop listening to the tracker, and to the one whose button is the clutch."""
-        self._handle.close()
+        self._input.close()
         if self._remote_clutch is not None:
             self._remote_clutch.close()
-
-    def _receive(self, _: str, payload: bytes) -> None:
-        self._newest.append((self._clock(), payload))

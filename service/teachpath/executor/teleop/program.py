@@ -107,7 +107,9 @@ class TeleopProgram:
     def activity(self) -> str:
         """What the arm does, and why the tool is not where the hand is."""
         following = f"mirroring {self._request.tracker}"
-        hindrance = (self._follower.reason or self._turn_hint) if self._clutch.engaged else ""
+        intrusion = self._hand.intrusion(self._clock())
+        hindrances = (self._follower.reason, intrusion, self._turn_hint) if self._clutch.engaged else (intrusion,)
+        hindrance = "; ".join(filter(None, hindrances))
         return f"{following}: {hindrance}" if hindrance else following
 
     @property

@@ -29,6 +29,8 @@ class Held(Bench):
         super().__init__()
         self.hand, self.buttons, self.shown, self.number = np.zeros(3), 0, True, 0
         self.turn: Rotation | None = Rotation.identity()  # of the hand; None: it is not measured
+        self.session = "this process"  # that sends the hand's samples
+        self.intruder: np.ndarray | None = None  # hand of another session, that presses the clutch too
         self.page: int | None = None  # buttons of a page that looks on; None: there is none
 
     def sleep(self, duration: float) -> None:
@@ -36,14 +38,16 @@ class Held(Bench):
             self.number += 1
             if self.shown:
                 self.show("glove", self.hand, self.buttons)
+            if self.intruder is not None:
+                self.show("glove", self.intruder, CLUTCH, "theirs")
             if self.page is not None:
                 self.show("page", np.ones(3), self.page)
         super().sleep(duration)
 
-    def show(self, tracker: str, hand: np.ndarray, buttons: int) -> None:
+    def show(self, tracker: str, hand: np.ndarray, buttons: int, source: str = "") -> None:
         turn = None if self.turn is None else tuple(self.turn.as_quat(scalar_first=True).tolist())
         shown = sample(self.number, tuple(hand), buttons=buttons, orientation=turn)
-        self.bus.publish(KEYS.samples(tracker), encode_sample(shown))
+        self.bus.publish(KEYS.samples(tracker), encode_sample(shown), source=source or self.session)
 
     def press(self) -> None:
         self.buttons = CLUTCH
@@ -71,7 +75,7 @@ def test_the_tool_keeps_its_orientation_or_follows_the_hands_own(orientation: st
     bench.after(2.0)
     bench.when(lambda: True, lambda: setattr(bench, "turn", None))
     bench.after(0.2)
-    bench.when(lambda: True, lambda: says.add(bench.statuses[-1].stretch))
+    bench.when(lambda: True, lambda: says.add(bench.statuses[-1].activity))
     bench.when(lambda: True, lambda: bench.command("stop"))
     bench.when(lambda: bench.state == "ended", bench.stop.set)
     bench.run()
@@ -80,6 +84,27 @@ def test_the_tool_keeps_its_orientation_or_follows_the_hands_own(orientation: st
     np.testing.assert_allclose(found, [0.0, -turned, 0.0], atol=1e-6)
     assert hint in says.pop()
     assert within_limits(bench.setpoints)
+
+
+@pytest.mark.parametrize("session", ["mine", ""])
+def test_a_hand_of_another_session_under_the_same_name_leads_nothing_and_is_reported(session: str) -> None:
+    bench, seen, says = Held(), [], set[str]()
+    bench.session = "mine"
+    bench.teleoperate(replace(ORDER, tracker_session=session))
+    bench.when(lambda: bench.state == "following", lambda: setattr(bench, "intruder", np.array([0.1, 0.1, 0.1])))
+    bench.after(1.0)
+    bench.when(lambda: True, lambda: seen.append(moved(bench)))
+    bench.when(lambda: True, lambda: says.add(bench.statuses[-1].activity))
+    bench.when(lambda: True, lambda: setattr(bench, "shown", False))
+    bench.when(lambda: bench.state == "held", lambda: says.add(bench.statuses[-1].reason))
+    bench.after(0.5)
+    bench.when(lambda: True, lambda: seen.append(moved(bench)))
+    bench.when(lambda: True, lambda: bench.command("stop"))
+    bench.when(lambda: bench.state == "ended", bench.stop.set)
+    bench.run()
+    np.testing.assert_allclose(seen, np.zeros((2, 3)), atol=1e-6)
+    assert any("another session sends as glove too" in sentence for sentence in says)
+    assert any("glove was lost, and another session sends" in sentence for sentence in says)
 
 
 def moved(bench: Held) -> np.ndarray:
