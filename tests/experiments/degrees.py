@@ -49,7 +49,7 @@ def degrees_once(name: str, seed: int) -> dict[int, Row] | None:
     course = course[:, [1, 0, 2]] if name in SHAPES else course  # their length across the arm
     course += CENTRE - course.mean(axis=0)
     settings = LearningSettings()
-    taken, found = best_fit(course, settings).curve.degree, {}
+    taken, found = best_fit(course, settings, settings.error_bound).curve.degree, {}
     for degree in DEGREES:
         fit = approximate(course, settings.error_bound, degree=degree, most=settings.most_control_points)
         duration = _duration(fit.curve)

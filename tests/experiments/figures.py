@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
@@ -17,13 +18,13 @@ from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 from matplotlib.ticker import PercentFormatter
 
-from teachpath.live.preview.commands import CLUSTER_COLORS
 from teachpath.records import Array, Learned, Trajectory
 from tests.experiments import quoted
 from tests.experiments.scenarios import GROUPINGS, SCENARIOS, SHAPES, along
 from tests.experiments.trials import MODES, Rate, course, learn, settings
 
-PALETTE = [f"#{colour:06x}" for colour in CLUSTER_COLORS]
+PAGE_STYLE = Path(__file__).parents[2] / "clients" / "web" / "style.css"
+PALETTE = re.findall(r"--way-\d+: (#[0-9a-f]{6})", PAGE_STYLE.read_text())  # as on the page
 WAY = dict(enumerate(PALETTE, 1))  # clusters, as in the 3-D view
 MODE = {"default": PALETTE[0], "repaired": PALETTE[4], "paper": PALETTE[3]}
 MARK = {1: "o", 2: "s", 3: "^"}

@@ -78,6 +78,8 @@ class LearningSettings:
     repeats: Annotated[int, Ge(0), Le(10_000)] = 8
     # m, largest distance of the learned path from what it is fitted to
     error_bound: Annotated[float, Gt(0)] = 0.005
+    # the same as a share of the size of the path, where that is less and noise allows it (mode default)
+    relative_bound: Annotated[float, Gt(0), Le(1)] = 0.01
     # rad, largest angle of the learned orientations from what they are fitted to
     turn_bound: Annotated[float, Gt(0), Le(1)] = 0.035
     # degree of the NURBS; None = 5 where it costs few control points, else 3
@@ -105,6 +107,10 @@ class LearningSettings:
         hints = get_type_hints(type(self), include_extras=True)
         for field in fields(self):
             _check(field.name, getattr(self, field.name), hints[field.name])
+
+    def bound_for(self, size: float) -> float:
+        """Return the largest distance [m] that a path of this size [m] may have from what it is fitted to."""
+        return min(self.error_bound, self.relative_bound * size) if self.mode == "default" else self.error_bound
 
 
 def settings_of_run(stored: Mapping[str, Any]) -> LearningSettings:

@@ -16,7 +16,7 @@ from teachpath.learning.fitting.nurbs_fit import (
 )
 from teachpath.learning.fitting.orientation_fit import fit_orientations, mean_orientations
 from teachpath.learning.matching import frechet_distance
-from teachpath.learning.resampling import SMOOTHING_WINDOW, arc_lengths, at_equal_arc_length, smoothed
+from teachpath.learning.resampling import SMOOTHING_WINDOW, arc_lengths, at_equal_arc_length, extent, smoothed
 from teachpath.learning.settings import LearningSettings, StepCallback
 from teachpath.records import Array, Fit, LearnedPath, Trajectory
 
@@ -46,7 +46,7 @@ def fit_mean_path(
     Args:
         cluster: its number.
         selected: demonstrations.
-        settings: `error_bound`, `most_control_points` and `degree`.
+        settings: `error_bound`, `relative_bound`, `most_control_points` and `degree`.
         on_step: called twice for each demonstration.
 
     Raises:
@@ -63,26 +63,40 @@ def fit_mean_path(
             f"the mean of way {cluster} is {length * 1e3:.3g} mm long, its demonstrations up to {usual * 1e3:.3g} mm: "
             "they lead in opposite directions; lower learning.threshold"
         )
-    bound, note = settings.error_bound, ""
-    best = best_fit(course, settings)
+    bound, note = settings.bound_for(extent(course)), ""
+    best = best_fit(course, settings, bound)
     if best.largest > bound:
-        noise = residual_noise(selected)
-        if bound < MIN_BOUND_TO_NOISE * noise:
-            raise LearningFailed(
-                f"way {cluster} cannot be followed within {bound * 1e3:.3g} mm: noise leaves some {noise * 1e3:.2g} mm "
-                f"in the mean of its demonstrations, and a path within {bound * 1e3:.3g} mm would follow the noise; "
-                f"raise learning.error_bound to {MIN_BOUND_TO_NOISE * noise * 1e3:.2g} mm, or show it more often"
+        least = MIN_BOUND_TO_NOISE * residual_noise(selected)
+        if bound < min(least, settings.error_bound):
+            bound = min(least, settings.error_bound)
+            note = (
+                f"followed within {bound * 1e3:.2g} mm, not within {settings.relative_bound:.2g} of its size, because "
+                "of the noise in its demonstrations"
             )
-        course = mean_path(paths, REFINEMENT_FACTOR * MEAN_PATH_POINTS)
-        best = best_fit(course, settings)
+            best = best_fit(course, settings, bound)
+        if best.largest > bound:
+            _check_noise(cluster, bound, least)
+            course = mean_path(paths, REFINEMENT_FACTOR * MEAN_PATH_POINTS)
+            best = best_fit(course, settings, bound)
     # The fit measures at its own parameters; the nearest distances are what matters to the operator.
     if best.largest > bound and (nearest := float(distances_to_curve(best.curve, course).max())) > bound:
         note = (
             f"the demonstrations wiggle: their mean is followed within {nearest * 1e3:.3g} mm only, not "
             f"{bound * 1e3:.3g} mm, by {settings.most_control_points} control points; show it more smoothly, or raise "
-            "learning.error_bound or learning.most_control_points"
+            "learning.error_bound, learning.relative_bound or learning.most_control_points"
         )
-    return _path(cluster, best, course, selected, settings, note, on_step)
+    return _path(cluster, best, course, selected, settings, bound, note, on_step)
+
+
+def _check_noise(cluster: int, bound: float, least: float) -> None:
+    """Refuse a bound [m] below the least that does not follow the noise."""
+    if bound < least:
+        raise LearningFailed(
+            f"way {cluster} cannot be followed within {bound * 1e3:.3g} mm: noise leaves some "
+            f"{least / MIN_BOUND_TO_NOISE * 1e3:.2g} mm in the mean of its demonstrations, and a path within "
+            f"{bound * 1e3:.3g} mm would follow the noise; raise learning.error_bound to {least * 1e3:.2g} mm, or show "
+            "it more often"
+        )
 
 
 def fit_pooled_points(
@@ -111,7 +125,7 @@ def fit_pooled_points(
             f"{share:.0%} of the motion leads back towards the start: sorting by distance to it scrambles the path, "
             "use mode default"
         )
-    return _path(cluster, fit, points, selected, settings, "; ".join(notes), on_step)
+    return _path(cluster, fit, points, selected, settings, settings.error_bound, "; ".join(notes), on_step)
 
 
 def residual_noise(selected: Sequence[Trajectory]) -> float:
@@ -129,14 +143,14 @@ def _length(path: Array) -> float:
     return float(arc_lengths(path)[-1])
 
 
-def best_fit(course: Array, settings: LearningSettings) -> Approximation:
+def best_fit(course: Array, settings: LearningSettings, bound: float) -> Approximation:
     """Fit a mean path (n, 3) [m] with the fewest control points within the bound, or else as closely as possible.
 
     Degree 5 is preferred when it needs at most two control points more than degree 3: its curvature changes less
     sharply, and where a path turns back the arm follows it faster (`make experiments`).
     """
     degrees = (3, 5) if settings.degree is None else (settings.degree,)
-    bound, most = settings.error_bound, settings.most_control_points
+    most = settings.most_control_points
     fits = [approximate(course, bound, degree=degree, most=most) for degree in degrees]
     kept = [fit for fit in fits if fit.largest <= bound]
     return min(kept, key=_cost) if kept else min(fits, key=lambda fit: fit.largest)
@@ -158,6 +172,7 @@ def _path(
     fitted: Array,
     selected: Sequence[Trajectory],
     settings: LearningSettings,
+    bound: float,
     note: str,
     on_step: StepCallback,
 ) -> LearnedPath:
@@ -173,7 +188,7 @@ def _path(
     if mean is not None and s[-1] > 0:
         orientation, turn = fit_orientations(cluster, mean, s / s[-1], fit.curve.degree, settings)
     measures = Fit(
-        settings.error_bound,
+        bound,
         float(apart.max()),
         float(np.sqrt(np.mean(np.square(apart)))),
         tube,

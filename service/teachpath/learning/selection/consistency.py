@@ -56,6 +56,7 @@ USUAL_SPREADS = {
 USUAL_WEIGHT = 6  # members that the usual spread counts for beside the measured one
 PACE_SPREAD = 0.2  # of a logarithm of the pace, by which the amplitude of a tremor moves from one band to another
 WARP_SPREAD = 13.0  # nats of bending for each share of the duration by which the pace differs
+BENDS_OF_MANY = 1.74  # how much more the bends of many vary than those of five
 MEDIAN_VARIANCE = 1.57  # of the median of so many values, of their variance
 MAX_WITHOUT_OWN = 30  # members up to which each is compared with the others alone; in more its own value is lost
 BANDS = {Part.WIGGLE: (13, 24), Part.TREMOR: (24, 42), Part.NOISE: (42, 80)}  # degrees, first to one behind the last
@@ -112,7 +113,10 @@ class Measures:
         if self.bending is None or len(at) < MIN_COURSES:
             return np.zeros(len(at))
         warp = float(np.sqrt(np.square(self.bending.warps[at]).mean()))
-        z = robust_z(bending_surprises(self.bending.energies[at]), np.hypot(usual, WARP_SPREAD * warp))
+        m = len(at)
+        # The fewer the others, the more of a bend of one's own is in all residuals, and the less they scatter.
+        scatter = np.sqrt(BENDS_OF_MANY * (1 - 1 / m) / (1 + MEDIAN_VARIANCE / (m - 1)))
+        z = robust_z(bending_surprises(self.bending.energies[at]), scatter * np.hypot(usual, WARP_SPREAD * warp))
         return np.asarray(np.where(self.bending.amplitudes[at] > NEGLIGIBLE_BEND, z, np.minimum(z, 0.0)))
 
     def _pauses(self, at: NDArray[np.int64]) -> Array:

@@ -24,7 +24,6 @@ COST_POINTS = 100  # of the paths whose means tell what leaving one out costs
 REPORTED_SHARE = 2 / 3  # of the limit, from which on the deviation of a selected member is reported
 MAX_COMPARED_MEMBERS = 50  # with which the words about a deviation compare
 HOLDOUT_SHARE = 0.2  # of the members that a repetition leaves out, at least one
-BOUND_SHARE = 0.01  # of the size of the path, below which nobody shakes
 
 
 def select(
@@ -73,7 +72,7 @@ def measure_members(
         on_step()
     size = max(float(np.median([extent(of.path) for of in features])), 1e-9)
     courses = [at_equal_times(t, BENDING_POINTS, of.path) for t, of in zip(trajectories, features, strict=True)]
-    return features, measure(features, np.stack(courses), size, min(settings.error_bound, BOUND_SHARE * size))
+    return features, measure(features, np.stack(courses), size, settings.bound_for(size))
 
 
 def step_count(sizes: Sequence[int]) -> int:

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 import pytest
 from scipy.optimize import minimize_scalar
+from scipy.spatial import cKDTree
 
 from teachpath.learning.fitting.nurbs_fit import approximate, distances_to_curve
 from teachpath.nurbs import Curve
@@ -91,3 +94,17 @@ def test_measured_distances_agree_with_a_minimiser() -> None:
     curve = approximate(synthetic.loop(200), 0.005, degree=5, most=60).curve
     points = np.random.default_rng(2).uniform(-0.1, 0.6, (25, 3))
     np.testing.assert_allclose(distances_to_curve(curve, points), [nearest(curve, p) for p in points], atol=1e-6)
+
+
+@pytest.mark.parametrize("shape", [synthetic.loop, synthetic.curl, synthetic.retreat, synthetic.closed])
+@pytest.mark.parametrize("degree", [2, 3, 5])
+@pytest.mark.parametrize("count", [12, 40, 200])
+def test_no_part_of_the_curve_swings_away_from_the_points(
+    shape: Callable[[int], Array], degree: int, count: int
+) -> None:
+    points = shape(count)
+    for bound in (0.01, 0.002, 0.0005):
+        fit = approximate(points, bound, degree=degree, most=100)
+        gap = np.linalg.norm(np.diff(points, axis=0), axis=1).max()
+        away = cKDTree(points).query(fit.curve(np.linspace(0.0, 1.0, 5000)))[0]
+        assert away.max() <= max(bound, fit.largest) + gap / 2

@@ -9,7 +9,7 @@ from teachpath.errors import LearningFailed
 from teachpath.learning.fitting import synthesis
 from teachpath.learning.fitting.synthesis import residual_noise
 from teachpath.learning.matching import frechet_distance
-from teachpath.learning.resampling import at_equal_arc_length
+from teachpath.learning.resampling import at_equal_arc_length, extent
 from teachpath.learning.settings import LearningSettings
 from teachpath.records import Array, LearnedPath, Trajectory
 from tests.unit.learning import synthetic
@@ -80,3 +80,29 @@ def test_thirteen_control_points_are_enough_for_half_a_centimetre() -> None:
     for kind in KINDS.values():
         trajectories, _ = synthetic.shown(kind, 3)
         assert len(synthesise(trajectories, error_bound=0.005).curve.weights) <= 13
+
+
+def small(noise: float) -> list[Trajectory]:
+    """Five of a task of 5 cm."""
+    rng = np.random.default_rng(4)
+    large = [synthetic.demonstration(rng, duration=3.98, tremor=0.0, noise=0.0) for _ in range(5)]
+    return [Trajectory(d.times, 0.07 * d.positions + rng.normal(0, noise, d.positions.shape)) for d in large]
+
+
+def test_the_bound_is_one_hundredth_of_the_size_of_a_small_path() -> None:
+    path = synthesise(small(2e-5))
+    size = extent(path.curve(np.linspace(0, 1, 500)))
+    assert path.fit.bound == pytest.approx(0.01 * size, rel=0.02)
+    assert path.fit.largest <= path.fit.bound
+    assert path.note == ""
+
+
+def test_the_relative_bound_gives_way_to_noise_and_says_so() -> None:
+    path = synthesise(small(0.005))
+    assert path.fit.largest <= path.fit.bound <= LearningSettings().error_bound
+    assert "because of the noise in its demonstrations" in path.note
+    assert " 0 mm" not in path.note
+
+
+def test_modes_that_follow_the_paper_keep_the_bound_as_it_is_set() -> None:
+    assert PAPER.bound_for(0.05) == PAPER.error_bound
