@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import resource
+import socket
 from functools import partial
 from typing import Any, Final
 
@@ -12,6 +13,23 @@ from teachpath.web.connections import ConnectionLimits, LimitedProtocol, Limited
 from teachpath.web.settings import WebSettings
 
 OTHER_FILES: Final = 256  # that the service has open beside its connections: recordings, database, bus, processes
+
+ACCEPTS_A_ROUND: Final = (
+    8  # connections that the event loop accepts, of about 0.3 ms each, before it looks for requests
+)
+BACKLOG: Final = 2048  # connections that wait in the system to be accepted
+
+
+class _Server(uvicorn.Server):
+    """A server that accepts few connections at a time, however many come.
+
+    asyncio has one number for both: how many may wait in the system, and how many are accepted in one round.
+    """
+
+    async def startup(self, sockets: list[socket.socket] | None = None) -> None:
+        await super().startup(sockets)
+        for listener in sockets or ():
+            listener.listen(BACKLOG)
 
 
 def web_server(application: Any, settings: WebSettings) -> uvicorn.Server:
@@ -26,11 +44,12 @@ def web_server(application: Any, settings: WebSettings) -> uvicorn.Server:
         http=partial(LimitedProtocol, limits),  # type: ignore[arg-type]  # it is called, whatever it is
         ws=partial(LimitedWebSocket, limits),  # type: ignore[arg-type]
         ws_per_message_deflate=False,
+        backlog=ACCEPTS_A_ROUND,
         log_level="warning",
         access_log=False,
         timeout_graceful_shutdown=1,
     )
-    return uvicorn.Server(config)
+    return _Server(config)
 
 
 def allow_connections(count: int) -> int:
