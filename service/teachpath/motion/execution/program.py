@@ -89,7 +89,8 @@ class PlanProgram:
     def held(self) -> bool:
         """Whether the arm is to rest: after `hold`, at an override of zero, or at the end of the way back."""
         governor = self._active_governor
-        returned = governor is not None and governor.reversing and governor.progress.at_rest and not self.waiting
+        # On the way back it may rest elsewhere, too: where the arm was late, until that goes on.
+        returned = governor is not None and governor.reversing and governor.progress.at_rest and governor.tau <= 0.0
         return self._held or self._override < MIN_OVERRIDE or returned
 
     @property

@@ -41,3 +41,21 @@ def test_what_is_rehearsed_goes_from_nothing_to_one_and_never_back(slower: list[
         progress = preview_motion(made, SETTINGS, ARM, dwell=0.5).progress
         assert (progress[0], progress[-1]) == (0.0, 1.0)
         assert np.all(np.diff(progress) >= 0.0)
+
+
+def test_a_motion_that_rests_on_its_way_back_is_back_at_the_beginning_only_there(middle: Plan) -> None:
+    program = PlanProgram(middle, np.array(SETTINGS.home), SETTINGS, ARM)
+    while program.progress < 0.4:
+        program.step()
+    program.reverse()
+    while program.progress > 0.2:
+        program.step()
+    program.set_waiting(True)  # the arm is late
+    while not program.at_rest:
+        program.step()
+    program.set_waiting(False)
+    assert not program.held
+    while not program.held:
+        program.step()
+    assert program.progress == 0.0
+    assert program.hold_reason.startswith("back at the beginning")
