@@ -15,7 +15,7 @@ from teachpath.learning.adaptation.same_way import labels_of_ways
 from teachpath.learning.adaptation.target import Target
 from teachpath.learning.clustering.ends import end_groups
 from teachpath.learning.fitting.orientation_fit import rotation_angles
-from teachpath.learning.resampling import arc_lengths, at_equal_arc_length, smoothed
+from teachpath.learning.resampling import arc_lengths, at_equal_arc_length, extent, smoothed
 from teachpath.learning.settings import LearningSettings
 from teachpath.nurbs import Curve, unit_quaternions
 from teachpath.records import Array, LearnedPath, Trajectory
@@ -76,16 +76,17 @@ def adapt(
     model, alike, courses = course_model(path, learned, members, others, settings)
     u = even_parameters(path.curve)
     found = model.predict(target.start, target.goal)
+    bound = settings.bound_for(extent(found.path))
     curve, orientation, missed = path.curve, path.orientation, 0.0
     if not _is_own(path, target):
         displacements = found.path - model.version
-        curve, missed = displaced(path.curve, u, displacements, settings.error_bound, settings.most_control_points)
+        curve, missed = displaced(path.curve, u, displacements, bound, settings.most_control_points)
         closeness = model.closeness(target.start, target.goal)
         orientation = adapted_orientation(path, alike, u, closeness, target, settings)
     length = float(arc_lengths(model.version)[-1])
     places = int(end_groups(courses, min_separation=settings.min_separation, length=length).max())
     note = _note(found, len(alike), places)
-    if missed > settings.error_bound:
+    if missed > bound:
         note += f"; {len(curve.control_points)} control points follow it within {missed * 1e3:.3g} mm only"
     return AdaptedPath(curve, orientation, 2 * found.deviation, len(alike), places, found.extrapolates, note)
 
