@@ -9,7 +9,7 @@ from typing import Any
 
 from scipy.stats import binom
 
-from tests.experiments import ablation, adaptation_report, degrees, quoted, rule, scale
+from tests.experiments import ablation, adaptation_report, degrees, quoted, rule, scale, stream_faults
 from tests.experiments.markup import STYLE, figure, listed, short
 from tests.experiments.results import Found, by_place, outranked, revived, right, uneven
 from tests.experiments.scenarios import GROUPINGS, SCENARIOS
@@ -41,6 +41,7 @@ def page(found: Found, folder: Path) -> str:
             *_shapes(found, folder),
             *_degrees(found),
             *adaptation_report.section(found["adaptation"], HANDS if found["made"]["hands"] else SYNTHETIC),
+            *stream_faults.section(found["stream_faults"]),
             *_verdicts(found),
             *_method(found),
             "</html>\n",

@@ -19,7 +19,19 @@ from typing import Any
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
-from tests.experiments import ablation, adaptation, degrees, figures, report, results, rule, scale, targets, trials
+from tests.experiments import (
+    ablation,
+    adaptation,
+    degrees,
+    figures,
+    report,
+    results,
+    rule,
+    scale,
+    stream_faults,
+    targets,
+    trials,
+)
 from tests.experiments.scenarios import GROUPINGS, SCENARIOS, SHAPES
 from tests.experiments.selection_cases import CASES
 
@@ -39,12 +51,13 @@ class Sizes:
     grouping: int = 100
     shape: int = 20
     degree: int = 12
+    fault: int = 100
     datasets: int = 30
     repetitions: int = 40
     adaptation: int = 50
 
 
-QUICK = Sizes(selection=8, ablation=8, grouping=4, shape=1, degree=1, datasets=3, repetitions=8, adaptation=2)
+QUICK = Sizes(selection=8, ablation=8, grouping=4, shape=1, degree=1, fault=2, datasets=3, repetitions=8, adaptation=2)
 
 
 def main() -> None:
@@ -59,9 +72,10 @@ def main() -> None:
     sizes = QUICK if asked.quick else Sizes()
     asked.out.mkdir(parents=True, exist_ok=True)
     began = time.monotonic()
-    *repeated, adapted, scored = _repeated(sizes, asked.hands)
+    *repeated, adapted, scored, faulty = _repeated(sizes, asked.hands)
     found = results.summary(*repeated, sizes=sizes)
     found["adaptation"] = adaptation.summary({count: outcome for (_, count, *_), outcome in adapted})
+    found["stream_faults"] = stream_faults.summary(faulty)
     found["ablation"] = ablation.summary([(key, scores) for (key, _), scores in scored])
     shown_1, learned_1 = trials.table_1(SEED)
     shown_2, learned_2 = trials.experiment_2(SEED)
@@ -100,6 +114,9 @@ def _repeated(sizes: Sizes, hands: Path | None) -> tuple[list[Any], ...]:
     work += [(5, degrees.degrees_once, (kind, seed)) for kind in degrees.KINDS for seed in range(sizes.degree)]
     work += [(6, adaptation.measure, (hands, count, sizes.adaptation, SEED)) for count in adaptation.COUNTS]
     work += [(7, ablation.score_once, (key, run)) for key in CASES for run in range(sizes.ablation)]
+    work += [
+        (8, stream_faults.fault_once, (*case, seed)) for case in stream_faults.CASES for seed in range(sizes.fault)
+    ]
     chunks = [work[at : at + CHUNK] for at in range(0, len(work), CHUNK)]
     gathered: dict[Future[list[Any]], int] = {}
     context = multiprocessing.get_context("spawn")
@@ -109,7 +126,7 @@ def _repeated(sizes: Sizes, hands: Path | None) -> tuple[list[Any], ...]:
             gathered[pool.submit(_chunk, chunk)] = number
         for done in as_completed(gathered):
             bar.advance(row, len(done.result()))
-    found: tuple[list[Any], ...] = ([], [], [], [], [], [], [], [])
+    found: tuple[list[Any], ...] = ([], [], [], [], [], [], [], [], [])
     for done, number in gathered.items():
         for (kind, _, arguments), outcome in zip(chunks[number], done.result(), strict=True):
             found[kind].append((arguments, outcome))

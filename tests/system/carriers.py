@@ -120,13 +120,11 @@ def carry_worn(visit: Visit, move: Any) -> None:
     move(visit, START, 1)
     phase(visit, "carrying")
     over = [
-        (START[0], START[1] + (GOAL[1] - START[1]) * k / 20, START[2] + 0.24 * math.sin(math.pi * k / 20))
-        for k in range(21)
+        (START[0], START[1] + (GOAL[1] - START[1]) * k / 100, START[2] + 0.24 * math.sin(math.pi * k / 100))
+        for k in range(101)
     ]
-    for point in over:
-        move(visit, point, 1)
-        visit.page.wait_for_timeout(60)
-        visit.page.evaluate(NEXT)
+    device = "hands" if move is move_hand else "controllers"
+    visit.page.evaluate(FOLLOW % device, [list(in_room(point).values()) for point in over])
     move(visit, GOAL, 0)
 
 
@@ -136,6 +134,20 @@ NEXT = """async () => {
   for (const before = hand.samples; hand.samples === before; ) await new Promise((done) => setTimeout(done, 5));
 }"""
 
+
+# Moves a hand or controller on after every sample, as a hand moves on: one that stood for several would be frozen.
+FOLLOW = """async (places) => {
+  const hand = teachpath.headset();
+  const { onSample } = hand;
+  await new Promise((done) => {
+    hand.onSample = (sample) => {
+      onSample(sample);
+      if (places.length > 0) headset.%s.right.position.set(...places.shift());
+      else done();
+    };
+  });
+  hand.onSample = onSample;
+}"""
 
 # Keeps the time of every sample [ms].
 HEAR = """

@@ -39,6 +39,8 @@ def assess_quality(statistics: PhaseStatistics, settings: RecordingSettings) -> 
     transport = _with_unlocated(statistics)
     rejections = [*_excessive_faults(statistics, transport, settings), *_unusable(transport, settings)]
     repairs = [*_repairs(transport), *_faults_elsewhere(statistics, settings)]
+    if transport.repeated and not _is_slow(transport, settings):
+        repairs.append(_slow_tracker(transport))
     whole = statistics.whole
     if whole.declared_rate and abs(whole.seen_rate / whole.declared_rate - 1.0) > settings.rate_tolerance:
         repairs.append(f"the rate is {whole.seen_rate:.3g} Hz, declared {whole.declared_rate:.3g} Hz")
@@ -91,7 +93,7 @@ def _unusable(statistics: StreamStatistics, settings: RecordingSettings) -> list
         found.append(f"the position leaps {times} by over {jump:.3g} cm and stays")
     if statistics.longest_freeze_ns > settings.longest_freeze * 1e9:
         found.append(f"{_freeze(statistics)}, limit {settings.longest_freeze:.2g} s")
-    if 0.0 < statistics.measured_rate < settings.lowest_pose_rate:
+    if _is_slow(statistics, settings):
         found.append(f"{_slow_tracker(statistics)}, limit {settings.lowest_pose_rate:.3g} Hz")
     return found
 
@@ -101,8 +103,13 @@ def _freeze(statistics: StreamStatistics) -> str:
     return f"the tracker repeats one reading for {seconds:.2f} s while the hand moves, {at:.2f} s after the grasp"
 
 
+def _is_slow(statistics: StreamStatistics, settings: RecordingSettings) -> bool:
+    return 0.0 < statistics.measured_rate < settings.lowest_pose_rate
+
+
 def _slow_tracker(statistics: StreamStatistics) -> str:
-    return f"the tracker measures {statistics.measured_rate:.3g} times a second; {statistics.repeated} readings repeat"
+    repeat = "1 reading repeats" if statistics.repeated == 1 else f"{statistics.repeated} readings repeat"
+    return f"the tracker measures {statistics.measured_rate:.3g} times a second; {repeat} the one before"
 
 
 def _breaks(statistics: StreamStatistics, settings: RecordingSettings, limit: str = "") -> list[str]:
@@ -115,12 +122,11 @@ def _breaks(statistics: StreamStatistics, settings: RecordingSettings, limit: st
 
 
 def _repairs(statistics: StreamStatistics) -> list[str]:
-    found = [
+    return [
         f"{_samples(getattr(statistics, name))} {words}"
         for name, words in (FAULTS | REPAIRS).items()
         if getattr(statistics, name)
     ]
-    return [*found, _slow_tracker(statistics)] if statistics.repeated else found
 
 
 def _faults_elsewhere(statistics: PhaseStatistics, settings: RecordingSettings) -> list[str]:

@@ -21,8 +21,7 @@ NOISE_FLOOR = 6.0  # standard deviations of the noise; a shorter step shows no m
 LATTICE_FLOOR = 3.0  # steps of the device's resolution, likewise
 MOTION_FLOOR = 0.1  # of the upper quartile of the steps, likewise
 ABRUPT = 0.3  # of the largest step before; a hand that comes to rest takes a shorter last step
-LEAP = 2.5  # times the next step
-RETURNED = 0.3  # of the way that the hand would have gone at its speed before
+RETURNED = 0.3  # of the way that the hand would have gone at its speed before; a hand that stopped goes none of it
 SAME_ORIENTATION = 1.0 - 1e-12  # scalar product of two quaternions, over which they are the same
 LOWEST_QUARTER = 1.1011  # lowest quartile of the length of a normal vector in space, in standard deviations
 THIRD_DIFFERENCE = np.sqrt(20.0)  # standard deviation of third differences of white noise
@@ -79,7 +78,7 @@ def find_repeated(times: Array, positions: Array, orientations: Array | None, be
     if orientations is not None:
         still &= np.abs(np.sum(orientations[1:] * orientations[:-1], axis=1)) > SAME_ORIENTATION
     runs = [run for run in _runs(still) if run[0] < end - 1 and run[1] >= begin]
-    stale = [run for run in runs if _is_stale(steps, still, *run, floor)]
+    stale = [run for run in runs if _is_stale(times, steps, still, *run, floor)]
     indices = [k + 1 for a, b in stale for k in range(a, b) if begin <= k + 1 < end]
     if not indices:
         return RepeatedReadings()
@@ -110,7 +109,7 @@ def _runs(still: NDArray[np.bool_]) -> list[tuple[int, int]]:
     return [(int(a), int(b)) for a, b in edges.reshape(-1, 2)]
 
 
-def _is_stale(steps: Array, still: NDArray[np.bool_], a: int, b: int, floor: float) -> bool:
+def _is_stale(times: Array, steps: Array, still: NDArray[np.bool_], a: int, b: int, floor: float) -> bool:
     """Tell whether the hand moved while the steps from `a` to before `b` show no motion."""
     before, after = steps[:a][~still[:a]][-NEIGHBOURS:], steps[b:][~still[b:]][:NEIGHBOURS]
     if not len(before) or before.max() <= floor:
@@ -120,10 +119,9 @@ def _is_stale(steps: Array, still: NDArray[np.bool_], a: int, b: int, floor: flo
     stopped = before[-1] > max(floor, ABRUPT * before.max())
     if not len(after):
         return bool(stopped)
-    leap = after[0]
-    following = steps[b + 1 : b + 1 + FREEZE_LENGTH]
-    leaps = len(following) and leap > LEAP * np.median(following)
-    return bool(leap > floor and stopped and (leaps or leap > RETURNED * (b - a + 1) * np.median(before)))
+    begun = int(np.flatnonzero(~still[:a])[-NEIGHBOURS:][0])
+    went, missed = float(steps[begun:a].sum()), float(times[b + 1] - times[a])
+    return bool(stopped and steps[b] > floor and steps[b] * (times[a] - times[begun]) > RETURNED * missed * went)
 
 
 def _measured_rate(times: Array, steps: Array, repeated: int, floor: float) -> float:

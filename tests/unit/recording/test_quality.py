@@ -35,8 +35,16 @@ def transport(statistics: StreamStatistics) -> PhaseStatistics:
         ({"reversals": 6}, "reject", "6 of 100 samples"),
         ({"reversals": 5}, "repaired", "5 samples swinging back and forth faster than a hand"),
         ({"late": 3}, "clean", ""),
-        ({"repeated": 2, "measured_rate": 49.0}, "repaired", "measures 49 times a second; 2 readings repeat"),
-        ({"repeated": 50, "measured_rate": 19.0}, "reject", "19 times a second; 50 readings repeat, limit 20 Hz"),
+        (
+            {"repeated": 2, "measured_rate": 49.0},
+            "repaired",
+            "measures 49 times a second; 2 readings repeat the one before",
+        ),
+        (
+            {"repeated": 50, "measured_rate": 19.0},
+            "reject",
+            "19 times a second; 50 readings repeat the one before, limit 20 Hz",
+        ),
         (
             {"repeated": 6, "longest_freeze_ns": 140_000_000, "freeze_at_ns": 1_200_000_000, "measured_rate": 47.0},
             "reject",
