@@ -104,7 +104,7 @@ def section(rows: list[dict[str, Any]]) -> list[str]:
         "<p>A hand shows a task with a glove and a tracker of 50 Hz and 0.3 mm of noise; then one fault befalls the "
         "stream, a freeze only where the hand carries fast. No fault stronger than its limit may be clean, and at "
         f"most {MAX_FALSE_ALARM:.0%} of the faultless may be anything else. {ends}</p>",
-        "<table><caption><b>Table VII.</b> Verdicts on each route, whether every sample was counted as what it was, "
+        "<table><caption><b>Table VIII.</b> Verdicts on each route, whether every sample was counted as what it was, "
         f"and from how many streams anything is learned.</caption><tr><th class=l>Fault{head}<th>counts right"
         f"<th>learned<th>of{''.join(body)}</table>",
     ]
