@@ -43,7 +43,7 @@ def test_a_resting_hand_is_no_frozen_tracker(seed: int, noise: float, lattice: f
 @given(seed=st.integers(0, 10_000), at=st.integers(25, 40), length=st.integers(6, 25), dither=st.booleans())
 def test_a_tracker_that_freezes_while_the_hand_moves_is_found(seed: int, at: int, length: int, dither: bool) -> None:
     positions = moved(seed)
-    shakes = np.random.default_rng(seed).normal(0.0, 5e-6, (length, 3)) * dither
+    shakes = np.random.default_rng(seed).normal(0.0, 1e-6, (length, 3)) * dither
     positions[at + 1 : at + 1 + length] = positions[at] + shakes
     freeze = found(positions)
     assert set(range(at + 1, at + 1 + length)) <= set(freeze.indices)
