@@ -6,7 +6,7 @@ import { capitalize, formatNumber } from "../texts.js";
 import { wayClass } from "../way_colors.js";
 import { markFocus, trackFocus } from "./focus.js";
 
-/** @typedef {{name: string, title: string, of: (score: Score) => string}} Column between a demonstration and what is kept */
+/** @typedef {{name: string, title: string, of: (score: Score, scores: Score[]) => string}} Column between a demonstration and what is kept */
 
 /** @type {Record<string, Column>} */
 const COLUMNS = {
@@ -23,8 +23,12 @@ const COLUMNS = {
   },
   likelihood: {
     name: "Log-lik.",
-    title: "log-likelihood under the model that judges it",
-    of: ({ z, log_likelihood }) => (z === null ? "" : figure(log_likelihood, 0)),
+    title: "log-likelihood under the model of the others or of its way, and its rank by it",
+    of: ({ z, log_likelihood }, scores) => {
+      if (z === null) return "";
+      const better = scores.filter((other) => other.z !== null && other.log_likelihood > log_likelihood);
+      return `${figure(log_likelihood, 0)} (${1 + better.length})`;
+    },
   },
 };
 // In the mode of the paper ranks go by the log-likelihood, else by z.
@@ -81,7 +85,7 @@ function rowGroup({ index, scores }, numbers, columns) {
     "tbody",
     {},
     scores.map((score, i) => [
-      scoreRow(score, numbers, i === 0 && way, columns),
+      scoreRow(score, scores, numbers, i === 0 && way, columns),
       reasonOf(score) && reasonRow(score, columns.length + 2),
     ]),
   );
@@ -96,12 +100,12 @@ function reasonRow(score, width) {
   return element("tr", focus, element("td", { colspan: String(width) }, capitalize(reasonOf(score))));
 }
 
-/** @param {Score} score @param {Map<string, number>} numbers @param {Child} way @param {Column[]} columns */
-function scoreRow(score, numbers, way, columns) {
+/** @param {Score} score @param {Score[]} scores @param {Map<string, number>} numbers @param {Child} way @param {Column[]} columns */
+function scoreRow(score, scores, numbers, way, columns) {
   const { demonstration, selected } = score;
   const tick = element("span", { class: "tick", role: "img", "aria-label": "kept" }, "✓");
   const cross = element("span", { class: "cross", role: "img", "aria-label": "left out" }, "–");
-  const figures = [String(numbers.get(demonstration) ?? demonstration), ...columns.map(({ of }) => of(score))];
+  const figures = [String(numbers.get(demonstration) ?? demonstration), ...columns.map(({ of }) => of(score, scores))];
   return element(
     "tr",
     { class: selected ? "selected" : "", "data-focus": `demonstrations ${demonstration}` },
