@@ -103,4 +103,5 @@ def status_line(feedback: tracker_pb2.HandFeedback) -> str:
     takes = f"{feedback.takes} take{'s' if feedback.takes != 1 else ''}"
     left = f", {feedback.takes_left} to go" if feedback.takes_left else ""
     fist = f"; open the fist now to {feedback.pending_command}" if feedback.pending_command else ""
-    return f"{feedback.task}: {doing}; {takes}{left}{fist}"
+    hint = f"; {feedback.hint}" if feedback.hint else ""
+    return f"{feedback.task}: {doing}; {takes}{left}{fist}{hint}"

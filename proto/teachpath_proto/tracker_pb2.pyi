@@ -207,7 +207,7 @@ class RecorderStatus(_message.Message):
     def __init__(self, recordings: _Optional[_Iterable[_Union[RecordingReport, _Mapping]]] = ...) -> None: ...
 
 class HandFeedback(_message.Message):
-    __slots__ = ("task", "phase", "state", "holding", "countdown_left", "takes_left", "takes", "newest", "pending_command")
+    __slots__ = ("task", "phase", "state", "holding", "countdown_left", "takes_left", "takes", "newest", "pending_command", "hint")
     TASK_FIELD_NUMBER: _ClassVar[int]
     PHASE_FIELD_NUMBER: _ClassVar[int]
     STATE_FIELD_NUMBER: _ClassVar[int]
@@ -217,6 +217,7 @@ class HandFeedback(_message.Message):
     TAKES_FIELD_NUMBER: _ClassVar[int]
     NEWEST_FIELD_NUMBER: _ClassVar[int]
     PENDING_COMMAND_FIELD_NUMBER: _ClassVar[int]
+    HINT_FIELD_NUMBER: _ClassVar[int]
     task: str
     phase: str
     state: str
@@ -226,4 +227,5 @@ class HandFeedback(_message.Message):
     takes: int
     newest: DemonstrationReport
     pending_command: str
-    def __init__(self, task: _Optional[str] = ..., phase: _Optional[str] = ..., state: _Optional[str] = ..., holding: _Optional[bool] = ..., countdown_left: _Optional[float] = ..., takes_left: _Optional[int] = ..., takes: _Optional[int] = ..., newest: _Optional[_Union[DemonstrationReport, _Mapping]] = ..., pending_command: _Optional[str] = ...) -> None: ...
+    hint: str
+    def __init__(self, task: _Optional[str] = ..., phase: _Optional[str] = ..., state: _Optional[str] = ..., holding: _Optional[bool] = ..., countdown_left: _Optional[float] = ..., takes_left: _Optional[int] = ..., takes: _Optional[int] = ..., newest: _Optional[_Union[DemonstrationReport, _Mapping]] = ..., pending_command: _Optional[str] = ..., hint: _Optional[str] = ...) -> None: ...

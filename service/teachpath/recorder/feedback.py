@@ -94,4 +94,5 @@ def _visible(status: RecordingStatus) -> tuple[object, ...]:
         status.takes_left,
         status.demonstrations[-1:],
         status.pending_command,
+        status.hint,
     )

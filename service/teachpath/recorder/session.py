@@ -216,6 +216,7 @@ class RecordingSession:
             pending_command=self._gesture.pending_command,
             pedal_used=self._pedal_used,
             idle=self._idle,
+            hint=self._segmenter.hint,
             carried=self._setup.scene.carried,
             hand=self._hand() if with_hand else None,
             statistics=self.counter.statistics() if with_statistics else None,
@@ -275,8 +276,7 @@ class RecordingSession:
         if cut.open_ended and not fault and (self._is_torn or self._take.samples[-1].flexions):
             fault = "the recording ended before the hand let go"
         statistics = self.counter.interval(excluding=following)
-        finished = self._take.finalize(cut, statistics, self._carried, fault)
-        if finished is None:
+        if (finished := self._take.finalize(cut, statistics, self._carried, fault)) is None:
             self._idle += len(self._take.samples)
         else:
             self.demonstrations.append(finished[0].id)

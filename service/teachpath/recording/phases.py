@@ -10,6 +10,8 @@ from teachpath.recording.settings import RecordingSettings
 from teachpath.records import Phase, Sample, Vector
 
 GRASP_BUTTON = 1  # bit of Sample.buttons; held while a hand without a glove grasps
+HALF_CLOSED_TIME = 0.5  # [s] after which a hand at the object that is neither open nor closed is told so
+FAR_AWAY = 0.5  # [m] from the object; a hand that closes there may be mapped to the wrong place
 TOGGLE_BUTTON = 2  # bit of Sample.buttons; pressed to pause or resume
 
 
@@ -62,6 +64,8 @@ class Segmenter:
         self._grasp = self._release = 0
         self._opened_ns = 0
         self._place: Vector = (0.0, 0.0, 0.0)  # where the hand closed
+        self._half_closed_ns = 0  # since when it is neither open nor closed at the object; 0: it is not
+        self.hint = ""  # why the hand has grasped nothing, and what to do
         self._recent: deque[tuple[int, Vector]] = deque()
 
     @property
@@ -79,6 +83,7 @@ class Segmenter:
         self._closed = hand_closure(sample) > (self._settings.open_at if was_closed else self._settings.close_at)
         grasps = self._closed and not was_closed and self._near(position)
         if self.phase is Phase.REACH:
+            self._advise(sample, position, closes=self._closed and not was_closed)
             if grasps:
                 self._take_hold(index, position)
         elif self.phase is Phase.GRASP:
@@ -108,7 +113,27 @@ class Segmenter:
         return self._complete()
 
     def _take_hold(self, index: int, position: Vector) -> None:
-        self.phase, self._grasp, self._place = Phase.GRASP, index, position
+        self.phase, self._grasp, self._place, self.hint = Phase.GRASP, index, position, ""
+
+    def _advise(self, sample: Sample, position: Vector, *, closes: bool) -> None:
+        """Say why the hand grasps nothing: too far from the object, or not closed enough."""
+        if closes and self._carried is not None:
+            distance, limit = math.dist(position, self._carried), self._settings.grasp_radius
+            self.hint = (
+                f"the hand closed {100 * distance:.3g} cm from the object, limit {100 * limit:.3g} cm: close it there"
+            )
+            if distance > FAR_AWAY:
+                self.hint += "; if it was there, measure the calibration anew or mend the object's place in the scene"
+        closure = hand_closure(sample)
+        if not (self._settings.open_at < closure <= self._settings.close_at and self._near(position)):
+            self._half_closed_ns = 0
+        elif not self._half_closed_ns:
+            self._half_closed_ns = sample.device_ns
+        elif sample.device_ns - self._half_closed_ns >= HALF_CLOSED_TIME * 1e9:
+            self.hint = (
+                f"the glove reads {closure:.2f} at the object and counts as closed over {self._settings.close_at:g}: "
+                "close the hand further, or calibrate the glove"
+            )
 
     def _follow_grasp(self, position: Vector) -> None:
         if not self._closed:

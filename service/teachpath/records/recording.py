@@ -122,6 +122,7 @@ class RecordingStatus:
         carried: the object that the hand is to carry, at its start; None: the scene has none.
         hand: None while the hand is not tracked, and in a snapshot that was taken without it.
         statistics: of all samples; None in a snapshot that was taken without them.
+        hint: why the hand has grasped nothing, and what to do.
     """
 
     task: str
@@ -137,3 +138,4 @@ class RecordingStatus:
     carried: Shape | None = None
     hand: HandState | None = None
     statistics: StreamStatistics | None = None
+    hint: str = ""

@@ -130,3 +130,24 @@ def test_a_grasp_of_the_object_that_is_back_in_its_place_begins_the_next_one() -
 def test_a_hand_that_closes_and_opens_at_the_object_has_carried_nothing() -> None:
     closures = [0.1] * 10 + [0.9] * 60 + [0.1] * 60
     assert cuts_of(closing(closures, [OBJECT] * 130, noise=0.1)) == []
+
+
+@pytest.mark.parametrize(
+    ("away", "flexion", "said"),
+    [
+        (0.18, 0.9, "closed 18 cm from the object, limit 8 cm: close it there"),
+        (1.7, 0.9, "closed 170 cm from the object, limit 8 cm: close it there; if it was there, measure"),
+        (0.0, 0.5, "reads 0.50 at the object and counts as closed over 0.6: close the hand further"),
+        (0.3, 0.5, ""),
+        (0.0, 0.9, ""),
+        (0.3, 0.1, ""),
+    ],
+)
+def test_a_hand_that_grasps_nothing_is_told_why_within_a_second(away: float, flexion: float, said: str) -> None:
+    x, y, z = (0.5, 0.0, 0.5)
+    segmenter = Segmenter(RecordingSettings(), (x, y, z))
+    for n in range(50):
+        flexions = (flexion if n >= 5 else 0.1,) * 22
+        segmenter.push(sample(n, (x, y + away, z), flexions), (x, y + away, z))
+    assert said in segmenter.hint, segmenter.hint
+    assert bool(segmenter.hint) == bool(said)

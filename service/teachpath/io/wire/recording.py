@@ -91,6 +91,7 @@ def encode_feedback(status: RecordingStatus, newest: Demonstration | None) -> by
         takes_left=status.takes_left,
         takes=len(status.demonstrations),
         pending_command=status.pending_command or "",
+        hint=status.hint,
     )
     if newest is not None:
         message.newest.CopyFrom(_demonstration_report(newest))
