@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import signal
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from concurrent.futures import Future, ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
+from contextlib import contextmanager
 from multiprocessing import get_context
 from typing import Any, TypeVar
 
@@ -43,7 +45,8 @@ class KillablePool:
                 raise BrokenProcessPool("the pool is closed")
             if self._executor is None:
                 self._executor = ProcessPoolExecutor(1, get_context("spawn"), self._initializer, self._initargs)
-            return self._executor.submit(function, *arguments)
+            with _without_interrupts():
+                return self._executor.submit(function, *arguments)
 
     def close(self) -> None:
         """Kill the process, and let no other start."""
@@ -62,3 +65,13 @@ class KillablePool:
         for process in processes:
             process.kill()
             process.join()
+
+
+@contextmanager
+def _without_interrupts() -> Iterator[None]:
+    """Let a process that starts meanwhile never see Ctrl-C, which goes to all of a terminal before it can ignore it."""
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)

@@ -86,3 +86,8 @@ def test_a_kill_spares_the_processes_of_others(pool: KillablePool) -> None:
         assert other.submit(process_name).result(HANG) == "other"
     finally:
         other.kill()
+
+
+def test_ctrl_c_reaches_no_process_of_the_pool_from_its_first_moment(pool: KillablePool) -> None:
+    assert signal.SIGINT in pool.submit(signal.pthread_sigmask, signal.SIG_BLOCK, ()).result()
+    assert signal.SIGINT not in signal.pthread_sigmask(signal.SIG_BLOCK, ())
