@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from functools import cached_property
 
 import numpy as np
 
@@ -74,12 +73,12 @@ class CourseModel:
         path[[0, -1]] = start, goal
         return replace(found, path=path)
 
-    @cached_property
+    @property
     def own(self) -> Array:
         """What the learned path has beside the prediction for its ends: (n, 3) [m]."""
         return self.learned - self.shapes.predict(self.learned[0], self.learned[-1]).path
 
-    @cached_property
+    @property
     def edits(self) -> Array:
         """What the version has beside the adapted learned path: (n, 3) [m]."""
         return self.version - self._without_edits(self.version[0], self.version[-1]).path
