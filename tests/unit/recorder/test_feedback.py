@@ -51,6 +51,16 @@ def test_a_change_is_told_once_and_all_again_each_second() -> None:
         assert [(f.holding, f.phase) for f in told.look(status("release"))] == [(False, "release")]
 
 
+def test_why_nothing_was_grasped_is_told_when_it_changes() -> None:
+    told = Told()
+    told.look(status())
+    assert [f.hint for f in told.look(status(hint="the hand closed 18 cm from the object"))] == [
+        "the hand closed 18 cm from the object"
+    ]
+    assert told.look(status(hint="the hand closed 18 cm from the object")) == []
+    assert [f.hint for f in told.look(status("grasp"))] == [""]
+
+
 def test_an_end_in_mid_take_lets_go() -> None:
     told = Told()
     told.look(status("transport"))
