@@ -199,8 +199,8 @@ def test_takes_by_an_emulated_hand_and_a_controller_in_one_headset(worn: Visit, 
     phase(worn, "ready")
     frames, samples = worn.page.evaluate("[teachpath.headset().frames, teachpath.headset().samples]")
     assert frames == samples > 100
-    heard = np.array(worn.page.evaluate("heard"), dtype=float)
     worn.page.evaluate("teachpath.headset().end()")
+    heard = np.array(worn.page.evaluate("heard"), dtype=float)  # the last take goes on to the last sample
     worn.page.get_by_role("button", name="Finish").click()
     worn.page.wait_for_selector("html[data-session='']", state="attached")
     by_hand, by_controller = service.station.demonstrations("by-headset")
