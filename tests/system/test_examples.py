@@ -95,7 +95,7 @@ def _judge(service: Service, execution: str, folder: Path) -> None:
     file = folder / "run.mcap"
     file.write_bytes(service.station.recorded_execution(execution))
     good = run("run", "--check", str(file), folder=folder)
-    if service.station.execution(execution).status.missed:  # the executor got no turn, and the log says so
+    if service.station.get_execution(execution).status.missed:  # the executor got no turn, and the log says so
         assert all("not one period apart" in line for line in good.out.splitlines() if "BROKEN" in line)
     else:
         assert good.process.returncode == 0, good.out + good.err
