@@ -180,8 +180,8 @@ def test_no_answer_is_described_as_just_an_object(desk: Desk) -> None:
     description = desk.send("GET", "/openapi.json").json()
     for path, methods in description["paths"].items():
         for method, operation in methods.items():
-            (status,) = (status for status in operation["responses"] if status.startswith("2"))
-            for kind, content in operation["responses"][status].get("content", {}).items():
+            answers = [answer for status, answer in operation["responses"].items() if status.startswith("2")]
+            for kind, content in (pair for answer in answers for pair in answer.get("content", {}).items()):
                 schema = json.dumps(content["schema"])
                 assert kind != "application/json" or ("$ref" in schema or "number" in schema), (method, path, schema)
     assert all("properties" in model or "enum" in model for model in description["components"]["schemas"].values())
