@@ -19,10 +19,12 @@ from teachpath.motion.arm.puma560 import Array
 from teachpath.motion.timing import kernels
 from teachpath.motion.timing.joint_moves import straight_move
 from teachpath.motion.timing.limit_margins import SYMMETRIC_MARGINS
+from teachpath.motion.timing.ramp_search import find_ramp, shorten_ramp
 from teachpath.motion.timing.timed_trajectory import TimedTrajectory
 
 MIN_OVERRIDE: Final = 0.01  # a smaller override holds
-MAX_RAMPS_PER_PERIOD: Final = 20  # ramps verified in one control period at most
+MAX_RAMPS_PER_PERIOD: Final = 20  # ramps to another rate that are judged in one control period at most
+MAX_SHORTER_RAMPS: Final = 20  # the same to the rate that the present ramp leads to
 RUCKIG_MARGIN: Final = 1 + 1e-12  # factor on Ruckig's limits, so that rounding makes no ramp infeasible
 DURATION_TOLERANCE: Final = 1e-6  # [s] between the closed form of a ramp and Ruckig's
 MAX_REVERSE_RATE: Final = 0.96  # of the way back: a plan has its margins on the other side (see `limit_margins`)
@@ -202,7 +204,7 @@ class Governor:
             if ended:
                 return self._sampled(lead, np.zeros(8))
             search = (self._stop_limits, self._dt, MAX_STOP_TIME, MAX_STOP_RAMPS, self._max_rate, trial)
-            if kernels.find_ramp(self._table, self._step, state, 0.0, sent, *search) >= 0.0:
+            if find_ramp(self._table, self._step, state, 0.0, sent, *search) >= 0.0:
                 return self._sampled(lead, trial)
         return self._sampled(int(self._end / self._dt / MIN_OVERRIDE), np.zeros(8))
 
@@ -225,8 +227,15 @@ class Governor:
             if kept[0] == kernels.KEPT:
                 self._accept_trial()
             return
-        search = (self._limits, self._dt, within, MAX_RAMPS_PER_PERIOD, self._max_rate, trial)
-        peak = kernels.find_ramp(self._table, self._step, state, target, self._sent, *search)
+        given = (self._table, self._step, state, target, self._sent, self._limits, self._dt)
+        peak = -1.0
+        if within == np.inf:
+            peak = find_ramp(*given, within, MAX_RAMPS_PER_PERIOD, self._max_rate, trial)
+            if peak < 0.0:
+                return
+            within = float(trial[3:6].sum())
+        shorter = shorten_ramp(*given, within, MAX_SHORTER_RAMPS, self._max_rate, trial)
+        peak = shorter if shorter >= 0.0 else peak
         if peak >= 0.0 and self._ruckig_agrees(peak):
             self._accept_trial()
 

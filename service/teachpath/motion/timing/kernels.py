@@ -18,12 +18,6 @@ from teachpath.motion.arm.puma560 import Array
 
 ACCEPTED_LIMIT_USE: Final = 0.997  # share of acceleration and jerk limits up to which a ramp is accepted
 TRAILING_SETPOINTS: Final = 3  # after the end of a ramp, whose differences still depend on it
-JERK_REDUCTION: Final = 0.6  # factor for the next trial after a broken jerk limit
-ACCELERATION_REDUCTION: Final = 0.7  # factor for the next trial after a broken acceleration limit
-MIN_TIME_SAVED: Final = 0.002  # s, by which a new ramp must be shorter than the present one
-LOOKAHEAD_TIME: Final = 0.03  # s, over which the joints' speeds bound the first trial
-MAX_RATE_ACCELERATION: Final = 1e4  # 1/s^2, of a ramp
-MAX_RATE_JERK: Final = 1e6  # 1/s^3
 
 # What `check_ramp` answers.
 KEPT: Final = 0
@@ -123,76 +117,6 @@ def check_ramp(table: Array, step: float, ramp: Array, sent: Array, limits: Arra
         for i in range(6):
             q0[i], q1[i], q2[i] = q1[i], q2[i], q3[i]
     return KEPT, 0.0
-
-
-@compiled
-def find_ramp(
-    table: Array, step: float, state: Array, target: float, sent: Array, limits: Array, dt: float, within: float,
-    tries: int, max_rate: float, ramp: Array,
-) -> float:  # fmt: skip
-    """Search for the shortest ramp to the constant rate `target` within all limits; return its peak |r'|, or -1.
-
-    The limit that a trial breaks, and when, tell what to reduce next: |r''| where the jerk limit breaks in the first or
-    last phase, otherwise |r'|. After a ramp was found, the remaining trials lie halfway to those that broke a limit.
-
-    Args:
-        within: duration of the present ramp [s]; a new one must be shorter by `MIN_TIME_SAVED`.
-        tries: ramps that are checked at most.
-        max_rate: largest |r| that the limit of the tool's speed allows.
-        ramp: (8,) where the best ramp is written.
-    """
-    steepest, hardest = _search_bounds(table, step, state, limits, dt)
-    failed_a, failed_j, kept_a, kept_j, best = 0.0, 0.0, 0.0, 0.0, -1.0
-    trial = np.empty(8)
-    for _ in range(tries):
-        peak = shortest_ramp(trial, state, target, steepest, hardest)
-        if peak < 0.0 or trial[3] + trial[4] + trial[5] >= within - MIN_TIME_SAVED:
-            return best
-        if _largest_rate(trial) > max_rate:
-            return best
-        broken, when = check_ramp(table, step, trial, sent, limits, dt)
-        if broken == SPEED_BROKEN:
-            return best
-        if broken == KEPT:
-            best, within = peak, trial[3] + trial[4] + trial[5]
-            ramp[:] = trial
-            kept_a, kept_j = min(steepest, peak), hardest
-            if failed_a == 0.0 and failed_j == 0.0:
-                return best
-            failed_a, failed_j = max(failed_a, kept_a), max(failed_j, kept_j)
-        elif broken == JERK_BROKEN and not trial[3] <= when - 1.5 * dt <= trial[3] + trial[4]:
-            failed_j, hardest = hardest, JERK_REDUCTION * hardest
-        else:
-            failed_a = min(steepest, peak)
-            steepest = ACCELERATION_REDUCTION * failed_a
-        if best >= 0.0:
-            steepest, hardest = sqrt(kept_a * failed_a), sqrt(kept_j * failed_j)
-    return best
-
-
-@compiled
-def _largest_rate(ramp: Array) -> float:
-    """Return the largest |r| of a ramp; where r' first has to change its sign, that is before the ramp's end."""
-    turning: float = ramp[1]
-    if ramp[2] * ramp[6] < 0.0:
-        turning -= ramp[2] * ramp[2] / (2.0 * ramp[6])
-    return float(max(abs(ramp[1]), abs(turning), abs(ramp[7])))
-
-
-@compiled
-def _search_bounds(table: Array, step: float, state: Array, limits: Array, dt: float) -> tuple[float, float]:
-    """Return the largest |r'| and |r''| worth a trial: those that alone would use up the joints' limits."""
-    last = table.shape[0] - 1
-    row = min(max(int(state[0] / step + 0.5), 0), last)
-    reach = int(state[1] * LOOKAHEAD_TIME / step)
-    steepest, hardest = MAX_RATE_ACCELERATION, MAX_RATE_JERK
-    for i in range(6):
-        moving = 1e-12
-        for share in range(3):
-            moving = max(moving, abs(table[min(max(row + reach * share // 2, 0), last), 1, i]))
-        steepest = min(steepest, 1.15 * limits[1, i] / dt**2 / moving)
-        hardest = min(hardest, 1.3 * limits[2, i] / dt**3 / moving)
-    return max(steepest, abs(state[2])), hardest
 
 
 @compiled
