@@ -164,7 +164,11 @@ HEAR = """
 
 
 def is_judged_by_its_frames(take: Demonstration, heard: np.ndarray) -> None:
-    """A machine without a graphics card may give no frames for a while: that is a gap as the page has stamped it."""
+    """A machine without a graphics card may give no frames for a while: that is a gap as the page has stamped it.
+
+    The emulated device now and then shows one pose in two frames, which the recorder says and leaves out.
+    """
     gap = take.statistics.longest_gap_ns / 1e9
     assert np.abs(np.diff(heard) / 1000 - gap).min() < 1e-5
-    assert take.verdict == "clean", take.reasons
+    assert take.verdict != "reject", take.reasons
+    assert all("repeat" in reason for reason in take.reasons), take.reasons
