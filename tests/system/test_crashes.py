@@ -70,13 +70,15 @@ def test_a_kill_in_mid_take_costs_only_what_was_not_yet_flushed(tmp_path: Path) 
 def test_a_job_under_way_is_run_again_once(tmp_path: Path) -> None:
     with Service(tmp_path / "data") as killed:
         assert len(record(killed, "carry", 12).demonstrations) == 12
-        (worker,) = wait_until(lambda: killed.find("spawn_main"), "the process of the jobs is there")
-        os.kill(worker, signal.SIGSTOP)  # so that the job cannot end before the kill
+        workers = wait_until(lambda: killed.find("spawn_main"), "the process of the jobs is there")
+        for worker in workers:  # the one of the jobs is among them
+            os.kill(worker, signal.SIGSTOP)  # so that the job cannot end before the kill
         job = killed.station.begin_job("carry", "learn")
         running = lambda: killed.station.get_job(job.id).state == "running"  # noqa: E731
         wait_until(running, "the job runs")
         killed.kill()
-        os.kill(worker, signal.SIGCONT)
+        for worker in workers:
+            os.kill(worker, signal.SIGCONT)
         killed.wait_gone()
 
     with Service(killed.data) as next_one:

@@ -53,7 +53,7 @@ def test_the_certified_motion_is_shown(package: Package) -> None:
     begin, end = next((one["begin"], one["end"]) for one in segments if one["name"] == "on the path")
     page.locator(".player input").fill(f"{(begin + end) / 2:.2f}")
     assert page.locator(".player output").inner_text().endswith("on the path")
-    assert page.locator("#certificate dd").count() == 6
+    assert page.locator("#certificate dd").count() == 7
     digest = package.archive()["plans/plan-1"]["certificate"]["digest"]
     assert page.locator("#certificate code").inner_text() == digest
 

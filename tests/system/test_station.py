@@ -103,10 +103,10 @@ def test_rubbish_during_a_take_is_counted_and_harms_nothing(service: Service) ->
         publisher = link.publisher(KEYS.samples("glove-rubbish"))
         for payload in bad:
             publisher.put(payload)
-        publisher.put(readings[10].message(11, 1).SerializeToString())  # a number that went back
+        publisher.put(readings[10].message(11, 1).SerializeToString())  # a number that went back, at another time
         tracker.publish(readings[120:], speed=FAST)
         report = tracker.stop()
-    assert (report.received, report.refused, report.duplicated, report.lost) == (SHOWN + 1, len(bad), 1, 0)
+    assert (report.received, report.refused, report.conflicts, report.lost) == (SHOWN + 1, len(bad), 1, 0)
     assert any("not finite" in note for note in report.notes)
     assert any("10485760 bytes" in note for note in report.notes)
     (demonstration,) = service.station.demonstrations("rubbish")

@@ -186,8 +186,8 @@ def moved_by(command: Command, service: Service) -> Execution:
 
     def begun() -> Execution | None:
         assert command.process.poll() is None, command.err
-        newest = service.station.executions()[0]
-        return newest if newest.status.state == "following" else None
+        newest = next(iter(service.station.executions()), None)
+        return newest if newest and newest.status.state == "following" else None
 
     found = wait_until(begun, "the arm follows the path")
     assert found is not None
