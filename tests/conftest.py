@@ -2,6 +2,7 @@
 
 import os
 import shutil
+import signal
 import tempfile
 from collections.abc import Generator, Iterator
 from typing import Any
@@ -13,6 +14,9 @@ from xdist.scheduler import LoadScopeScheduling
 # No example fails because the machine was busy.
 settings.register_profile("teachpath", deadline=None, suppress_health_check=[HealthCheck.too_slow])
 settings.load_profile("teachpath")
+
+# A shell ignores Ctrl-C for what it runs in the background, and all that is started from there inherits that.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 
 NAMES = ("chromium", "chromium-browser", "google-chrome")
 ABSENT = "no Chromium to look at the page with; get it with: sudo apt-get install chromium"
