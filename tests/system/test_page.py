@@ -239,3 +239,16 @@ def test_the_review_package_answers_as_the_service_does_and_keeps_nobody_out(
             assert [one for one in answer if one["id"] in {kept["id"] for kept in archive[path]}] == archive[path]
         else:
             assert answer == archive[path], path
+
+
+@pytest.mark.parametrize("name", ["demo", "x" * 64])
+def test_stop_is_in_view_at_every_width(visit: Visit, name: str) -> None:
+    page = visit.page
+    page.evaluate("name => document.querySelector('#task').replaceChildren(new Option(name))", name)
+    page.evaluate("document.querySelector('label.task').hidden = false")
+    for width in (360, 390, 600, 860, 1024, 1920):
+        page.set_viewport_size({"width": width, "height": 420})
+        box = page.locator("#stop").bounding_box()
+        assert box["x"] >= 0.0, (width, box)
+        assert box["x"] + box["width"] <= width, (width, box)
+        assert 0.0 <= box["y"] <= 20.0, (width, box)
