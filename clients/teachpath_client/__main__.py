@@ -11,6 +11,7 @@ from functools import partial
 from pathlib import Path
 from typing import cast
 
+from teachpath_client.check_commands import add_driver_check, add_tracker_check
 from teachpath_client.devices import TouchSource, configure, describe_sources, open_source
 from teachpath_client.devices.cyberglove import GloveSettings
 from teachpath_client.errors import ClientError
@@ -44,6 +45,9 @@ ABOUT = {
     "replay": "Play stored demonstrations as if they were live: every sample again at its pace, recorded anew.",
     "driver-check": "Check a driver of an arm before a station moves the arm by it: setpoints come late, doubled, in "
     "bursts or not at all, and a verdict is given for every rule of the contract. No station is needed.",
+    "tracker-check": "Check a tracker of your own before a station records from it: the check listens as a station "
+    "does, your tracker connects and shows something once, and a verdict is given for every rule of the contract "
+    "(proto/README.md). No station is needed.",
 }
 
 
@@ -87,7 +91,8 @@ def _parser() -> argparse.ArgumentParser:
     replay.add_argument("sources", nargs="+", metavar="SOURCE", help="an MCAP file, or a demonstration's id")
     replay.add_argument("--url", default="http://127.0.0.1:8765", help="station that holds the ids (%(default)s)")
     replay.set_defaults(run=_replay)
-    _add_driver_check(commands.add_parser("driver-check", help="check a driver of an arm against the contract"))
+    add_driver_check(commands.add_parser("driver-check", help="check a driver of an arm against the contract"))
+    add_tracker_check(commands.add_parser("tracker-check", help="check a tracker against the contract"))
     for command in (tracker, synthetic, replay):
         command.add_argument("--task", default="demo", help="what is demonstrated (%(default)s)")
         command.add_argument("--scene", default="", help="makes a new task with this scene, e.g. paper or empty")
@@ -122,24 +127,6 @@ def _add_tracker_calibrate(frame: argparse.ArgumentParser) -> None:
     frame.add_argument("--dry-run", action="store_true", help="only show the calibration and its residuals")
     frame.add_argument("--url", default="http://127.0.0.1:8765", help="of the station (%(default)s)")
     frame.set_defaults(run=_calibrate_tracker)
-
-
-def _add_driver_check(check: argparse.ArgumentParser) -> None:
-    check.add_argument("--listen", default="tcp/127.0.0.1:7557", help="where the driver connects (%(default)s)")
-    check.add_argument("--robot", default="puma560", help="name of the arm (%(default)s)")
-    check.add_argument("--prefix", default="teachpath/station", help="of the keys (%(default)s)")
-    tolerance = "that a joint may be off its setpoint while it follows (%(default)s)"
-    check.add_argument("--tolerance", type=float, default=0.02, metavar="RAD", help=tolerance)
-    check.add_argument("--yes", action="store_true", help="move the arm without asking")
-    check.set_defaults(run=_check_driver)
-
-
-def _check_driver(options: argparse.Namespace) -> None:
-    from teachpath_client.driver.check_bench import check_driver
-
-    given = options.listen, options.robot, options.prefix
-    if not check_driver(*given, tolerance=options.tolerance, confirmed=options.yes):
-        raise ClientError("the driver breaks a rule; a real arm should not be moved by it")
 
 
 def _place(text: str) -> Vector:

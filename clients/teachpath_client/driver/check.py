@@ -15,6 +15,7 @@ import numpy as np
 
 from teachpath_client.driver.check_motion import COUNT, PERIOD, Move
 from teachpath_client.driver.interpolation import Array
+from teachpath_client.verdict import Verdict
 from teachpath_proto.motion_pb2 import JointState
 
 TRAVEL: Final = 0.2  # [rad] of every joint
@@ -46,14 +47,6 @@ class Bench(Protocol):
 
     def publish(self, payload: bytes) -> None:
         """Publish a setpoint."""
-
-
-@dataclass(frozen=True)
-class Verdict:
-    """What a rule found: `fault` is empty where the driver keeps it."""
-
-    rule: str
-    fault: str
 
 
 @dataclass

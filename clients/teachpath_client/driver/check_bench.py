@@ -11,6 +11,7 @@ import zenoh
 
 from teachpath_client.driver.check import DriverCheck
 from teachpath_client.errors import ClientError
+from teachpath_client.verdict import print_verdicts
 from teachpath_proto.keys import Keys
 from teachpath_proto.motion_pb2 import JointState
 from teachpath_proto.sessions import listening, open_session
@@ -86,10 +87,4 @@ def check_driver(endpoint: str, robot: str, prefix: str, *, tolerance: float, co
             time.sleep(WAIT_INTERVAL)
         if not confirmed and input(WARNING).strip().lower() not in ("y", "yes"):
             raise ClientError("nothing was moved and nothing checked; --yes answers the question")
-        kept = True
-        for verdict in DriverCheck(bench, tolerance).run():
-            kept = kept and not verdict.fault
-            print(f"{'FAIL' if verdict.fault else 'pass'}  {verdict.rule}", flush=True)
-            if verdict.fault:
-                print(f"      {verdict.fault}", flush=True)
-        return kept
+        return print_verdicts(DriverCheck(bench, tolerance).run())

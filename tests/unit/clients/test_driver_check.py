@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from teachpath_client.driver import SetpointPlayer, decode_setpoint, joint_state
-from teachpath_client.driver.check import DriverCheck, Verdict
+from teachpath_client.driver.check import DriverCheck
 from teachpath_client.driver.check_motion import COUNT, PERIOD, Move
+from teachpath_client.verdict import Verdict
 from teachpath_proto.motion_pb2 import JointState, Setpoint
 
 HOME = np.array([0.365, 1.663, -3.177, 0.0, -1.628, 0.365])  # [rad]

@@ -33,12 +33,11 @@ from teachpath.io.wire.recording import (
     recording_document,
 )
 from teachpath.io.wire.samples import (
-    MAX_COORDINATE,
-    MAX_SAMPLE_SIZE,
     decode_sample,
     encode_sample,
     sample_payload,
 )
+from teachpath_proto.sample_rules import MAX_COORDINATE, MAX_SAMPLE_SIZE
 
 __all__ = [
     "MAX_COORDINATE",

@@ -9,14 +9,9 @@ from typing import Any
 
 from teachpath.errors import UnusableInput, UnusableSample
 from teachpath.io.wire.parsing import parse
-from teachpath.records import Quaternion, Sample, Vector
+from teachpath.records import Quaternion, Sample
 from teachpath_proto import tracker_pb2
-
-MAX_SAMPLE_SIZE = 4096  # bytes; an honest sample has about 200
-FLEXION_COUNTS = (0, 18, 22)
-UNIT_TOLERANCE = 0.01  # by which the norm of a quaternion may differ from 1
-NOT_MEASURED = (0.0, 0.0, 0.0, 0.0)  # an orientation on the wire
-MAX_COORDINATE = 100.0  # [m or tracker units]; beyond it the units are wrong
+from teachpath_proto.sample_rules import MAX_SAMPLE_SIZE, NOT_MEASURED, sample_fault
 
 
 def decode_sample(tracker: str, payload: bytes, receive_ns: int) -> Sample:
@@ -29,10 +24,7 @@ def decode_sample(tracker: str, payload: bytes, receive_ns: int) -> Sample:
     p, q = message.position, message.orientation
     # a slice first: a quarter of the time of iterating over the message's own sequence
     position, turn, flexions = (p.x, p.y, p.z), (q.w, q.x, q.y, q.z), tuple(message.flexions[:])
-    orientation = _unit(turn)
-    fault = _fault(position, flexions, message.device_ns)
-    if fault or (orientation is None and turn != NOT_MEASURED):
-        fault = fault or "orientation ({:g}, {:g}, {:g}, {:g}) is no unit quaternion".format(*turn)
+    if fault := sample_fault(position, turn, flexions, message.device_ns):
         raise UnusableSample(f"sample {message.sequence} of {tracker}: {fault}", sequence=message.sequence)
     return Sample(
         tracker=tracker,
@@ -40,7 +32,7 @@ def decode_sample(tracker: str, payload: bytes, receive_ns: int) -> Sample:
         device_ns=message.device_ns,
         receive_ns=receive_ns,
         position=position,
-        orientation=orientation,
+        orientation=None if turn == NOT_MEASURED else _normalized(turn),
         flexions=flexions,
         tracked=message.tracked,
         buttons=message.buttons,
@@ -91,27 +83,7 @@ def _parse(payload: bytes) -> tracker_pb2.HandSample:
         raise UnusableSample(str(error)) from None
 
 
-def _fault(position: Vector, flexions: tuple[float, ...], device_ns: int) -> str:
-    """Say what is wrong with a sample, or nothing."""
-    x, y, z = position
-    if not math.isfinite(x + y + z):
-        return f"position {position} is not finite"
-    limit = MAX_COORDINATE
-    if not (-limit <= x <= limit and -limit <= y <= limit and -limit <= z <= limit):
-        return f"position {position} is over {limit:g} m away; are its units metres?"
-    if len(flexions) not in FLEXION_COUNTS:
-        return f"{len(flexions)} flexions; a glove has 18 or 22, or send none"
-    if flexions and not (min(flexions) >= 0.0 and max(flexions) <= 1.0 and math.isfinite(sum(flexions))):
-        return "a flexion is outside 0 (open) to 1 (closed); is the glove calibrated?"
-    if device_ns <= 0:
-        return f"device time {device_ns} ns; send nanoseconds since the Unix epoch"
-    return ""
-
-
-def _unit(q: Quaternion) -> Quaternion | None:
-    """Return a quaternion at unit length, or None when it is not near it."""
+def _normalized(q: Quaternion) -> Quaternion:
     w, x, y, z = q
     norm = math.sqrt(w * w + x * x + y * y + z * z)
-    if not abs(norm - 1.0) <= UNIT_TOLERANCE:
-        return None
     return (w / norm, x / norm, y / norm, z / norm)
