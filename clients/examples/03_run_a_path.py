@@ -31,10 +31,10 @@ def main() -> None:
 def plan_and_run(options: argparse.Namespace) -> Execution:
     """Return the execution when it has ended; raises ClientError when the arm cannot follow the path, or stops."""
     with Station(options.url) as station:
-        runs = station.runs(options.task)
-        if not runs:
+        run = station.newest_run(options.task)
+        if run is None:
             raise ClientError(f"nothing was learned for task {options.task} yet; run 02_learn_over_rest.py first")
-        plan = station.plan(runs[0].learned.paths[0].id)
+        plan = station.plan(run.learned.paths[0].id)
         certificate = plan.certificate
         for limit in (certificate.velocity_use, certificate.acceleration_use, certificate.jerk_use):
             print(f"{limit.value:.0%} of a limit by {limit.place}")

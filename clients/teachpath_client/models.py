@@ -758,6 +758,24 @@ class Run:
 
 
 @dataclass(frozen=True)
+class RunSummary:
+    """A learning run as it is listed.
+
+    Attributes:
+        mode: of learning.
+        demonstrations: how many it learned from.
+        paths: ids of the learned paths, one for each cluster.
+    """
+
+    id: str
+    task: str
+    created_ns: int
+    mode: str
+    demonstrations: int
+    paths: list[str]
+
+
+@dataclass(frozen=True)
 class SavedVersion:
     """A version of a learned path, and the path itself."""
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from typing import Any, Self, TypeVar
 
 import httpx
@@ -15,6 +15,7 @@ T = TypeVar("T")
 
 LOCAL = "http://127.0.0.1:8765"
 LEASE_HEADER = "Teachpath-Lease"
+PAGE_SIZE = 500  # entries of a list that are asked for at a time, as many as a station gives
 STOP_TIMEOUT = 5.0  # [s] for the answer to a stop; a station that lives says within 2 s that nothing was confirmed
 
 
@@ -80,7 +81,28 @@ class Rest:
         **query: Any,
     ) -> T:
         """Call a resource and return its answer as a record; raises as `call`."""
-        return self._structured(kind, method, resource, self._send(method, resource, body, content, query))
+        return self._record(kind, method, resource, self._send(method, resource, body, content, query).json())
+
+    def pages(self, resource: str, *, limit: int | None = None, **query: Any) -> Iterator[list[Any]]:
+        """Yield the pages of a list, each as JSON when it is asked for; together at most `limit` entries.
+
+        What is added meanwhile neither doubles an entry nor hides one. Raises as `call`.
+        """
+        left = float("inf") if limit is None else limit
+        while left > 0:
+            answer = self._send("GET", resource, None, None, query | {"limit": int(min(PAGE_SIZE, left))})
+            entries = answer.json()
+            yield entries
+            following = answer.links.get("next")
+            if following is None:
+                return
+            left -= len(entries)
+            query |= {"after": httpx.URL(following["url"]).params["after"]}
+
+    def _list(self, kind: Callable[..., T], resource: str, limit: int | None = None, **query: Any) -> list[T]:
+        """Return a list as records, all of it or its first entries; raises as `call`."""
+        entries = (entry for page in self.pages(resource, limit=limit, **query) for entry in page)
+        return [self._record(kind, "GET", resource, entry) for entry in entries]
 
     def _stop(self, kind: Callable[..., T], resource: str) -> T:
         """Send a stop and return the record that confirms it; raises NotStopped, or Refused."""
@@ -92,12 +114,12 @@ class Rest:
             if refused.refusal.error == "NotStopped":
                 raise NotStopped(str(refused)) from None
             raise
-        return self._structured(kind, "POST", resource, answer)
+        return self._record(kind, "POST", resource, answer.json())
 
     @staticmethod
-    def _structured(kind: Callable[..., T], method: str, resource: str, answer: httpx.Response) -> T:
+    def _record(kind: Callable[..., T], method: str, resource: str, document: Any) -> T:
         try:
-            return structured(kind, answer.json())
+            return structured(kind, document)
         except ValueError as error:
             raise ClientError(f"{method} {resource}: {error}; is the station of the same version?") from None
 

@@ -69,7 +69,7 @@ class TaskResources(Rest):
 
     def tasks(self) -> list[Task]:
         """List the tasks, oldest first."""
-        return self._ask(list[Task], "GET", "/tasks")
+        return self._list(Task, "/tasks")
 
     def get_task(self, task: str) -> Task:
         """Return one task."""
@@ -80,8 +80,8 @@ class TaskResources(Rest):
         return self._ask(Task, "PUT", f"/tasks/{task}", {"scene": scene, "calibration": calibration})
 
     def demonstrations(self, task: str) -> list[Demonstration]:
-        """List a task's demonstrations in their order."""
-        return self._ask(list[Demonstration], "GET", f"/tasks/{task}/demonstrations")
+        """List a task's demonstrations in their order; `pages` gives a long list bit by bit."""
+        return self._list(Demonstration, f"/tasks/{task}/demonstrations")
 
     def begin_import(self, task: str, content: bytes, **options: Any) -> Job:
         """Queue the import of a file; every motion in it becomes a demonstration, all of them or none.

@@ -18,6 +18,7 @@ from teachpath_client.models import (
     MotionPreview,
     Plan,
     Run,
+    RunSummary,
     SavedVersion,
     TimeSeries,
     Version,
@@ -41,8 +42,8 @@ class WorkResources(Rest):
         return self._ask(Job, "POST", f"/paths/{path}/plans", {"version": version})
 
     def jobs(self, task: str) -> list[Job]:
-        """List a task's jobs, oldest first."""
-        return self._ask(list[Job], "GET", f"/tasks/{task}/jobs")
+        """List a task's jobs, newest first."""
+        return self._list(Job, f"/tasks/{task}/jobs")
 
     def get_job(self, job: str) -> Job:
         """Return one job."""
@@ -52,9 +53,13 @@ class WorkResources(Rest):
         """Cancel a queued or running job."""
         return self._ask(Job, "POST", f"/jobs/{job}/cancel")
 
-    def runs(self, task: str) -> list[Run]:
-        """List a task's learning runs, newest first."""
-        return self._ask(list[Run], "GET", f"/tasks/{task}/runs")
+    def runs(self, task: str, *, limit: int | None = None) -> list[RunSummary]:
+        """List a task's learning runs, newest first, or the newest `limit` of them."""
+        return self._list(RunSummary, f"/tasks/{task}/runs", limit)
+
+    def newest_run(self, task: str) -> Run | None:
+        """Return a task's newest learning run; None: nothing was learned of it yet."""
+        return next((self.get_run(task, run.id) for run in self.runs(task, limit=1)), None)
 
     def get_run(self, task: str, run: str) -> Run:
         """Return one learning run."""
@@ -72,7 +77,7 @@ class WorkResources(Rest):
 
     def versions(self, path: str) -> list[Version]:
         """List the versions of a path, oldest first."""
-        return self._ask(list[Version], "GET", f"/paths/{path}/versions")
+        return self._list(Version, f"/paths/{path}/versions")
 
     def get_version(self, path: str, number: int) -> SavedVersion:
         """Return one version and its path."""
@@ -95,9 +100,9 @@ class WorkResources(Rest):
         """Return how far the second of two versions lies from the first."""
         return self._ask(Difference, "GET", f"/paths/{path}/versions/{first}/difference/{second}")
 
-    def plans(self, path: str) -> list[Plan]:
-        """List a path's plans, newest first."""
-        return self._ask(list[Plan], "GET", f"/paths/{path}/plans")
+    def plans(self, path: str, *, limit: int | None = None) -> list[Plan]:
+        """List a path's plans, newest first, or the newest `limit` of them."""
+        return self._list(Plan, f"/paths/{path}/plans", limit)
 
     def get_plan(self, plan: str) -> Plan:
         """Return one plan with its certificate."""
@@ -125,9 +130,9 @@ class WorkResources(Rest):
         self._newest_execution = execution.id
         return execution
 
-    def executions(self) -> list[Execution]:
-        """List the newest executions, newest first."""
-        return self._ask(list[Execution], "GET", "/executions")
+    def executions(self, *, limit: int | None = None) -> list[Execution]:
+        """List the executions, newest first, or the newest `limit` of them."""
+        return self._list(Execution, "/executions", limit)
 
     def get_execution(self, execution: str) -> Execution:
         """Return how an execution stands."""
@@ -184,5 +189,5 @@ class WorkResources(Rest):
         return self._ask(Lease, "POST", f"/lease/{action}")
 
     def journal(self, execution: str = "", *, limit: int = 100) -> list[JournalEntry]:
-        """List who did what to the arm, newest first."""
-        return self._ask(list[JournalEntry], "GET", "/journal", execution=execution, limit=limit)
+        """List the newest entries of who did what to the arm, newest first."""
+        return self._list(JournalEntry, "/journal", limit, execution=execution)

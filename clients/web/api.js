@@ -18,8 +18,36 @@ export class ApiError extends Error {
   }
 }
 
+const PAGE_SIZE = 500; // entries of a list that are asked for at a time, as many as the service gives
+
 /** @param {string} path */
 export const get = (path) => call("GET", path);
+
+/**
+ * One page of a list: its entries, and where the next page is, empty at the end.
+ * @param {string} path
+ * @returns {Promise<{entries: any[], next: string}>}
+ */
+export async function getPage(path) {
+  const { answer, document } = await request("GET", path);
+  const next = answer.headers.get("Link")?.match(/<\/api\/v1\/([^>]+)>; rel="next"/)?.[1] ?? "";
+  return { entries: document, next };
+}
+
+/**
+ * A whole list, page by page.
+ * @param {string} path
+ * @returns {Promise<any[]>}
+ */
+export async function getList(path) {
+  const list = [];
+  for (let place = `${path}?limit=${PAGE_SIZE}`; place; ) {
+    const { entries, next } = await getPage(place);
+    list.push(...entries);
+    place = next;
+  }
+  return list;
+}
 
 /** @param {string} path @param {object} body @param {Record<string, string>} headers @param {number} [timeout] [ms] */
 export const post = (path, body = {}, headers = {}, timeout = undefined) => call("POST", path, body, headers, timeout);
@@ -50,6 +78,18 @@ export function socketUrl(path) {
  * @returns {Promise<any>} the document
  */
 async function call(method, path, body, further = {}, timeout = undefined) {
+  return (await request(method, path, body, further, timeout)).document;
+}
+
+/**
+ * @param {string} method
+ * @param {string} path
+ * @param {object} [body]
+ * @param {Record<string, string>} further headers
+ * @param {number} [timeout] [ms]
+ * @returns {Promise<{answer: Response, document: any}>}
+ */
+async function request(method, path, body, further = {}, timeout = undefined) {
   /** @type {Record<string, string>} */
   const headers = { ...further, Accept: "application/json" };
   if (body !== undefined) headers["Content-Type"] = "application/json";
@@ -58,7 +98,7 @@ async function call(method, path, body, further = {}, timeout = undefined) {
     throw new ApiError(error.message);
   });
   const document = await answer.json().catch(() => null);
-  if (answer.ok) return document;
+  if (answer.ok) return { answer, document };
   const { detail, error: kind, newer } = document ?? {};
   const unknown = `The service answered ${method} ${path} with status ${answer.status}; look into its log.`;
   throw new ApiError(detail ?? unknown, { status: answer.status, kind, newer });

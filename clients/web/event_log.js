@@ -98,10 +98,10 @@ function demonstrationChange([old, one]) {
   return `Demonstration ${one.number} was ${one.discarded_ns ? "discarded" : "restored"}`;
 }
 
-/** @param {Run} run */
-function runChange({ learned: { clusters, demonstrations } }) {
-  const ways = `${clusters.length} ${pluralize(clusters.length, "way")}`;
-  return `Learned: ${ways} from ${demonstrations.length} ${pluralize(demonstrations.length, "demonstration")}`;
+/** @param {RunSummary} run */
+function runChange({ paths, demonstrations }) {
+  const ways = `${paths.length} ${pluralize(paths.length, "way")}`;
+  return `Learned: ${ways} from ${demonstrations} ${pluralize(demonstrations, "demonstration")}`;
 }
 
 /** @param {[Job | undefined, Job]} pair */

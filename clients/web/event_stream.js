@@ -1,29 +1,26 @@
 // Keeps the store up to date: hears of changes over the events' WebSocket and reads what has changed.
 import { get, resourcePath } from "./api.js";
+import { ListReader, TASK_LISTS } from "./lists.js";
 import { ReconnectingSocket } from "./reconnecting_socket.js";
-import { changesAny, selectedRun } from "./store.js";
+import { changesAny } from "./store.js";
 
 const TASK_KEY = "task"; // the key that keeps the choice while the page is reloaded
 const POLL_INTERVAL = 3000; // [ms] how often to ask while there is no WebSocket
 
-/** @typedef {"tasks" | "executions" | "demonstrations" | "runs" | "jobs"} Resource a list of the state */
+/** @typedef {import("./lists.js").ListName} ListName */
 
 /**
- * What is read anew when a resource of a topic has changed.
- * @type {Record<string, Resource[]>}
+ * The list whose entry has changed when one of a topic has.
+ * @type {Record<string, ListName>}
  */
-const RESOURCES_BY_TOPIC = {
-  tasks: ["tasks"],
-  demonstrations: ["demonstrations"],
-  runs: ["runs"],
-  paths: ["runs"],
-  plans: ["jobs"],
-  jobs: ["jobs"],
-  executions: ["executions"],
+const LIST_OF_TOPIC = {
+  tasks: "tasks",
+  demonstrations: "demonstrations",
+  runs: "runs",
+  paths: "runs", // edited since they were learned
+  jobs: "jobs",
+  executions: "executions",
 };
-
-/** @type {Resource[]} */
-const TASK_RESOURCES = ["demonstrations", "runs", "jobs"];
 
 /** @typedef {{topic: string, id: string, reason?: string, now?: object | null}} ServiceEvent as api/events.py describes it */
 
@@ -50,10 +47,6 @@ const STATE_OF_TOPIC = {
 export class EventStream {
   /** @type {Record<string, TopicState>} */
   #topicStates = {};
-  /** @type {Set<Resource>} */
-  #pending = new Set();
-  /** @type {Promise<void> | null} */
-  #reading = null; // the rounds under way
   /** @type {Map<string, ((event: ServiceEvent) => void)[]>} */
   #listeners = new Map();
   /** @type {ConnectionState} */
@@ -62,8 +55,10 @@ export class EventStream {
   /** @param {import("./store.js").Store} store */
   constructor(store) {
     this.store = store;
+    this.lists = new ListReader(store, (name, list, task) => this.#showList(name, list, task));
     store.subscribe((state, changed) => {
-      if (changesAny(changed, "runs", "run")) this.#readLatestVersions(state);
+      if (changed.has("run")) this.#turnToRun(state);
+      if (changesAny(changed, "runs", "selectedRun")) this.#readLatestVersions(state);
       if (changed.has("task")) this.#turnToTask(state.task);
     });
   }
@@ -96,41 +91,50 @@ export class EventStream {
   }
 
   readAll() {
-    this.read("tasks", "executions", ...TASK_RESOURCES);
+    this.read("tasks", "executions", ...TASK_LISTS);
   }
 
   /**
-   * Read lists anew; what is asked for meanwhile is read in the next round. Resolves when they have been read.
-   * @param {...Resource} names
+   * Read lists anew, as `ListReader.read`.
+   * @param {...ListName} names
    */
   read(...names) {
-    for (const name of names) this.#pending.add(name);
-    if (this.#pending.size) this.#reading ??= this.#readRounds();
-    return this.#reading;
+    return this.lists.read(...names);
   }
 
-  async #readRounds() {
-    while (this.#pending.size) {
-      const round = [...this.#pending];
-      this.#pending.clear();
-      await Promise.all(round.map((name) => this.#readOne(name)));
+  /**
+   * @param {ListName} name
+   * @param {any[]} list
+   * @param {string} task that was chosen when it was asked for
+   */
+  async #showList(name, list, task) {
+    if (name === "runs") {
+      const selectedRun = await this.#readSelectedRun(list, task);
+      if (task === this.store.state.task) this.store.set({ runs: list, selectedRun });
+      return;
     }
-    this.#reading = null;
+    this.store.set({ [name]: list });
+    if (name === "tasks" && task === this.store.state.task) this.#selectTask(list); // one chosen meanwhile may be newer
   }
 
-  /** @param {Resource} name */
-  async #readOne(name) {
-    const { task } = this.store.state;
-    const isOfTask = TASK_RESOURCES.includes(name);
-    if (isOfTask && !task) return;
-    try {
-      const list = await get(isOfTask ? resourcePath("tasks", task, name) : name);
-      const isSameTask = task === this.store.state.task;
-      if (isSameTask || !isOfTask) this.store.set({ [name]: list });
-      if (name === "tasks" && isSameTask) this.#selectTask(list); // one that was chosen meanwhile may be newer than the list
-    } catch {
-      // the connection's state says so already, and it is read again when it is back
-    }
+  /** @param {State} state in which another run was chosen; the former one is shown until that is here */
+  async #turnToRun({ task, runs }) {
+    const selectedRun = runs && (await this.#readSelectedRun(runs, task));
+    if (runs && task === this.store.state.task) this.store.set({ selectedRun });
+  }
+
+  /**
+   * Read the run that is chosen, else the newest; null when there is none, or it cannot be read.
+   * @param {RunSummary[]} runs
+   * @param {string} task
+   * @returns {Promise<Run | null>}
+   */
+  async #readSelectedRun(runs, task) {
+    const { run: chosen, selectedRun } = this.store.state;
+    const id = (runs.find((run) => run.id === chosen) ?? runs[0])?.id;
+    if (!id || id === selectedRun?.id) return id ? selectedRun : null;
+    const read = await get(resourcePath("tasks", task, "runs", id)).catch(() => null);
+    return chosen === this.store.state.run ? read : this.#readSelectedRun(runs, task);
   }
 
   /**
@@ -139,7 +143,7 @@ export class EventStream {
    * @param {State} state
    */
   async #readLatestVersions(state) {
-    const paths = selectedRun(state)?.learned.paths ?? [];
+    const paths = state.selectedRun?.learned.paths ?? [];
     /** @type {LearnedPath[]} */
     const read = await Promise.all(paths.map((path) => get(resourcePath("paths", path.id)).catch(() => path)));
     const { latestVersions } = this.store.state;
@@ -152,9 +156,9 @@ export class EventStream {
   /** @param {string} task */
   #turnToTask(task) {
     sessionStorage.setItem(TASK_KEY, task);
-    const nothing = { demonstrations: null, runs: null, jobs: null, latestVersions: {} };
+    const nothing = { demonstrations: null, runs: null, jobs: null, selectedRun: null, latestVersions: {} };
     this.store.set({ ...nothing, run: "", path: "", focus: null });
-    this.read(...TASK_RESOURCES);
+    this.read(...TASK_LISTS);
   }
 
   /**
@@ -182,7 +186,8 @@ export class EventStream {
       this.#topicStates[event.topic] = documents;
       this.#publishTopic(event.topic);
     } else {
-      this.read(...(RESOURCES_BY_TOPIC[event.topic] ?? []));
+      const list = LIST_OF_TOPIC[event.topic];
+      if (list) this.lists.readEntry(list, event.id);
     }
     for (const listener of this.#listeners.get(event.topic) ?? []) listener(event);
   }

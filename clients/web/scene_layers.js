@@ -12,7 +12,7 @@ import {
   shapeMesh,
   spreadTube,
 } from "./meshes.js";
-import { changesAny, latestPaths, selectedRun, waysOfDemonstrations } from "./store.js";
+import { changesAny, latestPaths, waysOfDemonstrations } from "./store.js";
 import { TrajectoryCache, trimKey } from "./trajectory_cache.js";
 
 const MAX_DEMONSTRATIONS = 200; // newest demonstrations
@@ -55,7 +55,7 @@ export class SceneLayers {
   /** @param {State} state @param {Changed} changed */
   update(state, changed) {
     if (changesAny(changed, "tasks", "task")) this.#showScene();
-    if (changesAny(changed, "demonstrations", "runs", "run", "latestVersions", "task", "trajectoriesLoaded")) {
+    if (changesAny(changed, "demonstrations", "runs", "selectedRun", "latestVersions", "task", "trajectoriesLoaded")) {
       this.#showTask(state);
     }
     if (changesAny(changed, "focus", "path", "runs")) this.#highlight(state);
@@ -85,7 +85,7 @@ export class SceneLayers {
   #showTask(state) {
     const kept = (state.demonstrations ?? []).filter((d) => !d.discarded_ns).slice(-MAX_DEMONSTRATIONS);
     this.trajectories.request(kept);
-    const clusters = selectedRun(state)?.learned.clusters ?? [];
+    const clusters = state.selectedRun?.learned.clusters ?? [];
     this.#sync("demonstrations", this.#demonstrations(kept, waysOfDemonstrations(state)));
     this.#sync("deviations", this.#deviations(clusters, kept));
     const paths = latestPaths(state);
@@ -180,7 +180,7 @@ function spreads(paths, clusters) {
  * @param {Focus} focus
  */
 function focusNames(state, { kind, id }) {
-  const { clusters = [], paths = [] } = selectedRun(state)?.learned ?? {};
+  const { clusters = [], paths = [] } = state.selectedRun?.learned ?? {};
   if (kind === "paths") {
     const way = paths.find((path) => path.id === id)?.cluster;
     const members = clusters.find(({ index }) => index === way)?.members ?? [];

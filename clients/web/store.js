@@ -2,11 +2,11 @@
 //
 // connection   "connecting" | "live" | "lost"                 tasks          [task], oldest first
 // task         name of the chosen task, "" = none             demonstrations [demonstration] of the task
-// runs         [run] of the task, newest first                jobs           [job] of the task, oldest first
+// runs         [summary of a run] of the task, newest first   jobs           [job] of the task, newest first
 // executions   [execution], newest first                      recordings     [report] of running recordings
 // trackers     [{name, announced}]                            guidance       {task: sentence}
 // station      {version, notes} or null                       executor       status or null when it is silent
-// run          id of the selected run, "" = the newest
+// run          id of the chosen run, "" = the newest          selectedRun    the run that is shown, null = none
 // plan         certified plan of the selected path, or null
 // path         id of the selected learned path                focus          {kind, id} under the pointer, or null;
 //                                                                     kind is demonstrations or paths
@@ -29,6 +29,7 @@ export const INITIAL_STATE = Object.freeze({
   station: null,
   executor: null,
   lease: null,
+  selectedRun: null,
   run: "",
   path: "",
   plan: null,
@@ -85,17 +86,11 @@ export class Store {
 export const changesAny = (changed, ...names) => names.some((name) => changed.has(name));
 
 /**
- * The selected run: the chosen one, else the newest; null while there is none.
- * @param {State} state
- */
-export const selectedRun = (state) => state.runs?.find((run) => run.id === state.run) ?? state.runs?.[0] ?? null;
-
-/**
  * The learned paths of the selected run, each in its newest version.
  * @param {State} state
  */
 export const latestPaths = (state) =>
-  (selectedRun(state)?.learned.paths ?? []).map((path) => state.latestVersions[path.id] ?? path);
+  (state.selectedRun?.learned.paths ?? []).map((path) => state.latestVersions[path.id] ?? path);
 
 /**
  * The selected learned path: the chosen one, else the first of the run; null while there is none.
@@ -119,7 +114,7 @@ export const activeExecution = (state) =>
  * @returns {Map<string, number>}
  */
 export function waysOfDemonstrations(state) {
-  const clusters = selectedRun(state)?.learned.clusters ?? [];
+  const clusters = state.selectedRun?.learned.clusters ?? [];
   return new Map(clusters.flatMap(({ index, members }) => members.map((id) => [id, index])));
 }
 

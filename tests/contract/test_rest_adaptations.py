@@ -138,9 +138,9 @@ def test_ends_on_the_command_line_are_three_or_seven_numbers(taught: Taught) -> 
 def test_an_object_is_told_to_lie_elsewhere_and_a_path_adapted_to_it(desk: Desk) -> None:
     start, goal = PAPER_START, PAPER_START + np.array([0.0, 0.5, 0.0])
     for number in range(3):
-        assert desk.import_("moved", shown(goal, number, start=start), scene="paper")
-    job = desk.ended(desk.post("/tasks/moved/jobs", {"settings": {"repeats": 0}}))
-    key = desk.get(f"/tasks/moved/runs/{job['outcome']}").json()["learned"]["paths"][0]["id"]
+        assert desk.import_("moved-object", shown(goal, number, start=start), scene="paper")
+    job = desk.ended(desk.post("/tasks/moved-object/jobs", {"settings": {"repeats": 0}}))
+    key = desk.get(f"/tasks/moved-object/runs/{job['outcome']}").json()["learned"]["paths"][0]["id"]
     lies = (start + np.array([-0.04, 0.05, 0.0])).tolist()
     try:
         assert desk.put("/scenes/paper/object", {"position": lies}).json()["position"] == lies

@@ -90,8 +90,10 @@ def test_one_single_demonstration_is_learned_and_its_outcome_is_found(desk: Desk
     desk.import_("single", csv(120, step=0.002))
     job = desk.ended(desk.post("/tasks/single/jobs", {"kind": "learn", "settings": {"seed": 2}}))
     assert job["state"] == "succeeded", job["message"]
-    (run,) = desk.get("/tasks/single/runs").json()
-    assert run == desk.get(f"/tasks/single/runs/{job['outcome']}").json()
+    run = desk.get(f"/tasks/single/runs/{job['outcome']}").json()
+    (listed,) = desk.get("/tasks/single/runs").json()
+    assert (listed["id"], listed["created_ns"], listed["demonstrations"]) == (run["id"], run["created_ns"], 1)
+    assert listed["paths"] == [path["id"] for path in run["learned"]["paths"]]
     assert [len(c["members"]) for c in run["learned"]["clusters"]] == [1]
     assert run["learned"]["clusters"][0]["note"]
     assert run["learned"]["settings"]["seed"] == 2

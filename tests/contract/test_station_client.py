@@ -65,6 +65,7 @@ def test_a_task_is_learned_and_its_outcome_is_read(station: Station, shown: str)
     assert (seen[-1].state, seen[-1].outcome) == ("succeeded", run.id)
     assert seen == sorted(seen, key=lambda job: job.fraction)
     assert [found.id for found in station.runs(shown)] == [run.id]
+    assert station.newest_run(shown) == run
     assert station.get_run(shown, run.id) == run
     assert len(station.dendrogram(shown, run.id).leaves) == 3
     (path,) = run.learned.paths
@@ -115,7 +116,7 @@ def test_an_execution_is_begun_and_read(desk: Desk, station: Station) -> None:
         with pytest.raises(Refused, match="nobody answered") as refused:
             begin(plan)
         assert refused.value.status == 503
-    newest = station.executions()[0]
+    newest = station.executions(limit=1)[0]
     assert (newest.plan, newest.status.state) == (plan, "faulted")
     assert station.get_execution(newest.id) == station.stop(newest.id) == newest
     assert station.wait(newest) == newest

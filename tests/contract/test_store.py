@@ -234,7 +234,7 @@ def test_a_finished_job_stays_as_it_is(store: Store, state: str) -> None:
         with pytest.raises(Conflict, match=f"job learn-1 has already {state}"):
             change()
     assert store.job("learn-1") == ended
-    assert store.runs("t") == []
+    assert store.lists.runs("t").entries == []
     assert store.plans("p") == []
 
 
@@ -261,7 +261,9 @@ def test_learning_ends_once_with_its_run_and_its_paths(store: Store) -> None:
     key = store.finish_learning("learn-1", learned())
     with pytest.raises(Conflict, match="job learn-1 has already succeeded"):
         store.finish_learning("learn-1", learned())
-    (run,) = store.runs("t")
+    run = store.newest_run("t")
+    assert run is not None
+    assert store.lists.runs("t").entries == [run.summary]
     assert (run.id, run.task, store.job("learn-1").outcome, store.job("learn-1").fraction) == (key, "t", key, 1.0)
     assert [p.id for p in run.learned.paths] == [f"{key}-1", f"{key}-2"]
     for path in run.learned.paths:
@@ -276,7 +278,7 @@ def test_learning_that_cannot_be_stored_whole_leaves_nothing(store: Store) -> No
     twice = replace(learned(), paths=(a_path(), a_path()))  # two paths of one cluster have one id
     with pytest.raises(sa.exc.IntegrityError):
         store.finish_learning("learn-1", twice)
-    assert store.runs("t") == []
+    assert store.lists.runs("t").entries == []
     assert store.job("learn-1") == a_job()
     assert store.finish_learning("learn-1", learned())
 
@@ -300,8 +302,7 @@ def test_an_execution_keeps_its_newest_status(store: Store) -> None:
     running = ExecutorStatus(execution="e0", state=ExecutorState.FOLLOWING, progress=1 / 3, lateness_p99_us=0.1)
     store.put_execution("e0", plan, running)
     assert store.execution("e0").status == running
-    assert [e.id for e in store.executions()] == ["e2", "e1", "e0"]
-    assert [e.id for e in store.executions(limit=1)] == ["e2"]
+    assert [e.id for e in store.lists.executions().entries] == ["e2", "e1", "e0"]
 
 
 @pytest.mark.parametrize("what", ["task", "demonstration", "run", "path", "plan", "job", "execution"])
@@ -332,7 +333,13 @@ def test_a_store_opened_again_shows_the_same(store: Store, open_: Open) -> None:
     store.put_execution("e", plan, ExecutorStatus(execution="e"))
 
     def shown(store: Store) -> list[object]:
-        lists = [store.tasks(), store.demonstrations("t"), store.jobs(), store.executions()]
+        lists = [
+            store.tasks(),
+            store.demonstrations("t"),
+            store.jobs(),
+            store.lists.executions(),
+            store.lists.runs("t"),
+        ]
         return [*lists, encode(store.run(run).learned), encode(store.plan(plan)), encode(store.path(f"{run}-2"))]
 
     before = shown(store)

@@ -92,7 +92,7 @@ def test_of_many_who_save_at_once_one_wins_and_the_others_are_told(desk: Desk, p
 
     with ThreadPoolExecutor(8) as threads:
         told = list(threads.map(try_, range(8)))
-    first, second = store.versions.list(path)
+    first, second = store.lists.versions(path).entries
     assert (first.number, second.number) == (1, 2)
     assert told == [second] * 8
 

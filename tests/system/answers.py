@@ -13,7 +13,7 @@ class Late:
 
     Args:
         visit: the page that asks.
-        pattern: regular expression of the resource under /api/v1/, from its beginning to its end.
+        pattern: regular expression of the resource under /api/v1/, from its beginning to its end, whatever its query.
         method: of the questions.
     """
 
@@ -21,7 +21,7 @@ class Late:
         self._visit, self._method = visit, method
         self._over = False
         self.kept: list[Answer] = []
-        visit.page.route(re.compile(rf".*/api/v1/{pattern}$"), self._keep)
+        visit.page.route(re.compile(rf".*/api/v1/{pattern}(\?.*)?$"), self._keep)
 
     def _keep(self, route: Any) -> None:
         if route.request.method == self._method and not self._over:

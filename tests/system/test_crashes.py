@@ -87,7 +87,7 @@ def test_a_job_under_way_is_run_again_once(tmp_path: Path) -> None:
         (only,) = next_one.station.runs("carry")
         assert only.id == ended.outcome
         assert len(next_one.station.jobs("carry")) == 1
-        assert len(only.learned.demonstrations) == 12
+        assert only.demonstrations == 12
 
 
 def test_files_are_imported_while_no_service_runs(tmp_path: Path) -> None:

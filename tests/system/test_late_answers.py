@@ -305,7 +305,7 @@ def series(height: float) -> dict[str, Any]:
 def test_the_execution_that_was_chosen_last_is_shown_again(desk: Desk) -> None:
     status = {"execution": "", "state": "ended", "reason": "", "duration": 1.0}
     done = [{"id": name, "plan": "", "created_ns": 0, "status": {**status, "execution": name}} for name in ("a", "b")]
-    desk.page.route("**/api/v1/executions", lambda route: route.fulfill(json=done))
+    desk.page.route("**/api/v1/executions?*", lambda route: route.fulfill(json=done))
     asked: list[Any] = []
     desk.page.route("**/series?**", lambda route: asked.append(route))
     desk.page.reload()

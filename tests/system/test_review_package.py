@@ -31,7 +31,7 @@ def package(browser: Any, file: Path) -> Iterator[Package]:
 def test_ways_and_demonstrations_are_drawn_and_told(package: Package) -> None:
     page = package.page
     drawn = page.evaluate("teachpath.objectPaths()")
-    ways = len(package.archive()["tasks/t/runs"][0]["learned"]["clusters"])
+    ways = len(package.archive()["tasks/t/runs"][0]["paths"])
     assert ways == 2
     for layer, count in (("demonstrations", COUNT), ("paths", ways), ("deviations", 1)):
         assert sum(path.startswith(f"/{layer}/") for path in drawn) == count

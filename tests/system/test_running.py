@@ -56,7 +56,9 @@ def plans(browser: Any, service: Service) -> Plans:
     visit.page.locator("#tab-ways").click()
     visit.page.get_by_role("button", name="Learn the ways").click()
     visit.page.wait_for_selector("#learned article.card")
-    learned = service.station.runs(TASK)[0].learned
+    run = service.station.newest_run(TASK)
+    assert run is not None
+    learned = run.learned
     shown = [take.id for take in service.station.demonstrations(TASK)]
     members = sorted((set(cluster.members) for cluster in learned.clusters), key=lambda m: shown[0] not in m)
     assert members == [set(shown[:2]), set(shown[2:])]

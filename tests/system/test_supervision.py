@@ -53,7 +53,7 @@ def service(template: Path, tmp_path_factory: pytest.TempPathFactory) -> Iterato
 def planned(service: Service) -> str:
     """Plan the path at this station, for a certificate is of one station."""
     (run,) = service.station.runs(TASK)
-    plan = service.station.plan(run.learned.paths[0].id)
+    plan = service.station.plan(run.paths[0])
     service.station.wait_for_arm()
     return plan.id
 

@@ -31,7 +31,7 @@ from teachpath.motion.collision.builtin_scenes import paper_scene
 from teachpath.motion.planning.assessment import assess
 from teachpath.motion.settings import MotionSettings
 from teachpath.nurbs import Curve
-from teachpath.records import Cluster, Fit, JointState, Learned, LearnedPath, Task, Trajectory
+from teachpath.records import Cluster, Fit, JointState, Learned, LearnedPath, RunSummary, Task, Trajectory
 from teachpath_proto.keys import Keys
 from tests.contract.rows import demonstration
 from tests.waiting import HANG, wait_until
@@ -123,7 +123,8 @@ def documents(count: int) -> dict[str, Any]:
         "tasks/t/jobs": [],
         "tasks/t/runs/run/dendrogram": to_document(dendrogram(found, 30)),
         "tasks/t/demonstrations": [to_document(d) for d in shown],
-        "tasks/t/runs": [{"id": "run", "task": "t", "created_ns": 1, "learned": to_document(found)}],
+        "tasks/t/runs": [to_document(RunSummary("run", "t", 1, "default", count, tuple(p.id for p in found.paths)))],
+        "tasks/t/runs/run": {"id": "run", "task": "t", "created_ns": 1, "learned": to_document(found)},
         **{f"demonstrations/{key}/trajectory": to_document(course) for key, course in courses.items()},
     }
 

@@ -31,7 +31,7 @@ export function demonstrationList(place, { store, sceneLayers, attempt, readOnly
   });
   return {
     update(state, changed) {
-      const isNew = changesAny(changed, "demonstrations", "guidance", "task", "tasks", "runs", "run");
+      const isNew = changesAny(changed, "demonstrations", "guidance", "task", "tasks", "runs", "selectedRun");
       if (isNew || changed.has("trajectoriesLoaded")) {
         const scrolled = place.querySelector("ol")?.scrollTop ?? 0;
         patchChildren(place, content(state, sceneLayers.trajectories, readOnly));

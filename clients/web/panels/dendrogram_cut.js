@@ -2,7 +2,7 @@
 import { get, post, resourcePath } from "../api.js";
 import { closestData, element, hideSection } from "../elements.js";
 import { patchChildren } from "../patch_children.js";
-import { demonstrationNumbers, selectedRun } from "../store.js";
+import { demonstrationNumbers } from "../store.js";
 import { formatNumber, pluralize } from "../texts.js";
 import { DendrogramView } from "./dendrogram.js";
 import { markFocus, trackFocus } from "./focus.js";
@@ -42,7 +42,7 @@ class DendrogramCut {
   /** @param {State} state */
   async update(state) {
     markFocus(this.place, state.focus); // also on what has just been drawn anew
-    const run = selectedRun(state);
+    const run = state.selectedRun;
     const isUseful = run !== null && run.learned.demonstrations.length > 1;
     hideSection(this.place, !isUseful);
     this.#enable(run?.id);
@@ -53,7 +53,7 @@ class DendrogramCut {
     const dendrogram = await this.context.attempt(() => get(path));
     this.#requested.delete(run.id);
     const now = this.context.store.state;
-    if (dendrogram && selectedRun(now)?.id === run.id) this.#show(now, run.id, dendrogram);
+    if (dendrogram && now.selectedRun?.id === run.id) this.#show(now, run.id, dendrogram);
   }
 
   /**

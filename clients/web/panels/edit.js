@@ -10,7 +10,7 @@ import { saveForm } from "../editor/save_form.js";
 import { versionsSection } from "../editor/versions.js";
 import { closestData, element, hideSection, hint, section, tabButton } from "../elements.js";
 import { patchChildren } from "../patch_children.js";
-import { changesAny, selectedPath, selectedRun } from "../store.js";
+import { changesAny, selectedPath } from "../store.js";
 import { wayClass } from "../way_colors.js";
 
 const NOTHING =
@@ -28,7 +28,7 @@ export const panel = {
   },
   /** @type {Section["update"]} */
   update(state, changed) {
-    if (changesAny(changed, "runs", "run", "path")) edit?.openPath(state);
+    if (changesAny(changed, "runs", "selectedRun", "path")) edit?.openPath(state);
   },
   show: () => edit?.editor.show(true),
   hide: () => edit?.editor.show(false),
@@ -72,7 +72,7 @@ class EditPanel {
 
   /** @param {State} state */
   openPath(state) {
-    const [path, run] = [selectedPath(state), selectedRun(state)];
+    const [path, run] = [selectedPath(state), state.selectedRun];
     hideSection(this.empty, Boolean(path));
     this.sections.hidden = !path;
     if (!path || !run) {

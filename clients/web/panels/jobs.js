@@ -18,7 +18,7 @@ export function jobList(place, { attempt }) {
       if (!changed.has("jobs")) return;
       const jobs = state.jobs ?? [];
       const running = jobs.filter((job) => job.state === "running" || job.state === "queued");
-      const failed = jobs.slice(-1).filter((job) => job.state === "failed" && job.kind !== "plan"); // a path's card says why it has no plan
+      const failed = jobs.slice(0, 1).filter((job) => job.state === "failed" && job.kind !== "plan"); // a path's card says why it has no plan
       hideSection(place, !running.length && !failed.length);
       patchChildren(place, running.map(jobRow), failed.map(failedRow));
     },

@@ -1,7 +1,7 @@
 // Two plots: the log-likelihood while each way's model was trained (the paper's Fig. 4), and that of every demonstration.
 import { hideSection, hint } from "../elements.js";
 import { LinePlot } from "../line_plot.js";
-import { demonstrationNumbers, selectedRun } from "../store.js";
+import { demonstrationNumbers } from "../store.js";
 import { formatNumber } from "../texts.js";
 import { wayVariable } from "../way_colors.js";
 
@@ -12,7 +12,7 @@ export function likelihoodPlots(place, { store }) {
   let plots = [];
   /** @param {State} state */
   const draw = (state) => {
-    const run = selectedRun(state);
+    const run = state.selectedRun;
     hideSection(place, !run?.learned.clusters.length);
     if (!run?.learned.clusters.length || place.closest("[role=tabpanel][hidden]")) return;
     const numbers = demonstrationNumbers(state);

@@ -2,7 +2,7 @@
 import { post, resourcePath } from "../api.js";
 import { closestData, codeBlock, element, hint, option, tabButton } from "../elements.js";
 import { patchChildren } from "../patch_children.js";
-import { changesAny, selectedRun } from "../store.js";
+import { changesAny } from "../store.js";
 import { capitalize, pluralize } from "../texts.js";
 import { markFocus, trackFocus } from "./focus.js";
 import { pathCard } from "./path_card.js";
@@ -36,8 +36,9 @@ export function pathCards(place, { store, attempt, open, readOnly }) {
   return {
     show: () => pathSummaries.refresh(store.state),
     update(state, changed) {
-      if (isShown() && changesAny(changed, "runs", "run", "latestVersions", "jobs")) pathSummaries.refresh(state);
-      const isNew = changesAny(changed, "runs", "run", "latestVersions", "path", "jobs", "task");
+      if (isShown() && changesAny(changed, "runs", "selectedRun", "latestVersions", "jobs"))
+        pathSummaries.refresh(state);
+      const isNew = changesAny(changed, "runs", "selectedRun", "latestVersions", "path", "jobs", "task");
       if (isNew || changesAny(changed, "demonstrations", "pathSummaries"))
         patchChildren(place, content(state, readOnly));
       markFocus(place, state.focus); // also on what has just been drawn anew
@@ -48,7 +49,7 @@ export function pathCards(place, { store, attempt, open, readOnly }) {
 /** @param {State} state @param {boolean} readOnly @returns {Child} */
 function content(state, readOnly) {
   const { runs, task } = state;
-  const run = selectedRun(state);
+  const run = state.selectedRun;
   const usable = (state.demonstrations ?? []).filter(isUsable);
   if (!run?.learned.clusters.length) {
     if (runs === null && task) return hint("The runs cannot be read yet: the service does not answer.");
@@ -64,7 +65,7 @@ function content(state, readOnly) {
     !readOnly && hint(ABOUT_CARDS),
     run.learned.notes.map((note) => element("p", { class: "note" }, capitalize(note))),
     run.learned.clusters.map((cluster) => pathCard(state, cluster, readOnly)),
-    run === runs?.[0] && fresh > 0 && hint(`${fresh} ${pluralize(fresh, "demonstration")} came after this run.`),
+    run.id === runs?.[0]?.id && fresh > 0 && hint(`${fresh} ${pluralize(fresh, "demonstration")} came after this run.`),
     !readOnly && learnButton(state, fresh > 0 ? "Learn again" : "Learn anew"),
   ];
 }
@@ -81,13 +82,13 @@ function learnButton({ jobs }, text) {
   return element("p", {}, element("button", { type: "button", class: "primary", ...data, disabled: busy && "" }, text));
 }
 
-/** @param {Run[]} runs @param {Run} selected */
+/** @param {RunSummary[]} runs @param {Run} selected */
 function runSelect(runs, selected) {
   const options = runs.map((run, i) => {
-    const count = run.learned.clusters.length;
+    const count = run.paths.length;
     const time = new Date(run.created_ns / 1e6).toLocaleTimeString([], { hour: "2-digit", minute: "2-digit" });
     const made = option(run.id, `${time}, ${count} ${pluralize(count, "way")}${i ? "" : " (newest)"}`);
-    made.defaultSelected = run === selected;
+    made.defaultSelected = run.id === selected.id;
     return made;
   });
   return element("label", { class: "chooser" }, "Run ", element("select", { "data-key": "runs" }, options));

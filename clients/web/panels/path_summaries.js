@@ -60,7 +60,7 @@ export class PathSummaries {
  * @param {Job[]} jobs
  */
 function newestPlanning({ id, version }, jobs) {
-  return jobs.findLast(
+  return jobs.find(
     ({ kind, request }) => kind === "plan" && request.path === id && (request.version ?? version) === version,
   );
 }

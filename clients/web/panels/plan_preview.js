@@ -55,10 +55,10 @@ class PlanPreview {
 
   /** @param {State} state @param {Changed} changed */
   update(state, changed) {
-    if (!changesAny(changed, "runs", "run", "path", "jobs", "task")) return;
+    if (!changesAny(changed, "runs", "selectedRun", "path", "jobs", "task")) return;
     const path = selectedPath(state);
     const planned = (state.jobs ?? []).filter((job) => job.kind === "plan" && job.request.path === path?.id);
-    this.#job = planned.at(-1) ?? null;
+    this.#job = planned[0] ?? null;
     const key = path ? `${path.id} ${planned.filter((job) => job.state === "succeeded").length}` : "";
     if (key !== this.#key || changed.has("runs")) {
       this.#key = key;
@@ -88,7 +88,7 @@ class PlanPreview {
     const place = path && resourcePath("paths", path.id);
     /** @type {[Plan[] | null, LearnedPath | null]} */
     const [plans, newest] = place
-      ? await Promise.all([get(`${place}/plans`).catch(() => null), get(place).catch(() => null)])
+      ? await Promise.all([get(`${place}/plans?limit=1`).catch(() => null), get(place).catch(() => null)])
       : [null, null];
     if (request !== this.#fetched) return; // another one was chosen meanwhile, or planned again
     this.#plan = plans?.[0] ?? null;

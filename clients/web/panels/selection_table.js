@@ -1,7 +1,7 @@
 // Table I: who was selected in each way, how they rank, by what margin, and in words why one was left out.
 import { element, hideSection } from "../elements.js";
 import { patchChildren } from "../patch_children.js";
-import { changesAny, demonstrationNumbers, selectedRun } from "../store.js";
+import { changesAny, demonstrationNumbers } from "../store.js";
 import { capitalize, formatNumber } from "../texts.js";
 import { wayClass } from "../way_colors.js";
 import { markFocus, trackFocus } from "./focus.js";
@@ -48,8 +48,8 @@ export function selectionTable(place, { store }) {
   trackFocus(place, store);
   return {
     update(state, changed) {
-      if (changesAny(changed, "runs", "run", "demonstrations")) {
-        const run = selectedRun(state)?.learned;
+      if (changesAny(changed, "runs", "selectedRun", "demonstrations")) {
+        const run = state.selectedRun?.learned;
         hideSection(place, !run?.clusters.length);
         if (run?.clusters.length) patchChildren(place, table(run, demonstrationNumbers(state)));
       }

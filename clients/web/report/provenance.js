@@ -1,14 +1,14 @@
 // What a run was made with: settings, versions of the libraries, digests of what was learned from.
 import { definitionList, element } from "../elements.js";
 import { patchChildren } from "../patch_children.js";
-import { changesAny, selectedRun } from "../store.js";
+import { changesAny } from "../store.js";
 
 /** @param {HTMLElement} place @returns {Section} */
 export function provenance(place) {
   return {
     update(state, changed) {
-      const run = selectedRun(state);
-      if (run && changesAny(changed, "runs", "run", "demonstrations")) {
+      const run = state.selectedRun;
+      if (run && changesAny(changed, "runs", "selectedRun", "demonstrations")) {
         patchChildren(place, content(run, state.demonstrations ?? []));
       }
     },

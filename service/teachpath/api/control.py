@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Literal
 
-from fastapi import APIRouter, Query
+from fastapi import APIRouter, Response
 from pydantic import Field
 
+from teachpath.api.answers import model_of
 from teachpath.api.executions import Token, Who
+from teachpath.api.pages import WantedPage
 from teachpath.api.parts import Parts
 from teachpath.api.strict_requests import Body
 from teachpath.records import JournalEntry, Lease, LeaseRequest
@@ -57,10 +59,10 @@ def control_router(parts: Parts) -> APIRouter:
         """Beat (still here), release control or the request for it, or keep control when somebody asks."""
         return executions.request_lease(LeaseRequest(LeaseAction(action), token=lease))
 
-    @router.get("/journal")
-    def list_journal(execution: str = "", limit: Annotated[int, Query(ge=1, le=1000)] = 100) -> list[JournalEntry]:
+    @router.get("/journal", response_model=model_of(list[JournalEntry]))
+    def list_journal(page: WantedPage, execution: str = "") -> Response:
         """List who did what to the arm, and how it was answered, newest first."""
-        return store.journal.entries(execution=execution, limit=limit)
+        return page.answer(store.lists.journal(execution, page.wanted))
 
     @router.post("/plans/{plan}/revoke", status_code=204)
     def revoke_plan(plan: str, revocation: Revocation, who: Who = "") -> None:

@@ -13,10 +13,11 @@ from pydantic import AfterValidator, Field
 
 from teachpath.api.answers import model_of
 from teachpath.api.names import TrackerName, TrackerNameOrEmpty
+from teachpath.api.pages import WantedPage
 from teachpath.api.parts import MAX_READERS, Parts
 from teachpath.api.strict_requests import Body
 from teachpath.errors import UnusableInput
-from teachpath.io.store.store import Execution
+from teachpath.io.store.lists import Execution
 from teachpath.motion.analysis.time_series import TimeSeries
 from teachpath.records import Command, ExecutorStatus, TeleopRequest
 from teachpath.robot.executions import Executions, encode_series
@@ -145,13 +146,13 @@ def _add_beginnings(router: APIRouter, parts: Parts) -> None:
 
 
 def _add_looks(router: APIRouter, parts: Parts) -> None:
-    executions, store = parts.executions, parts.store
+    executions = parts.executions
     readers = CapacityLimiter(MAX_READERS)
 
-    @router.get("/executions")
-    def list_executions() -> list[Execution]:
-        """List the newest executions, newest first."""
-        return [executions.get(row.id) for row in store.executions()]
+    @router.get("/executions", response_model=model_of(list[Execution]))
+    def list_executions(page: WantedPage) -> Response:
+        """List the executions, newest first."""
+        return page.answer(executions.page(page.wanted))
 
     @router.get("/executions/{execution}")
     def get_execution(execution: str) -> Execution:

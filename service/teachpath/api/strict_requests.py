@@ -57,7 +57,8 @@ def unknown_name(kind: str, name: str, known: Collection[str]) -> str:
 
 
 def _parameters(request: Request) -> list[str]:
-    return [field.alias for field in request.scope["route"].dependant.query_params]
+    dependant = request.scope["route"].dependant
+    return [field.alias for each in (dependant, *dependant.dependencies) for field in each.query_params]
 
 
 def _fields(request: Request, place: Sequence[str | int]) -> list[str]:

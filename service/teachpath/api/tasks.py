@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from fastapi import APIRouter
+from fastapi import APIRouter, Response
 from pydantic import Field
 
+from teachpath.api.answers import model_of
+from teachpath.api.pages import WantedPage
 from teachpath.api.parts import Parts
 from teachpath.api.strict_requests import Body
 from teachpath.errors import UnusableInput
@@ -30,10 +32,10 @@ def tasks_router(parts: Parts) -> APIRouter:
 def _add_tasks(router: APIRouter, parts: Parts) -> None:
     store = parts.store
 
-    @router.get("/tasks")
-    def list_tasks() -> list[Task]:
-        """List all tasks, oldest first."""
-        return store.tasks()
+    @router.get("/tasks", response_model=model_of(list[Task]))
+    def list_tasks(page: WantedPage) -> Response:
+        """List the tasks, oldest first."""
+        return page.answer(store.lists.tasks(page.wanted))
 
     @router.put("/tasks/{task}")
     def make_task(task: str, new: NewTask) -> Task:
@@ -52,7 +54,7 @@ def _add_tasks(router: APIRouter, parts: Parts) -> None:
 def _add_demonstrations(router: APIRouter, parts: Parts) -> None:
     store = parts.store
 
-    @router.get("/tasks/{task}/demonstrations")
-    def list_demonstrations(task: str) -> list[Demonstration]:
+    @router.get("/tasks/{task}/demonstrations", response_model=model_of(list[Demonstration]))
+    def list_demonstrations(task: str, page: WantedPage) -> Response:
         """List a task's demonstrations in their order, each with its verdict and account."""
-        return store.demonstrations(store.task(task).name)
+        return page.answer(store.lists.demonstrations(store.task(task).name, page.wanted))

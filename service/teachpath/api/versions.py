@@ -9,6 +9,7 @@ from pydantic import Field
 
 from teachpath.api.answers import json_response, model_of
 from teachpath.api.curves import CurveBody
+from teachpath.api.pages import WantedPage
 from teachpath.api.parts import Parts
 from teachpath.api.strict_requests import Body
 from teachpath.editing import difference
@@ -45,10 +46,10 @@ def versions_router(parts: Parts) -> APIRouter:
     router = APIRouter(tags=["versions"])
     versions = parts.store.versions
 
-    @router.get("/paths/{path}/versions")
-    def list_versions(path: str) -> list[Version]:
+    @router.get("/paths/{path}/versions", response_model=model_of(list[Version]))
+    def list_versions(path: str, page: WantedPage) -> Response:
         """List the versions of a path over all its branches, oldest first; the first is the one that was learned."""
-        return versions.list(path)
+        return page.answer(parts.store.lists.versions(path, page.wanted))
 
     @router.get("/paths/{path}/versions/{number}", response_model=model_of(SavedVersion))
     def get_version(path: str, number: int) -> Response:

@@ -9,12 +9,13 @@ from pydantic import Field, model_validator
 from pydantic_core import PydanticCustomError
 
 from teachpath.api.answers import json_response, model_of
+from teachpath.api.pages import WantedPage
 from teachpath.api.parts import Parts
 from teachpath.api.strict_requests import Body, unknown_name
 from teachpath.errors import NotFound
 from teachpath.io.store.store import Run, Store
 from teachpath.learning.clustering.cuts import Dendrogram, dendrogram, recut_members
-from teachpath.records import Job, LearnedPath, Plan
+from teachpath.records import Job, LearnedPath, Plan, RunSummary
 
 # The fields that each kind of job takes.
 FIELDS_OF_KIND: Final = {
@@ -67,10 +68,10 @@ def jobs_router(parts: Parts) -> APIRouter:
     router = APIRouter(tags=["jobs"])
     store, jobs = parts.store, parts.jobs
 
-    @router.get("/tasks/{task}/jobs")
-    def list_jobs(task: str) -> list[Job]:
-        """List a task's jobs, oldest first."""
-        return store.jobs(task=store.task(task).name)
+    @router.get("/tasks/{task}/jobs", response_model=model_of(list[Job]))
+    def list_jobs(task: str, page: WantedPage) -> Response:
+        """List a task's jobs, newest first."""
+        return page.answer(store.lists.jobs(store.task(task).name, page.wanted))
 
     @router.post("/tasks/{task}/jobs", status_code=202)
     def begin_job(task: str, new: NewJob, request: Request, response: Response) -> Job:
@@ -113,14 +114,14 @@ def results_router(parts: Parts) -> APIRouter:
 
 
 def _add_runs(router: APIRouter, store: Store) -> None:
-    @router.get("/tasks/{task}/runs", response_model=model_of(list[Run]))
-    def list_runs(task: str) -> Response:
-        """List a task's learning runs, newest first: clusters, scores, dendrogram, convergence, paths."""
-        return json_response(store.runs(store.task(task).name))
+    @router.get("/tasks/{task}/runs", response_model=model_of(list[RunSummary]))
+    def list_runs(task: str, page: WantedPage) -> Response:
+        """List a task's learning runs, newest first; what one has learned is at its own address."""
+        return page.answer(store.lists.runs(store.task(task).name, page.wanted))
 
     @router.get("/tasks/{task}/runs/{run}", response_model=model_of(Run))
     def get_run(task: str, run: str) -> Response:
-        """Return one learning run."""
+        """Return one learning run: clusters, scores, dendrogram, convergence, paths."""
         stored = store.run(run)
         _of_task(store.task(task).name, stored.task, f"run {run!r}")
         return json_response(stored)
@@ -151,9 +152,9 @@ def _add_paths(router: APIRouter, parts: Parts) -> None:
         return json_response(store.path(path))
 
     @router.get("/paths/{path}/plans", response_model=model_of(list[Plan]))
-    def list_plans(path: str) -> Response:
+    def list_plans(path: str, page: WantedPage) -> Response:
         """List a path's plans, newest first."""
-        return json_response(store.plans(store.path(path).id))
+        return page.answer(store.lists.plans(store.path(path).id, page.wanted))
 
     @router.post("/paths/{path}/plans", status_code=202)
     def begin_plan(path: str, request: Request, response: Response, new: NewPlan | None = None) -> Job:

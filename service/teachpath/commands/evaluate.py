@@ -204,7 +204,6 @@ def _fetched(station: Station, run: str) -> Learned:
     from teachpath.io.documents import from_document
 
     for task in station.tasks():
-        for found in station.runs(task.name):
-            if found.id == run:
-                return from_document(Learned, asdict(found.learned))
+        if run in (found.id for found in station.runs(task.name)):
+            return from_document(Learned, asdict(station.get_run(task.name, run).learned))
     raise NotFound(f"there is no run {run!r}")

@@ -89,10 +89,9 @@ def recut(
     to choose from.
     """
     with Station(url) as station:
-        runs = [] if run else station.runs(task)
-        if not run and not runs:
+        chosen = run or next((newest.id for newest in station.runs(task, limit=1)), "")
+        if not chosen:
             sys.exit(f"teachpath: task {task} has no run whose cut could be moved; first: teachpath learn {task}")
-        chosen = run or runs[0].id
         if clusters is None and threshold is None:
             Console().print(cuts_table(station.dendrogram(task, chosen)))
             return

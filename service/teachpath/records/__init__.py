@@ -18,7 +18,7 @@ from teachpath.records.demonstrations import (
     Trajectory,
     Verdict,
 )
-from teachpath.records.learned import Cluster, Deviation, Fit, Learned, LearnedPath, Score
+from teachpath.records.learned import Cluster, Deviation, Fit, Learned, LearnedPath, RunSummary, Score
 from teachpath.records.motion import (
     Certificate,
     CertificateQuery,
@@ -88,6 +88,7 @@ __all__ = [
     "RecordingState",
     "RecordingStatus",
     "Routine",
+    "RunSummary",
     "Sample",
     "Scene",
     "Score",

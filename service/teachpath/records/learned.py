@@ -126,3 +126,21 @@ class Learned:
     settings: dict[str, object] = field(default_factory=dict)
     versions: dict[str, str] = field(default_factory=dict)
     inputs: dict[str, str] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True)
+class RunSummary:
+    """A learning run as it is listed.
+
+    Attributes:
+        mode: of learning.
+        demonstrations: how many it learned from.
+        paths: ids of the learned paths, one for each cluster.
+    """
+
+    id: str
+    task: str
+    created_ns: int
+    mode: str
+    demonstrations: int
+    paths: tuple[str, ...]

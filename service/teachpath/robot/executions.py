@@ -11,8 +11,10 @@ from typing import Final
 from teachpath.errors import Conflict, NotFound, TeachpathError, UnusableInput
 from teachpath.io.bus import Bus
 from teachpath.io.documents import encode
+from teachpath.io.store.lists import Execution
 from teachpath.io.store.motions import MotionHeader, read_motion
-from teachpath.io.store.store import Execution, Store
+from teachpath.io.store.pages import Page, PageRequest
+from teachpath.io.store.store import Store
 from teachpath.io.wire import decode_lease, encode_command, encode_lease_request
 from teachpath.motion.analysis.time_series import time_series
 from teachpath.motion.arm.model import Arm
@@ -193,6 +195,10 @@ class Executions:
     def get(self, execution: str) -> Execution:
         """Return an execution with its present status; raises NotFound."""
         return self._monitor.get(execution)
+
+    def page(self, wanted: PageRequest) -> Page[Execution]:
+        """List executions with their present statuses, newest first."""
+        return self._monitor.page(wanted)
 
     def _start_execution(self, command: Command, header: MotionHeader) -> Execution:
         key, plan = command.execution, header.plan.id if header.plan else None

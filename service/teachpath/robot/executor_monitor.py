@@ -12,7 +12,9 @@ from typing import Final
 
 from teachpath.errors import UnusableInput
 from teachpath.io.bus import Bus, Handle
-from teachpath.io.store.store import Execution, Store
+from teachpath.io.store.lists import Execution
+from teachpath.io.store.pages import Page, PageRequest
+from teachpath.io.store.store import Store
 from teachpath.io.wire import decode_entry, decode_status
 from teachpath.records import ExecutorStatus, JournalEntry
 from teachpath_proto.control import ExecutorState
@@ -90,9 +92,16 @@ class ExecutorMonitor:
 
     def get(self, execution: str) -> Execution:
         """Return an execution with its present status; raises NotFound."""
-        row = self._store.execution(execution)
+        return self._with_latest(self._store.execution(execution))
+
+    def page(self, wanted: PageRequest) -> Page[Execution]:
+        """List executions with their present statuses, newest first."""
+        page = self._store.lists.executions(wanted)
+        return Page([self._with_latest(row) for row in page.entries], page.next)
+
+    def _with_latest(self, row: Execution) -> Execution:
         latest = self._latest
-        return replace(row, status=latest) if latest is not None and latest.execution == execution else row
+        return replace(row, status=latest) if latest is not None and latest.execution == row.id else row
 
     def end_lost(self, cause: str) -> None:
         """End every execution that is under way as faulted, because the executor died of `cause`."""

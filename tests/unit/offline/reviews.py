@@ -38,7 +38,9 @@ def learned_store(folder: str) -> Store:
     store.add_job(a_job("learn-1"))
     found = learn({d.id: trajectory(d) for d in shown}, LearningSettings(repeats=1))
     store.finish_learning("learn-1", replace(found, notes=(HOSTILE,)))
-    path = store.runs("t")[0].learned.paths[0]
+    run = store.newest_run("t")
+    assert run is not None
+    path = run.learned.paths[0]
     store.add_job(a_job("plan-1", kind="plan", request={"path": path.id, "version": path.version}))
     store.finish_planning("plan-1", plan(path, paper_scene(), plan_id="plan-1"))
     return store

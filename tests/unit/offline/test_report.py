@@ -103,7 +103,7 @@ def test_text_from_outside_stays_text(store: Store) -> None:
     )  # as no name may be, but the template must not rely on it
     plain, hostile = Elements(package_html(found)), Elements(package_html(task))
     assert [tag for tag, _, _ in hostile.found] == [tag for tag, _, _ in plain.found]
-    assert json.loads(hostile.text("archive"))["tasks/t/runs"][0]["learned"]["notes"] == [HOSTILE]
+    assert json.loads(hostile.text("archive"))[f"tasks/t/runs/{found.run.id}"]["learned"]["notes"] == [HOSTILE]
     assert next(text for tag, _, text in hostile.found if tag == "title").startswith(HOSTILE)
 
 

@@ -35,7 +35,8 @@ declare global {
     tasks: Task[] | null;
     task: string;
     demonstrations: Demonstration[] | null;
-    runs: Run[] | null;
+    runs: RunSummary[] | null;
+    selectedRun: Run | null;
     jobs: Job[] | null;
     executions: Execution[] | null;
     recordings: ActiveRecording[];

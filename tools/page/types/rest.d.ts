@@ -26,6 +26,7 @@ declare global {
   type RecordingReport = Schemas["Ended"];
   type Robot = Schemas["Robot"];
   type Run = Schemas["Run"];
+  type RunSummary = Schemas["RunSummary"];
   type SavedVersion = Schemas["SavedVersion"];
   type Scene = Schemas["Scene"];
   type Score = Schemas["Score"];

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 
-from sqlalchemy import Engine, select
+from sqlalchemy import Engine
 from sqlalchemy.orm import Session
 
 from teachpath.io.store.tables import JournalRow, RevocationRow
@@ -22,15 +22,6 @@ class Journal:
         fields = {name: getattr(entry, name) for name in JournalEntry.__dataclass_fields__}
         with Session(self._writing) as session, session.begin():
             session.add(JournalRow(**fields))
-
-    def entries(self, *, execution: str = "", limit: int = 100) -> list[JournalEntry]:
-        """List the newest entries, newest first: all, or those of one execution."""
-        question = select(JournalRow).order_by(JournalRow.number.desc()).limit(limit)
-        if execution:
-            question = question.where(JournalRow.execution == execution)
-        with Session(self._engine) as session:
-            rows = list(session.scalars(question))
-        return [JournalEntry(r.at_ns, r.who, r.verb, r.execution, r.answer) for r in rows]
 
     def revoke(self, plan: str, *, who: str, reason: str) -> None:
         """Note that the certificate of a stored plan holds no longer; the first reason stays."""

@@ -18,6 +18,7 @@ from teachpath.io.store.calibrations import MeasuredCalibrations
 from teachpath.io.store.changes import Changed, note, telling, unheard
 from teachpath.io.store.engine import open_engine
 from teachpath.io.store.journal import Journal
+from teachpath.io.store.lists import Execution, Lists, execution_of
 from teachpath.io.store.motions import Motions
 from teachpath.io.store.recordings import RECORDINGS, Opener, Recordings, open_new
 from teachpath.io.store.rows import ensured_task, job_of, numbered_row, success, task_of
@@ -32,7 +33,17 @@ from teachpath.io.store.tables import (
     TaskRow,
 )
 from teachpath.io.store.versions import Versions, learned_row
-from teachpath.records import Demonstration, ExecutorStatus, Job, JobState, Learned, LearnedPath, Plan, Task
+from teachpath.records import (
+    Demonstration,
+    ExecutorStatus,
+    Job,
+    JobState,
+    Learned,
+    LearnedPath,
+    Plan,
+    RunSummary,
+    Task,
+)
 from teachpath_proto.control import ExecutorState
 
 Row = TypeVar("Row", bound=Base)
@@ -47,15 +58,11 @@ class Run:
     created_ns: int
     learned: Learned
 
-
-@dataclass(frozen=True, slots=True)
-class Execution:
-    """An execution as stored; `plan` is None when the arm followed a live hand."""
-
-    id: str
-    plan: str | None
-    created_ns: int
-    status: ExecutorStatus
+    @property
+    def summary(self) -> RunSummary:
+        """What a list says of it."""
+        learned, paths = self.learned, tuple(path.id for path in self.learned.paths)
+        return RunSummary(self.id, self.task, self.created_ns, learned.mode, len(learned.demonstrations), paths)
 
 
 class Store:
@@ -73,6 +80,7 @@ class Store:
         self.calibrations = MeasuredCalibrations(self._engine)
         self.versions = Versions(self._engine, changed)
         self.journal = Journal(self._engine)
+        self.lists = Lists(self._engine)
 
     def close(self) -> None:
         """Close every connection."""
@@ -140,10 +148,10 @@ class Store:
 
     # runs, paths and plans
 
-    def runs(self, task: str) -> list[Run]:
-        """List the learning runs of a task, newest first."""
-        question = select(RunTable).where(RunTable.task == task).order_by(RunTable.created_ns.desc())
-        return [_run(row) for row in self._all(question)]
+    def newest_run(self, task: str) -> Run | None:
+        """Return the newest learning run of a task; None: nothing was learned of it yet."""
+        question = select(RunTable).where(RunTable.task == task).order_by(RunTable.created_ns.desc()).limit(1)
+        return next((_run(row) for row in self._all(question)), None)
 
     def run(self, key: str) -> Run:
         """Return one learning run; raises NotFound."""
@@ -175,18 +183,13 @@ class Store:
 
     def execution(self, key: str) -> Execution:
         """Return one execution; raises NotFound."""
-        return _execution(self._one(ExecutionTable, key, "execution"))
-
-    def executions(self, limit: int = 50) -> list[Execution]:
-        """List the newest executions, newest first."""
-        question = select(ExecutionTable).order_by(ExecutionTable.created_ns.desc()).limit(limit)
-        return [_execution(row) for row in self._all(question)]
+        return execution_of(self._one(ExecutionTable, key, "execution"))
 
     def unfinished_executions(self) -> list[Execution]:
         """List the executions whose last stored status is not their end."""
         resting = [state.value for state in ExecutorState if state.is_resting]
         question = select(ExecutionTable).where(ExecutionTable.document["state"].as_string().not_in(resting))
-        return [_execution(row) for row in self._all(question)]
+        return [execution_of(row) for row in self._all(question)]
 
     # jobs
 
@@ -229,7 +232,9 @@ class Store:
             job = session.get_one(JobRow, key)
             paths = tuple(replace(p, id=f"{run}-{p.cluster}", run=run) for p in learned.paths)
             named = replace(learned, paths=paths)
-            session.add(RunTable(id=run, task=job.task, created_ns=now, document=to_document(named)))
+            summary = to_document(Run(run, job.task, now, named).summary)
+            document = to_document(named)
+            session.add(RunTable(id=run, task=job.task, created_ns=now, summary=summary, document=document))
             session.flush()
             session.add_all(learned_row(path, now) for path in paths)
         return run
@@ -292,7 +297,3 @@ class Store:
 
 def _run(row: RunTable) -> Run:
     return Run(row.id, row.task, row.created_ns, from_document(Learned, row.document))
-
-
-def _execution(row: ExecutionTable) -> Execution:
-    return Execution(row.id, row.plan, row.created_ns, from_document(ExecutorStatus, row.document))

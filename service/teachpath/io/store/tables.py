@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from sqlalchemy import JSON, BigInteger, Float, ForeignKey, Integer, String, Text, UniqueConstraint
+from sqlalchemy import JSON, BigInteger, Float, ForeignKey, Index, Integer, String, Text, UniqueConstraint
 from sqlalchemy.orm import DeclarativeBase, Mapped, mapped_column
 
 ID = String(64)
@@ -48,12 +48,14 @@ class CalibrationRow(Base):
 
 
 class RunTable(Base):
-    """A learning run over a task's demonstrations."""
+    """A learning run over a task's demonstrations; `summary` is what a list says of it (`RunSummary`)."""
 
     __tablename__ = "runs"
+    __table_args__ = (Index("ix_runs_task_created_ns", "task", "created_ns", "id"),)
     id: Mapped[str] = mapped_column(ID, primary_key=True)
     task: Mapped[str] = mapped_column(ForeignKey("tasks.name"), index=True)
     created_ns: Mapped[int] = mapped_column(BigInteger)
+    summary: Mapped[dict[str, Any]] = mapped_column(JSON)
     document: Mapped[dict[str, Any]] = mapped_column(JSON)
 
 
@@ -77,6 +79,7 @@ class PlanRow(Base):
     """A plan with its certificate."""
 
     __tablename__ = "plans"
+    __table_args__ = (Index("ix_plans_path_created_ns", "path", "created_ns", "id"),)
     id: Mapped[str] = mapped_column(ID, primary_key=True)
     path: Mapped[str] = mapped_column(ID, index=True)
     created_ns: Mapped[int] = mapped_column(BigInteger)
@@ -87,6 +90,7 @@ class JobRow(Base):
     """Background work and how it stands."""
 
     __tablename__ = "jobs"
+    __table_args__ = (Index("ix_jobs_task_created_ns", "task", "created_ns", "id"),)
     id: Mapped[str] = mapped_column(ID, primary_key=True)
     task: Mapped[str] = mapped_column(ID, index=True)
     kind: Mapped[str] = mapped_column(String(16))
@@ -106,6 +110,7 @@ class ExecutionTable(Base):
     """An execution of a plan, or without one of a live hand, and its last known status."""
 
     __tablename__ = "executions"
+    __table_args__ = (Index("ix_executions_created_ns", "created_ns", "id"),)
     id: Mapped[str] = mapped_column(ID, primary_key=True)
     plan: Mapped[str | None] = mapped_column(ForeignKey("plans.id"), index=True)
     created_ns: Mapped[int] = mapped_column(BigInteger)

@@ -43,14 +43,6 @@ class Versions:
         self._engine, self._writing = engine, engine.execution_options(writing=True)
         self._changed = changed
 
-    def list(self, path: str) -> list[Version]:
-        """List the versions of a path, oldest first; raises NotFound."""
-        with Session(self._engine) as session:
-            rows = list(session.scalars(select(PathRow).where(PathRow.id == path).order_by(PathRow.version)))
-        if not rows:
-            raise NotFound(f"there is no path {path!r}")
-        return [_version(row) for row in rows]
-
     def newest(self, path: str, branch: str = MAIN_BRANCH) -> LearnedPath:
         """Return the newest version of a branch; raises NotFound."""
         with Session(self._engine) as session:
@@ -65,7 +57,7 @@ class Versions:
         """Return one version and its curve; raises NotFound."""
         with Session(self._engine) as session:
             row = _row(session, path, number)
-        return _version(row), from_document(LearnedPath, row.document)
+        return version_of(row), from_document(LearnedPath, row.document)
 
     def save(
         self,
@@ -99,7 +91,7 @@ class Versions:
             branch = edit.branch or base.branch
             head = _head(session, path, branch)
             if head is not None and head.version != base.version:
-                newer = _version(head)
+                newer = version_of(head)
                 raise Outdated(_outdated(newer, edit.base), newer)
             learned = from_document(LearnedPath, base.document)
             turned = orientation is not None and orientation is not learned.orientation
@@ -126,7 +118,7 @@ class Versions:
                 document=to_document(edited),
             )
             session.add(row)
-        return _version(row)
+        return version_of(row)
 
 
 def learned_row(path: LearnedPath, created_ns: int) -> PathRow:
@@ -143,6 +135,12 @@ def learned_row(path: LearnedPath, created_ns: int) -> PathRow:
         created_ns=created_ns,
         document=to_document(path),
     )
+
+
+def version_of(row: PathRow) -> Version:
+    """Return the version of a row."""
+    facts = ("parent", "branch", "name", "author", "note", "created_ns")
+    return Version(path=row.id, number=row.version, **{fact: getattr(row, fact) for fact in facts})
 
 
 def _row(session: Session, path: str, number: int) -> PathRow:
@@ -172,8 +170,3 @@ def _outdated(newer: Version, base: int) -> str:
 def _same(a: Curve, b: Curve) -> bool:
     pairs = ((a.knots, b.knots), (a.control_points, b.control_points), (a.weights, b.weights))
     return a.degree == b.degree and all(np.array_equal(x, y) for x, y in pairs)
-
-
-def _version(row: PathRow) -> Version:
-    facts = ("parent", "branch", "name", "author", "note", "created_ns")
-    return Version(path=row.id, number=row.version, **{fact: getattr(row, fact) for fact in facts})

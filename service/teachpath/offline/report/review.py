@@ -77,7 +77,8 @@ def review_of(
         "scenes": [surroundings],
         "executions": [],
         "robot": describe_arm(arm, name=robot, home=motion.home),
-        _path("tasks", task.name, "runs"): [run],
+        _path("tasks", task.name, "runs"): [run.summary],
+        _path("tasks", task.name, "runs", run.id): run,
         _path("tasks", task.name, "runs", run.id, "dendrogram"): dendrogram(run.learned, CLUSTERS),
     }
     answers |= _demonstrations(store, run, trajectory)
@@ -88,10 +89,10 @@ def review_of(
 def _run(store: Store, what: str) -> Run:
     if what not in {task.name for task in store.tasks()}:
         return store.run(what)
-    runs = store.runs(what)
-    if not runs:
+    run = store.newest_run(what)
+    if run is None:
         raise NotFound(f"nothing was learned of task {what} yet; learn it first: teachpath learn {what}")
-    return runs[0]
+    return run
 
 
 def _demonstrations(store: Store, run: Run, trajectory: Callable[[Demonstration], Trajectory]) -> dict[str, object]:
@@ -115,7 +116,7 @@ def _paths(store: Store, run: Run, motion: Callable[[Plan], MotionPreview]) -> d
         answers[_path("plans", plan.id)] = plan
         with suppress(PathRefused):  # a plan for another arm: its certificate is shown, its motion is not
             answers[_path("plans", plan.id, "motion")] = motion(plan)
-    jobs = [job for job in store.jobs(task=run.task) if job.outcome in plans]
+    jobs = [job for job in reversed(store.jobs(task=run.task)) if job.outcome in plans]
     return answers | {_path("tasks", run.task, "jobs"): jobs}
 
 
