@@ -160,6 +160,10 @@ class WorkResources(Rest):
         """Stop whatever moves the arm, on its path, as `stop` does; returns the status that shows it."""
         return self._stop(ExecutorStatus, "/stop")
 
+    def acknowledge_motion(self) -> ExecutorStatus:
+        """Say that you have seen why the arm moved although nothing was under way; nothing starts before."""
+        return self._ask(ExecutorStatus, "POST", "/robot/acknowledge")
+
     def series(self, execution: str, *, points: int = 500) -> TimeSeries:
         """Return what the arm did over time, in at most `points` points."""
         return self._ask(TimeSeries, "GET", f"/executions/{execution}/series", points=points)

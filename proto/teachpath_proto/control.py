@@ -38,6 +38,7 @@ class CommandVerb(StrEnum):
     STEP = "step"
     REVOKE = "revoke"
     TELEOPERATE = "teleoperate"
+    ACKNOWLEDGE = "acknowledge"
 
 
 class LeaseAction(StrEnum):

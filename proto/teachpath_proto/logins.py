@@ -15,6 +15,8 @@ from dataclasses import asdict, dataclass, field
 from enum import StrEnum
 from pathlib import Path
 
+GENERATION_MARK = "#"  # in a common name; no name of a login has it
+
 
 class Role(StrEnum):
     """What a login may do on the bus; the service grants each role its keys (`teachpath.io.bus_access`)."""
@@ -39,6 +41,12 @@ class Login:
     certificate: str = ""  # that names the user
     key: str = field(default="", repr=False)  # private, of the certificate
     authority: str = ""  # certificate of the authority that signs those of the station
+    generation: int = 1  # of the certificates of this name: a name that was revoked goes on with the next
+
+    @property
+    def common_name(self) -> str:
+        """Name on the certificate; that of an earlier generation is another one, and may do nothing."""
+        return self.user if self.generation == 1 else f"{self.user}{GENERATION_MARK}{self.generation}"
 
 
 def logins_path(endpoint: str) -> Path:

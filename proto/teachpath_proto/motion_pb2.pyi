@@ -85,6 +85,7 @@ class ExecutorCommand(_message.Message):
         STEP: _ClassVar[ExecutorCommand.Verb]
         REVOKE: _ClassVar[ExecutorCommand.Verb]
         TELEOPERATE: _ClassVar[ExecutorCommand.Verb]
+        ACKNOWLEDGE: _ClassVar[ExecutorCommand.Verb]
     UNSPECIFIED: ExecutorCommand.Verb
     START: ExecutorCommand.Verb
     OVERRIDE: ExecutorCommand.Verb
@@ -95,6 +96,7 @@ class ExecutorCommand(_message.Message):
     STEP: ExecutorCommand.Verb
     REVOKE: ExecutorCommand.Verb
     TELEOPERATE: ExecutorCommand.Verb
+    ACKNOWLEDGE: ExecutorCommand.Verb
     VERB_FIELD_NUMBER: _ClassVar[int]
     EXECUTION_FIELD_NUMBER: _ClassVar[int]
     PLAN_FIELD_NUMBER: _ClassVar[int]

@@ -51,6 +51,7 @@ for command in (
     adaptation.object_,
     work.run,
     work.stop,
+    work.acknowledge,
     evaluate.evaluate,
     evaluate.diff,
     files.export,

@@ -242,10 +242,14 @@ def test_a_tracker_that_is_held_to_one_name_is_no_other(station: tuple[BusSettin
     heard: queue.Queue[str] = queue.Queue()
     handle = service.subscribe(f"{PREFIX}/trackers/*/samples", lambda key, _: heard.put(key))
     bus = open_bus(settings, access.logins[-1])
-    bus.publish(f"{PREFIX}/trackers/right/samples", b"hijacked")
-    bus.publish(f"{PREFIX}/trackers/left/samples", b"mine")
-    assert heard.get(timeout=WAIT) == f"{PREFIX}/trackers/left/samples"
+    answering = service.serve(f"{PREFIX}/recorder/status", lambda _: b"")
+    for _ in range(2):
+        bus.publish(f"{PREFIX}/trackers/right/samples", b"hijacked")
+        bus.publish(f"{PREFIX}/trackers/left/samples", b"mine")
+        assert heard.get(timeout=WAIT) == f"{PREFIX}/trackers/left/samples"
+        bus.ask(f"{PREFIX}/recorder/status")  # from now on its session knows who hears it, and sends to nobody else
     bus.close()
+    answering.close()
     handle.close()
 
 

@@ -173,6 +173,49 @@ def test_a_name_whose_certificate_was_revoked_may_do_nothing(tmp_path: Path) -> 
         service.close()
 
 
+def test_a_name_that_is_issued_anew_gives_nothing_to_who_has_its_revoked_certificate(tmp_path: Path) -> None:
+    bus = prepared(tmp_path)
+    (old,) = read_logins(tmp_path / "left.json")
+    said(tmp_path, "login", "revoke", "left")
+    said(tmp_path, "login", "create", "left", "--role", "tracker", "--only", "left", "--into", str(tmp_path / "2.json"))
+    (new,) = read_logins(tmp_path / "2.json")
+    said(tmp_path, "station", "certificates", "--renew")
+    assert login(bus, "left").common_name == new.common_name != old.common_name
+    service = listen_on_bus(bus, prepare_access(bus))
+    try:
+        with joined(bus, old) as revoked, joined(bus, new) as again:
+            heard: queue.Queue[bytes] = queue.Queue()
+            service.subscribe(KEYS.samples("left"), lambda _, payload: heard.put(payload))
+            for _ in range(3):
+                revoked.publish(KEYS.samples("left"), b"revoked")
+                assert heard_from(service, again, KEYS.samples("left")) == {KEYS.samples("left")}
+            assert b"revoked" not in {heard.get() for _ in range(heard.qsize())}
+    finally:
+        service.close()
+
+
+def test_a_certificate_that_was_removed_by_hand_or_without_a_ledger_is_followed_by_a_further_one(
+    tmp_path: Path,
+) -> None:
+    bus = prepared(tmp_path)
+    folder = Path(bus.certificates)
+
+    def issued_again() -> Login:
+        for suffix in ("pem", "key"):
+            (folder / f"executor.{suffix}").unlink()
+        said(tmp_path, "station", "certificates")
+        return login(bus, "executor")
+
+    assert login(bus, "executor").common_name == "executor"
+    assert [issued_again().generation, issued_again().generation] == [2, 3]
+    (folder / certificates.ISSUED).unlink()
+    assert issued_again().common_name != "executor"
+    (folder / certificates.ISSUED).write_text("[1")
+    (folder / "executor.pem").unlink()
+    with pytest.raises(UnusableSettings, match=r"issued.json does not say .* remove it"):
+        said(tmp_path, "station", "certificates")
+
+
 def test_over_a_router_each_certificate_may_do_the_same(tmp_path: Path) -> None:
     bus = prepared(tmp_path, router=True)
     text = said(tmp_path, "station", "router")

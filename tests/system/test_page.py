@@ -243,13 +243,15 @@ def test_the_review_package_answers_as_the_service_does_and_keeps_nobody_out(
 
 
 @pytest.mark.parametrize("name", ["demo", "x" * 64])
-def test_stop_is_in_view_at_every_width(visit: Visit, name: str) -> None:
+def test_stop_is_in_the_same_place_at_every_width(visit: Visit, name: str) -> None:
     page = visit.page
     page.evaluate("name => document.querySelector('#task').replaceChildren(new Option(name))", name)
     page.evaluate("document.querySelector('label.task').hidden = false")
     for width in (360, 390, 600, 860, 1024, 1920):
         page.set_viewport_size({"width": width, "height": 420})
         box = page.locator("#stop").bounding_box()
-        assert box["x"] >= 0.0, (width, box)
-        assert box["x"] + box["width"] <= width, (width, box)
-        assert 0.0 <= box["y"] <= 20.0, (width, box)
+        place = (width - box["x"] - box["width"], box["y"], box["width"])  # from the right and from above
+        assert place == (16.0, 8.0, 140.0), (width, box)
+        assert box["height"] >= 44.0, (width, box)
+        at = [box["x"] + box["width"] / 2, box["y"] + box["height"] / 2]
+        assert page.evaluate("([x, y]) => document.elementFromPoint(x, y).id", at) == "stop", width

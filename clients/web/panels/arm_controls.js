@@ -4,17 +4,19 @@ import { lease } from "../arm/lease.js";
 import { closestData, element } from "../elements.js";
 import { patchChildren } from "../patch_children.js";
 import { activeExecution, changesAny } from "../store.js";
-import { formatPercent } from "../texts.js";
+import { capitalize, formatPercent } from "../texts.js";
 import { armState, isTeleoperated } from "./arm_state.js";
 import { bindHold } from "./hold_button.js";
 
 const LEASE_POLL_INTERVAL = 2000; // [ms]
 const STEP_LENGTH = 0.01; // [m]
 
-/** @param {HTMLElement} place @param {Context} context @returns {Section} */
+/** @param {HTMLElement} place @param {Context} context */
 export function armControls(place, context) {
   const panel = new ArmControls(place, context);
   return {
+    driver: panel.parts.driver, // where stands what the arm itself says
+    /** @type {Section["update"]} */
     update: (state, changed) => panel.update(state, changed),
     show: () => panel.show(),
     hide: () => panel.hide(),
@@ -33,11 +35,14 @@ class ArmControls {
     this.context = context;
     this.parts = createParts();
     place.append(...this.parts.all);
-    const { start, commands, owner, speed } = this.parts;
+    const { start, commands, owner, speed, acknowledge } = this.parts;
     lease.onChange = () => this.#pollLease();
     commands.addEventListener("click", (event) => this.#sendCommand(closestData(event).verb ?? ""));
     owner.addEventListener("click", (event) => this.#changeLease(closestData(event).word ?? ""));
     speed.addEventListener("input", () => this.#sendOverride());
+    acknowledge.addEventListener("click", () => {
+      context.attempt(() => post("robot/acknowledge", {}, lease.headers));
+    });
     bindHold(
       start,
       () => context.store.state.plan,
@@ -132,7 +137,11 @@ class ArmControls {
     const isAway = state.connection === "lost";
     patchChildren(parts.state, armState(active ?? last, active !== null, isAway));
     const isOthers = Boolean(state.lease?.holder) && !lease.held;
-    parts.start.disabled = active !== null || !state.plan || isAway || isOthers;
+    const unasked = (!isAway && state.executor?.unasked_motion) || "";
+    parts.driver.hidden = isAway;
+    parts.unasked.hidden = unasked === "";
+    parts.unaskedText.textContent = unasked && `${capitalize(unasked)}.`;
+    parts.start.disabled = active !== null || !state.plan || isAway || isOthers || unasked !== "";
     parts.why.textContent = startBlocker(state, active, isOthers);
     parts.why.hidden = parts.why.textContent === "";
     for (const button of parts.commands.querySelectorAll("button")) {
@@ -151,6 +160,7 @@ class ArmControls {
  */
 function startBlocker(state, active, isOthers) {
   if (state.connection === "lost" || active) return ""; // said above
+  if (state.executor?.unasked_motion) return "It starts when somebody has acknowledged that the arm moved.";
   if (!state.plan) return "It starts with a certified motion only: plan one above.";
   return isOthers
     ? `${state.lease?.holder} holds control: ask for it below.`
@@ -194,6 +204,16 @@ function createParts() {
   /** @param {string} verb @param {string} text @param {string} [title] */
   const order = (verb, text, title) => element("button", { type: "button", "data-verb": verb, title }, text);
   const state = element("div", { role: "status" });
+  const driver = element("div", { class: "driver" });
+  const unaskedText = element("span", {});
+  const acknowledge = element("button", { type: "button" }, "I have seen why: acknowledge");
+  const acknowledgeRow = element("p", { class: "buttons" }, acknowledge);
+  const unasked = element(
+    "div",
+    { role: "alert", hidden: "" },
+    element("p", { class: "failed" }, unaskedText),
+    acknowledgeRow,
+  );
   const start = element("button", { type: "button", class: "primary hold", disabled: "" }, "Hold to start the arm");
   const why = element("p", { class: "note" });
   const commands = element(
@@ -214,6 +234,21 @@ function createParts() {
   const name = element("input", { ...text, id: "operator", value: localStorage.getItem("operator") ?? "" });
   const nameField = element("p", { class: "field" }, element("label", { for: "operator" }, "Your name"), name);
   const startRow = element("p", { class: "buttons" }, start);
-  const all = [state, startRow, why, commands, speedField, owner, nameField];
-  return { all, state, start, why, commands, speed, share, owner, name, nameField };
+  const all = [state, driver, unasked, startRow, why, commands, speedField, owner, nameField];
+  return {
+    all,
+    state,
+    driver,
+    unasked,
+    unaskedText,
+    acknowledge,
+    start,
+    why,
+    commands,
+    speed,
+    share,
+    owner,
+    name,
+    nameField,
+  };
 }

@@ -14,11 +14,20 @@ const WINDOW = 15; // [s]
  * @property {number | null} tracking_error [rad]
  * @property {number | null} lateness [s]
  * @property {boolean} gripper_closed
+ * @property {number | null} gripper_opening [m] measured between the fingers; null where the arm does not measure it
+ * @property {boolean} enabled whether the drives are on
+ * @property {boolean} protective_stop whether the arm's own controller has stopped it
+ * @property {string} fault of the arm; "" is none
  * @property {ExecutorStatus | null} status
  */
 
-/** @param {HTMLElement} place @param {Context} context @returns {Section} */
-export function liveJoints(place, { attempt }) {
+/**
+ * @param {HTMLElement} place
+ * @param {Context} context
+ * @param {(state: JointState) => void} onState called with each of them
+ * @returns {Section}
+ */
+export function liveJoints(place, { attempt }, onState) {
   const plots = new JointPlots(place, { window: WINDOW });
   /** @type {Robot | undefined} */
   let arm;
@@ -29,7 +38,12 @@ export function liveJoints(place, { attempt }) {
     begin ||= seconds;
     if (arm) plots.append(plotRow(arm, { time: seconds - begin, position, speed, error: tracking_error, lateness }));
   };
-  const socket = new ReconnectingSocket("joints", { onMessage: (text) => plot(JSON.parse(text)) });
+  /** @param {JointState} state */
+  const receive = (state) => {
+    plot(state);
+    onState(state);
+  };
+  const socket = new ReconnectingSocket("joints", { onMessage: (text) => receive(JSON.parse(text)) });
   return {
     update() {},
     async show() {

@@ -1,5 +1,6 @@
 // Run: a preview by a ghost arm, then the arm itself, by a plan or by a live hand, its joints, and past executions.
 import { armControls } from "./arm_controls.js";
+import { driverState } from "./driver_state.js";
 import { executionReplay } from "./execution_replay.js";
 import { liveJoints } from "./live_joints.js";
 import { planPreview } from "./plan_preview.js";
@@ -12,12 +13,21 @@ let preview;
 let replay;
 /** @type {ReturnType<typeof teleopPanel>} */
 let teleop;
+/** @type {ReturnType<typeof driverState>} */
+let driver;
+
+/** @param {HTMLElement} place @param {Context} context */
+function armWithDriver(place, context) {
+  const controls = armControls(place, context);
+  driver = driverState(controls.driver);
+  return controls;
+}
 
 const run = sectionedPanel("run", "Run", [
   ["preview", "Preview", (place, context) => (preview = planPreview(place, context))],
-  ["arm", "Arm", armControls],
+  ["arm", "Arm", armWithDriver],
   ["teleop", "Live hand", (place, context) => (teleop = teleopPanel(place, context))],
-  ["joints", "Joints", liveJoints],
+  ["joints", "Joints", (place, context) => liveJoints(place, context, (state) => driver.update(state))],
   ["replay", "Past executions", (place, context) => (replay = executionReplay(place, context))],
 ]);
 

@@ -108,7 +108,8 @@ class TeleopPanel {
       throw error;
     }
     const tracker = usesPageHand ? { tracker: session.name } : { tracker: hand, calibration, clutch: session.name };
-    const { id } = await post("teleoperation", { ...tracker, scene: scene.name }, lease.headers);
+    const orientation = this.parts.orientation.value ? { orientation: this.parts.orientation.value } : {};
+    const { id } = await post("teleoperation", { ...tracker, ...orientation, scene: scene.name }, lease.headers);
     if (isWanted()) this.#execution = id;
     else await this.context.armStop.request(stopPath(id));
   }

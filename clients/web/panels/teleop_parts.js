@@ -17,6 +17,16 @@ const HELP = [
 const ABOUT = "Move the arm by hand, without a path: it follows while the clutch is held, and rests when it is let go.";
 const WAITING_FOR_CLUTCH = "press the clutch"; // the executor's reason begins so while it waits
 
+/**
+ * What gives way near joint limits and singular poses, by orientation.
+ * @type {Record<string, string>}
+ */
+const ORIENTATION_RULES = {
+  "": "What gives way where the arm can't follow is said while it does.",
+  keep: "Where the arm can't keep it, the tool stays short of the hand; that is said while it does.",
+  follow: "Where the arm can't turn so far, the tool turns less first, then stays short; that is said while it does.",
+};
+
 export function createParts() {
   /** @param {string} text @param {import("../elements.js").Attributes} attributes */
   const button = (text, attributes = {}) => element("button", { type: "button", ...attributes }, text);
@@ -26,8 +36,20 @@ export function createParts() {
   const calibration = element("select", { id: "teleop-calibration" }, option("identity"));
   const calibrationField = field(calibration, "Calibration");
   const begin = button("Lead the arm", { class: "primary" });
+  const orientation = element(
+    "select",
+    { id: "teleop-orientation", "aria-describedby": "teleop-orientation-rule" },
+    option("", "as the station is set"),
+    option("keep", "keeps its orientation"),
+    option("follow", "turns with the hand"),
+  );
+  const rule = element("p", { class: "note", id: "teleop-orientation-rule" }, ORIENTATION_RULES[""]);
+  orientation.addEventListener("change", () => {
+    rule.textContent = ORIENTATION_RULES[orientation.value];
+  });
   const beginRow = element("p", { class: "buttons" }, begin);
-  const idle = element("div", {}, hint(ABOUT), field(hand, "Hand"), calibrationField, beginRow);
+  const fields = [field(hand, "Hand"), calibrationField, field(orientation, "Tool"), rule];
+  const idle = element("div", {}, hint(ABOUT), fields, beginRow);
   const statusText = element("p", { class: "session-status", role: "status" });
   const held = { class: "primary hold", "aria-pressed": "false", title: "Or hold Enter" };
   const clutch = button("Clutch: hold to move the arm", held);
@@ -42,7 +64,7 @@ export function createParts() {
     element("p", { class: "buttons" }, grip, finish),
     help,
   );
-  const idleParts = { idle, hand, calibration, calibrationField, begin };
+  const idleParts = { idle, hand, calibration, calibrationField, orientation, begin };
   return { all: [idle, active], ...idleParts, active, statusText, clutch, grip, finish };
 }
 

@@ -211,6 +211,14 @@ def _add_steering(router: APIRouter, executions: Executions) -> None:
         """
         return executions.command(execution, Command(CommandVerb(verb), execution, lease=lease, who=who))
 
+    @router.post("/robot/acknowledge")
+    def acknowledge_motion(lease: Token = "", who: Who = "") -> ExecutorStatus:
+        """Say that you have seen why the arm moved although nothing was under way (`unasked_motion` of its status).
+
+        Nothing starts before; it is refused while the arm does not rest.
+        """
+        return executions.acknowledge(lease=lease, who=who)
+
 
 def stops_router(parts: Parts) -> APIRouter:
     """Return the routes that stop the arm: they are answered whatever else the request holds."""

@@ -76,5 +76,9 @@ def _document(frame: JointFrame, status: ExecutorStatus | None) -> dict[str, Any
         "missed": state.missed,
         "holding": state.holding,
         "gripper_closed": state.gripper_closed,
+        "gripper_opening": None if state.gripper_opening is None else round(state.gripper_opening, 4),
+        "enabled": state.enabled,
+        "protective_stop": state.protective_stop,
+        "fault": state.fault,
         "status": asdict(status) if status else None,
     }

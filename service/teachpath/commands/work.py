@@ -220,6 +220,16 @@ def stop(
         )
 
 
+def acknowledge(url: Url = LOCAL) -> None:
+    """Let the arm be moved again that moved unasked, once you have seen why.
+
+    Nothing starts before; it is refused while the arm does not rest for 2 s.
+    """
+    with Station(url, operator="teachpath acknowledge") as station:
+        station.acknowledge_motion()
+    print("acknowledged: executions may start")
+
+
 def replay(
     task: Annotated[str, typer.Argument(help="Task whose demonstrations are played.")],
     into: Annotated[str, typer.Option(help="Task that they are recorded into; made when missing.")] = "",

@@ -24,6 +24,7 @@ from teachpath.executor.joint_state_monitor import JointStateMonitor
 from teachpath.executor.lease import ControlLease
 from teachpath.executor.program_factory import PreparedProgram, ProgramFactory
 from teachpath.executor.settings import ExecutorSettings
+from teachpath.executor.unasked_motion import UnaskedMotionDetector
 from teachpath.io import documents, wire
 from teachpath.io.bus import Bus, Handle
 from teachpath.records import Command, ExecutorStatus, JournalEntry
@@ -48,7 +49,7 @@ class CommandHandler:
         joint_states: monitor of the arm.
         programs: makes the program of a start command.
         status: returns the status with which commands are answered.
-        hindrance: returns why nothing may start, or nothing.
+        unasked_motion: because of which nothing may start before somebody acknowledges it.
         on_start: called before a new execution moves the arm.
 
     Attributes:
@@ -68,7 +69,7 @@ class CommandHandler:
         *,
         time_source: TimeSource,
         status: Callable[[], ExecutorStatus],
-        hindrance: Callable[[], str],
+        unasked_motion: UnaskedMotionDetector,
         on_start: Callable[[], None],
     ) -> None:
         self._bus = bus
@@ -78,7 +79,7 @@ class CommandHandler:
         self._programs = programs
         self._time = time_source
         self._status = status
-        self._hindrance = hindrance
+        self._unasked_motion = unasked_motion
         self._on_start = on_start
         self._start_lock = threading.Lock()
         self._lock = threading.Lock()  # held where a stop and the begin of an execution must not cross
@@ -161,6 +162,9 @@ class CommandHandler:
             self._stop(command, who)
         elif command.verb == CommandVerb.REVOKE:
             self._revoke(command)
+        elif command.verb == CommandVerb.ACKNOWLEDGE:
+            self._unasked_motion.acknowledge()
+            self.status_is_due = True
         else:
             current = self.current
             if current is None or current.is_resting or command.execution != current.id:
@@ -237,8 +241,8 @@ class CommandHandler:
         with self._start_lock:
             if self.current is not None and not self.current.is_resting:
                 raise Conflict(f"execution {self.current.id} is {self.current.state}; stop it first")
-            if hindrance := self._hindrance():
-                raise Conflict(hindrance)
+            if self._unasked_motion.reason:
+                raise Conflict(self._unasked_motion.reason)
             # Who was lost while nothing moved matters no more.
             self.lease.pop_lost_holder()
             self._joint_states.has_lost_driver = False

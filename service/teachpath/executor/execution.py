@@ -168,13 +168,13 @@ class Execution:
     def resume(self) -> None:
         """Go on, unless the execution is over or being ended."""
         if not self._is_over:
-            self.reason = ""
+            self._move_on()
             self.program.resume()
 
     def reverse(self) -> None:
         """Go back to the beginning of the segment, unless the execution is over or being ended."""
         if not self._is_over:
-            self.reason = ""
+            self._move_on()
             self.program.reverse()
 
     def revoke(self, reason: str) -> None:
@@ -194,7 +194,8 @@ class Execution:
             return
         if self.displacement:
             self._meter = LimitMeter(self._rate, start_q, self._arm, self._meter)
-        self.displacement, self.reason = 0.0, ""
+        self.displacement = 0.0
+        self._move_on()
         self.program.start_detour(detour)
 
     def end(self, state: ExecutorState, reason: str) -> None:
@@ -269,6 +270,10 @@ class Execution:
             hand_latency_p99_us=latency_p99,
             ending=self.is_ending,
         )
+
+    def _move_on(self) -> None:
+        self.reason = ""
+        self.grasp.accept()
 
     def _describe_reason(self) -> str:
         if self.displacement:

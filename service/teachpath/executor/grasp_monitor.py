@@ -22,12 +22,17 @@ class GraspMonitor:
     Args:
         name: of the object.
         width: of the object, where the fingers take it [m]; 0 where there is none, and nothing is watched.
+
+    Attributes:
+        name: of the object.
     """
 
     def __init__(self, name: str = "", width: float = 0.0) -> None:
-        self._name = name
+        self.name = name
         self._width = width
         self._empty_since: int | None = None  # [ns]
+        self._was_reported = False  # that it is empty now
+        self._is_accepted = False  # likewise
 
     @classmethod
     def of_plan(cls, plan: Plan, arm: Arm) -> GraspMonitor:
@@ -39,7 +44,7 @@ class GraspMonitor:
         return cls(carried.name, grasp_width(carried, np.linalg.inv(flange) @ shape_pose(carried)))
 
     def fault(self, state: JointState, *, closed: bool, carries: bool, now: int) -> str:
-        """Return that the closed gripper holds nothing, and the way out, in words; empty while it may hold its object.
+        """Return that the closed gripper holds nothing, in words; empty while it may hold its object.
 
         Args:
             state: newest joint state of the arm in this execution.
@@ -49,12 +54,17 @@ class GraspMonitor:
         """
         opening = state.gripper_opening
         if not (closed and state.gripper_closed) or opening is None or opening >= LEAST_SHARE * self._width:
-            self._empty_since = None
+            self._empty_since, self._was_reported, self._is_accepted = None, False, False
             return ""
         if self._empty_since is None:
             self._empty_since = now
-        if now - self._empty_since < LOSS_TIME_NS:
+        if now - self._empty_since < LOSS_TIME_NS or self._is_accepted:
             return ""
-        measured = f"{1000 * opening:.0f} mm between the fingers, and {self._name} is {1000 * self._width:.0f} mm wide"
-        what = f"has lost {self._name}" if carries else "closed on nothing"
-        return f"the gripper {what} ({measured} there): put {self._name} where the path begins, then start again"
+        self._was_reported = True
+        measured = f"{1000 * opening:.0f} mm between the fingers, and {self.name} is {1000 * self._width:.0f} mm wide"
+        what = f"has lost {self.name}" if carries else "closed on nothing"
+        return f"the gripper {what} ({measured} there)"
+
+    def accept(self) -> None:
+        """Go on with a gripper that was reported to hold nothing, until its fingers have held something or opened."""
+        self._is_accepted = self._was_reported

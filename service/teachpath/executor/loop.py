@@ -91,7 +91,7 @@ class Executor:
             programs,
             time_source=self._time,
             status=self._status,
-            hindrance=lambda: self._unasked.reason,
+            unasked_motion=self._unasked,
             on_start=self._pacer.reset,
         )
         self._scheduling = "real-time scheduling was not asked for"
@@ -239,8 +239,14 @@ class Executor:
         if arm.execution != current.id:
             return
         closed, carries = current.program.state.gripper_closed, not current.program.before_path
-        if fault := current.grasp.fault(arm, closed=closed, carries=carries, now=due):
-            current.end(ExecutorState.FAULTED, fault)
+        fault = current.grasp.fault(arm, closed=closed, carries=carries, now=due)
+        if fault and self._settings.failed_grasp == "fault":
+            way_out = f"put {current.grasp.name} where the path begins, then start again"
+            current.end(ExecutorState.FAULTED, f"{fault}: {way_out}")
+        elif fault and not current.is_ending:
+            reason = f"{fault}: resume goes on as it is, stop ends here"
+            self._hold(current, reason)
+            current.reason = reason  # also where it was held already, for another reason
 
     def _judge_tracking(self, current: Execution, error: float) -> None:
         current.tracking_error = max(current.tracking_error, error)

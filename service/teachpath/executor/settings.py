@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Annotated
+from typing import Annotated, Literal
 
 from annotated_types import Ge, Gt, Le
 
@@ -32,7 +32,11 @@ class ExecutorSettings:
     rest_timeout: Annotated[float, Gt(0), Le(30)] = 2.0
     # [rad] that the arm may be off its setpoint when a held execution goes on; farther off it is brought back first
     regain: Annotated[float, Gt(0), Le(0.5)] = 0.02
-    # [rad] that a joint may move while nothing is under way; an arm that moves farther is reported, and nothing starts
+    # [rad] that a joint may move while nothing is under way; farther is reported, and nothing starts before somebody
+    # acknowledges it
     unasked_motion: Annotated[float, Gt(0), Le(0.5)] = 0.02
+    # what a gripper ends in that is measured to close on nothing, or to lose its object: `fault`, or `hold`, where
+    # resume goes on as it is
+    failed_grasp: Literal["fault", "hold"] = "fault"
     # whether to ask for real-time scheduling; nice -10 where it is refused
     realtime: bool = True

@@ -10,7 +10,7 @@ import os
 import tempfile
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from datetime import datetime, timedelta
 from pathlib import Path
 from typing import Final
@@ -151,8 +151,11 @@ def access_rules(logins: Sequence[Login], prefix: str) -> dict[str, object]:
     policies = []
     for login in logins:
         names = []
-        for verb, keys in granted(login, prefix).items():
+        # Who hears all trackers declares one key for them all, which a login that is held to one of them must hear of.
+        listened = granted(replace(login, only=""), prefix)["put"]
+        for verb, own in granted(login, prefix).items():
             for flow, messages in zip(("ingress", "egress"), MESSAGES[verb], strict=True):
+                keys = listened if (verb, flow) == ("put", "egress") else own
                 if messages:
                     names.append(f"{login.user} {verb} {flow}")
                     rules.append(
@@ -171,7 +174,9 @@ def access_rules(logins: Sequence[Login], prefix: str) -> dict[str, object]:
         "default_permission": "deny",
         "rules": rules,
         "subjects": [
-            {"id": login.user, "cert_common_names" if login.certificate else "usernames": [login.user]}
+            {"id": login.user, "cert_common_names": [login.common_name]}
+            if login.certificate
+            else {"id": login.user, "usernames": [login.user]}
             for login in logins
         ],
         "policies": policies,

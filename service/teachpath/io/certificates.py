@@ -1,13 +1,16 @@
 """The certificates of a station's bus: one authority, and one certificate for every role and every further program.
 
 A folder holds them in PEM, NAME.pem with its private key NAME.key, for its owner alone. The subject says who somebody
-is: the name (common name), the role (organizational unit), and the one tracker or robot it may be (DN qualifier).
+is: the name with its generation (common name), the role (organizational unit), and the one tracker or robot it may be
+(DN qualifier).
 """
 
 from __future__ import annotations
 
 import ipaddress
+import json
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from datetime import datetime, timedelta
 from pathlib import Path
 from typing import Final
@@ -20,9 +23,10 @@ from cryptography.x509.oid import ExtendedKeyUsageOID, NameOID, ObjectIdentifier
 from teachpath.errors import UnusableSettings
 from teachpath.io.bus_access import RENEWAL
 from teachpath.io.private_files import refuse_shared, write_private
-from teachpath_proto.logins import Login, Role
+from teachpath_proto.logins import GENERATION_MARK, Login, Role
 
 AUTHORITY: Final = "authority"
+ISSUED: Final = "issued.json"  # newest generation of every name that has or had a certificate
 AUTHORITY_LIFE: Final = timedelta(days=3650)
 LIFE: Final = timedelta(days=365)
 CLOCK_DIFFERENCE: Final = timedelta(hours=1)  # by which another machine's clock may be behind
@@ -44,11 +48,15 @@ def prepare_authority(folder: Path, now: datetime) -> bool:
     builder = builder.add_extension(x509.BasicConstraints(ca=True, path_length=0), critical=True)
     builder = builder.add_extension(_usage(signs=True), critical=True)
     _write(folder, AUTHORITY, builder.sign(key, hashes.SHA256()), key)
+    _write_file(folder / ISSUED, "{}")
     return True
 
 
 def issue(folder: Path, who: Login, now: datetime, *, hosts: Sequence[str] = ()) -> Login:
     """Make a certificate and a private key, in place of those that there are, and return the login with them.
+
+    A renewed certificate has the common name of the one in its place. Where that is gone, because it was revoked or
+    removed, the new one has a further generation in its common name: whoever still has the old one gains nothing by it.
 
     Args:
         folder: of the authority; the files are written there.
@@ -62,6 +70,7 @@ def issue(folder: Path, who: Login, now: datetime, *, hosts: Sequence[str] = ())
             written.
     """
     issuer, issuer_key = _authority(folder, now)
+    who = replace(who, generation=_next_generation(folder, who.user))
     key = ec.generate_private_key(ec.SECP256R1())
     builder = _builder(_subject(who), issuer.subject, key, now, min(LIFE, issuer.not_valid_after_utc - now))
     builder = builder.add_extension(x509.BasicConstraints(ca=False, path_length=None), critical=True)
@@ -92,9 +101,9 @@ def read_login(folder: Path, name: str) -> Login:
     except ValueError as error:
         raise UnusableSettings(f"{pem} names no role of a station ({error}); make another: {MAKE}") from None
     private = _read_key(key) if key.exists() else ""
-    user = _field(certificate, NameOID.COMMON_NAME)
+    user, generation = _name_and_generation(certificate)
     authority = _read(folder / f"{AUTHORITY}.pem")
-    return Login(user, "", role, only, certificate=_read(pem), key=private, authority=authority)
+    return Login(user, "", role, only, _read(pem), private, authority, generation)
 
 
 def read_logins(folder: Path) -> list[Login]:
@@ -157,8 +166,33 @@ def _builder(
     )
 
 
+def _next_generation(folder: Path, name: str) -> int:
+    """Return the generation of the next certificate of a name, and note it; raises UnusableSettings."""
+    path = folder / ISSUED
+    try:
+        issued: dict[str, int] | None = {one: int(number) for one, number in json.loads(path.read_text()).items()}
+    except FileNotFoundError:
+        issued = None  # whether there was one of this name before, nothing tells
+    except (OSError, ValueError, TypeError, AttributeError) as error:
+        raise UnusableSettings(
+            f"{path} does not say which certificates there were ({error}); remove it, and names without a certificate "
+            "get one of a further generation"
+        ) from None
+    if (folder / f"{name}.pem").exists():
+        generation = _name_and_generation(_certificate(folder / f"{name}.pem"))[1]
+    else:
+        generation = 2 if issued is None else issued.get(name, 0) + 1
+    _write_file(path, json.dumps({**(issued or {}), name: generation}, indent=1))
+    return generation
+
+
+def _name_and_generation(certificate: x509.Certificate) -> tuple[str, int]:
+    name, _, number = _field(certificate, NameOID.COMMON_NAME).partition(GENERATION_MARK)
+    return name, int(number or 1)
+
+
 def _subject(who: Login) -> x509.Name:
-    fields = [(NameOID.COMMON_NAME, who.user), (NameOID.ORGANIZATIONAL_UNIT_NAME, who.role.value)]
+    fields = [(NameOID.COMMON_NAME, who.common_name), (NameOID.ORGANIZATIONAL_UNIT_NAME, who.role.value)]
     fields += [(NameOID.DN_QUALIFIER, who.only)] if who.only else []
     return x509.Name([x509.NameAttribute(oid, value) for oid, value in fields])
 
@@ -193,11 +227,17 @@ def _write(folder: Path, name: str, certificate: x509.Certificate, key: ec.Ellip
     private = key.private_bytes(
         serialization.Encoding.PEM, serialization.PrivateFormat.PKCS8, serialization.NoEncryption()
     )
+    _write_file(folder / f"{name}.key", private.decode())
+    _write_file(folder / f"{name}.pem", certificate.public_bytes(serialization.Encoding.PEM).decode())
+
+
+def _write_file(path: Path, content: str) -> None:
     try:
-        write_private(folder / f"{name}.key", private.decode())
-        write_private(folder / f"{name}.pem", certificate.public_bytes(serialization.Encoding.PEM).decode())
+        write_private(path, content)
     except OSError as error:
-        raise UnusableSettings(f"cannot write certificates into {folder}: {error.strerror}; name another") from None
+        raise UnusableSettings(
+            f"cannot write certificates into {path.parent}: {error.strerror}; name another"
+        ) from None
 
 
 def _certificate(path: Path) -> x509.Certificate:
@@ -209,7 +249,9 @@ def _certificate(path: Path) -> x509.Certificate:
 
 def _read_key(path: Path) -> str:
     content = _read(path)
-    consequence = f"whoever has read it can take its holder's place; remove it and make another: {MAKE}"
+    consequence = (
+        f"whoever has read it can take its holder's place; remove it and {path.stem}.pem and make another: {MAKE}"
+    )
     refuse_shared(f"the private key {path}", path.stat(), consequence)
     return content
 

@@ -15,7 +15,7 @@ from teachpath.io.store.lists import Execution
 from teachpath.io.store.motions import MotionHeader, read_motion
 from teachpath.io.store.pages import Page, PageRequest
 from teachpath.io.store.store import Store
-from teachpath.io.wire import decode_lease, encode_command, encode_lease_request
+from teachpath.io.wire import decode_lease, decode_status, encode_command, encode_lease_request
 from teachpath.motion.analysis.time_series import time_series
 from teachpath.motion.arm.model import Arm
 from teachpath.records import Command, ExecutorStatus, Lease, LeaseRequest, TeleopRequest
@@ -147,6 +147,19 @@ class Executions:
             raise Conflict(f"execution {execution} is not running")
         self._bus.ask(self._keys.executor_command, encode_command(command))
         return self.get(execution)
+
+    def acknowledge(self, *, lease: str = "", who: str = "") -> ExecutorStatus:
+        """Say that somebody has seen why the arm moved unasked, so that executions may start again.
+
+        Returns:
+            The executor's status that shows it; where nothing had to be acknowledged, as it was.
+
+        Raises:
+            Conflict: the arm does not rest yet, or somebody else is in control.
+            Unreachable: the executor does not answer.
+        """
+        command = Command(CommandVerb.ACKNOWLEDGE, lease=lease, who=who)
+        return decode_status(self._bus.ask(self._keys.executor_command, encode_command(command)))
 
     def stop_one(self, execution: str, *, lease: str = "", who: str = "") -> Execution:
         """Stop an execution, and return it when the executor's status shows that it ends or has ended.

@@ -2,7 +2,7 @@
 
 import threading
 from collections.abc import Callable
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
@@ -42,7 +42,12 @@ class Bench:
     Its service finds every certificate good, and answers by `confirm`.
     """
 
-    def __init__(self, position: np.ndarray = HOME, motion: MotionSettings | None = None) -> None:
+    def __init__(
+        self,
+        position: np.ndarray = HOME,
+        motion: MotionSettings | None = None,
+        failed_grasp: Literal["fault", "hold"] = "fault",
+    ) -> None:
         self.bus = MemoryBus()
         self.now = 0
         self.position = position
@@ -70,7 +75,7 @@ class Bench:
         self.executor = Executor(
             self.bus,
             KEYS,
-            ExecutorSettings(realtime=False),
+            ExecutorSettings(realtime=False, failed_grasp=failed_grasp),
             signing_key=KEY,
             motion=motion,
             time_source=TimeSource(lambda: self.now, lambda: EPOCH + self.now, self.sleep),

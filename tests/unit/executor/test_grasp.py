@@ -1,4 +1,6 @@
-"""A gripper that measures its fingers: an execution whose grasp closes on nothing, or loses its object, is faulted."""
+"""A gripper that measures its fingers: one that closes on nothing, or has lost its object, ends or holds."""
+
+from typing import Literal
 
 import pytest
 
@@ -8,9 +10,9 @@ from tests.unit.executor.executors import PERIOD_NS, Bench, standing, within_lim
 WIDTH = 0.04  # [m] of the block that the plan carries
 
 
-def with_fingers(plan: Plan, closed: float | None) -> Bench:
+def with_fingers(plan: Plan, closed: float | None, failed_grasp: Literal["fault", "hold"] = "fault") -> Bench:
     """A bench that is about to start a plan, with an arm whose fingers are so far apart when they have closed [m]."""
-    bench = Bench()
+    bench = Bench(failed_grasp=failed_grasp)
     bench.closed_opening = closed
     bench.start(plan)
     return bench
@@ -63,3 +65,36 @@ def test_a_short_wrong_measurement_is_passed_over(middle: Plan) -> None:
     bench.when(lambda: bench.now - begin > 10 * PERIOD_NS, lambda: setattr(bench, "closed_opening", WIDTH))
     run(bench, "ended")
     assert bench.statuses[-1].progress == 1.0
+
+
+def test_by_a_setting_a_grasp_that_failed_is_held_with_the_reason_and_goes_on_only_when_somebody_says_so(
+    middle: Plan,
+) -> None:
+    bench = with_fingers(middle, 0.001, "hold")
+    bench.when(lambda: bench.state == "held", lambda: None)
+    begin: list[int] = []
+    bench.when(lambda: True, lambda: begin.append(bench.now))
+    bench.when(lambda: bench.now - begin[0] > 500 * PERIOD_NS, lambda: None)
+    reasons: list[str] = []
+    bench.when(lambda: bench.state == "held", lambda: reasons.append(bench.statuses[-1].reason))
+    bench.when(lambda: True, lambda: bench.command("resume"))
+    bench.when(lambda: bench.statuses[-1].progress > 0.2, lambda: setattr(bench, "closed_opening", WIDTH))
+    bench.when(lambda: bench.statuses[-1].progress > 0.4, lambda: setattr(bench, "closed_opening", 0.0))
+    bench.when(lambda: bench.state == "held", lambda: reasons.append(bench.statuses[-1].reason))
+    bench.when(lambda: True, lambda: bench.command("resume"))
+    run(bench, "ended")
+    nothing, lost = reasons
+    assert nothing.startswith("the gripper closed on nothing (1 mm")
+    assert lost.startswith("the gripper has lost block (0 mm")
+    assert all(reason.endswith("resume goes on as it is, stop ends here") for reason in reasons)
+    assert [entry.answer for entry in bench.journal if entry.who == "the executor"] == reasons
+    assert bench.statuses[-1].progress == 1.0
+    assert within_limits(bench.setpoints)
+
+
+def test_what_is_lost_while_the_arm_is_held_for_another_reason_is_told_before_it_goes_on(middle: Plan) -> None:
+    bench = with_fingers(middle, WIDTH, "hold")
+    bench.when(lambda: bench.state == "following", lambda: bench.command("hold"))
+    bench.when(lambda: bench.state == "held", lambda: setattr(bench, "closed_opening", 0.0))
+    bench.when(lambda: "has lost block" in bench.statuses[-1].reason, lambda: bench.command("resume"))
+    run(bench, "ended")

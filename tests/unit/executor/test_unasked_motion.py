@@ -1,4 +1,6 @@
-"""An arm that moves although nothing is under way: noticed, written down, and held until it rests."""
+"""An arm that moves although nothing is under way: noticed, written down, and held until somebody has seen why."""
+
+from collections.abc import Callable
 
 import numpy as np
 import pytest
@@ -40,13 +42,18 @@ class Pushed(Bench):
         for _ in range(10):
             self.when(lambda: True, lambda: self.foreign.__setitem__(joint, self.foreign[joint] + angle / 10))
 
-    def try_to_start(self) -> None:
-        self.when(lambda: True, self._refused_start)
+    def attempt(self, what: Callable[[], object]) -> None:
+        """Do what has to be refused."""
 
-    def _refused_start(self) -> None:
-        with pytest.raises(Conflict) as refused:
-            self.start_now()
-        self.refusals.append(str(refused.value))
+        def refused() -> None:
+            with pytest.raises(Conflict) as refusal:
+                what()
+            self.refusals.append(str(refusal.value))
+
+        self.when(lambda: True, refused)
+
+    def acknowledge(self) -> None:
+        self.command("acknowledge")
 
     def start_now(self) -> None:
         self.command("start", plan=self.plan)
@@ -56,27 +63,58 @@ class Pushed(Bench):
         return [entry.answer for entry in self.journal if entry.verb == "unasked motion"]
 
 
-def test_an_arm_that_moves_unasked_is_noticed_written_down_and_held_until_it_rests(middle: Plan) -> None:
+def test_an_arm_that_moves_unasked_is_noticed_and_nothing_starts_before_it_rests_and_somebody_acknowledges_it(
+    middle: Plan,
+) -> None:
     bench = Pushed(middle)
     bench.wait(SETTLING_TIME + 0.1)
     bench.push(2, 5 * THRESHOLD)
     bench.when(lambda: bench.statuses[-1].unasked_motion != "", lambda: None)
-    bench.try_to_start()
+    bench.attempt(bench.start_now)
     bench.wait(REST_TIME / 2)
     bench.push(2, -THRESHOLD)  # it moves again: the rest begins anew
     bench.wait(REST_TIME * 0.9)
-    bench.try_to_start()
+    bench.attempt(bench.acknowledge)
+    bench.wait(REST_TIME)
+    bench.attempt(bench.start_now)  # it rests, and nobody has seen why
+    bench.when(lambda: True, bench.acknowledge)
     bench.when(lambda: bench.statuses[-1].unasked_motion == "", bench.start_now)
     bench.when(lambda: bench.state == "approaching", lambda: bench.command("stop"))
     bench.when(lambda: bench.state == "ended", bench.stop.set)
     bench.run()
-    assert len(bench.refusals) == 2
-    assert all("although no execution is under way" in refusal for refusal in bench.refusals)
+    moving, too_early, resting = bench.refusals
+    assert moving == resting.replace(f"{4 * THRESHOLD:.2f}", f"{5 * THRESHOLD:.2f}")
+    assert "although no execution is under way" in resting
+    assert "acknowledge" in resting
+    assert "has not rested" in too_early
     noticed, rested = bench.unasked
     assert f"{5 * THRESHOLD:.3f}" in rested
     assert "rests again" in rested
     assert "nothing starts" in noticed
     assert next(entry.execution for entry in bench.journal if entry.answer == noticed) == ""
+
+
+def test_only_who_is_in_control_acknowledges_it_and_nothing_else_clears_it(middle: Plan) -> None:
+    bench = Pushed(middle)
+    bench.wait(SETTLING_TIME + 0.1)
+    bench.push(2, 5 * THRESHOLD)
+    bench.wait(REST_TIME + 0.5)
+    token: list[str] = []
+    bench.when(lambda: True, lambda: token.append(bench.control("acquire", name="Ada", seconds=60.0).token))
+    bench.attempt(bench.acknowledge)
+    bench.when(lambda: True, lambda: setattr(bench, "speaking", False))
+    bench.wait(1.0)
+    bench.attempt(lambda: bench.command("acknowledge", lease=token[0]))  # nobody knows whether it rests
+    bench.when(lambda: True, lambda: setattr(bench, "speaking", True))
+    bench.wait(SETTLING_TIME + 0.5)
+    bench.attempt(lambda: bench.command("start", plan=bench.plan, lease=token[0]))
+    bench.when(lambda: True, lambda: bench.command("acknowledge", lease=token[0]))
+    bench.when(lambda: bench.statuses[-1].unasked_motion == "", bench.stop.set)
+    bench.run()
+    others, silent, unseen = bench.refusals
+    assert "Ada" in others
+    assert "has not rested" in silent
+    assert "although no execution is under way" in unseen
 
 
 def test_an_arm_that_moves_after_an_execution_is_noticed_and_one_that_follows_it_is_not(middle: Plan) -> None:
