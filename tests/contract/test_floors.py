@@ -30,7 +30,8 @@ FLOOR = {room: level for level, rooms in enumerate(FLOORS) for room in rooms}
 # The same within a room: its folders and files. A group of one floor knows no other of it.
 GROUPS = {
     "learning": [
-        ["settings", "resampling", "matching", "input_validation"],
+        ["lengths"],
+        ["settings", "resampling", "matching", "input_validation", "compiled"],
         ["clustering", "selection", "fitting"],
         ["summary", "compare", "adaptation"],
         ["learn"],
@@ -64,7 +65,7 @@ DOORS = {
     "hmmlearn": ["learning/selection/hmm.py"],
     "geomdl": ["exchange.py"],
     "ruckig": ["motion/execution/governor.py", "motion/execution/tool_motion.py", "motion/timing/joint_moves.py"],
-    "numba": ["learning/clustering/kernels.py", "motion/timing/kernels.py"],
+    "numba": ["learning/compiled.py", "learning/clustering/kernels.py", "motion/timing/kernels.py"],
     "mujoco": ["motion/collision/collision_model.py", "motion/arm/dynamics.py", "simulator/arm.py"],
     "meshcat": ["live/preview"],
     "umsgpack": ["live/preview"],

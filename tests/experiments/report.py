@@ -9,7 +9,7 @@ from typing import Any
 
 from scipy.stats import binom
 
-from tests.experiments import ablation, adaptation_report, degrees, quoted, rule, scale, stream_faults
+from tests.experiments import ablation, adaptation_report, curves, degrees, quoted, rule, scale, stream_faults
 from tests.experiments.markup import STYLE, figure, listed, short
 from tests.experiments.results import Found, by_place, outranked, revived, right, uneven
 from tests.experiments.scenarios import GROUPINGS, SCENARIOS
@@ -155,6 +155,7 @@ def _selection(found: Found, folder: Path) -> list[str]:
         figure(
             folder, "fig6_wiggles", "Fig. 6.", "Five demonstrations and the learned NURBS of each mode, one data set."
         ),
+        curves.table({"1": found["experiment_1"], "2": found["experiment_2"]}),
         "<p>The publication repeats the selection 1000 times on one data set. Here every run draws new "
         "demonstrations and lists them in random order, so that neither one lucky data set nor a place in the list "
         "can make the figure. A demonstration counts as rejected when it is not among the two most consistent; with "

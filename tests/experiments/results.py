@@ -11,10 +11,10 @@ from typing import Any
 import numpy as np
 from scipy.stats import chi2_contingency
 
-from teachpath.records import Learned
+from teachpath.records import Learned, Trajectory
 from tests.experiments import degrees, rule, scale
 from tests.experiments.scenarios import GROUPINGS, SCENARIOS, SHAPES
-from tests.experiments.trials import MODES, Outcome, Rate, rate, settled
+from tests.experiments.trials import MODES, Outcome, Rate, rate, settled, strays
 
 Found = dict[str, Any]
 
@@ -57,9 +57,12 @@ def summary(
     }
 
 
-def single(learned: Mapping[str, Learned]) -> Found:
+def single(learned: Mapping[str, Learned], demonstrations: dict[str, Trajectory]) -> Found:
     """Return scores, convergence and fits of one run in every mode."""
-    return {mode: [_cluster(result, i) for i in range(len(result.clusters))] for mode, result in learned.items()}
+    return {
+        mode: [_cluster(result, i, demonstrations) for i in range(len(result.clusters))]
+        for mode, result in learned.items()
+    }
 
 
 def outranked(found: Found) -> dict[str, dict[str, Rate]]:
@@ -120,9 +123,10 @@ def _spread(values: Iterable[float | None]) -> Found:
     }
 
 
-def _cluster(learned: Learned, at: int) -> Found:
+def _cluster(learned: Learned, at: int, demonstrations: dict[str, Trajectory]) -> Found:
     cluster = learned.clusters[at]
     path = next(path for path in learned.paths if path.cluster == cluster.index)
+    away, short = strays(learned, cluster.index, demonstrations)
     return {
         "cluster": cluster.index,
         "scores": [
@@ -140,5 +144,7 @@ def _cluster(learned: Learned, at: int) -> Found:
         "degree": path.curve.degree,
         "control_points": len(path.curve.control_points),
         "fit": {k: None if v is None else round(v, 6) for k, v in asdict(path.fit).items()},
+        "away_from_samples": round(away, 5),
+        "end_from_goal": round(short, 5),
         "note": path.note,
     }

@@ -79,7 +79,8 @@ def main() -> None:
     found["ablation"] = ablation.summary([(key, scores) for (key, _), scores in scored])
     shown_1, learned_1 = trials.table_1(SEED)
     shown_2, learned_2 = trials.experiment_2(SEED)
-    found = {**found, "experiment_1": results.single(learned_1), "experiment_2": results.single(learned_2)}
+    found["experiment_1"] = results.single(learned_1, shown_1)
+    found["experiment_2"] = results.single(learned_2, shown_2)
     pictures = {
         "fig4_convergence": partial(figures.convergence, learned=learned_1),
         "fig5_paths": partial(figures.paths, demonstrations=shown_1, learned=learned_1),

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from math import sqrt
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 from teachpath.errors import LearningFailed
 from teachpath.learning.learn import learn
@@ -181,6 +182,14 @@ def course(learned: Learned, index: int) -> Array:
     """Return the learned path of a cluster as a polyline (400, 3) [m]."""
     path = next(path for path in learned.paths if path.cluster == index)
     return path.curve(np.linspace(0, 1, 400))
+
+
+def strays(learned: Learned, index: int, demonstrations: dict[str, Trajectory]) -> tuple[float, float]:
+    """Return how far a learned path is at most from the samples that it was learned from, and its end from any goal."""
+    selected = [demonstrations[score.demonstration].positions for score in _of(learned, index).scores if score.selected]
+    path = course(learned, index)
+    away = cKDTree(np.concatenate(selected)).query(path)[0].max()
+    return float(away), min(float(np.linalg.norm(positions[-1] - path[-1])) for positions in selected)
 
 
 def _places(marked: set[str]) -> tuple[int, ...]:

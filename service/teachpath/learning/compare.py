@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 
+from teachpath.learning.lengths import describe_length, describe_lengths
 from teachpath.learning.matching import frechet_distance
 from teachpath.learning.resampling import at_equal_arc_length
 from teachpath.records import Array, Cluster, Fit, Learned, LearnedPath
@@ -73,7 +74,7 @@ def _matched(a: Learned, b: Learned) -> ClusterPairs:
 
 def _clusters(a: Learned, b: Learned, pairs: ClusterPairs) -> Iterator[str]:
     if len(a.clusters) != len(b.clusters):
-        heights = f"{a.threshold * 100:.2f} and {b.threshold * 100:.2f} cm"
+        heights = " and ".join(describe_lengths(a.threshold, b.threshold))
         yield f"{len(a.clusters)} clusters became {len(b.clusters)}, cut at {heights}"
     both = set(a.demonstrations) & set(b.demonstrations)
     for one, other in pairs:
@@ -110,13 +111,15 @@ def _paths(pairs: ClusterPairs, a: Learned, b: Learned) -> Iterator[str]:
         if moved <= SAME_PATH_TOLERANCE and shapes[0] == shapes[1]:
             continue
         bends = "" if shapes[0] == shapes[1] else f", degree and control points {shapes[0]} became {shapes[1]}"
-        yield f"cluster {one.index}: the path moved by up to {moved * 1e3:.3g} mm{bends}{_fits(before.fit, after.fit)}"
+        fits = _fits(before.fit, after.fit)
+        yield f"cluster {one.index}: the path moved by up to {describe_length(moved)}{bends}{fits}"
 
 
 def _fits(before: Fit | None, after: Fit | None) -> str:
     if before is None or after is None or abs(before.tube - after.tube) <= SAME_PATH_TOLERANCE:
         return ""
-    return f", tube {before.tube * 1e3:.3g} mm became {after.tube * 1e3:.3g} mm"
+    old, new = describe_lengths(before.tube, after.tube)
+    return f", tube {old} became {new}"
 
 
 def _course(path: LearnedPath) -> Array:

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from teachpath.errors import LearningFailed
+from teachpath.learning.lengths import describe_lengths
 from teachpath.records import Trajectory
 
 MIN_DISTINCT_POINTS = 5
@@ -43,5 +44,6 @@ def _fault(trajectory: Trajectory) -> str:
         return f"has {distinct} distinct points, needs {MIN_DISTINCT_POINTS}"
     extent = float(np.linalg.norm(np.ptp(positions, axis=0)))
     if extent < MIN_EXTENT:
-        return f"moves only {extent * 1e3:.2f} mm, needs {MIN_EXTENT * 1e3:.0f} mm"
+        told, needed = describe_lengths(extent, MIN_EXTENT)
+        return f"moves only {told}, needs {needed}"
     return ""

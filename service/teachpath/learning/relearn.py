@@ -11,6 +11,7 @@ from teachpath.learning.clustering.ends import end_groups
 from teachpath.learning.clustering.incomplete import find_incomplete
 from teachpath.learning.clustering.partition import Partition
 from teachpath.learning.learn import comparable_paths, learn_partition, metric_of
+from teachpath.learning.lengths import describe_length
 from teachpath.learning.settings import LearningSettings, Progress, no_progress, settings_of_run
 from teachpath.learning.summary import fingerprint
 from teachpath.records import Learned, Trajectory
@@ -41,7 +42,7 @@ def relearn(
     """
     grouping = recut_partition(learned, threshold, clusters)
     _check_unchanged(learned, demonstrations)
-    progress(0.0, f"cutting the dendrogram at {grouping.threshold * 100:.2f} cm")
+    progress(0.0, f"cutting the dendrogram at {describe_length(grouping.threshold, digits=3)}")
     settings = _with_cut(settings_of_run(learned.settings), grouping, clusters)
     listed = {name: demonstrations[name] for name in learned.demonstrations}
     metric = metric_of(settings)

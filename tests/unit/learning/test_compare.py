@@ -64,7 +64,7 @@ def test_a_path_that_moved_without_a_cause_is_called_unexplained(run: Learned) -
     curve = run.paths[0].curve
     moved = replace(run.paths[0], curve=replace(curve, control_points=curve.control_points + 0.01))
     sentences = compare(run, replace(run, paths=(moved, *run.paths[1:])))
-    assert "cluster 1: the path moved by up to 17.3 mm" in sentences[0]
+    assert "cluster 1: the path moved by up to 1.7 cm" in sentences[0]
     assert sentences[-1].endswith("unexplained")
 
 

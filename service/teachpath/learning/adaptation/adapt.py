@@ -15,6 +15,7 @@ from teachpath.learning.adaptation.same_way import labels_of_ways
 from teachpath.learning.adaptation.target import Target
 from teachpath.learning.clustering.ends import end_groups
 from teachpath.learning.fitting.orientation_fit import rotation_angles
+from teachpath.learning.lengths import describe_length
 from teachpath.learning.resampling import arc_lengths, at_equal_arc_length, extent, smoothed
 from teachpath.learning.settings import LearningSettings
 from teachpath.nurbs import Curve, unit_quaternions
@@ -87,7 +88,7 @@ def adapt(
     places = int(end_groups(courses, min_separation=settings.min_separation, length=length).max())
     note = _note(found, len(alike), places)
     if missed > bound:
-        note += f"; {len(curve.control_points)} control points follow it within {missed * 1e3:.3g} mm only"
+        note += f"; {len(curve.control_points)} control points follow it within {describe_length(missed, up=True)} only"
     return AdaptedPath(curve, orientation, 2 * found.deviation, len(alike), places, found.extrapolates, note)
 
 
@@ -147,5 +148,5 @@ def _note(found: Prediction, demonstrations: int, places: int) -> str:
     widest = 2 * float(found.deviation.max())
     return (
         f"by {demonstrations} demonstrations at {places} places; one between these ends would lie within "
-        f"{widest * 100:.1f} cm of it nineteen times of twenty"
+        f"{describe_length(widest)} of it nineteen times of twenty"
     )

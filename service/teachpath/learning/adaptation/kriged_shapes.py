@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from teachpath.learning.lengths import describe_length
 from teachpath.records import Array
 
 DISTANCE_POWER = 0.8  # of the horizontal distance, by which the height and width of a shape grow
@@ -130,15 +131,15 @@ class KrigedShapes:
             apart = float(np.linalg.norm(self._chords - chord, axis=1).min())
             if apart <= MIN_DISTANCE_SHARE * self._length:
                 return ""
-            return f"from start to goal it is {apart * 100:.0f} cm otherwise than shown"
+            return f"from start to goal it is {describe_length(apart)} otherwise than shown"
         distance, yaw = _chord(chord)
         nearest, farthest = float(self.distances.min()), float(self.distances.max())
         if not nearest / MAX_DISTANCE_RATIO <= distance <= farthest * MAX_DISTANCE_RATIO:
-            return f"start and goal are {distance * 100:.0f} cm apart, shown were {_span(nearest, farthest)}"
+            return f"start and goal are {describe_length(distance)} apart, shown were {_span(nearest, farthest)}"
         rises, allowed = self._chords[:, 2], MAX_RISE_SHARE * farthest
         if not rises.min() - allowed <= chord[2] <= rises.max() + allowed:
             shown = _span(float(rises.min()), float(rises.max()))
-            return f"the goal is {chord[2] * 100:.0f} cm higher than the start, shown were {shown}"
+            return f"the goal is {describe_length(chord[2])} higher than the start, shown were {shown}"
         turns = np.abs((yaw - self.yaws + np.pi) % (2 * np.pi) - np.pi)
         if turns.min() > MAX_TURN:
             return f"the direction is {np.degrees(turns.min()):.0f}° from the nearest one that was shown"
@@ -158,8 +159,8 @@ def _covariances(yaw: Array, distance: Array, yaw_2: Array, distance_2: Array) -
 
 
 def _span(least: float, most: float) -> str:
-    one, other = f"{least * 100:.0f}", f"{most * 100:.0f}"
-    return f"{one} cm" if one == other else f"{one} to {other} cm"
+    one, other = describe_length(least), describe_length(most)
+    return one if one == other else f"{one} to {other}"
 
 
 def _rotations(yaws: Array) -> Array:

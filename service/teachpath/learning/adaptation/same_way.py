@@ -13,6 +13,7 @@ from teachpath.learning.clustering.dendrogram import Labels, labels_for_count
 from teachpath.learning.clustering.distances import pairwise_distances
 from teachpath.learning.clustering.ends import end_groups
 from teachpath.learning.clustering.partition import separated_clusters, separations
+from teachpath.learning.lengths import describe_length
 from teachpath.learning.resampling import arc_lengths
 from teachpath.records import Array
 
@@ -63,6 +64,7 @@ def _extent(places: Array) -> float:
 def _sentence(clusters: Sequence[int], starts: float, goals: float) -> str:
     *first, last = map(str, clusters)
     return (
-        f"clusters {', '.join(first)} and {last} do the task in the same way, from starts up to {starts * 100:.0f} cm "
-        f"and to goals up to {goals * 100:.0f} cm apart; adapt one of their paths to take it anywhere else"
+        f"clusters {', '.join(first)} and {last} do the task in the same way, from starts up to "
+        f"{describe_length(starts)} and to goals up to {describe_length(goals)} apart; adapt one of their paths to "
+        "take it anywhere else"
     )

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from teachpath.learning.clustering.dendrogram import Labels
+from teachpath.learning.lengths import describe_length
 from teachpath.learning.resampling import arc_lengths
 from teachpath.records import Array
 
@@ -63,7 +64,7 @@ def find_incomplete(paths: Array, groups: Labels, length: float) -> dict[int, St
 
 def describe(stop: Stop) -> str:
     """Say where a demonstration stops and how much is missing."""
-    return f"is incomplete: it stops at {stop.share:.0%} of the way, {stop.missing * 100:.1f} cm before its end"
+    return f"is incomplete: it stops at {stop.share:.0%} of the way, {describe_length(stop.missing)} before its end"
 
 
 def _first_parts(path: Array, length: float, others: Array, lengths: Array) -> tuple[Array, Array]:

@@ -1,41 +1,22 @@
-"""The door to numba: distances between thousands of paths, compiled, in single precision, on every core.
+"""Distances between thousands of paths, compiled, in single precision, on every core.
 
-One thread computes each distance in an order that the source fixes. No kernel allows the compiler to reorder sums or
-to fuse products with sums (fastmath), because the compiler then chooses differently in different runs: a kernel from
-numba's cache is optimised once more than one that was compiled in the same process. So neither the number of threads
-nor the cache changes a bit.
+One thread computes each distance in an order that the source fixes, so the number of threads changes no bit.
 """
 
 from __future__ import annotations
-
-from collections.abc import Callable
-from typing import Any, TypeVar, cast
 
 import numba
 import numpy as np
 from numpy.typing import NDArray
 
+from teachpath.learning.compiled import compiled
 from teachpath.records import Array
-
-F = TypeVar("F", bound=Callable[..., Any])
 
 Labels = NDArray[np.int64]
 Paths = NDArray[np.float32]  # (m, 3, n): one row a coordinate, so that the inner loops run along memory
 Blocks = NDArray[np.float32]  # (blocks, n, 3, 64): 64 paths beside one another, so that one instruction takes several
 
 PATHS_PER_BLOCK = 64  # paths compared with as many: both sets stay in the cache
-
-
-def compiled(**options: Any) -> Callable[[F], F]:
-    """Compile a function at its first call, and keep the result on disk where a place for it can be written."""
-
-    def compile_later(function: F) -> F:
-        try:
-            return cast(F, numba.njit(cache=True, **options)(function))
-        except RuntimeError:  # no directory that numba could write to
-            return cast(F, numba.njit(**options)(function))
-
-    return compile_later
 
 
 @compiled()

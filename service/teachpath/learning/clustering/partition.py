@@ -9,6 +9,7 @@ import numpy as np
 
 from teachpath.learning.clustering.dendrogram import Labels, height_for_count, labels_at_height, labels_for_count
 from teachpath.learning.clustering.incomplete import Stop
+from teachpath.learning.lengths import describe_length, describe_lengths
 from teachpath.learning.settings import LearningSettings
 from teachpath.records import Array
 
@@ -63,9 +64,10 @@ def cut_at(tree: Array, threshold: float) -> Partition:
     if alternative is None:
         return Partition(tree, threshold, labels)
     least = float(tree[1 - max(alternative, int(labels.max())), 2])
+    apart, limit = describe_lengths(least, threshold)
     note = (
-        f"{_ways(int(labels.max()))}, but ambiguous: two clusters {least * 100:.1f} cm apart are close to "
-        f"learning.threshold {threshold * 100:.1f} cm, on its other side there are {alternative}"
+        f"{_ways(int(labels.max()))}, but ambiguous: two clusters {apart} apart are close to "
+        f"learning.threshold {limit}, on its other side there are {alternative}"
     )
     return Partition(tree, threshold, labels, note, alternative)
 
@@ -169,7 +171,7 @@ def _ways(count: int) -> str:
 
 def _pair_note(distance: float, clusters: int) -> str:
     ways = "two ways" if clusters == 2 else "one way"
-    apart = f"{distance * 100:.1f} cm apart"
+    apart = f"{describe_length(distance)} apart"
     return f"two demonstrations, {apart}, are taken for {ways}; set learning.threshold to decide it"
 
 

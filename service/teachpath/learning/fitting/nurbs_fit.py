@@ -9,10 +9,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.interpolate import BSpline
-from scipy.linalg import LinAlgError, cho_factor, cho_solve
 from scipy.spatial import cKDTree
 
+from teachpath.learning.fitting.least_squares import LeastSquares, clamped
+from teachpath.learning.fitting.polyline import nearest_on_polyline
 from teachpath.learning.resampling import arc_lengths
 from teachpath.nurbs import Curve
 from teachpath.records import Array
@@ -56,7 +56,7 @@ def approximate(
     u = s / s[-1]
     u[-1] = 1.0
     degree = max(1, min(degree, len(points) - 1))
-    problem = _Problem(points, u, degree)
+    problem = LeastSquares(points, u, degree)
     interior = np.empty(0)
     errors = problem.solve(interior)[1]
     while errors.max() > bound:
@@ -69,7 +69,7 @@ def approximate(
     if errors.max() <= bound and len(points) <= MAX_POINTS_FOR_REMOVAL:
         interior = _pruned(problem, interior, bound)
     control, errors = problem.solve(interior)
-    curve = Curve(degree, _clamped(interior, degree), control, np.ones(len(control)))
+    curve = Curve(degree, clamped(interior, degree), control, np.ones(len(control)))
     return Approximation(curve, float(errors.max()))
 
 
@@ -90,56 +90,7 @@ class CurveDistance:
 
     def __call__(self, points: Array) -> Array:
         """Return the distance of every point from the curve: (n,) [m]."""
-        samples = self._samples
-        nearest = np.asarray(self._tree.query(points)[1])
-        before = np.maximum(nearest - 1, 0)
-        after = np.minimum(nearest + 1, len(samples) - 1)
-        return np.minimum(
-            _to_segments(points, samples[before], samples[nearest]),
-            _to_segments(points, samples[nearest], samples[after]),
-        )
-
-
-class _Problem:
-    """The least-squares problem of one list of points, to be solved with different knots."""
-
-    def __init__(self, points: Array, u: Array, degree: int) -> None:
-        self.points = points
-        self.u = u
-        self.degree = degree
-
-    def solve(self, interior: Array) -> tuple[Array, Array]:
-        """Return control points (n, d) and the distance of each point from the curve at its parameter (m,)."""
-        basis = BSpline.design_matrix(self.u, _clamped(interior, self.degree), self.degree)
-        count = basis.shape[1]
-        # Sums over the few entries of each row: products of sparse matrices this small take ten times as long.
-        values = basis.data.reshape(len(self.u), self.degree + 1)
-        columns = basis.indices.reshape(values.shape).astype(np.intp)
-        control = np.empty((count, self.points.shape[1]))
-        control[0], control[-1] = self.points[0], self.points[-1]
-        if count > 2:
-            pairs = (columns[:, :, None] * count + columns[:, None, :]).ravel()
-            products = (values[:, :, None] * values[:, None, :]).ravel()
-            gram = np.asarray(np.bincount(pairs, products, count * count), dtype=np.float64).reshape(count, count)
-            sums = [np.bincount(columns.ravel(), (values * axis[:, None]).ravel(), count) for axis in self.points.T]
-            right = np.column_stack(sums) - gram[:, [0, -1]] @ control[[0, -1]]
-            control[1:-1] = _normal_equations(gram[1:-1, 1:-1], right[1:-1])
-        followed = (values[:, :, None] * control[columns]).sum(axis=1)
-        return control, np.linalg.norm(followed - self.points, axis=1)
-
-
-def _normal_equations(gram: Array, right: Array) -> Array:
-    try:
-        factor = cho_factor(gram, check_finite=False)
-        solution = np.asarray(cho_solve(factor, right, check_finite=False))
-    except LinAlgError:
-        # Too few points under some basis function: the minimum-norm solution stays bounded.
-        solution = np.asarray(np.linalg.lstsq(gram, right, rcond=1e-10)[0])
-    return solution
-
-
-def _clamped(interior: Array, degree: int) -> Array:
-    return np.concatenate([np.zeros(degree + 1), interior, np.ones(degree + 1)])
+        return nearest_on_polyline(self._tree, self._samples, points)[0]
 
 
 def _splits(u: Array, interior: Array, errors: Array, bound: float, span: int) -> list[float]:
@@ -159,7 +110,7 @@ def _splits(u: Array, interior: Array, errors: Array, bound: float, span: int) -
     return [knot for _, knot in sorted(found)]
 
 
-def _pruned(problem: _Problem, interior: Array, bound: float) -> Array:
+def _pruned(problem: LeastSquares, interior: Array, bound: float) -> Array:
     """Remove knots one at a time while the bound holds, the one that costs least first."""
     while len(interior):
         fewer = [np.delete(interior, k) for k in range(len(interior))]
@@ -170,11 +121,3 @@ def _pruned(problem: _Problem, interior: Array, bound: float) -> Array:
             break
         interior = fewer[best]
     return interior
-
-
-def _to_segments(points: Array, begin: Array, end: Array) -> Array:
-    along = end - begin
-    square = np.square(along).sum(axis=1)
-    share = np.divide(((points - begin) * along).sum(axis=1), square, out=np.zeros(len(points)), where=square > 0)
-    nearest = begin + np.clip(share, 0.0, 1.0)[:, None] * along
-    return np.asarray(np.linalg.norm(points - nearest, axis=1))

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from teachpath.errors import LearningFailed
+from teachpath.learning.fitting.global_approximation import approximate_from_polygon
 from teachpath.learning.fitting.nurbs_fit import (
     CURVE_SAMPLES,
     Approximation,
@@ -15,9 +16,11 @@ from teachpath.learning.fitting.nurbs_fit import (
     distances_to_curve,
 )
 from teachpath.learning.fitting.orientation_fit import fit_orientations, mean_orientations
+from teachpath.learning.lengths import describe_length, describe_lengths
 from teachpath.learning.matching import frechet_distance
 from teachpath.learning.resampling import SMOOTHING_WINDOW, arc_lengths, at_equal_arc_length, extent, smoothed
 from teachpath.learning.settings import LearningSettings, StepCallback
+from teachpath.nurbs import Curve
 from teachpath.records import Array, Fit, LearnedPath, Trajectory
 
 MEAN_PATH_POINTS = 200
@@ -26,7 +29,6 @@ MIN_BOUND_TO_NOISE = 4.5  # a bound below so many standard deviations of the noi
 MIN_LENGTH_SHARE = 0.05  # of the mean path, of the longest demonstration
 QUINTIC_ALLOWANCE = 3  # control points that degree 5 may need more than degree 3, less one
 PAPER_DEGREE = 3
-MAX_POOLED_CONTROL_POINTS = 12  # more would follow the zigzag of the pooled list and come no closer
 MAX_RETREAT_SHARE = 0.05  # of the path that may lead back towards the start without a note
 
 
@@ -60,18 +62,19 @@ def fit_mean_path(
     length, usual = _length(course), max(_length(path) for path in paths)
     if length < MIN_LENGTH_SHARE * usual:
         raise LearningFailed(
-            f"the mean of way {cluster} is {length * 1e3:.3g} mm long, its demonstrations up to {usual * 1e3:.3g} mm: "
-            "they lead in opposite directions; lower learning.threshold"
+            f"the mean of way {cluster} is {describe_length(length)} long, its demonstrations up to "
+            f"{describe_length(usual)}: they lead in opposite directions; lower learning.threshold"
         )
-    bound, note = settings.bound_for(extent(course)), ""
+    size = extent(course)
+    bound, note = settings.bound_for(size), ""
     best = best_fit(course, settings, bound)
     if best.largest > bound:
         least = MIN_BOUND_TO_NOISE * residual_noise(selected)
         if bound < min(least, settings.error_bound):
             bound = min(least, settings.error_bound)
             note = (
-                f"followed within {bound * 1e3:.2g} mm, not within {settings.relative_bound:.2g} of its size, because "
-                "of the noise in its demonstrations"
+                f"followed within {_in_both(bound, size)}, not {100 * settings.relative_bound:.3g}%, because of the "
+                "noise in its demonstrations"
             )
             best = best_fit(course, settings, bound)
         if best.largest > bound:
@@ -80,22 +83,28 @@ def fit_mean_path(
             best = best_fit(course, settings, bound)
     # The fit measures at its own parameters; the nearest distances are what matters to the operator.
     if best.largest > bound and (nearest := float(distances_to_curve(best.curve, course).max())) > bound:
+        reached, asked = describe_lengths(nearest, bound)
         note = (
-            f"the demonstrations wiggle: their mean is followed within {nearest * 1e3:.3g} mm only, not "
-            f"{bound * 1e3:.3g} mm, by {settings.most_control_points} control points; show it more smoothly, or raise "
-            "learning.error_bound, learning.relative_bound or learning.most_control_points"
+            f"the demonstrations wiggle: their mean is followed within {reached} only, not {asked} "
+            f"({100 * bound / size:.2g}% of its size), by {settings.most_control_points} control points; show it more "
+            "smoothly, or raise learning.error_bound, learning.relative_bound or learning.most_control_points"
         )
-    return _path(cluster, best, course, selected, settings, bound, note, on_step)
+    return _path(cluster, best.curve, course, selected, settings, bound, note, on_step)
+
+
+def _in_both(bound: float, size: float) -> str:
+    """Say a bound [m] as a length and as a share of the size [m] of the path."""
+    return f"{describe_length(bound)} ({100 * bound / size:.2g}% of its size)"
 
 
 def _check_noise(cluster: int, bound: float, least: float) -> None:
     """Refuse a bound [m] below the least that does not follow the noise."""
     if bound < least:
         raise LearningFailed(
-            f"way {cluster} cannot be followed within {bound * 1e3:.3g} mm: noise leaves some "
-            f"{least / MIN_BOUND_TO_NOISE * 1e3:.2g} mm in the mean of its demonstrations, and a path within "
-            f"{bound * 1e3:.3g} mm would follow the noise; raise learning.error_bound to {least * 1e3:.2g} mm, or show "
-            "it more often"
+            f"way {cluster} cannot be followed within {describe_length(bound)}: noise leaves some "
+            f"{describe_length(least / MIN_BOUND_TO_NOISE)} in the mean of its demonstrations, and a path within "
+            f"{describe_length(bound)} would follow the noise; raise learning.error_bound to "
+            f"{describe_length(least, up=True)}, or show it more often"
         )
 
 
@@ -104,28 +113,30 @@ def fit_pooled_points(
 ) -> LearnedPath:
     """Pool the points of the selected, sort them by distance to the start and approximate (Aleotti & Caselli, III-C).
 
-    When such a list zigzags by more than the bound, the global approximation of The NURBS Book returns more control
-    points than points. The number of control points is therefore limited, and the note says when the bound is not met.
+    The approximation is that of the publication's library, from the polygon of the points. Where such a list zigzags by
+    more than the bound, it takes more control points than there are points; the bound is widened until
+    `most_control_points` are enough, and the note says so.
     """
     start = np.mean([trajectory.positions[0] for trajectory in selected], axis=0)
     pooled = np.concatenate([trajectory.positions for trajectory in selected])
     order = np.argsort(np.linalg.norm(pooled - start, axis=1), kind="stable")
     points = np.concatenate([start[None], pooled[order]])
-    most = min(MAX_POOLED_CONTROL_POINTS, settings.most_control_points)
     degree = PAPER_DEGREE if settings.degree is None else settings.degree
-    span = 8 * len(selected)
-    fit = approximate(points, settings.error_bound, degree=degree, most=most, span=span)
+    fit = approximate_from_polygon(points, settings.error_bound, degree=degree, most=settings.most_control_points)
     notes = []
-    largest = float(distances_to_curve(fit.curve, points).max())
-    if largest > settings.error_bound:
-        notes.append(f"the pooled points spread too far for the bound: up to {largest * 100:.1f} cm from the curve")
+    if fit.bound > settings.error_bound:
+        kept, asked = describe_length(fit.bound, up=True), describe_length(settings.error_bound)
+        notes.append(
+            f"sorted by distance to the start, the points zigzag: {settings.most_control_points} control points or "
+            f"fewer follow them within {kept}, not {asked}"
+        )
     share = max(_retreat(smoothed(trajectory)) for trajectory in selected)
     if share > MAX_RETREAT_SHARE:
         notes.append(
             f"{share:.0%} of the motion leads back towards the start: sorting by distance to it scrambles the path, "
             "use mode default"
         )
-    return _path(cluster, fit, points, selected, settings, settings.error_bound, "; ".join(notes), on_step)
+    return _path(cluster, fit.curve, points, selected, settings, fit.bound, "; ".join(notes), on_step)
 
 
 def residual_noise(selected: Sequence[Trajectory]) -> float:
@@ -168,7 +179,7 @@ def _retreat(path: Array) -> float:
 
 def _path(
     cluster: int,
-    fit: Approximation,
+    curve: Curve,
     fitted: Array,
     selected: Sequence[Trajectory],
     settings: LearningSettings,
@@ -176,7 +187,7 @@ def _path(
     note: str,
     on_step: StepCallback,
 ) -> LearnedPath:
-    distances = CurveDistance(fit.curve)
+    distances = CurveDistance(curve)
     apart = distances(fitted)
     course = mean_path([smoothed(trajectory) for trajectory in selected])
     tube = 0.0
@@ -186,13 +197,13 @@ def _path(
     mean, orientation, turn = mean_orientations(selected, len(course)), None, None
     s = arc_lengths(course)
     if mean is not None and s[-1] > 0:
-        orientation, turn = fit_orientations(cluster, mean, s / s[-1], fit.curve.degree, settings)
+        orientation, turn = fit_orientations(cluster, mean, s / s[-1], curve.degree, settings)
     measures = Fit(
         bound,
         float(apart.max()),
         float(np.sqrt(np.mean(np.square(apart)))),
         tube,
-        frechet_distance(at_equal_arc_length(fit.curve(np.linspace(0.0, 1.0, CURVE_SAMPLES)), len(course)), course),
+        frechet_distance(at_equal_arc_length(curve(np.linspace(0.0, 1.0, CURVE_SAMPLES)), len(course)), course),
         turn,
     )
-    return LearnedPath("", "", cluster, 1, fit.curve, measures, note, orientation)
+    return LearnedPath("", "", cluster, 1, curve, measures, note, orientation)

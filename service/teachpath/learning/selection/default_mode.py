@@ -8,9 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from teachpath.learning.lengths import describe_length
 from teachpath.learning.resampling import at_equal_arc_length, at_equal_times, extent
 from teachpath.learning.selection.consistency import FAULTY, Measures, Part, measure, others_median
-from teachpath.learning.selection.deviations import describe_deviation, describe_length, describe_pace
+from teachpath.learning.selection.deviations import describe_deviation, describe_pace
 from teachpath.learning.selection.features import MotionFeatures, extract_features, positions_and_velocities
 from teachpath.learning.selection.likelihoods import convergence, fold_count, score_likelihoods
 from teachpath.learning.selection.paper_mode import unscored

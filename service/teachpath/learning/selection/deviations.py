@@ -8,6 +8,7 @@ import numpy as np
 from scipy.ndimage import binary_closing
 from scipy.signal import savgol_filter
 
+from teachpath.learning.lengths import describe_length, describe_lengths
 from teachpath.learning.resampling import arc_lengths, at_equal_arc_length
 from teachpath.learning.selection.consistency import Part, shaking_amplitude, shaking_profile
 from teachpath.learning.selection.features import CLOCK_POINTS, MotionFeatures
@@ -23,7 +24,6 @@ TREND_DEGREE = 3
 MIN_SHAKING_RATE = 1.0  # Hz
 MIN_TREMOR_RATE = 8  # Hz
 UNUSUAL_PACE = 1.5  # of the median duration, from which on a pace is told
-MIN_IN_CENTIMETRES = 0.01  # m; shorter lengths are told in millimetres
 
 Seconds = tuple[float, float]
 
@@ -74,11 +74,6 @@ def describe_pace(duration: float, usual: float) -> Deviation | None:
     return Deviation((0.0, 1.0), (0.0, duration), sentence)
 
 
-def describe_length(length: float) -> str:
-    """Return a length [m] in centimetres, or in millimetres with two significant digits."""
-    return f"{length * 100:.1f} cm" if length >= MIN_IN_CENTIMETRES else f"{length * 1e3:.2g} mm"
-
-
 def _around(since: Array, at: int) -> Seconds:
     return float(since[max(at - 1, 0)]), float(since[min(at + 1, len(since) - 1)])
 
@@ -96,7 +91,10 @@ def _pause(trajectory: Trajectory, features: MotionFeatures, theirs: Sequence[Mo
     rest = float(still.sum() * np.median(np.diff(since)))
     if rest > MIN_STOP_DURATION:
         return seconds, f"stands still for {rest:.1f} s"
-    return seconds, f"takes {own[worst]:.2g} s where the others take {usual[worst]:.2g} s"
+    digits = next(
+        digits for digits in range(2, 9) if f"{own[worst]:.{digits}g}" != f"{usual[worst]:.{digits}g}" or digits == 8
+    )
+    return seconds, f"takes {own[worst]:.{digits}g} s where the others take {usual[worst]:.{digits}g} s"
 
 
 def _bend(since: Array, features: MotionFeatures, theirs: Sequence[MotionFeatures]) -> tuple[Seconds, str]:
@@ -110,10 +108,8 @@ def _bend(since: Array, features: MotionFeatures, theirs: Sequence[MotionFeature
     seconds = tuple(float(np.interp(at / (PATH_POINTS - 1) * s[-1], s, since)) for at in (begin, end))
     worst = begin + int(np.argmax((away - within)[begin : end + 1]))
     if beside:
-        what = (
-            f"runs up to {describe_length(float(away[worst]))} beside the others, who stay within "
-            f"{describe_length(float(within[worst]))}"
-        )
+        far, near = describe_lengths(float(away[worst]), float(within[worst]))
+        what = f"runs up to {far} beside the others, who stay within {near}"
     else:
         what = "bends as none of the others does, though not far beside them"
     return (seconds[0], seconds[1]), what
@@ -137,8 +133,10 @@ def _shaking(trajectory: Trajectory, features: MotionFeatures, theirs: Sequence[
     power[rates < MIN_SHAKING_RATE] = 0.0
     rate = float(rates[np.argmax(power)])
     word = "shakes" if rate < MIN_TREMOR_RATE else "trembles"
-    amplitude = describe_length(float(shaking_amplitude(excess.max())))
-    return seconds, f"{word} by {amplitude} about {rate:.0f} times a second"
+    amplitude = float(shaking_amplitude(excess.max()))
+    if rate == 0 or amplitude == 0:
+        return seconds, "is less smooth than the others on the whole, though at no place by much"
+    return seconds, f"{word} by {describe_length(amplitude)} about {rate:.0f} times a second"
 
 
 def _span(excess: Array) -> tuple[int, int]:

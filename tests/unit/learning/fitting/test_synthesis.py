@@ -63,8 +63,8 @@ def test_a_wiggly_mean_is_followed_as_closely_as_can_be_and_the_note_says_how() 
     wiggly = [synthetic.demonstration(rng, duration=3.98, wiggle=0.06) for _ in range(2)]
     path = synthesise(wiggly, most_control_points=12)
     assert path.fit.largest > path.fit.bound
-    assert f"within {path.fit.largest * 1e3:.2g}" in path.note
-    assert "not 5 mm, by 12 control points" in path.note
+    assert f"within {path.fit.largest * 1e2:.2g} cm only, not 5 mm" in path.note
+    assert "of its size), by 12 control points" in path.note
     assert len(path.curve.weights) == 12
     closer = synthesise(wiggly, most_control_points=100)
     assert closer.fit.largest <= closer.fit.bound
@@ -102,6 +102,21 @@ def test_the_relative_bound_gives_way_to_noise_and_says_so() -> None:
     assert path.fit.largest <= path.fit.bound <= LearningSettings().error_bound
     assert "because of the noise in its demonstrations" in path.note
     assert " 0 mm" not in path.note
+
+
+@pytest.mark.parametrize("bound", [0.005, 0.05])
+def test_mode_paper_stays_near_its_points_and_widens_its_bound_where_they_zigzag(bound: float) -> None:
+    rng = np.random.default_rng(3)
+    shown = [synthetic.demonstration(rng) for _ in range(2)]
+    settings = LearningSettings(mode="paper", threshold=0.1, error_bound=bound, most_control_points=30)
+    path = synthesis.fit_pooled_points(1, shown, settings, on_step=lambda: None)
+    points = np.concatenate([trajectory.positions for trajectory in shown])
+    curve = path.curve(np.linspace(0, 1, 5000))
+    swing = np.maximum(points.min(axis=0) - curve.min(axis=0), curve.max(axis=0) - points.max(axis=0)).max()
+    assert path.fit.largest <= path.fit.bound
+    assert swing <= path.fit.bound
+    assert len(path.curve.weights) <= 30
+    assert ("zigzag" in path.note) == (path.fit.bound > bound)
 
 
 def test_modes_that_follow_the_paper_keep_the_bound_as_it_is_set() -> None:
