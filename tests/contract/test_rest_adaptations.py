@@ -77,7 +77,7 @@ def test_an_adaptation_is_a_new_version_with_its_certificate(desk: Desk, taught:
 
 def test_what_was_not_shown_is_told(desk: Desk, taught: Taught) -> None:
     found = adapted(desk, taught, [0.0, -0.35, 0.0], branch="near").json()
-    assert "cm apart, shown were" in found["extrapolates"]
+    assert "apart, shown were" in found["extrapolates"]
     assert found["note"] == f"beyond what was shown: {found['extrapolates']}"
 
 

@@ -40,7 +40,8 @@ def test_mode_paper_finds_the_ways_and_keeps_two_of_each(learned_as_paper: Learn
     for cluster in learned_as_paper.clusters:
         assert sum(score.selected for score in cluster.scores) == 2
     for path in learned_as_paper.paths:
-        assert ("spread too far" in path.note) == (path.fit.largest > path.fit.bound)
+        assert path.fit.largest <= path.fit.bound
+        assert ("zigzag" in path.note) == (path.fit.bound > learned_as_paper.settings["error_bound"])
 
 
 def test_the_result_names_its_settings_and_versions(learned: Learned) -> None:
