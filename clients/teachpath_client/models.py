@@ -272,6 +272,7 @@ class Demonstration:
     trim: tuple[int, int] | None = None
     mark: str = ""
     discarded_ns: int = 0
+    digest: RecordingDigest | None = None
 
 
 @dataclass(frozen=True)
@@ -631,6 +632,25 @@ class Plan:
     duration: float
     certificate: Certificate
     tool_speed: float | None
+
+
+@dataclass(frozen=True)
+class RecordingDigest:
+    """What a recording's file is known by.
+
+    Attributes:
+        sha256: of the whole file, hexadecimal.
+        size: of the file [bytes].
+        samples: their count, each as often as it came.
+        first: lowest number of a sample; 0 where there is none.
+        last: highest number of a sample; 0 where there is none.
+    """
+
+    sha256: str
+    size: int
+    samples: int
+    first: int
+    last: int
 
 
 @dataclass(frozen=True)

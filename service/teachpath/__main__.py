@@ -16,6 +16,7 @@ try:
         curves,
         demo,
         demonstrations,
+        doctor,
         evaluate,
         files,
         logins,
@@ -55,7 +56,7 @@ for command in (
     evaluate.evaluate,
     evaluate.diff,
     files.export,
-    files.doctor,
+    doctor.doctor,
 ):
     app.command(name=command.__name__.rstrip("_"))(command)
 app.add_typer(curves.app, name="curve")

@@ -34,6 +34,7 @@ from teachpath.live.state_poller import Poll, StatePoller
 from teachpath.motion.arm.geometry import visual_solids
 from teachpath.motion.planning.signature import SigningKey
 from teachpath.offline.exporter import Exporter, ExportSource
+from teachpath.offline.leftovers import TRANSFERS, remove_leftovers
 from teachpath.offline.lock import StationLock
 from teachpath.offline.transfer_folders import TransferFolders
 from teachpath.recorder.annotations import Annotations
@@ -95,8 +96,7 @@ class Station:
         self._state_poller = StatePoller(self.event_hub, self._polls())
 
     def __enter__(self) -> Station:
-        unfinished = self.store.recordings.unfinished()
-        if unfinished:
+        if unfinished := self.store.recordings.unfinished():
             log.warning("%d recordings were cut off; look at them with: teachpath doctor", len(unfinished))
         try:
             self.preview.start()
@@ -110,7 +110,7 @@ class Station:
             self._state_poller.start()
             for process in self.processes:
                 process.start()
-            self.transfers.keep_only({str(job.request.get("upload")) for job in self.store.jobs(unfinished=True)})
+            remove_leftovers(Path(self.settings.store.data_dir), self.store.awaited_uploads())
             self.jobs.start()
             if tasks := self.store.tasks():
                 self._show_task(tasks[-1].name)
@@ -174,7 +174,7 @@ class Station:
         settings = self.settings
         self.executions = Executions(self.bus, self.keys, self.store, robot=settings.bus.robot)
         self.objects = ObjectPoses(self.bus, self.keys, settings.scene, self.executions.is_moving, self._show_object)
-        self.transfers = TransferFolders(Path(settings.store.data_dir) / "transfers")
+        self.transfers = TransferFolders(Path(settings.store.data_dir) / TRANSFERS)
         kinds = JobKinds(
             self.store, settings, self.calibrations, self.transfers, self._show_task, self._signing_key, self.objects
         ).by_name()

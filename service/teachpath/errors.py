@@ -13,6 +13,8 @@
     │   ├── Cancelled          the operator cancelled the job
     │   └── QueueFull          too many jobs wait
     ├── OverLimit              a job takes too much time or memory
+    ├── StorageUnavailable     the data folder or the database cannot be read or written now
+    │   └── StorageFull        its disk is full
     └── Unreachable            a process or peer does not answer
         └── NotStopped         the executor has not confirmed a stop: the arm may be moving
 
@@ -94,6 +96,14 @@ class QueueFull(Conflict):
 
 class OverLimit(TeachpathError):
     """A job takes more time or memory than it may."""
+
+
+class StorageUnavailable(TeachpathError):
+    """The data folder or the database cannot be read or written now."""
+
+
+class StorageFull(StorageUnavailable):
+    """The disk of the data folder or the database is full."""
 
 
 class Unreachable(TeachpathError):

@@ -177,9 +177,9 @@ def test_numbers_have_no_gaps_however_many_write(open_: Open, store: Store) -> N
 
 def test_a_demonstration_that_is_refused_leaves_no_gap(store: Store) -> None:
     store.add_demonstration(demonstration("a"))
-    with pytest.raises(sa.exc.IntegrityError):
+    with pytest.raises(Conflict):
         store.add_demonstration(demonstration("a"))
-    with pytest.raises(sa.exc.IntegrityError):
+    with pytest.raises(Conflict):
         store.add_demonstration(demonstration("b", task="moon"))
     assert store.add_demonstration(demonstration("c")).number == 2
 
@@ -276,7 +276,7 @@ def test_learning_ends_once_with_its_run_and_its_paths(store: Store) -> None:
 def test_learning_that_cannot_be_stored_whole_leaves_nothing(store: Store) -> None:
     store.add_job(a_job())
     twice = replace(learned(), paths=(a_path(), a_path()))  # two paths of one cluster have one id
-    with pytest.raises(sa.exc.IntegrityError):
+    with pytest.raises(Conflict):
         store.finish_learning("learn-1", twice)
     assert store.lists.runs("t").entries == []
     assert store.job("learn-1") == a_job()
@@ -289,7 +289,7 @@ def test_planning_ends_once_with_its_plan(store: Store) -> None:
     assert store.job("plan-1").outcome == key
     assert encode(store.plan(key)) == encode(a_plan()) == encode(store.plans("p")[0])
     store.add_job(a_job("plan-2", kind="plan"))
-    with pytest.raises(sa.exc.IntegrityError):
+    with pytest.raises(Conflict):
         store.finish_planning("plan-2", a_plan())
     assert store.job("plan-2").state is JobState.QUEUED
 

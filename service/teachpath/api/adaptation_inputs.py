@@ -10,7 +10,7 @@ import numpy as np
 
 from teachpath.api.parts import Parts
 from teachpath.errors import UnusableInput
-from teachpath.io.store.store import Run
+from teachpath.io.store.rows import Run
 from teachpath.learning.settings import LearningSettings, settings_of_run
 from teachpath.learning.summary import fingerprint
 from teachpath.nurbs import Curve

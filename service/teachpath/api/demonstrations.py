@@ -62,7 +62,9 @@ def demonstrations_router(parts: Parts) -> APIRouter:
     @router.get("/demonstrations/{demonstration}/recording", response_class=FileResponse)
     def get_recording(demonstration: str) -> FileResponse:
         """Return the MCAP file with every sample."""
-        file = store.recordings.path(store.demonstration(demonstration).recording)
+        row = store.demonstration(demonstration)
+        store.recordings.content(row.recording, row.digest)  # so that a changed one is refused
+        file = store.recordings.path(row.recording)
         return FileResponse(file, media_type="application/octet-stream", filename=file.name)
 
     return router

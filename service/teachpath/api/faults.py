@@ -19,10 +19,13 @@ from teachpath.errors import (
     OverLimit,
     PathRefused,
     QueueFull,
+    StorageFull,
+    StorageUnavailable,
     TeachpathError,
     Unreachable,
     UnusableInput,
 )
+from teachpath.io.store.faults import storage_fault
 from teachpath.records import Failure, Version
 
 MAX_FAULTS: Final = 20  # fields that a refusal lists
@@ -35,6 +38,8 @@ STATUS: dict[type[TeachpathError], int] = {
     LearningFailed: 422,
     PathRefused: 422,
     OverLimit: 422,
+    StorageFull: 507,
+    StorageUnavailable: 503,
     Unreachable: 503,
 }
 
@@ -68,7 +73,8 @@ REFUSALS: Final[dict[int | str, dict[str, Any]]] = {
     413: {"model": Refusal, "description": "The body is too large."},
     422: {"model": Refusal, "description": "What came in cannot be used as it is."},
     429: {"model": Refusal, "description": "Too many jobs wait."},
-    503: {"model": Refusal, "description": "A process of the station does not answer."},
+    503: {"model": Refusal, "description": "A process of the station, its disk or its database does not answer."},
+    507: {"model": Refusal, "description": "The disk is full."},
 }
 
 
@@ -101,6 +107,12 @@ def answer_errors(app: FastAPI) -> None:
     async def name_text(_: Request, error: UnicodeEncodeError) -> JSONResponse:
         sentence = f"the text {error.object[:80]!r} holds half of a surrogate pair; send whole characters"
         return _answer(422, sentence, "UnusableInput")
+
+    @app.exception_handler(OSError)
+    async def name_disk(_: Request, error: OSError) -> JSONResponse:
+        if (fault := storage_fault(error, "the data folder")) is None:
+            raise error
+        return _answer(status_of(fault), str(fault), type(fault).__name__)
 
     @app.exception_handler(Exception)
     async def confess(_: Request, error: Exception) -> JSONResponse:

@@ -13,7 +13,8 @@ from teachpath.api.pages import WantedPage
 from teachpath.api.parts import Parts
 from teachpath.api.strict_requests import Body, unknown_name
 from teachpath.errors import NotFound
-from teachpath.io.store.store import Run, Store
+from teachpath.io.store.rows import Run
+from teachpath.io.store.store import Store
 from teachpath.learning.clustering.cuts import Dendrogram, dendrogram, recut_members
 from teachpath.records import Job, LearnedPath, Plan, RunSummary
 

@@ -1,4 +1,4 @@
-"""import, export, report and doctor: work on the data folder itself."""
+"""import, export and report: work on the data folder itself."""
 
 from __future__ import annotations
 
@@ -143,24 +143,3 @@ def _review(run: str, file: Path, settings: Settings) -> None:
         store.close()
     size = write_package(review, file)
     print(f"{file}: {size / 1e6:.1f} MB, {len(review.run.learned.paths)} paths, {review.count('motion')} of them move")
-
-
-def doctor(config: Config = None, data: Data = None) -> None:
-    """Repair recordings that a crash cut off.
-
-    Says what each of them holds and makes demonstrations of it; the torn files are kept. Stop the service first.
-    """
-    from teachpath.io.store.store import Store
-    from teachpath.offline.doctor import examine
-
-    settings = settings_of(config, data)
-    store = Store(settings.store)
-    try:
-        scenes = {scene.name: scene for scene in settings.scenes}
-        findings = examine(store, settings.recording, scenes, Path(settings.store.data_dir))
-    finally:
-        store.close()
-    for finding in findings:
-        print(finding.sentence)
-    if not findings:
-        print(f"{settings.store.data_dir}: every recording is whole")

@@ -1,82 +1,100 @@
-"""The doctor: finds recordings that a crash left unfinished or without a row, and makes demonstrations of them."""
+"""The doctor: examines a station's data folder, and mends what can be mended, each fault on its own.
+
+Every repair is one rename or one transaction, or is begun anew from what is still there; so the doctor may be killed at
+any moment and run again. Nothing is deleted but temporary files: what is replaced is kept beside, renamed.
+"""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 
-from teachpath.errors import TeachpathError
-from teachpath.io.documents import decode_demonstration
-from teachpath.io.store.recordings import read_facts, salvage
+from teachpath.errors import UnusableRecording
+from teachpath.io.store.motions import read_motion
 from teachpath.io.store.store import Store
+from teachpath.offline.examination import RESTORE, Examination, Repair
+from teachpath.offline.file_faults import check_spare_files, check_torn_files
+from teachpath.offline.findings import FaultKind, Finding
+from teachpath.offline.leftovers import find_leftovers, remove_leftover
 from teachpath.offline.lock import StationLock
-from teachpath.recorder.session import RecordingSession, RecordingSetup
+from teachpath.offline.row_faults import check_rows
+from teachpath.offline.torn_recordings import SALVAGED, set_aside
 from teachpath.recording.settings import RecordingSettings
 from teachpath.records import Scene
 
-SALVAGED = ".salvaged"
 
+def examine(
+    store: Store,
+    settings: RecordingSettings,
+    scenes: dict[str, Scene],
+    data_dir: Path,
+    *,
+    mend: bool = True,
+    default_scene: str = "",
+) -> list[Finding]:
+    """Examine the data folder of a station whose service does not run, and mend what can be mended.
 
-@dataclass(frozen=True, slots=True)
-class Finding:
-    """One recording that a crash left behind: what it holds and what became of it."""
+    Torn recordings go through the same cut and verdict as live; the torn file is kept beside the new ones, renamed.
 
-    file: str
-    samples: int
-    seconds: float
-    demonstrations: tuple[str, ...]
-    sentence: str
-
-
-def examine(store: Store, settings: RecordingSettings, scenes: dict[str, Scene], data_dir: Path) -> list[Finding]:
-    """Repair every unfinished recording of a station whose service does not run, and adopt those without a row.
-
-    The samples go through the same cut and verdict as live; the torn file is kept beside the new ones, renamed.
+    Args:
+        store: rows and recordings.
+        settings: by which torn recordings are cut and judged.
+        scenes: of the settings, by their names.
+        data_dir: folder of the station's data.
+        mend: whether to mend; if False, only to say what would be mended.
+        default_scene: of tasks that no row and no file says the scene of.
 
     Raises:
         Conflict: the service is running; its takes are not torn but in progress.
     """
     with StationLock(data_dir):
-        known = {d.recording for task in store.tasks() for d in store.demonstrations(task.name)}
-        orphans = [file for file in store.recordings.finished() if store.recordings.place(file) not in known]
-        adopted = [_adopt(file, store) for file in orphans]
-        return adopted + [_repair(part, store, settings, scenes) for part in store.recordings.unfinished()]
+        examination = Examination(store, settings, scenes, data_dir, mend, default_scene)
+        _check_database(examination)
+        _check_leftovers(examination)
+        _check_motions(examination)
+        examination.read()
+        check_rows(examination)
+        check_spare_files(examination)
+        check_torn_files(examination)
+        return examination.findings
 
 
-def _adopt(file: Path, store: Store) -> Finding:
-    """Store the row of a recording that was finished just before the service was cut off."""
-    place = store.recordings.place(file)
+def _check_database(examination: Examination) -> None:
+    for fault in examination.store.checks.contradictions():
+        advice = "restore a backup (teachpath restore), or make the rows anew: teachpath doctor --rebuild"
+        examination.report(FaultKind.DATABASE, "the database", fault, advice=advice)
+
+
+def _check_leftovers(examination: Examination) -> None:
+    kept = examination.store.awaited_uploads()
+    for path in find_leftovers(examination.data_dir, kept):
+        name = path.relative_to(examination.data_dir).as_posix()
+        remove = partial(_remove, path)
+        examination.report(FaultKind.LEFTOVER, name, "a process that was killed left it", remove)
+
+
+def _remove(path: Path) -> Repair:
+    remove_leftover(path)
+    return Repair("removed")
+
+
+def _check_motions(examination: Examination) -> None:
+    motions = examination.store.motions
+    for part in motions.unfinished():
+        name = f"executions/{part.name}"
+        examination.report(FaultKind.TORN, name, "it was cut off", partial(_mend_motion, examination.store, part))
+    for file in motions.finished():
+        try:
+            fault = read_motion(file).fault
+        except OSError as error:
+            fault = error.strerror or str(error)
+        if fault:
+            name = f"executions/{file.name}"
+            examination.report(FaultKind.DAMAGED, name, f"it cannot be read to its end ({fault})", advice=RESTORE)
+
+
+def _mend_motion(store: Store, part: Path) -> Repair:
     try:
-        stated = decode_demonstration(read_facts(file).get("demonstration", "").encode())
-        store.task(stated.task)
-        row = store.add_demonstration(replace(stated, recording=place))
-    except TeachpathError as error:
-        return Finding(
-            place, 0, 0.0, (), f"{place}: it has no row, and its own facts make none ({error}); left as it is"
-        )
-    sentence = f"{place}: it was whole but for its row; made {row.id}"
-    return Finding(place, row.samples, row.duration, (row.id,), sentence)
-
-
-def _repair(part: Path, store: Store, settings: RecordingSettings, scenes: dict[str, Scene]) -> Finding:
-    header, samples, fault = salvage(part)
-    name = f"{part.parent.name}/{part.name}"
-    if header is None:
-        part.rename(part.with_name(part.name + SALVAGED))
-        return Finding(name, 0, 0.0, (), f"{name}: nothing could be read ({fault}); kept as {part.name + SALVAGED}")
-    seconds = (samples[-1].device_ns - samples[0].device_ns) * 1e-9 if samples else 0.0
-    task = store.task(header.task)
-    setup = RecordingSetup(header.task, header.tracker, header.calibration, scenes[task.scene])
-    session = RecordingSession(store, settings, setup)
-    session.counter.note("repaired after the service was cut off; what came after the last flush is missing")
-    finished = [session.add(sample) for sample in samples]
-    made = [d.id for d, _ in [f for f in finished if f is not None] + session.finish(torn=True)]
-    part.rename(part.with_name(part.name + SALVAGED))
-    what = f"made {', '.join(made)}" if made else "the hand grasped nothing in it, so there is no demonstration to make"
-    return Finding(
-        name,
-        len(samples),
-        seconds,
-        tuple(made),
-        f"{name}: {len(samples)} samples ({seconds:.1f} s) are whole, at most the last second is missing; {what}",
-    )
+        return Repair(f"made {store.motions.mend(part).name} of what is whole of it")
+    except UnusableRecording as error:
+        return Repair(f"{error}; kept as {set_aside(part, SALVAGED).name}")

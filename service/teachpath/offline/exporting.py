@@ -87,10 +87,11 @@ def _content_of(
     csv and mcap say what is thought of the demonstration now: verdict, mark, trim, discarded.
     """
     if kind == "mcap":
-        return amended(store.recordings.path(demonstration.recording).read_bytes(), demonstration)
+        content = store.recordings.content(demonstration.recording, demonstration.digest)
+        return amended(content, demonstration)
     if kind == "trajectory":
         return _trajectory_csv(trajectory(demonstration))
-    return write_samples(demonstration, store.recordings.samples(demonstration.recording))
+    return write_samples(demonstration, store.recordings.samples(demonstration.recording, demonstration.digest))
 
 
 def _trajectory_csv(trajectory: Trajectory) -> bytes:

@@ -162,7 +162,7 @@ def _judged(
         return made
     row, trajectory = made
     before = _statistics(stated, read.motions[0], settings)
-    now = _statistics(row, store.recordings.samples(row.recording), settings)
+    now = _statistics(row, store.recordings.samples(row.recording, row.digest), settings)
     quality = reassess_quality(QualityReport(stated.verdict, stated.reasons), before, now, settings)
     if quality == QualityReport(row.verdict, row.reasons):
         return made

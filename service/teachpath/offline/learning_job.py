@@ -32,7 +32,7 @@ class StoredDemonstrations:
         recordings = Recordings(self.data_dir / RECORDINGS)
         return {
             row.id: object_trajectory(
-                recordings.samples(row.recording),
+                recordings.samples(row.recording, row.digest),
                 TransportSpan(*row.transport),
                 row.calibration,
                 self.carried,

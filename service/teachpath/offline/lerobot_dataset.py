@@ -28,7 +28,7 @@ def write_lerobot(
     takes = []
     for done, d in enumerate(demonstrations):
         progress(done / len(demonstrations) / 2, f"reading demonstration {d.number}")
-        takes.append(store.recordings.samples(d.recording))
+        takes.append(store.recordings.samples(d.recording, d.digest))
     root.mkdir()
     write_dataset(root, dataset_of(demonstrations, takes), lambda f: progress(0.5 + f / 2, "writing the dataset"))
     progress(1.0, "done")

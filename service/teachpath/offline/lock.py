@@ -8,6 +8,7 @@ from types import TracebackType
 
 from teachpath.errors import Conflict
 from teachpath.io.private_files import make_private
+from teachpath.io.store.faults import storage_fault
 
 
 class StationLock:
@@ -16,14 +17,18 @@ class StationLock:
     Raises:
         Conflict: another process holds it.
         UnusableSettings: others may enter it, and it is not this user's to close.
+        StorageUnavailable: it cannot be written.
     """
 
     def __init__(self, data_dir: Path) -> None:
         self._folder = data_dir
 
     def __enter__(self) -> StationLock:
-        make_private(self._folder)
-        self._file = (self._folder / "service.lock").open("a")
+        try:
+            make_private(self._folder)
+            self._file = (self._folder / "service.lock").open("a")
+        except OSError as error:
+            raise storage_fault(error, self._folder) or error from None
         try:
             fcntl.flock(self._file, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except OSError:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import shutil
 import uuid
-from collections.abc import Collection
 from pathlib import Path
 
 
@@ -31,9 +30,3 @@ class TransferFolders:
     def remove(self, name: str) -> None:
         """Remove a folder with all that is in it."""
         shutil.rmtree(self._root / name, ignore_errors=True)
-
-    def keep_only(self, names: Collection[str]) -> None:
-        """Remove the other folders: of imports that were never queued, and of exports that were never sent."""
-        for folder in self._root.glob("*"):
-            if folder.name not in names:
-                self.remove(folder.name)

@@ -37,7 +37,7 @@ def read_trajectory(recordings: Recordings, demonstration: Demonstration, carrie
         UnusableRecording: its recording is damaged.
     """
     return object_trajectory(
-        recordings.samples(demonstration.recording),
+        recordings.samples(demonstration.recording, demonstration.digest),
         TransportSpan(*demonstration.transport),
         demonstration.calibration,
         carried,
@@ -66,7 +66,7 @@ def reassess_recording(
         after: as it will be.
         carried: start of the object's centre [m, world], or None.
     """
-    samples = recordings.samples(before.recording)
+    samples = recordings.samples(before.recording, before.digest)
     changes = reassess(before, after, samples, settings)
     span, left_out = TransportSpan(*after.transport), changes["left_out"]
     trajectory = object_trajectory(samples, span, after.calibration, carried, left_out=left_out)

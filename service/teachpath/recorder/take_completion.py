@@ -83,7 +83,9 @@ def complete_take(
         left_out=left_out,
     )
     finished = file.finish(facts_of(demonstration))
-    stored = store.add_demonstration(replace(demonstration, recording=store.recordings.place(finished)))
+    stored = store.add_demonstration(
+        replace(demonstration, recording=store.recordings.place(finished), digest=file.digest)
+    )
     return stored, trajectory
 
 

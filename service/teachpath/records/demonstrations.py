@@ -146,6 +146,25 @@ class StreamStatistics:
 
 
 @dataclass(frozen=True, slots=True)
+class RecordingDigest:
+    """What a recording's file is known by.
+
+    Attributes:
+        sha256: of the whole file, hexadecimal.
+        size: of the file [bytes].
+        samples: their count, each as often as it came.
+        first: lowest number of a sample; 0 where there is none.
+        last: highest number of a sample; 0 where there is none.
+    """
+
+    sha256: str
+    size: int
+    samples: int
+    first: int
+    last: int
+
+
+@dataclass(frozen=True, slots=True)
 class Demonstration:
     """One trial, as a row: the samples are in its recording file.
 
@@ -171,6 +190,7 @@ class Demonstration:
     trim: tuple[int, int] | None = None
     mark: str = ""  # the operator's own: good, bad or none
     discarded_ns: int = 0  # when it was discarded; 0: it is not
+    digest: RecordingDigest | None = None  # of its recording; None: it was stored before digests were
 
     @property
     def transport(self) -> tuple[int, int]:

@@ -2,31 +2,66 @@
 
 from __future__ import annotations
 
-from typing import Any
+import sqlite3
+from typing import Any, Final
 
 from alembic import command
 from alembic.config import Config
+from alembic.script import ScriptDirectory
+from alembic.script.revision import ResolutionError
+from alembic.util import CommandError
 from sqlalchemy import Connection, Engine, create_engine, event
+from sqlalchemy.engine import ExceptionContext
+from sqlalchemy.exc import DBAPIError
+
+from teachpath.errors import StorageUnavailable
+from teachpath.io.store.faults import database_fault, refused_by_server
+
+BUSY_TIMEOUT: Final = 5.0  # [s] for which one who writes waits for another
 
 
 def open_engine(url: str) -> Engine:
     """Return an engine of the database at `url`, with every table there.
 
-    Transactions on `engine.execution_options(writing=True)` may write.
+    Transactions on `engine.execution_options(writing=True)` may write. Whatever the database refuses later is raised as
+    StorageUnavailable or Conflict.
+
+    Raises:
+        StorageUnavailable: the database cannot be opened, is damaged, or was made by a newer teachpath.
     """
     engine = create_engine(url)
+    event.listen(engine, "handle_error", _explain)
     if engine.dialect.name == "sqlite":
         event.listen(engine, "connect", _tune_sqlite)
         event.listen(engine, "begin", _begin_sqlite)
-    _migrate(engine)
+    try:
+        _migrate(engine)
+    except (DBAPIError, sqlite3.Error) as error:
+        engine.dispose()
+        shown = _shown(engine)
+        raise database_fault(error, shown) or refused_by_server(error, shown) from None
+    except BaseException:
+        engine.dispose()
+        raise
     return engine
+
+
+def _shown(engine: Engine) -> str:
+    return engine.url.database or "" if engine.dialect.name == "sqlite" else engine.url.render_as_string()
+
+
+def _explain(context: ExceptionContext) -> None:
+    error = context.sqlalchemy_exception or context.original_exception
+    if context.engine is not None and (fault := database_fault(error, _shown(context.engine))) is not None:
+        raise fault from error
 
 
 def _tune_sqlite(connection: Any, _: Any) -> None:
     connection.isolation_level = None  # transactions begin where _begin_sqlite says
     cursor = connection.cursor()
     # WAL lets readers go on while one writes; NORMAL syncs at checkpoints and survives a killed process.
-    for pragma in ("journal_mode=WAL", "synchronous=NORMAL", "foreign_keys=ON", "busy_timeout=5000"):
+    timeout = round(1000 * BUSY_TIMEOUT)
+    for pragma in (f"busy_timeout={timeout}", "journal_mode=WAL", "synchronous=NORMAL", "foreign_keys=ON"):
         cursor.execute(f"PRAGMA {pragma}")
     cursor.close()
 
@@ -42,4 +77,11 @@ def _migrate(engine: Engine) -> None:
     config.set_main_option("script_location", "teachpath.io.store:migrations")
     with engine.begin() as connection:
         config.attributes["connection"] = connection
-        command.upgrade(config, "head")
+        try:
+            command.upgrade(config, "head")
+        except (CommandError, ResolutionError) as error:
+            newest = ScriptDirectory.from_config(config).get_current_head()
+            raise StorageUnavailable(
+                f"the database {_shown(engine)} was made by a newer teachpath than this one, which knows its tables up "
+                f"to {newest} ({error}); update teachpath, or name another folder with --data"
+            ) from None

@@ -6,6 +6,7 @@ disk. This writer lays out the records itself (https://mcap.dev/spec); they are 
 
 from __future__ import annotations
 
+import hashlib
 import io
 import struct
 import zlib
@@ -16,20 +17,22 @@ from typing import Any, BinaryIO, NamedTuple, Self
 import zstandard
 from mcap.data_stream import RecordBuilder
 from mcap.opcode import Opcode
-from mcap.reader import SeekingReader
 from mcap.records import (
     Channel,
     Chunk,
     ChunkIndex,
+    DataEnd,
     Footer,
     Header,
     McapRecord,
+    MessageIndex,
     Metadata,
     MetadataIndex,
     Schema,
     Statistics,
     SummaryOffset,
 )
+from mcap.stream_reader import StreamReader
 from mcap_protobuf.schema import build_file_descriptor_set
 
 from teachpath.errors import UnusableRecording
@@ -58,6 +61,7 @@ class McapFile:
 
     def __init__(self, stream: BinaryIO) -> None:
         self._stream, self._offset = stream, 0
+        self._hash = hashlib.sha256()
         self._schemas: list[Schema] = []
         self._channels: list[Channel] = []
         self._chunks: list[ChunkIndex] = []
@@ -67,23 +71,39 @@ class McapFile:
 
     @classmethod
     def reopen(cls, stream: BinaryIO, content: bytes) -> Self:
-        """Copy a file that this class has finished to `stream`, and go on writing behind its records.
+        """Copy the records of a file that this class wrote to `stream`, and go on writing behind them.
+
+        They end where its data ends; a file that ends before its summary may be cut there.
 
         Raises:
-            UnusableRecording: `content` is no such file.
+            UnusableRecording: `content` has no end of its data, or is damaged.
         """
-        summary = SeekingReader(io.BytesIO(content)).get_summary() if content.endswith(MAGIC) else None
-        _, _, start, _, _ = FOOTER.unpack_from(content, len(content) - FOOTER.size - len(MAGIC))
-        end = start - len(DATA_END)
-        if summary is None or summary.statistics is None or content[end:start] != DATA_END:
-            raise UnusableRecording("it is no MCAP file that was finished here")
         file = cls(io.BytesIO())
-        file._stream, file._offset = stream, 0
-        file._write(content[:end])
-        file._schemas, file._channels = list(summary.schemas.values()), list(summary.channels.values())
-        file._chunks, file._metadata = summary.chunk_indexes, summary.metadata_indexes
-        file._counts = Counter(summary.statistics.channel_message_counts)
+        source = io.BytesIO(content)
+        start, ended = 0, False
+        try:
+            for record in StreamReader(source, emit_chunks=True, validate_crcs=True).records:
+                if ended := isinstance(record, DataEnd):
+                    break
+                file._note(record, start, source.tell() - start)
+                start = source.tell()
+        except Exception as error:  # damage shows as whatever the reader raises
+            raise UnusableRecording(f"it is damaged: {error or type(error).__name__}") from None
+        if not ended:
+            raise UnusableRecording("its data has no end")
+        file._stream, file._offset, file._hash = stream, 0, hashlib.sha256()
+        file._write(content[:start])
         return file
+
+    @property
+    def sha256(self) -> str:
+        """The SHA-256 of all that was written so far, hexadecimal."""
+        return self._hash.hexdigest()
+
+    @property
+    def size(self) -> int:
+        """How much was written so far [bytes]."""
+        return self._offset
 
     def add_channel(self, topic: str, kind: type[Any]) -> int:
         """Declare a topic of protobuf messages and return its channel."""
@@ -142,7 +162,35 @@ class McapFile:
 
     def _write(self, content: bytes) -> None:
         self._stream.write(content)
+        self._hash.update(content)
         self._offset += len(content)
+
+    def _note(self, record: McapRecord, start: int, length: int) -> None:
+        """Note a record of a file that is reopened, for the summary; `start` and `length` in bytes."""
+        if isinstance(record, Schema):
+            self._schemas.append(record)
+        elif isinstance(record, Channel):
+            self._channels.append(record)
+        elif isinstance(record, Metadata):
+            self._metadata.append(MetadataIndex(offset=start, length=length, name=record.name))
+        elif isinstance(record, Chunk):
+            self._chunks.append(
+                ChunkIndex(
+                    chunk_length=length,
+                    chunk_start_offset=start,
+                    compression=record.compression,
+                    compressed_size=len(record.data),
+                    message_start_time=record.message_start_time,
+                    message_end_time=record.message_end_time,
+                    message_index_length=0,
+                    message_index_offsets={},
+                    uncompressed_size=record.uncompressed_size,
+                )
+            )
+        elif isinstance(record, MessageIndex):
+            self._chunks[-1].message_index_offsets[record.channel_id] = start
+            self._chunks[-1].message_index_length += length
+            self._counts[record.channel_id] += len(record.records)
 
     def _write_chunk(self, plain: bytes, first: int, last: int, entries: dict[int, list[int]]) -> None:
         packed = zstandard.ZstdCompressor(level=COMPRESSION_LEVEL).compress(plain)

@@ -24,6 +24,7 @@ from teachpath.io.wire import message_types
 from teachpath.records import ExecutorStatus, JointState, JournalEntry, LearnedPath, Plan, Setpoint
 
 HEADER, FACTS = "teachpath-motion", "facts"  # names of the metadata
+MENDING: Final = ".mending"  # ends the name of what is made of a torn file
 CHUNK: Final = 64 * 1024  # bytes; small chunks lose less when a file is cut off
 FORMER_NAMES: Final = {"pace": "squared_rates"}  # what files that were recorded earlier call the fields of a plan
 TOPICS: Final[dict[str, tuple[Any, Any]]] = {  # message, decoder
@@ -123,6 +124,10 @@ class Motions:
         """List the files that are being written, or that a crash left."""
         return sorted(self._root.glob("*.mcap.part"))
 
+    def finished(self) -> list[Path]:
+        """List the files of executions that ended."""
+        return sorted(self._root.glob("*.mcap"))
+
     def mend(self, part: Path) -> Path:
         """Make a whole file of all that is in a torn one, beside which the torn one stays as `.torn`.
 
@@ -132,16 +137,19 @@ class Motions:
         header = read_motion(part).header
         if header is None:
             raise UnusableRecording(f"{part.name} was cut off before its first record")
-        torn = part.rename(part.with_suffix(".torn"))
-        take = MotionTake(part, header, self._opener)
+        mended = part.with_suffix(MENDING)
+        mended.unlink(missing_ok=True)  # of a doctor or service that was killed
+        take = MotionTake(mended, header, self._opener)
         fault = ""
-        with torn.open("rb") as stream:
+        with part.open("rb") as stream:
             try:
                 for topic, message in _messages(stream, Motion()):
                     take.write(topic, message.data, message.log_time)
             except Exception as error:  # damage shows as whatever the reader or its decompressor raises
                 fault = str(error) or type(error).__name__
-        return take.finish({"mended": fault or "it had no end"})
+        whole = take.finish({"mended": fault or "it had no end"})
+        part.rename(part.with_suffix(".torn"))
+        return whole
 
 
 def read_motion(file: Path) -> Motion:

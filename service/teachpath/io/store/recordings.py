@@ -11,6 +11,7 @@ import os
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
+from hashlib import sha256
 from pathlib import Path
 from typing import BinaryIO
 
@@ -20,11 +21,12 @@ from mcap.records import Channel, Message, Metadata, Statistics
 from teachpath.errors import NotFound, UnusableRecording
 from teachpath.io import documents
 from teachpath.io.import_settings import ImportSettings
+from teachpath.io.store.integrity import add_integrity
 from teachpath.io.store.mcap_file import McapFile, StampedMessage
 from teachpath.io.store.mcap_records import read_records
 from teachpath.io.store.viewer_messages import ViewerMessages
 from teachpath.io.wire import decode_sample, encode_sample, message_types
-from teachpath.records import Calibration, Demonstration, Sample
+from teachpath.records import Calibration, Demonstration, RecordingDigest, Sample, Vector
 
 RECORDINGS = "recordings"  # their folder, in that of the data
 TOPIC = "samples"
@@ -47,14 +49,22 @@ class RecordingHeader:
     task: str
     tracker: str
     calibration: Calibration
+    scene: str = ""  # its name; empty in files of before it was said
+    carried: Vector | None = None  # start of the object's centre [m, world]; None: the scene has none
 
 
 class RecordingFile:
-    """A recording that is being written."""
+    """A recording that is being written.
+
+    Attributes:
+        digest: of the finished file; None before its end.
+    """
 
     def __init__(self, part: Path, header: RecordingHeader, opener: Opener = open_new) -> None:
         self._part = part
         self._file = opener(part)
+        self._count, self._first, self._last = 0, 0, 0
+        self.digest: RecordingDigest | None = None
         try:
             self._begin(header)
         except OSError:
@@ -72,6 +82,9 @@ class RecordingFile:
     def write(self, sample: Sample, payload: bytes = b"") -> None:
         """Append one sample; `payload` is its message as it came, made anew when empty."""
         data = payload or encode_sample(sample)
+        self._first = min(self._first, sample.sequence) if self._count else sample.sequence
+        self._last = max(self._last, sample.sequence)
+        self._count += 1
         number = sample.sequence & 0xFFFFFFFF
         self._batch.append(StampedMessage(self._channel, number, sample.receive_ns, sample.device_ns, data))
         self._viewer_messages.append(sample, self._batch)
@@ -87,7 +100,9 @@ class RecordingFile:
         """End the recording with `facts` (verdict, counts) and return its final file."""
         self._write_batch()
         self._mcap.add_metadata(FACTS, facts)
+        add_integrity(self._mcap, self._count, self._first, self._last)
         self._mcap.finish()
+        self.digest = RecordingDigest(self._mcap.sha256, self._mcap.size, self._count, self._first, self._last)
         self._file.flush()
         os.fsync(self._file.fileno())
         self._file.close()
@@ -139,14 +154,35 @@ class Recordings:
         file.parent.mkdir(parents=True, exist_ok=True)
         (folder / place).rename(file)
 
+    def move(self, place: str, to: str) -> None:
+        """Move a recording to another place, at which there is none."""
+        file = self._root / to
+        file.parent.mkdir(parents=True, exist_ok=True)
+        (self._root / place).rename(file)
+
     def remove(self, places: Sequence[str]) -> None:
         """Remove recordings that no row names; those that are not there are passed over."""
         for place in places:
             (self._root / place).unlink(missing_ok=True)
 
-    def samples(self, place: str) -> list[Sample]:
-        """Read all samples of a finished recording, in the order they were received."""
-        header, samples, fault = salvage(self.path(place))
+    def content(self, place: str, digest: RecordingDigest | None) -> bytes:
+        """Return the content of a finished recording.
+
+        Raises:
+            NotFound: it is missing.
+            UnusableRecording: it is not what `digest` says, if that is known.
+        """
+        content = self.path(place).read_bytes()
+        if digest is not None and (found := sha256(content).hexdigest()) != digest.sha256:
+            raise UnusableRecording(
+                f"recording {place} is not what was recorded: {len(content)} bytes with SHA-256 {found[:12]}…, "
+                f"recorded were {digest.size} with {digest.sha256[:12]}…; run: teachpath doctor"
+            )
+        return content
+
+    def samples(self, place: str, digest: RecordingDigest | None = None) -> list[Sample]:
+        """Read all samples of a finished recording, in the order they were received; raises as `content`."""
+        header, samples, fault = salvage_stream(io.BytesIO(self.content(place, digest)))
         if header is None or fault:
             raise UnusableRecording(f"recording {place} is damaged ({fault or 'no header'}); run: teachpath doctor")
         return samples
@@ -203,7 +239,7 @@ def salvage_stream(
 
 def facts_of(demonstration: Demonstration) -> dict[str, str]:
     """Return what the recording of a demonstration says of itself."""
-    stated = replace(demonstration, number=0, recording="")  # they follow from where it is stored
+    stated = replace(demonstration, number=0, recording="", digest=None)  # they follow from where it is stored
     account = documents.encode(stated.statistics).decode()
     return {"verdict": stated.verdict, "statistics": account, "demonstration": documents.encode(stated).decode()}
 
@@ -211,7 +247,7 @@ def facts_of(demonstration: Demonstration) -> dict[str, str]:
 def amended(content: bytes, demonstration: Demonstration) -> bytes:
     """Return a finished recording that says what has become of its demonstration since: marks, trim, verdict.
 
-    Nothing that is in it is changed; what it says of itself last counts.
+    Nothing that is in it is changed; what it says of itself last counts, its digest of all before too.
 
     Raises:
         UnusableRecording: the recording is damaged.
@@ -222,6 +258,8 @@ def amended(content: bytes, demonstration: Demonstration) -> bytes:
     stream = io.BytesIO()
     file = McapFile.reopen(stream, content)
     file.add_metadata(FACTS, facts)
+    numbers = [sample.sequence for sample in salvage_stream(io.BytesIO(content))[1]]
+    add_integrity(file, len(numbers), min(numbers, default=0), max(numbers, default=0))
     file.finish()
     return stream.getvalue()
 

@@ -1,17 +1,34 @@
-"""Rows of tasks, demonstrations and jobs, and the records that they are."""
+"""Rows of the tables, and the records that they are."""
 
 from __future__ import annotations
 
 import time
-from dataclasses import replace
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from typing import Any
 
 from sqlalchemy import func, select
 from sqlalchemy.orm import Session
 
 from teachpath.io.documents import from_document, to_document
-from teachpath.io.store.tables import DemonstrationRow, JobRow, TaskRow
-from teachpath.records import Demonstration, Failure, Job, JobState, Task
+from teachpath.io.store.tables import DemonstrationRow, JobRow, RunTable, TaskRow
+from teachpath.records import Demonstration, Failure, Job, JobState, Learned, RunSummary, Task
+
+
+@dataclass(frozen=True, eq=False)
+class Run:
+    """A learning run as stored."""
+
+    id: str
+    task: str
+    created_ns: int
+    learned: Learned
+
+    @property
+    def summary(self) -> RunSummary:
+        """What a list says of it."""
+        learned, paths = self.learned, tuple(path.id for path in self.learned.paths)
+        return RunSummary(self.id, self.task, self.created_ns, learned.mode, len(learned.demonstrations), paths)
 
 
 def success(outcome: str, now: int) -> dict[str, Any]:
@@ -47,6 +64,23 @@ def numbered_row(session: Session, demonstration: Demonstration) -> Demonstratio
     return numbered
 
 
+def imported_rows(session: Session, task: Task, made: Sequence[Demonstration], added: list[str]) -> list[int]:
+    """Add the rows of demonstrations that are not there yet, and return the numbers of all.
+
+    The places of the recordings whose rows are new are added to `added`.
+    """
+    ensured_task(session, task.name, task.scene, task.calibration)
+    session.flush()
+    numbers = []
+    for demonstration in made:
+        row = session.get(DemonstrationRow, demonstration.id)
+        if row is None:
+            added.append(demonstration.recording)
+        numbers.append(row.number if row else numbered_row(session, demonstration).number)
+        session.flush()
+    return numbers
+
+
 def task_of(row: TaskRow) -> Task:
     """Return the task of a row."""
     return Task(row.name, row.scene, row.calibration, row.created_ns)
@@ -57,3 +91,8 @@ def job_of(row: JobRow) -> Job:
     fields = {name: getattr(row, name) for name in Job.__dataclass_fields__}
     failure = None if row.failure is None else from_document(Failure, row.failure)
     return Job(**{**fields, "state": JobState(row.state), "failure": failure})
+
+
+def run_of(row: RunTable) -> Run:
+    """Return the learning run of a row."""
+    return Run(row.id, row.task, row.created_ns, from_document(Learned, row.document))

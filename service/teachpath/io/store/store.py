@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -16,12 +16,23 @@ from teachpath.errors import Conflict, NotFound
 from teachpath.io.documents import from_document, to_document
 from teachpath.io.store.calibrations import MeasuredCalibrations
 from teachpath.io.store.changes import Changed, note, telling, unheard
+from teachpath.io.store.checks import Checks
+from teachpath.io.store.database_files import database_url, make_data_folder
 from teachpath.io.store.engine import open_engine
 from teachpath.io.store.journal import Journal
 from teachpath.io.store.lists import Execution, Lists, execution_of
 from teachpath.io.store.motions import Motions
 from teachpath.io.store.recordings import RECORDINGS, Opener, Recordings, open_new
-from teachpath.io.store.rows import ensured_task, job_of, numbered_row, success, task_of
+from teachpath.io.store.rows import (
+    Run,
+    ensured_task,
+    imported_rows,
+    job_of,
+    numbered_row,
+    run_of,
+    success,
+    task_of,
+)
 from teachpath.io.store.settings import StoreSettings
 from teachpath.io.store.tables import (
     Base,
@@ -41,7 +52,6 @@ from teachpath.records import (
     Learned,
     LearnedPath,
     Plan,
-    RunSummary,
     Task,
 )
 from teachpath_proto.control import ExecutorState
@@ -49,38 +59,22 @@ from teachpath_proto.control import ExecutorState
 Row = TypeVar("Row", bound=Base)
 
 
-@dataclass(frozen=True, eq=False)
-class Run:
-    """A learning run as stored."""
-
-    id: str
-    task: str
-    created_ns: int
-    learned: Learned
-
-    @property
-    def summary(self) -> RunSummary:
-        """What a list says of it."""
-        learned, paths = self.learned, tuple(path.id for path in self.learned.paths)
-        return RunSummary(self.id, self.task, self.created_ns, learned.mode, len(learned.demonstrations), paths)
-
-
 class Store:
     """The rows of a station, and its recordings; safe to use from several threads."""
 
     def __init__(self, settings: StoreSettings, *, opener: Opener = open_new, changed: Changed = unheard) -> None:
         """Open the database; `opener` opens the files of new recordings, `changed` hears of every changed row."""
-        folder = Path(settings.data_dir)
-        folder.mkdir(parents=True, exist_ok=True)
+        folder = make_data_folder(settings)
         self.recordings = Recordings(folder / RECORDINGS, opener)
         self.motions = Motions(folder / "executions", opener)
-        self._engine = open_engine(settings.database or f"sqlite:///{folder / 'teachpath.sqlite'}")
+        self._engine = open_engine(database_url(settings))
         self._writing = self._engine.execution_options(writing=True)
         self._changed = changed
         self.calibrations = MeasuredCalibrations(self._engine)
         self.versions = Versions(self._engine, changed)
         self.journal = Journal(self._engine)
         self.lists = Lists(self._engine)
+        self.checks = Checks(self._engine)
 
     def close(self) -> None:
         """Close every connection."""
@@ -151,11 +145,11 @@ class Store:
     def newest_run(self, task: str) -> Run | None:
         """Return the newest learning run of a task; None: nothing was learned of it yet."""
         question = select(RunTable).where(RunTable.task == task).order_by(RunTable.created_ns.desc()).limit(1)
-        return next((_run(row) for row in self._all(question)), None)
+        return next((run_of(row) for row in self._all(question)), None)
 
     def run(self, key: str) -> Run:
         """Return one learning run; raises NotFound."""
-        return _run(self._one(RunTable, key, "run"))
+        return run_of(self._one(RunTable, key, "run"))
 
     def path(self, key: str) -> LearnedPath:
         """Return the newest version of a learned path on its main branch; raises NotFound."""
@@ -211,6 +205,10 @@ class Store:
             question = question.where(JobRow.state.in_([JobState.QUEUED.value, JobState.RUNNING.value]))
         return [job_of(row) for row in self._all(question)]
 
+    def awaited_uploads(self) -> set[str]:
+        """Return the names of the folders of uploads that jobs wait for."""
+        return {str(job.request.get("upload")) for job in self.jobs(unfinished=True)}
+
     def set_job(self, key: str, **changes: Any) -> Job:
         """Change fields of an unfinished job and return it; a finished job stays as it is.
 
@@ -242,8 +240,7 @@ class Store:
     def finish_import(self, key: str, task: Task, made: Sequence[Demonstration], recordings: Path) -> str:
         """Take over imported demonstrations with their recordings and mark the job succeeded, all or nothing.
 
-        Those that are stored already stay: a crash came between their recordings and their rows, and the doctor made
-        the rows.
+        Those that are stored already stay: after a crash before their rows, the doctor made the rows.
 
         Args:
             key: of the job.
@@ -254,27 +251,31 @@ class Store:
         Returns:
             The numbers that the first and the last one have now, e.g. `3-5`.
         """
+        with self._taking_over(task, made, recordings) as (session, numbers):
+            outcome = f"{min(numbers)}-{max(numbers)}"
+            self._claim(session, key, success(outcome, time.time_ns()))
+        return outcome
+
+    def take_over(self, task: Task, made: Sequence[Demonstration], recordings: Path) -> None:
+        """Take over demonstrations with their recordings, all or nothing; as `finish_import`, without a job."""
+        with self._taking_over(task, made, recordings):
+            pass
+
+    @contextmanager
+    def _taking_over(
+        self, task: Task, made: Sequence[Demonstration], recordings: Path
+    ) -> Iterator[tuple[Session, list[int]]]:
         added: list[str] = []  # places of the recordings whose rows are new
         try:
             with self._change() as session:
-                ensured_task(session, task.name, task.scene, task.calibration)
-                session.flush()
-                numbers = []
-                for demonstration in made:
-                    row = session.get(DemonstrationRow, demonstration.id)
-                    if row is None:
-                        added.append(demonstration.recording)
-                    numbers.append(row.number if row else numbered_row(session, demonstration).number)
-                    session.flush()
-                outcome = f"{min(numbers)}-{max(numbers)}"
-                self._claim(session, key, success(outcome, time.time_ns()))
+                numbers = imported_rows(session, task, made, added)
+                yield session, numbers
                 session.flush()
                 for place in added:
                     self.recordings.take_over(recordings, place)
         except BaseException:
             self.recordings.remove(added)
             raise
-        return outcome
 
     def finish_planning(self, key: str, plan: Plan) -> str:
         """Store a plan and mark the job succeeded, all or nothing; return the plan's id."""
@@ -293,7 +294,3 @@ class Store:
                 raise NotFound(f"there is no job {key!r}")
             raise Conflict(f"job {key} has already {row.state}")
         note(session, JobRow.__tablename__, key)
-
-
-def _run(row: RunTable) -> Run:
-    return Run(row.id, row.task, row.created_ns, from_document(Learned, row.document))

@@ -11,7 +11,8 @@ import numpy as np
 
 from teachpath.errors import NotFound, PathRefused
 from teachpath.io.memory_bus import MemoryBus
-from teachpath.io.store.store import Run, Store
+from teachpath.io.store.rows import Run
+from teachpath.io.store.store import Store
 from teachpath.learning.clustering.cuts import dendrogram
 from teachpath.live.preview.preview import Preview
 from teachpath.motion.arm.description import describe_arm

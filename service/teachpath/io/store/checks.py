@@ -1,0 +1,42 @@
+"""Whether the rows are in order: what the doctor asks of a database."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from sqlalchemy import Engine, select
+from sqlalchemy.orm import Session
+
+from teachpath.errors import UnusableInput
+from teachpath.io.documents import from_document
+from teachpath.io.store.tables import DemonstrationRow
+from teachpath.records import Demonstration
+
+
+class Checks:
+    """Looks at all rows of a station, also where they are wrong."""
+
+    def __init__(self, engine: Engine) -> None:
+        self._engine = engine
+
+    def contradictions(self) -> list[str]:
+        """Say in which ways a SQLite database contradicts itself; of a database with a server, nothing."""
+        if self._engine.dialect.name != "sqlite":
+            return []
+        with self._engine.connect() as connection:
+            found = [str(row[0]) for row in connection.exec_driver_sql("PRAGMA quick_check(20)")]
+            orphans = connection.exec_driver_sql("PRAGMA foreign_key_check").all()
+        return [sentence for sentence in found if sentence != "ok"] + [
+            f"row {row} of {table} names a row of {parent} that is not there" for table, row, parent, _ in orphans
+        ]
+
+    def demonstrations(self) -> Iterator[tuple[str, Demonstration | str]]:
+        """Yield all demonstrations by their ids, those of a task in their order; why, where a row says nothing."""
+        question = select(DemonstrationRow).order_by(DemonstrationRow.task, DemonstrationRow.number)
+        with Session(self._engine) as session:
+            rows = [(row.id, row.document) for row in session.scalars(question)]
+        for key, document in rows:
+            try:
+                yield key, from_document(Demonstration, document)
+            except UnusableInput as error:
+                yield key, str(error)

@@ -1,0 +1,102 @@
+"""Faults of disk and database, as sentences with the way out."""
+
+from __future__ import annotations
+
+import errno
+import os
+import sqlite3
+from typing import Final
+
+from sqlalchemy.exc import DBAPIError, IntegrityError
+
+from teachpath.errors import Conflict, StorageFull, StorageUnavailable, TeachpathError
+
+FREE_SPACE: Final = "free space, then try again"
+RESTORE: Final = (
+    "restore a backup (teachpath restore), or make the rows anew from the recordings: teachpath doctor --rebuild"
+)
+FULL: Final = frozenset({errno.ENOSPC, errno.EDQUOT, errno.EFBIG})
+REFUSED: Final = {
+    errno.EROFS: "mount it for writing, or name another folder with --data",
+    errno.EACCES: "let this user read and write it, or name another folder with --data",
+    errno.EPERM: "let this user read and write it, or name another folder with --data",
+    errno.EIO: "look at the disk: it reports an error of its own",
+    errno.ENOTDIR: "name another folder with --data",
+    errno.EMFILE: "raise the number of files that this user may open (ulimit -n)",
+}
+# By the names of SQLite's result codes, the extended ones too: what is the matter, and the way out.
+SQLITE: Final = {
+    "SQLITE_BUSY": ("is locked by another process", "end that process, then try again"),
+    "SQLITE_LOCKED": ("is locked by another process", "end that process, then try again"),
+    "SQLITE_READONLY": (
+        "may only be read",
+        "let this user write it and its folder, or name another folder with --data",
+    ),
+    "SQLITE_PERM": ("may not be opened", "let this user read and write it and its folder"),
+    "SQLITE_CANTOPEN": ("cannot be opened", "let this user read and write it and its folder"),
+    "SQLITE_CORRUPT": ("is damaged", RESTORE),
+    "SQLITE_NOTADB": ("is no database", RESTORE),
+    "SQLITE_IOERR": ("cannot be read or written", "look at the disk: it reports an error of its own"),
+}
+
+
+def storage_fault(error: OSError, place: object) -> StorageUnavailable | None:
+    """Return what an error of the disk says to the operator; None: it is no fault of the disk.
+
+    Args:
+        error: as the system raised it.
+        place: file or folder, where the error names none.
+    """
+    if error.errno in FULL:
+        return StorageFull(f"{error.filename or place}: {error.strerror}; {FREE_SPACE}")
+    if error.errno in REFUSED:
+        return StorageUnavailable(f"{error.filename or place}: {error.strerror}; {REFUSED[error.errno]}")
+    return None
+
+
+def database_fault(error: BaseException, url: str) -> TeachpathError | None:
+    """Return what an error of the database says to the operator; None: it is a fault of the statement.
+
+    Args:
+        error: of SQLAlchemy, or of the driver.
+        url: of the database, without a password.
+    """
+    cause = error.orig if isinstance(error, DBAPIError) else error
+    if isinstance(error, (IntegrityError, sqlite3.IntegrityError)):
+        return Conflict(f"it was stored or changed by somebody else meanwhile ({cause}); read it anew, then try again")
+    if isinstance(cause, sqlite3.Error):
+        return _sqlite_fault(cause, url)
+    if isinstance(error, DBAPIError) and error.connection_invalidated:
+        return StorageUnavailable(f"the database {url} does not answer ({_first_line(cause)}); is its server running?")
+    return None
+
+
+def refused_by_server(error: BaseException, url: str) -> StorageUnavailable:
+    """Return what it says to the operator that no connection to a database's server can be made."""
+    return StorageUnavailable(
+        f"cannot connect to the database {url}: {_first_line(error)}; is its server running, and the setting "
+        "store.database right?"
+    )
+
+
+def _sqlite_fault(error: sqlite3.Error, url: str) -> StorageUnavailable | None:
+    name = getattr(error, "sqlite_errorname", "") or ""
+    if name.startswith("SQLITE_FULL") or (name.startswith("SQLITE_IOERR") and _is_full(url)):
+        return StorageFull(f"{url}: the disk of the database is full; {FREE_SPACE}")
+    for code, (what, advice) in SQLITE.items():
+        if name == code or name.startswith(f"{code}_"):
+            return StorageUnavailable(f"the database {url} {what} ({error}); {advice}")
+    return None
+
+
+def _is_full(url: str) -> bool:
+    """Return whether no block is left; SQLite reports an error of its own where it cannot extend a file of its own."""
+    folder = os.path.dirname(url.partition(":///")[2]) or "."
+    try:
+        return os.statvfs(folder).f_bavail == 0
+    except OSError:
+        return False
+
+
+def _first_line(error: BaseException | None) -> str:
+    return str(error).strip().partition("\n")[0]

@@ -1,0 +1,45 @@
+"""Temporary files that a killed process leaves in the data folder."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Collection
+from contextlib import suppress
+from pathlib import Path
+from typing import Final
+
+from teachpath.io.store.motions import MENDING
+
+REPAIRS: Final = "repairs"  # folder in which the doctor makes recordings
+TRANSFERS: Final = "transfers"  # folder of uploads and exports
+TEMPORARY: Final = ".temporary"  # ends the name of a file that is being written and renamed when it is whole
+
+
+def find_leftovers(data_dir: Path, kept_transfers: Collection[str]) -> list[Path]:
+    """List the temporary files and folders of processes that are gone; nobody may be using the data folder.
+
+    Args:
+        data_dir: folder of the station's data.
+        kept_transfers: names of the folders of uploads that jobs wait for.
+    """
+    found = [folder for folder in (data_dir / TRANSFERS).glob("*") if folder.name not in kept_transfers]
+    if (repairs := data_dir / REPAIRS).exists():
+        found.append(repairs)
+    found += [file for ending in (TEMPORARY, MENDING) for file in data_dir.glob(f"*/**/*{ending}")]
+    found += data_dir.glob(f"*{TEMPORARY}")
+    return sorted(found)
+
+
+def remove_leftovers(data_dir: Path, kept_transfers: Collection[str]) -> None:
+    """Remove the temporary files of processes that are gone; as `find_leftovers`."""
+    for path in find_leftovers(data_dir, kept_transfers):
+        with suppress(OSError):
+            remove_leftover(path)
+
+
+def remove_leftover(path: Path) -> None:
+    """Remove a temporary file or folder; raises OSError."""
+    if path.is_dir():
+        shutil.rmtree(path)
+    else:
+        path.unlink(missing_ok=True)
