@@ -114,6 +114,7 @@ class Station:
             self.jobs.start()
             if tasks := self.store.tasks():
                 self._show_task(tasks[-1].name)
+                self.assessor.warm_up()
             else:
                 self.preview.show_object(self.settings.scenes[0].carried)
         except BaseException:
@@ -174,13 +175,13 @@ class Station:
         settings = self.settings
         self.executions = Executions(self.bus, self.keys, self.store, robot=settings.bus.robot)
         self.objects = ObjectPoses(self.bus, self.keys, settings.scene, self.executions.is_moving, self._show_object)
+        self.assessor = CurveAssessor()
         self.transfers = TransferFolders(Path(settings.store.data_dir) / TRANSFERS)
         kinds = JobKinds(
             self.store, settings, self.calibrations, self.transfers, self._show_task, self._signing_key, self.objects
         ).by_name()
-        self.jobs = Jobs(self.bus, self.keys, self.store, settings.jobs, kinds)
+        self.jobs = Jobs(self.bus, self.keys, self.store, settings.jobs, kinds, on_finished=self.assessor.on_finished)
         self.exporter = Exporter(ExportSource(settings.store, settings.recording, settings.scenes), settings.jobs)
-        self.assessor = CurveAssessor()
 
     def _open_robot(self) -> None:
         """Open the service's side of the arm, its picture, and the processes that move it."""
@@ -250,8 +251,7 @@ class Station:
         notes = [note for process in self.processes if (note := process.note())]
         notes += self.recorder.faults() + self.executions.faults()
         notes += self._access.notes(datetime.now(UTC)) if self._access else []
-        unfinished = self.store.recordings.unfinished()
-        if unfinished and not self.recorder.statuses():
+        if (unfinished := self.store.recordings.unfinished()) and not self.recorder.statuses():
             notes.append(f"{len(unfinished)} recordings were cut off; stop the service and run: teachpath doctor")
         return notes
 

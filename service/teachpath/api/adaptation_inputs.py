@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -11,29 +10,12 @@ import numpy as np
 from teachpath.api.parts import Parts
 from teachpath.errors import UnusableInput
 from teachpath.io.store.rows import Run
-from teachpath.learning.settings import LearningSettings, settings_of_run
+from teachpath.jobs.curve_assessor import Shown
+from teachpath.learning.settings import settings_of_run
 from teachpath.learning.summary import fingerprint
-from teachpath.nurbs import Curve
 from teachpath.records import Demonstration, LearnedPath, Trajectory
 
 MAX_DEMONSTRATIONS: Final = 50  # more tell nothing new of a shape, and an answer would be late
-
-
-@dataclass(frozen=True, eq=False)
-class Shown:
-    """What a path was learned from.
-
-    Attributes:
-        learned: the path as it was learned.
-        members: demonstrations that it was learned from.
-        others: further demonstrations of its run, of the same way or of others.
-        settings: of its run.
-    """
-
-    learned: Curve
-    members: list[Trajectory]
-    others: list[Trajectory]
-    settings: LearningSettings
 
 
 def shown_for(parts: Parts, run: Run, path: LearnedPath) -> Shown:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Final
+from typing import TYPE_CHECKING
 
 import numpy as np
 from fastapi import APIRouter, Response
@@ -19,13 +19,13 @@ from teachpath.editing import check_editable
 from teachpath.errors import UnusableInput
 from teachpath.io.store.store import Store
 from teachpath.io.store.versions import Edit
-from teachpath.learning.adaptation.adapt import AdaptedPath, adapt, course_model
 from teachpath.learning.adaptation.adapted_course import AdaptationModel
 from teachpath.learning.adaptation.target import Target
 from teachpath.records import Array, Job, LearnedPath, ObjectPose, Scene, Version
+from teachpath.records.poses import SAME_PLACE, unit_quaternion
 
-MAX_NORM_ERROR: Final = 0.01  # of a quaternion that is brought to unit length
-SAME_PLACE: Final = 0.001  # m, within which a path begins where its object lies
+if TYPE_CHECKING:  # computed in another process
+    from teachpath.learning.adaptation.adapt import AdaptedPath
 
 
 class TargetPose(Body):
@@ -99,7 +99,7 @@ def adaptations_router(parts: Parts) -> APIRouter:
         scene = parts.objects.scene(store.task(run.task).scene)
         target = _target(base, scene, wanted)
         shown = shown_for(parts, run, base)
-        adapted = adapt(base, shown.learned, shown.members, shown.others, target, shown.settings)
+        adapted = parts.assessor.adapt(base, shown, target)
         saved = _saved(store, base, wanted, adapted, _object_pose(scene, target))
         job = parts.jobs.submit(run.task, "plan", {"path": path, "version": saved.number})
         answer = Adaptation(
@@ -124,8 +124,7 @@ def adaptations_router(parts: Parts) -> APIRouter:
         """Return what a version between other ends is computed from, so that a page can draw it while it is dragged."""
         base = versions.get(path, number)[1]
         shown = shown_for(parts, store.run(base.run), base)
-        model = course_model(base, shown.learned, shown.members, shown.others, shown.settings)[0]
-        return json_response(model.export())
+        return json_response(parts.assessor.adaptation_model(base, shown))
 
     return router
 
@@ -135,8 +134,7 @@ def _saved(
 ) -> Version:
     """Save an adapted path, unless it is the base as it is; return the version."""
     present = store.versions.get(base.id, base.version)[0]
-    same = adapted.curve is base.curve and adapted.orientation is base.orientation
-    if same and wanted.branch.strip() in ("", present.branch):
+    if adapted.is_base and wanted.branch.strip() in ("", present.branch):
         return present
     edit = Edit(base.version, wanted.branch.strip(), wanted.name.strip(), wanted.author.strip(), adapted.note)
     curve = check_editable(adapted.curve)
@@ -171,10 +169,4 @@ def _pose(pose: TargetPose, place: str) -> tuple[Array, Array | None]:
     position = np.array(pose.position)
     if pose.orientation is None:
         return position, None
-    norm = float(np.linalg.norm(pose.orientation))
-    if not abs(norm - 1) <= MAX_NORM_ERROR:
-        raise UnusableInput(
-            f"{place}.orientation has length {norm:.4g}; a quaternion of a rotation has length 1 within "
-            f"{MAX_NORM_ERROR:g}: divide it by its length"
-        )
-    return position, np.array(pose.orientation) / norm
+    return position, np.array(unit_quaternion(pose.orientation, f"{place}.orientation"))

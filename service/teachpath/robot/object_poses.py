@@ -14,14 +14,12 @@ from teachpath.errors import NotFound, TeachpathError, UnusableInput
 from teachpath.io import documents
 from teachpath.io.bus import Bus, Handle
 from teachpath.records import LearnedPath, ObjectPose, Scene
+from teachpath.records.poses import SAME_PLACE, SAME_TURN, unit_quaternion
 from teachpath_proto.keys import Keys
 
 log = logging.getLogger(__name__)
 
 MAX_COORDINATE: Final = 10.0  # m
-MAX_NORM_ERROR: Final = 0.01  # of a quaternion that is brought to unit length
-SAME_PLACE: Final = 0.001  # m, within which an object that is seen again has not moved
-SAME_TURN: Final = math.radians(1.0)  # likewise
 
 
 class ObjectPoses:
@@ -128,15 +126,8 @@ def _checked(pose: ObjectPose) -> ObjectPose:
         raise UnusableInput(
             f"{list(pose.position)} is no position of an object; it has x, y and z, each within ±{MAX_COORDINATE:g} m"
         )
-    norm = math.hypot(*pose.orientation) if len(pose.orientation) == 4 else math.nan
-    if not abs(norm - 1) <= MAX_NORM_ERROR:
-        raise UnusableInput(
-            f"{list(pose.orientation)} is no orientation; write a quaternion w, x, y, z of length 1 within "
-            f"{MAX_NORM_ERROR:g}"
-        )
-    w, x, y, z = (value / norm for value in pose.orientation)
     px, py, pz = pose.position
-    return ObjectPose((px, py, pz), (w, x, y, z))
+    return ObjectPose((px, py, pz), unit_quaternion(pose.orientation))
 
 
 def _same(one: ObjectPose, other: ObjectPose) -> bool:

@@ -88,8 +88,8 @@ def test_a_scene_stays_as_it_was_while_the_arm_carries_its_object(seen: Seen) ->
     [
         (ObjectPose((0.5, math.nan, 0.5)), "is no position of an object"),
         (ObjectPose((0.5, 0.0, 10.5)), "each within ±10 m"),
-        (ObjectPose((0.5, 0.0, 0.5), (0.0, 0.0, 0.0, 0.0)), "is no orientation; write a quaternion"),
-        (ObjectPose((0.5, 0.0, 0.5), (math.nan, 0.0, 0.0, 0.0)), "is no orientation; write a quaternion"),
+        (ObjectPose((0.5, 0.0, 0.5), (0.0, 0.0, 0.0, 0.0)), "is no value of an orientation: write a quaternion"),
+        (ObjectPose((0.5, 0.0, 0.5), (math.nan, 0.0, 0.0, 0.0)), "is no value of an orientation: write a quaternion"),
     ],
 )
 def test_what_is_no_pose_is_refused_and_changes_nothing(seen: Seen, pose: ObjectPose, sentence: str) -> None:

@@ -38,6 +38,7 @@ class AdaptedPath:
         places: at how many different starts or goals these were shown.
         extrapolates: what is beyond the shown range, in words; empty within it.
         note: how sure the adaptation is, in words.
+        is_base: whether the version begins and ends there already, and stays as it is.
     """
 
     curve: Curve
@@ -47,6 +48,7 @@ class AdaptedPath:
     places: int
     extrapolates: str
     note: str
+    is_base: bool
 
 
 def adapt(
@@ -79,7 +81,7 @@ def adapt(
     found = model.predict(target.start, target.goal)
     bound = settings.bound_for(extent(found.path))
     curve, orientation, missed = path.curve, path.orientation, 0.0
-    if not _is_own(path, target):
+    if not (is_base := _is_own(path, target)):
         displacements = found.path - model.version
         curve, missed = displaced(path.curve, u, displacements, bound, settings.most_control_points)
         closeness = model.closeness(target.start, target.goal)
@@ -89,7 +91,7 @@ def adapt(
     note = _note(found, len(alike), places)
     if missed > bound:
         note += f"; {len(curve.control_points)} control points follow it within {describe_length(missed, up=True)} only"
-    return AdaptedPath(curve, orientation, 2 * found.deviation, len(alike), places, found.extrapolates, note)
+    return AdaptedPath(curve, orientation, 2 * found.deviation, len(alike), places, found.extrapolates, note, is_base)
 
 
 def course_model(
