@@ -21,6 +21,14 @@ def name_refusal(what: str, text: str) -> str:
     )
 
 
+def anonymous_refusal(tracker: str) -> str:
+    """Return the sentence that refuses a tracker whose samples name no session on the bus to lead the arm."""
+    return (
+        f"samples as {tracker} name no session on the bus, so that anybody could send them, and no arm follows them: "
+        "attach the session's id to each, or send with an advanced publisher (proto/README.md)"
+    )
+
+
 class Keys:
     """The keys of one station."""
 

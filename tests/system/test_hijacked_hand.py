@@ -13,6 +13,7 @@ from websockets.sync.client import connect
 
 from teachpath.io.wire import decode_state
 from teachpath_client import HandReading, Link
+from teachpath_client.errors import ClientError
 from teachpath_client.models import Execution
 from teachpath_proto.keys import Keys
 from teachpath_proto.logins import Role, find_login
@@ -75,6 +76,10 @@ def test_another_session_under_the_name_of_the_leading_hand_moves_nothing(tmp_pa
         viewer.subscribe(KEYS.state("puma560"), lambda payload: positions.append(decode_state(payload).position))
         station, url = service.station, f"{service.url.replace('http', 'ws')}/api/v1/trackers/glove/samples"
         station.wait_for_arm(timeout=HANG)
+        with hand(service, "plain", plain=True):
+            wait_until(lambda: any(t.name == "plain" for t in station.health().trackers), "its samples come")
+            with pytest.raises(ClientError, match="samples as plain name no session"):
+                station.begin_teleoperation("plain", scene="empty")
         with hand(service, "glove") as leader:
             led = station.begin_teleoperation("glove", scene="empty")
 

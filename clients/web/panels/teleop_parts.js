@@ -91,6 +91,7 @@ export function teleopText({ state, reason, activity }, { usesPageHand, usesHead
   const hindrance = activity.split(": ").slice(1).join(": ");
   if (state === "following") return hindrance ? `The arm follows. ${capitalize(hindrance)}.` : "The arm follows.";
   if (state === "stopping") return "Let go: the arm comes to rest.";
+  if (hindrance) return `The arm is held. ${capitalize(hindrance)}.`;
   if (!reason.startsWith(WAITING_FOR_CLUTCH)) return `The arm is held: ${reason}.`;
   if (usesHeadset) return "The arm is held. Close the left hand, and it follows the right one.";
   return usesPageHand

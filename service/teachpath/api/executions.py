@@ -129,6 +129,8 @@ def _add_beginnings(router: APIRouter, parts: Parts) -> None:
         scene = parts.objects.scene(new.scene)
         orientation = new.orientation or parts.settings.teleoperation.orientation
         owners = parts.recorder.owners
+        for name in filter(None, (new.tracker, new.clutch)):
+            owners.require_named(name)
         order = TeleopRequest(
             new.tracker,
             calibration,

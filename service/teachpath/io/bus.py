@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import json
 import queue
+import re
 import threading
 from collections.abc import Callable, Mapping
 from contextlib import AbstractContextManager, nullcontext
@@ -22,6 +23,8 @@ from teachpath.io.bus_access import BusAccess, listening_config
 from teachpath.io.bus_settings import BusSettings
 from teachpath_proto.logins import Login
 from teachpath_proto.sessions import joining, listening, open_session
+
+SESSION_ID = re.compile(rb"[0-9a-f]{1,32}")
 
 Receive = Callable[[str, bytes], None]
 ReceiveWithSource = Callable[[str, bytes, str], None]
@@ -53,8 +56,9 @@ class Bus(Protocol):
     def subscribe_with_source(self, key: str, receive: ReceiveWithSource) -> Handle:
         """Call `receive(key, payload, source)` likewise; `source` names the session that published.
 
-        It is empty where a foreign program's plain publisher does not say. A session's name is a secret of those who
-        hear it, as a password is: whoever knows it can claim to be that session.
+        It is empty where a foreign program's plain publisher does not say, for Zenoh tells nothing of it; then two of
+        them cannot be told apart. A session's name is a secret of those who hear it, as a password is: whoever knows it
+        can claim to be that session.
         """
 
     def serve(self, key: str, answer: Answer) -> Handle:
@@ -193,7 +197,8 @@ def _source(sample: zenoh.Sample) -> str:
     """Return the session that published: publishers that keep a cache say it by themselves, ours in an attachment."""
     if sample.source_info is not None:
         return str(sample.source_info.source_id.zid)
-    return "" if sample.attachment is None else sample.attachment.to_bytes().decode(errors="replace")
+    attachment = b"" if sample.attachment is None else sample.attachment.to_bytes()
+    return attachment.decode() if SESSION_ID.fullmatch(attachment) else ""
 
 
 class Declaration:

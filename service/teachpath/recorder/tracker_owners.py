@@ -6,7 +6,8 @@ import threading
 from collections.abc import Callable
 from typing import Final
 
-from teachpath_proto.keys import Keys
+from teachpath.errors import Conflict
+from teachpath_proto.keys import Keys, anonymous_refusal
 
 SILENCE_TIMEOUT: Final = 2.0  # [s] after its last sample a session owns its name no longer
 REPORT_TIME: Final = 10.0  # [s] for which another session that sent under an owned name is reported
@@ -33,6 +34,13 @@ class TrackerOwners:
             session, last = self._owners.get(tracker, ("", -SILENCE_TIMEOUT))
             return session if self._clock() - last < SILENCE_TIMEOUT else ""
 
+    def require_named(self, tracker: str) -> None:
+        """Raise Conflict where samples come under a tracker's name that name no session, so that nobody owns it."""
+        with self._lock:
+            session, last = self._owners.get(tracker, ("somebody", 0.0))
+            if not session and self._clock() - last < SILENCE_TIMEOUT:
+                raise Conflict(anonymous_refusal(tracker))
+
     def faults(self) -> list[str]:
         """Return which names several sessions send under, in sentences for the operator."""
         with self._lock:
@@ -48,7 +56,7 @@ class TrackerOwners:
         tracker, now = self._keys.tracker_of(key), self._clock()
         with self._lock:
             owner, last = self._owners.get(tracker, (source, now))
-            if source == owner or now - last > SILENCE_TIMEOUT:
+            if source == owner or not owner or now - last > SILENCE_TIMEOUT:
                 if tracker in self._owners or len(self._owners) < MAX_NAMES:
                     self._owners[tracker] = (source, now)
             else:

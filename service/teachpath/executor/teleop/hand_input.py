@@ -8,7 +8,7 @@ from teachpath.executor.teleop.clutch import CLUTCH_BUTTON, RemoteClutch, decode
 from teachpath.executor.teleop.tracker_input import TrackerInput
 from teachpath.io.bus import Bus
 from teachpath.records import Sample, TeleopRequest
-from teachpath_proto.keys import Keys
+from teachpath_proto.keys import Keys, anonymous_refusal
 
 
 class HandInput:
@@ -59,9 +59,11 @@ class HandInput:
     def loss(self, now: int) -> str:
         """Return why the arm must not follow the hand at `now` [ns of the clock], or an empty string."""
         if now - self._last_seen_ns > self._silence_ns:
+            name = self._request.tracker
             if self._input.has_stranger(now):
-                name = self._request.tracker
                 return f"{name} was lost, and another session sends as {name}; stop, and begin again to follow that one"
+            if self._input.has_anonymous(now):
+                return anonymous_refusal(name)
             return "the hand was lost; let the clutch go and press it again"
         if self._remote_clutch is not None and now - self._remote_clutch.last_seen_ns > self._silence_ns:
             return f"nothing was heard of {self._request.clutch}, who presses the clutch; press it again"
@@ -70,7 +72,7 @@ class HandInput:
     def intrusion(self, now: int) -> str:
         """Return that another session sends under the tracker's name at `now` [ns of the clock], or an empty string."""
         if not self._input.has_stranger(now):
-            return ""
+            return anonymous_refusal(self._request.tracker) if self._input.has_anonymous(now) else ""
         return f"another session sends as {self._request.tracker} too, which the arm does not follow"
 
     def close(self) -> None:

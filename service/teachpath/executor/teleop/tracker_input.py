@@ -16,7 +16,8 @@ class TrackerInput:
     """Keeps the newest sample, and notices other sessions that send under the same name.
 
     Args:
-        session: whose samples count; empty: those of the session that sends first.
+        session: whose samples count; empty: those of the session that sends first. Samples that name none do not, for
+            anybody could send them.
         clock: returns monotonic nanoseconds.
     """
 
@@ -25,6 +26,7 @@ class TrackerInput:
         self._clock = clock
         self._newest: deque[tuple[int, bytes]] = deque(maxlen=1)
         self._stranger_ns = -STRANGER_TIMEOUT_NS  # of the clock, when another session has sent last
+        self._anonymous_ns = -STRANGER_TIMEOUT_NS  # of the clock, when a sample that names no session has come last
         self._handle = bus.subscribe_with_source(keys.samples(tracker), self._receive)
 
     def pop(self) -> tuple[int, bytes] | None:
@@ -35,11 +37,18 @@ class TrackerInput:
         """Tell whether another session sends under the tracker's name at `now` [ns of the clock]."""
         return now - self._stranger_ns < STRANGER_TIMEOUT_NS
 
+    def has_anonymous(self, now: int) -> bool:
+        """Tell whether samples that name no session come under the tracker's name at `now` [ns of the clock]."""
+        return now - self._anonymous_ns < STRANGER_TIMEOUT_NS
+
     def close(self) -> None:
         """Stop listening."""
         self._handle.close()
 
     def _receive(self, _: str, payload: bytes, source: str) -> None:
+        if not source:
+            self._anonymous_ns = self._clock()
+            return
         if self._session is None:
             self._session = source
         if source == self._session:

@@ -107,6 +107,23 @@ def test_a_hand_of_another_session_under_the_same_name_leads_nothing_and_is_repo
     assert any("glove was lost, and another session sends" in sentence for sentence in says)
 
 
+def test_a_hand_that_names_no_session_moves_nothing_and_is_told_why() -> None:
+    bench, says = Held(), list[str]()
+    bench.when(lambda: bool(bench.statuses), lambda: bench.command("teleoperate", teleop=encode(ORDER)))
+    bench.session = ""
+    bench.when(lambda: bench.state == "held", lambda: None)
+    bench.after(0.3)
+    bench.when(lambda: True, bench.press)
+    bench.after(1.0)
+    bench.when(lambda: True, lambda: says.append(bench.statuses[-1].activity))
+    bench.when(lambda: True, lambda: bench.command("stop"))
+    bench.when(lambda: bench.state == "ended", bench.stop.set)
+    bench.run()
+    assert "samples as glove name no session" in says[0]
+    assert "following" not in bench.states()
+    np.testing.assert_allclose(moved(bench), np.zeros(3), atol=1e-9)
+
+
 def moved(bench: Held) -> np.ndarray:
     return tool_pose(bench.setpoints[-1].position, ARM)[:3, 3] - tool_pose(HOME, ARM)[:3, 3]
 
