@@ -11,6 +11,7 @@ from tests.bench import (
     learning,
     learning_peers,
     learning_scale,
+    lists,
     motion,
     page,
     plans,
@@ -39,6 +40,7 @@ def main() -> None:
     )
     print_report("Learning beside other libraries: the same data, the same bound", _peers(trajectories, quick=quick))
     print_report("Learning from thousands", learning_scale.measure(quick=quick))
+    print_report("Lists of a large station: 5,000 demonstrations, 2,000 runs", lists.measure())
     print_report("Inverse kinematics beside another library", inverse.measure(repeats=3 if quick else 7))
     print_report(
         "Timing: how near to the limits, how soon it stops, what a cycle costs",
