@@ -242,6 +242,19 @@ def test_comes_back_after_a_restart_and_shows_the_truth(visit: Visit, server: Se
     assert len([p for p in visit.paths() if p.startswith("/robot/link")]) == len(visual_solids())
 
 
+def test_every_demonstration_of_many_can_be_reached(visit: Visit, server: Server) -> None:
+    server.stop()
+    server.start(demonstrations=130)
+    numbers = visit.page.locator("#demonstrations .demonstration-list .number")
+    visit.wait(lambda: numbers.all_inner_texts() == [str(number) for number in range(130, 70, -1)])
+    visit.page.get_by_role("button", name="Last page").click()
+    assert numbers.all_inner_texts() == [str(number) for number in range(10, 0, -1)]
+    visit.page.get_by_label("Order of demonstrations").select_option("oldest")
+    assert numbers.all_inner_texts() == [str(number) for number in range(1, 61)]
+    visit.page.get_by_label("Search demonstrations").fill("125")
+    assert numbers.all_inner_texts() == ["125"]
+
+
 def test_what_is_cleared_disappears_and_layers_can_be_hidden(visit: Visit, server: Server) -> None:
     server.preview.clear("/object")
     visit.wait(lambda: not any(p.startswith("/object") for p in visit.paths()))

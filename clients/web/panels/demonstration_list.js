@@ -1,78 +1,165 @@
-// The demonstrations of the task: number, thumbnail, verdict with its reasons, duration, losses.
+// The demonstrations of the task: what is known of all, and a list of them to search, filter, sort and page through.
 import { patch, post, resourcePath } from "../api.js";
-import { closestData, codeBlock, definitionList, element, hint } from "../elements.js";
+import { closestData, codeBlock, definitionList, element, hint, option } from "../elements.js";
 import { patchChildren } from "../patch_children.js";
 import { changesAny, waysOfDemonstrations } from "../store.js";
 import { capitalize, formatNumber, pluralize } from "../texts.js";
-import { fitProjection, thumbnail } from "../thumbnail.js";
-import { wayClass } from "../way_colors.js";
+import { filterDemonstrations, groupsWithWays, NO_FILTER, ORDERS } from "./demonstration_filter.js";
+import { demonstrationRow, MARK_SYMBOLS, thumbnailMaker } from "./demonstration_rows.js";
 import { markFocus, trackFocus } from "./focus.js";
 
-const MAX_LISTED = 60; // newest demonstrations; a review package lists all of its run
-
-/** @type {Record<string, string>} */
-const MARK_SYMBOLS = { "": "☆", good: "★", bad: "⚑" };
-
-/** @type {Record<string, string>} */
-const NEXT_MARK = { "": "good", good: "bad", bad: "" }; // mark that a press gives
+const PAGE_SIZE = 60; // rows that are shown at a time
+const FEW = 10; // demonstrations that are overlooked without searching
 const AWAY = "The demonstrations cannot be read yet: the service does not answer.";
 const NOTHING = "No demonstrations yet. Show the task with a tracker, or let a synthetic hand do it:";
 const ABOUT_MARKS = `${MARK_SYMBOLS[""]} marks one good, then bad: the bad ones are not learned from. × discards one; it can be brought back.`;
 
 /** @param {HTMLElement} place @param {Context} context @returns {Section} */
 export function demonstrationList(place, { store, sceneLayers, attempt, readOnly }) {
+  let [filter, page] = [NO_FILTER, 0];
+  const tools = filterTools((chosen) => {
+    [filter, page] = [chosen, 0];
+    render(store.state);
+  });
+  const [head, rows, foot] = ["div", "div", "div"].map((tag) => element(/** @type {"div"} */ (tag), {}));
+  place.append(head, tools.element, rows, foot);
   trackFocus(place, store);
   place.addEventListener("click", (event) => {
-    const { verb, discard, restore, marked, mark } = closestData(event);
+    const { verb, discard, restore, marked, mark, turn } = closestData(event);
     if (marked) attempt(() => patch(resourcePath("demonstrations", marked), { mark }));
     const id = discard ?? restore;
     if (id) attempt(() => patch(resourcePath("demonstrations", id), { discarded: Boolean(discard) }));
     if (verb) attempt(() => post(resourcePath("tasks", store.state.task, "recording", verb)));
+    if (!turn) return;
+    page += Number(turn);
+    render(store.state);
+    rows.querySelector("ol")?.scrollTo(0, 0);
   });
+
+  /** @param {State} state */
+  function render(state) {
+    const [ways, all] = [waysOfDemonstrations(state), state.demonstrations ?? []];
+    const found = filterDemonstrations(all, ways, filter);
+    page = Math.max(0, Math.min(page, Math.ceil(found.length / PAGE_SIZE) - 1));
+    const shown = found.slice(page * PAGE_SIZE, (page + 1) * PAGE_SIZE);
+    if (!readOnly) sceneLayers.trajectories.request(shown);
+    tools.update(all.length > FEW, groupsWithWays(ways));
+    patchChildren(head, summary(state));
+    const scrolled = rows.querySelector("ol")?.scrollTop ?? 0;
+    patchChildren(
+      rows,
+      all.length > 0 && list(state, shown, sceneLayers.trajectories, readOnly),
+      pager(found.length, page),
+    );
+    rows.querySelector("ol")?.scrollTo(0, scrolled);
+    patchChildren(foot, !readOnly && all.length > 0 && orders(state.task, all));
+  }
+
   return {
     update(state, changed) {
+      if (changed.has("task")) [filter, page] = [tools.reset(), 0];
       const isNew = changesAny(changed, "demonstrations", "guidance", "task", "tasks", "runs", "selectedRun");
-      if (isNew || changed.has("trajectoriesLoaded")) {
-        const scrolled = place.querySelector("ol")?.scrollTop ?? 0;
-        patchChildren(place, content(state, sceneLayers.trajectories, readOnly));
-        place.querySelector("ol")?.scrollTo(0, scrolled);
-      }
+      if (isNew || changed.has("trajectoriesLoaded")) render(state);
       markFocus(place, state.focus); // also on what has just been drawn anew
     },
   };
 }
 
 /**
+ * The controls of a filter: what is searched, which group is shown, in which order.
+ * @param {(filter: import("./demonstration_filter.js").Filter) => void} onChoice
+ */
+function filterTools(onChoice) {
+  const search = element("input", { type: "search", placeholder: "Search", "aria-label": "Search demonstrations" });
+  const group = element("select", { "aria-label": "Show demonstrations" });
+  const order = element("select", { "aria-label": "Order of demonstrations" });
+  order.append(...Object.entries(ORDERS).map(([value, text]) => option(value, text)));
+  const choose = () => onChoice({ search: search.value, group: group.value, order: order.value });
+  for (const control of [search, group, order]) control.addEventListener("input", choose);
+  let names = "";
+  return {
+    element: element("div", { class: "filter", hidden: "" }, search, group, order),
+    /** @param {boolean} isShown @param {[string, string][]} groups */
+    update(isShown, groups) {
+      if (search.parentElement) search.parentElement.hidden = !isShown;
+      if (names === JSON.stringify(groups)) return;
+      const chosen = group.value;
+      group.replaceChildren(...groups.map(([value, text]) => option(value, text)));
+      group.value = groups.some(([value]) => value === chosen) ? chosen : NO_FILTER.group;
+      names = JSON.stringify(groups);
+    },
+    reset() {
+      [search.value, group.value, order.value] = [NO_FILTER.search, NO_FILTER.group, NO_FILTER.order];
+      return NO_FILTER;
+    },
+  };
+}
+
+/**
+ * What is known of all demonstrations together.
  * @param {State} state
- * @param {import("../trajectory_cache.js").TrajectoryCache} trajectories
- * @param {boolean} readOnly
  * @returns {Child}
  */
-function content(state, trajectories, readOnly) {
-  const { task, tasks, demonstrations, guidance } = state;
+function summary({ task, tasks, demonstrations, guidance }) {
   if (demonstrations === null && tasks === null) return hint(AWAY);
   if (!demonstrations?.length) {
     return [hint(NOTHING), codeBlock(`teachpath-client synthetic --task ${task || "demo"} --scene paper`)];
   }
   const kept = demonstrations.filter((d) => !d.discarded_ns);
-  const draw = thumbnailMaker(state, demonstrations, trajectories);
-  const newest = demonstrations.slice(readOnly ? 0 : -MAX_LISTED).reverse();
-  const count = element("strong", {}, String(kept.length));
-  const usable = kept.filter(({ verdict }) => verdict !== "reject").length;
+  const count = element("strong", {}, kept.length.toLocaleString("en"));
   return [
     element("p", { class: "count" }, count, ` ${pluralize(kept.length, "demonstration")}`),
     guidance[task] && element("p", { class: "guidance" }, `${capitalize(guidance[task])}.`),
     definitionList(facts(kept)),
+  ];
+}
+
+/**
+ * @param {State} state
+ * @param {Demonstration[]} shown
+ * @param {import("../trajectory_cache.js").TrajectoryCache} trajectories
+ * @param {boolean} readOnly
+ */
+function list(state, shown, trajectories, readOnly) {
+  if (!shown.length) return hint("No demonstration is like that: search for less, or show all.");
+  const draw = thumbnailMaker(state, shown, trajectories);
+  return element(
+    "ol",
+    { class: "demonstration-list", "aria-label": "demonstrations" },
+    shown.map((d) => demonstrationRow(d, draw(d.id), readOnly)),
+  );
+}
+
+/** @param {number} found @param {number} page */
+function pager(found, page) {
+  if (found <= PAGE_SIZE) return null;
+  const [first, last] = [page * PAGE_SIZE + 1, Math.min(found, (page + 1) * PAGE_SIZE)];
+  /** @param {number} turn @param {string} sign @param {string} name @param {boolean} possible */
+  const button = (turn, sign, name, possible) =>
     element(
-      "ol",
-      { class: "demonstration-list", "aria-label": "demonstrations, newest first" },
-      newest.map((d) => demonstrationRow(d, draw(d.id), readOnly)),
-    ),
-    !readOnly && [
-      element("p", { class: "note" }, ABOUT_MARKS),
-      discardButtons(kept.length, demonstrations.length),
-      usable > 0 && exportLinks(task),
-    ],
+      "button",
+      { type: "button", "data-turn": turn, "data-key": name, "aria-label": name, disabled: !possible && "" },
+      sign,
+    );
+  const pages = Math.ceil(found / PAGE_SIZE);
+  return element(
+    "p",
+    { class: "pager" },
+    button(-page, "«", "First page", page > 0),
+    button(-1, "‹", "Page before", page > 0),
+    element("span", { role: "status" }, `${first} to ${last} of ${found.toLocaleString("en")}`),
+    button(1, "›", "Next page", page < pages - 1),
+    button(pages - 1 - page, "»", "Last page", page < pages - 1),
+  );
+}
+
+/** @param {string} task @param {Demonstration[]} all */
+function orders(task, all) {
+  const kept = all.filter((d) => !d.discarded_ns);
+  return [
+    element("p", { class: "note" }, ABOUT_MARKS),
+    discardButtons(kept.length, all.length),
+    kept.some(({ verdict }) => verdict !== "reject") && exportLinks(task),
   ];
 }
 
@@ -88,22 +175,6 @@ function facts(kept) {
     ["Mean transport", kept.length > 0 && formatNumber(mean, 1, "s")],
     ["Samples lost", String(kept.reduce((sum, d) => sum + d.statistics.lost, 0))],
   ];
-}
-
-/**
- * What draws demonstrations in small, all on one scale; nothing where the trajectory is not here.
- * @param {State} state
- * @param {Demonstration[]} demonstrations
- * @param {import("../trajectory_cache.js").TrajectoryCache} trajectories
- */
-function thumbnailMaker(state, demonstrations, trajectories) {
-  const ways = waysOfDemonstrations(state);
-  const projection = fitProjection(demonstrations.flatMap(({ id }) => [trajectories.get(id) ?? []]));
-  /** @param {string} id */
-  return (id) => {
-    const [points, way] = [trajectories.get(id), ways.get(id)];
-    return points && thumbnail(points, projection, way ? wayClass(way) : "");
-  };
 }
 
 /** @param {number} kept @param {number} all */
@@ -124,40 +195,4 @@ function exportLinks(task) {
   const link = (format, name) => element("a", { href: `${path}?format=${format}`, download: "" }, name);
   const [mcap, csv, lerobot] = [link("mcap", "MCAP"), link("csv", "CSV"), link("lerobot", "LeRobot")];
   return element("p", { class: "note saved" }, "Save them to files: ", mcap, ", ", csv, " or ", lerobot, ".");
-}
-
-/** @param {Demonstration} demonstration @param {Child} preview @param {boolean} readOnly */
-function demonstrationRow(demonstration, preview, readOnly) {
-  const { id, number, verdict, mark, trim, reasons, duration, discarded_ns, statistics } = demonstration;
-  const why = [mark && `marked ${mark}`, trim && "trimmed", ...reasons].filter(Boolean).join("; ");
-  const word = discarded_ns ? "discarded" : verdict;
-  return element(
-    "li",
-    { class: word, value: String(number), "data-focus": `demonstrations ${id}` },
-    element("span", { class: "number" }, String(number)),
-    element("span", { class: "preview" }, preview),
-    element("span", { class: "verdict" }, word),
-    element("span", { class: "figure" }, statistics.lost > 0 && `${statistics.lost} lost`),
-    element("span", { class: "figure" }, formatNumber(duration, 1, "s")),
-    !readOnly && rowButtons(demonstration),
-    why && element("span", { class: "why" }, capitalize(why)),
-  );
-}
-
-/** @param {Demonstration} demonstration */
-function rowButtons({ id, number, mark, discarded_ns }) {
-  const [verb, sign, name] = discarded_ns ? ["restore", "↶", "Restore"] : ["discard", "×", "Discard"];
-  const next = NEXT_MARK[mark] ?? "";
-  const marking = `Mark demonstration ${number} ${next || "neither good nor bad"}`;
-  const markLabel = { "aria-label": marking, title: marking };
-  const discardLabel = { "aria-label": `${name} demonstration ${number}`, title: name };
-  const button = { type: "button", class: "close" };
-  return [
-    element(
-      "button",
-      { ...button, ...markLabel, "data-marked": id, "data-mark": next, "data-key": `mark ${id}` },
-      MARK_SYMBOLS[mark] ?? MARK_SYMBOLS[""],
-    ),
-    element("button", { ...button, ...discardLabel, [`data-${verb}`]: id, "data-key": `discard ${id}` }, sign),
-  ];
 }

@@ -1,0 +1,86 @@
+// Which demonstrations of a task are listed, in which order: searched, filtered by verdict, mark or way, sorted.
+
+/** @type {Record<string, string>} */
+export const ORDERS = {
+  newest: "newest first",
+  oldest: "oldest first",
+  verdict: "by verdict",
+  way: "by way",
+  duration: "shortest first",
+};
+
+/** @type {Record<string, string>} */
+export const GROUPS = {
+  all: "all",
+  clean: "clean",
+  repaired: "repaired",
+  reject: "not usable",
+  good: "marked good",
+  bad: "marked bad",
+  discarded: "discarded",
+};
+
+const WAY = "way "; // and its number: the group of a way
+const VERDICTS = ["reject", "repaired", "clean"]; // what needs a look comes first
+
+/** @typedef {{search: string, group: string, order: string}} Filter */
+
+/** @type {Filter} */
+export const NO_FILTER = { search: "", group: "all", order: "newest" };
+
+/**
+ * The groups of a filter with their names: those of `GROUPS`, and one for each way.
+ * @param {Map<string, number>} ways id of a demonstration -> its way
+ * @returns {[string, string][]}
+ */
+export function groupsWithWays(ways) {
+  const numbers = [...new Set(ways.values())].sort((a, b) => a - b);
+  return [...Object.entries(GROUPS), ...numbers.map((way) => /** @type {[string, string]} */ ([WAY + way, WAY + way]))];
+}
+
+/**
+ * The demonstrations that a filter finds, in its order. A number finds the demonstration of that number; other words are
+ * looked for in source, verdict, mark and reasons.
+ * @param {Demonstration[]} demonstrations in the order of their numbers
+ * @param {Map<string, number>} ways
+ * @param {Filter} filter
+ */
+export function filterDemonstrations(demonstrations, ways, { search, group, order }) {
+  const words = search.toLowerCase().split(/\s+/).filter(Boolean);
+  const found = demonstrations.filter(
+    (d) => isOfGroup(d, ways.get(d.id), group) && words.every((word) => has(d, word)),
+  );
+  return sortNewest(found.reverse(), ways, order);
+}
+
+/** @param {Demonstration} demonstration @param {number | undefined} way @param {string} group */
+function isOfGroup({ verdict, mark, discarded_ns }, way, group) {
+  if (group === "all") return true;
+  if (group === "discarded") return Boolean(discarded_ns);
+  if (group === "good" || group === "bad") return mark === group;
+  if (group.startsWith(WAY)) return group === WAY + way;
+  return verdict === group && !discarded_ns;
+}
+
+/** @param {Demonstration} demonstration @param {string} word */
+function has({ number, source, verdict, mark, reasons }, word) {
+  if (/^\d+$/.test(word)) return number === Number(word);
+  return [source, verdict, mark, ...reasons].some((text) => text.toLowerCase().includes(word));
+}
+
+/**
+ * @param {Demonstration[]} newest newest first, sorted in place; equals stay newest first
+ * @param {Map<string, number>} ways
+ * @param {string} order
+ */
+function sortNewest(newest, ways, order) {
+  const wayOf = (/** @type {Demonstration} */ { id }) => ways.get(id) ?? Number.POSITIVE_INFINITY;
+  if (order === "oldest") return newest.reverse();
+  if (order === "verdict") return newest.sort((a, b) => VERDICTS.indexOf(a.verdict) - VERDICTS.indexOf(b.verdict));
+  if (order === "way") return newest.sort((a, b) => compare(wayOf(a), wayOf(b)));
+  if (order === "duration") return newest.sort((a, b) => a.duration - b.duration);
+  return newest;
+}
+
+/** @param {number} a @param {number} b either may be infinite */
+const compare = (a, b) => (a === b ? 0 : a < b ? -1 : 1);

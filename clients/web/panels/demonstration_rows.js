@@ -1,0 +1,64 @@
+// Rows of demonstrations: number, thumbnail, verdict with its reasons, duration, losses, and buttons.
+import { element } from "../elements.js";
+import { waysOfDemonstrations } from "../store.js";
+import { capitalize, formatNumber } from "../texts.js";
+import { fitProjection, thumbnail } from "../thumbnail.js";
+import { wayClass } from "../way_colors.js";
+
+/** @type {Record<string, string>} */
+export const MARK_SYMBOLS = { "": "☆", good: "★", bad: "⚑" };
+
+/** @type {Record<string, string>} */
+const NEXT_MARK = { "": "good", good: "bad", bad: "" }; // mark that a press gives
+
+/**
+ * What draws demonstrations in small, all on one scale; nothing where the trajectory is not here.
+ * @param {State} state
+ * @param {Demonstration[]} demonstrations
+ * @param {import("../trajectory_cache.js").TrajectoryCache} trajectories
+ */
+export function thumbnailMaker(state, demonstrations, trajectories) {
+  const ways = waysOfDemonstrations(state);
+  const projection = fitProjection(demonstrations.flatMap(({ id }) => [trajectories.get(id) ?? []]));
+  /** @param {string} id */
+  return (id) => {
+    const [points, way] = [trajectories.get(id), ways.get(id)];
+    return points && thumbnail(points, projection, way ? wayClass(way) : "");
+  };
+}
+
+/** @param {Demonstration} demonstration @param {Child} preview @param {boolean} readOnly */
+export function demonstrationRow(demonstration, preview, readOnly) {
+  const { id, number, verdict, mark, trim, reasons, duration, discarded_ns, statistics } = demonstration;
+  const why = [mark && `marked ${mark}`, trim && "trimmed", ...reasons].filter(Boolean).join("; ");
+  const word = discarded_ns ? "discarded" : verdict;
+  return element(
+    "li",
+    { class: word, value: String(number), "data-focus": `demonstrations ${id}` },
+    element("span", { class: "number" }, String(number)),
+    element("span", { class: "preview" }, preview),
+    element("span", { class: "verdict" }, word),
+    element("span", { class: "figure" }, statistics.lost > 0 && `${statistics.lost} lost`),
+    element("span", { class: "figure" }, formatNumber(duration, 1, "s")),
+    !readOnly && rowButtons(demonstration),
+    why && element("span", { class: "why" }, capitalize(why)),
+  );
+}
+
+/** @param {Demonstration} demonstration */
+function rowButtons({ id, number, mark, discarded_ns }) {
+  const [verb, sign, name] = discarded_ns ? ["restore", "↶", "Restore"] : ["discard", "×", "Discard"];
+  const next = NEXT_MARK[mark] ?? "";
+  const marking = `Mark demonstration ${number} ${next || "neither good nor bad"}`;
+  const markLabel = { "aria-label": marking, title: marking };
+  const discardLabel = { "aria-label": `${name} demonstration ${number}`, title: name };
+  const button = { type: "button", class: "close" };
+  return [
+    element(
+      "button",
+      { ...button, ...markLabel, "data-marked": id, "data-mark": next, "data-key": `mark ${id}` },
+      MARK_SYMBOLS[mark] ?? MARK_SYMBOLS[""],
+    ),
+    element("button", { ...button, ...discardLabel, [`data-${verb}`]: id, "data-key": `discard ${id}` }, sign),
+  ];
+}
