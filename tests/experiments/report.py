@@ -127,7 +127,7 @@ def _table_1(modes: Mapping[str, Sequence[Mapping[str, Any]]]) -> str:
     return (
         "<table><caption><b>Table I.</b> Clusters, and the score of every demonstration in its cluster, best first; "
         "selected ones bold. “Published” is quoted from Aleotti &amp; Caselli 2005, whose recordings are not public: "
-        "scale and spread can be compared, single values cannot. Mode default ranks by the worst robust z of seven "
+        "scale and spread can be compared, single values cannot. Mode default ranks by the worst robust z of eight "
         f"kinds of faults.</caption><tr>{head}{''.join(rows)}</table>"
     )
 

@@ -35,7 +35,7 @@ const COLUMNS = {
 const COLUMNS_BY_MODE = { default: ["rank", "z", "margin", "likelihood"], other: ["rank", "likelihood", "margin"] };
 const NOTES_BY_MODE = {
   default:
-    "Ranked by z: how far one is from the others of its way in the worst of seven kinds of faults, in robust standard deviations; 0 is like them or better.",
+    "Ranked by z: how far one is from the others of its way in the worst of eight kinds of faults, in robust standard deviations; 0 is like them or better.",
   other: "Ranked by the log-likelihood under the model of the way.",
 };
 const NOTE = "The margin is the lead over the next in rank. A way's path is fitted to what is kept (✓).";

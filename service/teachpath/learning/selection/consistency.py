@@ -27,6 +27,7 @@ class Part(StrEnum):
     TREMOR = "tremor"
     NOISE = "noise"
     BEND = "bend"
+    DETOUR = "detour"
     PAUSE = "pause"
     JUMP = "jump"
     FREEZE = "freeze"
@@ -37,18 +38,20 @@ FAULTY = {  # what of a demonstration is inconsistent
     Part.TREMOR: "smoothness",
     Part.NOISE: "smoothness",
     Part.BEND: "bending",
+    Part.DETOUR: "bending",
     Part.PAUSE: "timing",
     Part.JUMP: "readings",
     Part.FREEZE: "readings",
 }
 # Usual spreads of faultless demonstrations, in logarithms of amplitudes (BEND: nats, PAUSE: logarithm of a duration),
-# such that a score of 3 is the limit. Only BEND leaves out more than one in a thousand faultless ones: detours and the
-# hand's own bows overlap, and its limit is a compromise (`make experiments`).
+# such that a score of 3 is the limit. Only BEND and DETOUR leave out more than one in a thousand faultless ones:
+# detours and the hand's own bows overlap, and their limit is a compromise (`make experiments`).
 USUAL_SPREADS = {
     Part.WIGGLE: 0.1,
     Part.TREMOR: 0.09,
     Part.NOISE: 0.085,
-    Part.BEND: 0.55,
+    Part.BEND: 0.6,
+    Part.DETOUR: 0.07,
     Part.PAUSE: 0.23,
     Part.JUMP: 0.1,
     Part.FREEZE: 0.2,
@@ -56,13 +59,22 @@ USUAL_SPREADS = {
 USUAL_WEIGHT = 6  # members that the usual spread counts for beside the measured one
 PACE_SPREAD = 0.2  # of a logarithm of the pace, by which the amplitude of a tremor moves from one band to another
 WARP_SPREAD = 13.0  # nats of bending for each share of the duration by which the pace differs
+DETOUR_PACE_SPREAD = 0.8  # as PACE_SPREAD, of a detour
+DETOUR_WARP_SPREAD = (
+    4.2  # of the same logarithm, for each share of the duration by which the pace of the others differs
+)
 BENDS_OF_MANY = 1.74  # how much more the bends of many vary than those of five
 MEDIAN_VARIANCE = 1.57  # of the median of so many values, of their variance
 MAX_WITHOUT_OWN = 30  # members up to which each is compared with the others alone; in more its own value is lost
 BANDS = {Part.WIGGLE: (13, 24), Part.TREMOR: (24, 42), Part.NOISE: (42, 80)}  # degrees, first to one behind the last
 QUICK = slice(13, 80)  # the degrees of all of them
+# A hand that goes its way has next to nothing in these degrees, and half a second's turn aside and back has; in lower
+# ones it differs from hand to hand, and the degrees above are those of a wiggle.
+DETOUR_BAND = (11.5, 14)
+DIFFERENT = slice(4, 17)  # degrees in which a detour differs from the other motions, their ends and drifts do not
 SHAKING_WINDOW = CLOCK_POINTS // 12  # over which shaking is averaged
 NEGLIGIBLE = 0.001  # of the size of the path: an amplitude far below it says nothing
+NEGLIGIBLE_DETOUR = 0.0006
 NEGLIGIBLE_BEND = 0.01
 NEGLIGIBLE_JUMP = 0.01
 NEGLIGIBLE_PAUSE = 0.02  # of the mean duration of a part of the path
@@ -80,6 +92,9 @@ class Measures:
         jump_sizes, leap_sizes: (m,) logarithms.
         paces: (m,) logarithms of the duration beside the median duration.
         bending: None for fewer than four.
+        detours: (4, m) logarithms of amplitudes, of the motions and of their differences from the mean of the others,
+            on two clocks.
+        differences: (m,) root mean squares of these differences, in sizes of the path.
     """
 
     amplitudes: dict[Part, Array]
@@ -89,6 +104,8 @@ class Measures:
     leap_sizes: Array
     paces: Array
     bending: Bending | None
+    detours: Array
+    differences: Array
 
     def scores(self, members: Sequence[int] | NDArray[np.int64]) -> dict[Part, Array]:
         """Return for each part and each of these members by how many usual spreads it is worse than the others."""
@@ -99,6 +116,7 @@ class Measures:
         }
         z = {part: self._band(part, at, usual[part]) for part in BANDS}
         z[Part.BEND] = self._bend(at, usual[Part.BEND])
+        z[Part.DETOUR] = self._detour(at)
         z[Part.PAUSE] = robust_z(self._pauses(at), usual[Part.PAUSE])
         z[Part.JUMP] = robust_z(self.jump_sizes[at], usual[Part.JUMP])
         z[Part.FREEZE] = robust_z(self.leap_sizes[at], usual[Part.FREEZE])
@@ -119,6 +137,17 @@ class Measures:
         z = robust_z(bending_surprises(self.bending.energies[at]), scatter * np.hypot(usual, WARP_SPREAD * warp))
         return np.asarray(np.where(self.bending.amplitudes[at] > NEGLIGIBLE_BEND, z, np.minimum(z, 0.0)))
 
+    def _detour(self, at: NDArray[np.int64]) -> Array:
+        """Score detours where a member is least suspicious: its own shape or its own pace alone say nothing."""
+        m = len(at)
+        if self.bending is None or m < MIN_COURSES:
+            return np.zeros(m)
+        warps = np.square(self.bending.warps[at])
+        of_pace = np.hypot(DETOUR_PACE_SPREAD * self.paces[at], USUAL_SPREADS[Part.DETOUR])
+        of_warp = DETOUR_WARP_SPREAD * np.sqrt((warps.sum() - warps) / (m - 1))
+        z = np.min([robust_z(values, np.hypot(of_pace, of_warp)) for values in self.detours[:, at]], axis=0)
+        return np.asarray(np.where(self.differences[at] > NEGLIGIBLE_BEND, z, np.minimum(z, 0.0)))
+
     def _pauses(self, at: NDArray[np.int64]) -> Array:
         """Return for each member by how much it dwells longer than the others where it does so most: (m,)."""
         dwell = self.dwell[:, at]
@@ -137,10 +166,12 @@ def measure(features: Sequence[MotionFeatures], courses: Array, size: float, bou
     durations = np.array([of.duration for of in features])
     paces = durations / np.median(durations)
     timed = np.stack([of.timed for of in features]) / size
+    different = timed - (timed.sum(axis=0) - timed) / max(len(features) - 1, 1)
     energies, even = _cumulative(timed), np.ones_like(paces)
+    paced = np.clip(paces, MIN_PACE, MAX_PACE)
     clocks = (
         (energies, even),
-        (energies, np.clip(paces, MIN_PACE, MAX_PACE)),
+        (energies, paced),
         (_cumulative(np.stack([of.spaced for of in features]) / size), even),
     )
     shaking = np.stack([shaking_profile(of) for of in features])
@@ -154,6 +185,14 @@ def measure(features: Sequence[MotionFeatures], courses: Array, size: float, bou
         leap_sizes=np.log(np.array([of.leap for of in features]) / size + NEGLIGIBLE_JUMP),
         paces=np.log(paces),
         bending=measure_bending(courses, size) if len(features) >= MIN_COURSES else None,
+        detours=np.stack(
+            [
+                _amplitudes(of, clock, *DETOUR_BAND, NEGLIGIBLE_DETOUR)
+                for of in (energies, _cumulative(different))
+                for clock in (even, paced)
+            ]
+        ),
+        differences=np.sqrt(np.square(different[:, DIFFERENT]).sum(axis=(1, 2))),
     )
 
 
@@ -198,11 +237,11 @@ def _cumulative(coefficients: Array) -> Array:
     return np.concatenate([np.zeros((len(energies), 1)), np.cumsum(energies, axis=1)], axis=1)
 
 
-def _amplitudes(cumulative: Array, paces: Array, low: int, high: int) -> Array:
+def _amplitudes(cumulative: Array, paces: Array, low: float, high: float, negligible: float = NEGLIGIBLE) -> Array:
     """Return the logarithms of the amplitudes in a band whose degrees are multiplied by `paces` (m,)."""
     paces = np.minimum(paces, DEGREES / high)
     below, upto = (_interpolated(cumulative, degree * paces) for degree in (low, high))
-    return np.asarray(0.5 * np.log(np.maximum(upto - below, 0.0) + NEGLIGIBLE**2))
+    return np.asarray(0.5 * np.log(np.maximum(upto - below, 0.0) + negligible**2))
 
 
 def _interpolated(cumulative: Array, degrees: Array) -> Array:

@@ -187,8 +187,10 @@ def _worst_part(selection: Selection, i: int) -> Part:
     if z[Part.FREEZE] > selection.limit:
         return Part.FREEZE  # its leap shakes and pauses as well
     z[Part.JUMP] /= 2  # a hand that trembles jumps as well
+    z[Part.DETOUR] /= 2  # and turns aside
     worst = max(z, key=lambda part: z[part])
-    return Part.PAUSE if worst is Part.BEND and z[Part.PAUSE] > selection.limit else worst
+    bends = worst in (Part.BEND, Part.DETOUR)
+    return Part.PAUSE if bends and z[Part.PAUSE] > selection.limit else worst
 
 
 def _deviation(cluster: _Members, i: int, part: Part) -> Deviation:

@@ -54,7 +54,7 @@ def describe_deviation(
             what = f"jumps by {describe_length(features.jump)}"
         case Part.PAUSE:
             seconds, what = _pause(trajectory, features, their_features)
-        case Part.BEND:
+        case Part.BEND | Part.DETOUR:
             seconds, what = _bend(since, features, their_features)
         case _:
             seconds, what = _shaking(trajectory, features, their_features)

@@ -69,7 +69,11 @@ def extract_features(trajectory: Trajectory) -> MotionFeatures:
     shares = np.linspace(0.0, s[-1], CLOCK_POINTS + 1)
     at_shares = np.interp(shares, s[forward], since[forward])
     at_shares[0], at_shares[-1] = 0.0, since[-1]
-    departures = np.linalg.norm(positions - median_filter(positions, size=(MEDIAN_WINDOW, 1), mode="nearest"), axis=1)
+    # A median of each coordinate depends on the axes: the motion's own ones make it the same in every frame.
+    centred = positions - positions.mean(axis=0)
+    axes = np.linalg.eigh(np.einsum("ni,nj->ij", centred, centred))[1]
+    local = np.einsum("ni,ij->nj", centred, axes)
+    departures = np.linalg.norm(local - median_filter(local, size=(MEDIAN_WINDOW, 1), mode="nearest"), axis=1)
     leap, frozen = _largest_leap(positions)
     return MotionFeatures(
         duration=float(since[-1]),
