@@ -20,6 +20,7 @@ from teachpath.motion.execution.motion_program import MotionProgram
 from teachpath.motion.execution.program import PlanProgram
 from teachpath.motion.settings import MotionSettings
 from teachpath.records import Command, Plan, Scene, TeleopRequest
+from teachpath.records.poses import check_calibration
 from teachpath.time_source import TimeSource
 from teachpath_proto.control import CommandVerb
 from teachpath_proto.keys import Keys
@@ -110,6 +111,7 @@ class ProgramFactory:
         ):
             if not low <= value <= high:
                 raise UnusableInput(f"{name} {value:g} is outside {low:g} to {high:g}")
+        check_calibration(request.calibration)
         start_q = self._joint_states.resting_q(self._settings.rest_speed)
         monotonic_ns = self._time.monotonic_ns
         hand = HandInput(self._bus, self._keys, request, silence=self._settings.hand_silence, clock=monotonic_ns)

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import math
+import re
 from collections.abc import Mapping
 from typing import Any, TypeVar, get_origin
 
@@ -17,6 +19,8 @@ T = TypeVar("T")
 
 # What files that were recorded or exported earlier call the fields of a demonstration and of its statistics.
 FORMER_NAMES = {"account": "statistics", "jumps": "outliers", "leaps": "level_shifts"}
+
+LONG_EXPONENT = re.compile(rb"[eE]\+?[0-9]{3}")  # of which a number may be too large to be finite
 
 _converter = make_converter(forbid_extra_keys=True)
 
@@ -66,11 +70,21 @@ def decode(kind: type[T], payload: bytes, *, former_names: Mapping[str, str] | N
     names = former_names or {}
     try:
         document = json.loads(
-            payload, object_pairs_hook=lambda pairs: {names.get(key, key): value for key, value in pairs}
+            payload,
+            object_pairs_hook=lambda pairs: {names.get(key, key): value for key, value in pairs},
+            parse_constant=_finite,
+            parse_float=_finite if LONG_EXPONENT.search(payload) else None,
         )
     except (ValueError, RecursionError) as error:
         raise UnusableInput(f"{len(payload)} bytes are not a {kind.__name__} in JSON: {error}") from None
     return from_document(kind, document)
+
+
+def _finite(text: str) -> float:
+    value = float(text)
+    if not math.isfinite(value):
+        raise ValueError(f"{text} is no finite number")
+    return value
 
 
 def decode_demonstration(payload: bytes) -> Demonstration:

@@ -1,4 +1,4 @@
-"""Rules of poses that come from outside: what is a rotation, and what is the same place."""
+"""Rules of poses and calibrations that come from outside: what is a rotation, and what is the same place."""
 
 from __future__ import annotations
 
@@ -8,10 +8,13 @@ from typing import Final
 
 from teachpath.errors import UnusableInput
 from teachpath.records.arrays import Quaternion
+from teachpath.records.calibrations import Calibration
 
 MAX_NORM_ERROR: Final = 0.01  # of a quaternion that is brought to unit length
 SAME_PLACE: Final = 0.001  # [m] within which an object that is seen again has not moved
 SAME_TURN: Final = math.radians(1.0)  # likewise
+SCALES: Final = (1e-4, 1e4)  # least and largest of a calibration; 0.001 is of a tracker in millimetres
+MAX_OFFSET: Final = 100.0  # [m] of a calibration
 
 
 def unit_quaternion(orientation: Sequence[float], what: str = "an orientation") -> Quaternion:
@@ -33,3 +36,13 @@ def unit_quaternion(orientation: Sequence[float], what: str = "an orientation") 
         )
     w, x, y, z = (value / norm for value in orientation)
     return w, x, y, z
+
+
+def check_calibration(calibration: Calibration) -> None:
+    """Raise UnusableInput where no tracker can be mapped to the world so."""
+    unit_quaternion(calibration.rotation, "calibration.rotation")
+    low, high = SCALES
+    if not low <= calibration.scale <= high:
+        raise UnusableInput(f"calibration.scale {calibration.scale:g} is outside {low:g} to {high:g}")
+    if not max(map(abs, calibration.offset)) <= MAX_OFFSET:
+        raise UnusableInput(f"calibration.offset {list(calibration.offset)} is over {MAX_OFFSET:g} m: is it in metres?")

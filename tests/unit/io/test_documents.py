@@ -50,6 +50,14 @@ def test_what_is_no_document_is_a_sentence(payload: bytes) -> None:
         documents.decode(Plan, payload)
 
 
+@pytest.mark.parametrize("number", ["NaN", "-Infinity", "1e999", "-1e0999", "1E+400"])
+def test_a_number_that_is_not_finite_is_refused_wherever_it_stands(number: str) -> None:
+    payload = documents.encode(a_plan()).replace(b"2.0", number.encode(), 1)
+    assert number.encode() in payload
+    with pytest.raises(UnusableInput, match=r"is no finite number"):
+        documents.decode(Plan, payload)
+
+
 def test_an_illegal_curve_names_its_fault() -> None:
     document = documents.to_document(a_path())
     document["curve"]["weights"] = [1.0, -1.0]

@@ -1,5 +1,6 @@
 """The arm mirrors a live hand: the clutch, a lost hand, and who may."""
 
+import json
 from dataclasses import replace
 
 import numpy as np
@@ -122,6 +123,32 @@ def test_a_hand_that_names_no_session_moves_nothing_and_is_told_why() -> None:
     assert "samples as glove name no session" in says[0]
     assert "following" not in bench.states()
     np.testing.assert_allclose(moved(bench), np.zeros(3), atol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("field", "value", "sentence"),
+    [
+        ("offset", "[NaN, 0.0, 0.0]", "NaN is no finite number"),
+        ("offset", "[0.0, 1e999, 0.0]", "1e999 is no finite number"),
+        ("rotation", "[0.0, 0.0, 0.0, 0.0]", "no value of calibration.rotation"),
+        ("rotation", "[9.0, 0.0, 0.0, 0.0]", "no value of calibration.rotation"),
+        ("scale", "-1.0", "calibration.scale -1"),
+        ("scale", "1e300", "calibration.scale 1e\\+300"),
+    ],
+)
+def test_an_order_with_a_calibration_that_is_none_moves_nothing(field: str, value: str, sentence: str) -> None:
+    bench, order = Held(), json.loads(encode(ORDER))
+    order["calibration"][field] = "PLACE"
+    payload = json.dumps(order).replace('"PLACE"', value).encode()
+
+    def refuse() -> None:
+        with pytest.raises(UnusableInput, match=sentence):
+            bench.command("teleoperate", teleop=payload)
+
+    bench.when(lambda: bool(bench.statuses), refuse)
+    bench.when(lambda: True, bench.stop.set)
+    bench.run()
+    assert bench.setpoints == []
 
 
 def moved(bench: Held) -> np.ndarray:
