@@ -268,6 +268,7 @@ class Demonstration:
     statistics: StreamStatistics
     recording: str
     reasons: list[str] = field(default_factory=list)
+    advice: str = ""
     left_out: list[int] = field(default_factory=list)
     trim: tuple[int, int] | None = None
     mark: str = ""

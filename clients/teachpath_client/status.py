@@ -88,7 +88,7 @@ class Status:
 
 def verdict_line(newest: tracker_pb2.DemonstrationReport) -> str:
     """Return a line about a finished take."""
-    reasons = f": {'; '.join(newest.reasons)}" if newest.reasons else ""
+    reasons = f": {newest.advice or '; '.join(newest.reasons)}" if newest.reasons else ""
     return f"  {VERDICT_MARKS.get(newest.verdict, '?')} take {newest.number} {newest.verdict}{reasons}"
 
 

@@ -90,7 +90,7 @@ function taskChanges(before, now) {
 
 /** @param {[Demonstration | undefined, Demonstration]} pair */
 function demonstrationChange([old, one]) {
-  const why = one.reasons.length ? `, ${one.reasons.join("; ")}` : "";
+  const why = one.reasons.length ? `, ${one.advice || one.reasons.join("; ")}` : "";
   if (!old || old.verdict !== one.verdict) {
     return `Demonstration ${one.number} ${old ? "was judged again" : "was recorded"}: ${one.verdict}${why}`;
   }

@@ -35,12 +35,23 @@ function patchNodes(parent, fresh) {
 function patchNode(here, want) {
   if (here instanceof Text && want instanceof Text) here.data = want.data;
   else if (here instanceof Element && want instanceof Element && isSame(here, want)) {
-    for (const { name } of [...here.attributes]) if (!want.hasAttribute(name)) here.removeAttribute(name);
+    for (const { name } of [...here.attributes]) {
+      if (!want.hasAttribute(name) && !isUnfolded(here, name)) here.removeAttribute(name);
+    }
     for (const { name, value } of want.attributes) {
       if (here.getAttribute(name) !== value) here.setAttribute(name, value);
     }
     patchNodes(here, want);
   } else here.replaceWith(want);
+}
+
+/**
+ * Whether an attribute says that somebody has unfolded details, which stay so.
+ * @param {Element} here
+ * @param {string} name
+ */
+function isUnfolded(here, name) {
+  return here.nodeName === "DETAILS" && name === "open";
 }
 
 /**

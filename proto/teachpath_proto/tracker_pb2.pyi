@@ -181,7 +181,7 @@ class Span(_message.Message):
     def __init__(self, begin: _Optional[int] = ..., end: _Optional[int] = ...) -> None: ...
 
 class DemonstrationReport(_message.Message):
-    __slots__ = ("demonstration", "task", "number", "verdict", "reasons", "mark", "discarded", "transport")
+    __slots__ = ("demonstration", "task", "number", "verdict", "reasons", "mark", "discarded", "transport", "advice")
     DEMONSTRATION_FIELD_NUMBER: _ClassVar[int]
     TASK_FIELD_NUMBER: _ClassVar[int]
     NUMBER_FIELD_NUMBER: _ClassVar[int]
@@ -190,6 +190,7 @@ class DemonstrationReport(_message.Message):
     MARK_FIELD_NUMBER: _ClassVar[int]
     DISCARDED_FIELD_NUMBER: _ClassVar[int]
     TRANSPORT_FIELD_NUMBER: _ClassVar[int]
+    ADVICE_FIELD_NUMBER: _ClassVar[int]
     demonstration: str
     task: str
     number: int
@@ -198,7 +199,8 @@ class DemonstrationReport(_message.Message):
     mark: str
     discarded: bool
     transport: Span
-    def __init__(self, demonstration: _Optional[str] = ..., task: _Optional[str] = ..., number: _Optional[int] = ..., verdict: _Optional[str] = ..., reasons: _Optional[_Iterable[str]] = ..., mark: _Optional[str] = ..., discarded: _Optional[bool] = ..., transport: _Optional[_Union[Span, _Mapping]] = ...) -> None: ...
+    advice: str
+    def __init__(self, demonstration: _Optional[str] = ..., task: _Optional[str] = ..., number: _Optional[int] = ..., verdict: _Optional[str] = ..., reasons: _Optional[_Iterable[str]] = ..., mark: _Optional[str] = ..., discarded: _Optional[bool] = ..., transport: _Optional[_Union[Span, _Mapping]] = ..., advice: _Optional[str] = ...) -> None: ...
 
 class RecorderStatus(_message.Message):
     __slots__ = ("recordings",)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
@@ -87,8 +88,12 @@ def double(stream: Stream, rng: np.random.Generator, count: float) -> Stream:
 
 
 def refuse(stream: Stream, rng: np.random.Generator, count: float) -> Stream:
-    """Send payloads that cannot be used; of half of them not even the number can be read."""
-    chosen = _chosen(stream, rng, count)
+    """Send payloads that cannot be used; of half of them not even the number can be read.
+
+    What comes twice is left as it is: of a broken copy nobody can tell whether it was a sample of its own.
+    """
+    copies = Counter(e.sample.sequence for e in stream.events)
+    chosen = {i for i in _chosen(stream, rng, count) if copies[stream.events[i].sample.sequence] == 1}
     return changed(
         stream,
         [

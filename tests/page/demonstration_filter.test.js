@@ -11,6 +11,7 @@ const all = Array.from({ length: 60 }, (_, i) => ({
   verdict: VERDICTS[i % 3],
   mark: i % 5 ? "" : "good",
   reasons: i % 3 ? [`${i} samples were lost`] : [],
+  advice: "",
   duration: ((i * 7) % 60) + 1,
   discarded_ns: i % 11 ? 0 : 1,
 }));

@@ -63,9 +63,9 @@ function isOfGroup({ verdict, mark, discarded_ns }, way, group) {
 }
 
 /** @param {Demonstration} demonstration @param {string} word */
-function has({ number, source, verdict, mark, reasons }, word) {
+function has({ number, source, verdict, mark, reasons, advice }, word) {
   if (/^\d+$/.test(word)) return number === Number(word);
-  return [source, verdict, mark, ...reasons].some((text) => text.toLowerCase().includes(word));
+  return [source, verdict, mark, advice, ...reasons].some((text) => text.toLowerCase().includes(word));
 }
 
 /**

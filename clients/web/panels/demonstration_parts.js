@@ -87,8 +87,21 @@ export function senderFacts({ offset, dropped, sequence }) {
   ]);
 }
 
+/**
+ * Why a demonstration is as it is: for the operator what to do, and folded behind it the figures.
+ * @param {Pick<Demonstration, "advice" | "reasons">} demonstration
+ * @param {...string} words what else is to be said of it
+ */
+export function verdictExplanation({ advice, reasons }, ...words) {
+  const said = [...words, advice].filter(Boolean).join("; ");
+  const figures = capitalize(reasons.join("; "));
+  if (!said) return figures && element("span", { class: "why" }, figures);
+  if (!figures) return element("span", { class: "why" }, capitalize(said));
+  return element("details", { class: "why" }, element("summary", {}, capitalize(said)), figures);
+}
+
 /** @param {Demonstration} demonstration */
-export function demonstrationRow({ number, verdict, discarded_ns, duration, statistics, reasons }) {
+export function demonstrationRow({ number, verdict, discarded_ns, duration, statistics, reasons, advice }) {
   const { received, lost } = statistics;
   const word = discarded_ns ? "discarded" : verdict;
   const figure = `${formatNumber(duration, 1, "s")}, ${lost} of ${formatNumber(received + lost, 0)} lost`;
@@ -98,6 +111,6 @@ export function demonstrationRow({ number, verdict, discarded_ns, duration, stat
     element("span", { class: "number" }, String(number)),
     element("span", { class: "verdict" }, word),
     element("span", { class: "figure" }, figure),
-    reasons.length > 0 && element("span", { class: "why" }, capitalize(reasons.join("; "))),
+    verdictExplanation({ advice, reasons }),
   );
 }

@@ -1,9 +1,10 @@
 // Rows of demonstrations: number, thumbnail, verdict with its reasons, duration, losses, and buttons.
 import { element } from "../elements.js";
 import { waysOfDemonstrations } from "../store.js";
-import { capitalize, formatNumber } from "../texts.js";
+import { formatNumber } from "../texts.js";
 import { fitProjection, thumbnail } from "../thumbnail.js";
 import { wayClass } from "../way_colors.js";
+import { verdictExplanation } from "./demonstration_parts.js";
 
 /** @type {Record<string, string>} */
 export const MARK_SYMBOLS = { "": "☆", good: "★", bad: "⚑" };
@@ -29,8 +30,7 @@ export function thumbnailMaker(state, demonstrations, trajectories) {
 
 /** @param {Demonstration} demonstration @param {Child} preview @param {boolean} readOnly */
 export function demonstrationRow(demonstration, preview, readOnly) {
-  const { id, number, verdict, mark, trim, reasons, duration, discarded_ns, statistics } = demonstration;
-  const why = [mark && `marked ${mark}`, trim && "trimmed", ...reasons].filter(Boolean).join("; ");
+  const { id, number, verdict, mark, trim, duration, discarded_ns, statistics } = demonstration;
   const word = discarded_ns ? "discarded" : verdict;
   return element(
     "li",
@@ -41,7 +41,7 @@ export function demonstrationRow(demonstration, preview, readOnly) {
     element("span", { class: "figure" }, statistics.lost > 0 && `${statistics.lost} lost`),
     element("span", { class: "figure" }, formatNumber(duration, 1, "s")),
     !readOnly && rowButtons(demonstration),
-    why && element("span", { class: "why" }, capitalize(why)),
+    verdictExplanation(demonstration, mark && `marked ${mark}`, trim ? "trimmed" : ""),
   );
 }
 

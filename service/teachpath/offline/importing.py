@@ -5,7 +5,7 @@ from __future__ import annotations
 import io
 import time
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 
 from teachpath.errors import UnusableInput, UnusableRecording
 from teachpath.io.documents import decode_demonstration
@@ -163,10 +163,10 @@ def _judged(
     row, trajectory = made
     before = _statistics(stated, read.motions[0], settings)
     now = _statistics(row, store.recordings.samples(row.recording, row.digest), settings)
-    quality = reassess_quality(QualityReport(stated.verdict, stated.reasons), before, now, settings)
-    if quality == QualityReport(row.verdict, row.reasons):
+    quality = reassess_quality(QualityReport(stated.verdict, stated.reasons, stated.advice), before, now, settings)
+    if quality == QualityReport(row.verdict, row.reasons, row.advice):
         return made
-    return store.change_demonstration(row.id, verdict=quality.verdict, reasons=quality.reasons), trajectory
+    return store.change_demonstration(row.id, **asdict(quality)), trajectory
 
 
 def _curated(

@@ -13,6 +13,7 @@ import numpy as np
 from teachpath.errors import UnusableRecording
 from teachpath.io.store.recordings import RecordingFile, facts_of
 from teachpath.io.store.store import Store
+from teachpath.recording.advice import ending_advice
 from teachpath.recording.demonstration import carried_numbers, object_trajectory, to_world, usable_samples
 from teachpath.recording.phase_statistics import PhaseStatistics, phase_statistics, tell_arrivals
 from teachpath.recording.phases import TransportSpan
@@ -80,6 +81,7 @@ def complete_take(
         statistics=statistics,
         recording="",
         reasons=quality.reasons,
+        advice=quality.advice,
         left_out=left_out,
     )
     finished = file.finish(facts_of(demonstration))
@@ -134,12 +136,18 @@ def reassess(
     take = SegmentedTake(samples, cut, before.statistics, after.calibration, None)
     statistics, left_out = add_content_faults(take, settings)
     quality = reassess_quality(
-        QualityReport(before.verdict, before.reasons),
+        QualityReport(before.verdict, before.reasons, before.advice),
         phase_statistics(samples, TransportSpan(*before.transport), before.statistics, settings),
         phase_statistics(samples, cut, statistics, settings),
         settings,
     )
-    return {"statistics": statistics, "left_out": left_out, "verdict": quality.verdict, "reasons": quality.reasons}
+    return {
+        "statistics": statistics,
+        "left_out": left_out,
+        "verdict": quality.verdict,
+        "reasons": quality.reasons,
+        "advice": quality.advice,
+    }
 
 
 def _assess(statistics: PhaseStatistics, take: SegmentedTake, settings: RecordingSettings) -> QualityReport:
@@ -147,7 +155,9 @@ def _assess(statistics: PhaseStatistics, take: SegmentedTake, settings: Recordin
     if not take.fault:
         return quality
     rejected = take.cut.open_ended or quality.verdict == Verdict.REJECT
-    return QualityReport(Verdict.REJECT if rejected else Verdict.REPAIRED, (take.fault, *quality.reasons))
+    verdict = Verdict.REJECT if rejected else Verdict.REPAIRED
+    advice = quality.advice if quality.verdict == Verdict.REJECT else ending_advice(take.fault, rejected=rejected)
+    return QualityReport(verdict, (take.fault, *quality.reasons), advice)
 
 
 def _number(sample: Sample) -> int:

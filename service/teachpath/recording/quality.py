@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
+from teachpath.recording.advice import USABLE, ending_advice, rejection_advice
 from teachpath.recording.phase_statistics import PhaseStatistics
 from teachpath.recording.settings import RecordingSettings
 from teachpath.records import StreamStatistics, Verdict
@@ -24,10 +25,16 @@ LOCATED = ("lost", "refused", "untracked", "conflicts", "duplicated", "reordered
 
 @dataclass(frozen=True, slots=True)
 class QualityReport:
-    """The verdict on a demonstration and its reasons, the gravest first."""
+    """The verdict on a demonstration.
+
+    Attributes:
+        reasons: why it is not clean, with figures, the gravest first.
+        advice: what the operator should know and do, in one sentence; empty when it is clean.
+    """
 
     verdict: Verdict
     reasons: tuple[str, ...] = ()
+    advice: str = ""
 
 
 def assess_quality(statistics: PhaseStatistics, settings: RecordingSettings) -> QualityReport:
@@ -44,8 +51,10 @@ def assess_quality(statistics: PhaseStatistics, settings: RecordingSettings) -> 
     whole = statistics.whole
     if whole.declared_rate and abs(whole.seen_rate / whole.declared_rate - 1.0) > settings.rate_tolerance:
         repairs.append(f"the rate is {whole.seen_rate:.3g} Hz, declared {whole.declared_rate:.3g} Hz")
-    verdict = Verdict.REJECT if rejections else Verdict.REPAIRED if repairs else Verdict.CLEAN
-    return QualityReport(verdict, (*rejections, *repairs))
+    reasons = (*rejections, *repairs)
+    if rejections:
+        return QualityReport(Verdict.REJECT, reasons, rejection_advice(transport, settings))
+    return QualityReport(Verdict.REPAIRED, reasons, USABLE) if repairs else QualityReport(Verdict.CLEAN)
 
 
 def reassess_quality(
@@ -66,8 +75,9 @@ def reassess_quality(
     if not kept:
         return fresh
     rejected_otherwise = former.verdict == Verdict.REJECT and assessed.verdict != Verdict.REJECT
+    advice = fresh.advice if fresh.verdict == Verdict.REJECT else ending_advice(kept[0], rejected=rejected_otherwise)
     rejected = fresh.verdict == Verdict.REJECT or rejected_otherwise
-    return QualityReport(Verdict.REJECT if rejected else Verdict.REPAIRED, (*kept, *fresh.reasons))
+    return QualityReport(Verdict.REJECT if rejected else Verdict.REPAIRED, (*kept, *fresh.reasons), advice)
 
 
 def _with_unlocated(statistics: PhaseStatistics) -> StreamStatistics:

@@ -185,7 +185,8 @@ class Demonstration:
     verdict: Verdict
     statistics: StreamStatistics
     recording: str  # place of the MCAP file within the recordings
-    reasons: tuple[str, ...] = ()  # why the verdict is not clean
+    reasons: tuple[str, ...] = ()  # why the verdict is not clean, with figures
+    advice: str = ""  # what the operator should know and do about it, in one sentence
     left_out: tuple[int, ...] = ()  # numbers of the samples that jumped
     trim: tuple[int, int] | None = None
     mark: str = ""  # the operator's own: good, bad or none

@@ -13,6 +13,7 @@ from teachpath.io.store.store import Store
 from teachpath.recorder.annotations import Annotations
 from teachpath.recorder.calibrations import Calibrations
 from teachpath.recorder.session import RecordingSession, RecordingSetup
+from teachpath.recording.advice import ending_advice
 from teachpath.recording.settings import RecordingSettings
 from teachpath.records import Calibration, Demonstration, Scene, TaughtPoint, Vector
 from tests.unit.recording.hands import demonstration
@@ -110,12 +111,15 @@ def test_demonstrations_under_a_former_version_are_refused_until_they_are_conver
 def test_a_conversion_judges_again_and_forgives_no_other_fault(store: Store) -> None:
     newest = calibrations(store)
     before = recorded(store, newest.measure("lab", shifted((0.0, 0.0, 0.0))).calibration)
-    torn = store.change_demonstration(before.id, verdict="repaired", reasons=("the tracker has gone in mid-take",))
+    fault = "the tracker has gone in mid-take"
+    advice = ending_advice(fault, rejected=False)
+    torn = store.change_demonstration(before.id, verdict="repaired", reasons=(fault,), advice=advice)
     newest.measure("lab", [replace(p, world=(p.world[0] + 5.0, *p.world[1:])) for p in shifted((0.0, 0.0, 0.0))])
     (outside,) = newest.convert([torn])
     assert outside.verdict == "reject"
     assert outside.statistics.out_of_workspace == 50
-    assert outside.reasons[0] == "the tracker has gone in mid-take"
+    assert outside.reasons[0] == fault
+    assert outside.advice not in ("", advice)
     assert newest.convert([outside], "lab@1") == [torn]
 
 

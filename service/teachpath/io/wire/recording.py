@@ -142,6 +142,7 @@ def _demonstration_report(demonstration: Demonstration) -> tracker_pb2.Demonstra
         number=demonstration.number,
         verdict=demonstration.verdict,
         reasons=demonstration.reasons,
+        advice=demonstration.advice,
         mark=demonstration.mark,
         discarded=bool(demonstration.discarded_ns),
         transport=tracker_pb2.Span(begin=begin, end=end),
