@@ -193,7 +193,7 @@ class Station:
         self.preview = Preview(
             self.bus,
             self.keys,
-            visual_solids(),
+            visual_solids(settings.arm.tool_length),
             arm=settings.arm,
             robot=robot,
             home=np.array(settings.motion.home),

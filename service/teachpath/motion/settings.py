@@ -15,7 +15,7 @@ class MotionSettings:
     # published table of the Puma 560; they differ in lengths (the arm's offset by 25 mm), inertia and friction
     variant: Literal["corke-armstrong", "armstrong-khatib-burdick", "fu-gonzalez-lee", "corke-1996"] = "corke-armstrong"
     # [m] from the flange to the tool centre point, which follows the path, on the axis of joint 6; what reaches beyond
-    # the gripper's fingers (0.135) is not checked for collisions
+    # the gripper's fingers (0.135) is checked for collisions as a rod 22 mm thick
     tool_length: Annotated[float, Ge(0.05), Le(0.5)] = 0.13
     # [kg] of what the flange carries besides the gripper and the scene's object, e.g. a camera or another tool
     payload_mass: Annotated[float, Ge(0), Le(10)] = 0.0

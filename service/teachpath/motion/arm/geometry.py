@@ -20,6 +20,9 @@ JOINT_COLOR: Final = 0x2F343B  # joints, foot and gripper
 STEEL_COLOR: Final = 0xA3ABB4
 PLATE_COLOR: Final = 0x1F4E87
 
+FINGER_END: Final = 0.135  # [m] from the flange
+ROD_RADIUS: Final = 0.011  # [m]
+
 IDENTITY_ROTATION: Final[Quaternion] = (1.0, 0.0, 0.0, 0.0)
 Z_TO_Y_ROTATION: Final[Quaternion] = (
     cos(radians(45)),
@@ -57,14 +60,27 @@ class LinkSolid:
     visual_only: bool = False
 
 
-def collision_solids() -> tuple[LinkSolid, ...]:
-    """Return the solids that are simulated and checked for collisions."""
-    return tuple(solid for solid in _SOLIDS if not solid.visual_only)
+def collision_solids(tool_length: float = 0.0) -> tuple[LinkSolid, ...]:
+    """Return the solids that are simulated and checked for collisions.
+
+    Args:
+        tool_length: from the flange to the tool centre point [m].
+    """
+    return tuple(solid for solid in visual_solids(tool_length) if not solid.visual_only)
 
 
-def visual_solids() -> tuple[LinkSolid, ...]:
-    """Return all solids of the Puma 560 and its gripper; the proportions are our own, after photographs of the arm."""
-    return _SOLIDS
+def visual_solids(tool_length: float = 0.0) -> tuple[LinkSolid, ...]:
+    """Return all solids of the Puma 560 and its gripper; the proportions are our own, after photographs of the arm.
+
+    Args:
+        tool_length: from the flange to the tool centre point [m]. What holds one that lies beyond the fingers is taken
+            as a rod as thick as a finger.
+    """
+    beyond = tool_length - FINGER_END
+    if beyond <= 0.0:
+        return _SOLIDS
+    rod = LinkSolid("tool", 6, "cylinder", (ROD_RADIUS, beyond), (0.0, 0.0, FINGER_END + beyond / 2), color=STEEL_COLOR)
+    return (*_SOLIDS, rod)
 
 
 def _tapered(x0: float, r0: float, x1: float, r1: float, corners: int = 12) -> tuple[tuple[float, float], ...]:

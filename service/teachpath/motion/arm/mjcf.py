@@ -48,11 +48,11 @@ def write_mjcf(scene: Scene, arm: Arm, *, timestep: float = 0.001) -> str:
             '<compiler angle="radian" autolimits="true"/>',
             f'<option timestep="{timestep}" gravity="0 0 -9.81" integrator="implicitfast"/>',
             "<asset>",
-            *[_mesh(part) for part in collision_solids() if part.kind == "prism"],
+            *[_mesh(part) for part in collision_solids(arm.tool_length) if part.kind == "prism"],
             *[_hull(shape, name) for name, shape in _bodies(scene) if shape.kind == "mesh"],
             "</asset>",
             "<worldbody>",
-            *_solids_of(0),
+            *_solids_of(0, arm),
             f'<geom name="floor" type="plane" size="0 0 1" pos="0 0 {float(scene.floor)!r}" {_OBSTACLE_CONTACTS}/>',
             *[_fixed(f"obstacle:{shape.name}", shape, _OBSTACLE_CONTACTS) for shape in scene.obstacles],
             *[_fixed(f"zone:{shape.name}", shape, _ZONE_CONTACTS) for shape in scene.keep_out],
@@ -96,7 +96,7 @@ def _arm(arm: Arm) -> list[str]:
             f'frictionloss="{abs(link.gear) * sum(link.coulomb) / 2!r}"/>',
             f'<inertial pos="{_text(link.com)}" mass="{max(link.mass, 1e-3)!r}" '
             f'diaginertia="{_text(physical_inertia(link))}"/>',
-            *_solids_of(i),
+            *_solids_of(i, arm),
         ]
     lines += [
         '<body name="gripper">',
@@ -117,8 +117,8 @@ def _payload(payload: Payload) -> list[str]:
     return [f'<body name="payload"><inertial {inertial}/></body>']
 
 
-def _solids_of(link: int) -> list[str]:
-    return [_link_solid(part) for part in collision_solids() if part.link == link]
+def _solids_of(link: int, arm: Arm) -> list[str]:
+    return [_link_solid(part) for part in collision_solids(arm.tool_length) if part.link == link]
 
 
 def _link_solid(solid: LinkSolid) -> str:

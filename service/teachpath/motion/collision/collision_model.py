@@ -82,7 +82,7 @@ class CollisionModel:
         except ValueError as error:
             raise UnusableInput(f"scene {scene.name!r} cannot be built: {error}") from None
         self._data = mujoco.MjData(self._model)
-        self._solids = {self._id(part.name): part for part in collision_solids()}
+        self._solids = {self._id(part.name): part for part in collision_solids(arm.tool_length)}
         self._names = {geom: part.name for geom, part in self._solids.items()}
         self._obstacles = []
         for shape in scene.obstacles:

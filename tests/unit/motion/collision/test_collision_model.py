@@ -1,6 +1,9 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+from teachpath.motion.arm.geometry import FINGER_END, ROD_RADIUS
 from teachpath.motion.arm.kinematics import downward_poses, inverse_kinematics, tool_pose
 from teachpath.motion.arm.model import Arm
 from teachpath.motion.collision.builtin_scenes import paper_scene
@@ -28,6 +31,33 @@ def test_the_distance_of_the_fingers_to_a_table_is_the_gap_below_them() -> None:
         assert least.distance == pytest.approx(gap, abs=1e-6)
         assert least.other_body == "table"
         assert "finger" in least.body
+
+
+@pytest.mark.parametrize("length", [0.05, 0.135, 0.136, 0.3])
+def test_a_tool_that_ends_beyond_the_fingers_is_measured_to_its_end(length: float) -> None:
+    arm = replace(ARM, tool_length=length)
+    pose = tool_pose(HOME, arm)
+    reach = max(length, FINGER_END) - length  # of the fingers beyond the tool centre point
+    end = pose[:3, 3] + reach * pose[:3, 2]
+    ball = Shape("ball", "sphere", (0.01,), tuple((end + 0.03 * pose[:3, 2]).tolist()))
+    model = CollisionModel(Scene("s", (ball,)), arm)
+    least = model.clearances(HOME)[0]
+    if length > FINGER_END:
+        assert least.distance == pytest.approx(0.02, abs=1e-6)
+        assert {least.body, least.other_body} == {"tool", "ball"}
+    else:
+        assert "finger" in least.body
+    assert model.lever_arms()[5] >= length
+
+
+def test_what_holds_the_tool_keeps_away_from_what_is_beside_it() -> None:
+    arm = replace(ARM, tool_length=0.3)
+    pose = tool_pose(HOME, arm)
+    beside = pose[:3, 3] - 0.08 * pose[:3, 2] + 0.03 * pose[:3, 1]
+    for which, least in ((arm, 0.03 - ROD_RADIUS - 0.01), (ARM, 0.03)):  # without it only the fingers are near
+        ball = Scene("s", (Shape("ball", "sphere", (0.01,), tuple(beside.tolist())),))
+        distance = CollisionModel(ball, which).clearances(HOME)[0].distance
+        assert distance == pytest.approx(least, abs=1e-6) if which is arm else distance > least
 
 
 def test_a_place_is_free_in_the_middle_and_struck_at_its_worst() -> None:
