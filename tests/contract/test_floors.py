@@ -201,6 +201,7 @@ def test_ruckigs_network_service_is_never_asked() -> None:
         ),
         ("teachpath.simulator.loop", {"scipy.linalg", "numba", "hmmlearn", "sqlalchemy", "fastapi"}),
         ("teachpath.executor.loop", {"hmmlearn", "sqlalchemy", "fastapi", "meshcat"}),
+        ("teachpath.learning.relearn", {"numba", "sklearn", "scipy.stats", "scipy.signal", "matplotlib"}),
         ("teachpath.app", {"numba", "hmmlearn", "mujoco", "cryptography"}),
         ("teachpath.live.preview.commands", {"meshcat", "meshcat.visualizer", "IPython", "tornado", "zmq", "PIL"}),
     ],

@@ -7,7 +7,6 @@ from collections.abc import Sequence
 import numpy as np
 
 from teachpath.errors import LearningFailed
-from teachpath.learning.fitting.global_approximation import approximate_from_polygon
 from teachpath.learning.fitting.nurbs_fit import (
     CURVE_SAMPLES,
     Approximation,
@@ -117,6 +116,8 @@ def fit_pooled_points(
     more than the bound, it takes more control points than there are points; the bound is widened until
     `most_control_points` are enough, and the note says so.
     """
+    from teachpath.learning.fitting.global_approximation import approximate_from_polygon  # here, as it loads numba
+
     start = np.mean([trajectory.positions[0] for trajectory in selected], axis=0)
     pooled = np.concatenate([trajectory.positions for trajectory in selected])
     order = np.argsort(np.linalg.norm(pooled - start, axis=1), kind="stable")

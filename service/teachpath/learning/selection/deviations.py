@@ -6,7 +6,6 @@ from collections.abc import Sequence
 
 import numpy as np
 from scipy.ndimage import binary_closing
-from scipy.signal import savgol_filter
 
 from teachpath.learning.lengths import describe_length, describe_lengths
 from teachpath.learning.resampling import arc_lengths, at_equal_arc_length
@@ -117,6 +116,8 @@ def _bend(since: Array, features: MotionFeatures, theirs: Sequence[MotionFeature
 
 def _shaking(trajectory: Trajectory, features: MotionFeatures, theirs: Sequence[MotionFeatures]) -> tuple[Seconds, str]:
     """Tell where a motion is quicker than the intended motion, by what amplitude and how often."""
+    from scipy.signal import savgol_filter  # here, because it loads scipy.stats, which takes longer than learning
+
     excess = shaking_profile(features) - np.median([shaking_profile(of) for of in theirs], axis=0)
     begin, end = _span(excess)
     seconds = begin / CLOCK_POINTS * features.duration, (end + 1) / CLOCK_POINTS * features.duration

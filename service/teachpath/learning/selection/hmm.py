@@ -1,19 +1,19 @@
 """The door to hmmlearn: left-right hidden Markov models on its compiled forward-backward.
 
-Rabiner 1989, section III; the M-step keeps every allowed transition possible, and that of the emissions every
-variance away from zero, so no likelihood is ever infinite.
+Its own models would load scikit-learn, which takes longer than learning. Rabiner 1989, section III; the M-step keeps
+every allowed transition possible, and that of the emissions every variance away from zero, so no likelihood is ever
+infinite.
 """
 
 from __future__ import annotations
 
-from abc import abstractmethod
+from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from itertools import accumulate, pairwise
 from typing import Any
 
 import numpy as np
 from hmmlearn import _hmmc
-from hmmlearn.base import BaseHMM, ConvergenceMonitor
 from numpy.typing import NDArray
 from scipy.special import logsumexp
 
@@ -30,7 +30,7 @@ LOG_2PI = float(np.log(2 * np.pi))
 MIN_SCALED_LOG_LIKELIHOOD = -700.0
 
 
-class LeftRightHmm(BaseHMM):  # type: ignore[misc]
+class LeftRightHmm(ABC):
     """A left-right hidden Markov model: it starts in the first state, and stays in a state or goes to the next one.
 
     Subclasses define the emissions. Training starts from equal slices of time, one per state.
@@ -45,37 +45,25 @@ class LeftRightHmm(BaseHMM):  # type: ignore[misc]
     def __init__(
         self, *, states: int = 10, iterations: int = 20, tolerance: float = 1e-4, pseudo_count: float = 0.01
     ) -> None:
-        super().__init__(n_components=states, n_iter=iterations, tol=tolerance, implementation="log")
         self.states = states
+        self.iterations = iterations
+        self.tolerance = tolerance
         self.pseudo_count = pseudo_count
-        self.monitor_ = _RelativeChange(tolerance, iterations, False)
+        self.history: tuple[float, ...] = ()  # log-likelihood of the training sequences before each M-step
 
     def __repr__(self) -> str:
         return f"{type(self).__name__}({self.states} states)"
 
-    @property
-    def history(self) -> tuple[float, ...]:
-        """Log-likelihood of the training sequences before each M-step."""
-        return tuple(float(value) for value in self.monitor_.history)
-
     def train(self, sequences: Sequence[Array]) -> None:
         """Fit the model to sequences of shape (frames, features) by Baum-Welch."""
         self.n_components = min(self.states, *(len(sequence) for sequence in sequences))
-        self.fit(np.concatenate(sequences), [len(sequence) for sequence in sequences])
-
-    def fit(self, X: Array, lengths: Sequence[int] | None = None) -> LeftRightHmm:
-        """Fit the model to concatenated sequences (frames, features) by Baum-Welch; `train` calls it.
-
-        hmmlearn's own method checks its input in every call, which takes longer than the training of such small models.
-        """
-        lengths = [len(X)] if lengths is None else lengths
-        self._init(X, lengths)
-        self.monitor_._reset()
-        while not self.monitor_.converged:
-            stats, likelihood = self._do_estep(X, lengths)
+        frames, lengths = np.concatenate(sequences), [len(sequence) for sequence in sequences]
+        self._init(frames, lengths)
+        self.history = ()
+        while not self._is_converged():
+            stats, likelihood = self._do_estep(frames, lengths)
             self._do_mstep(stats)
-            self.monitor_.report(likelihood)
-        return self
+            self.history += (likelihood,)
 
     def log_likelihood(self, sequence: Array) -> float:
         """Return log p(O | model) of one sequence of shape (frames, features) by the forward procedure."""
@@ -93,6 +81,19 @@ class LeftRightHmm(BaseHMM):  # type: ignore[misc]
             return np.asarray(best - np.log(scales))
         forward = _hmmc.forward_log(self.startprob_, self.transmat_, lattice)[1]
         return np.diff(logsumexp(forward, axis=1), prepend=0.0)
+
+    def _is_converged(self) -> bool:
+        """Tell whether the log-likelihood changes little, up or down: a regularised M-step may lower it slightly."""
+        if len(self.history) == self.iterations:
+            return True
+        if len(self.history) < 2:
+            return False
+        before, now = self.history[-2:]
+        return abs(now - before) < self.tolerance * (abs(now) + abs(before)) / 2
+
+    @abstractmethod
+    def _compute_log_likelihood(self, X: Array) -> Array:
+        """Return the log-density of frames (n, features) in every state: (n, Q)."""
 
     @abstractmethod
     def _begin(self, owners: NDArray[np.int64], frames: Array) -> None:
@@ -151,20 +152,3 @@ class LeftRightHmm(BaseHMM):  # type: ignore[misc]
         rows = counts.sum(axis=1, keepdims=True)
         self.transmat_ = np.where(rows > 0, counts / np.where(rows > 0, rows, 1.0), self.transmat_)
         self._maximise(stats["frames"], stats["posteriors"])
-
-
-class _RelativeChange(ConvergenceMonitor):  # type: ignore[misc]
-    """Stops when the log-likelihood changes little, up or down: a regularised M-step may lower it slightly."""
-
-    def report(self, log_prob: float) -> None:
-        self.history.append(log_prob)
-        self.iter += 1
-
-    @property
-    def converged(self) -> bool:
-        if self.iter == self.n_iter:
-            return True
-        if len(self.history) < 2:
-            return False
-        before, now = self.history[-2], self.history[-1]
-        return bool(abs(now - before) < self.tol * (abs(now) + abs(before)) / 2)

@@ -7,7 +7,6 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 from scipy.cluster.vq import vq
-from scipy.signal.windows import hamming
 
 from teachpath.records import Array
 
@@ -28,7 +27,7 @@ def spectra(positions: Array) -> Array:
         (frames, 3, 16): one 16-dimensional vector per window and axis.
     """
     stretches = sliding_window_view(positions, WINDOW, axis=0)[::HOP]
-    return np.abs(np.fft.rfft(stretches * hamming(WINDOW), FFT_POINTS, axis=2))[..., :FFT_BINS]
+    return np.abs(np.fft.rfft(stretches * np.hamming(WINDOW), FFT_POINTS, axis=2))[..., :FFT_BINS]
 
 
 def symbol_sequences(
