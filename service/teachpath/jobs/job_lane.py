@@ -5,7 +5,7 @@ from __future__ import annotations
 import queue
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from concurrent.futures import Future
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
@@ -54,11 +54,11 @@ class JobLane:
         self._thread = threading.Thread(target=self._run, name=f"jobs: {name}", daemon=True)
         self.running = ""
 
-    def start(self, warm_up: Callable[[], None] | None = None) -> None:
-        """Begin to work; `warm_up` is called in the process before its first job."""
+    def start(self, expected: Sequence[Callable[..., Any]] = ()) -> None:
+        """Begin to work; the process starts at once where work is expected, and loads what that needs."""
         self._thread.start()
-        if warm_up is not None:
-            self._pool.submit(warm_up)
+        if expected:
+            self._pool.submit(worker.warm_up, list(expected))
 
     def stop(self) -> None:
         """Stop at once, even in the middle of a job."""

@@ -14,7 +14,6 @@ from typing import TYPE_CHECKING, Any, Literal
 from teachpath.errors import Cancelled, Conflict, LearningFailed, PathRefused, QueueFull, TeachpathError
 from teachpath.io.documents import to_document
 from teachpath.io.wire import encode_progress
-from teachpath.jobs import worker
 from teachpath.jobs.job_lane import JobLane, LaneLimits
 from teachpath.jobs.settings import JobSettings
 from teachpath.records import Job, JobState
@@ -86,7 +85,7 @@ class Jobs:
             self._submitters[job.id] = ""
             self._lane(job).put(job.id)
         self._reporter.start()
-        self._lanes["learning"].start(worker.warm_up)
+        self._lanes["learning"].start([kind.work for kind in self._kinds.values() if kind.lane == "learning"])
         self._lanes["files"].start()
 
     def stop(self) -> None:

@@ -11,7 +11,7 @@ import signal
 import threading
 import time
 import uuid
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from multiprocessing import Queue, parent_process
@@ -76,8 +76,8 @@ def _exit_with_parent() -> None:
     os._exit(1)
 
 
-def warm_up() -> None:
-    """Load the libraries that the first job needs."""
+def warm_up(_work: Sequence[Callable[..., Any]]) -> None:
+    """Load the libraries that the first job needs; the modules of its work are loaded as it is received."""
     from teachpath.learning.relearn import relearn
     from teachpath.motion.planning.plan import plan
 
