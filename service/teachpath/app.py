@@ -249,7 +249,7 @@ class Station:
     def notes(self) -> list[str]:
         """Say what an operator should know."""
         notes = [note for process in self.processes if (note := process.note())]
-        notes += self.recorder.faults() + self.executions.faults()
+        notes += self.recorder.faults() + self.executions.faults() + self.store.health.faults()
         notes += self._access.notes(datetime.now(UTC)) if self._access else []
         if (unfinished := self.store.recordings.unfinished()) and not self.recorder.statuses():
             notes.append(f"{len(unfinished)} recordings were cut off; stop the service and run: teachpath doctor")

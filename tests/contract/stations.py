@@ -28,12 +28,18 @@ def settings(folder: Path) -> Settings:
 @contextmanager
 def station() -> Iterator[Station]:
     """Open a station whose arm is missing: recorder, jobs and executions run, nobody executes."""
-    with tempfile.TemporaryDirectory() as folder:
-        station = Station(settings(Path(folder)))
-        try:
-            parts = (station.recorder, station.executions, station.certificate_status, station.joints, station.jobs)
-            for part in parts:
-                part.start()
-            yield station
-        finally:
-            station.__exit__(None, None, None)
+    with tempfile.TemporaryDirectory() as folder, station_in(Path(folder)) as station:
+        yield station
+
+
+@contextmanager
+def station_in(folder: Path) -> Iterator[Station]:
+    """Open a station without an arm on a data folder."""
+    station = Station(settings(folder))
+    try:
+        parts = (station.recorder, station.executions, station.certificate_status, station.joints, station.jobs)
+        for part in parts:
+            part.start()
+        yield station
+    finally:
+        station.__exit__(None, None, None)

@@ -13,6 +13,7 @@ from teachpath.api.parts import Parts
 from teachpath.api.work import accepted, submitter_of
 from teachpath.errors import UnusableInput
 from teachpath.io.files import check_format
+from teachpath.io.store.faults import storage_fault
 from teachpath.offline.import_job import UPLOAD, ImportRequest
 from teachpath.records import Job
 from teachpath_proto.keys import is_name, name_refusal
@@ -71,4 +72,4 @@ async def _receive(request: Request, file: Path, name: str) -> None:
             async for piece in request.stream():
                 await run_in_threadpool(stream.write, piece)
     except OSError as error:
-        raise UnusableInput(f"{name} cannot be kept: {error.strerror}; free space on the disk of the data") from None
+        raise storage_fault(error, name) or error from None

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import queue
 import threading
 import time
@@ -16,6 +17,8 @@ from typing import Any, Final
 from teachpath.errors import Cancelled, OverLimit
 from teachpath.jobs import worker
 from teachpath.jobs.pool import KillablePool
+
+log = logging.getLogger("teachpath")
 
 POLL_INTERVAL: Final = 0.1  # [s] between two looks at whether a job was cancelled or takes too long
 CANCEL_GRACE: Final = 3.0  # [s] after which a cancelled job that reports nothing is ended with its process
@@ -74,6 +77,10 @@ class JobLane:
         """Whether it was told to stop."""
         return self._stopping.is_set()
 
+    def wait_for_stop(self, seconds: float) -> bool:
+        """Wait until it is told to stop, but no longer; return whether it was."""
+        return self._stopping.wait(seconds)
+
     def put(self, key: str) -> None:
         """Queue a job."""
         self._queue.put(key)
@@ -129,5 +136,7 @@ class JobLane:
             self.running = key
             try:
                 self._process(self, key)
+            except Exception:  # the job is run again at the next start; those behind it must not wait for that
+                log.exception("job %s could not be ended in the store", key)
             finally:
                 self.running = ""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import threading
 import time
 import uuid
@@ -9,9 +10,17 @@ from collections.abc import Callable
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
 from multiprocessing import get_context
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Final, Literal
 
-from teachpath.errors import Cancelled, Conflict, LearningFailed, PathRefused, QueueFull, TeachpathError
+from teachpath.errors import (
+    Cancelled,
+    Conflict,
+    LearningFailed,
+    PathRefused,
+    QueueFull,
+    StorageUnavailable,
+    TeachpathError,
+)
 from teachpath.io.documents import to_document
 from teachpath.io.wire import encode_progress
 from teachpath.jobs.job_lane import JobLane, LaneLimits
@@ -22,6 +31,10 @@ from teachpath_proto.keys import Keys
 if TYPE_CHECKING:  # the settings of jobs are read in processes that have no store
     from teachpath.io.bus import Bus
     from teachpath.io.store.store import Store
+
+log = logging.getLogger("teachpath")
+
+STORE_INTERVAL: Final = 1.0  # [s] after which a job is tried again that the store could not take
 
 # A kind of job: `prepare` gathers its input from the store, `work` (a function of `worker`) runs in the other process,
 # and `finish` stores the outcome and marks the job succeeded in one transaction.
@@ -142,15 +155,17 @@ class Jobs:
             self._process(lane, key)
         except Conflict:
             return  # cancelled while it was queued
+        except StorageUnavailable as error:
+            log.warning("job %s waits for the store: %s", key, error)
+            if not lane.wait_for_stop(STORE_INTERVAL):
+                lane.put(key)
         except Exception as error:  # a fault of one job must not stop the others
             if not lane.is_stopping:
                 self._finish(key, JobState.FAILED, f"this is a fault of teachpath, please report it: {error!r}")
 
     def _process(self, lane: JobLane, key: str) -> None:
-        job = self._store.set_job(key, state=JobState.RUNNING.value, attempt=self._store.job(key).attempt + 1)
-        if job.attempt > self._settings.attempts:
-            self._finish(key, JobState.FAILED, f"its process died {self._settings.attempts} times; is memory short?")
-            return
+        attempt = max(self._store.job(key).attempt, 1)
+        job = self._store.set_job(key, state=JobState.RUNNING.value, attempt=attempt)
         kind = self._kinds[job.kind]
         try:
             kind.finish(job, lane.work(kind.work, kind.prepare(job)))
@@ -158,11 +173,23 @@ class Jobs:
         except Cancelled as error:
             if not lane.is_stopping:
                 self._finish(key, JobState.CANCELLED, str(error))
+        except StorageUnavailable:
+            raise
         except TeachpathError as error:
             self._finish(key, JobState.FAILED, str(error), **_evidence(error))
+        except OSError as error:
+            self._finish(key, JobState.FAILED, _disk_sentence(error))
         except BrokenProcessPool:
             if not lane.is_stopping:
-                lane.put(key)
+                self._count_crash(lane, job)
+
+    def _count_crash(self, lane: JobLane, job: Job) -> None:
+        """Queue a job again whose process died; only that counts as an attempt, and no restart of the service does."""
+        if job.attempt >= self._settings.attempts:
+            self._finish(job.id, JobState.FAILED, f"its process died {job.attempt} times; is memory short?")
+        else:
+            self._store.set_job(job.id, attempt=job.attempt + 1)
+            lane.put(job.id)
 
     def _finish(self, key: str, state: JobState, message: str, **evidence: Any) -> Job:
         job = self._store.set_job(key, state=state.value, message=message, finished_ns=time.time_ns(), **evidence)
@@ -184,9 +211,15 @@ class Jobs:
             key, fraction, message = report
             try:
                 job = self._store.set_job(key, fraction=fraction, message=message)
-            except Conflict:
-                continue  # ended meanwhile
+            except (Conflict, StorageUnavailable):
+                continue  # ended meanwhile; or the next report is stored
             self._bus.publish(self._keys.job(key), encode_progress(job))
+
+
+def _disk_sentence(error: OSError) -> str:
+    from teachpath.io.store.faults import storage_fault  # beside a store only, as above
+
+    return str(storage_fault(error, "the data folder") or f"this is a fault of teachpath, please report it: {error!r}")
 
 
 def _evidence(error: TeachpathError) -> dict[str, Any]:

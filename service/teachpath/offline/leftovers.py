@@ -8,11 +8,11 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Final
 
+from teachpath.io.store.faults import TEMPORARY
 from teachpath.io.store.motions import MENDING
 
 REPAIRS: Final = "repairs"  # folder in which the doctor makes recordings
 TRANSFERS: Final = "transfers"  # folder of uploads and exports
-TEMPORARY: Final = ".temporary"  # ends the name of a file that is being written and renamed when it is whole
 
 
 def find_leftovers(data_dir: Path, kept_transfers: Collection[str]) -> list[Path]:

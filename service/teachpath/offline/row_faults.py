@@ -8,9 +8,9 @@ from hashlib import sha256
 from pathlib import Path
 from typing import Final
 
+from teachpath.io.store.faults import TEMPORARY
 from teachpath.offline.examination import RESTORE, Examination, Repair
 from teachpath.offline.findings import FaultKind
-from teachpath.offline.leftovers import TEMPORARY
 from teachpath.offline.recording_checks import Inspection
 from teachpath.offline.torn_recordings import set_aside
 from teachpath.records import Demonstration

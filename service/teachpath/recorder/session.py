@@ -296,7 +296,6 @@ class RecordingSession:
 
     def _new_take(self) -> Take:
         self._take_number += 1
-        header = RecordingHeader(
-            self.task, self.tracker, self._setup.calibration, self._setup.scene.name, self._carried
-        )
+        setup = self._setup
+        header = RecordingHeader(setup.task, setup.tracker, setup.calibration, setup.scene.name, self._carried)
         return Take(self._store, self._settings, header, self.counter.note, self._setup.new_id)

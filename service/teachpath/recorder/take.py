@@ -5,7 +5,7 @@ from __future__ import annotations
 import uuid
 from collections.abc import Callable
 
-from teachpath.errors import UnusableRecording
+from teachpath.errors import StorageUnavailable, UnusableRecording
 from teachpath.io.store.recordings import RecordingFile, RecordingHeader
 from teachpath.io.store.store import Store
 from teachpath.recorder.take_completion import SegmentedTake, complete_take
@@ -105,9 +105,19 @@ class Take:
         except UnusableRecording as error:
             self._note(str(error))
             self.discard()
+            if self.fault:
+                self._note_lost(f"its file could not be written ({self.fault})")
         except OSError as error:
             self.fail(_disk_fault("finished", error))
+            self._note_lost(self.fault)
+        except StorageUnavailable as error:
+            self.fail(f"the recording is whole, and its row could not be stored: {error}")
+            self._note_lost(f"its recording is whole, but {error}; its row is made by: teachpath doctor")
         return None
+
+    def _note_lost(self, reason: str) -> None:
+        header = self._header
+        self._store.health.note_lost(f"take {self._id} of {header.task} by {header.tracker} was not kept: {reason}")
 
     def discard(self) -> None:
         """Throw the file away."""

@@ -154,7 +154,7 @@ def test_a_job_survives_a_restart_and_is_done_once(store: Store) -> None:
     ended = [second.ended.get(timeout=HANG) for _ in range(2)]
     second.jobs.stop()
     assert [(job.id, job.state.value, job.attempt) for job in ended] == [
-        (running.id, "succeeded", 2),
+        (running.id, "succeeded", 1),
         (waiting.id, "succeeded", 1),
     ]
     assert second.outcomes == ["x", "w"]

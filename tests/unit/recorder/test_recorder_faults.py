@@ -121,6 +121,7 @@ def test_while_nothing_can_be_written_the_station_says_so(bench: Bench, disk: Di
     bench.received(SHOWN)
     assert bench.recorder.faults() == []
     assert any("a demonstration was lost" in note for note in bench.until(lambda report: True).notes)
+    assert any("of lift by glove was not kept: its file could not" in said for said in bench.store.health.faults())
     show(bench, 2)
     assert len(bench.end(2 * SHOWN).demonstrations) == 1
 

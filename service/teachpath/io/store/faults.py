@@ -11,6 +11,7 @@ from sqlalchemy.exc import DBAPIError, IntegrityError
 
 from teachpath.errors import Conflict, StorageFull, StorageUnavailable, TeachpathError
 
+TEMPORARY: Final = ".temporary"  # ends the name of a file that is being written and renamed when it is whole
 FREE_SPACE: Final = "free space, then try again"
 RESTORE: Final = (
     "restore a backup (teachpath restore), or make the rows anew from the recordings: teachpath doctor --rebuild"

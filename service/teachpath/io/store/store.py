@@ -17,7 +17,7 @@ from teachpath.io.documents import from_document, to_document
 from teachpath.io.store.calibrations import MeasuredCalibrations
 from teachpath.io.store.changes import Changed, note, telling, unheard
 from teachpath.io.store.checks import Checks
-from teachpath.io.store.database_files import database_url, make_data_folder
+from teachpath.io.store.database_files import database_file, database_url, make_data_folder
 from teachpath.io.store.engine import open_engine
 from teachpath.io.store.journal import Journal
 from teachpath.io.store.lists import Execution, Lists, execution_of
@@ -34,6 +34,7 @@ from teachpath.io.store.rows import (
     task_of,
 )
 from teachpath.io.store.settings import StoreSettings
+from teachpath.io.store.storage_health import StorageHealth
 from teachpath.io.store.tables import (
     Base,
     DemonstrationRow,
@@ -75,6 +76,7 @@ class Store:
         self.journal = Journal(self._engine)
         self.lists = Lists(self._engine)
         self.checks = Checks(self._engine)
+        self.health = StorageHealth(folder / RECORDINGS, self._engine, database_file(settings))
 
     def close(self) -> None:
         """Close every connection."""
