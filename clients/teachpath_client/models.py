@@ -636,6 +636,17 @@ class Plan:
 
 
 @dataclass(frozen=True)
+class Probe:
+    """That the service lives, or is ready.
+
+    Attributes:
+        version: of the service.
+    """
+
+    version: str
+
+
+@dataclass(frozen=True)
 class RecordingDigest:
     """What a recording's file is known by.
 

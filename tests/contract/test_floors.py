@@ -74,6 +74,7 @@ DOORS = {
     "uvicorn": ["web"],
     "typer": ["__main__.py", "commands"],
     "rich": ["commands"],
+    "prometheus_client": ["api/metrics.py"],
     "pyarrow": ["io/lerobot.py"],
     "pydantic": ["config.py", "api"],
 }

@@ -17,9 +17,11 @@ from teachpath.api.exports import exports_router
 from teachpath.api.faults import REFUSALS, answer_errors
 from teachpath.api.imports import imports_router
 from teachpath.api.joints import joints_router
+from teachpath.api.metrics import RequestMetrics, metrics_router, new_registry
 from teachpath.api.middleware import AnswersAtTheEnd, RequestLimits
 from teachpath.api.objects import objects_router
 from teachpath.api.parts import Health, Parts
+from teachpath.api.probes import probes_router
 from teachpath.api.recording import recording_router
 from teachpath.api.robot import robot_router
 from teachpath.api.strict_requests import refuse_unknown
@@ -44,6 +46,8 @@ def build_api(parts: Parts, *pages: APIRouter) -> FastAPI:
     app.add_middleware(RequestLimits, settings=parts.settings.web)
     app.add_middleware(TrustedHostMiddleware, allowed_hosts=hosts)
     app.add_middleware(AnswersAtTheEnd)
+    registry = new_registry()
+    app.add_middleware(RequestMetrics, registry=registry)
     answer_errors(app)
     routers = (
         tasks_router,
@@ -63,6 +67,7 @@ def build_api(parts: Parts, *pages: APIRouter) -> FastAPI:
         control_router,
         robot_router,
         station_router,
+        probes_router,
     )
     app.include_router(stops_router(parts), prefix=PREFIX, responses=REFUSALS)  # never refused for what comes with it
     closed = [Depends(refuse_unknown)]
@@ -70,6 +75,7 @@ def build_api(parts: Parts, *pages: APIRouter) -> FastAPI:
         app.include_router(router(parts), prefix=PREFIX, responses=REFUSALS, dependencies=closed)
     for socket in (trackers_router, joints_router):
         app.include_router(socket(parts), prefix=PREFIX)
+    app.include_router(metrics_router(parts, registry))
     for page in pages:
         app.include_router(page)
     return app

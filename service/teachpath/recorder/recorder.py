@@ -16,6 +16,7 @@ from teachpath.recorder.presence import Presence, Tracker
 from teachpath.recorder.recording_thread import RecordingThread
 from teachpath.recorder.recording_work import Call, call_directly
 from teachpath.recorder.sample_queues import SampleQueues
+from teachpath.recorder.sample_totals import RecordingTotals, SampleTotals
 from teachpath.recorder.session import RecordingSession, RecordingSetup
 from teachpath.recorder.take import FinishedTake
 from teachpath.recorder.tracker_owners import TrackerOwners
@@ -106,6 +107,7 @@ class Recorder:
         )
         self._feedback = FeedbackPublisher(bus, keys, self.statuses, store.demonstration, clock=clock)
         self._missed = 0
+        self._totals = SampleTotals()
         self._handles: list[Handle] = []
 
     def start(self) -> None:
@@ -149,7 +151,9 @@ class Recorder:
             if before is not None and before.state is not RecordingState.LOST:
                 raise Conflict(f"{tracker} is already recording {before.task}; stop that first")
             session = RecordingSession(self._store, self._settings, setup, clock=self._clock)
-            finished += before.finish() if before is not None else []
+            if before is not None:
+                finished += before.finish()
+                self._totals.end_recording(before.counter.statistics())
             sessions[tracker] = session
             self._queues.open(tracker)
             status = session.status(with_statistics=True)
@@ -177,6 +181,7 @@ class Recorder:
             if self._recording.sessions.get(tracker) is session:
                 del self._recording.sessions[tracker]
                 self._queues.close(tracker)
+                self._totals.end_recording(session.counter.statistics())
             finished += session.finish(discard=request.discard)
         self._report_finished(finished)
         return replace(session.status(with_statistics=True), state=None, phase=None)
@@ -205,6 +210,12 @@ class Recorder:
         with self._recording.condition:
             shown = list(self._recording.sessions.values())[:MAX_SHOWN_HANDS]
             return [session.status(with_hand=True) for session in shown]
+
+    def totals(self) -> RecordingTotals:
+        """Return what was recorded since the service began, over all recordings."""
+        with self._recording.condition:
+            running = [session.counter.statistics() for session in self._recording.sessions.values()]
+            return self._totals.with_running(running)
 
     def trackers(self) -> list[Tracker]:
         """Return the trackers that are there: those with a liveliness token, and those that send."""
@@ -252,6 +263,7 @@ class Recorder:
 
     def _report_finished(self, finished: list[FinishedTake]) -> None:
         for demonstration, trajectory in finished:
+            self._totals.end_take(demonstration.verdict)
             try:
                 self._callbacks.added(demonstration, trajectory)
             except Exception:  # the display may fail; the demonstration is stored, and recording goes on

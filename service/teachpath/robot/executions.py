@@ -184,6 +184,10 @@ class Executions:
         command = Command(CommandVerb.STOP, lease=lease, who=who)
         return self._stopper.stop(command, lambda: bool(self._starting))
 
+    def stops(self) -> dict[str, int]:
+        """Return how many stops were ordered since the service began, by outcome."""
+        return dict(self._stopper.outcomes)
+
     def request_lease(self, request: LeaseRequest) -> Lease:
         """Send a request about the control lease and return who is in control.
 

@@ -45,6 +45,7 @@ class Stopper:
         self._received = 0.0  # when the newest status came [s of the monotonic clock]
         self._repeating: dict[str, threading.Thread] = {}  # by execution
         self._closed = False
+        self.outcomes = {"confirmed": 0, "not_confirmed": 0}  # of the stops that were ordered
 
     @property
     def is_repeating(self) -> bool:
@@ -70,7 +71,9 @@ class Stopper:
         stop = _Stop(replace(command, id=uuid.uuid4().hex), is_starting, time.monotonic())
         self._send_repeatedly(stop)
         with self._changed:
-            if not self._changed.wait_for(lambda: self._is_confirmed(stop), CONFIRM_TIMEOUT):
+            is_confirmed = self._changed.wait_for(lambda: self._is_confirmed(stop), CONFIRM_TIMEOUT)
+            self.outcomes["confirmed" if is_confirmed else "not_confirmed"] += 1
+            if not is_confirmed:
                 raise NotStopped(
                     f"NOT STOPPED: the executor has not confirmed the stop within {CONFIRM_TIMEOUT:g} s, and the arm "
                     "may be moving; press the emergency stop of the arm. The stop is repeated for "

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, Final, TypeVar
 
-from sqlalchemy import Engine, Select, select
+from sqlalchemy import Engine, Select, func, select
 from sqlalchemy.orm import Session, defer
 
 from teachpath.errors import NotFound
@@ -81,6 +81,12 @@ class Lists:
     def jobs(self, task: str, wanted: PageRequest = FIRST_PAGE) -> Page[Job]:
         """List the jobs of a task, newest first."""
         return self._read(JOBS, select(JobRow).where(JobRow.task == task), wanted, job_of)
+
+    def job_counts(self) -> dict[tuple[str, ...], float]:
+        """Return how many jobs there are of each kind and state."""
+        question = select(JobRow.kind, JobRow.state, func.count()).group_by(JobRow.kind, JobRow.state)
+        with Session(self._engine) as session:
+            return {(kind, state): count for kind, state, count in session.execute(question)}
 
     def plans(self, path: str, wanted: PageRequest = FIRST_PAGE) -> Page[Plan]:
         """List the plans of a path, newest first."""
