@@ -19,6 +19,7 @@ from teachpath.io.bus_logins import local_login, new_password, prepare_access
 from teachpath_proto.keys import Keys
 from teachpath_proto.logins import Login, Role, find_login, logins_path, read_logins, write_logins
 from tests.contract.test_bus import free_endpoint
+from tests.waiting import wait_until
 
 PREFIX = "teachpath/station"
 MEMBERS = (Role.EXECUTOR, Role.ROBOT, Role.TRACKER, Role.OPERATOR, Role.VIEWER)
@@ -60,7 +61,11 @@ DENIED = 1.0  # [s] until a question that nobody lets through is given up
 def station() -> Iterator[tuple[BusSettings, BusAccess, Bus]]:
     settings = BusSettings(endpoint=free_endpoint())
     own, *logins = (Login(role.value, new_password(), role) for role in (Role.SERVICE, *MEMBERS))
-    access = BusAccess(own, (*logins, Login("left", new_password(), Role.TRACKER, only="left")))
+    held = (
+        Login("arm", new_password(), Role.ROBOT, only="puma560"),
+        Login("left", new_password(), Role.TRACKER, only="left"),
+    )
+    access = BusAccess(own, (*logins, *held))
     bus = listen_on_bus(settings, access)
     yield settings, access, bus
     bus.close()
@@ -251,6 +256,36 @@ def test_a_tracker_that_is_held_to_one_name_is_no_other(station: tuple[BusSettin
     bus.close()
     answering.close()
     handle.close()
+
+
+def test_a_driver_that_is_held_to_its_arm_takes_part_in_everything_that_an_arm_does(
+    station: tuple[BusSettings, BusAccess, Bus],
+) -> None:
+    settings, access, service = station
+    keys, heard = Keys(PREFIX), queue.Queue[str]()
+    driver, executor = open_bus(settings, access.logins[-2]), open_bus(settings, access.login(Role.EXECUTOR))
+    service.watch(keys.all_alive, lambda key, _: heard.put(key))
+    executor.watch(keys.alive("robot", "puma560"), lambda key, _: heard.put(key))
+    driver.announce(keys.alive("robot", "puma560"))
+    assert {heard.get(timeout=WAIT), heard.get(timeout=WAIT)} == {keys.alive("robot", "puma560")}
+    driver.serve(keys.reset("puma560"), lambda _: b"done")
+    executor.subscribe(keys.state("puma560"), lambda key, _: heard.put(key))
+    driver.subscribe(keys.setpoint("puma560"), lambda key, _: heard.put(key))
+    wait_until(lambda: answered(executor, keys.reset("puma560")), "its queryable is known")
+    for _ in range(2):  # the second ones when the sessions know who hears them
+        for bus, key in ((driver, keys.state("puma560")), (executor, keys.setpoint("puma560"))):
+            bus.publish(key, b"")
+            assert heard.get(timeout=WAIT) == key
+        assert answered(executor, keys.reset("puma560"))
+    driver.close()
+    executor.close()
+
+
+def answered(bus: Bus, key: str) -> bool:
+    try:
+        return bus.ask(key, timeout=DENIED) == b"done"
+    except Unreachable:
+        return False
 
 
 @pytest.mark.parametrize("login", [None, Login("viewer", "guessed", Role.VIEWER), Login("root", "", Role.EXECUTOR)])
