@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from teachpath.motion.execution.governor import Governor
-from teachpath.motion.timing import kernels
+from teachpath.motion.timing import kernels, ramp_checks
 from teachpath.motion.timing.timed_trajectory import TimedTrajectory
 from tests.bench.report import Figure, against
 
@@ -20,7 +20,7 @@ PERIODS = 1200  # of a run
 SLOPES = np.geomspace(0.05, 2000.0, 50)  # 1/s^2, of the ramps on the grid
 JERKS = np.geomspace(0.5, 50_000.0, 50)  # 1/s^3
 
-State = tuple[np.ndarray, np.ndarray]  # plan time, rate and its slope; newest setpoints (3, 6)
+State = tuple[np.ndarray, np.ndarray]  # plan time, rate and its slope; what was sent (see `ramp_checks.advance`)
 Commands = Callable[[Governor, np.random.Generator], None]
 
 
@@ -58,7 +58,8 @@ def measure(tracks: list[TimedTrajectory], dt: float, *, runs: int) -> list[Figu
 def _run(track: TimedTrajectory, dt: float, command: Commands, rng: np.random.Generator, found: Answers) -> None:
     """Add the answers to random commands; whatever comes to rest before its answer needs none."""
     governor = Governor(track, dt, override=rng.uniform(0.05, 1.0))
-    sent = [governor.motion[0, :6].copy()] * 3
+    sent = np.zeros((9, 6))
+    sent[0] = sent[6] = governor.motion[0, :6]
     pause, waiting = 0, None
     for _ in range(PERIODS):
         if pause == 0:
@@ -66,9 +67,10 @@ def _run(track: TimedTrajectory, dt: float, command: Commands, rng: np.random.Ge
             command(governor, rng)
             pause, waiting = int(rng.integers(10, 160)), []
         pause -= 1
-        before = governor.state, np.array(sent)
+        before = governor.state, sent
         governor.step()
-        sent = [*sent[1:], governor.motion[0, :6].copy()]
+        sent = sent.copy()
+        ramp_checks.advance(sent, governor.motion[0], np.ones((3, 6)))
         if waiting is None:
             continue
         waiting.append(before)
@@ -96,7 +98,7 @@ def _possible(track: TimedTrajectory, dt: float, wish: float, state: np.ndarray,
     for slope in SLOPES:
         for jerk in JERKS:
             drawn = kernels.shortest_ramp(ramp, state, wish, max(slope, abs(state[2])), jerk) >= 0.0
-            if drawn and kernels.check_ramp(track.table, track.step, ramp, sent, limits, dt)[0] == kernels.KEPT:
+            if drawn and ramp_checks.check_ramp(track.table, track.step, ramp, sent, limits, dt)[0] == ramp_checks.KEPT:
                 return True
     return False
 

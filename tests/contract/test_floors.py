@@ -64,7 +64,7 @@ DOORS = {
     "jinja2": ["offline/report/package.py"],
     "hmmlearn": ["learning/selection/hmm.py"],
     "geomdl": ["exchange.py"],
-    "ruckig": ["motion/execution/governor.py", "motion/execution/tool_motion.py", "motion/timing/joint_moves.py"],
+    "ruckig": ["motion/execution/tool_motion.py", "motion/timing/joint_moves.py", "motion/timing/ruckig_check.py"],
     "numba": ["learning/compiled.py", "learning/clustering/kernels.py", "motion/timing/kernels.py"],
     "mujoco": ["motion/collision/collision_model.py", "motion/arm/dynamics.py", "simulator/arm.py"],
     "meshcat": ["live/preview"],

@@ -3,7 +3,8 @@
 The governor always executes a verified ramp: its setpoints, joined to those already sent, were checked one by one
 against all limits, and it ends at a constant rate of at most 1, at which the plan is feasible. Another ramp replaces it
 only after it was verified in the same way. So no command can break a limit or lead off the path, and nothing can fail
-in mid-motion.
+in mid-motion. A ramp to rest is the shortest stop that `find_stop` finds, any other one has three phases; where no stop
+is found, it has three phases, too.
 """
 
 from __future__ import annotations
@@ -12,27 +13,25 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
-from ruckig import ControlInterface, InputParameter, Result, Ruckig, RuckigError, Trajectory
 
 from teachpath.motion.arm.model import Arm
 from teachpath.motion.arm.puma560 import Array
-from teachpath.motion.timing import kernels
+from teachpath.motion.timing import kernels, ramp_checks, ramp_following
 from teachpath.motion.timing.joint_moves import straight_move
 from teachpath.motion.timing.limit_margins import SYMMETRIC_MARGINS
-from teachpath.motion.timing.ramp_search import find_ramp, shorten_ramp
+from teachpath.motion.timing.ramp_search import MIN_TIME_SAVED, find_ramp, shorten_ramp
+from teachpath.motion.timing.ruckig_check import RuckigCheck
+from teachpath.motion.timing.stop_search import find_stop
 from teachpath.motion.timing.timed_trajectory import TimedTrajectory
 
 MIN_OVERRIDE: Final = 0.01  # a smaller override holds
 MAX_RAMPS_PER_PERIOD: Final = 20  # ramps to another rate that are judged in one control period at most
 MAX_SHORTER_RAMPS: Final = 20  # the same to the rate that the present ramp leads to
-RUCKIG_MARGIN: Final = 1 + 1e-12  # factor on Ruckig's limits, so that rounding makes no ramp infeasible
-DURATION_TOLERANCE: Final = 1e-6  # [s] between the closed form of a ramp and Ruckig's
 MAX_REVERSE_RATE: Final = 0.96  # of the way back: a plan has its margins on the other side (see `limit_margins`)
-MAX_STOP_RAMPS: Final = 12  # ramps to rest judged behind a setpoint at most
-MAX_STOP_TIME: Final = 2.0  # s, of a ramp to rest; with none so short the present motion goes on for a while
-STOP_JERK_SHARE: Final = 0.93  # of the jerk limit that a way to rest may use at its positions
-STOP_LEADS: Final = (0, 1, 2, 4, 8, 16, 32, 64)  # periods for which it goes on
-MAX_STOP_PERIODS: Final = 5000  # of a way to rest, where nothing but the end of the trajectory is one
+MAX_STOPS: Final = 3  # stops that are judged in one period at most
+MAX_STOP_PERIODS: Final = 500  # of a stop; with none so short the present motion goes on for a while
+STOP_LEADS: Final = (1, 4, 16, 64)  # periods for which it goes on
+MAX_PERIODS: Final = 5000  # of a ramp, and of a way to rest where nothing but the end of the trajectory is one
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,8 +72,6 @@ class Governor:
         self._dt = dt
         limits = trajectory.limits
         self._limits = np.stack([limits.speed * dt, limits.acceleration * dt**2, limits.jerk * dt**3])
-        # A player reads a way to rest between its positions too, where the jerk is a little larger than at them.
-        self._stop_limits = self._limits * np.array([[1.0], [1.0], [STOP_JERK_SHARE]])
         # A planned motion keeps this share of the tool's limit in reserve, for rates that overshoot the full speed.
         self._max_rate = 1.0 / SYMMETRIC_MARGINS[0] if np.isfinite(limits.tool_speed) else np.inf
         self._override = _share(override)
@@ -82,13 +79,16 @@ class Governor:
         self._reversing = False
         self._waiting = False
         self._state = np.zeros(3)  # tau, its rate, the rate's derivative
-        self._ramp = np.zeros(8)
+        self._ramp = np.zeros((MAX_PERIODS, 3))  # its states at the ends of the periods; the last one goes on
+        self._ramp_periods, self._ramp_end, self._done = 1, 0.0, 1
         self._trial = np.zeros(8)
-        self._elapsed = 0.0
+        self._stop = np.zeros((MAX_STOP_PERIODS, 3))  # states of a stop
+        self._stop_periods: int | None = None  # of the one from the present state, once that was searched for
         self._motion = np.zeros((3, 7))
         kernels.evaluate_motion(self._table, self._step, self._state, self._motion)
-        self._sent = np.repeat(self._motion[:1, :6], 3, axis=0)  # newest last
-        self._ruckig, self._inputs, self._answer = Ruckig(1), _inputs(), Trajectory(1)
+        self._sent = np.zeros((9, 6))  # newest setpoint and differences (see `ramp_checks.advance`)
+        self._sent[0] = self._sent[6] = self._motion[0, :6]
+        self._ruckig = RuckigCheck()
 
     @property
     def override(self) -> float:
@@ -141,7 +141,8 @@ class Governor:
         """Set the plan time to `tau` [s], held; only for an arm that rests there already."""
         self._rest(min(max(tau, 0.0), self._end))
         kernels.evaluate_motion(self._table, self._step, self._state, self._motion)
-        self._sent[:] = self._motion[0, :6]
+        self._sent[:] = 0.0
+        self._sent[0] = self._sent[6] = self._motion[0, :6]
         self._held, self._reversing = True, False
 
     def restart_at(self, tau: float, *, held: bool) -> None:
@@ -170,102 +171,105 @@ class Governor:
     @property
     def ramp_end_rate(self) -> float:
         """The rate at which the present ramp ends: `target_rate`, as soon as a ramp to that is verified."""
-        return float(self._ramp[7])
+        return self._ramp_end
 
     def step(self) -> PathProgress:
         """Advance by one control period; never raises."""
         target = self.target_rate
-        left = self._ramp[3] + self._ramp[4] + self._ramp[5] - self._elapsed
-        if self._ramp[7] != target or left > 0.0:
-            self._change_rate(target, left if self._ramp[7] == target else np.inf)
-        self._elapsed += self._dt
-        state = self._state
-        state[:] = kernels.evaluate_ramp(self._ramp, self._elapsed)
-        if (state[0] >= self._end and state[1] >= 0.0) or (state[0] <= 0.0 and state[1] <= 0.0):
+        left = max(self._ramp_periods - self._done, 0) * self._dt
+        if self._ramp_end != target or left > 0.0:
+            self._change_rate(target, left if self._ramp_end == target else np.inf)
+        self._done += 1
+        ramp = (self._ramp, self._ramp_periods, self._done, self._dt)
+        if ramp_following.advance_along(self._table, self._step, *ramp, self._state, self._motion, self._sent):
             # The trajectory begins and ends at rest, whatever the rate.
-            self._rest(0.0 if state[0] <= 0.0 else self._end)
-        kernels.evaluate_motion(self._table, self._step, state, self._motion)
-        self._sent[:2] = self._sent[1:]
-        self._sent[2] = self._motion[0, :6]
+            self._rest(float(self._state[0]))
+        self._stop_periods = None
         return self.progress
 
     def way_to_rest(self) -> WayToRest:
         """Find the way to rest from here, judged against all limits together with the setpoints already sent.
 
-        Where no ramp to rest keeps them from here, the present ramp goes on for some periods; at worst it goes on to
-        the end of the trajectory, where the motion rests.
+        It is the present ramp where that leads to rest, otherwise the stop that `hold` would follow. Where no stop
+        keeps the limits from here, the present ramp goes on for some periods; at worst it goes on to the end of the
+        trajectory, where the motion rests.
         """
         if self.progress.at_rest:
             return WayToRest(np.empty((0, 6)), self.tau)
-        trial = np.zeros(8)
+        if self._ramp_end == 0.0:
+            return self._sampled(self._ramp_periods - self._done, 0)
+        if periods := self._present_stop():
+            return self._sampled(0, periods)
         for lead in STOP_LEADS:
             sent, state = self._sent.copy(), self._state.copy()
-            ended = kernels.lead_along(self._table, self._step, self._ramp, self._elapsed, self._dt, lead, sent, state)
-            if ended:
-                return self._sampled(lead, np.zeros(8))
-            search = (self._stop_limits, self._dt, MAX_STOP_TIME, MAX_STOP_RAMPS, self._max_rate, trial)
-            if find_ramp(self._table, self._step, state, 0.0, sent, *search) >= 0.0:
-                return self._sampled(lead, trial)
-        return self._sampled(int(self._end / self._dt / MIN_OVERRIDE), np.zeros(8))
+            self._follow(lead, sent, state, np.empty((lead, 6)))
+            if state[1] == 0.0 or (periods := self._find_stop(state, sent)):
+                return self._sampled(lead, periods)
+        return self._sampled(MAX_PERIODS, 0)
 
-    def _sampled(self, lead: int, ramp: Array) -> WayToRest:
-        count = min(lead + int(np.ceil(ramp[3:6].sum() / self._dt)), MAX_STOP_PERIODS)
-        out = np.empty((count, 6))
-        count = kernels.sample_stop(self._table, self._step, self._ramp, self._elapsed, lead, ramp, self._dt, out)
-        tau = (
-            kernels.evaluate_ramp(ramp, (count - lead) * self._dt)[0]
-            if count > lead
-            else (kernels.evaluate_ramp(self._ramp, self._elapsed + count * self._dt)[0])
-        )
-        return WayToRest(out[:count], min(max(float(tau), 0.0), self._end))
+    def _sampled(self, lead: int, periods: int) -> WayToRest:
+        """Return the way to rest along the ramp for some periods, and then along `_stop` for some."""
+        sent, state, joints = self._sent.copy(), self._state.copy(), np.empty((lead + periods, 6))
+        count = self._follow(lead, sent, state, joints[:lead])
+        if periods:
+            stop = (self._stop, periods, 0, self._dt)
+            count += ramp_following.follow(self._table, self._step, *stop, sent, state, joints[lead:])
+        return WayToRest(joints[:count], min(max(float(state[0]), 0.0), self._end))
+
+    def _follow(self, lead: int, sent: Array, state: Array, joints: Array) -> int:
+        ramp = (self._ramp, self._ramp_periods, self._done, self._dt)
+        return ramp_following.follow(self._table, self._step, *ramp, sent, state, joints[:lead])
+
+    def _present_stop(self) -> int:
+        """Find a stop from the present state once; return its periods, or 0."""
+        if self._stop_periods is None:
+            self._stop_periods = self._find_stop(self._state, self._sent)
+        return self._stop_periods
+
+    def _find_stop(self, state: Array, sent: Array) -> int:
+        """Write a stop from a state to `_stop`; return its periods, or 0 where none is found."""
+        given = (self._table, self._step, state, sent, self._limits, self._dt)
+        if periods := find_stop(*given, self._max_rate, MAX_STOPS, self._stop):
+            return int(periods)
+        found = self._find_ramp(0.0, state, sent, np.inf)
+        return ramp_following.sample_ramp(self._trial, self._dt, self._stop) if found else 0
 
     def _change_rate(self, target: float, within: float) -> None:
         trial, state = self._trial, self._state
         if (state[0] <= 0.0 and target >= 0.0) or (state[0] >= self._end and target <= 0.0):
             trial[:] = (state[0], target, 0.0, 0.0, 0.0, 0.0, 0.0, target)
-            kept = kernels.check_ramp(self._table, self._step, trial, self._sent, self._limits, self._dt)
-            if kept[0] == kernels.KEPT:
-                self._accept_trial()
-            return
-        given = (self._table, self._step, state, target, self._sent, self._limits, self._dt)
+            kept = ramp_checks.check_ramp(self._table, self._step, trial, self._sent, self._limits, self._dt)
+            if kept[0] == ramp_checks.KEPT:
+                self._follow_trial()
+        elif target == 0.0:
+            periods = self._present_stop()
+            if periods and periods * self._dt < within - MIN_TIME_SAVED:
+                self._ramp[:periods] = self._stop[:periods]
+                self._ramp_periods, self._ramp_end, self._done = periods, 0.0, 0
+        elif self._find_ramp(target, state, self._sent, within):
+            self._follow_trial()
+
+    def _find_ramp(self, target: float, state: Array, sent: Array, within: float) -> bool:
+        """Write a ramp of three phases that takes less than `within` [s] to `_trial`; return whether there is one."""
+        given = (self._table, self._step, state, target, sent, self._limits, self._dt)
         peak = -1.0
         if within == np.inf:
-            peak = find_ramp(*given, within, MAX_RAMPS_PER_PERIOD, self._max_rate, trial)
+            peak = find_ramp(*given, within, MAX_RAMPS_PER_PERIOD, self._max_rate, self._trial)
             if peak < 0.0:
-                return
-            within = float(trial[3:6].sum())
-        shorter = shorten_ramp(*given, within, MAX_SHORTER_RAMPS, self._max_rate, trial)
+                return False
+            within = float(self._trial[3:6].sum())
+        shorter = shorten_ramp(*given, within, MAX_SHORTER_RAMPS, self._max_rate, self._trial)
         peak = shorter if shorter >= 0.0 else peak
-        if peak >= 0.0 and self._ruckig_agrees(peak):
-            self._accept_trial()
+        return peak >= 0.0 and self._ruckig.agrees(self._trial, peak)
 
-    def _accept_trial(self) -> None:
-        self._ramp[:] = self._trial
-        self._elapsed = 0.0
+    def _follow_trial(self) -> None:
+        if periods := ramp_following.sample_ramp(self._trial, self._dt, self._ramp):
+            self._ramp_periods, self._ramp_end, self._done = periods, float(self._trial[7]), 0
 
     def _rest(self, tau: float) -> None:
         self._state[:] = (tau, 0.0, 0.0)
-        self._ramp[:] = 0.0
-        self._ramp[0] = tau
-        self._elapsed = 0.0
-
-    def _ruckig_agrees(self, peak: float) -> bool:
-        """Tell whether Ruckig finds the ramp that is on trial."""
-        trial, inputs = self._trial, self._inputs
-        inputs.current_position, inputs.current_velocity = [float(trial[0])], [float(trial[1])]
-        inputs.current_acceleration, inputs.target_velocity = [float(trial[2])], [float(trial[7])]
-        # The limit on the side of the present acceleration includes that acceleration: with a lower one Ruckig would
-        # brake first, and with the same limit on the other side it would go beyond the peak.
-        along, against = peak * RUCKIG_MARGIN, max(peak, abs(float(trial[2]))) * RUCKIG_MARGIN
-        upward, downward = (along, against) if trial[6] > 0.0 else (against, along)
-        inputs.max_acceleration, inputs.min_acceleration = [upward], [-downward]
-        inputs.max_jerk = [abs(float(trial[6]))]
-        try:
-            result = self._ruckig.calculate(inputs, self._answer)
-        except RuckigError:
-            return False
-        closed_form = float(trial[3] + trial[4] + trial[5])
-        return bool(result == Result.Working and abs(self._answer.duration - closed_form) <= DURATION_TOLERANCE)
+        self._ramp[0] = self._state
+        self._ramp_periods, self._ramp_end, self._done = 1, 0.0, 1
 
 
 def warm_up(dt: float, arm: Arm) -> None:
@@ -274,13 +278,6 @@ def warm_up(dt: float, arm: Arm) -> None:
     governor = Governor(straight_move(np.zeros(6), turn, arm.limits.motion, arm=arm, margins=(0.5, 0.5, 0.5)), dt)
     for act in (governor.step, governor.way_to_rest, governor.hold, governor.step, governor.reverse, governor.step):
         act()
-
-
-def _inputs() -> InputParameter:
-    inputs = InputParameter(1)
-    inputs.control_interface = ControlInterface.Velocity
-    inputs.target_acceleration = [0.0]
-    return inputs
 
 
 def _share(value: float) -> float:

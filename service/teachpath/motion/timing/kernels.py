@@ -1,4 +1,4 @@
-"""Compiled arithmetic of the control loop: evaluates ramps of the rate, and checks whether their setpoints keep limits.
+"""Compiled arithmetic of the control loop: evaluates tables of a trajectory, and ramps of the rate.
 
 Plan time tau runs at the rate r = d tau / dt; a *ramp* takes r to a new constant value in three phases of constant
 third derivative of tau (up, constant, down). A ramp is an array of eight: tau, r and r' at its beginning, the
@@ -8,22 +8,12 @@ durations of its phases, the third derivative in the first phase, and r at its e
 from __future__ import annotations
 
 from collections.abc import Callable
-from math import ceil, sqrt
-from typing import Any, Final, TypeVar, cast
+from math import sqrt
+from typing import Any, TypeVar, cast
 
 import numba
-import numpy as np
 
 from teachpath.motion.arm.puma560 import Array
-
-ACCEPTED_LIMIT_USE: Final = 0.997  # share of acceleration and jerk limits up to which a ramp is accepted
-TRAILING_SETPOINTS: Final = 3  # after the end of a ramp, whose differences still depend on it
-
-# What `check_ramp` answers.
-KEPT: Final = 0
-SPEED_BROKEN: Final = 1
-ACCELERATION_BROKEN: Final = 2
-JERK_BROKEN: Final = 3
 
 F = TypeVar("F", bound=Callable[..., Any])
 
@@ -31,9 +21,9 @@ F = TypeVar("F", bound=Callable[..., Any])
 def compiled(function: F) -> F:
     """Compile a function at its first call, and keep the result on disk where that can be written."""
     try:
-        return cast(F, numba.njit(cache=True)(function))
+        return cast(F, numba.njit(cache=True, error_model="numpy")(function))
     except RuntimeError:  # no directory that numba could write to
-        return cast(F, numba.njit(function))
+        return cast(F, numba.njit(function, error_model="numpy"))
 
 
 @compiled
@@ -91,35 +81,6 @@ def shortest_ramp(ramp: Array, state: Array, target: float, steepest: float, har
 
 
 @compiled
-def check_ramp(table: Array, step: float, ramp: Array, sent: Array, limits: Array, dt: float) -> tuple[int, float]:
-    """Check the setpoints of a ramp, joined to those already sent, against the limits.
-
-    Args:
-        sent: (3, 6) newest setpoints, newest last [rad].
-        limits: (3, 6) of first, second and third difference of setpoints [rad].
-        dt: control period [s].
-
-    Returns:
-        Which limit is broken first, or KEPT, and how long after the beginning [s].
-    """
-    q0, q1, q2, q3 = sent[0].copy(), sent[1].copy(), sent[2].copy(), np.empty(7)
-    count = ceil((ramp[3] + ramp[4] + ramp[5]) / dt) + TRAILING_SETPOINTS
-    for k in range(1, count + 1):
-        tau, _, _ = evaluate_ramp(ramp, k * dt)
-        evaluate_table(table, step, tau, q3)
-        for i in range(6):
-            if abs(q3[i] - q2[i]) > limits[0, i]:
-                return SPEED_BROKEN, k * dt
-            if abs(q3[i] - 2.0 * q2[i] + q1[i]) > ACCEPTED_LIMIT_USE * limits[1, i]:
-                return ACCELERATION_BROKEN, k * dt
-            if abs(q3[i] - 3.0 * q2[i] + 3.0 * q1[i] - q0[i]) > ACCEPTED_LIMIT_USE * limits[2, i]:
-                return JERK_BROKEN, k * dt
-        for i in range(6):
-            q0[i], q1[i], q2[i] = q1[i], q2[i], q3[i]
-    return KEPT, 0.0
-
-
-@compiled
 def evaluate_motion(table: Array, step: float, state: Array, out: Array) -> None:
     """Write value, velocity and acceleration (3, 7) of joints and arc length at a state (tau, r, r') to `out`."""
     evaluate_table(table, step, state[0], out[0])
@@ -131,49 +92,3 @@ def evaluate_motion(table: Array, step: float, state: Array, out: Array) -> None
         second = table[row, 2, i] + ahead * table[row, 3, i]
         out[1, i] = first * state[1]
         out[2, i] = second * state[1] ** 2 + first * state[2]
-
-
-@compiled
-def lead_along(
-    table: Array, step: float, ramp: Array, elapsed: float, dt: float, periods: int, sent: Array, state: Array
-) -> bool:
-    """Extrapolate along a ramp: write the newest setpoints (3, 6) and the state (3,) after some periods.
-
-    Returns:
-        Whether the motion has reached an end of the table, where it rests.
-    """
-    end = (table.shape[0] - 1) * step
-    q = np.empty(7)
-    for k in range(1, periods + 1):
-        state[0], state[1], state[2] = evaluate_ramp(ramp, elapsed + k * dt)
-        evaluate_table(table, step, state[0], q)
-        for i in range(6):
-            sent[0, i], sent[1, i], sent[2, i] = sent[1, i], sent[2, i], q[i]
-        if (state[0] >= end and state[1] >= 0.0) or (state[0] <= 0.0 and state[1] <= 0.0):
-            state[0], state[1], state[2] = min(max(state[0], 0.0), end), 0.0, 0.0
-            return True
-    return False
-
-
-@compiled
-def sample_stop(
-    table: Array, step: float, ramp: Array, elapsed: float, periods: int, stop: Array, dt: float, out: Array
-) -> int:
-    """Write the joints (n, 6) of a way to rest: some periods along a ramp, then along a ramp to rest; return n.
-
-    Args:
-        out: (m, 6) with room for it; the last row that is written rests.
-    """
-    end = (table.shape[0] - 1) * step
-    q = np.empty(7)
-    count: int = periods + ceil((stop[3] + stop[4] + stop[5]) / dt)
-    for k in range(1, count + 1):
-        if k <= periods:
-            tau, rate, _ = evaluate_ramp(ramp, elapsed + k * dt)
-        else:
-            tau, rate, _ = evaluate_ramp(stop, (k - periods) * dt)
-        evaluate_table(table, step, tau, q)
-        out[k - 1] = q[:6]
-        if k == out.shape[0] or (tau >= end and rate >= 0.0) or (tau <= 0.0 and rate <= 0.0):
-            return k
-    return count

@@ -8,7 +8,8 @@ from typing import Final
 import numpy as np
 
 from teachpath.motion.arm.puma560 import Array
-from teachpath.motion.timing.kernels import JERK_BROKEN, KEPT, SPEED_BROKEN, check_ramp, compiled, shortest_ramp
+from teachpath.motion.timing.kernels import compiled, shortest_ramp
+from teachpath.motion.timing.ramp_checks import JERK_BROKEN, KEPT, SPEED_BROKEN, check_ramp
 
 JERK_REDUCTION: Final = 0.6  # factor for the next trial after a broken jerk limit
 ACCELERATION_REDUCTION: Final = 0.7  # factor for the next trial after a broken acceleration limit
