@@ -274,6 +274,7 @@ class Demonstration:
     mark: str = ""
     discarded_ns: int = 0
     digest: RecordingDigest | None = None
+    object_pose: ObjectPose | None = None
 
 
 @dataclass(frozen=True)
@@ -965,12 +966,18 @@ class Suggestion:
 
 @dataclass(frozen=True)
 class Task:
-    """What is demonstrated: its name, its scene and the calibration of its demonstrations."""
+    """What is demonstrated: its name, its scene and the calibration of its demonstrations.
+
+    Attributes:
+        object_at_grasp: whether the object lies where the hand grasps, anew in each demonstration, instead of where
+            the scene has it.
+    """
 
     name: str
     scene: str
     calibration: str
     created_ns: int
+    object_at_grasp: bool = False
 
 
 @dataclass(frozen=True)

@@ -75,9 +75,12 @@ class TaskResources(Rest):
         """Return one task."""
         return self._ask(Task, "GET", f"/tasks/{task}")
 
-    def make_task(self, task: str, *, scene: str = "paper", calibration: str = "identity") -> Task:
-        """Make a task; one that exists stays as it is."""
-        return self._ask(Task, "PUT", f"/tasks/{task}", {"scene": scene, "calibration": calibration})
+    def make_task(
+        self, task: str, *, scene: str = "paper", calibration: str = "identity", object_at_grasp: bool = False
+    ) -> Task:
+        """Make a task; one that exists stays as it is. `object_at_grasp`: the object lies where the hand grasps."""
+        body = {"scene": scene, "calibration": calibration, "object_at_grasp": object_at_grasp}
+        return self._ask(Task, "PUT", f"/tasks/{task}", body)
 
     def demonstrations(self, task: str) -> list[Demonstration]:
         """List a task's demonstrations in their order; `pages` gives a long list bit by bit."""
@@ -89,7 +92,7 @@ class TaskResources(Rest):
         Args:
             task: whose demonstrations they become.
             content: of the file.
-            options: name, format (csv, npy, robottasks or mcap), units, rate, scene, calibration.
+            options: name, format (csv, npy, robottasks or mcap), units, rate, scene, calibration, object_at_grasp.
         """
         return self._ask(Job, "POST", f"/tasks/{task}/demonstrations", content=content, **options)
 

@@ -146,7 +146,7 @@ class Station:
         self._lock.__exit__(None, None, None)
 
     def _open_recording(self) -> None:
-        """Open the store and all that records into it."""
+        """Open the store, what knows where the objects lie, and all that records."""
         settings = self.settings
         self.event_hub = EventHub()
         self.store = Store(settings.store, changed=self.event_hub.publish_change)
@@ -154,12 +154,14 @@ class Station:
         self.calibrations = Calibrations(
             self.store, settings.recording, settings.calibrations, settings.scene, self.reader.call
         )
+        self.executions = Executions(self.bus, self.keys, self.store, robot=settings.bus.robot)
+        self.objects = ObjectPoses(self.bus, self.keys, settings.scene, self.executions.is_moving, self._show_object)
         self.recorder = Recorder(
             self.bus,
             self.keys,
             self.store,
             settings.recording,
-            Lookup(scene=settings.scene, calibration=self.calibrations.get),
+            Lookup(settings.scene, self.calibrations.get, self.objects.reported),
             DemonstrationCallbacks(
                 added=lambda demonstration, trajectory: self._show_task(demonstration.task),
                 changed=lambda demonstration: self._show_task(demonstration.task),
@@ -173,8 +175,6 @@ class Station:
     def _open_work(self) -> None:
         """Open what learns, plans and looks at curves."""
         settings = self.settings
-        self.executions = Executions(self.bus, self.keys, self.store, robot=settings.bus.robot)
-        self.objects = ObjectPoses(self.bus, self.keys, settings.scene, self.executions.is_moving, self._show_object)
         self.assessor = CurveAssessor()
         self.transfers = TransferFolders(Path(settings.store.data_dir) / TRANSFERS)
         kinds = JobKinds(

@@ -20,7 +20,7 @@ from teachpath.offline.import_job import PREPARED, ImportOrder, ImportRequest, p
 from teachpath.offline.learning_job import StoredDemonstrations, learn_stored, recut_stored
 from teachpath.offline.transfer_folders import TransferFolders
 from teachpath.recorder.calibrations import Calibrations
-from teachpath.records import Demonstration, Job, Learned, LearnedPath, Plan, Task
+from teachpath.records import Demonstration, Job, Learned, LearnedPath, ObjectPose, Plan, Task
 from teachpath.robot.object_poses import ObjectPoses
 
 
@@ -78,7 +78,9 @@ class JobKinds:
     def _stored(self, task: str, rows: list[Demonstration]) -> StoredDemonstrations:
         carried = self.settings.scene(self.store.task(task).scene).carried
         return StoredDemonstrations(
-            Path(self.settings.store.data_dir), tuple(rows), carried.position if carried else None
+            Path(self.settings.store.data_dir),
+            tuple(rows),
+            ObjectPose(carried.position, carried.orientation) if carried else None,
         )
 
     def _planning_input(self, job: Job) -> tuple[Any, ...]:
@@ -111,12 +113,18 @@ class JobKinds:
                 self.calibrations.get(given.calibration),
                 self.settings.recording,
                 self.settings.imports,
+                self._object_at_grasp(job.task, given),
             ),
         )
 
+    def _object_at_grasp(self, task: str, given: ImportRequest) -> bool:
+        """Return whether the object lies where the hand grasps: as the task says, or the request for a new one."""
+        known = (known.object_at_grasp for known in self.store.tasks() if known.name == task)
+        return next(known, given.object_at_grasp)
+
     def _store_import(self, job: Job, made: list[Demonstration]) -> str:
         given = from_document(ImportRequest, job.request)
-        task = Task(job.task, given.scene, made[0].calibration.name, 0)
+        task = Task(job.task, given.scene, made[0].calibration.name, 0, given.object_at_grasp)
         outcome = self.store.finish_import(
             job.id, task, made, self.transfers.folder(given.upload) / PREPARED / RECORDINGS
         )

@@ -17,7 +17,8 @@ from rich.console import Console
 from rich.table import Table
 from scipy.spatial.transform import Rotation
 
-from teachpath.learning.adaptation.adapt import adapt, even_parameters
+from teachpath.learning.adaptation.adapt import adapt
+from teachpath.learning.adaptation.even_parameters import even_parameters
 from teachpath.learning.adaptation.target import Target
 from teachpath.learning.fitting.orientation_fit import mean_orientations, rotation_angles
 from teachpath.learning.fitting.synthesis import fit_mean_path
@@ -111,7 +112,7 @@ def predict(shown: Sequence[Trajectory], truth: Trajectory) -> Prediction:
     target = Target(course[0], course[-1], *([] if turns is None else turns[[0, -1]]))
     learned = fit_mean_path(1, [shown[0]], SETTINGS, on_step=lambda: None)
     found = adapt(learned, learned.curve, [shown[0]], shown[1:], target, SETTINGS)
-    u = even_parameters(found.curve)
+    u = even_parameters(found.curve, POINTS)
     paths[ADAPTED] = found.curve(u)
     off = {name: np.linalg.norm(path - course, axis=1) for name, path in paths.items()}
     rms = {name: float(np.sqrt(np.mean(each**2))) for name, each in off.items()}

@@ -13,7 +13,8 @@ from teachpath.io.store.settings import StoreSettings
 from teachpath.io.store.store import Store
 from teachpath.offline.doctor import examine
 from teachpath.offline.importing import Source, import_file
-from teachpath.recorder.session import RecordingSession, RecordingSetup
+from teachpath.recorder.recording_setup import RecordingSetup
+from teachpath.recorder.session import RecordingSession
 from teachpath.recorder.take import FinishedTake
 from teachpath.recording.settings import RecordingSettings
 from teachpath.records import Calibration, Demonstration, Scene, Shape, StreamStatistics, Trajectory

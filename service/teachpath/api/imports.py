@@ -39,6 +39,9 @@ def imports_router(parts: Parts) -> APIRouter:
         rate: Annotated[float, Query(description="[Hz] for a format without a clock")] = 50.0,
         scene: Annotated[str, Query(description="of a new task")] = "empty",
         calibration: Annotated[str, Query(description="of the file's frame; mcap brings its own")] = "identity",
+        object_at_grasp: Annotated[
+            bool, Query(description="of a new task: each motion begins at its object, wherever that is")
+        ] = False,
     ) -> Job:
         """Queue the import of a file sent as the request's body; `Location` names the job.
 
@@ -53,7 +56,7 @@ def imports_router(parts: Parts) -> APIRouter:
         submitter = submitter_of(request)
         parts.jobs.require_room(submitter)
         folder = await run_in_threadpool(parts.transfers.make)
-        order = ImportRequest(folder.name, name, format, units, rate, scene, calibration)
+        order = ImportRequest(folder.name, name, format, units, rate, scene, calibration, object_at_grasp)
         try:
             await _receive(request, folder / UPLOAD, name)
             job = await run_in_threadpool(parts.jobs.submit, task, "import", asdict(order), submitter)

@@ -19,6 +19,10 @@ class NewTask(Body):
 
     scene: str = Field("paper", description="what stands around the arm; see /scenes")
     calibration: str = Field("identity", description="of the tracker's frame; see /calibrations")
+    object_at_grasp: bool = Field(
+        False,
+        description="the object lies where the hand grasps, anew in each demonstration, not where the scene has it",
+    )
 
 
 def tasks_router(parts: Parts) -> APIRouter:
@@ -43,7 +47,9 @@ def _add_tasks(router: APIRouter, parts: Parts) -> None:
         if not is_name(task):
             raise UnusableInput(name_refusal("task", task))
         scene, calibration = parts.settings.scene(new.scene), parts.calibrations.get(new.calibration)
-        return store.ensure_task(task, scene=scene.name, calibration=calibration.name)
+        return store.ensure_task(
+            task, scene=scene.name, calibration=calibration.name, object_at_grasp=new.object_at_grasp
+        )
 
     @router.get("/tasks/{task}")
     def get_task(task: str) -> Task:

@@ -26,6 +26,9 @@ def import_(
     rate: Annotated[float, typer.Option(help="[Hz] for a format without a clock.")] = 50.0,
     scene: Annotated[str, typer.Option(help="Scene of a new task.")] = "empty",
     calibration: Annotated[str, typer.Option(help="Mapping of the file's frame to the world.")] = "",
+    object_at_grasp: Annotated[
+        bool, typer.Option("--object-at-grasp", help="Of a new task: each motion begins at its object, wherever it is.")
+    ] = False,
     config: Config = None,
     data: Data = None,
 ) -> None:
@@ -58,6 +61,7 @@ def import_(
                 scene=settings.scene(scene),
                 calibration=chosen,
                 limits=settings.imports,
+                object_at_grasp=object_at_grasp,
             )
             for d, _ in made:
                 print(f"{task} {d.number}: {d.samples} samples, {d.duration:.2f} s, {d.verdict} ({d.id})")

@@ -8,6 +8,7 @@ from importlib.metadata import version
 
 import numpy as np
 
+from teachpath.learning.adaptation.common_ends import CommonEnds, common_ends
 from teachpath.learning.adaptation.same_way import moving_ends
 from teachpath.learning.clustering.dendrogram import Labels, members_by_label
 from teachpath.learning.clustering.incomplete import Stop, describe
@@ -48,8 +49,13 @@ def learn(
     progress(0.0, f"comparing {len(demonstrations)} demonstrations")
     metric = metric_of(settings)
     courses, length = comparable_paths(demonstrations, metric, settings.seed, Subprogress(progress, 0.0, 0.05))
-    grouping = cluster_paths(courses, settings, length=length, metric=metric, progress=Subprogress(progress, 0.05, 0.2))
-    return learn_partition(demonstrations, courses, grouping, settings, Subprogress(progress, 0.2, 1.0))
+    ends = common_ends(courses, settings, length)
+    if ends is None:
+        comparing = Subprogress(progress, 0.05, 0.2)
+        grouping = cluster_paths(courses, settings, length=length, metric=metric, progress=comparing)
+    else:
+        grouping = ends.partition(settings, metric)
+    return learn_partition(demonstrations, courses, grouping, ends, settings, Subprogress(progress, 0.2, 1.0))
 
 
 def metric_of(settings: LearningSettings) -> str:
@@ -76,6 +82,7 @@ def learn_partition(
     demonstrations: Mapping[str, Trajectory],
     courses: Array,
     grouping: Partition,
+    ends: CommonEnds | None,
     settings: LearningSettings,
     progress: Progress,
 ) -> Learned:
@@ -85,13 +92,16 @@ def learn_partition(
         demonstrations: id -> trajectory, in listed order.
         courses: (m, n, 3) [m], see `comparable_paths`.
         grouping: partition of the demonstrations.
+        ends: of a task with a moving start or goal.
         settings: see `LearningSettings`.
         progress: receives the fraction done and a sentence.
 
     Raises:
         LearningFailed: a path cannot keep the error bound.
     """
-    names = tuple(demonstrations)
+    names, inputs = tuple(demonstrations), {name: fingerprint(shown) for name, shown in demonstrations.items()}
+    if ends is not None:
+        demonstrations, courses = ends.brought(demonstrations), ends.courses
     members = members_by_label(names, grouping.labels)
     choosing = Subprogress(progress, 0.0, 0.75)
     stops = {names[number]: stop for number, stop in grouping.incomplete.items()}
@@ -111,11 +121,11 @@ def learn_partition(
         replace(cluster, representative=names[member], spread=spread, ambiguous=doubt)
         for cluster, (_, spread), member, doubt in zip(clusters, found, central, ambiguities(grouping), strict=True)
     ]
-    inputs = {name: fingerprint(trajectory) for name, trajectory in demonstrations.items()}
     incomplete = [f"demonstration {name} {describe(stop)}" for name, stop in stops.items()]
     told = []
     if settings.mode == "default":
-        told = [*moving_ends(courses[central], min_separation=settings.min_separation), *copies(inputs)]
+        moving = moving_ends(courses[central], min_separation=settings.min_separation) if ends is None else []
+        told = [*moving, *copies(inputs)]
     progress(1.0, f"learned {len(paths)} {'path' if len(paths) == 1 else 'paths'}")
     return Learned(
         mode=settings.mode,
@@ -124,7 +134,7 @@ def learn_partition(
         threshold=grouping.threshold,
         clusters=tuple(described),
         paths=paths,
-        notes=tuple(note for note in (grouping.note, *incomplete, *told) if note),
+        notes=tuple(note for note in (ends.note if ends else "", grouping.note, *incomplete, *told) if note),
         settings=asdict(settings),
         versions=dict(LIBRARY_VERSIONS),
         inputs=inputs,

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 from teachpath.errors import LearningFailed
+from teachpath.learning.adaptation.common_ends import common_ends
 from teachpath.learning.clustering.cuts import recut_partition
 from teachpath.learning.clustering.ends import end_groups
 from teachpath.learning.clustering.incomplete import find_incomplete
@@ -47,10 +48,11 @@ def relearn(
     listed = {name: demonstrations[name] for name in learned.demonstrations}
     metric = metric_of(settings)
     courses, length = comparable_paths(listed, metric, settings.seed)
-    if metric != "undersampled":
+    ends = common_ends(courses, settings, length)
+    if metric != "undersampled" and ends is None:
         groups = end_groups(courses, min_separation=settings.min_separation, length=length)
         grouping = replace(grouping, incomplete=find_incomplete(courses, groups, length))
-    return learn_partition(listed, courses, grouping, settings, progress)
+    return learn_partition(listed, courses, grouping, ends, settings, progress)
 
 
 def _with_cut(settings: LearningSettings, grouping: Partition, clusters: int | None) -> LearningSettings:

@@ -31,6 +31,7 @@ class ImportRequest:
     rate: float
     scene: str
     calibration: str
+    object_at_grasp: bool = False
 
 
 @dataclass(frozen=True)
@@ -52,6 +53,7 @@ class ImportOrder:
     calibration: Calibration
     recording: RecordingSettings
     limits: ImportSettings
+    object_at_grasp: bool = False
 
 
 def prepare_import(order: ImportOrder, *, progress: Callable[[float, str], None]) -> list[Demonstration]:
@@ -80,6 +82,7 @@ def prepare_import(order: ImportOrder, *, progress: Callable[[float, str], None]
             scene=order.scene,
             calibration=order.calibration,
             limits=order.limits,
+            object_at_grasp=order.object_at_grasp,
             progress=progress,
             new_id=derived_ids(order.key),
         )

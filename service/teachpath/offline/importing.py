@@ -15,7 +15,9 @@ from teachpath.io.sample_files import holds_samples, read_samples
 from teachpath.io.store.recordings import read_facts_stream, salvage_stream
 from teachpath.io.store.store import Store
 from teachpath.recorder.annotations import MARKS, Annotations
-from teachpath.recorder.session import RecordingSession, RecordingSetup
+from teachpath.recorder.object_place import ObjectPlace
+from teachpath.recorder.recording_setup import RecordingSetup
+from teachpath.recorder.session import RecordingSession
 from teachpath.recorder.take import random_id
 from teachpath.recording.demonstration import point_to_world
 from teachpath.recording.phase_statistics import PhaseStatistics, phase_statistics
@@ -58,6 +60,7 @@ def import_file(
     scene: Scene,
     calibration: Calibration,
     limits: ImportSettings,
+    object_at_grasp: bool = False,
     progress: Callable[[float, str], None] = lambda fraction, what: None,
     new_id: Callable[[], str] = random_id,
 ) -> list[tuple[Demonstration, Trajectory]]:
@@ -66,7 +69,7 @@ def import_file(
     A recording of ours (mcap, or a CSV file of samples) brings its own samples, tracker and calibration, is cut as it
     was live, is judged no better than it was, and keeps what an operator said of it: mark, trim, discarded. The task is
     made when it does not exist. The file is read and checked whole before the first one is stored. `new_id` returns the
-    id of the next one.
+    id of the next one; in a new task with `object_at_grasp` each motion begins at its object.
 
     Raises:
         UnusableInput: a bad task name, or a file that cannot be used (with its row and column).
@@ -74,15 +77,24 @@ def import_file(
     if not is_name(task):
         raise UnusableInput(name_refusal("task", task))
     read = _read(source, calibration, limits)
+    known = next((one for one in store.tasks() if one.name == task), None)
+    stated_pose = read.stated.object_pose if read.stated else None
+    setup = RecordingSetup(
+        task,
+        read.tracker,
+        read.calibration,
+        scene,
+        new_id=new_id,
+        reported_object=lambda: stated_pose,
+        object_at_grasp=known.object_at_grasp if known else object_at_grasp,
+    )
     progress(0.3, f"checking {len(read.motions)} motions")
     for number, samples in enumerate(read.motions, 1):
         where = source.name if len(read.motions) == 1 else f"{source.name}, motion {number} of {len(read.motions)}"
         _check_duration(samples, limits, where)
-        _check(samples, settings, scene, read.calibration, where)
-    store.ensure_task(task, scene=scene.name, calibration=read.calibration.name)
-    made = _recorded(
-        store, settings, RecordingSetup(task, read.tracker, read.calibration, scene, new_id=new_id), read, progress
-    )
+        _check(samples, settings, setup, where)
+    store.ensure_task(task, scene=scene.name, calibration=read.calibration.name, object_at_grasp=object_at_grasp)
+    made = _recorded(store, settings, setup, read, progress)
     judged = [_judged(store, settings, each, read) for each in made]
     if read.stated is None:
         return judged
@@ -196,19 +208,18 @@ def _check_duration(samples: list[Sample], limits: ImportSettings, where: str) -
         )
 
 
-def _check(
-    samples: list[Sample], settings: RecordingSettings, scene: Scene, calibration: Calibration, where: str
-) -> None:
+def _check(samples: list[Sample], settings: RecordingSettings, setup: RecordingSetup, where: str) -> None:
     """Refuse a motion that would be no demonstration, before any of its file is stored."""
-    carried = scene.carried.position if scene.carried else None
+    carried = ObjectPlace(setup.scene.carried, setup.reported_object, at_grasp=setup.object_at_grasp).expected
     segmenter = Segmenter(settings, carried)
-    mapped = point_to_world(calibration)
+    mapped = point_to_world(setup.calibration)
     cuts = [segmenter.push(sample, mapped(sample.position)) for sample in samples] + [segmenter.finish()]
     longest = max((cut.release - cut.grasp for cut in cuts if cut is not None), default=None)
     if longest is None:
         raise UnusableRecording(
-            f"{where}: the motion does not begin at the object of scene {scene.name}, at {carried} m; check units and "
-            "calibration, or use a scene without an object (empty)"
+            f"{where}: the motion does not begin at the object of scene {setup.scene.name}, at {carried} m; check "
+            "units and calibration, import it as a new task whose object lies where the hand grasps, or use "
+            "a scene without an object (empty)"
         )
     if longest < settings.shortest_transport:
         raise UnusableRecording(f"{where}: {longest} samples are under the least of {settings.shortest_transport}")

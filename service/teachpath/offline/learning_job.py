@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from teachpath.io.store.recordings import RECORDINGS, Recordings
@@ -10,7 +11,9 @@ from teachpath.jobs import worker
 from teachpath.learning.settings import LearningSettings
 from teachpath.recording.demonstration import object_trajectory
 from teachpath.recording.phases import TransportSpan
-from teachpath.records import Demonstration, Learned, Trajectory, Vector
+from teachpath.records import Demonstration, Learned, ObjectPose, Trajectory
+
+SAME_PLACE = 0.001  # m, within which a path begins where the scene has the object
 
 
 @dataclass(frozen=True)
@@ -20,12 +23,12 @@ class StoredDemonstrations:
     Attributes:
         data_dir: folder of the station's data.
         rows: of the demonstrations.
-        carried: start of the object's centre [m, world], or None.
+        object_pose: where the scene has the object, or None.
     """
 
     data_dir: Path
     rows: tuple[Demonstration, ...]
-    carried: Vector | None
+    object_pose: ObjectPose | None
 
     def read(self) -> dict[str, Trajectory]:
         """Return the object's trajectories by the ids of the demonstrations; raises UnusableRecording, NotFound."""
@@ -35,7 +38,7 @@ class StoredDemonstrations:
                 recordings.samples(row.recording, row.digest),
                 TransportSpan(*row.transport),
                 row.calibration,
-                self.carried,
+                pose.position if (pose := row.object_pose or self.object_pose) else None,
                 left_out=row.left_out,
             )
             for row in self.rows
@@ -44,7 +47,7 @@ class StoredDemonstrations:
 
 def learn_stored(stored: StoredDemonstrations, settings: LearningSettings, *, progress: worker.Progress) -> Learned:
     """Read demonstrations and learn from them."""
-    return worker.learn_paths(stored.read(), settings, progress=progress)
+    return _placed(worker.learn_paths(stored.read(), settings, progress=progress), stored.object_pose)
 
 
 def recut_stored(
@@ -56,4 +59,20 @@ def recut_stored(
     progress: worker.Progress,
 ) -> Learned:
     """Read demonstrations and cut the dendrogram of a run over them elsewhere."""
-    return worker.recut_run(learned, stored.read(), threshold, clusters, progress=progress)
+    found = worker.recut_run(learned, stored.read(), threshold, clusters, progress=progress)
+    return _placed(found, stored.object_pose)
+
+
+def _placed(learned: Learned, scene_pose: ObjectPose | None) -> Learned:
+    """Let the paths that begin elsewhere than where the scene has the object say where they take it."""
+    if scene_pose is None:
+        return learned
+    starts = [path.curve(0.0) for path in learned.paths]
+    poses = [
+        None
+        if math.dist(start, scene_pose.position) <= SAME_PLACE
+        else replace(scene_pose, position=tuple(start.tolist()))
+        for start in starts
+    ]
+    paths = zip(learned.paths, poses, strict=True)
+    return replace(learned, paths=tuple(replace(path, object_pose=pose) for path, pose in paths))

@@ -12,7 +12,8 @@ from teachpath.io.store.store import Store
 from teachpath.offline.import_job import derived_ids
 from teachpath.offline.leftovers import REPAIRS
 from teachpath.offline.recording_checks import Inspection
-from teachpath.recorder.session import RecordingSession, RecordingSetup
+from teachpath.recorder.recording_setup import RecordingSetup
+from teachpath.recorder.session import RecordingSession
 from teachpath.recording.settings import RecordingSettings
 from teachpath.records import Demonstration, Scene, Shape, Task
 
@@ -33,7 +34,7 @@ def repair(
     shutil.rmtree(folder, ignore_errors=True)
     made = _demonstrations(torn, header, scene, settings, folder)
     if made:
-        task = Task(header.task, scene.name, header.calibration.name, 0)
+        task = Task(header.task, scene.name, header.calibration.name, 0, header.object_at_grasp)
         store.take_over(task, made, folder / RECORDINGS)
     set_aside(torn.file, SALVAGED)
     shutil.rmtree(folder, ignore_errors=True)
@@ -63,7 +64,15 @@ def _demonstrations(
     try:
         scratch.ensure_task(header.task, scene=scene.name, calibration=header.calibration.name)
         new_id = derived_ids(f"{torn.file.name} {torn.digest.sha256}")
-        setup = RecordingSetup(header.task, header.tracker, header.calibration, scene, new_id=new_id)
+        setup = RecordingSetup(
+            header.task,
+            header.tracker,
+            header.calibration,
+            scene,
+            new_id=new_id,
+            reported_object=lambda: header.object_pose,
+            object_at_grasp=header.object_at_grasp,
+        )
         session = RecordingSession(scratch, settings, setup)
         session.counter.note(NOTE)
         finished = [session.add(sample) for sample in torn.samples]

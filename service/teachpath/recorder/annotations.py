@@ -41,6 +41,8 @@ class Annotations:
 
     def carried(self, demonstration: Demonstration) -> Vector | None:
         """Return the start of the object's centre [m, world] in a demonstration, or None."""
+        if demonstration.object_pose is not None:
+            return demonstration.object_pose.position
         carried = self.scene(self.store.task(demonstration.task).scene).carried
         return carried.position if carried else None
 
@@ -93,6 +95,12 @@ class Annotations:
     def reassessed(self, before: Demonstration, after: Demonstration) -> dict[str, Any]:
         """Return what else changes in the row of a demonstration whose calibration or trim changes."""
         changes: dict[str, Any] = self.call(
-            reassess_recording, self.store.recordings, self.settings, before, after, self.carried(before)
+            reassess_recording,
+            self.store.recordings,
+            self.settings,
+            before,
+            after,
+            self.carried(before),
+            self.store.task(before.task).object_at_grasp,
         )
         return changes

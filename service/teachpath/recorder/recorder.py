@@ -6,6 +6,7 @@ import logging
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import partial
 
 from teachpath.errors import Conflict, UnusableInput
 from teachpath.io.bus import Bus, Handle
@@ -13,11 +14,12 @@ from teachpath.io.store.store import Store
 from teachpath.recorder.annotations import Annotations
 from teachpath.recorder.feedback import FeedbackPublisher
 from teachpath.recorder.presence import Presence, Tracker
+from teachpath.recorder.recording_setup import RecordingSetup
 from teachpath.recorder.recording_thread import RecordingThread
 from teachpath.recorder.recording_work import Call, call_directly
 from teachpath.recorder.sample_queues import SampleQueues
 from teachpath.recorder.sample_totals import RecordingTotals, SampleTotals
-from teachpath.recorder.session import RecordingSession, RecordingSetup
+from teachpath.recorder.session import RecordingSession
 from teachpath.recorder.take import FinishedTake
 from teachpath.recorder.tracker_owners import TrackerOwners
 from teachpath.recording.settings import RecordingSettings
@@ -25,6 +27,7 @@ from teachpath.records import (
     Amendment,
     Calibration,
     Demonstration,
+    ObjectPose,
     RecordingRequest,
     RecordingState,
     RecordingStatus,
@@ -42,10 +45,17 @@ log = logging.getLogger("teachpath")
 
 @dataclass(frozen=True)
 class Lookup:
-    """Finds what a recording names; both functions raise NotFound."""
+    """Finds what a recording names; all functions raise NotFound.
+
+    Attributes:
+        scene: returns the scene of a name as the settings have it.
+        calibration: returns the calibration of a name.
+        reported_object: returns where the object of a scene was told to lie; None: where the settings have it.
+    """
 
     scene: Callable[[str], Scene]
     calibration: Callable[[str], Calibration]
+    reported_object: Callable[[str], ObjectPose | None] = lambda scene: None
 
 
 @dataclass(frozen=True)
@@ -256,6 +266,8 @@ class Recorder:
             scene=self._lookup.scene(task.scene),
             rate=request.rate,
             routine=request.routine,
+            reported_object=partial(self._lookup.reported_object, task.scene),
+            object_at_grasp=task.object_at_grasp,
         )
 
     def _count_missed(self, count: int) -> None:  # on the transport's thread

@@ -7,12 +7,13 @@ So the service passes a `Call` that does the work in a process of its own; tools
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 from teachpath.io.documents import encode
 from teachpath.io.store.recordings import Recordings
 from teachpath.recorder.take_completion import reassess
-from teachpath.recording.demonstration import object_trajectory
+from teachpath.recording.demonstration import object_trajectory, point_to_world
 from teachpath.recording.phases import TransportSpan
 from teachpath.recording.settings import RecordingSettings
 from teachpath.records import Demonstration, Trajectory, Vector
@@ -58,6 +59,7 @@ def reassess_recording(
     before: Demonstration,
     after: Demonstration,
     carried: Vector | None,
+    object_at_grasp: bool = False,
 ) -> dict[str, Any]:
     """Return what else changes in the row of a demonstration whose calibration or trim changes: quality, duration.
 
@@ -65,9 +67,13 @@ def reassess_recording(
         before: as it is stored.
         after: as it will be.
         carried: start of the object's centre [m, world], or None.
+        object_at_grasp: the object lies where the hand grasps.
     """
     samples = recordings.samples(before.recording, before.digest)
     changes = reassess(before, after, samples, settings)
     span, left_out = TransportSpan(*after.transport), changes["left_out"]
+    if object_at_grasp and before.object_pose is not None:
+        carried = point_to_world(after.calibration)(samples[span.grasp].position)
+        changes["object_pose"] = replace(before.object_pose, position=carried)
     trajectory = object_trajectory(samples, span, after.calibration, carried, left_out=left_out)
     return {**changes, "duration": float(trajectory.times[-1])}

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from dataclasses import dataclass, field
 
 from teachpath.io.store.recordings import RecordingHeader
 from teachpath.io.store.store import Store
-from teachpath.recorder.take import FinishedTake, Take, random_id
+from teachpath.recorder.object_place import ObjectPlace
+from teachpath.recorder.recording_setup import RecordingSetup
+from teachpath.recorder.take import FinishedTake, Take
 from teachpath.recording.arrival import Arrival
 from teachpath.recording.demonstration import object_pose, point_to_world
 from teachpath.recording.fist_gesture import FistGesture
@@ -17,36 +18,14 @@ from teachpath.recording.settings import RecordingSettings
 from teachpath.recording.state_machine import RecordingStateMachine
 from teachpath.recording.stream_statistics import StreamCounter
 from teachpath.records import (
-    Calibration,
     FistCommand,
     HandState,
     Phase,
     RecordingState,
     RecordingStatus,
-    Routine,
     Sample,
-    Scene,
     Vector,
 )
-
-
-@dataclass(frozen=True, slots=True)
-class RecordingSetup:
-    """What a session records, and how.
-
-    Attributes:
-        rate: [Hz] that the client declares; 0: it declares none.
-        routine: how takes follow each other.
-        new_id: returns the id of the next take.
-    """
-
-    task: str
-    tracker: str
-    calibration: Calibration
-    scene: Scene
-    rate: float = 0.0
-    routine: Routine = field(default_factory=Routine)
-    new_id: Callable[[], str] = random_id
 
 
 class RecordingSession:
@@ -76,7 +55,7 @@ class RecordingSession:
         # Its current interval is that of the open take.
         self.counter = StreamCounter(declared_rate=setup.rate, largest_clock_step=settings.largest_clock_step)
         self._state_machine = RecordingStateMachine(setup.routine, clock(), countdown=settings.countdown)
-        self._carried = setup.scene.carried.position if setup.scene.carried else None
+        self._object = ObjectPlace(setup.scene.carried, setup.reported_object, at_grasp=setup.object_at_grasp)
         self._to_world = point_to_world(setup.calibration)
         self.demonstrations: list[str] = []
         self.last_flush = clock()
@@ -88,8 +67,8 @@ class RecordingSession:
         self._take_number = 0
         self._newest: Sample | None = None
         self._take = self._new_take()
-        self._segmenter = Segmenter(settings, self._carried)
-        self._gesture = FistGesture(settings, self._carried)
+        self._segmenter = Segmenter(settings, self._object.expected)
+        self._gesture = FistGesture(settings, self._object.expected)
 
     @property
     def task(self) -> str:
@@ -165,7 +144,7 @@ class RecordingSession:
         finished = self._close_take(cut, fault=reason) if cut is not None else None
         self._drop_take()
         # A hand that comes back closed has grasped nothing since.
-        self._segmenter = Segmenter(self._settings, self._carried, closed=True)
+        self._segmenter = Segmenter(self._settings, self._object.expected, closed=True)
         return finished
 
     def on_tracker_lost(self, reason: str) -> FinishedTake | None:
@@ -217,7 +196,7 @@ class RecordingSession:
             pedal_used=self._pedal_used,
             idle=self._idle,
             hint=self._segmenter.hint,
-            carried=self._setup.scene.carried,
+            carried=self._object.shape(grasped=self._segmenter.phase.has_object),
             hand=self._hand() if with_hand else None,
             statistics=self.counter.statistics() if with_statistics else None,
         )
@@ -227,9 +206,9 @@ class RecordingSession:
         if newest is None or not newest.tracked:
             return None
         carried_pose = None
-        if self._segmenter.phase.has_object and self._carried is not None:
+        if self._segmenter.phase.has_object and (start := self._object.start) is not None:
             grasped = self._take.samples[self._segmenter.grasp]
-            carried_pose = object_pose(grasped, newest, self._setup.calibration, self._carried)
+            carried_pose = object_pose(grasped, newest, self._setup.calibration, start)
         return HandState(
             position=self._to_world(newest.position),
             is_closed=hand_closure(newest) > self._settings.close_at,
@@ -253,12 +232,17 @@ class RecordingSession:
 
     def _follow_phases(self, sample: Sample, payload: bytes, position: Vector) -> FinishedTake | None:
         before = self._segmenter.phase
+        if not before.has_object and self._object.has_moved():
+            self._segmenter.carried = self._gesture.carried = self._object.expected
         cut = self._segmenter.push(sample, position)
         phase = self._segmenter.phase
         if cut is not None and phase is Phase.GRASP:  # the first sample of the next take
             finished = self._close_take(cut, following=sample)
+            self._object.on_grasp(position)
             self._take.write(sample, payload)
             return finished
+        if before is Phase.REACH and phase is Phase.GRASP:
+            self._object.on_grasp(position)
         self._take.write(sample, payload)
         if cut is not None:
             return self._close_take(cut)
@@ -276,7 +260,7 @@ class RecordingSession:
         if cut.open_ended and not fault and (self._is_torn or self._take.samples[-1].flexions):
             fault = "the recording ended before the hand let go"
         statistics = self.counter.interval(excluding=following)
-        if (finished := self._take.finalize(cut, statistics, self._carried, fault)) is None:
+        if (finished := self._take.finalize(cut, statistics, self._object, fault)) is None:
             self._idle += len(self._take.samples)
         else:
             self.demonstrations.append(finished[0].id)
@@ -288,7 +272,7 @@ class RecordingSession:
         self._take.discard()
         self._idle += len(self._take.samples)
         self._begin_take()
-        self._segmenter = Segmenter(self._settings, self._carried)
+        self._segmenter = Segmenter(self._settings, self._object.expected)
 
     def _begin_take(self, first: Sample | None = None) -> None:
         self._take = self._new_take()
@@ -296,6 +280,14 @@ class RecordingSession:
 
     def _new_take(self) -> Take:
         self._take_number += 1
-        setup = self._setup
-        header = RecordingHeader(setup.task, setup.tracker, setup.calibration, setup.scene.name, self._carried)
+        setup, place = self._setup, self._object
+        header = RecordingHeader(
+            setup.task,
+            setup.tracker,
+            setup.calibration,
+            setup.scene.name,
+            place.scene_position,
+            place.reported,
+            setup.object_at_grasp,
+        )
         return Take(self._store, self._settings, header, self.counter.note, self._setup.new_id)

@@ -8,10 +8,11 @@ from collections.abc import Callable
 from teachpath.errors import StorageUnavailable, UnusableRecording
 from teachpath.io.store.recordings import RecordingFile, RecordingHeader
 from teachpath.io.store.store import Store
+from teachpath.recorder.object_place import ObjectPlace
 from teachpath.recorder.take_completion import SegmentedTake, complete_take
 from teachpath.recording.phases import TransportSpan
 from teachpath.recording.settings import RecordingSettings
-from teachpath.records import Demonstration, Sample, StreamStatistics, Trajectory, Vector
+from teachpath.records import Demonstration, Sample, StreamStatistics, Trajectory
 
 FinishedTake = tuple[Demonstration, Trajectory]
 
@@ -86,21 +87,23 @@ class Take:
             self._file = None
 
     def finalize(
-        self, cut: TransportSpan, statistics: StreamStatistics, carried: Vector | None, fault: str
+        self, cut: TransportSpan, statistics: StreamStatistics, place: ObjectPlace, fault: str
     ) -> FinishedTake | None:
         """Make and store its demonstration; if that is impossible, note why, and leave no file.
 
         Args:
             cut: its transport phase.
             statistics: of its samples.
-            carried: start of the object's centre [m, world], or None.
+            place: where the object was grasped.
             fault: why the take ended too early, or empty.
         """
         try:
             if self._file is None:
                 raise UnusableRecording(f"a demonstration was lost: {self.fault}")
             identity = {"id": self._id, "task": self._header.task, "source": self._header.tracker}
-            take = SegmentedTake(self.samples, cut, statistics, self._header.calibration, carried, fault)
+            take = SegmentedTake(
+                self.samples, cut, statistics, self._header.calibration, place.start, place.pose, fault
+            )
             return complete_take(self._store, self._settings, self._file, take, identity)
         except UnusableRecording as error:
             self._note(str(error))

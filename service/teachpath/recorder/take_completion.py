@@ -21,7 +21,16 @@ from teachpath.recording.position_outliers import find_outliers
 from teachpath.recording.quality import QualityReport, assess_quality, reassess_quality
 from teachpath.recording.repeated_readings import find_repeated_readings
 from teachpath.recording.settings import RecordingSettings
-from teachpath.records import Calibration, Demonstration, Sample, StreamStatistics, Trajectory, Vector, Verdict
+from teachpath.records import (
+    Calibration,
+    Demonstration,
+    ObjectPose,
+    Sample,
+    StreamStatistics,
+    Trajectory,
+    Vector,
+    Verdict,
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,6 +43,7 @@ class SegmentedTake:
         statistics: of its samples, without the outliers of their positions.
         calibration: of its tracker.
         carried: start of the object's centre [m, world], or None.
+        object_pose: of the object before it was grasped; None = where the scene has it.
         fault: why the take ended too early, or empty.
     """
 
@@ -42,6 +52,7 @@ class SegmentedTake:
     statistics: StreamStatistics
     calibration: Calibration
     carried: Vector | None
+    object_pose: ObjectPose | None = None
     fault: str = ""
 
 
@@ -83,6 +94,7 @@ def complete_take(
         reasons=quality.reasons,
         advice=quality.advice,
         left_out=left_out,
+        object_pose=take.object_pose,
     )
     finished = file.finish(facts_of(demonstration))
     stored = store.add_demonstration(

@@ -21,10 +21,11 @@ class FistGesture:
 
     Args:
         carried: start of the object's centre [m, world]; None: a closed hand is a grasp anywhere, never a command.
+            Set it anew when the object lies elsewhere.
     """
 
     def __init__(self, settings: RecordingSettings, carried: Vector | None) -> None:
-        self._settings, self._carried = settings, carried
+        self._settings, self.carried = settings, carried
         self._began: int | None = None  # device clock [ns]
         self._place: Vector = (0.0, 0.0, 0.0)
         self._opened: int | None = None  # device clock [ns] of its opening, while that may still be a flicker
@@ -43,7 +44,7 @@ class FistGesture:
 
     def push(self, sample: Sample, position: Vector, *, carrying: bool) -> FistCommand | None:
         """Add the next sample, newer than all before, and its hand position [m, world]; return the command it ends."""
-        if self._carried is None or not sample.flexions or not self._settings.fist_time:
+        if self.carried is None or not sample.flexions or not self._settings.fist_time:
             return None
         closure = hand_closure(sample)
         if self._began is None:
@@ -59,12 +60,12 @@ class FistGesture:
         return self._open(sample)
 
     def _begin(self, sample: Sample, position: Vector, carrying: bool) -> None:
-        assert self._carried is not None
+        assert self.carried is not None
         self._began = sample.device_ns
         self._opened = None
         self._place = position
         self._held_ns = 0
-        near = math.dist(position, self._carried) < self._settings.fist_distance
+        near = math.dist(position, self.carried) < self._settings.fist_distance
         self._is_void = carrying or near or not sample.tracked
 
     def _open(self, sample: Sample) -> FistCommand | None:

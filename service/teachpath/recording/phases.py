@@ -49,10 +49,11 @@ class Segmenter:
         """Begin to follow a hand.
 
         Args:
-            carried: start of the object's centre [m, world], or None: the hand grasps anywhere.
+            carried: start of the object's centre [m, world], or None: the hand grasps anywhere. Set it anew when the
+                object lies elsewhere.
             closed: the hand may be closed already; it must open before it can grasp.
         """
-        self._settings, self._carried = settings, carried
+        self._settings, self.carried = settings, carried
         self._closed = closed
         self._release_ns = round(settings.release_time * 1e9)
         self._rest_ns = round(settings.rest_time * 1e9)
@@ -117,8 +118,8 @@ class Segmenter:
 
     def _advise(self, sample: Sample, position: Vector, *, closes: bool) -> None:
         """Say why the hand grasps nothing: too far from the object, or not closed enough."""
-        if closes and self._carried is not None:
-            distance, limit = math.dist(position, self._carried), self._settings.grasp_radius
+        if closes and self.carried is not None:
+            distance, limit = math.dist(position, self.carried), self._settings.grasp_radius
             self.hint = (
                 f"the hand closed {100 * distance:.3g} cm from the object, limit {100 * limit:.3g} cm: close it there"
             )
@@ -162,9 +163,9 @@ class Segmenter:
         return cut
 
     def _near(self, position: Vector) -> bool:
-        if self._carried is None:
+        if self.carried is None:
             return True
-        return math.dist(position, self._carried) <= self._settings.grasp_radius
+        return math.dist(position, self.carried) <= self._settings.grasp_radius
 
     def _rests(self, now_ns: int) -> bool:
         while now_ns - self._recent[0][0] > self._rest_ns:

@@ -9,6 +9,7 @@ import numpy as np
 
 from teachpath.records.arrays import Array, Matrix, Quaternion, Vector
 from teachpath.records.calibrations import Calibration
+from teachpath.records.motion import ObjectPose
 
 
 class Phase(StrEnum):
@@ -60,12 +61,18 @@ class Sample:
 
 @dataclass(frozen=True, slots=True)
 class Task:
-    """What is demonstrated: its name, its scene and the calibration of its demonstrations."""
+    """What is demonstrated: its name, its scene and the calibration of its demonstrations.
+
+    Attributes:
+        object_at_grasp: whether the object lies where the hand grasps, anew in each demonstration, instead of where
+            the scene has it.
+    """
 
     name: str
     scene: str
     calibration: str
     created_ns: int
+    object_at_grasp: bool = False
 
 
 @dataclass(frozen=True, eq=False)
@@ -192,6 +199,7 @@ class Demonstration:
     mark: str = ""  # the operator's own: good, bad or none
     discarded_ns: int = 0  # when it was discarded; 0: it is not
     digest: RecordingDigest | None = None  # of its recording; None: it was stored before digests were
+    object_pose: ObjectPose | None = None  # of the object before it was grasped; None = as the scene has it
 
     @property
     def transport(self) -> tuple[int, int]:

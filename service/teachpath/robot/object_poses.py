@@ -86,6 +86,12 @@ class ObjectPoses:
             raise NotFound(f"scene {name} has no object; give it one in the settings (carried)")
         return ObjectPose(carried.position, carried.orientation)
 
+    def reported(self, name: str) -> ObjectPose | None:
+        """Return where the object of a scene was told to lie; None: where the settings have it. Raises NotFound."""
+        carried = self.scene(name).carried
+        with self._lock:
+            return self._current.get(name) if carried else None
+
     def tell(self, name: str, pose: ObjectPose) -> ObjectPose:
         """Say where the object of a scene lies, and return where it lies as far as scenes are concerned.
 

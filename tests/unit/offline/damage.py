@@ -12,7 +12,8 @@ from teachpath.io.store.settings import StoreSettings
 from teachpath.io.store.store import Store
 from teachpath.offline.doctor import examine
 from teachpath.offline.findings import Finding
-from teachpath.recorder.session import RecordingSession, RecordingSetup
+from teachpath.recorder.recording_setup import RecordingSetup
+from teachpath.recorder.session import RecordingSession
 from teachpath.recording.settings import RecordingSettings
 from teachpath.records import Calibration, Demonstration, Scene, Shape
 from tests.unit.recording.hands import demonstration

@@ -7,7 +7,8 @@ import numpy as np
 
 from teachpath.io.store.store import Store
 from teachpath.recorder.annotations import Annotations
-from teachpath.recorder.session import RecordingSession, RecordingSetup
+from teachpath.recorder.recording_setup import RecordingSetup
+from teachpath.recorder.session import RecordingSession
 from teachpath.recording.phases import GRASP_BUTTON
 from teachpath.recording.settings import RecordingSettings
 from teachpath.records import Calibration, Demonstration, Sample, Scene, Trajectory

@@ -12,7 +12,8 @@ from teachpath.io.store.settings import StoreSettings
 from teachpath.io.store.store import Store
 from teachpath.recorder.annotations import Annotations
 from teachpath.recorder.calibrations import Calibrations
-from teachpath.recorder.session import RecordingSession, RecordingSetup
+from teachpath.recorder.recording_setup import RecordingSetup
+from teachpath.recorder.session import RecordingSession
 from teachpath.recording.advice import ending_advice
 from teachpath.recording.settings import RecordingSettings
 from teachpath.records import Calibration, Demonstration, Scene, TaughtPoint, Vector

@@ -7,9 +7,10 @@ import pytest
 from teachpath.io.store.store import Store
 from teachpath.io.wire import encode_sample
 from teachpath.recorder.presence import Presence
+from teachpath.recorder.recording_setup import RecordingSetup
 from teachpath.recorder.recording_thread import BATCH_SIZE, FLUSH_INTERVAL, RecordingThread
 from teachpath.recorder.sample_queues import SampleQueues
-from teachpath.recorder.session import RecordingSession, RecordingSetup
+from teachpath.recorder.session import RecordingSession
 from teachpath.recording.settings import RecordingSettings
 from teachpath.records import Calibration, Scene
 from tests.unit.recorder.recorders import KEYS

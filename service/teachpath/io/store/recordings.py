@@ -26,7 +26,7 @@ from teachpath.io.store.mcap_file import McapFile, StampedMessage
 from teachpath.io.store.mcap_records import read_records
 from teachpath.io.store.viewer_messages import ViewerMessages
 from teachpath.io.wire import decode_sample, encode_sample, message_types
-from teachpath.records import Calibration, Demonstration, RecordingDigest, Sample, Vector
+from teachpath.records import Calibration, Demonstration, ObjectPose, RecordingDigest, Sample, Vector
 
 RECORDINGS = "recordings"  # their folder, in that of the data
 TOPIC = "samples"
@@ -51,6 +51,8 @@ class RecordingHeader:
     calibration: Calibration
     scene: str = ""  # its name; empty in files of before it was said
     carried: Vector | None = None  # start of the object's centre [m, world]; None: the scene has none
+    object_pose: ObjectPose | None = None  # where the object was told to lie then; None = where the scene has it
+    object_at_grasp: bool = False  # the object lies where the hand grasps
 
 
 class RecordingFile:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 from sqlalchemy import func, select
@@ -36,11 +36,11 @@ def success(outcome: str, now: int) -> dict[str, Any]:
     return {"state": JobState.SUCCEEDED.value, "fraction": 1.0, "outcome": outcome, "finished_ns": now, "message": ""}
 
 
-def ensured_task(session: Session, name: str, scene: str, calibration: str) -> TaskRow:
+def ensured_task(session: Session, task: Task) -> TaskRow:
     """Return the row of a task; added when there is none."""
-    row = session.get(TaskRow, name)
+    row = session.get(TaskRow, task.name)
     if row is None:
-        row = TaskRow(name=name, scene=scene, calibration=calibration, created_ns=time.time_ns())
+        row = TaskRow(**{**asdict(task), "created_ns": time.time_ns()})
         session.add(row)
     return row
 
@@ -69,7 +69,7 @@ def imported_rows(session: Session, task: Task, made: Sequence[Demonstration], a
 
     The places of the recordings whose rows are new are added to `added`.
     """
-    ensured_task(session, task.name, task.scene, task.calibration)
+    ensured_task(session, task)
     session.flush()
     numbers = []
     for demonstration in made:
@@ -83,7 +83,7 @@ def imported_rows(session: Session, task: Task, made: Sequence[Demonstration], a
 
 def task_of(row: TaskRow) -> Task:
     """Return the task of a row."""
-    return Task(row.name, row.scene, row.calibration, row.created_ns)
+    return Task(row.name, row.scene, row.calibration, row.created_ns, row.object_at_grasp)
 
 
 def job_of(row: JobRow) -> Job:

@@ -104,10 +104,10 @@ class Store:
 
     # tasks and demonstrations
 
-    def ensure_task(self, name: str, *, scene: str, calibration: str) -> Task:
-        """Return the task `name`; made with `scene` and `calibration` when it does not exist."""
+    def ensure_task(self, name: str, *, scene: str, calibration: str, object_at_grasp: bool = False) -> Task:
+        """Return the task `name`; made with the other arguments when it does not exist."""
         with self._change() as session:
-            row = ensured_task(session, name, scene, calibration)
+            row = ensured_task(session, Task(name, scene, calibration, 0, object_at_grasp))
         return task_of(row)
 
     def tasks(self) -> list[Task]:

@@ -4,7 +4,18 @@ from __future__ import annotations
 
 from typing import Any
 
-from sqlalchemy import JSON, BigInteger, Float, ForeignKey, Index, Integer, String, Text, UniqueConstraint
+from sqlalchemy import (
+    JSON,
+    BigInteger,
+    Boolean,
+    Float,
+    ForeignKey,
+    Index,
+    Integer,
+    String,
+    Text,
+    UniqueConstraint,
+)
 from sqlalchemy.orm import DeclarativeBase, Mapped, mapped_column
 
 ID = String(64)
@@ -22,6 +33,7 @@ class TaskRow(Base):
     scene: Mapped[str] = mapped_column(ID)
     calibration: Mapped[str] = mapped_column(ID)
     created_ns: Mapped[int] = mapped_column(BigInteger)
+    object_at_grasp: Mapped[bool] = mapped_column(Boolean)
 
 
 class DemonstrationRow(Base):

@@ -10,6 +10,7 @@ import numpy as np
 from teachpath.learning.adaptation.adapted_course import CourseModel
 from teachpath.learning.adaptation.adapted_orientation import adapted_orientation
 from teachpath.learning.adaptation.displaced_curve import displaced
+from teachpath.learning.adaptation.even_parameters import even_parameters
 from teachpath.learning.adaptation.kriged_shapes import KrigedShapes, Prediction
 from teachpath.learning.adaptation.same_way import labels_of_ways
 from teachpath.learning.adaptation.target import Target
@@ -22,7 +23,6 @@ from teachpath.nurbs import Curve, unit_quaternions
 from teachpath.records import Array, LearnedPath, Trajectory
 
 STATIONS = 100  # at equal arc length
-CURVE_SAMPLES = 2000
 SAME_PLACE = 1e-9  # m
 SAME_TURN = 1e-7  # rad, what rounding leaves of an angle
 
@@ -77,7 +77,7 @@ def adapt(
         LearningFailed: the orientations cannot be followed within `turn_bound`.
     """
     model, alike, courses = course_model(path, learned, members, others, settings)
-    u = even_parameters(path.curve)
+    u = even_parameters(path.curve, STATIONS)
     found = model.predict(target.start, target.goal)
     bound = settings.bound_for(extent(found.path))
     curve, orientation, missed = path.curve, path.orientation, 0.0
@@ -85,7 +85,7 @@ def adapt(
         displacements = found.path - model.version
         curve, missed = displaced(path.curve, u, displacements, bound, settings.most_control_points)
         closeness = model.closeness(target.start, target.goal)
-        orientation = adapted_orientation(path, alike, u, closeness, target, settings)
+        orientation = adapted_orientation(path, alike, closeness, target, settings)
     length = float(arc_lengths(model.version)[-1])
     places = int(end_groups(courses, min_separation=settings.min_separation, length=length).max())
     note = _note(found, len(alike), places)
@@ -106,8 +106,8 @@ def course_model(
     The arguments are those of `adapt`; the courses are (m, 100, 3) [m].
     """
     alike, courses = _same_way(learned, members, others, settings)
-    version = path.curve(even_parameters(path.curve))
-    return CourseModel(KrigedShapes(courses), learned(even_parameters(learned)), version), alike, courses
+    version = path.curve(even_parameters(path.curve, STATIONS))
+    return CourseModel(KrigedShapes(courses), learned(even_parameters(learned, STATIONS)), version), alike, courses
 
 
 def _is_own(path: LearnedPath, target: Target) -> bool:
@@ -133,13 +133,6 @@ def _same_way(
     alike = ways == ways[0]
     alike[: len(members)] = True
     return [everyone[number] for number in np.flatnonzero(alike)], courses[alike]
-
-
-def even_parameters(curve: Curve) -> Array:
-    """Return the parameters (100,) of points at equal arc length."""
-    fine = np.linspace(0.0, 1.0, CURVE_SAMPLES)
-    s = arc_lengths(curve(fine))
-    return np.asarray(np.interp(np.linspace(0.0, s[-1], STATIONS), s, fine))
 
 
 def _note(found: Prediction, demonstrations: int, places: int) -> str:

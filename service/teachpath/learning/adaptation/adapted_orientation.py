@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 
 import numpy as np
 from scipy.spatial.transform import Rotation
 
 from teachpath.errors import UnusableInput
+from teachpath.learning.adaptation.even_parameters import even_parameters
 from teachpath.learning.adaptation.target import Target
 from teachpath.learning.fitting.orientation_fit import fit_orientations, mean_orientations
 from teachpath.learning.resampling import sign_aligned
@@ -19,7 +21,6 @@ from teachpath.records import Array, LearnedPath, Trajectory
 def adapted_orientation(
     path: LearnedPath,
     shown: Sequence[Trajectory],
-    u: Array,
     closeness: float,
     target: Target,
     settings: LearningSettings,
@@ -31,7 +32,6 @@ def adapted_orientation(
     Args:
         path: the version that is adapted.
         shown: demonstrations of its way; those without orientations are left out.
-        u: (n,) parameters of points at equal arc length.
         closeness: how near the new ends are to those of the learned path, 0 to 1, and so how much its own orientations
             count instead of the mean.
         target: the ends.
@@ -46,8 +46,23 @@ def adapted_orientation(
         return path.orientation
     if path.orientation is None:
         raise UnusableInput("this path has learned no orientations; leave them out of start and goal")
-    own = unit_quaternions(path.orientation, u)
-    mean = mean_orientations([trajectory for trajectory in shown if trajectory.orientations is not None], len(u))
+    oriented = [trajectory for trajectory in shown if trajectory.orientations is not None]
+    sampled = partial(_mended, path.curve, path.orientation, oriented, closeness, asked)
+    return fit_orientations(path.cluster, sampled, path.orientation.degree, settings)[0]
+
+
+def _mended(
+    curve: Curve,
+    orientation: Curve,
+    shown: Sequence[Trajectory],
+    closeness: float,
+    asked: tuple[Array | None, Array | None],
+    count: int,
+) -> tuple[Array, Array]:
+    """Return orientations (count, 4) at equal arc lengths that end as asked for, and their parameters (count,)."""
+    u = even_parameters(curve, count)
+    own = unit_quaternions(orientation, u)
+    mean = mean_orientations(shown, count)
     assert mean is not None
     between = _rotations(mean)
     between = Rotation.from_rotvec(closeness * (_rotations(own) * between.inv()).as_rotvec()) * between
@@ -55,8 +70,7 @@ def adapted_orientation(
     mends = (_rotations(np.array(wanted)) * between[[0, -1]].inv()).as_rotvec()
     share = np.linspace(0.0, 1.0, len(u))[:, None]
     turned = Rotation.from_rotvec((1 - share) * mends[0] + share * mends[1]) * between
-    quaternions = sign_aligned(np.asarray(turned.as_quat(scalar_first=True)))
-    return fit_orientations(path.cluster, quaternions, u, path.orientation.degree, settings)[0]
+    return sign_aligned(np.asarray(turned.as_quat(scalar_first=True))), u
 
 
 def _rotations(quaternions: Array) -> Rotation:

@@ -57,7 +57,7 @@ class KrigedShapes:
 
     def __init__(self, paths: Array) -> None:
         starts, chords = paths[:, 0], paths[:, -1] - paths[:, 0]
-        self._chords = chords
+        self._starts, self._chords = starts, chords
         self._share = np.linspace(0.0, 1.0, paths.shape[1])
         self.distances = np.linalg.norm(chords[:, :2], axis=1)
         self.yaws = np.arctan2(chords[:, 1], chords[:, 0])
@@ -92,6 +92,22 @@ class KrigedShapes:
             unexplained = max(1.0 + NUGGET - float(known @ solved), 0.0)
             deviation = scale * np.sqrt(unexplained * self.variance)
         return Prediction(path, deviation, self._beyond(chord))
+
+    def moved(self, number: int, positions: Array, share: Array, other: int) -> Array:
+        """Bring a demonstration to the ends of another one; its shape turns and grows with the chord.
+
+        Args:
+            number: of the demonstration.
+            positions: (n, 3) [m] of it.
+            share: (n,) of its arc length at these.
+            other: number of the demonstration whose ends it is brought to.
+        """
+        along = share[:, None]
+        residuals = positions - self._starts[number] - along * self._chords[number]
+        if self.turns:
+            turn = _rotations(np.array([self.yaws[other] - self.yaws[number]]))[0]
+            residuals = residuals @ turn.T * (self.distances[other] / self.distances[number]) ** DISTANCE_POWER
+        return np.asarray(self._starts[other] + along * self._chords[other] + residuals)
 
     def _world_shapes(self, yaw: float) -> Array:
         """Return the mean of turned and unturned shapes for a direction (m, n, 3)."""

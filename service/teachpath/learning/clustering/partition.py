@@ -41,7 +41,14 @@ class Partition:
     incomplete: Mapping[int, Stop] = field(default_factory=dict)
 
 
-def cut_as_set(tree: Array, settings: LearningSettings, *, length: float, groups: int = 1) -> Partition:
+def cut_as_set(
+    tree: Array,
+    settings: LearningSettings,
+    *,
+    length: float,
+    groups: int = 1,
+    usual_scatter: float = USUAL_SCATTER,
+) -> Partition:
     """Cut a dendrogram as the settings say: into a number of clusters, at a height, or where clusters separate.
 
     Args:
@@ -49,12 +56,15 @@ def cut_as_set(tree: Array, settings: LearningSettings, *, length: float, groups
         settings: `clusters`, else `threshold`, else `min_separation` decide.
         length: of a typical path [m].
         groups: number of groups of demonstrations with different ends, whose merges come last.
+        usual_scatter: mean distance of two demonstrations of one cluster, as share of the length.
     """
     if settings.clusters is not None and settings.mode == "default":
         return cut_into(tree, settings.clusters)
     if settings.threshold is not None:
         return cut_at(tree, settings.threshold)
-    return cut_by_separation(tree, min_separation=settings.min_separation, length=length, groups=groups)
+    return cut_by_separation(
+        tree, min_separation=settings.min_separation, length=length, groups=groups, usual_scatter=usual_scatter
+    )
 
 
 def cut_at(tree: Array, threshold: float) -> Partition:
@@ -81,7 +91,14 @@ def cut_into(tree: Array, clusters: int) -> Partition:
     return Partition(tree, height, labels_for_count(tree, left), note, _next_merge(tree, left, height))
 
 
-def cut_by_separation(tree: Array, *, min_separation: float, length: float, groups: int = 1) -> Partition:
+def cut_by_separation(
+    tree: Array,
+    *,
+    min_separation: float,
+    length: float,
+    groups: int = 1,
+    usual_scatter: float = USUAL_SCATTER,
+) -> Partition:
     """Cut below the lowest merge of two clusters that are separated.
 
     Two clusters are separated when their distance is at least `min_separation` times the scatter within clusters; a
@@ -95,9 +112,10 @@ def cut_by_separation(tree: Array, *, min_separation: float, length: float, grou
         min_separation: least ratio of the distance of two clusters to the scatter within clusters.
         length: of a typical path [m].
         groups: number of groups of demonstrations with different ends, whose merges come last.
+        usual_scatter: mean distance of two demonstrations of one cluster, as share of the length.
     """
     count = len(tree) + 1
-    ratios = separations(tree, length) / min_separation
+    ratios = separations(tree, length, usual_scatter) / min_separation
     ratios[count - groups :] = np.inf
     clusters = separated_clusters(ratios)
     if groups > 1:

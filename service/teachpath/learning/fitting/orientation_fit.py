@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
@@ -12,6 +12,8 @@ from teachpath.learning.resampling import arc_lengths, sign_aligned, smoothed, s
 from teachpath.learning.settings import LearningSettings
 from teachpath.nurbs import Curve, unit_quaternions
 from teachpath.records import Array, Trajectory
+
+POINT_COUNTS = (200, 800, 3200)  # of a mean course of orientations
 
 
 def mean_orientations(selected: Sequence[Trajectory], count: int) -> Array | None:
@@ -40,14 +42,17 @@ def mean_orientations(selected: Sequence[Trajectory], count: int) -> Array | Non
 
 
 def fit_orientations(
-    cluster: int, mean: Array, at: Array, degree: int, settings: LearningSettings
+    cluster: int, sampled: Callable[[int], tuple[Array, Array]], degree: int, settings: LearningSettings
 ) -> tuple[Curve, float]:
     """Fit a curve of quaternions within `turn_bound`.
 
+    A hand turns where it rests, at grasp and release, and there a short piece of the path turns far: where 200 points
+    are too few for the bound, 800 are taken.
+
     Args:
         cluster: number of the cluster, for the error message.
-        mean: (n, 4) unit quaternions, neighbours on one half of the sphere.
-        at: (n,) their parameters on the position curve.
+        sampled: returns, for a number of points n, unit quaternions (n, 4), neighbours on one half of the sphere, and
+            their parameters (n,) on the position curve.
         degree: of the curve.
         settings: `turn_bound` and `most_control_points`.
 
@@ -58,16 +63,18 @@ def fit_orientations(
         LearningFailed: the bound cannot be kept.
     """
     # A point within sin(a / 2) of a unit quaternion is within the angle a of it after normalisation.
-    most = settings.most_control_points
-    fit = approximate(mean, float(np.sin(settings.turn_bound / 2)), degree=degree, most=most, at=at)
-    largest = float(rotation_angles(unit_quaternions(fit.curve, at), mean).max())
-    if largest > settings.turn_bound:
-        raise LearningFailed(
-            f"the orientations of way {cluster} cannot be followed within {np.degrees(settings.turn_bound):.3g}° by "
-            f"{most} control points, which reach {np.degrees(largest):.3g}°; raise learning.turn_bound or "
-            "learning.most_control_points"
-        )
-    return fit.curve, largest
+    bound, most = float(np.sin(settings.turn_bound / 2)), settings.most_control_points
+    for count in POINT_COUNTS:
+        quaternions, at = sampled(count)
+        curve = approximate(quaternions, bound, degree=degree, most=most, at=at).curve
+        largest = float(rotation_angles(unit_quaternions(curve, at), quaternions).max())
+        if largest <= settings.turn_bound:
+            return curve, largest
+    raise LearningFailed(
+        f"the orientations of way {cluster} cannot be followed within {np.degrees(settings.turn_bound):.3g}°: "
+        f"{len(curve.control_points)} control points reach {np.degrees(largest):.3g}°; raise learning.turn_bound or "
+        f"learning.most_control_points ({most}), or turn the object while it moves"
+    )
 
 
 def rotation_angles(one: Array, other: Array) -> Array:

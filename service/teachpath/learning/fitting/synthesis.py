@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 
 import numpy as np
 
@@ -141,14 +142,29 @@ def fit_pooled_points(
 
 
 def residual_noise(selected: Sequence[Trajectory]) -> float:
-    """Estimate the noise [m] that smoothing and averaging leave in the mean path, from third differences."""
+    """Estimate the noise [m] that smoothing and averaging leave in the mean path, from third differences.
+
+    Only what is across the motion counts: an uneven clock leaves differences along it, and moves no path.
+    """
     squares = []
     for trajectory in selected:
-        roughness = float(np.median(np.square(np.diff(trajectory.positions, 3, axis=0)).sum(axis=1)))
+        along = trajectory.positions[3:] - trajectory.positions[:-3]
+        along /= np.maximum(np.linalg.norm(along, axis=1, keepdims=True), 1e-12)
+        third = np.diff(trajectory.positions, 3, axis=0)
+        across = third - (third * along).sum(axis=1, keepdims=True) * along
+        roughness = 1.5 * float(np.median(np.square(across).sum(axis=1)))  # two axes of three
         width = max(SMOOTHING_WINDOW / float(np.median(np.diff(trajectory.times))), 1.0)
         # The squares of the coefficients 1, -3, 3, -1 of a third difference sum to 20.
         squares.append(roughness / 20 / width)
     return float(np.sqrt(np.mean(squares) / len(squares)))
+
+
+def _turns(selected: Sequence[Trajectory], count: int) -> tuple[Array, Array]:
+    """Return the mean orientations (count, 4) at equal arc lengths, and their parameters on the path (count,)."""
+    s = arc_lengths(mean_path([smoothed(trajectory) for trajectory in selected], count))
+    mean = mean_orientations(selected, count)
+    assert mean is not None
+    return mean, s / s[-1]
 
 
 def _length(path: Array) -> float:
@@ -195,10 +211,9 @@ def _path(
     for trajectory in selected:
         tube = max(tube, float(distances(trajectory.positions).max()))
         on_step()
-    mean, orientation, turn = mean_orientations(selected, len(course)), None, None
-    s = arc_lengths(course)
-    if mean is not None and s[-1] > 0:
-        orientation, turn = fit_orientations(cluster, mean, s / s[-1], curve.degree, settings)
+    orientation, turn = None, None
+    if all(trajectory.orientations is not None for trajectory in selected) and _length(course) > 0:
+        orientation, turn = fit_orientations(cluster, partial(_turns, selected), curve.degree, settings)
     measures = Fit(
         bound,
         float(apart.max()),

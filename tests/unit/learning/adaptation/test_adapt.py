@@ -10,7 +10,8 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from teachpath.errors import UnusableInput
-from teachpath.learning.adaptation.adapt import AdaptedPath, adapt, even_parameters
+from teachpath.learning.adaptation.adapt import STATIONS, AdaptedPath, adapt
+from teachpath.learning.adaptation.even_parameters import even_parameters
 from teachpath.learning.adaptation.target import Target
 from teachpath.learning.fitting.orientation_fit import mean_orientations, rotation_angles
 from teachpath.learning.learn import learn
@@ -143,7 +144,7 @@ def test_orientations_are_the_mean_of_all_that_were_shown_mended_at_both_ends() 
     target = replace(to(path), start_orientation=mean[0], goal_orientation=mean[-1])
     found = adapt(path, path.curve, shown[:1], shown[1:], target, replace(SETTINGS, min_separation=100.0))
     assert found.orientation is not None
-    got = unit_quaternions(found.orientation, even_parameters(found.curve))
+    got = unit_quaternions(found.orientation, even_parameters(found.curve, STATIONS))
     assert rotation_angles(got, mean).max() < 2 * SETTINGS.turn_bound
 
 
