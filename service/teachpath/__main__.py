@@ -12,6 +12,7 @@ try:
 
     from teachpath.commands import (
         adaptation,
+        backups,
         certificates,
         curves,
         demo,
@@ -57,6 +58,8 @@ for command in (
     evaluate.diff,
     files.export,
     doctor.doctor,
+    backups.backup,
+    backups.restore,
 ):
     app.command(name=command.__name__.rstrip("_"))(command)
 app.add_typer(curves.app, name="curve")

@@ -1,0 +1,50 @@
+"""backup and restore: all that a station keeps, in a folder of its own."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from teachpath.commands.options import Config, Data, settings_of
+from teachpath.commands.work import progress_bar
+
+
+def backup(
+    into: Annotated[Path, typer.Argument(help="New folder to write into.")], config: Config = None, data: Data = None
+) -> None:
+    """Copy rows and recordings into a new folder, each file with its SHA-256; the service may run.
+
+    Takes that are under way, and what the doctor has set aside, are left out. Exit code 4: a recording was missing or
+    not what was recorded, before the backup; the sentences name them.
+    """
+    from teachpath.offline.backup import back_up
+
+    settings = settings_of(config, data)
+    with progress_bar("copying") as show:
+        made = back_up(settings.store, into, show)
+    print(f"{into}: {made.files} files, {made.size / 1e6:.1f} MB")
+    for fault in made.faults:
+        print(fault, file=sys.stderr)
+    if made.faults:
+        raise typer.Exit(4)
+
+
+def restore(
+    source: Annotated[Path, typer.Argument(help="Folder of a backup.")],
+    replace: Annotated[bool, typer.Option("--replace", help="Set aside what is in the data folder.")] = False,
+    config: Config = None,
+    data: Data = None,
+) -> None:
+    """Bring a backup back, after every file of it was compared with its SHA-256. Stop the service first.
+
+    Existing data are never overwritten: without --replace only an empty folder is restored to, and with it they are
+    kept in a folder beside.
+    """
+    from teachpath.offline.backup import restore as bring_back
+
+    settings = settings_of(config, data)
+    aside = bring_back(source, settings.store, replace=replace)
+    print(f"{settings.store.data_dir}: restored from {source}" + (f"; what was there is in {aside}" if aside else ""))
