@@ -948,6 +948,9 @@ class StreamStatistics:
     freeze_at_ns: int = 0
     measured_rate: float = 0.0
     conflicts: int = 0
+    flaps: int = 0
+    flap_at_ns: int = 0
+    regrasp_ns: int = 0
     clock_jumps: int = 0
     declared_rate: float = 0.0
     seen_rate: float = 0.0

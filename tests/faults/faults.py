@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from tests.faults.streams import PERIOD_NS, RATE, Event, Stream, changed
+from tests.faults.streams import OPEN, PERIOD_NS, RATE, Event, Stream, changed
 
 Change = Callable[[Stream, np.random.Generator, float], Stream]
 FAST = 0.5  # of the greatest speed; faster parts of the transport are where a freeze can be told from a rest
@@ -168,6 +168,27 @@ def step_clock(stream: Stream, rng: np.random.Generator, seconds: float) -> Stre
     )
 
 
+def flap(stream: Stream, rng: np.random.Generator, times: float) -> Stream:
+    """Let the glove read open for two samples and closed for two, again and again, while the hand carries."""
+    length = 4 * int(times)
+    carried = _carried(stream, margin=20)
+    at = int(rng.choice(carried[: len(carried) - length]))
+    opened = {i for k in range(int(times)) for i in (at + 4 * k, at + 4 * k + 1)}
+    return _mapped(
+        stream, lambda i, e: replace(e, sample=replace(e.sample, flexions=(OPEN,) * 22)) if i in opened else e
+    )
+
+
+def let_go(stream: Stream, rng: np.random.Generator, seconds: float) -> Stream:
+    """Let the glove read open for a time while the hand carries."""
+    length, carried = round(seconds * RATE), _carried(stream, margin=25)
+    at = int(rng.choice(carried[: len(carried) - length]))
+    return _mapped(
+        stream,
+        lambda i, e: replace(e, sample=replace(e.sample, flexions=(OPEN,) * 22)) if at <= i < at + length else e,
+    )
+
+
 def _mapped(stream: Stream, change: Callable[[int, Event], Event]) -> Stream:
     return changed(stream, [change(i, event) for i, event in enumerate(stream.events)])
 
@@ -185,5 +206,7 @@ FAULTS = (
     Fault("stale", "readings", (2, 3, 5, 10), 1, 50.0 / 20.0, stale),
     Fault("share_name", "numbers", (7, 500, 100_000_000), float("-inf"), float("-inf"), share_name, False),
     Fault("mix_hands", "m", (0.02, 0.06, 0.1, 0.3), 0.051, 0.051, mix_hands),
+    Fault("flap", "times", (1, 2, 4, 8), 0, 2, flap),
+    Fault("let_go", "s", (0.04, 0.14, 0.2), 0, 0.1, let_go),
     Fault("step_clock", "s", (-0.5, 0.05, 0.15, 0.5, 60.0), 0.12, 0.12, step_clock),
 )

@@ -15,6 +15,7 @@ from teachpath.io.store.recordings import RecordingFile, facts_of
 from teachpath.io.store.store import Store
 from teachpath.recording.advice import ending_advice
 from teachpath.recording.demonstration import carried_numbers, object_trajectory, to_world, usable_samples
+from teachpath.recording.grip_flaps import find_grip_flaps
 from teachpath.recording.phase_statistics import PhaseStatistics, phase_statistics, tell_arrivals
 from teachpath.recording.phases import TransportSpan
 from teachpath.recording.position_outliers import find_outliers
@@ -119,8 +120,12 @@ def add_content_faults(take: SegmentedTake, settings: RecordingSettings) -> tupl
     carried = ordered[slice(*span)]
     found = find_outliers(carried, to_world(take.calibration, np.array([s.position for s in carried])), settings)
     repeated = find_repeated_readings(ordered, *span)
+    flaps = find_grip_flaps(take.samples, take.cut, settings)
     statistics = replace(
         take.statistics,
+        flaps=flaps.count,
+        flap_at_ns=flaps.first_at_ns,
+        regrasp_ns=flaps.regrasp_ns,
         outliers=len(found.outliers),
         level_shifts=found.level_shifts,
         out_of_workspace=found.out_of_workspace,

@@ -44,6 +44,8 @@ def rejection_advice(statistics: StreamStatistics, settings: RecordingSettings) 
     if 0.0 < statistics.measured_rate < settings.lowest_pose_rate:
         rate = f"{statistics.measured_rate:.0f} times a second"
         return f"the tracker measures only {rate}: set it to {settings.lowest_pose_rate:g} or more, then {AGAIN}"
+    if statistics.flaps > settings.most_flaps or statistics.regrasp_ns:
+        return f"the glove flapped, so that nobody knows where you let go: calibrate the glove, then {AGAIN}"
     if statistics.clock_jumps:
         return f"the tracker's clock was set while you carried: {AGAIN}"
     gap = statistics.longest_gap_ns * 1e-9

@@ -48,6 +48,8 @@ def assess_quality(statistics: PhaseStatistics, settings: RecordingSettings) -> 
     repairs = [*_repairs(transport), *_faults_elsewhere(statistics, settings)]
     if transport.repeated and not _is_slow(transport, settings):
         repairs.append(_slow_tracker(transport))
+    if 0 < transport.flaps <= settings.most_flaps:
+        repairs.append(_flapping(transport))
     whole = statistics.whole
     if whole.declared_rate and abs(whole.seen_rate / whole.declared_rate - 1.0) > settings.rate_tolerance:
         repairs.append(f"the rate is {whole.seen_rate:.3g} Hz, declared {whole.declared_rate:.3g} Hz")
@@ -103,6 +105,10 @@ def _unusable(statistics: StreamStatistics, settings: RecordingSettings) -> list
         found.append(f"the position leaps {times} by over {jump:.3g} cm and stays")
     if statistics.longest_freeze_ns > settings.longest_freeze * 1e9:
         found.append(f"{_freeze(statistics)}, limit {settings.longest_freeze:.2g} s")
+    if statistics.flaps > settings.most_flaps:
+        found.append(f"{_flapping(statistics)}, limit {settings.most_flaps}")
+    if statistics.regrasp_ns:
+        found.append(f"the hand closed again {statistics.regrasp_ns * 1e-9:.2f} s after it let go")
     if _is_slow(statistics, settings):
         found.append(f"{_slow_tracker(statistics)}, limit {settings.lowest_pose_rate:.3g} Hz")
     return found
@@ -111,6 +117,11 @@ def _unusable(statistics: StreamStatistics, settings: RecordingSettings) -> list
 def _freeze(statistics: StreamStatistics) -> str:
     seconds, at = statistics.longest_freeze_ns * 1e-9, statistics.freeze_at_ns * 1e-9
     return f"the tracker repeats one reading for {seconds:.2f} s while the hand moves, {at:.2f} s after the grasp"
+
+
+def _flapping(statistics: StreamStatistics) -> str:
+    at = statistics.flap_at_ns * 1e-9
+    return f"the glove reads open or closed {_times(statistics.flaps)} too shortly, first {at:.2f} s after the grasp"
 
 
 def _is_slow(statistics: StreamStatistics, settings: RecordingSettings) -> bool:

@@ -28,6 +28,11 @@ class RecordingSettings:
     lift: Positive = 0.01
     # [s] a hand that opens for less while it carries has not let go
     release_time: Positive = 0.1
+    # [s] a hand that closes or opens for less has not: its glove flaps; one that closes again so soon after it let go
+    # has not put the object down where it is said to be
+    shortest_grip: Positive = 0.3
+    # flaps of a glove while the hand carries, more of which reject a demonstration
+    most_flaps: Annotated[int, Ge(0)] = 2
     # [s] how long the open hand must rest to end a demonstration
     rest_time: Positive = 0.3
     # [m] how far it may move while it rests

@@ -145,6 +145,9 @@ class StreamStatistics:
     freeze_at_ns: int = 0  # since the grasp
     measured_rate: float = 0.0  # [Hz] readings that differ, where some repeat; 0: none does
     conflicts: int = 0  # came with a number that was taken, or that their device time contradicts
+    flaps: int = 0  # times for which the glove read open or closed too shortly for a hand, from the grasp on
+    flap_at_ns: int = 0  # the first of them, since the grasp
+    regrasp_ns: int = 0  # how long the hand was open when it had let go, if it closed again at once; 0: it did not
     clock_jumps: int = 0
     declared_rate: float = 0.0  # [Hz] 0: the client said none
     seen_rate: float = 0.0  # [Hz] numbers a second of the device's clock

@@ -20,6 +20,7 @@ FATAL = {
     "clock_jumps": 1,
     "longest_freeze_ns": 10**9,
     "measured_rate": 10.0,
+    "flaps": 5,
 }
 
 
