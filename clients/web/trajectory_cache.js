@@ -3,14 +3,17 @@ import { get, resourcePath } from "./api.js";
 
 const POINTS = 150; // of a demonstration as drawn
 const MAX_REQUESTS = 4; // at a time
+const NOTICE_INTERVAL = 100; // [ms] between two notices that more are here: each draws lists and view anew
 
 export class TrajectoryCache {
   /** @type {Map<string, {trim: string, points: Point[]}>} */
   #trajectories = new Map();
   /** @type {Set<string>} */
   #requested = new Set();
+  /** @type {Set<string>} */
+  #unnoticed = new Set(); // that have come since the last notice
 
-  /** @param {() => void} onLoad called when another trajectory is here */
+  /** @param {() => void} onLoad called when further trajectories are here */
   constructor(onLoad) {
     this.onLoad = onLoad;
   }
@@ -44,6 +47,12 @@ export class TrajectoryCache {
     await Promise.all(Array.from({ length: MAX_REQUESTS }, next));
   }
 
+  #notice() {
+    for (const id of this.#unnoticed) this.#requested.delete(id);
+    this.#unnoticed.clear();
+    this.onLoad();
+  }
+
   /** @param {Demonstration} demonstration */
   async #load(demonstration) {
     const { id } = demonstration;
@@ -53,8 +62,8 @@ export class TrajectoryCache {
       () => [], // a recording that cannot be read has no trajectory; its verdict says why
     );
     this.#trajectories.set(id, { trim: trimKey(demonstration), points });
-    this.#requested.delete(id);
-    this.onLoad();
+    if (!this.#unnoticed.size) setTimeout(() => this.#notice(), NOTICE_INTERVAL);
+    this.#unnoticed.add(id);
   }
 }
 

@@ -293,7 +293,11 @@ def test_files_come_with_a_strict_policy_and_nothing_else_comes(server: Server) 
         assert "default-src 'none'" in policy
         assert "unsafe" not in policy
         assert "<script>" not in page.text
-        assert client.get("/web/view.js").headers["content-type"].startswith("text/javascript")
+        module = client.get("/web/view.js")
+        assert module.headers["content-type"].startswith("text/javascript")
+        assert module.headers["content-encoding"] == "gzip"
+        assert client.get("/web/view.js", headers={"If-None-Match": module.headers["etag"]}).status_code == 304
+        assert client.get("/web/view.js", headers={"If-None-Match": '"x"', "Accept-Encoding": ""}).text == module.text
         assert "MIT" in client.get("/vendor/meshcat.LICENSE.txt").text
         assert client.get("/vendor/meshcat.min.js").headers["x-content-type-options"] == "nosniff"
         assert client.get("/favicon.ico").status_code == 200

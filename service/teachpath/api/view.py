@@ -5,10 +5,11 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Final
 
-from fastapi import APIRouter, Response, WebSocket
-from fastapi.responses import FileResponse, PlainTextResponse
+from fastapi import APIRouter, Request, Response, WebSocket
+from fastapi.responses import PlainTextResponse
 
 from teachpath.api import sockets
+from teachpath.api.page_files import PageFiles
 from teachpath.live.preview.asset_paths import VIEWER_STYLES, viewer_files, web_files
 from teachpath.live.preview.preview import Preview
 from teachpath.live.preview.scene_tree import Viewer
@@ -30,6 +31,7 @@ HEADERS: Final = {
     "Referrer-Policy": "no-referrer",
     "Cache-Control": "no-cache",
 }
+HTML: Final = "text/html; charset=utf-8"
 MEDIA: Final = {
     ".js": "text/javascript; charset=utf-8",
     ".css": "text/css; charset=utf-8",
@@ -46,31 +48,34 @@ _VENDORED: Final = {
 def view_router(preview: Preview) -> APIRouter:
     """Return the routes of the pages, their files and the view: `/`, `/docs`, `/web/`, `/vendor/`, `/api/v1/view`."""
     router = APIRouter(include_in_schema=False)
-    root, viewer = web_files(), viewer_files()
+    root, viewer, files = web_files(), viewer_files(), PageFiles(HEADERS)
+
+    def answer(request: Request, path: Path, suffix: str) -> Response:
+        return files.answer(request, path, MEDIA[suffix]) if path.is_file() else _missing(path.name)
 
     @router.get("/")
-    def page() -> Response:
-        return FileResponse(root / "index.html", media_type="text/html; charset=utf-8", headers=HEADERS)
+    def page(request: Request) -> Response:
+        return files.answer(request, root / "index.html", HTML, entry="page.js")
 
     @router.get("/docs")
-    def docs() -> Response:
-        return FileResponse(root / "docs.html", media_type="text/html; charset=utf-8", headers=HEADERS)
+    def docs(request: Request) -> Response:
+        return files.answer(request, root / "docs.html", HTML)
 
     @router.get("/favicon.ico")
-    def icon() -> Response:
-        return _file(root / "icon.svg", ".svg")
+    def icon(request: Request) -> Response:
+        return answer(request, root / "icon.svg", ".svg")
 
     @router.get("/web/{name:path}")
-    def module(name: str) -> Response:
+    def module(request: Request, name: str) -> Response:
         path = (root / name).resolve()
         if path.suffix not in MEDIA or not path.is_relative_to(root.resolve()):
             return _missing(name)
-        return _file(path, path.suffix)
+        return answer(request, path, path.suffix)
 
     @router.get("/vendor/{name}")
-    def vendored(name: str) -> Response:
+    def vendored(request: Request, name: str) -> Response:
         place, suffix = _VENDORED.get(name, ("", ""))
-        return _file(viewer / place, suffix) if place else _missing(name)
+        return answer(request, viewer / place, suffix) if place else _missing(name)
 
     @router.websocket("/api/v1/view")
     async def view(socket: WebSocket) -> None:
@@ -86,12 +91,6 @@ def _acknowledge(text: str, page: Viewer) -> str:
         return "only counts of drawn batches are expected here"
     page.acknowledge(int(text))
     return ""
-
-
-def _file(path: Path, suffix: str) -> Response:
-    if not path.is_file():
-        return _missing(path.name)
-    return FileResponse(path, media_type=MEDIA[suffix], headers=HEADERS)
 
 
 def _missing(name: str) -> Response:

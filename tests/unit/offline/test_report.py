@@ -17,9 +17,9 @@ from teachpath.errors import NotFound, UnusableInput
 from teachpath.io.documents import encode
 from teachpath.io.store.store import Store
 from teachpath.live.preview.asset_paths import web_files
+from teachpath.live.preview.page_modules import import_map
 from teachpath.motion.arm.model import Arm
 from teachpath.offline.report import write_package
-from teachpath.offline.report.modules import import_map
 from teachpath.offline.report.package import INSTEAD, package_html
 from tests.unit.offline.reviews import COUNT, HOSTILE, learned_store, review
 

@@ -15,7 +15,7 @@ from teachpath import __version__
 from teachpath.errors import UnusableInput
 from teachpath.io.documents import to_document
 from teachpath.live.preview.asset_paths import VIEWER_STYLES, viewer_files, web_files
-from teachpath.offline.report.modules import data_address, import_map
+from teachpath.live.preview.page_modules import data_address, import_map
 from teachpath.offline.report.review import Review
 
 SHEETS: Final = ("vendor/uplot/uPlot.min.css", "style.css", "report/report.css")

@@ -11,7 +11,9 @@ import posixpath
 import re
 from collections.abc import Callable, Mapping
 
-_SPECIFIER = re.compile(r"""(?<=\bfrom )"(\.{1,2}/[^"]+)"|(?<=^import )"(\.{1,2}/[^"]+)";""", re.MULTILINE)
+_SPECIFIER = re.compile(
+    r"""(?<=\bfrom )["'](\.{1,2}/[^"']+)["']|(?<=^import )["'](\.{1,2}/[^"']+)["'];""", re.MULTILINE
+)
 
 
 def import_map(entry: str, read: Callable[[str], str], *, instead: Mapping[str, str]) -> dict[str, dict[str, str]]:
@@ -33,6 +35,18 @@ def import_map(entry: str, read: Callable[[str], str], *, instead: Mapping[str, 
         texts[path], imported = _with_bare_names(text, folder)
         waiting += imported
     return {"imports": {f"page/{path}": data_address(text, "text/javascript") for path, text in sorted(texts.items())}}
+
+
+def imported_modules(entry: str, read: Callable[[str], str]) -> list[str]:
+    """Return the paths of a module and of all that it imports, directly or not."""
+    found: dict[str, None] = {}
+    waiting = [entry]
+    while waiting:
+        path = waiting.pop(0)
+        if path not in found:
+            found[path] = None
+            waiting += _with_bare_names(read(path), posixpath.dirname(path))[1]
+    return list(found)
 
 
 def data_address(text: str, kind: str) -> str:

@@ -1,0 +1,76 @@
+"""The page's files as they are sent: compressed, 304 while a browser has them, and all modules announced ahead."""
+
+from __future__ import annotations
+
+import gzip
+import hashlib
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final
+
+from fastapi import Request, Response
+
+from teachpath.live.preview.page_modules import imported_modules
+
+LEAST_COMPRESSED: Final = 1000  # bytes; a shorter file gains nothing
+PRELOAD: Final = "<!-- preload -->"  # where the page announces its modules
+
+
+@dataclass(frozen=True)
+class _Content:
+    """A file as it is sent; `packed` is empty where it is not compressed."""
+
+    plain: bytes
+    packed: bytes
+    tag: str
+
+
+class PageFiles:
+    """Files in memory, read anew when they have changed.
+
+    Args:
+        headers: of every answer.
+    """
+
+    def __init__(self, headers: Mapping[str, str]) -> None:
+        self._headers = dict(headers)
+        self._contents: dict[Path, tuple[tuple[int, int], _Content]] = {}
+
+    def answer(self, request: Request, file: Path, media_type: str, *, entry: str = "") -> Response:
+        """Return a file as an answer, or 304 where the browser has it; raises FileNotFoundError.
+
+        Args:
+            request: says what the browser has, and whether it takes a compressed answer.
+            file: to send.
+            media_type: of the file.
+            entry: name of the page's first module beside the file; all that it imports is announced in the file.
+        """
+        content = self._read(file, entry)
+        headers = self._headers | {"ETag": content.tag, "Vary": "Accept-Encoding"}
+        if content.tag in request.headers.get("if-none-match", ""):
+            return Response(status_code=304, headers=headers)
+        body = content.plain
+        if content.packed and "gzip" in request.headers.get("accept-encoding", ""):
+            body, headers["Content-Encoding"] = content.packed, "gzip"
+        return Response(body, headers=headers, media_type=media_type)
+
+    def _read(self, file: Path, entry: str) -> _Content:
+        state = file.stat()
+        version = state.st_mtime_ns, state.st_size
+        known, content = self._contents.get(file, (None, None))
+        if known == version and content is not None and not entry:
+            return content
+        plain = file.read_bytes()
+        if entry:
+            plain = plain.replace(PRELOAD.encode(), _preload_links(file.parent, entry).encode())
+        packed = gzip.compress(plain, mtime=0) if len(plain) > LEAST_COMPRESSED else b""
+        content = _Content(plain, packed, f'"{hashlib.sha256(plain).hexdigest()[:32]}"')
+        self._contents[file] = version, content
+        return content
+
+
+def _preload_links(folder: Path, entry: str) -> str:
+    """Return elements that let a browser read all modules at once; else it finds them from import to import."""
+    modules = imported_modules(entry, lambda path: (folder / path).read_text())
+    return "\n  ".join(f'<link rel="modulepreload" href="/web/{path}">' for path in modules)
