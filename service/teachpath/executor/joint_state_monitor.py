@@ -5,6 +5,7 @@ from __future__ import annotations
 import logging
 from collections import deque
 from collections.abc import Callable
+from typing import Final
 
 import numpy as np
 
@@ -13,6 +14,8 @@ from teachpath.io import wire
 from teachpath.records import Array, JointState
 
 log = logging.getLogger(__name__)
+
+REFUSAL_INTERVAL_NS: Final = 1_000_000_000  # [ns] between two words in the log about states that cannot be used
 
 
 class JointStateMonitor:
@@ -33,6 +36,7 @@ class JointStateMonitor:
         self._clock = clock
         self._payloads: deque[tuple[int, bytes]] = deque(maxlen=1)
         self._latest: tuple[int, JointState] | None = None
+        self._refused_ns = -REFUSAL_INTERVAL_NS  # when a joint state was last said to be refused
         self._lost_ns = -1  # when its driver left: what came before is no state of the next one
         self.has_lost_driver = False
 
@@ -53,7 +57,9 @@ class JointStateMonitor:
         except IndexError:
             return
         except UnusableInput as error:
-            log.warning("left out: %s", error)
+            if came_ns - self._refused_ns > REFUSAL_INTERVAL_NS:
+                log.warning("left out: %s", error)
+                self._refused_ns = came_ns
 
     def latest(self, now: int) -> tuple[float, JointState] | None:
         """Return the age of the present driver's newest joint state at `now` [s] and the state, or None without one."""

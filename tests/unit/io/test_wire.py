@@ -179,3 +179,19 @@ def test_words_about_control_survive_the_wire() -> None:
 def test_an_override_outside_its_range_is_refused() -> None:
     with pytest.raises(UnusableInput, match=r"override 1\.5"):
         wire.decode_command(wire.encode_command(Command(CommandVerb.OVERRIDE, "e1", override=1.5)))
+
+
+def test_a_drivers_fault_is_a_line_that_can_be_shown_and_its_state_is_no_flood() -> None:
+    state = motion_pb2.JointState(position=[0.0] * 6, velocity=[0.0] * 6, torque=[0.0] * 6)
+    state.object_position.extend([0.0] * 3)
+    state.object_orientation.extend([1.0, 0.0, 0.0, 0.0])
+    state.fault = "brake\n" + "x" * 5000
+    fault = wire.decode_state(state.SerializeToString()).fault
+    assert fault == "brake" + "x" * 295
+    state.fault = "x" * 20_000
+    with pytest.raises(UnusableInput, match="bytes is over the limit of 16384"):
+        wire.decode_state(state.SerializeToString())
+    state.fault = ""
+    state.position.extend([0.0] * 1000)
+    with pytest.raises(UnusableInput, match="got 1006 numbers"):
+        wire.decode_state(state.SerializeToString())

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from typing import Final
 
 import numpy as np
 
@@ -11,6 +12,9 @@ from teachpath.io.wire.parsing import parse
 from teachpath.records import Array, ExecutorStatus, JointState, Setpoint
 from teachpath_proto import motion_pb2
 from teachpath_proto.control import ExecutorState
+
+MAX_STATE_SIZE: Final = 16_384  # bytes
+MAX_FAULT_LENGTH: Final = 300  # characters of a fault, which everybody is shown
 
 
 def encode_setpoint(setpoint: Setpoint) -> bytes:
@@ -83,7 +87,9 @@ def encode_state(state: JointState) -> bytes:
 
 
 def decode_state(payload: bytes) -> JointState:
-    """Check a joint state; raises UnusableInput when it is malformed or not finite."""
+    """Check a joint state; raises UnusableInput when it is malformed, too large or not finite."""
+    if len(payload) > MAX_STATE_SIZE:
+        raise UnusableInput(f"a joint state of {len(payload)} bytes is over the limit of {MAX_STATE_SIZE}")
     m = parse(motion_pb2.JointState, payload)
     where = f"joint state after setpoint {m.cycle}"
     if len(m.object_position) != 3 or len(m.object_orientation) != 4:
@@ -107,7 +113,7 @@ def decode_state(payload: bytes) -> JointState:
         stopped=m.stopped,
         enabled=m.enabled,
         protective_stop=m.protective_stop,
-        fault=m.fault,
+        fault="".join(filter(str.isprintable, m.fault))[:MAX_FAULT_LENGTH],
         gripper_opening=m.gripper_opening if m.HasField("gripper_opening") else None,
     )
 
@@ -115,7 +121,8 @@ def decode_state(payload: bytes) -> JointState:
 def _joints(values: Iterable[float], where: str) -> Array:
     joints = np.array(list(values), dtype=np.float64)
     if joints.shape != (6,) or not np.all(np.isfinite(joints)):
-        raise UnusableInput(f"{where}: needs 6 finite numbers a joint array, got {joints.tolist()}")
+        given = f"{len(joints)} numbers" if len(joints) != 6 else joints.tolist()
+        raise UnusableInput(f"{where}: needs 6 finite numbers a joint array, got {given}")
     return joints
 
 
