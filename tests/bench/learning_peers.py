@@ -41,7 +41,7 @@ def fits(*, repeats: int) -> list[Figure]:
     ours = approximate(points, BOUND, degree=DEGREE, most=MOST)
     seconds = timed(lambda: approximate(points, BOUND, degree=DEGREE, most=MOST), repeats)
     figures = [
-        against("fit of 300 noisy points within 5 mm", seconds, "s", name="limit", value=0.025),
+        against("fit of 300 noisy points within 5 mm", seconds, "s", name="limit", value=0.0015),
         against("  its control points", [float(len(ours.curve.weights))], "", name="limit", value=13.0),
         against(
             "  its largest distance",

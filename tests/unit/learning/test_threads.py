@@ -20,6 +20,9 @@ import numpy as np
 five = synthetic.turning(synthetic.experiment_2(3))
 for settings in (LearningSettings(repeats=1), LearningSettings(mode="paper", threshold=0.3, repeats=1)):
     print(sha256(encode(learn(five, settings))).hexdigest())
+rng = np.random.default_rng(3)
+crowd = {str(k): synthetic.demonstration(rng, duration=rng.uniform(0.8, 1.2)) for k in range(205)}
+print(sha256(encode(learn(crowd, LearningSettings(repeats=0)))).hexdigest())
 many = 0.05 * np.random.default_rng(1).normal(size=(210, 100, 3)).cumsum(axis=1)
 found = cluster_paths(many, LearningSettings(), length=1.0, metric="arc")
 print(sha256(found.linkage.tobytes() + found.labels.tobytes()).hexdigest())
@@ -38,7 +41,8 @@ def learned_with(threads: int, cache: Path) -> str:
 
 def test_the_first_run_after_an_installation_and_every_later_one_give_the_same_bits(tmp_path: Path) -> None:
     compiled = learned_with(1, tmp_path)
-    assert len(compiled.split()) == 4
+    assert len(compiled.split()) == 5
     assert list(tmp_path.rglob("*_fill*.nbc"))
+    assert list(tmp_path.rglob("*_reduced*.nbc"))
     assert learned_with(1, tmp_path) == compiled
     assert learned_with(2, tmp_path) == compiled

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 from scipy.interpolate import BSpline
-from scipy.linalg import LinAlgError, cho_factor, cho_solve
+from scipy.linalg import LinAlgError, solveh_banded
 
 from teachpath.records import Array
 
@@ -35,22 +35,20 @@ class LeastSquares:
         Raises:
             LinAlgError: they do not, and it was asked for.
         """
-        basis = BSpline.design_matrix(self.u, clamped(interior, self.degree), self.degree)
-        count = basis.shape[1]
-        # Sums over the few entries of each row: products of sparse matrices this small take ten times as long.
-        values = basis.data.reshape(len(self.u), self.degree + 1)
-        columns = basis.indices.reshape(values.shape).astype(np.intp)
+        knots = clamped(interior, self.degree)
+        count = len(knots) - self.degree - 1
+        basis = np.asarray(BSpline.construct_fast(knots, np.eye(count), self.degree)(self.u))  # (m, n)
         control = np.empty((count, self.points.shape[1]))
         control[0], control[-1] = self._ends
         if count > 2:
-            pairs = (columns[:, :, None] * count + columns[:, None, :]).ravel()
-            products = (values[:, :, None] * values[:, None, :]).ravel()
-            gram = np.asarray(np.bincount(pairs, products, count * count), dtype=np.float64).reshape(count, count)
-            sums = [np.bincount(columns.ravel(), (values * axis[:, None]).ravel(), count) for axis in self.points.T]
-            right = np.column_stack(sums) - gram[:, [0, -1]] @ control[[0, -1]]
-            control[1:-1] = _normal_equations(gram[1:-1, 1:-1], right[1:-1], determined)
-        followed = (values[:, :, None] * control[columns]).sum(axis=1)
-        return control, np.linalg.norm(followed - self.points, axis=1)
+            inner = basis[:, 1:-1]
+            right = np.einsum("mi,md->id", inner, self.points - _values(basis[:, [0, -1]], self._ends))
+            # Products of few columns: a matrix product would round differently with another number of threads.
+            bands = np.zeros((min(self.degree + 1, count - 2), count - 2))
+            for k in range(len(bands)):
+                bands[k, : count - 2 - k] = np.einsum("mi,mi->i", inner[:, : count - 2 - k], inner[:, k:])
+            control[1:-1] = _normal_equations(bands, right, determined)
+        return control, _lengths(_values(basis, control) - self.points)
 
 
 def clamped(interior: Array, degree: int) -> Array:
@@ -58,13 +56,23 @@ def clamped(interior: Array, degree: int) -> Array:
     return np.concatenate([np.zeros(degree + 1), interior, np.ones(degree + 1)])
 
 
-def _normal_equations(gram: Array, right: Array, determined: bool) -> Array:
+def _values(basis: Array, control: Array) -> Array:
+    return np.asarray(np.einsum("mi,id->md", basis, control))
+
+
+def _lengths(offsets: Array) -> Array:
+    return np.asarray(np.sqrt(np.einsum("md,md->m", offsets, offsets)))
+
+
+def _normal_equations(bands: Array, right: Array, determined: bool) -> Array:
+    """Solve for (n, d) from the diagonals of a symmetric matrix (p + 1, n), the main one first."""
     try:
-        factor = cho_factor(gram, check_finite=False)
-        solution = np.asarray(cho_solve(factor, right, check_finite=False))
+        solution = np.asarray(solveh_banded(bands, right, lower=True, check_finite=False))
     except LinAlgError:
         if determined:
             raise
         # Too few points under some basis function: the minimum-norm solution stays bounded.
+        lower = sum(np.diag(band[: len(band) - k], -k) for k, band in enumerate(bands))
+        gram = lower + np.tril(lower, -1).T
         solution = np.asarray(np.linalg.lstsq(gram, right, rcond=1e-10)[0])
     return solution

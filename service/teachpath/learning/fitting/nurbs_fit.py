@@ -21,6 +21,7 @@ MIN_POINTS_PER_SPAN = 4  # so that the points determine every control point (Sch
 HALF_SHARE = (
     0.5 - 1e-6
 )  # of the error of a span, at which it is split; not exactly 0.5, where rounding would decide for symmetric paths
+MAX_GAP = 0.02  # between two points, as a share of the length
 MAX_POINTS_FOR_REMOVAL = 5000  # above which no knot is removed
 CURVE_SAMPLES = 2000  # points of the polyline that represents a curve while distances are measured
 
@@ -40,7 +41,8 @@ def approximate(
 
     The fit starts without interior knots, splits every span that holds a point beyond the bound, and finally removes
     each knot that is not needed. It stops beyond the bound when it reaches `most` control points or `span` points per
-    knot span.
+    knot span. Where points are far from each other, points between them are followed, too: no part of the curve is
+    farther from the given points than the bound, or what was reached of it, and half the gap between them.
 
     Args:
         points: (n, d) [m] in the order of the path; the curve begins and ends exactly on the first and last.
@@ -50,6 +52,8 @@ def approximate(
         span: least number of points in a knot span.
         at: (n,) parameters of the points, from 0 to 1; None = shares of the arc length.
     """
+    if at is None:
+        points = _without_wide_gaps(points)
     s = arc_lengths(points) if at is None else at
     forward = np.concatenate([[True], np.diff(s) > 1e-12 * s[-1]])
     points, s = np.concatenate([points[forward][:-1], points[-1:]]), s[forward]
@@ -91,6 +95,17 @@ class CurveDistance:
     def __call__(self, points: Array) -> Array:
         """Return the distance of every point from the curve: (n,) [m]."""
         return nearest_on_polyline(self._tree, self._samples, points)[0]
+
+
+def _without_wide_gaps(points: Array) -> Array:
+    """Put points on the straight lines between points that are far from each other."""
+    gaps = np.linalg.norm(np.diff(points, axis=0), axis=1)
+    pieces = np.maximum(np.ceil(gaps / max(MAX_GAP * gaps.sum(), 1e-300)).astype(int), 1)
+    if pieces.max(initial=1) == 1:
+        return points
+    begin = np.repeat(np.arange(len(pieces)), pieces)
+    share = np.concatenate([np.arange(count) / count for count in pieces])[:, None]
+    return np.concatenate([(1 - share) * points[begin] + share * points[begin + 1], points[-1:]])
 
 
 def _splits(u: Array, interior: Array, errors: Array, bound: float, span: int) -> list[float]:

@@ -10,6 +10,7 @@ from scipy.optimize import minimize_scalar
 from scipy.spatial import cKDTree
 
 from teachpath.learning.fitting.nurbs_fit import approximate, distances_to_curve
+from teachpath.learning.resampling import at_equal_arc_length
 from teachpath.nurbs import Curve
 from teachpath.records import Array
 from tests.unit.learning import synthetic
@@ -108,3 +109,39 @@ def test_no_part_of_the_curve_swings_away_from_the_points(
         gap = np.linalg.norm(np.diff(points, axis=0), axis=1).max()
         away = cKDTree(points).query(fit.curve(np.linspace(0.0, 1.0, 5000)))[0]
         assert away.max() <= max(bound, fit.largest) + gap / 2
+
+
+def anywhere(rng: np.random.Generator) -> Array:
+    """A few points anywhere, one after another up to four times."""
+    return np.repeat(rng.normal(0.0, 0.2, (rng.integers(2, 20), 3)), rng.integers(1, 5), axis=0)
+
+
+def cornered(rng: np.random.Generator) -> Array:
+    """Many points on straight lines that meet at sharp corners."""
+    return at_equal_arc_length(rng.normal(0.0, 0.2, (rng.integers(2, 8), 3)), 200)
+
+
+def tangled(rng: np.random.Generator) -> Array:
+    """A smooth walk with loops."""
+    return np.cumsum(np.cumsum(rng.normal(0.0, 2e-4, (150, 3)), axis=0), axis=0)
+
+
+def uneven(rng: np.random.Generator) -> Array:
+    """Points that are dense at the beginning and far from each other at the end."""
+    t = np.sort(rng.uniform(0.0, 1.0, 60) ** 3)
+    return np.column_stack([np.sin(6 * t), np.cos(5 * t), t]) / 5
+
+
+@pytest.mark.parametrize("drawn", [anywhere, cornered, tangled, uneven])
+@pytest.mark.parametrize("degree", [3, 5])
+def test_no_part_of_a_curve_swings_away_from_any_points(
+    drawn: Callable[[np.random.Generator], Array], degree: int
+) -> None:
+    for seed in range(25):
+        points = drawn(np.random.default_rng(seed))
+        for bound in (0.01, 0.002):
+            fit = approximate(points, bound, degree=degree, most=60)
+            gap = np.linalg.norm(np.diff(points, axis=0), axis=1).max()
+            away = cKDTree(points).query(fit.curve(np.linspace(0.0, 1.0, 5000)))[0]
+            assert away.max() <= max(bound, fit.largest) + gap / 2
+            assert distances_to_curve(fit.curve, points).max() <= fit.largest + 1e-5  # a polyline stands for the curve
