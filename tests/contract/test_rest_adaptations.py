@@ -77,7 +77,7 @@ def test_an_adaptation_is_a_new_version_with_its_certificate(desk: Desk, taught:
 
 def test_what_was_not_shown_is_told(desk: Desk, taught: Taught) -> None:
     found = adapted(desk, taught, [0.0, -0.35, 0.0], branch="near").json()
-    assert "apart, shown were" in found["extrapolates"]
+    assert "apart on the level, shown were" in found["extrapolates"]
     assert found["note"] == f"beyond what was shown: {found['extrapolates']}"
 
 
@@ -112,6 +112,38 @@ def test_what_is_no_pose_is_refused(desk: Desk, taught: Taught, start: Any, sent
     body = {"start": start, "goal": {"position": [0.4, 0.2, 0.6]}}
     refused(desk.post(f"/paths/{taught.path}/adaptations", body), 422, sentence)
     assert desk.get(f"/paths/{taught.path}/versions").json() == before
+
+
+@pytest.mark.parametrize("apart", [0.0, 1e-4])
+def test_a_goal_at_the_start_is_refused(desk: Desk, taught: Taught, apart: float) -> None:
+    x, y, z = taught.start
+    body = {"start": {"position": [x, y, z]}, "goal": {"position": [x + apart, y, z]}}
+    refused(desk.post(f"/paths/{taught.path}/adaptations", body), 422, "take the goal farther away")
+
+
+@pytest.mark.parametrize(("goal", "said"), [([0.45, 0.2, -0.3], "lower"), ([9.9, 9.9, 9.9], "apart on the level")])
+def test_what_the_arm_cannot_reach_is_told_and_gets_no_certificate(
+    desk: Desk, taught: Taught, goal: list[float], said: str
+) -> None:
+    body = {
+        "version": 1,
+        "branch": f"far-{said}".replace(" ", "-"),
+        "start": {"position": taught.start},
+        "goal": {"position": goal},
+    }
+    found = desk.post(f"/paths/{taught.path}/adaptations", body).json()
+    assert said in found["extrapolates"]
+    job = desk.job_ended(found["job"]["id"])
+    assert (job["state"], "outside the reach" in job["message"]) == ("failed", True)
+
+
+@pytest.mark.parametrize(
+    "raw",
+    ['{"goal":{"position":[NaN,0,0]}}', '{"goal":{"position":[1e999,0,0]}}', "[]", '{"goal":{"position":"here"}}', "{"],
+)
+def test_what_is_no_request_is_refused(desk: Desk, taught: Taught, raw: str) -> None:
+    answer = desk.post(f"/paths/{taught.path}/adaptations", json=None, content=raw.encode())
+    assert answer.status_code == 422, answer.text
 
 
 def test_an_unknown_path_or_version_is_not_found(desk: Desk, taught: Taught) -> None:

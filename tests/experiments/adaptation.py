@@ -17,11 +17,11 @@ from rich.console import Console
 from rich.table import Table
 from scipy.spatial.transform import Rotation
 
-from teachpath.learning.adaptation.adapt import adapt
+from teachpath.learning.adaptation.adapt import AdaptedPath, adapt
 from teachpath.learning.adaptation.even_parameters import even_parameters
 from teachpath.learning.adaptation.target import Target
 from teachpath.learning.fitting.orientation_fit import mean_orientations, rotation_angles
-from teachpath.learning.fitting.synthesis import fit_mean_path
+from teachpath.learning.learn import learn
 from teachpath.learning.resampling import at_equal_arc_length, smoothed
 from teachpath.learning.settings import LearningSettings
 from teachpath.nurbs import unit_quaternions
@@ -36,8 +36,7 @@ POINTS = 100
 COUNTS = (1, 3, 5, 8)
 LABEL_ERRORS = {"user1_spray_can5", "user2_b_jug0", "user2_b_jug3"}  # files whose labels have typing errors
 SAMPLING_PERIOD = 0.01  # s, of the recordings
-# Every set is one way; single hands shake more than the usual bounds allow.
-SETTINGS = LearningSettings(min_separation=100.0, error_bound=0.01, turn_bound=0.1, repeats=0)
+SETTINGS = LearningSettings(repeats=0)  # the repetitions change no path
 RESAMPLES = 1000  # of the bootstrap
 
 Method = Callable[[Array, Array, Array], Array]
@@ -110,8 +109,7 @@ def predict(shown: Sequence[Trajectory], truth: Trajectory) -> Prediction:
     paths = {name: method(courses, course[0], course[-1]) for name, method in METHODS.items()}
     turns = mean_orientations([truth], POINTS)
     target = Target(course[0], course[-1], *([] if turns is None else turns[[0, -1]]))
-    learned = fit_mean_path(1, [shown[0]], SETTINGS, on_step=lambda: None)
-    found = adapt(learned, learned.curve, [shown[0]], shown[1:], target, SETTINGS)
+    found = _adapted({str(number): each for number, each in enumerate(shown)}, target)
     u = even_parameters(found.curve, POINTS)
     paths[ADAPTED] = found.curve(u)
     off = {name: np.linalg.norm(path - course, axis=1) for name, path in paths.items()}
@@ -121,6 +119,17 @@ def predict(shown: Sequence[Trajectory], truth: Trajectory) -> Prediction:
         turn = float(np.sqrt(np.mean(rotation_angles(unit_quaternions(found.orientation, u), turns) ** 2)))
     held = rms[ADAPTED] < float(np.sqrt(np.mean(found.spread**2)))
     return Prediction(rms, {name: float(each.max()) for name, each in off.items()}, held, turn)
+
+
+def _adapted(shown: Mapping[str, Trajectory], target: Target) -> AdaptedPath:
+    """Learn from demonstrations and adapt the path of the way that most of them take, as the service does."""
+    learned = learn(shown, SETTINGS)
+    selected = [[score.demonstration for score in of.scores if score.selected] for of in learned.clusters]
+    way = int(np.argmax([len(names) for names in selected]))
+    others = [name for number, names in enumerate(selected) if number != way for name in names]
+    path = learned.paths[way]
+    members = [shown[name] for name in selected[way]]
+    return adapt(path, path.curve, members, [shown[name] for name in others], target, SETTINGS)
 
 
 def measure(folder: Path | None, count: int, runs: int, seed: int) -> list[Prediction]:

@@ -13,7 +13,8 @@ from sklearn.mixture import GaussianMixture
 
 from teachpath.records import Array
 
-COMPONENTS = 5  # of the mixture
+COMPONENTS = 3  # of the mixture; of 3, 5 and 8 the best on recorded hands
+SPREAD = 1e-3  # added to its covariances; the best of 1e-4 and 1e-3
 KERNELS = 20  # of DMP and ProMP
 POWER = 0.8  # of the distance, by which shapes grow
 STIFFNESS = 100.0  # of the DMP, per square of its duration; critically damped
@@ -78,7 +79,7 @@ def _by_frames(shown: Array, start: Array, goal: Array, *, power: float) -> Arra
     slices = np.array(
         [[row[part].mean(axis=0) for part in np.array_split(np.arange(count), COMPONENTS)] for row in rows]
     )
-    mixture = GaussianMixture(COMPONENTS, means_init=slices.mean(axis=0), reg_covar=1e-4, random_state=0, max_iter=50)
+    mixture = GaussianMixture(COMPONENTS, means_init=slices.mean(axis=0), reg_covar=SPREAD, random_state=0, max_iter=50)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", ConvergenceWarning)
         mixture.fit(np.concatenate(rows))

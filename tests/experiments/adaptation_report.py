@@ -53,8 +53,8 @@ def section(rows: Sequence[Row], data: str) -> list[str]:
     return [
         "<h2>An object that lies elsewhere</h2>",
         f"<p>Each of {escape(data)} is predicted from its start and goal by n others, drawn at random. The adapted "
-        "path is what <code>teachpath adapt</code> makes, from the NURBS of one of the others; its orientation at both "
-        "ends is given. TP-GMM, DMP and ProMP follow their publications; in the same frame they have start and goal, "
-        "the direction between them and its power of the distance, as kriging has.</p>",
+        "path is what <code>teachpath adapt</code> makes of what is learned from the others at the usual settings; its "
+        "orientation at both ends is given. TP-GMM, DMP and ProMP follow their publications; in the same frame they "
+        "have start and goal, the direction between them and its power of the distance, as kriging has.</p>",
         f"<table><tr><th class=l>n<th class=l>Method{heads}{''.join(lines)}</table>",
     ]

@@ -63,6 +63,7 @@ def test_a_task_is_shown_at_changing_places_and_done_at_a_new_one(service: Servi
     learned = station.learn(TASK).learned
     (path,) = learned.paths
     assert learned.notes[0].startswith("a task with a moving start and goal: ")
+    station.wait_for_arm()
     lies = (x - 0.03, y + 0.04, z)
     try:
         station.tell_object("paper", lies)

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from teachpath.errors import UnusableInput
 from teachpath.learning.adaptation.adapted_course import CourseModel
 from teachpath.learning.adaptation.adapted_orientation import adapted_orientation
 from teachpath.learning.adaptation.displaced_curve import displaced
@@ -24,6 +25,7 @@ from teachpath.records import Array, LearnedPath, Trajectory
 
 STATIONS = 100  # at equal arc length
 SAME_PLACE = 1e-9  # m
+MIN_LENGTH = 0.01  # m, of a path; planning follows no shorter one
 SAME_TURN = 1e-7  # rad, what rounding leaves of an angle
 
 
@@ -73,12 +75,14 @@ def adapt(
         settings: of the run that learned the path.
 
     Raises:
-        UnusableInput: an orientation is asked for and none was learned.
+        UnusableInput: start and goal are so near that no path is left between them, or an orientation is asked for and
+            none was learned.
         LearningFailed: the orientations cannot be followed within `turn_bound`.
     """
     model, alike, courses = course_model(path, learned, members, others, settings)
     u = even_parameters(path.curve, STATIONS)
     found = model.predict(target.start, target.goal)
+    _check_length(found, target)
     bound = settings.bound_for(extent(found.path))
     curve, orientation, missed = path.curve, path.orientation, 0.0
     if not (is_base := _is_own(path, target)):
@@ -133,6 +137,16 @@ def _same_way(
     alike = ways == ways[0]
     alike[: len(members)] = True
     return [everyone[number] for number in np.flatnonzero(alike)], courses[alike]
+
+
+def _check_length(found: Prediction, target: Target) -> None:
+    length = float(arc_lengths(found.path)[-1])
+    if length < MIN_LENGTH:
+        apart = describe_length(float(np.linalg.norm(target.goal - target.start)))
+        raise UnusableInput(
+            f"start and goal are {apart} apart, and the path between them would be {describe_length(length)} long, the "
+            f"shortest followed is {describe_length(MIN_LENGTH)}; take the goal farther away"
+        )
 
 
 def _note(found: Prediction, demonstrations: int, places: int) -> str:

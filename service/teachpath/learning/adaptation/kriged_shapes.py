@@ -151,11 +151,13 @@ class KrigedShapes:
         distance, yaw = _chord(chord)
         nearest, farthest = float(self.distances.min()), float(self.distances.max())
         if not nearest / MAX_DISTANCE_RATIO <= distance <= farthest * MAX_DISTANCE_RATIO:
-            return f"start and goal are {describe_length(distance)} apart, shown were {_span(nearest, farthest)}"
+            shown = _span(nearest, farthest)
+            return f"start and goal are {describe_length(distance)} apart on the level, shown were {shown}"
         rises, allowed = self._chords[:, 2], MAX_RISE_SHARE * farthest
         if not rises.min() - allowed <= chord[2] <= rises.max() + allowed:
-            shown = _span(float(rises.min()), float(rises.max()))
-            return f"the goal is {describe_length(chord[2])} higher than the start, shown were {shown}"
+            least, most = _rise(float(rises.min())), _rise(float(rises.max()))
+            shown = least if least == most else f"{least} to {most}"
+            return f"the goal is {_rise(float(chord[2]))} than the start, shown were {shown}"
         turns = np.abs((yaw - self.yaws + np.pi) % (2 * np.pi) - np.pi)
         if turns.min() > MAX_TURN:
             return f"the direction is {np.degrees(turns.min()):.0f}° from the nearest one that was shown"
@@ -177,6 +179,10 @@ def _covariances(yaw: Array, distance: Array, yaw_2: Array, distance_2: Array) -
 def _span(least: float, most: float) -> str:
     one, other = describe_length(least), describe_length(most)
     return one if one == other else f"{one} to {other}"
+
+
+def _rise(height: float) -> str:
+    return f"{describe_length(abs(height))} {'higher' if height >= 0 else 'lower'}"
 
 
 def _rotations(yaws: Array) -> Array:

@@ -86,7 +86,7 @@ def test_a_closed_path_is_moved_only() -> None:
 def test_it_says_when_it_extrapolates() -> None:
     shapes = KrigedShapes(np.array([bow(*ends) for ends in places(6, 5)]))
     assert shapes.predict(START, GOAL).extrapolates == ""
-    assert "apart, shown were" in shapes.predict(START, START + 2.5 * (GOAL - START)).extrapolates
+    assert "apart on the level, shown were" in shapes.predict(START, START + 2.5 * (GOAL - START)).extrapolates
     higher = shapes.predict(START, GOAL + np.array([0, 0, 0.4])).extrapolates
     assert higher.startswith("the goal is 42 cm higher than the start, shown were")
     assert "°" in shapes.predict(START, START + rotated(2.0) @ (GOAL - START)).extrapolates
