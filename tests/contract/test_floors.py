@@ -13,7 +13,7 @@ SERVICE = ROOT / "service" / "teachpath"
 
 # A room may import rooms of lower floors, and itself. Rooms of one floor are strangers.
 FLOORS = [
-    ["errors", "periodic_thread", "realtime", "time_source"],
+    ["errors", "lengths", "periodic_thread", "realtime", "time_source"],
     ["nurbs"],
     ["exchange", "records"],
     ["editing", "trajectories"],
@@ -30,7 +30,6 @@ FLOOR = {room: level for level, rooms in enumerate(FLOORS) for room in rooms}
 # The same within a room: its folders and files. A group of one floor knows no other of it.
 GROUPS = {
     "learning": [
-        ["lengths"],
         ["settings", "resampling", "matching", "input_validation", "compiled"],
         ["clustering", "selection", "fitting"],
         ["summary", "compare", "adaptation"],

@@ -6,9 +6,9 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 
-from teachpath.learning.lengths import describe_length, describe_lengths
 from teachpath.learning.matching import frechet_distance
 from teachpath.learning.resampling import at_equal_arc_length
+from teachpath.lengths import describe_length, describe_lengths
 from teachpath.records import Array, Cluster, Fit, Learned, LearnedPath
 
 PATH_POINTS = 200  # at which two paths are compared

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from teachpath.errors import LearningFailed
-from teachpath.learning.lengths import describe_lengths
+from teachpath.lengths import describe_lengths
 from teachpath.records import Trajectory
 
 MIN_DISTINCT_POINTS = 5

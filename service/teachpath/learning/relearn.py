@@ -12,9 +12,9 @@ from teachpath.learning.clustering.ends import end_groups
 from teachpath.learning.clustering.incomplete import find_incomplete
 from teachpath.learning.clustering.partition import Partition
 from teachpath.learning.learn import comparable_paths, learn_partition, metric_of
-from teachpath.learning.lengths import describe_length
 from teachpath.learning.settings import LearningSettings, Progress, no_progress, settings_of_run
 from teachpath.learning.summary import fingerprint
+from teachpath.lengths import describe_length
 from teachpath.records import Learned, Trajectory
 
 

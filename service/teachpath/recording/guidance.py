@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from teachpath.lengths import describe_length
+
 MIN_DEMONSTRATIONS = 3  # of a cluster
 # Largest spread of a cluster over the length of its path; clusters in recordings of real arms had at most 0.11.
 MAX_SPREAD_RATIO = 0.2
@@ -49,6 +51,6 @@ def _agreement(total: int, clusters: int, spread: float, length: float) -> str:
         if spread == 0.0:
             return shown
     if spread <= MAX_SPREAD_RATIO * length:
-        return f"{shown} {'and ' if clusters > 1 else ''}agree within {100 * spread:.1f} cm"
+        return f"{shown} {'and ' if clusters > 1 else ''}agree within {describe_length(spread, up=True)}"
     some = "; some of one way" if clusters > 1 else ""
-    return f"{shown}{some} are up to {100 * spread:.1f} cm apart, discard what you did not mean"
+    return f"{shown}{some} are up to {describe_length(spread, up=True)} apart, discard what you did not mean"

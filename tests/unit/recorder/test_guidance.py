@@ -26,7 +26,7 @@ def course(shown: Demonstration) -> Array:
 def test_it_tells_the_ways_apart_and_asks_for_the_one_that_is_thin() -> None:
     guidance = GuidanceThread(lambda _: stored(), course, LearningSettings())
     advice = guidance.compare("t")
-    assert advice.startswith("6 demonstrations show 2 ways and agree within 0.")
+    assert advice.startswith("6 demonstrations show 2 ways and agree within ")
     assert advice.endswith("; the second way has only two, show it again")
 
 

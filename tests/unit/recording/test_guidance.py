@@ -19,17 +19,17 @@ LENGTH = 0.7  # m
         ),
         (
             [ClusterSummary(2, 0.004), ClusterSummary(1, 0.0)],
-            "3 demonstrations show 2 ways and agree within 0.4 cm; the second way has only one, show it again",
+            "3 demonstrations show 2 ways and agree within 4 mm; the second way has only one, show it again",
         ),
         (
             [ClusterSummary(1, 0.0), ClusterSummary(1, 0.0)],
             "2 demonstrations show 2 ways; the first way has only one, show it again",
         ),
-        ([ClusterSummary(3, 0.01)] * 3, "9 demonstrations show 3 ways and agree within 1.0 cm"),
-        ([ClusterSummary(3, 0.241)], "3 demonstrations are up to 24.1 cm apart, discard what you did not mean"),
+        ([ClusterSummary(3, 0.01)] * 3, "9 demonstrations show 3 ways and agree within 1 cm"),
+        ([ClusterSummary(3, 0.241)], "3 demonstrations are up to 25 cm apart, discard what you did not mean"),
         (
             [ClusterSummary(3, 0.01), ClusterSummary(3, 0.2)],
-            "6 demonstrations show 2 ways; some of one way are up to 20.0 cm apart, discard what you did not mean",
+            "6 demonstrations show 2 ways; some of one way are up to 20 cm apart, discard what you did not mean",
         ),
     ],
 )

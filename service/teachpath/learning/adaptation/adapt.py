@@ -17,9 +17,9 @@ from teachpath.learning.adaptation.same_way import labels_of_ways
 from teachpath.learning.adaptation.target import Target
 from teachpath.learning.clustering.ends import end_groups
 from teachpath.learning.fitting.orientation_fit import rotation_angles
-from teachpath.learning.lengths import describe_length
 from teachpath.learning.resampling import arc_lengths, at_equal_arc_length, extent, smoothed
 from teachpath.learning.settings import LearningSettings
+from teachpath.lengths import describe_length
 from teachpath.nurbs import Curve, unit_quaternions
 from teachpath.records import Array, LearnedPath, Trajectory
 

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from teachpath.learning.lengths import describe_length
+from teachpath.lengths import describe_length
 from teachpath.records import Array
 
 DISTANCE_POWER = 0.8  # of the horizontal distance, by which the height and width of a shape grow

@@ -13,8 +13,8 @@ from teachpath.learning.clustering.dendrogram import Labels, labels_for_count
 from teachpath.learning.clustering.distances import pairwise_distances
 from teachpath.learning.clustering.ends import end_groups
 from teachpath.learning.clustering.partition import separated_clusters, separations
-from teachpath.learning.lengths import describe_length
 from teachpath.learning.resampling import arc_lengths
+from teachpath.lengths import describe_length
 from teachpath.records import Array
 
 USUAL_SHAPE_SCATTER = 0.05  # mean distance of two shapes of one way between different ends, as share of the path length

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from teachpath.learning.clustering.dendrogram import Labels
-from teachpath.learning.lengths import describe_length
 from teachpath.learning.resampling import arc_lengths
+from teachpath.lengths import describe_length
 from teachpath.records import Array
 
 MAX_SHARE = 0.95  # of the path of the complete ones; behind it the goal's own scatter hides what is missing

@@ -9,8 +9,8 @@ import numpy as np
 
 from teachpath.learning.clustering.dendrogram import Labels, height_for_count, labels_at_height, labels_for_count
 from teachpath.learning.clustering.incomplete import Stop
-from teachpath.learning.lengths import describe_length, describe_lengths
 from teachpath.learning.settings import LearningSettings
+from teachpath.lengths import describe_length, describe_lengths
 from teachpath.records import Array
 
 USUAL_SCATTER = 0.03  # mean distance of two demonstrations of one cluster, as share of the path length

@@ -16,10 +16,10 @@ from teachpath.learning.fitting.nurbs_fit import (
     distances_to_curve,
 )
 from teachpath.learning.fitting.orientation_fit import fit_orientations, mean_orientations
-from teachpath.learning.lengths import describe_length, describe_lengths
 from teachpath.learning.matching import frechet_distance
 from teachpath.learning.resampling import SMOOTHING_WINDOW, arc_lengths, at_equal_arc_length, extent, smoothed
 from teachpath.learning.settings import LearningSettings, StepCallback
+from teachpath.lengths import describe_length, describe_lengths
 from teachpath.nurbs import Curve
 from teachpath.records import Array, Fit, LearnedPath, Trajectory
 

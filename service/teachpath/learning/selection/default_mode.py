@@ -8,7 +8,6 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from teachpath.learning.lengths import describe_length
 from teachpath.learning.resampling import at_equal_arc_length, at_equal_times, extent
 from teachpath.learning.selection.consistency import FAULTY, Measures, Part, measure, others_median
 from teachpath.learning.selection.deviations import describe_deviation, describe_pace
@@ -16,6 +15,7 @@ from teachpath.learning.selection.features import MotionFeatures, extract_featur
 from teachpath.learning.selection.likelihoods import convergence, fold_count, score_likelihoods
 from teachpath.learning.selection.paper_mode import unscored
 from teachpath.learning.settings import LearningSettings, StepCallback
+from teachpath.lengths import describe_length
 from teachpath.records import Array, Cluster, Deviation, Score, Trajectory
 
 MIN_RELIABLE_MEMBERS = 4  # below which the ranking is unreliable

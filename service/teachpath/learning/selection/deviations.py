@@ -7,10 +7,10 @@ from collections.abc import Sequence
 import numpy as np
 from scipy.ndimage import binary_closing
 
-from teachpath.learning.lengths import describe_length, describe_lengths
 from teachpath.learning.resampling import arc_lengths, at_equal_arc_length
 from teachpath.learning.selection.consistency import Part, shaking_amplitude, shaking_profile
 from teachpath.learning.selection.features import CLOCK_POINTS, MotionFeatures
+from teachpath.lengths import describe_length, describe_lengths
 from teachpath.records import Array, Deviation, Trajectory
 
 MIN_DEFICIT_SHARE = 0.25  # of the largest deviation, from which on a point deviates too

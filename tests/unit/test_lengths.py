@@ -7,7 +7,7 @@ import re
 import numpy as np
 import pytest
 
-from teachpath.learning.lengths import describe_length, describe_lengths
+from teachpath.lengths import describe_length, describe_lengths
 
 METRES = {"m": 1.0, "cm": 0.01, "mm": 0.001, "µm": 1e-6}
 LENGTHS = [
