@@ -28,12 +28,14 @@ class Case:
         shown: from a seed to the demonstrations in random order and the true cluster of each.
         target: least rate of seeds with the right clusters.
         stops: whether the first demonstration is incomplete, 1 or 0.
+        doubt: whether the right clusters count where they are not found, but called doubtful and the next cut.
     """
 
     title: str
     shown: Callable[[int], Labelled]
     target: float = 0.95
     stops: int = 0
+    doubt: bool = False
 
 
 def known_ways(
@@ -110,6 +112,35 @@ def rests(rng: np.random.Generator, shown: Trajectory, rest: float, noise: float
     return Trajectory(np.arange(len(positions)) * synthetic.PERIOD, positions)
 
 
+def differ_in_part(seed: int, sizes: Sequence[int], height: float, **hand: Any) -> Labelled:
+    """One way; some make a bump of this height [m] over a third of the path, at a random place to a random side."""
+    rng = np.random.default_rng([seed, 20])
+    shown, truth = known_ways(seed, sizes, (synthetic.WAYS[1],) * len(sizes), **hand)
+    middle, side = rng.uniform(0.3, 0.7), np.cross(synthetic.GOAL - synthetic.START, rng.normal(size=3))
+    bumped = []
+    for each, way in zip(shown, truth, strict=True):
+        along = arc_lengths(smoothed(each))
+        bump = np.square(np.cos(np.pi * np.clip(3 * (along / along[-1] - middle), -0.5, 0.5)))
+        away = way * height * bump[:, None] * side / np.linalg.norm(side)
+        bumped.append(Trajectory(each.times, each.positions + away))
+    return bumped, truth
+
+
+def two_agree_exactly(seed: int, apart: float = 0.015, noise: float = 1e-4) -> Labelled:
+    """Two along one way that agree to 0.1 mm, and two along another on average up to `apart` [m] from each other."""
+    rng = np.random.default_rng([seed, 21])
+    quiet = dict.fromkeys(("via_spread", "end_spread", "tremor", "noise", "warp"), 0.0)
+    tight, loose = (synthetic.demonstration(rng, synthetic.WAYS[way], **quiet) for way in (0, 1))
+    side = rng.normal(size=3)
+    bow = np.sin(np.pi * np.linspace(0, 1, len(loose)))[:, None] * np.pi / 2 * side / np.linalg.norm(side)
+    shown = [
+        *(Trajectory(tight.times, tight.positions + rng.normal(0, noise, tight.positions.shape)) for _ in range(2)),
+        loose,
+        Trajectory(loose.times, loose.positions + rng.uniform(0.3, 1.0) * apart * bow),
+    ]
+    return shown, [0, 0, 1, 1]
+
+
 def _once(sizes: tuple[int, ...]) -> list[Case]:
     return [
         Case(f"{sizes}, the ways of the paper", partial(known_ways, sizes=sizes)),
@@ -128,6 +159,22 @@ OFTEN = (
     Case("(3, 3), a tidy hand, ways 4 cm apart or more", partial(drawn_ways, sizes=(3, 3), least=0.04, **TIDY)),
     Case("eight ways three times", partial(drawn_ways, sizes=(3,) * 8, least=0.10)),
     Case("twelve ways three times", partial(drawn_ways, sizes=(3,) * 12, least=0.08)),
+    Case("two that agree to 0.1 mm, two within 1.5 cm", two_agree_exactly),
+)
+PARTLY = (
+    *(
+        Case(f"{sizes}, a bump of 4 cm", partial(differ_in_part, sizes=sizes, height=0.04), 0.9, doubt=True)
+        for sizes in ((2, 2), (3, 2), (3, 3), (4, 2), (6, 6))
+    ),
+    *(
+        Case(
+            f"{sizes}, a tidy hand, a bump of 2 cm",
+            partial(differ_in_part, sizes=sizes, height=0.02, **TIDY),
+            0.9,
+            doubt=True,
+        )
+        for sizes in ((2, 2), (3, 3), (4, 2))
+    ),
 )
 ONE = (
     *(Case(f"one way, {count} times, ±45 % duration", partial(one_way, count=count)) for count in (2, 3, 4, 5, 12)),
@@ -172,4 +219,11 @@ ENDS = (
     Case("(3, 3), starts 5 cm apart", partial(starts_apart, sizes=(3, 3), apart=0.05)),
     Case("(3, 3), a tidy hand, goals 2 cm apart", partial(goals_apart, sizes=(3, 3), apart=0.02, **TIDY), 0.0),
 )
-GROUPS = {"Ways shown once": ONCE, "Ways shown often": OFTEN, "One way": ONE, "Ends": ENDS, "Incomplete": INCOMPLETE}
+GROUPS = {
+    "Ways shown once": ONCE,
+    "Ways shown often": OFTEN,
+    "Ways that differ in a third of the path": PARTLY,
+    "One way": ONE,
+    "Ends": ENDS,
+    "Incomplete": INCOMPLETE,
+}

@@ -9,7 +9,17 @@ from typing import Any
 
 from scipy.stats import binom
 
-from tests.experiments import ablation, adaptation_report, curves, degrees, quoted, rule, scale, stream_faults
+from tests.experiments import (
+    ablation,
+    adaptation_report,
+    clustering,
+    curves,
+    degrees,
+    quoted,
+    rule,
+    scale,
+    stream_faults,
+)
 from tests.experiments.markup import STYLE, figure, listed, short
 from tests.experiments.results import Found, by_place, outranked, revived, right, uneven
 from tests.experiments.scenarios import GROUPINGS, SCENARIOS
@@ -38,6 +48,7 @@ def page(found: Found, folder: Path) -> str:
             *_control(found, folder),
             ablation.table(found["ablation"]),
             *_grouping(found, folder),
+            clustering.table(found["clustering"]),
             *_shapes(found, folder),
             *_degrees(found),
             *adaptation_report.section(found["adaptation"], HANDS if found["made"]["hands"] else SYNTHETIC),

@@ -22,6 +22,7 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 from tests.experiments import (
     ablation,
     adaptation,
+    clustering,
     degrees,
     figures,
     report,
@@ -49,6 +50,7 @@ class Sizes:
     selection: int = 1000
     ablation: int = 400
     grouping: int = 100
+    clustering: int = 200
     shape: int = 20
     degree: int = 12
     fault: int = 100
@@ -57,7 +59,18 @@ class Sizes:
     adaptation: int = 50
 
 
-QUICK = Sizes(selection=8, ablation=8, grouping=4, shape=1, degree=1, fault=2, datasets=3, repetitions=8, adaptation=2)
+QUICK = Sizes(
+    selection=8,
+    ablation=8,
+    grouping=4,
+    clustering=4,
+    shape=1,
+    degree=1,
+    fault=2,
+    datasets=3,
+    repetitions=8,
+    adaptation=2,
+)
 
 
 def main() -> None:
@@ -72,11 +85,12 @@ def main() -> None:
     sizes = QUICK if asked.quick else Sizes()
     asked.out.mkdir(parents=True, exist_ok=True)
     began = time.monotonic()
-    *repeated, adapted, scored, faulty = _repeated(sizes, asked.hands)
+    *repeated, adapted, scored, faulty, clustered = _repeated(sizes, asked.hands)
     found = results.summary(*repeated, sizes=sizes)
     found["adaptation"] = adaptation.summary({count: outcome for (_, count, *_), outcome in adapted})
     found["stream_faults"] = stream_faults.summary(faulty)
     found["ablation"] = ablation.summary([(key, scores) for (key, _), scores in scored])
+    found["clustering"] = clustering.summary([(key, told) for (key, _), told in clustered])
     shown_1, learned_1 = trials.table_1(SEED)
     shown_2, learned_2 = trials.experiment_2(SEED)
     found["experiment_1"] = results.single(learned_1, shown_1)
@@ -118,6 +132,7 @@ def _repeated(sizes: Sizes, hands: Path | None) -> tuple[list[Any], ...]:
     work += [
         (8, stream_faults.fault_once, (*case, seed)) for case in stream_faults.CASES for seed in range(sizes.fault)
     ]
+    work += [(9, clustering.cluster_once, (key, seed)) for key in clustering.CASES for seed in range(sizes.clustering)]
     chunks = [work[at : at + CHUNK] for at in range(0, len(work), CHUNK)]
     gathered: dict[Future[list[Any]], int] = {}
     context = multiprocessing.get_context("spawn")
@@ -127,7 +142,7 @@ def _repeated(sizes: Sizes, hands: Path | None) -> tuple[list[Any], ...]:
             gathered[pool.submit(_chunk, chunk)] = number
         for done in as_completed(gathered):
             bar.advance(row, len(done.result()))
-    found: tuple[list[Any], ...] = ([], [], [], [], [], [], [], [], [])
+    found: tuple[list[Any], ...] = tuple([] for _ in range(10))
     for done, number in gathered.items():
         for (kind, _, arguments), outcome in zip(chunks[number], done.result(), strict=True):
             found[kind].append((arguments, outcome))

@@ -131,6 +131,19 @@ def cut_by_separation(
     )
 
 
+def doubting_splits(found: Partition, tree: Array, groups: int) -> Partition:
+    """Return a partition with its dendrogram, whose next cut into `groups` splits clusters in a part of the path."""
+    clusters = int(found.labels.max())
+    if groups == clusters:
+        return found
+    note = (
+        f"{_ways(clusters)}, but ambiguous: in a part of the path some run beside the others, so that {_ways(groups)} "
+        "would do as well; set learning.clusters to decide it"
+    )
+    notes = "; ".join(sentence for sentence in (found.note, note) if sentence)
+    return Partition(tree, height_for_count(tree, clusters), found.labels, notes, groups)
+
+
 def separated_clusters(ratios: Array) -> int:
     """Return the number of clusters below the lowest merge (m - 1,) whose ratio to the least separation is 1."""
     separated = np.flatnonzero(ratios >= 1)

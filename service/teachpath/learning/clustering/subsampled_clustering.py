@@ -16,7 +16,8 @@ from teachpath.learning.clustering.dendrogram import Labels, extended_linkage, l
 from teachpath.learning.clustering.distances import nearest_paths, pairwise_distances
 from teachpath.learning.clustering.ends import end_groups, grouped_linkage
 from teachpath.learning.clustering.incomplete import Stop, find_incomplete
-from teachpath.learning.clustering.partition import Partition, cut_as_set
+from teachpath.learning.clustering.partial_splits import partial_splits, split_linkage
+from teachpath.learning.clustering.partition import Partition, cut_as_set, cut_by_separation, doubting_splits
 from teachpath.learning.settings import LearningSettings, Progress, Subprogress, no_progress
 from teachpath.records import Array
 
@@ -73,8 +74,16 @@ def _cluster_by_all_pairs(
     complete = np.setdiff1d(np.arange(len(paths)), list(incomplete))
     groups = np.unique(groups[complete], return_inverse=True)[1] + 1
     condensed = pairwise_distances(paths[complete], metric, Subprogress(progress, 0.2, 0.7))
-    tree = grouped_linkage(condensed, groups, Subprogress(progress, 0.7, 1.0))
-    partition = cut_as_set(tree, settings, length=length, groups=int(groups.max()))
+    tree = grouped_linkage(condensed, groups, Subprogress(progress, 0.7, 0.9))
+    count, separation = int(groups.max()), settings.min_separation
+    found = cut_by_separation(tree, min_separation=separation, length=length, groups=count)
+    # The dendrogram must not depend on the cut that is set: every cut of a run can be made from the beginning.
+    split = partial_splits(paths[complete], found.labels, min_separation=separation, length=length)
+    tree = split_linkage(condensed, tree, found.labels, split, Subprogress(progress, 0.9, 1.0))
+    if settings.clusters is not None or settings.threshold is not None:
+        partition = cut_as_set(tree, settings, length=length, groups=count)
+    else:
+        partition = doubting_splits(found, tree, int(split.max()))
     return _with_incomplete(partition, complete, incomplete) if incomplete else partition
 
 
