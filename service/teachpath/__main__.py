@@ -22,6 +22,7 @@ try:
         files,
         logins,
         station,
+        stores,
         work,
     )
 except ModuleNotFoundError as missing:
@@ -65,6 +66,7 @@ for command in (
 app.add_typer(curves.app, name="curve")
 app.add_typer(logins.app, name="login")
 app.add_typer(certificates.app, name="station")
+app.add_typer(stores.app, name="store")
 for part in (station.executor, station.simulator):
     app.command(rich_help_panel="Parts that serve starts by itself")(part)
 

@@ -1,4 +1,5 @@
 import asyncio
+import importlib.util
 import threading
 import time
 from collections.abc import Iterator
@@ -9,6 +10,16 @@ from teachpath.commands.serving import free_port, listen
 from teachpath.web.server import web_server
 from tests.contract import stations
 from tests.contract.desk import Desk
+from tests.postgres import MISSING, Server, find_programs, serving
+
+
+@pytest.fixture(scope="session")
+def postgres() -> Iterator[Server]:
+    """A PostgreSQL server of the tests' own."""
+    if find_programs() is None or importlib.util.find_spec("psycopg") is None:
+        pytest.skip(MISSING)
+    with serving() as server:
+        yield server
 
 
 @pytest.fixture(scope="package")

@@ -32,18 +32,22 @@ from teachpath.records import (
 )
 from teachpath_proto.control import ExecutorState
 from tests.contract.rows import a_job, demonstration, learned
+from tests.postgres import Server
 from tests.unit.io.test_documents import a_path, a_plan
 from tests.waiting import HANG
 
 Open = Callable[[], Store]
 
-# Every database that a store must work on; `{folder}` is new for each test.
-DATABASES = ["sqlite:///{folder}/teachpath.sqlite"]
+# Every database that a store must work on; each test has an empty one.
+DATABASES = ["sqlite", "postgresql"]
 
 
-@pytest.fixture(params=DATABASES, ids=lambda url: url.split(":")[0])
+@pytest.fixture(params=DATABASES)
 def url(request: pytest.FixtureRequest, tmp_path: Path) -> str:
-    return str(request.param).format(folder=tmp_path)
+    if request.param == "sqlite":
+        return f"sqlite:///{tmp_path}/teachpath.sqlite"
+    server: Server = request.getfixturevalue("postgres")
+    return server.new_url()
 
 
 @pytest.fixture

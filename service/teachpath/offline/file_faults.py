@@ -95,7 +95,8 @@ def _adopt(examination: Examination, inspection: Inspection) -> Repair:
         rewrite(inspection.file, content)
         inspection = examination.inspect(inspection.file) or inspection
     calibration = stated.calibration.name.partition("@")[0]
-    store.ensure_task(stated.task, scene=scene.name, calibration=calibration)
+    at_grasp = inspection.header is not None and inspection.header.object_at_grasp
+    store.ensure_task(stated.task, scene=scene.name, calibration=calibration, object_at_grasp=at_grasp)
     place = store.recordings.place(inspection.file)
     row = store.add_demonstration(replace(stated, recording=place, digest=inspection.digest))
     examination.rows[row.id] = row

@@ -10,6 +10,7 @@ from sqlalchemy.orm import Session
 
 from teachpath.errors import NotFound
 from teachpath.io.documents import from_document, to_document
+from teachpath.io.store.engine import lock_name
 from teachpath.io.store.tables import CalibrationRow
 from teachpath.records import MeasuredCalibration
 
@@ -24,6 +25,7 @@ class MeasuredCalibrations:
         """Store the next version of a calibration and return it with its number and date."""
         name = measured.calibration.name
         with Session(self._engine.execution_options(writing=True)) as session, session.begin():
+            lock_name(session, "calibration", name)
             newest = session.scalar(select(func.max(CalibrationRow.version)).where(CalibrationRow.name == name))
             stored = replace(measured, version=(newest or 0) + 1, created_ns=time.time_ns())
             session.add(

@@ -10,9 +10,10 @@ from alembic.config import Config
 from alembic.script import ScriptDirectory
 from alembic.script.revision import ResolutionError
 from alembic.util import CommandError
-from sqlalchemy import Connection, Engine, create_engine, event
+from sqlalchemy import Connection, Engine, create_engine, event, func, select
 from sqlalchemy.engine import ExceptionContext
 from sqlalchemy.exc import DBAPIError
+from sqlalchemy.orm import Session
 
 from teachpath.errors import StorageUnavailable
 from teachpath.io.store.faults import database_fault, refused_by_server
@@ -44,6 +45,15 @@ def open_engine(url: str) -> Engine:
         engine.dispose()
         raise
     return engine
+
+
+def lock_name(session: Session, kind: str, name: str) -> None:
+    """Let no other transaction read and then write what belongs to a name until this one has ended.
+
+    In SQLite, who writes is alone from the beginning of the transaction; a database with a server locks the name.
+    """
+    if session.get_bind().dialect.name == "postgresql":
+        session.execute(select(func.pg_advisory_xact_lock(func.hashtextextended(f"{kind} {name}", 0))))
 
 
 def _shown(engine: Engine) -> str:

@@ -7,9 +7,9 @@ import os
 import sqlite3
 from typing import Final
 
-from sqlalchemy.exc import DBAPIError, IntegrityError
+from sqlalchemy.exc import DataError, DBAPIError, IntegrityError
 
-from teachpath.errors import Conflict, StorageFull, StorageUnavailable, TeachpathError
+from teachpath.errors import Conflict, StorageFull, StorageUnavailable, TeachpathError, UnusableInput
 
 TEMPORARY: Final = ".temporary"  # ends the name of a file that is being written and renamed when it is whole
 FREE_SPACE: Final = "free space, then try again"
@@ -65,6 +65,8 @@ def database_fault(error: BaseException, url: str) -> TeachpathError | None:
     cause = error.orig if isinstance(error, DBAPIError) else error
     if isinstance(error, (IntegrityError, sqlite3.IntegrityError)):
         return Conflict(f"it was stored or changed by somebody else meanwhile ({cause}); read it anew, then try again")
+    if isinstance(error, DataError):
+        return UnusableInput(f"the database cannot keep this: {_first_line(cause)}; leave out what is no text")
     if isinstance(cause, sqlite3.Error):
         return _sqlite_fault(cause, url)
     if isinstance(error, DBAPIError) and error.connection_invalidated:

@@ -7,6 +7,7 @@ import time
 from sqlalchemy import Engine
 from sqlalchemy.orm import Session
 
+from teachpath.io.store.engine import lock_name
 from teachpath.io.store.tables import JournalRow, RevocationRow
 from teachpath.records import JournalEntry
 
@@ -26,6 +27,7 @@ class Journal:
     def revoke(self, plan: str, *, who: str, reason: str) -> None:
         """Note that the certificate of a stored plan holds no longer; the first reason stays."""
         with Session(self._writing) as session, session.begin():
+            lock_name(session, "plan", plan)
             if session.get(RevocationRow, plan) is None:
                 session.add(RevocationRow(plan=plan, at_ns=time.time_ns(), who=who, reason=reason))
 

@@ -11,6 +11,7 @@ from sqlalchemy import func, select
 from sqlalchemy.orm import Session
 
 from teachpath.io.documents import from_document, to_document
+from teachpath.io.store.engine import lock_name
 from teachpath.io.store.tables import DemonstrationRow, JobRow, RunTable, TaskRow
 from teachpath.records import Demonstration, Failure, Job, JobState, Learned, RunSummary, Task
 
@@ -38,6 +39,7 @@ def success(outcome: str, now: int) -> dict[str, Any]:
 
 def ensured_task(session: Session, task: Task) -> TaskRow:
     """Return the row of a task; added when there is none."""
+    lock_name(session, "task", task.name)
     row = session.get(TaskRow, task.name)
     if row is None:
         row = TaskRow(**{**asdict(task), "created_ns": time.time_ns()})
@@ -47,6 +49,7 @@ def ensured_task(session: Session, task: Task) -> TaskRow:
 
 def numbered_row(session: Session, demonstration: Demonstration) -> Demonstration:
     """Add the row of a demonstration under the next number of its task, and return it with that number."""
+    lock_name(session, "task", demonstration.task)
     newest = session.scalar(
         select(func.max(DemonstrationRow.number)).where(DemonstrationRow.task == demonstration.task)
     )
@@ -57,7 +60,7 @@ def numbered_row(session: Session, demonstration: Demonstration) -> Demonstratio
             task=numbered.task,
             number=numbered.number,
             created_ns=numbered.created_ns,
-            verdict=numbered.verdict,
+            verdict=numbered.verdict.value,
             document=to_document(numbered),
         )
     )

@@ -18,7 +18,7 @@ from teachpath.io.store.calibrations import MeasuredCalibrations
 from teachpath.io.store.changes import Changed, note, telling, unheard
 from teachpath.io.store.checks import Checks
 from teachpath.io.store.database_files import database_file, database_url, make_data_folder
-from teachpath.io.store.engine import open_engine
+from teachpath.io.store.engine import lock_name, open_engine
 from teachpath.io.store.journal import Journal
 from teachpath.io.store.lists import Execution, Lists, execution_of
 from teachpath.io.store.motions import Motions
@@ -97,7 +97,7 @@ class Store:
 
     def _one(self, table: type[Row], key: Any, what: str) -> Row:
         with Session(self._engine) as session:
-            row = session.get(table, key)
+            row = session.get(table, key) if "\0" not in str(key) else None  # which no database with a server keeps
         if row is None:
             raise NotFound(f"there is no {what} {key!r}")
         return row
@@ -139,7 +139,7 @@ class Store:
             if row is None:
                 raise NotFound(f"there is no demonstration {key!r}")
             changed = replace(from_document(Demonstration, row.document), **changes)
-            row.document, row.verdict = to_document(changed), changed.verdict
+            row.document, row.verdict = to_document(changed), changed.verdict.value
         return changed
 
     # runs, paths and plans
@@ -171,6 +171,7 @@ class Store:
     def put_execution(self, key: str, plan: str | None, status: ExecutorStatus) -> None:
         """Store how an execution stands."""
         with self._change() as session:
+            lock_name(session, "execution", key)
             row = session.get(ExecutionTable, key)
             if row is None:
                 row = ExecutionTable(id=key, plan=plan, created_ns=time.time_ns())

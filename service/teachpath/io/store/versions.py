@@ -13,6 +13,7 @@ from sqlalchemy.orm import Session
 from teachpath.errors import NotFound, Outdated, UnusableInput
 from teachpath.io.documents import from_document, to_document
 from teachpath.io.store.changes import Changed, telling, unheard
+from teachpath.io.store.engine import lock_name
 from teachpath.io.store.tables import PathRow
 from teachpath.nurbs import Curve
 from teachpath.records import MAIN_BRANCH, LearnedPath, ObjectPose, Version
@@ -87,6 +88,7 @@ class Versions:
             telling(session, self._changed),
             session.begin(),
         ):
+            lock_name(session, "path", path)
             base = _row(session, path, edit.base)
             branch = edit.branch or base.branch
             head = _head(session, path, branch)
@@ -144,6 +146,8 @@ def version_of(row: PathRow) -> Version:
 
 
 def _row(session: Session, path: str, number: int) -> PathRow:
+    if "\0" in path:
+        raise NotFound(f"there is no path {path!r}")
     row = session.get(PathRow, (path, number)) if 0 < number <= MAX_VERSIONS else None
     if row is None:
         newest = session.scalar(select(func.max(PathRow.version)).where(PathRow.id == path))
@@ -154,6 +158,8 @@ def _row(session: Session, path: str, number: int) -> PathRow:
 
 
 def _head(session: Session, path: str, branch: str) -> PathRow | None:
+    if "\0" in path + branch:  # which no database with a server keeps, nor asks for
+        return None
     of_branch = select(PathRow).where(PathRow.id == path, PathRow.branch == branch)
     return session.scalar(of_branch.order_by(PathRow.version.desc()).limit(1))
 

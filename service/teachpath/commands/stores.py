@@ -1,0 +1,43 @@
+"""store: the database of a station."""
+
+from __future__ import annotations
+
+from contextlib import ExitStack
+from typing import Annotated
+
+import typer
+
+app = typer.Typer(help="The database of a station.", no_args_is_help=True)
+
+
+@app.callback()
+def store() -> None:
+    """Keep `copy` a command of its own name."""
+
+
+@app.command()
+def copy(
+    source: Annotated[str, typer.Argument(metavar="FROM", help="Data folder, or URL of a database.")],
+    target: Annotated[str, typer.Argument(metavar="TO", help="Data folder, or URL of a database without rows.")],
+) -> None:
+    """Copy all rows from one database into an empty one, compared by their counts and hashes.
+
+    A URL is as in the setting store.database, e.g. postgresql+psycopg://user@host/teachpath. Recordings stay in the
+    data folder, which is used with either database. Stop the service first.
+    """
+    from teachpath.io.store.copying import copy_rows
+    from teachpath.io.store.database_files import database_url, make_data_folder
+    from teachpath.io.store.settings import StoreSettings
+    from teachpath.offline.lock import StationLock
+
+    urls = []
+    with ExitStack() as locks:
+        for place in (source, target):
+            settings = StoreSettings(data_dir=place)
+            if "://" not in place:
+                locks.enter_context(StationLock(make_data_folder(settings)))
+            urls.append(place if "://" in place else database_url(settings))
+        counts = copy_rows(*urls)
+    for name, count in counts.items():
+        print(f"{count:8} {name}")
+    print(f"{sum(counts.values()):8} rows, the same in both")
