@@ -26,6 +26,7 @@ from teachpath.io.store.settings import StoreSettings
 from teachpath.jobs.settings import JobSettings
 from teachpath.learning.settings import LearningSettings
 from teachpath.live.preview.settings import PreviewSettings
+from teachpath.logs import LogSettings
 from teachpath.motion.arm.model import Arm
 from teachpath.motion.collision.builtin_scenes import empty_scene, paper_scene
 from teachpath.motion.settings import MotionSettings
@@ -61,6 +62,7 @@ class Settings(BaseModel):
     simulator: SimulatorSettings = SimulatorSettings()
     jobs: JobSettings = JobSettings()
     preview: PreviewSettings = PreviewSettings()
+    log: LogSettings = LogSettings()
     calibrations: tuple[Calibration, ...] = (Calibration("identity"), ROBOTTASKS)
     scenes: tuple[Scene, ...] = (paper_scene(), empty_scene())
 

@@ -23,6 +23,7 @@ from teachpath.api.objects import objects_router
 from teachpath.api.parts import Health, Parts
 from teachpath.api.probes import probes_router
 from teachpath.api.recording import recording_router
+from teachpath.api.request_numbers import RequestNumbers
 from teachpath.api.robot import robot_router
 from teachpath.api.strict_requests import refuse_unknown
 from teachpath.api.tasks import tasks_router
@@ -48,6 +49,7 @@ def build_api(parts: Parts, *pages: APIRouter) -> FastAPI:
     app.add_middleware(AnswersAtTheEnd)
     registry = new_registry()
     app.add_middleware(RequestMetrics, registry=registry)
+    app.add_middleware(RequestNumbers)
     answer_errors(app)
     routers = (
         tasks_router,

@@ -15,15 +15,19 @@ import typer
 from teachpath.commands.options import Config, Data, settings_of
 from teachpath.commands.serving import serving, until_signalled
 from teachpath.config import Instructions, from_instructions, load
+from teachpath.errors import UnusableSettings
 from teachpath.io.bus import open_bus
 from teachpath.io.bus_logins import local_login
 from teachpath.io.signing_key import read_signing_key
+from teachpath.logs import LogSettings, log_to_stderr
 from teachpath.realtime import SIMULATOR_PRIORITY, request_realtime
 from teachpath.robot.processes import STOP_TIMEOUT
 from teachpath_proto.keys import Keys
 from teachpath_proto.logins import Role
 
 log = logging.getLogger("teachpath")
+
+PARTS = {Role.EXECUTOR: "executor", Role.ROBOT: "simulator"}  # names of the processes in the log
 
 Attached = Annotated[bool, typer.Option("--attached", hidden=True)]
 
@@ -32,14 +36,19 @@ def serve(
     config: Config = None,
     data: Data = None,
     port: Annotated[int | None, typer.Option(help="Web port; 8765 unless set.")] = None,
+    log_format: Annotated[
+        str, typer.Option(help="Of the lines of the log: text or json; as the settings say, unless set.")
+    ] = "",
 ) -> None:
     """Run the service until Ctrl-C.
 
     It records what trackers show, works on jobs, moves the simulated arm, and serves the page and the REST API.
     """
     changes: dict[str, Any] = {} if port is None else {"web": {"port": port}}
+    if log_format:
+        changes["log"] = {"format": log_format}
     settings = settings_of(config, data, **changes)
-    _log_to_stderr()
+    _log(settings.log)
     with until_signalled() as stop, serving(settings):
         print(f"teachpath serves http://{settings.web.host}:{settings.web.port} (API docs at /docs)", flush=True)
         print(f"trackers publish to {settings.bus.endpoint}; Ctrl-C ends it", flush=True)
@@ -103,7 +112,7 @@ def simulator(config: Config = None, attached: Attached = False) -> None:
 
 
 def _instructions(config: Path | None, attached: bool, role: Role) -> Instructions:
-    _log_to_stderr()
+    log_to_stderr(part=PARTS[role], attached=attached)
     if attached:
         return from_instructions(sys.stdin.readline())
     settings = load(config)
@@ -127,7 +136,8 @@ def _leave_with_parent(stop: threading.Event, attached: bool) -> None:
     threading.Thread(target=wait, name="parent", daemon=True).start()
 
 
-def _log_to_stderr() -> None:
-    logging.basicConfig(level=logging.INFO, format="%(levelname)s %(name)s: %(message)s", stream=sys.stderr)
-    for chatty in ("alembic", "httpx"):
-        logging.getLogger(chatty).setLevel(logging.WARNING)
+def _log(settings: LogSettings) -> None:
+    try:
+        log_to_stderr(settings)
+    except OSError as error:
+        raise UnusableSettings(f"cannot write the log to {settings.file} (log.file): {error.strerror}") from None

@@ -27,6 +27,7 @@ from teachpath.executor.settings import ExecutorSettings
 from teachpath.executor.unasked_motion import UnaskedMotionDetector
 from teachpath.io import documents, wire
 from teachpath.io.bus import Bus, Handle
+from teachpath.logs import continue_request
 from teachpath.records import Command, ExecutorStatus, JournalEntry
 from teachpath.time_source import TimeSource
 from teachpath_proto.control import CommandVerb, ExecutorState, LeaseAction
@@ -115,6 +116,7 @@ class CommandHandler:
     def answer(self, payload: bytes) -> bytes:
         """Answer a command with the status; raise the reason when it is refused."""
         command = wire.decode_command(payload)
+        continue_request(command.id)
         who = self.lease.name_of(command.lease, command.who or DEFAULT_OPERATOR)
         try:
             if command.verb not in LEASE_FREE_VERBS:
@@ -122,9 +124,11 @@ class CommandHandler:
             self._dispatch(command, who)
         except TeachpathError as error:
             self.write_journal(who, command.verb, str(error))
+            log.info("%s by %s is refused: %s", command.verb, who, error)
             raise
         if not self._is_repeat(command):
             self.write_journal(who, command.verb, "done")
+            log.info("%s by %s: done", command.verb, who)
         return wire.encode_status(self._status())
 
     def obey_stops(self) -> None:
@@ -144,7 +148,7 @@ class CommandHandler:
     def _is_repeat(self, command: Command) -> bool:
         with self._lock:
             known = command.id in self._known_stops
-            if command.id and not known:
+            if command.id and not known and command.verb == CommandVerb.STOP:
                 self._known_stops.append(command.id)
         return known
 

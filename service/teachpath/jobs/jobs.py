@@ -25,6 +25,7 @@ from teachpath.io.documents import to_document
 from teachpath.io.wire import encode_progress
 from teachpath.jobs.job_lane import JobLane, LaneLimits
 from teachpath.jobs.settings import JobSettings
+from teachpath.logs import continue_request, request_number
 from teachpath.records import Job, JobState
 from teachpath_proto.keys import Keys
 
@@ -34,6 +35,7 @@ if TYPE_CHECKING:  # the settings of jobs are read in processes that have no sto
 
 log = logging.getLogger("teachpath")
 
+LOG_PART: Final = "worker"  # of the station, in the log: the service tells what its working processes do
 STORE_INTERVAL: Final = 1.0  # [s] after which a job is tried again that the store could not take
 
 # A kind of job: `prepare` gathers its input from the store, `work` (a function of `worker`) runs in the other process,
@@ -89,6 +91,7 @@ class Jobs:
         }
         self._lanes = {name: JobLane(name, each, self._progress, self._run) for name, each in limits.items()}
         self._lock = threading.Lock()
+        self._requests: dict[str, str] = {}  # numbers of the requests that queued the unfinished jobs
         self._submitters: dict[str, str] = {}  # of the unfinished jobs: who submitted them
         self._reporter = threading.Thread(target=self._pass_on_progress, name="job progress", daemon=True)
 
@@ -135,7 +138,7 @@ class Jobs:
         job = Job(key, task, kind, request, JobState.QUEUED, 0.0, "", "", 0, time.time_ns(), 0)
         self._store.add_job(job)
         with self._lock:
-            self._submitters[key] = submitter
+            self._submitters[key], self._requests[key] = submitter, request_number()
         self._lane(job).put(key)
         return job
 
@@ -151,6 +154,8 @@ class Jobs:
         return self._lanes[self._kinds[job.kind].lane]
 
     def _run(self, lane: JobLane, key: str) -> None:
+        continue_request(self._requests.get(key, ""))
+        log.info("%s begins", key, extra={"part": LOG_PART})
         try:
             self._process(lane, key)
         except Conflict:
@@ -200,6 +205,9 @@ class Jobs:
         if job.finished_ns:
             with self._lock:
                 self._submitters.pop(job.id, None)
+                request = self._requests.pop(job.id, "")
+            said = job.outcome or job.message
+            log.info("%s %s: %s", job.id, job.state, said, extra={"part": LOG_PART, "request": request})
             self._kinds[job.kind].clean_up(job)
         self._bus.publish(self._keys.job(job.id), encode_progress(job))
         if job.finished_ns:

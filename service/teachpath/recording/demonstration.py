@@ -88,7 +88,8 @@ def object_trajectory(
     Raises:
         UnusableRecording: fewer than 2 usable samples.
     """
-    ordered = _forward_in_time([s for s in transport_samples(samples, cut) if s.sequence not in left_out])
+    passed_over = frozenset(left_out)  # a frozen tracker of a long take leaves out tens of thousands
+    ordered = _forward_in_time([s for s in transport_samples(samples, cut) if s.sequence not in passed_over])
     if len(ordered) < 2:
         raise UnusableRecording(
             f"only {len(ordered)} usable samples between grasp and release; is the tracker in view of its source?"

@@ -16,6 +16,7 @@ from teachpath.io.store.motions import MotionHeader, read_motion
 from teachpath.io.store.pages import Page, PageRequest
 from teachpath.io.store.store import Store
 from teachpath.io.wire import decode_lease, decode_status, encode_command, encode_lease_request
+from teachpath.logs import request_number
 from teachpath.motion.analysis.time_series import time_series
 from teachpath.motion.arm.model import Arm
 from teachpath.records import Command, ExecutorStatus, Lease, LeaseRequest, TeleopRequest
@@ -145,7 +146,7 @@ class Executions:
         status = self.status
         if status is None or status.execution != execution:
             raise Conflict(f"execution {execution} is not running")
-        self._bus.ask(self._keys.executor_command, encode_command(command))
+        self._bus.ask(self._keys.executor_command, _message(command))
         return self.get(execution)
 
     def acknowledge(self, *, lease: str = "", who: str = "") -> ExecutorStatus:
@@ -159,7 +160,7 @@ class Executions:
             Unreachable: the executor does not answer.
         """
         command = Command(CommandVerb.ACKNOWLEDGE, lease=lease, who=who)
-        return decode_status(self._bus.ask(self._keys.executor_command, encode_command(command)))
+        return decode_status(self._bus.ask(self._keys.executor_command, _message(command)))
 
     def stop_one(self, execution: str, *, lease: str = "", who: str = "") -> Execution:
         """Stop an execution, and return it when the executor's status shows that it ends or has ended.
@@ -207,7 +208,7 @@ class Executions:
         self._store.journal.revoke(stored.id, who=who, reason=reason)
         if self.status is not None:  # also at rest: a start that is being answered ends before the revocation is heard
             command = Command(CommandVerb.REVOKE, plan_id=stored.id, reason=reason, who=who)
-            self._bus.ask(self._keys.executor_command, encode_command(command))
+            self._bus.ask(self._keys.executor_command, _message(command))
 
     def get(self, execution: str) -> Execution:
         """Return an execution with its present status; raises NotFound."""
@@ -224,7 +225,7 @@ class Executions:
         self._recorder.begin(header)
         self._starting.add(key)
         try:
-            self._bus.ask(self._keys.executor_command, encode_command(command), timeout=30.0)
+            self._bus.ask(self._keys.executor_command, _message(command), timeout=30.0)
         except TeachpathError as error:
             self._monitor.refuse(key, str(error))
             self._recorder.finish_after(SETTLING_NS)
@@ -232,6 +233,11 @@ class Executions:
         finally:
             self._starting.discard(key)
         return self.get(key)
+
+
+def _message(command: Command) -> bytes:
+    """Return the message of a command, with the number of the request that it comes from."""
+    return encode_command(replace(command, id=command.id or request_number()))
 
 
 def encode_series(recording: Path, points: int, arm: Arm) -> bytes:

@@ -15,6 +15,7 @@ import time
 from collections.abc import Callable, Sequence
 from typing import Final
 
+from teachpath.logs import relay
 from teachpath.robot.last_error import LastError
 
 log = logging.getLogger("teachpath")
@@ -183,8 +184,13 @@ class SupervisedProcess:
         assert process.stderr is not None
         with process.stderr as lines:
             for line in lines:
-                error.add(line)
-                sys.stderr.write(f"{self.name}: {line}")
+                try:
+                    told = relay(line)
+                except ValueError:  # of a library, or of Python itself
+                    told = line
+                    sys.stderr.write(f"{self.name}: {line}")
+                for each in told.splitlines(keepends=True):
+                    error.add(each)
 
 
 def _describe_end(returncode: int, error: str) -> str:

@@ -13,6 +13,7 @@ from typing import Final
 from teachpath.errors import NotStopped, TeachpathError
 from teachpath.io.bus import Bus
 from teachpath.io.wire import encode_command
+from teachpath.logs import request_number
 from teachpath.records import Command, ExecutorStatus
 from teachpath_proto.keys import Keys
 
@@ -68,7 +69,7 @@ class Stopper:
         Raises:
             NotStopped: the status does not show it within `CONFIRM_TIMEOUT`; it is repeated up to `REPEAT_DURATION`.
         """
-        stop = _Stop(replace(command, id=uuid.uuid4().hex), is_starting, time.monotonic())
+        stop = _Stop(replace(command, id=request_number() or uuid.uuid4().hex), is_starting, time.monotonic())
         self._send_repeatedly(stop)
         with self._changed:
             is_confirmed = self._changed.wait_for(lambda: self._is_confirmed(stop), CONFIRM_TIMEOUT)

@@ -1,0 +1,42 @@
+"""A number for every request: in the header of its answer, and in every line of the log that it causes."""
+
+from __future__ import annotations
+
+import logging
+import time
+from typing import Final
+
+from starlette.datastructures import MutableHeaders
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
+
+from teachpath.api.middleware import SAFE_METHODS
+from teachpath.logs import begin_request
+
+HEADER: Final = "Teachpath-Request"
+ROUTINE: Final = ("/lease/beat",)  # ends of the paths of what programs send all the time
+
+log = logging.getLogger(__name__)
+
+
+class RequestNumbers:
+    """Numbers every request; what changes something is logged with its status and time. A middleware."""
+
+    def __init__(self, app: ASGIApp) -> None:
+        self._app = app
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Pass the request on."""
+        if scope["type"] != "http":
+            await self._app(scope, receive, send)
+            return
+        number, begin = begin_request(), time.monotonic()
+
+        async def numbered(message: Message) -> None:
+            if message["type"] == "http.response.start":
+                MutableHeaders(scope=message)[HEADER] = number
+                if scope["method"] not in SAFE_METHODS and not scope["path"].endswith(ROUTINE):
+                    took = 1e3 * (time.monotonic() - begin)
+                    log.info("%s %s: %d, %.0f ms", scope["method"], scope["path"], message["status"], took)
+            await send(message)
+
+        await self._app(scope, receive, numbered)
