@@ -10,6 +10,13 @@ export function formatNumber(value, digits, unit = "") {
   return `${text}${unit && `\u202f${unit}`}`;
 }
 
+/** A length in millimetres with at least two significant digits, so that only nothing is 0. @param {number} metres */
+export function formatLength(metres) {
+  const size = Math.abs(1000 * metres);
+  const digits = size === 0 || size >= 10 ? 0 : Math.min(1 - Math.floor(Math.log10(size)), 6);
+  return formatNumber(1000 * metres, digits, "mm");
+}
+
 /** @param {number | null | undefined} share */
 export function formatPercent(share) {
   return `${Math.round(100 * (share ?? 0))}\u202f%`;

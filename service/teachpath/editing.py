@@ -14,6 +14,7 @@ import scipy
 from teachpath import exchange
 from teachpath.errors import UnusableInput
 from teachpath.exchange import SAME_SHAPE_TOLERANCE
+from teachpath.lengths import describe_lengths
 from teachpath.nurbs import Array, Curve
 from teachpath.records import ControlPointChange, Difference
 
@@ -189,7 +190,8 @@ def _in_words(largest: float, mean: float, s: float, moved: tuple[ControlPointCh
     if largest < SAME_SHAPE_TOLERANCE:
         shape = "the shape is the same"
     else:
-        shape = f"they lie up to {1000 * largest:.1f} mm apart (at s = {s:.3f} m) and {1000 * mean:.1f} mm on average"
+        apart, usual = describe_lengths(largest, mean)
+        shape = f"they lie up to {apart} apart (at s = {s:.3f} m) and {usual} on average"
     if moved is None:
         return f"{shape}; the control points have no counterparts, because knots were removed"
     if not moved:

@@ -2,7 +2,7 @@
 // saves and certifies the adapted version.
 import { ApiError, get, post, put, resourcePath } from "../api.js";
 import { element } from "../elements.js";
-import { capitalize, formatNumber } from "../texts.js";
+import { capitalize, formatLength } from "../texts.js";
 import { predictPath } from "./adaptation_model.js";
 import { ENDS, TargetOverlay } from "./target_overlay.js";
 
@@ -154,7 +154,7 @@ class AdaptationSection {
     else if (this.editor.draft?.edited) this.status.textContent = EDITED;
     else if (this.#note) this.status.textContent = this.#note;
     else if (spread !== undefined) {
-      const within = formatNumber(100 * spread, 1, "cm");
+      const within = formatLength(spread);
       this.status.textContent = `Someone who shows it between these ends would stay within ${within} of it, nineteen times of twenty.`;
     }
   }

@@ -1,7 +1,7 @@
 // The card of one way: what is known of its path, and what can be done with it.
 import { definitionList, element } from "../elements.js";
 import { latestPaths, selectedPath } from "../store.js";
-import { capitalize, formatNumber, pluralize } from "../texts.js";
+import { capitalize, formatLength, pluralize } from "../texts.js";
 import { wayClass } from "../way_colors.js";
 
 /** @param {State} state @param {Cluster} cluster @param {boolean} readOnly */
@@ -43,14 +43,12 @@ function pickButton({ id, cluster }, chosen) {
 
 /** @param {LearnedPath} path @param {Cluster} cluster @returns {Fact[]} */
 function facts({ version, curve, fit }, { scores, members, spread }) {
-  /** @param {number} metres @param {number} digits */
-  const mm = (metres, digits = 0) => formatNumber(metres * 1000, digits, "mm");
   const kept = scores.filter((score) => score.selected).length;
-  const within = fit && fit.tube > 0 ? `, within ${mm(fit.tube)}` : "";
-  const off = fit ? `, at most ${mm(fit.largest, 1)} off` : "";
+  const within = fit && fit.tube > 0 ? `, within ${formatLength(fit.tube)}` : "";
+  const off = fit ? `, at most ${formatLength(fit.largest)} off` : "";
   return [
     ["Agree", `${kept} of ${members.length}${within}`],
-    ["Spread", spread?.length ? `${mm(median(spread))}, at most ${mm(Math.max(...spread))}` : ""],
+    ["Spread", spread?.length ? `${formatLength(median(spread))}, at most ${formatLength(Math.max(...spread))}` : ""],
     ["Edited", version > 1 && `version ${version}`],
     ["Path", `${curve.control_points.length} points${off}`],
   ];

@@ -18,6 +18,7 @@ from rich.table import Table
 from teachpath.commands.options import Config, Data, settings_of
 from teachpath.commands.work import progress_bar
 from teachpath.errors import NotFound, UnusableRecording
+from teachpath.lengths import describe_length
 from teachpath.records import Cluster, Learned, Trajectory
 from teachpath_client.station import Station
 
@@ -170,7 +171,7 @@ def _print(report: Mapping[str, Any]) -> None:
     title = (
         f"{report['demonstrations']} demonstrations of {len(groups)} {'group' if len(groups) == 1 else 'groups'}, "
         f"{len(clusters)} {'cluster' if len(clusters) == 1 else 'clusters'} found (mode {report['mode']}, "
-        f"cut at {100 * report['threshold']:.2f} cm)"
+        f"cut at {describe_length(report['threshold'], digits=3)})"
     )
     table = Table()
     table.add_column("Cluster", justify="right")
@@ -184,7 +185,7 @@ def _print(report: Mapping[str, Any]) -> None:
             f"{cluster['selected']} of {sum(cluster['groups'].values())}",
             str(cluster["degree"]),
             str(cluster["control_points"]),
-            *(_millimetres(cluster[name]) for name in ("largest", "rms", "frechet", "tube")),
+            *(_length_in_words(cluster[name]) for name in ("largest", "rms", "frechet", "tube")),
         )
     print(title)
     Console(width=None if sys.stdout.isatty() else 140).print(table)
@@ -196,8 +197,8 @@ def _print(report: Mapping[str, Any]) -> None:
             print(f"cluster {cluster['cluster']}: {flag}")
 
 
-def _millimetres(metres: float | None) -> str:
-    return "" if metres is None else f"{1e3 * metres:.2f} mm"
+def _length_in_words(metres: float | None) -> str:
+    return "" if metres is None else describe_length(metres)
 
 
 def _fetched(station: Station, run: str) -> Learned:

@@ -6,6 +6,7 @@ from datetime import datetime
 
 from rich.table import Table
 
+from teachpath.lengths import describe_length
 from teachpath_client.models import Dendrogram, Plan, Run, Signature
 
 
@@ -51,7 +52,7 @@ def paths_table(run: Run) -> Table:
         table.add_column(name, justify="right")
     for path in run.learned.paths:
         curve, fit = path.curve, path.fit
-        errors = (f"{1e3 * fit.largest:.2f} mm", f"{1e3 * fit.tube:.1f} mm") if fit else ("", "")
+        errors = (describe_length(fit.largest), describe_length(fit.tube)) if fit else ("", "")
         table.add_row(path.id, str(curve.degree), str(len(curve.control_points)), *errors)
     return table
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 import pytest
 
@@ -121,3 +123,15 @@ def test_mode_paper_stays_near_its_points_and_widens_its_bound_where_they_zigzag
 
 def test_modes_that_follow_the_paper_keep_the_bound_as_it_is_set() -> None:
     assert PAPER.bound_for(0.05) == PAPER.error_bound
+
+
+@pytest.mark.parametrize("shape", [synthetic.curl, synthetic.retreat, synthetic.closed, synthetic.loop])
+def test_a_path_of_five_centimetres_is_nowhere_more_than_a_fiftieth_of_its_size_off(
+    shape: Callable[[int], Array],
+) -> None:
+    clean = shape(300)
+    clean *= 0.05 / extent(clean)
+    rng = np.random.default_rng(1)
+    shown = [Trajectory(np.linspace(0, 3, 150), clean[::2] + rng.normal(0, noise, (150, 3))) for noise in 5 * [0.0003]]
+    path = synthesise(shown)
+    assert frechet_distance(at_equal_arc_length(path.curve(np.linspace(0, 1, 2000)), 300), clean) <= 0.02 * 0.05
