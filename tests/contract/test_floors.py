@@ -13,11 +13,7 @@ SERVICE = ROOT / "service" / "teachpath"
 
 # A room may import rooms of lower floors, and itself. Rooms of one floor are strangers.
 FLOORS = [
-<<<<<<< HEAD
-    ["errors", "lengths", "periodic_thread", "realtime", "time_source"],
-=======
-    ["errors", "logs", "periodic_thread", "realtime", "time_source"],
->>>>>>> 5bab084 (Number every request, and name its number in every line of the log, from the page to the executor)
+    ["errors", "lengths", "logs", "periodic_thread", "realtime", "time_source"],
     ["nurbs"],
     ["exchange", "records"],
     ["editing", "trajectories"],
