@@ -58,8 +58,8 @@ def measure(tracks: list[TimedTrajectory], dt: float, *, runs: int) -> list[Figu
 def _run(track: TimedTrajectory, dt: float, command: Commands, rng: np.random.Generator, found: Answers) -> None:
     """Add the answers to random commands; whatever comes to rest before its answer needs none."""
     governor = Governor(track, dt, override=rng.uniform(0.05, 1.0))
-    sent = np.zeros((9, 6))
-    sent[0] = sent[6] = governor.motion[0, :6]
+    sent = np.zeros((6, 6))
+    sent[0] = sent[3] = governor.motion[0, :6]
     pause, waiting = 0, None
     for _ in range(PERIODS):
         if pause == 0:

@@ -29,7 +29,10 @@ class Quintic:
 
 
 class WayToRest:
-    """Quintics through positions one period apart, with velocity and acceleration by differences.
+    """The cubic spline through positions one period apart, from the setpoint's velocity to rest.
+
+    The executor changes the jerk from period to period only: so this is the motion that it has checked, between the
+    positions too. Velocities by differences would add up to a quarter to its jerk.
 
     Args:
         setpoint: where it begins.
@@ -40,12 +43,12 @@ class WayToRest:
         ways = setpoint.way_to_rest
         if not len(ways):
             ways = _braked(setpoint, period)
-        rows = np.vstack([setpoint.position, ways, ways[-1:], ways[-1:]])
-        speeds, bends = (rows[2:] - rows[:-2]) / (2 * period), (rows[2:] - 2 * rows[1:-1] + rows[:-2]) / period**2
-        self._rows, self._period = rows[:-1], period
-        self._velocities = np.vstack([setpoint.velocity, speeds])
-        self._accelerations = np.vstack([setpoint.acceleration, bends])
-        self.duration = (len(ways) + 1) * period
+        self._rows, self._period = np.vstack([setpoint.position, ways]), period
+        self._velocities = _spline_velocities(self._rows, setpoint.velocity, period)
+        ahead = np.diff(self._rows, axis=0) / period
+        bends = (6 * ahead - 4 * self._velocities[:-1] - 2 * self._velocities[1:]) / period
+        self._accelerations = np.vstack([setpoint.acceleration, bends[1:], np.zeros(6)])
+        self.duration = len(ways) * period
 
     def __call__(self, t: float) -> tuple[Array, Array, Array]:
         """Return position, velocity and acceleration `t` [s] behind the setpoint."""
@@ -54,6 +57,22 @@ class WayToRest:
         row = min(int(t / self._period), len(self._rows) - 2)
         one, two = ((self._rows[k], self._velocities[k], self._accelerations[k]) for k in (row, row + 1))
         return evaluate(hermite(*one, *two, self._period), t - row * self._period, self._period)
+
+
+def _spline_velocities(rows: Array, begin: Array, period: float) -> Array:
+    """Return velocities (n, 6) of the cubic spline through rows (n, 6), from velocity `begin` (6,) to rest.
+
+    Its second derivative is continuous where a + 4 b + c = 3 (next - previous) / period for velocities a, b, c in a
+    row; elimination from the first row to the last solves that (C. de Boor, A Practical Guide to Splines, chapter IV).
+    """
+    velocities = np.vstack([begin, 3.0 * (rows[2:] - rows[:-2]) / period, np.zeros(6)])
+    shares = np.zeros(len(rows))
+    for k in range(1, len(rows) - 1):
+        shares[k] = 1.0 / (4.0 - shares[k - 1])
+        velocities[k] = shares[k] * (velocities[k] - velocities[k - 1])
+    for k in range(len(rows) - 2, 0, -1):
+        velocities[k] -= shares[k] * velocities[k + 1]
+    return velocities
 
 
 def _braked(setpoint: Any, period: float) -> Array:

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from teachpath_client.driver import PlayerState, SetpointPlayer
+from teachpath_client.driver.interpolation import WayToRest
 
 PERIOD, DELAY = 0.004, 0.03
 START = np.zeros(6)
@@ -196,6 +197,25 @@ def test_losses_of_five_percent_stay_on_the_path() -> None:
         assert off_path(log[:, 0]) <= 1e-5
         assert is_smooth(log)
         assert player.stops <= 1
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_a_way_to_rest_whose_jerk_changes_from_period_to_period_is_read_as_it_was_made(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    count, fine = 30, 8
+    jerks = np.repeat(rng.uniform(-100.0, 100.0, (count, 6)), fine, axis=0)
+    state, rows = np.zeros((3, 6)), []
+    h = PERIOD / fine
+    for jerk in jerks:  # from rest, read backwards
+        p, v, a = state
+        rows.append(state)
+        state = np.array([p + h * (v + h * (a / 2 + h * jerk / 6)), v + h * (a + h * jerk / 2), a + h * jerk])
+    backwards = np.array([*rows, state])[::-1] * np.array([[1.0], [-1.0], [1.0]])
+    way = WayToRest(Setpoint(0, NOW, *backwards[0], way_to_rest=backwards[fine::fine, 0]), PERIOD)
+    for k, (position, velocity, _) in enumerate(backwards):
+        read = way(k * h)
+        np.testing.assert_allclose(read[0], position, atol=1e-10)
+        np.testing.assert_allclose(read[1], velocity, atol=1e-7)
 
 
 def test_a_setpoint_that_moves_without_a_way_to_rest_is_braked_straight_ahead() -> None:

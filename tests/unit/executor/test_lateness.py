@@ -9,7 +9,7 @@ from tests.unit.executor.played_setpoints import ARM, PlayedBench, largest_uses,
 
 OFF_PATH = 1e-5  # m
 ROUNDING = 1.0 + 1e-6
-BETWEEN = 1.1  # use of the jerk limit by differences between setpoints, where the player interpolates
+BETWEEN = 1.04  # use of the jerk limit between setpoints, where a way to rest of three phases is read as a spline
 
 
 @pytest.fixture(scope="module")
@@ -19,8 +19,9 @@ def path(middle: Plan) -> np.ndarray:
 
 
 def is_within_limits(played: np.ndarray) -> bool:
-    speed, acceleration, jerk = largest_uses(played)
-    return max(speed, acceleration) <= ROUNDING and jerk <= BETWEEN
+    """Tell whether differences keep all limits, at whatever moment of a period the arm's clock began."""
+    speed, acceleration, jerk = np.max([largest_uses(played[phase:]) for phase in range(4)], axis=0)
+    return bool(max(speed, acceleration) <= ROUNDING and jerk <= BETWEEN)
 
 
 def test_undisturbed_the_player_adds_nothing(middle: Plan, path: np.ndarray) -> None:

@@ -86,8 +86,8 @@ class Governor:
         self._stop_periods: int | None = None  # of the one from the present state, once that was searched for
         self._motion = np.zeros((3, 7))
         kernels.evaluate_motion(self._table, self._step, self._state, self._motion)
-        self._sent = np.zeros((9, 6))  # newest setpoint and differences (see `ramp_checks.advance`)
-        self._sent[0] = self._sent[6] = self._motion[0, :6]
+        self._sent = np.zeros((6, 6))  # newest setpoint and differences (see `ramp_checks.advance`)
+        self._sent[0] = self._sent[3] = self._motion[0, :6]
         self._ruckig = RuckigCheck()
 
     @property
@@ -142,7 +142,7 @@ class Governor:
         self._rest(min(max(tau, 0.0), self._end))
         kernels.evaluate_motion(self._table, self._step, self._state, self._motion)
         self._sent[:] = 0.0
-        self._sent[0] = self._sent[6] = self._motion[0, :6]
+        self._sent[0] = self._sent[3] = self._motion[0, :6]
         self._held, self._reversing = True, False
 
     def restart_at(self, tau: float, *, held: bool) -> None:

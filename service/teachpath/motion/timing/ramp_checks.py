@@ -25,7 +25,7 @@ def check_ramp(table: Array, step: float, ramp: Array, sent: Array, limits: Arra
     """Check the setpoints of a ramp, joined to those already sent, against the limits.
 
     Args:
-        sent: (9, 6) see `advance`.
+        sent: (6, 6) see `advance`.
         limits: (3, 6) of first, second and third difference of setpoints [rad].
         dt: control period [s].
 
@@ -37,7 +37,7 @@ def check_ramp(table: Array, step: float, ramp: Array, sent: Array, limits: Arra
     for k in range(1, count + 1):
         evaluate_table(table, step, evaluate_ramp(ramp, (k - 0.5) * dt)[0], q[0])
         evaluate_table(table, step, evaluate_ramp(ramp, k * dt)[0], q[1])
-        speed, acceleration, jerk, _ = advance(window, q, scale)
+        speed, acceleration, jerk = advance(window, q, scale)
         if speed > 1.0:
             return SPEED_BROKEN, k * dt
         if acceleration > ACCEPTED_LIMIT_USE:
@@ -57,7 +57,7 @@ def check_states(
     Args:
         begin: (3,) tau, r and r' at the beginning.
         states: (n, 3) the same one period apart; the last of `count` rests.
-        sent: (9, 6) see `advance`.
+        sent: (6, 6) see `advance`.
         limits: (3, 6) of first, second and third difference of setpoints [rad].
         dt: control period [s].
         uses: (n,) where the share is written that each setpoint uses of what is accepted, at most.
@@ -71,8 +71,7 @@ def check_states(
         evaluate_table(table, step, midway(before, states[row], dt), q[0])
         evaluate_table(table, step, states[row, 0], q[1])
         before = states[row]
-        speed, acceleration, jerk, read = advance(window, q, scale)
-        jerk = max(jerk, read) if k > 2 else jerk
+        speed, acceleration, jerk = advance(window, q, scale)
         uses[row] = max(uses[row], speed, acceleration / ACCEPTED_LIMIT_USE, jerk / ACCEPTED_LIMIT_USE)
         most = max(most, uses[row])
     return most <= 1.0
@@ -85,35 +84,29 @@ def midway(begin: Array, end: Array, dt: float) -> float:
 
 
 @compiled
-def advance(window: Array, q: Array, scale: Array) -> tuple[float, float, float, float]:
+def advance(window: Array, q: Array, scale: Array) -> tuple[float, float, float]:
     """Take a setpoint into the differences of those sent, and return its use of speed, acceleration and jerk limits.
 
     An arm plays the motion between setpoints, too, and begins its own clock at any moment: so the third difference is
-    limited for the places in the middle between setpoints as well. Of a way to rest it has no more than the setpoints,
-    and reads it by quintics that meet their differences (`teachpath_client.driver.interpolation`). In the middle
-    between two, the third difference of what it reads is (9 (b + c) - a - d) / 16 of those at four setpoints in a row,
-    a to d, which may exceed all four. Its use is the last one returned.
+    limited for the places in the middle between setpoints as well.
 
     Args:
-        window: (9, 6) newest setpoint, its first and second difference, the third ones of the newest three; the joints
-            half a period before the newest setpoint, and their first and second difference.
+        window: (6, 6) newest setpoint, its first and second difference; the joints half a period before it, and their
+            first and second difference.
         q: (2, n) joints half a period before the setpoint and at it [rad].
         scale: (3, 6) inverse limits of first, second and third difference [1/rad].
     """
-    speed = acceleration = jerk = read = 0.0
+    speed = acceleration = jerk = 0.0
     for i in range(6):
         first = q[1, i] - window[0, i]
         second = first - window[1, i]
         third = second - window[2, i]
-        midway_first = q[0, i] - window[6, i]
-        midway_second = midway_first - window[7, i]
-        midway = midway_second - window[8, i]
+        midway_first = q[0, i] - window[3, i]
+        midway_second = midway_first - window[4, i]
+        midway = midway_second - window[5, i]
         speed = max(speed, abs(first) * scale[0, i])
         acceleration = max(acceleration, abs(second) * scale[1, i])
         jerk = max(jerk, max(abs(third), abs(midway)) * scale[2, i])
-        between = (9.0 * (window[3, i] + window[4, i]) - third - window[5, i]) / 16.0
-        read = max(read, abs(between) * scale[2, i])
-        window[5, i], window[4, i], window[3, i] = window[4, i], window[3, i], third
         window[2, i], window[1, i], window[0, i] = second, first, q[1, i]
-        window[8, i], window[7, i], window[6, i] = midway_second, midway_first, q[0, i]
-    return speed, acceleration, jerk, read
+        window[5, i], window[4, i], window[3, i] = midway_second, midway_first, q[0, i]
+    return speed, acceleration, jerk

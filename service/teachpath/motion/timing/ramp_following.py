@@ -46,7 +46,7 @@ def follow(
 
     Args:
         states: (n, 3) see `state_after`; `begin` of them are done.
-        sent: (9, 6) where the setpoints are taken in (see `advance`).
+        sent: (6, 6) where the setpoints are taken in (see `advance`).
         state: (3,) the last state, which is overwritten.
         out: (m, 6) where the joints are written, one row a period.
     """
@@ -69,7 +69,7 @@ def advance_along(
 
     Args:
         states: (n, 3) see `state_after`.
-        sent: (9, 6) where the setpoint is taken in (see `advance`).
+        sent: (6, 6) where the setpoint is taken in (see `advance`).
     """
     q, scale = np.empty((2, 7)), np.ones((3, 6))
     ended = _next_state(table, step, states, count, done, dt, state, q)

@@ -33,6 +33,7 @@ def find_ramp(
     last phase, otherwise |r'|. After a ramp was found, the remaining trials lie halfway to those that broke a limit.
 
     Args:
+        sent: (6, 6) see `ramp_checks.advance`.
         within: duration of the present ramp [s]; a new one must be shorter by `MIN_TIME_SAVED`.
         tries: ramps that are checked at most.
         max_rate: largest |r| that the limit of the tool's speed allows.
@@ -78,6 +79,7 @@ def shorten_ramp(
     a reduction with which every shape does for a smaller one.
 
     Args:
+        sent: (6, 6) see `ramp_checks.advance`.
         within: duration of the present ramp [s]; a new one must be shorter by `MIN_TIME_SAVED`.
         tries: ramps that are checked at most.
         max_rate: largest |r| that the limit of the tool's speed allows.

@@ -38,7 +38,7 @@ def find_stop(
 
     Args:
         state: (3,) tau, r and r' where it begins.
-        sent: (9, 6) see `ramp_checks.advance`.
+        sent: (6, 6) see `ramp_checks.advance`.
         max_rate: largest |r| that the limit of the tool's speed allows.
         tries: stops that are checked at most.
         out: (m, 3) tau, r and r' at the end of each period; m bounds the stop's duration.

@@ -23,12 +23,11 @@ def line() -> TimedTrajectory:
 def search(track: TimedTrajectory, tau: float, rate: float) -> np.ndarray:
     """Search for a stop from a constant rate; returns its states (n, 3)."""
     limits = np.stack([LIMITS.speed * DT, LIMITS.acceleration * DT**2, LIMITS.jerk * DT**3])
-    sent, scale = np.zeros((9, 6)), DT * rate
-    before = track(tau - scale * np.arange(4))[:, :6]
+    sent, scale = np.zeros((6, 6)), DT * rate
+    before = track(tau - scale * np.arange(3))[:, :6]
     midway = track(tau - scale * (np.arange(3) + 0.5))[:, :6]
     sent[0], sent[1], sent[2] = before[0], before[0] - before[1], before[0] - 2 * before[1] + before[2]
-    sent[3:6] = before[0] - 3 * before[1] + 3 * before[2] - before[3]
-    sent[6], sent[7], sent[8] = midway[0], midway[0] - midway[1], midway[0] - 2 * midway[1] + midway[2]
+    sent[3], sent[4], sent[5] = midway[0], midway[0] - midway[1], midway[0] - 2 * midway[1] + midway[2]
     out = np.empty((500, 3))
     count = find_stop(track.table, track.step, np.array([tau, rate, 0.0]), sent, limits, DT, np.inf, TRIES, out)
     return out[:count]
