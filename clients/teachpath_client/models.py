@@ -956,6 +956,7 @@ class StreamStatistics:
     seen_rate: float = 0.0
     clock: Clock | None = None
     notes: list[str] = field(default_factory=list)
+    dwell_times: list[float] = field(default_factory=list)
 
 
 @dataclass(frozen=True)

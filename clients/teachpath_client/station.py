@@ -55,7 +55,7 @@ class Station(TaskResources, WorkResources):
             task: whose demonstrations they become.
             content: of the file.
             on_change: called with the job whenever it has gone on.
-            options: name, format (csv, npy, robottasks or mcap), units, rate, scene, calibration.
+            options: of the route: name, format, units, time, rate, columns, grasp, release, whole, scene, calibration.
 
         Raises:
             JobFailed: the file cannot be used; `job` says why, and nothing was stored.

@@ -20,6 +20,7 @@ try:
         doctor,
         evaluate,
         files,
+        importing,
         logins,
         station,
         stores,
@@ -42,7 +43,7 @@ app = typer.Typer(
 for command in (
     demo.demo,
     station.serve,
-    files.import_,
+    importing.import_,
     work.replay,
     demonstrations.demonstrations,
     demonstrations.amend,

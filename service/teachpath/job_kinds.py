@@ -16,11 +16,12 @@ from teachpath.jobs import worker
 from teachpath.jobs.jobs import JobKind
 from teachpath.learning.settings import LearningSettings
 from teachpath.motion.planning.signature import CalibrationScope, SigningKey
-from teachpath.offline.import_job import PREPARED, ImportOrder, ImportRequest, prepare_import
+from teachpath.offline.import_job import PREPARED, ImportOrder, ImportRequest, PreparedImport, prepare_import
+from teachpath.offline.import_target import import_calibration, import_scene, starts_at_object
 from teachpath.offline.learning_job import StoredDemonstrations, learn_stored, recut_stored
 from teachpath.offline.transfer_folders import TransferFolders
 from teachpath.recorder.calibrations import Calibrations
-from teachpath.records import Demonstration, Job, Learned, LearnedPath, ObjectPose, Plan, Task
+from teachpath.records import Demonstration, Job, Learned, LearnedPath, ObjectPose, Plan, Scene, Task
 from teachpath.robot.object_poses import ObjectPoses
 
 
@@ -107,24 +108,22 @@ class JobKinds:
                 job.task,
                 given.name,
                 given.format,
-                given.units,
-                given.rate,
-                self.settings.scene(given.scene),
-                self.calibrations.get(given.calibration),
+                given.options,
+                given.marks,
+                self._scene_of(job.task, given),
+                import_calibration(self.store, self.calibrations, job.task, given.format, given.calibration),
                 self.settings.recording,
                 self.settings.imports,
-                self._object_at_grasp(job.task, given),
+                starts_at_object(self.store, job.task, given.object_at_grasp),
             ),
         )
 
-    def _object_at_grasp(self, task: str, given: ImportRequest) -> bool:
-        """Return whether the object lies where the hand grasps: as the task says, or the request for a new one."""
-        known = (known.object_at_grasp for known in self.store.tasks() if known.name == task)
-        return next(known, given.object_at_grasp)
+    def _scene_of(self, task: str, given: ImportRequest) -> Scene:
+        return self.settings.scene(import_scene(self.store, task, given.scene))
 
-    def _store_import(self, job: Job, made: list[Demonstration]) -> str:
-        given = from_document(ImportRequest, job.request)
-        task = Task(job.task, given.scene, made[0].calibration.name, 0, given.object_at_grasp)
+    def _store_import(self, job: Job, prepared: PreparedImport) -> str:
+        given, made = from_document(ImportRequest, job.request), prepared.made
+        task = Task(job.task, self._scene_of(job.task, given).name, made[0].calibration.name, 0, given.object_at_grasp)
         outcome = self.store.finish_import(
             job.id, task, made, self.transfers.folder(given.upload) / PREPARED / RECORDINGS
         )

@@ -12,7 +12,8 @@ from teachpath.io.store.recordings import RecordingHeader
 from teachpath.io.store.settings import StoreSettings
 from teachpath.io.store.store import Store
 from teachpath.offline.doctor import examine
-from teachpath.offline.importing import Source, import_file
+from teachpath.offline.file_samples import Source
+from teachpath.offline.importing import import_file
 from teachpath.recorder.recording_setup import RecordingSetup
 from teachpath.recorder.session import RecordingSession
 from teachpath.recorder.take import FinishedTake

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Annotated, Final
 
@@ -12,9 +12,11 @@ from starlette.concurrency import run_in_threadpool
 from teachpath.api.parts import Parts
 from teachpath.api.work import accepted, submitter_of
 from teachpath.errors import UnusableInput
-from teachpath.io.files import check_format
+from teachpath.io.readers.registry import check_options
 from teachpath.io.store.faults import storage_fault
 from teachpath.offline.import_job import UPLOAD, ImportRequest
+from teachpath.offline.import_target import import_calibration, import_scene
+from teachpath.offline.track_samples import PhaseMarks
 from teachpath.records import Job
 from teachpath_proto.keys import is_name, name_refusal
 
@@ -34,11 +36,18 @@ def imports_router(parts: Parts) -> APIRouter:
         request: Request,
         response: Response,
         name: Annotated[str, Query(description="name of the source", max_length=200)] = "upload",
-        format: Annotated[str, Query(description="csv, npy, robottasks or mcap")] = "csv",
-        units: Annotated[str, Query(description="of the positions: m, cm, mm or in")] = "m",
-        rate: Annotated[float, Query(description="[Hz] for a format without a clock")] = 50.0,
-        scene: Annotated[str, Query(description="of a new task")] = "empty",
-        calibration: Annotated[str, Query(description="of the file's frame; mcap brings its own")] = "identity",
+        format: Annotated[str, Query(description="name of a reader, or mcap; empty: what the file has")] = "",
+        units: Annotated[str, Query(description="of the positions: m, cm, mm or in; empty: as the file says")] = "",
+        time: Annotated[str, Query(description="unit of the clock: s, ms, us or ns; empty: as the file says")] = "",
+        rate: Annotated[float, Query(description="[Hz] for a format without a clock; 0: 50")] = 0.0,
+        columns: Annotated[str, Query(description="where a table has what: t=Time,x=2,...", max_length=1000)] = "",
+        quaternion: Annotated[str, Query(description="order of columns without names: wxyz or xyzw")] = "",
+        track: Annotated[str, Query(description="which one, of a file with several", max_length=200)] = "",
+        grasp: Annotated[float | None, Query(description="[s] at which the object is taken")] = None,
+        release: Annotated[float | None, Query(description="[s] at which it is put")] = None,
+        whole: Annotated[bool, Query(description="the whole motion is the transport")] = False,
+        scene: Annotated[str, Query(description="of a new task; empty: that of the task, or empty")] = "",
+        calibration: Annotated[str, Query(description="of the file's frame; empty: that of the task")] = "",
         object_at_grasp: Annotated[
             bool, Query(description="of a new task: each motion begins at its object, wherever that is")
         ] = False,
@@ -50,13 +59,18 @@ def imports_router(parts: Parts) -> APIRouter:
         """
         if not is_name(task):
             raise UnusableInput(name_refusal("task", task))
-        check_format(name, format, units, rate)
-        parts.settings.scene(scene)
-        await run_in_threadpool(parts.calibrations.get, calibration)
+        marks = PhaseMarks(grasp, release, whole)
+        order = ImportRequest(
+            "", name, format, units, rate, scene, calibration, time, columns, quaternion, track, marks, object_at_grasp
+        )
+        check_options(name, format, order.options)
+        store, calibrations = parts.store, parts.calibrations
+        parts.settings.scene(await run_in_threadpool(import_scene, store, task, scene))
+        await run_in_threadpool(import_calibration, store, calibrations, task, format, calibration)
         submitter = submitter_of(request)
         parts.jobs.require_room(submitter)
         folder = await run_in_threadpool(parts.transfers.make)
-        order = ImportRequest(folder.name, name, format, units, rate, scene, calibration, object_at_grasp)
+        order = replace(order, upload=folder.name)
         try:
             await _receive(request, folder / UPLOAD, name)
             job = await run_in_threadpool(parts.jobs.submit, task, "import", asdict(order), submitter)

@@ -23,7 +23,6 @@ from teachpath.records import Cluster, Learned, Trajectory
 from teachpath_client.station import Station
 
 SUFFIXES = {"csv": ".csv", "robottasks": ".npy"}
-UNITS = {"csv": "m", "robottasks": "cm"}
 
 
 def evaluate(
@@ -93,8 +92,9 @@ def read_groups(folder: Path, format: str, *, units: str, rate: float) -> dict[s
     Raises:
         UnusableRecording: the folder holds no such files or files of both kinds, or a file is wrong.
     """
-    from teachpath.io.files import read_tracks
     from teachpath.io.import_settings import ImportSettings
+    from teachpath.io.readers.contract import ReadOptions
+    from teachpath.io.readers.registry import read_motions
 
     if not folder.is_dir():
         raise UnusableRecording(f"{folder} is not a folder")
@@ -114,10 +114,9 @@ def read_groups(folder: Path, format: str, *, units: str, rate: float) -> dict[s
             content = file.read_bytes()
         except OSError as error:
             raise UnusableRecording(f"cannot read {file}: {error.strerror}") from None
-        tracks = read_tracks(
-            content, file.name, ImportSettings(), kind=kinds[0], units=units or UNITS[kinds[0]], rate=rate
-        )
-        grouped.setdefault(name, []).extend(Trajectory(t.times, t.positions, t.orientations) for t in tracks)
+        options = ReadOptions(units=units, rate=rate)
+        tracks = read_motions(content, file.name, kinds[0], options, ImportSettings()).tracks
+        grouped.setdefault(name, []).extend(t.trajectory() for t in tracks)
     return grouped
 
 

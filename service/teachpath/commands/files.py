@@ -1,4 +1,4 @@
-"""import, export and report: work on the data folder itself."""
+"""export and report: work on the data folder itself."""
 
 from __future__ import annotations
 
@@ -12,61 +12,7 @@ import typer
 from teachpath.commands.options import Config, Data, settings_of
 from teachpath.commands.work import progress_bar
 from teachpath.config import Settings
-from teachpath.errors import UnusableInput, UnusableRecording
-
-
-def import_(
-    task: Annotated[str, typer.Argument(help="Task to add demonstrations to; made when missing.")],
-    file: Annotated[list[Path], typer.Argument(help="Files to import.")],
-    format: Annotated[
-        str,
-        typer.Option(help="csv or npy (t,x,y,z[,qw,qx,qy,qz]; csv also what export wrote), robottasks (.npy), mcap."),
-    ] = "",
-    units: Annotated[str, typer.Option(help="Of the positions: m, cm, mm or in; robottasks is in cm.")] = "",
-    rate: Annotated[float, typer.Option(help="[Hz] for a format without a clock.")] = 50.0,
-    scene: Annotated[str, typer.Option(help="Scene of a new task.")] = "empty",
-    calibration: Annotated[str, typer.Option(help="Mapping of the file's frame to the world.")] = "",
-    object_at_grasp: Annotated[
-        bool, typer.Option("--object-at-grasp", help="Of a new task: each motion begins at its object, wherever it is.")
-    ] = False,
-    config: Config = None,
-    data: Data = None,
-) -> None:
-    """Make demonstrations from files.
-
-    Every motion in a file becomes one, with the same verdict as a live recording. The service need not run.
-    """
-    from teachpath.io.store.store import Store
-    from teachpath.offline.importing import Source, import_file
-    from teachpath.recorder.calibrations import Calibrations
-
-    settings = settings_of(config, data)
-    robottasks = format == "robottasks"
-    store = Store(settings.store)
-    try:
-        calibrations = Calibrations(store, settings.recording, settings.calibrations, settings.scene)
-        chosen = calibrations.get(calibration or ("robottasks" if robottasks else "identity"))
-        for each in file:
-            try:
-                content = each.read_bytes()
-            except OSError as error:
-                raise UnusableRecording(f"cannot read {each}: {error.strerror}") from None
-            kind = format or (each.suffix[1:] if each.suffix in (".mcap", ".npy") else "csv")
-            source = Source(each.name, content, kind, units or ("cm" if robottasks else "m"), rate)
-            made = import_file(
-                store,
-                settings.recording,
-                source,
-                task=task,
-                scene=settings.scene(scene),
-                calibration=chosen,
-                limits=settings.imports,
-                object_at_grasp=object_at_grasp,
-            )
-            for d, _ in made:
-                print(f"{task} {d.number}: {d.samples} samples, {d.duration:.2f} s, {d.verdict} ({d.id})")
-    finally:
-        store.close()
+from teachpath.errors import UnusableInput
 
 
 def export(

@@ -12,8 +12,9 @@ from dataclasses import replace
 
 from teachpath.errors import UnusableInput, UnusableRecording, UnusableSample
 from teachpath.io.documents import decode_demonstration, encode
-from teachpath.io.files import check_count, text_lines
 from teachpath.io.import_settings import ImportSettings
+from teachpath.io.readers.arrays import check_count
+from teachpath.io.readers.text import text_lines
 from teachpath.io.wire import decode_sample, encode_sample
 from teachpath.records import Demonstration, Sample
 

@@ -6,14 +6,17 @@ import itertools
 import shutil
 import uuid
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
-from teachpath.errors import NotFound, UnusableRecording
+from teachpath.errors import NotFound
 from teachpath.io.import_settings import ImportSettings
+from teachpath.io.readers.contract import ReadOptions
 from teachpath.io.store.settings import StoreSettings
 from teachpath.io.store.store import Store
-from teachpath.offline.importing import Source, import_file
+from teachpath.offline.file_samples import Source, read_source
+from teachpath.offline.importing import import_samples
+from teachpath.offline.track_samples import PhaseMarks
 from teachpath.recording.settings import RecordingSettings
 from teachpath.records import Calibration, Demonstration, Scene
 
@@ -22,16 +25,29 @@ UPLOAD, PREPARED = "upload", "prepared"  # in the folder of an import: the file,
 
 @dataclass(frozen=True, slots=True)
 class ImportRequest:
-    """What a job of kind `import` keeps of its request; `upload` names the folder of the file."""
+    """What a job of kind `import` keeps of its request; `upload` names the folder of the file.
+
+    Scene and calibration are those of the task where they are empty.
+    """
 
     upload: str
     name: str
-    format: str
-    units: str
-    rate: float
-    scene: str
-    calibration: str
+    format: str = ""
+    units: str = ""
+    rate: float = 0.0
+    scene: str = ""
+    calibration: str = ""
+    time_unit: str = ""
+    columns: str = ""
+    quaternion: str = ""
+    track: str = ""
+    marks: PhaseMarks = field(default_factory=PhaseMarks)
     object_at_grasp: bool = False
+
+    @property
+    def options(self) -> ReadOptions:
+        """What the request says of the format of the file."""
+        return ReadOptions(self.units, self.time_unit, self.rate, self.columns, self.quaternion, self.track)
 
 
 @dataclass(frozen=True)
@@ -47,8 +63,8 @@ class ImportOrder:
     task: str
     name: str
     kind: str
-    units: str
-    rate: float
+    options: ReadOptions
+    marks: PhaseMarks
     scene: Scene
     calibration: Calibration
     recording: RecordingSettings
@@ -56,7 +72,22 @@ class ImportOrder:
     object_at_grasp: bool = False
 
 
-def prepare_import(order: ImportOrder, *, progress: Callable[[float, str], None]) -> list[Demonstration]:
+@dataclass(frozen=True, slots=True)
+class PreparedImport:
+    """What was made of a file.
+
+    Attributes:
+        made: the demonstrations, one at least.
+        understood: what was taken for time, units and phases.
+    """
+
+    made: tuple[Demonstration, ...]
+    understood: tuple[str, ...] = ()
+
+
+def prepare_import(
+    order: ImportOrder, *, progress: Callable[[float, str], None] = lambda fraction, what: None
+) -> PreparedImport:
     """Make the demonstrations of an uploaded file, with their recordings below `order.folder / PREPARED`.
 
     Their numbers, and the places of their recordings, are those of a station that has nothing else.
@@ -72,15 +103,17 @@ def prepare_import(order: ImportOrder, *, progress: Callable[[float, str], None]
         content = (order.folder / UPLOAD).read_bytes()
     except OSError as error:
         raise NotFound(f"the upload of {order.name} cannot be read: {error.strerror}; send it again") from None
+    source = Source(order.name, content, order.kind, order.options, order.marks)
     store = Store(StoreSettings(data_dir=str(prepared), database="sqlite://"))
     try:
-        made = import_file(
+        read = read_source(source, order.calibration, order.limits, order.recording)
+        made = import_samples(
             store,
             order.recording,
-            Source(order.name, content, order.kind, order.units, order.rate),
+            read,
+            order.name,
             task=order.task,
             scene=order.scene,
-            calibration=order.calibration,
             limits=order.limits,
             object_at_grasp=order.object_at_grasp,
             progress=progress,
@@ -88,9 +121,7 @@ def prepare_import(order: ImportOrder, *, progress: Callable[[float, str], None]
         )
     finally:
         store.close()
-    if not made:
-        raise UnusableRecording(f"{order.name}: no recording could be written; is the disk full?")
-    return [demonstration for demonstration, _ in made]
+    return PreparedImport(tuple(demonstration for demonstration, _ in made), read.understood)
 
 
 def derived_ids(key: str) -> Callable[[], str]:

@@ -35,7 +35,7 @@ def repair(
     made = _demonstrations(torn, header, scene, settings, folder)
     if made:
         task = Task(header.task, scene.name, header.calibration.name, 0, header.object_at_grasp)
-        store.take_over(task, made, folder / RECORDINGS)
+        store.take_over(task, [(made, folder / RECORDINGS)])
     set_aside(torn.file, SALVAGED)
     shutil.rmtree(folder, ignore_errors=True)
     return [demonstration.id for demonstration in made]

@@ -154,8 +154,8 @@ def reassess(
     statistics, left_out = add_content_faults(take, settings)
     quality = reassess_quality(
         QualityReport(before.verdict, before.reasons, before.advice),
-        phase_statistics(samples, TransportSpan(*before.transport), before.statistics, settings),
-        phase_statistics(samples, cut, statistics, settings),
+        phase_statistics(samples, TransportSpan(*before.transport), _marked_by(before, before.statistics), settings),
+        phase_statistics(samples, cut, _marked_by(after, statistics), settings),
         settings,
     )
     return {
@@ -165,6 +165,11 @@ def reassess(
         "reasons": quality.reasons,
         "advice": quality.advice,
     }
+
+
+def _marked_by(demonstration: Demonstration, statistics: StreamStatistics) -> StreamStatistics:
+    """Return the statistics without dwells that leave the phases open, if an operator has marked them by a trim."""
+    return replace(statistics, dwell_times=()) if demonstration.trim else statistics
 
 
 def _assess(statistics: PhaseStatistics, take: SegmentedTake, settings: RecordingSettings) -> QualityReport:

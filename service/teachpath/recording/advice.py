@@ -23,6 +23,9 @@ FAULT_ADVICE = {
     ),
 }
 USABLE = "usable; nothing needs to be done"
+UNSURE_PHASES = (
+    "it is not sure where the object was taken and put: trim it, or import it again with both moments marked"
+)
 
 
 def rejection_advice(statistics: StreamStatistics, settings: RecordingSettings) -> str:
@@ -32,6 +35,8 @@ def rejection_advice(statistics: StreamStatistics, settings: RecordingSettings) 
         statistics: of the transport phase, together with those of its positions.
         settings: limits of the recording.
     """
+    if statistics.dwell_times:
+        return UNSURE_PHASES
     seconds = statistics.longest_freeze_ns * 1e-9
     if seconds > settings.longest_freeze:
         return f"the tracker froze for {seconds:.1f} s while you carried: {AGAIN}, nearer to its base"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from teachpath.recording.advice import USABLE, ending_advice, rejection_advice
@@ -21,6 +22,7 @@ FAULTS = {
 REPAIRS = {"duplicated": "came twice", "reordered": "came late"}
 # Statistics that belong to a place within a take; those of the positions are counted in the transport phase alone.
 LOCATED = ("lost", "refused", "untracked", "conflicts", "duplicated", "reordered", "longest_gap_ns", "clock_jumps")
+MAX_LISTED_DWELLS = 6
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,6 +47,8 @@ def assess_quality(statistics: PhaseStatistics, settings: RecordingSettings) -> 
     """
     transport = _with_unlocated(statistics)
     rejections = [*_excessive_faults(statistics, transport, settings), *_unusable(transport, settings)]
+    if transport.dwell_times:
+        rejections.insert(0, _unsure_phases(transport.dwell_times))
     repairs = [*_repairs(transport), *_faults_elsewhere(statistics, settings)]
     if transport.repeated and not _is_slow(transport, settings):
         repairs.append(_slow_tracker(transport))
@@ -112,6 +116,15 @@ def _unusable(statistics: StreamStatistics, settings: RecordingSettings) -> list
     if _is_slow(statistics, settings):
         found.append(f"{_slow_tracker(statistics)}, limit {settings.lowest_pose_rate:.3g} Hz")
     return found
+
+
+def _unsure_phases(dwell_times: Sequence[float]) -> str:
+    places = "one place" if len(dwell_times) == 1 else f"{len(dwell_times)} places"
+    at = ", ".join(f"{seconds:.2f}" for seconds in dwell_times[:MAX_LISTED_DWELLS])
+    return (
+        f"not sure where the object was taken and put: the hand dwells at {places} (at {at} s); mark it: trim it, or "
+        "import it with --grasp and --release, or with --whole if all of it is the transport"
+    )
 
 
 def _freeze(statistics: StreamStatistics) -> str:

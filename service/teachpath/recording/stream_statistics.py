@@ -192,6 +192,7 @@ class StreamCounter:
             seen_rate=1e9 * steps / device_ns if device_ns else 0.0,
             clock=clock,
             notes=notes,
+            dwell_times=(),
         )
 
     def _begin_interval_with(self, sequence: int) -> None:

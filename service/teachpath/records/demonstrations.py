@@ -153,6 +153,7 @@ class StreamStatistics:
     seen_rate: float = 0.0  # [Hz] numbers a second of the device's clock
     clock: Clock | None = None
     notes: tuple[str, ...] = ()
+    dwell_times: tuple[float, ...] = ()  # [s] where a hand without a glove dwells, if taking and putting are not sure
 
 
 @dataclass(frozen=True, slots=True)

@@ -16,7 +16,8 @@ from teachpath.io.sample_files import read_samples, write_samples
 from teachpath.io.store.settings import StoreSettings
 from teachpath.io.store.store import Store
 from teachpath.offline.exporting import chosen, export_demonstrations
-from teachpath.offline.importing import Source, import_file
+from teachpath.offline.file_samples import Source
+from teachpath.offline.importing import import_file
 from teachpath.recorder.annotations import Annotations
 from teachpath.records import Amendment, Calibration, Demonstration
 from tests.unit.offline.takes import EMPTY, SETTINGS, TAKES, record, said, trajectory, whole

@@ -11,11 +11,13 @@ from sqlalchemy import event
 from sqlalchemy.orm import Session
 
 from teachpath.io.import_settings import ImportSettings
+from teachpath.io.readers.contract import ReadOptions
 from teachpath.io.store.recordings import RECORDINGS
 from teachpath.io.store.settings import StoreSettings
 from teachpath.io.store.store import Store
 from teachpath.offline.doctor import examine
 from teachpath.offline.import_job import PREPARED, UPLOAD, ImportOrder, prepare_import
+from teachpath.offline.track_samples import PhaseMarks
 from teachpath.recording.settings import RecordingSettings
 from teachpath.records import Array, Calibration, Demonstration, Job, JobState, Scene, Task
 from tests.waiting import HANG
@@ -44,14 +46,14 @@ def prepared(folder: Path) -> list[Demonstration]:
         TASK.name,
         "motions.npy",
         "npy",
-        "m",
-        50.0,
+        ReadOptions(),
+        PhaseMarks(),
         EMPTY,
         Calibration("identity"),
         RecordingSettings(),
         ImportSettings(),
     )
-    return prepare_import(order, progress=lambda fraction, sentence: None)
+    return list(prepare_import(order).made)
 
 
 def finish(store: Store, folder: Path) -> str:

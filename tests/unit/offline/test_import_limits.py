@@ -24,7 +24,8 @@ from teachpath.errors import TeachpathError
 from teachpath.io.import_settings import ImportSettings
 from teachpath.io.store.settings import StoreSettings
 from teachpath.io.store.store import Store
-from teachpath.offline.importing import Source, import_file
+from teachpath.offline.file_samples import Source
+from teachpath.offline.importing import import_file
 from teachpath.recording.settings import RecordingSettings
 from teachpath.records import Calibration, Scene
 

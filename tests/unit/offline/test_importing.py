@@ -10,7 +10,8 @@ from teachpath.io.import_settings import ImportSettings
 from teachpath.io.store.recordings import RecordingHeader
 from teachpath.io.store.settings import StoreSettings
 from teachpath.io.store.store import Store
-from teachpath.offline.importing import Source, import_file
+from teachpath.offline.file_samples import Source
+from teachpath.offline.importing import import_file
 from teachpath.recording.settings import RecordingSettings
 from teachpath.records import Calibration, Demonstration, Sample, Scene, Shape, Trajectory
 from tests.unit.recording.hands import demonstration
@@ -105,7 +106,7 @@ def test_an_exported_recording_imports_as_the_same_demonstration(store: Store) -
     )
     assert np.array_equal(way.positions, same.positions)
     assert np.array_equal(way.times, same.times)
-    changed = {"id": second.id, "number": 2, "created_ns": second.created_ns, "recording": second.recording}
+    changed = {name: getattr(second, name) for name in ("id", "number", "created_ns", "recording", "digest")}
     assert first.digest is not None
     assert second.digest is not None
     assert replace(first.digest, sha256=second.digest.sha256) == second.digest  # each file says of what it is

@@ -151,8 +151,13 @@ class Recordings:
         return file
 
     def take_over(self, folder: Path, place: str) -> None:
-        """Move the finished recording at `place` within `folder` to the same place here; one disk must hold both."""
+        """Move the finished recording at `place` within `folder` to the same place here; one disk must hold both.
+
+        One that was taken over before stays.
+        """
         file = self._root / place
+        if file.exists() and not (folder / place).exists():
+            return
         file.parent.mkdir(parents=True, exist_ok=True)
         (folder / place).rename(file)
 

@@ -58,6 +58,7 @@ from teachpath.records import (
 from teachpath_proto.control import ExecutorState
 
 Row = TypeVar("Row", bound=Base)
+Batch = Sequence[tuple[Sequence[Demonstration], Path]]  # demonstrations, each with the folder of their recordings
 
 
 class Store:
@@ -254,30 +255,28 @@ class Store:
         Returns:
             The numbers that the first and the last one have now, e.g. `3-5`.
         """
-        with self._taking_over(task, made, recordings) as (session, numbers):
+        with self._taking_over(task, [(made, recordings)]) as (session, numbers):
             outcome = f"{min(numbers)}-{max(numbers)}"
             self._claim(session, key, success(outcome, time.time_ns()))
         return outcome
 
-    def take_over(self, task: Task, made: Sequence[Demonstration], recordings: Path) -> None:
-        """Take over demonstrations with their recordings, all or nothing; as `finish_import`, without a job."""
-        with self._taking_over(task, made, recordings):
-            pass
+    def take_over(self, task: Task, batch: Batch) -> list[int]:
+        """Take over demonstrations as `finish_import`, without a job, and return their numbers."""
+        with self._taking_over(task, batch) as (_, numbers):
+            return numbers
 
     @contextmanager
-    def _taking_over(
-        self, task: Task, made: Sequence[Demonstration], recordings: Path
-    ) -> Iterator[tuple[Session, list[int]]]:
-        added: list[str] = []  # places of the recordings whose rows are new
+    def _taking_over(self, task: Task, batch: Batch) -> Iterator[tuple[Session, list[int]]]:
+        added: dict[Path, list[str]] = {recordings: [] for _, recordings in batch}  # places whose rows are new
         try:
             with self._change() as session:
-                numbers = imported_rows(session, task, made, added)
-                yield session, numbers
+                yield session, [n for made, of in batch for n in imported_rows(session, task, made, added[of])]
                 session.flush()
-                for place in added:
-                    self.recordings.take_over(recordings, place)
+                for recordings, places in added.items():
+                    for place in places:
+                        self.recordings.take_over(recordings, place)
         except BaseException:
-            self.recordings.remove(added)
+            self.recordings.remove([place for places in added.values() for place in places])
             raise
 
     def finish_planning(self, key: str, plan: Plan) -> str:

@@ -1,0 +1,66 @@
+"""The unit of a clock's readings: as the file says it, or what its numbers allow."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from teachpath.errors import UnusableRecording
+from teachpath.io.readers.contract import TIME_UNITS, Integers
+from teachpath.io.readers.text import number
+from teachpath.records import Array
+
+PLAUSIBLE_RATES = (2.0, 2000.0)  # [Hz] of trackers
+
+
+def time_unit(times: Array, *, said: str, stated: str, name: str) -> str:
+    """Return the unit of a clock; only seconds are taken without being named.
+
+    Args:
+        times: (n,) as in the file.
+        said: by the user, or empty.
+        stated: by the file, or empty.
+        name: of the file, for errors.
+
+    Raises:
+        UnusableRecording: nobody names the unit, and the readings are not those of seconds.
+    """
+    if said or stated:
+        return said or stated
+    steps = np.abs(np.diff(times[np.isfinite(times)]))
+    steps = steps[steps > 0.0]
+    if not len(steps):
+        return "s"
+    step = float(np.median(steps))
+    low, high = PLAUSIBLE_RATES
+    rates = {unit: 1e9 / (step * factor) for unit, factor in TIME_UNITS.items()}
+    fitting = [unit for unit, rate in rates.items() if low <= rate <= high]
+    if fitting == ["s"]:
+        return "s"
+    if len(fitting) == 1:
+        raise UnusableRecording(
+            f"{name}: t looks like {fitting[0]}: its steps of {step:g} would be {rates[fitting[0]]:.3g} Hz; if it is "
+            f"so, say it: --time {fitting[0]}"
+        )
+    raise UnusableRecording(
+        f"{name}: the unit of t is open: steps of {step:g} would be {rates['s']:.3g} Hz in s, {rates['ms']:.3g} in ms, "
+        f"{rates['us']:.3g} in us; say it with --time s, ms, us or ns"
+    )
+
+
+def stamps_of(cells: Sequence[str], times: Array, unit: str, delimiter: str) -> Integers:
+    """Return the stamps (n,) [ns] of the readings of a clock; integers are not rounded.
+
+    Args:
+        cells: the readings as texts.
+        times: the same as numbers.
+    """
+    factor = TIME_UNITS[unit]
+    stamps = [
+        int(cell) * factor if cell.isdecimal() else round(number(cell, delimiter) * factor)
+        for cell, time in zip(cells, times, strict=True)
+    ]
+    if any(abs(stamp) >= 2**62 for stamp in stamps):
+        raise UnusableRecording(f"a time of {max(stamps, key=abs)} ns is no time; is the unit {unit} right (--time)?")
+    return np.array(stamps, dtype=np.int64)

@@ -1,0 +1,188 @@
+"""Formats that other programs write, as small files of each; and tables that leave something open."""
+
+import io
+import tomllib
+from importlib.metadata import EntryPoint
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from teachpath.errors import UnusableRecording
+from teachpath.io.import_settings import ImportSettings
+from teachpath.io.readers.contract import FileMotions, Reader, ReadOptions
+from teachpath.io.readers.registry import GROUP, HOUSE, read_motions, readers, recognized
+from teachpath.records import Array
+
+ROOT = Path(__file__).parents[4]
+COUNT = 40
+K = np.arange(COUNT)
+TIMES = 0.02 * K
+POSITIONS = np.column_stack([0.3 + 0.01 * K, -0.2 + 0.002 * K, 0.5 + 0 * K])
+TURNS = Rotation.from_rotvec(np.outer(0.02 * K, [0.0, 0.0, 1.0]))
+WXYZ, XYZW = TURNS.as_quat(scalar_first=True), TURNS.as_quat()
+
+
+def text(rows: Array, header: str = "", delimiter: str = ",", form: str = "%.9f") -> bytes:
+    out = io.StringIO()
+    np.savetxt(out, rows, delimiter=delimiter, header=header, comments="", fmt=form)
+    return out.getvalue().encode()
+
+
+def motive() -> bytes:
+    head = (
+        "Format Version,1.23,Take Name,Take 1,Export Frame Rate,50,Length Units,Millimeters\n\n"
+        ",Type,Rigid Body,Rigid Body,Rigid Body,Rigid Body,Rigid Body,Rigid Body,Rigid Body,Rigid Body Marker\n"
+        ",Name,hand,hand,hand,hand,hand,hand,hand,hand:1\n,ID,1,1,1,1,1,1,1,2\n"
+        ",,Rotation,Rotation,Rotation,Rotation,Position,Position,Position,Position\n"
+        "Frame,Time (Seconds),X,Y,Z,W,X,Y,Z,X\n"
+    )
+    return head.encode() + text(np.column_stack([K, TIMES, XYZW, 1000 * POSITIONS, K]))
+
+
+def vicon() -> bytes:
+    head = "Trajectories\n50\n,,Hand:LWRA,,\nFrame,Sub Frame,X,Y,Z\n,,mm,mm,mm\n"
+    return head.encode() + text(np.column_stack([K, 0 * K, 1000 * POSITIONS]), form="%.6f")
+
+
+def trc() -> bytes:
+    head = (
+        "PathFileType\t4\t(X/Y/Z)\thand.trc\nDataRate\tCameraRate\tNumFrames\tNumMarkers\tUnits\n50\t50\t40\t1\tmm\n"
+        "Frame#\tTime\thand\t\t\n\t\tX1\tY1\tZ1\n\n"
+    )
+    rows = [
+        f"{k}\t{t:.3f}\t" + "\t".join(f"{c:.4f}" for c in 1000 * p) for k, t, p in zip(K, TIMES, POSITIONS, strict=True)
+    ]
+    return (head + "\n".join(rows) + "\n").encode()
+
+
+def npz() -> bytes:
+    out = io.BytesIO()
+    np.savez(out, t=TIMES, positions=POSITIONS, quaternions=WXYZ)
+    return out.getvalue()
+
+
+def npy() -> bytes:
+    out = io.BytesIO()
+    np.save(out, np.column_stack([TIMES, POSITIONS, WXYZ]))
+    return out.getvalue()
+
+
+def matrices() -> bytes:
+    poses = np.tile(np.eye(4), (COUNT, 1, 1))
+    poses[:, :3, :3], poses[:, :3, 3] = TURNS.as_matrix(), POSITIONS
+    return b"\n".join(text(pose, delimiter=" ") for pose in poses)
+
+
+NS = (1e9 * TIMES + 1403636580e9).astype(np.int64)
+EUROC = "#timestamp [ns],p_RS_R_x [m],p_RS_R_y [m],p_RS_R_z [m],q_RS_w [],q_RS_x [],q_RS_y [],q_RS_z []\n" + "".join(
+    f"{ns},{','.join(f'{v:.9f}' for v in (*p, *q))}\n" for ns, p, q in zip(NS, POSITIONS, WXYZ, strict=True)
+)
+FILES = {
+    "motive": ("take.csv", motive()),
+    "vicon": ("take.csv", vicon()),
+    "trc": ("take.trc", trc()),
+    "euroc": ("data.csv", EUROC.encode()),
+    "tum": (
+        "groundtruth.txt",
+        b"# timestamp tx ty tz qx qy qz qw\n"
+        + text(np.column_stack([TIMES + 1305031098.0, POSITIONS, XYZW]), delimiter=" "),
+    ),
+    "matrices": ("hand.traj", matrices()),
+    "npz": ("hand.npz", npz()),
+    "npy": ("hand.npy", npy()),
+    "csv": ("hand.csv", text(np.column_stack([TIMES, POSITIONS, XYZW]), "time,px,py,pz,qx,qy,qz,qw")),
+}
+UNTURNED = {"vicon", "trc"}  # markers
+
+
+def read(content: bytes, name: str = "f.csv", **options: object) -> FileMotions:
+    return read_motions(content, name, "", ReadOptions(**options), ImportSettings())  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("kind", FILES)
+def test_every_format_is_recognized_and_gives_the_same_motion(kind: str) -> None:
+    name, content = FILES[kind]
+    assert recognized(content, name) == kind
+    (track,) = read(content, name).tracks
+    assert np.allclose(track.times, TIMES, atol=1e-6)
+    assert np.allclose(track.positions, POSITIONS, atol=1e-6)
+    if kind in UNTURNED:
+        assert track.orientations is None
+    else:
+        assert track.orientations is not None
+        assert np.allclose(np.abs(np.sum(track.orientations * WXYZ, axis=1)), 1.0)
+
+
+PLAIN = np.column_stack([TIMES, POSITIONS])
+TABLES = {
+    "semicolons and decimal commas": (text(PLAIN, "t;x;y;z", ";").replace(b".", b","), {}),
+    "blanks": (text(PLAIN, "t x y z", " "), {}),
+    "tabs": (text(PLAIN, "t\tx\ty\tz", "\t"), {}),
+    "spaces behind commas": (text(PLAIN, "t, x, y, z", ", "), {}),
+    "a comma behind each row": (text(PLAIN, "t,x,y,z").replace(b"\n", b",\n"), {}),
+    "a comment": (b"# my tracker\n" + text(PLAIN, "t,x,y,z"), {}),
+    "capitals": (text(PLAIN, "T,X,Y,Z"), {}),
+    "no header": (text(PLAIN), {"columns": "t=1,x=2,y=3,z=4"}),
+    "other names": (
+        text(PLAIN[:, [1, 0, 2, 3]], "Position.X,Zeit,b,c"),
+        {"columns": "t=Zeit,x=Position.X,y=3,z=c"},
+    ),
+    "milliseconds by name": (text(PLAIN * [1000, 1, 1, 1], "t_ms,x,y,z"), {}),
+    "milliseconds as said": (text(PLAIN * [1000, 1, 1, 1], "t,x,y,z"), {"time_unit": "ms"}),
+    "millimetres by name": (text(PLAIN * [1, 1000, 1000, 1000], "t,x [mm],y [mm],z [mm]"), {}),
+    "millimetres as said": (text(PLAIN * [1, 1000, 1000, 1000], "t,x,y,z"), {"units": "mm"}),
+}
+
+
+@pytest.mark.parametrize("what", TABLES)
+def test_tables_of_every_kind_give_the_same_motion(what: str) -> None:
+    content, options = TABLES[what]
+    (track,) = read(content, **options).tracks
+    assert np.allclose(track.times, TIMES, atol=1e-6)
+    assert np.allclose(track.positions, POSITIONS, atol=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("content", "sentence"),
+    [
+        (text(PLAIN * [1e3, 1, 1, 1], "t,x,y,z"), "t looks like ms: .* --time ms"),
+        (text(PLAIN * [1e6, 1, 1, 1], "t,x,y,z"), "t looks like us: .* --time us"),
+        (text(PLAIN * [1e9, 1, 1, 1], "t,x,y,z"), "t looks like ns: .* --time ns"),
+        (text(PLAIN * [1, 1e3, 1e3, 1e3], "t,x,y,z"), r"spans 390 m, limit 10; --units .*mm \(0\.39 m\)"),
+        (text(PLAIN), "no column for t, x, y, z; .*--columns t=1"),
+        (text(np.column_stack([PLAIN, TIMES]), "t,x,y,z,time"), "t and time could all be t; say which"),
+        (text(np.column_stack([PLAIN, XYZW[:, :2]]), "t,x,y,z,qx,qy"), "no column for qw, qz"),
+        (text(np.column_stack([TIMES, POSITIONS, POSITIONS, K]), "t,x,y,z,qx,qy,qz,qw"), "has length"),
+        (motive().replace(b"hand,hand,hand,hand,hand,hand,hand,hand:1", b"a,a,a,a,a,a,a,b"), None),
+    ],
+)
+def test_what_a_file_leaves_open_is_said_with_the_way_out(content: bytes, sentence: str | None) -> None:
+    if sentence is None:
+        assert len(read(content).tracks) == 1  # a marker without rotation is no second body
+        return
+    with pytest.raises(UnusableRecording, match=sentence):
+        read(content)
+
+
+def test_one_of_several_is_chosen_by_its_name() -> None:
+    two = trc().replace(b"hand\t\t\n", b"hand\t\t\telbow\t\t\n").replace(b"X1\tY1\tZ1", b"X1\tY1\tZ1\tX2\tY2\tZ2")
+    head, _, rows = two.partition(b"Z2\n\n")
+    two = head + b"Z2\n\n" + b"".join(line + b"\t1\t2\t3\n" for line in rows.splitlines())
+    with pytest.raises(UnusableRecording, match=r"holds hand, elbow; choose one with --track"):
+        read(two, "f.trc")
+    assert np.allclose(read(two, "f.trc", track="hand").tracks[0].positions, POSITIONS, atol=1e-6)
+
+
+def test_what_was_understood_is_told() -> None:
+    told = "; ".join(read(text(np.column_stack([PLAIN, K]), "t,x,y,z,temperature")).understood)
+    assert "time in s (t); position in m (x, y, z); no orientation; not read: temperature" in told
+
+
+def test_all_readers_of_the_house_are_members_of_the_group() -> None:
+    assert set(readers()) >= {reader.name for reader in HOUSE}
+    declared = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["entry-points"][GROUP]
+    loaded = {name: EntryPoint(name, value, GROUP).load() for name, value in declared.items()}
+    assert loaded == {reader.name: reader for reader in HOUSE}
+    assert all(isinstance(reader, Reader) and reader.title for reader in readers().values())
