@@ -41,24 +41,24 @@ SHORT = "t,x,y,z\n" + "".join(f"{i * 0.02},{i},0,0\n" for i in range(6))
     [
         ("", {}, "the file is empty"),
         ("t,x,y,z\n", {}, "no samples under the header"),
-        ("a,b\n1,2\n", {}, "the first line must be t,x,y,z"),
+        ("a,b\n1,2\n", {}, "no column for t, x, y, z; its 2 columns are a, b"),
         (csv()[:-8], {}, "line 61"),
-        (csv() + "9,nan,0,0\n", {}, "sample 60 has a x that is not finite"),
-        (csv() + "0,0,0,0\n", {}, "sort by t"),
-        (csv().replace("0.6\n", "1e300\n"), {}, "a position is 1e+300 m away, limit 100; are the units right?"),
+        (csv() + ",1,0,0\n", {}, "line 62: a row without a time"),
+        ("t,x,y,z\n" + "".join(reversed(csv().splitlines(True)[1:])), {}, "sort by t"),
+        (csv().replace("0.6\n", "1e300\n"), {}, "a position is 1e+300 m away, limit 100; are the units right"),
         (csv(), {"units": "mm", "scene": "paper"}, "check units and calibration"),
-        (csv() + "1e300,0,0,0\n", {}, "it lasts 1e+300 s, limit 86400"),
+        (csv() + "1e300,0,0,0\n", {}, "a time of 1e+300 s is no time"),
         ("t,x,y,z\n" + "9" * 200_000, {}, "CSV"),
         (SHORT, {}, "under the least of 8"),
         (csv(), {"units": "parsec"}, "units 'parsec' are unknown; known: m, cm, mm, in"),
-        (csv(), {"format": "xls"}, "format 'xls' is unknown; known: csv, npy, robottasks, mcap"),
+        (csv(), {"format": "xls"}, "format 'xls' is unknown; known: motive, "),
         (csv(), {"rate": "nan"}, "rate of nan Hz"),
         (csv(), {"rate": "often"}, "query.rate: it should be a valid number"),
         (csv(), {"name": "x" * 201}, "query.name"),
         (csv(), {"scene": "paper"}, "does not begin at the object of scene paper"),
         (b"", {"format": "robottasks"}, "the file is empty"),
-        (b"rubbish", {"format": "robottasks"}, "not a whole .npy array"),
-        (b"PK\x03\x04rubbish", {"format": "robottasks"}, "not a whole .npy array"),
+        (b"rubbish", {"format": "robottasks"}, "not a whole file of format robottasks"),
+        (b"PK\x03\x04rubbish", {"format": "robottasks"}, "not a whole file of format robottasks"),
         (npy(np.zeros((2, 30, 7)))[:-100], {"format": "robottasks"}, "not a whole .npy array"),
         (
             npy(np.zeros((2, 30, 7))).replace(b"(2, 30", b"(20000000, 30000000"),
@@ -67,8 +67,8 @@ SHORT = "t,x,y,z\n" + "".join(f"{i * 0.02},{i},0,0\n" for i in range(6))
         ),
         (npy(np.zeros((2, 30, 3))), {"format": "robottasks"}, "the array must be floats"),
         (npy(np.zeros((0, 30, 7))), {"format": "robottasks"}, "holds no demonstrations"),
-        (npy(np.zeros((2, 0, 7))), {"format": "robottasks"}, "too few"),
-        (npy(np.full((2, 30, 7), np.inf)), {"format": "robottasks"}, "not finite"),
+        (npy(np.zeros((2, 0, 7))), {"format": "robottasks"}, "holds no demonstrations"),
+        (npy(np.full((2, 30, 7), np.inf)), {"format": "robottasks"}, "0 of its 30 samples are tracked"),
     ],
 )
 def test_a_file_that_cannot_be_used_is_a_sentence_and_leaves_nothing(
@@ -91,9 +91,9 @@ def test_an_import_is_a_job_that_is_listed_with_its_task(desk: Desk) -> None:
     job = desk.ended(accepted)
     assert (job["kind"], job["state"], job["outcome"], job["fraction"]) == ("import", "succeeded", "1-1", 1.0)
     assert [each["id"] for each in desk.get("/tasks/import-job/jobs").json()] == [job["id"]]
-    assert desk.ended(desk.upload("import-job", npy(np.array([turned(0.1), turned(0.2)])), format="robottasks"))[
-        "outcome"
-    ] == ("2-3")
+    assert desk.ended(
+        desk.upload("import-job", npy(np.array([turned(0.1), turned(0.2)])), format="robottasks", units="m")
+    )["outcome"] == ("2-3")
     wait_until(lambda: list(desk.data_dir.glob("transfers/*")) == [], "the upload is removed")
 
 
@@ -113,7 +113,7 @@ def test_a_file_is_imported_in_its_units_and_read_back(desk: Desk) -> None:
     assert recording.content.startswith(b"\x89MCAP0\r\n")
     turned = np.zeros((3, 40, 7))
     turned[..., 3], turned[..., 0] = 1.0, np.linspace(0.4, 0.6, 40)
-    assert len(desk.import_("array", npy(turned), format="robottasks")) == 3
+    assert len(desk.import_("array", npy(turned), format="robottasks", units="m")) == 3
 
 
 def test_an_empty_scene_of_tasks_shows_lists(desk: Desk) -> None:

@@ -181,10 +181,10 @@ def test_the_cut_of_a_run_is_moved_by_a_job(desk: Desk) -> None:
 
 
 def test_identical_points_are_refused_with_a_sentence(desk: Desk) -> None:
-    desk.import_("still", "t,x,y,z\n" + "".join(f"{i * 0.02},0.4,0,0.6\n" for i in range(60)))
-    job = desk.ended(desk.post("/tasks/still/jobs", {}))
+    still = "t,x,y,z\n" + "".join(f"{i * 0.02},0.4,0,0.6\n" for i in range(60))
+    job = desk.ended(desk.upload("still", still))
     assert job["state"] == "failed"
-    assert "has 1 distinct points, needs 5; leave it out or record it again" in job["message"]
+    assert "the hand moves by 0 cm, limit 1 cm (recording.lift): it carries nothing" in job["message"]
 
 
 # executions

@@ -141,7 +141,7 @@ def _closed(
     found = find_motion_phases(times[order], positions[order])
     if found.evidence is PhaseEvidence.DWELLS:
         taken, put = times[order[found.grasp]], times[order[found.release - 1]]
-        words = f"taken at {taken:.2f} s and put at {put:.2f} s, where the hand dwells"
+        words = f"taken at {taken:.2f} s and put at {put:.2f} s, where the hand dwells (--whole if not)"
         return (times >= taken) & (times <= put), words, ()
     unsure = found.dwell_times if found.evidence is PhaseEvidence.UNSURE else ()
     words = (

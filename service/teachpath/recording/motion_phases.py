@@ -81,10 +81,10 @@ def find_motion_phases(times: Array, positions: Array) -> MotionPhases:
         return whole
     grid, even, speed = _smoothed(times[kept], positions[kept])
     minima, prominences = _ranked_minima(speed)
-    dwells = int(np.count_nonzero(prominences > NO_DWELL))
-    if dwells == 0:
+    dwells = minima[(prominences > NO_DWELL) & (speed[minima] < MOVING * speed.max())]
+    if not len(dwells):  # a hand that goes around a bend slows down as well, but less
         return whole
-    found = tuple(sorted(grid[minima[:dwells]].tolist()))
+    found = tuple(sorted(grid[dwells].tolist()))
     if len(minima) < 2:
         return MotionPhases(PhaseEvidence.UNSURE, 0, len(times), np.empty((0, 3)), found)
     first, last = sorted(minima[:2])

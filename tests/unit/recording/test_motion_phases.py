@@ -110,7 +110,9 @@ def test_a_motion_with_one_place_is_unsure() -> None:
 def test_a_motion_without_a_dwell_is_the_transport_as_a_whole() -> None:
     positions = minimum_jerk(np.zeros(3), np.array([0.5, 0.2, 0.0]), 2.0, bow=0.2)
     rest = np.repeat(positions[:1], 100, axis=0)
-    for whole in (positions, np.concatenate([rest, positions]), positions[::-1], positions[:5], positions[:1]):
+    k = np.arange(120)
+    bend = np.column_stack([0.002 * k, 0.1 * np.sin(k / 20), 0 * k])  # slows down to a third at its bends
+    for whole in (bend, positions, np.concatenate([rest, positions]), positions[::-1], positions[:5], positions[:1]):
         phases = found(whole)
         assert (phases.evidence, phases.grasp, phases.release) == (PhaseEvidence.WHOLE, 0, len(whole))
 

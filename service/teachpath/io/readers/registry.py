@@ -53,13 +53,13 @@ def check_options(name: str, kind: str, options: ReadOptions) -> None:
     if kind and kind not in known:
         raise UnusableRecording(f"{name}: format {kind!r} is unknown; known: {', '.join(known)}")
     choices = (
-        ("units", options.units, UNITS),
-        ("a time unit", options.time_unit, TIME_UNITS),
-        ("the quaternion order", options.quaternion, QUATERNION_ORDERS),
+        ("units {} are", options.units, UNITS),
+        ("a time unit {} is", options.time_unit, TIME_UNITS),
+        ("a quaternion order {} is", options.quaternion, QUATERNION_ORDERS),
     )
     for what, value, allowed in choices:
         if value and value not in allowed:
-            raise UnusableRecording(f"{name}: {what} {value!r} is unknown; known: {', '.join(allowed)}")
+            raise UnusableRecording(f"{name}: {what.format(repr(value))} unknown; known: {', '.join(allowed)}")
     if options.rate and not 1.0 <= options.rate <= 10_000.0:
         raise UnusableRecording(f"{name}: a rate of {options.rate:g} Hz is outside 1 to 10000")
     parse_columns(options.columns)

@@ -70,7 +70,7 @@ def read_rows(
         raise UnusableRecording(f"{name}, line {line}: a row without a time; take it out")
     extra = {role: values[:, len(wanted) + k] for k, role in enumerate(others)}
     track = Track(
-        stamps_of([row[places["t"]] for _, row in rows], values[:, 0], unit, delimiter),
+        stamps_of([row[places["t"]] for _, row in rows], values[:, 0], unit, delimiter, name),
         values[:, 1:4] * UNITS[length],
         values[:, 4:8] if columns.has_rotation else None,
         extra["tracked"] > 0.5 if "tracked" in extra else None,

@@ -49,18 +49,20 @@ def time_unit(times: Array, *, said: str, stated: str, name: str) -> str:
     )
 
 
-def stamps_of(cells: Sequence[str], times: Array, unit: str, delimiter: str) -> Integers:
+def stamps_of(cells: Sequence[str], times: Array, unit: str, delimiter: str, name: str) -> Integers:
     """Return the stamps (n,) [ns] of the readings of a clock; integers are not rounded.
 
     Args:
         cells: the readings as texts.
         times: the same as numbers.
+        name: of the file, for errors.
     """
     factor = TIME_UNITS[unit]
+    farthest = float(np.abs(times).max())
+    if not farthest < 2**62 / factor:
+        raise UnusableRecording(f"{name}: a time of {farthest:g} {unit} is no time; is the unit right (--time)?")
     stamps = [
         int(cell) * factor if cell.isdecimal() else round(number(cell, delimiter) * factor)
         for cell, time in zip(cells, times, strict=True)
     ]
-    if any(abs(stamp) >= 2**62 for stamp in stamps):
-        raise UnusableRecording(f"a time of {max(stamps, key=abs)} ns is no time; is the unit {unit} right (--time)?")
     return np.array(stamps, dtype=np.int64)
