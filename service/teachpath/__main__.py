@@ -62,6 +62,7 @@ for command in (
     doctor.doctor,
     backups.backup,
     backups.restore,
+    backups.prune,
 ):
     app.command(name=command.__name__.rstrip("_"))(command)
 app.add_typer(curves.app, name="curve")

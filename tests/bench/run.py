@@ -6,6 +6,7 @@ import time
 
 from teachpath.records import Trajectory
 from tests.bench import (
+    doctor_kills,
     inverse,
     lateness,
     learning,
@@ -59,6 +60,7 @@ def main() -> None:
         motion.measure(repeats=1 if quick else 3, seconds=2.0 if quick else math.inf),
     )
     print_report("A stop while the station is busy", stop_latency.measure(stops=100 if quick else 600))
+    print_report("A doctor that is killed and run again", doctor_kills.measure(count=20 if quick else 200))
     print_report("The editor in the page", page.measure(drags=5 if quick else 20))
     print(f"took {time.monotonic() - began:.0f} s")
 

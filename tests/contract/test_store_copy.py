@@ -7,7 +7,7 @@ import pytest
 from typer.testing import CliRunner
 
 from teachpath.__main__ import app
-from teachpath.errors import Conflict
+from teachpath.errors import Conflict, StorageUnavailable, UnusableSettings
 from teachpath.io.store.copying import copy_rows
 from teachpath.io.store.settings import StoreSettings
 from teachpath.io.store.store import Store
@@ -59,6 +59,19 @@ def test_rows_are_never_added_to_others(postgres: Server, tmp_path: Path) -> Non
     copy_rows(first, server)
     with pytest.raises(Conflict, match="name an empty one"):
         copy_rows(first, server)
+
+
+@pytest.mark.parametrize(
+    ("url", "kind", "sentence"),
+    [
+        ("postgresql+psycopg://nobody@/none?host=/nowhere", StorageUnavailable, "is its server running"),
+        ("postgres", UnusableSettings, "is no URL of a database"),
+        ("oracle+nothing://host/name", UnusableSettings, "is no URL of a database"),
+    ],
+)
+def test_a_server_that_is_not_there_is_named(tmp_path: Path, url: str, kind: type[Exception], sentence: str) -> None:
+    with pytest.raises(kind, match=sentence):
+        Store(StoreSettings(data_dir=str(tmp_path), database=url))
 
 
 def test_the_command_names_what_it_copied(tmp_path: Path) -> None:

@@ -1,4 +1,4 @@
-"""backup and restore: all that a station keeps, in a folder of its own."""
+"""backup, restore and prune: all that a station keeps, in a folder of its own, and what it need not keep."""
 
 from __future__ import annotations
 
@@ -48,3 +48,18 @@ def restore(
     settings = settings_of(config, data)
     aside = bring_back(source, settings.store, replace=replace)
     print(f"{settings.store.data_dir}: restored from {source}" + (f"; what was there is in {aside}" if aside else ""))
+
+
+def prune(
+    older_than: Annotated[float, typer.Option("--older-than", metavar="DAYS", help="Age of what is removed.")],
+    executions: Annotated[bool, typer.Option("--executions", help="Also the recordings of executions.")] = False,
+    dry_run: Annotated[bool, typer.Option("--dry-run", help="Only say what would be removed.")] = False,
+    config: Config = None,
+    data: Data = None,
+) -> None:
+    """Remove what doctor and restore have set aside, and no demonstration. Stop the service first."""
+    from teachpath.offline.pruning import prune as removed
+
+    settings = settings_of(config, data)
+    for path in removed(Path(settings.store.data_dir), older_than, dry_run=dry_run, executions=executions):
+        print(path)

@@ -12,10 +12,10 @@ from alembic.script.revision import ResolutionError
 from alembic.util import CommandError
 from sqlalchemy import Connection, Engine, create_engine, event, func, select
 from sqlalchemy.engine import ExceptionContext
-from sqlalchemy.exc import DBAPIError
+from sqlalchemy.exc import ArgumentError, DBAPIError
 from sqlalchemy.orm import Session
 
-from teachpath.errors import StorageUnavailable
+from teachpath.errors import StorageUnavailable, UnusableSettings
 from teachpath.io.store.faults import database_fault, refused_by_server
 
 BUSY_TIMEOUT: Final = 5.0  # [s] for which one who writes waits for another
@@ -28,9 +28,10 @@ def open_engine(url: str) -> Engine:
     StorageUnavailable or Conflict.
 
     Raises:
+        UnusableSettings: `url` is none, or its driver is not installed.
         StorageUnavailable: the database cannot be opened, is damaged, or was made by a newer teachpath.
     """
-    engine = create_engine(url)
+    engine = _engine_of(url)
     event.listen(engine, "handle_error", _explain)
     if engine.dialect.name == "sqlite":
         event.listen(engine, "connect", _tune_sqlite)
@@ -45,6 +46,20 @@ def open_engine(url: str) -> Engine:
         engine.dispose()
         raise
     return engine
+
+
+def _engine_of(url: str) -> Engine:
+    try:
+        return create_engine(url)
+    except ModuleNotFoundError as error:
+        raise UnusableSettings(
+            f"the setting store.database needs {error.name}, which is not installed; for PostgreSQL: pip install "
+            "'teachpath[postgres]'"
+        ) from None
+    except ArgumentError:
+        raise UnusableSettings(
+            "the setting store.database is no URL of a database, e.g. postgresql+psycopg://user@host/teachpath"
+        ) from None
 
 
 def lock_name(session: Session, kind: str, name: str) -> None:

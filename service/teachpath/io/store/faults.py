@@ -7,7 +7,7 @@ import os
 import sqlite3
 from typing import Final
 
-from sqlalchemy.exc import DataError, DBAPIError, IntegrityError
+from sqlalchemy.exc import DataError, DBAPIError, IntegrityError, InterfaceError, OperationalError
 
 from teachpath.errors import Conflict, StorageFull, StorageUnavailable, TeachpathError, UnusableInput
 
@@ -16,6 +16,7 @@ FREE_SPACE: Final = "free space, then try again"
 RESTORE: Final = (
     "restore a backup (teachpath restore), or make the rows anew from the recordings: teachpath doctor --rebuild"
 )
+DISK_FULL: Final = "53100"  # SQLSTATE
 FULL: Final = frozenset({errno.ENOSPC, errno.EDQUOT, errno.EFBIG})
 REFUSED: Final = {
     errno.EROFS: "mount it for writing, or name another folder with --data",
@@ -69,7 +70,9 @@ def database_fault(error: BaseException, url: str) -> TeachpathError | None:
         return UnusableInput(f"the database cannot keep this: {_first_line(cause)}; leave out what is no text")
     if isinstance(cause, sqlite3.Error):
         return _sqlite_fault(cause, url)
-    if isinstance(error, DBAPIError) and error.connection_invalidated:
+    if getattr(cause, "sqlstate", "") == DISK_FULL:
+        return StorageFull(f"{url}: the disk of the database is full; {FREE_SPACE}")
+    if isinstance(error, (OperationalError, InterfaceError)):
         return StorageUnavailable(f"the database {url} does not answer ({_first_line(cause)}); is its server running?")
     return None
 

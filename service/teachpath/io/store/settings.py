@@ -11,5 +11,5 @@ class StoreSettings:
 
     # folder of the database and the recordings; made when missing
     data_dir: str = "teachpath-data"
-    # SQLAlchemy URL; empty: SQLite in data_dir
+    # SQLAlchemy URL, e.g. postgresql+psycopg://user@host/teachpath; empty: SQLite in data_dir
     database: str = ""

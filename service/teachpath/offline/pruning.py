@@ -1,0 +1,53 @@
+"""What may be removed to make room, and only when somebody says so: no demonstration, row or recording of one."""
+
+from __future__ import annotations
+
+import shutil
+import time
+from pathlib import Path
+from typing import Final
+
+from teachpath.errors import UnusableInput
+from teachpath.io.store.database_files import ASIDE as DATABASE_ASIDE
+from teachpath.io.store.database_files import DATABASE
+from teachpath.io.store.recordings import RECORDINGS
+from teachpath.offline.backup import ASIDE, EXECUTIONS
+from teachpath.offline.file_faults import COPY
+from teachpath.offline.lock import StationLock
+from teachpath.offline.row_faults import DAMAGED
+from teachpath.offline.torn_recordings import SALVAGED
+
+DAY: Final = 86_400.0  # [s]
+
+
+def prune(data: Path, days: float, *, dry_run: bool = False, executions: bool = False) -> list[Path]:
+    """Remove what is older than so many days and return it: what the doctor and a restore have set aside.
+
+    Args:
+        data: folder of the station's data.
+        days: age by which a file was written last; at least 0.
+        dry_run: only return what would be removed.
+        executions: also the recordings of executions.
+
+    Raises:
+        Conflict: the service is running.
+        UnusableInput: a negative age.
+    """
+    if not days >= 0.0:
+        raise UnusableInput(f"an age of {days:g} days is under 0")
+    with StationLock(data):
+        found = [file for ending in (SALVAGED, COPY, DAMAGED) for file in (data / RECORDINGS).glob(f"*/*{ending}*")]
+        found += [
+            *(data / EXECUTIONS).glob("*.torn"),
+            *data.glob(f"{ASIDE}-*"),
+            *data.glob(f"{DATABASE}{DATABASE_ASIDE}*"),
+        ]
+        found += (data / EXECUTIONS).glob("*.mcap") if executions else ()
+        before = time.time() - days * DAY
+        old = sorted(path for path in found if path.stat().st_mtime <= before)
+        for path in () if dry_run else old:
+            if path.is_dir():
+                shutil.rmtree(path)
+            else:
+                path.unlink()
+    return old
