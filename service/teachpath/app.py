@@ -34,7 +34,7 @@ from teachpath.live.state_poller import Poll, StatePoller
 from teachpath.motion.arm.geometry import visual_solids
 from teachpath.motion.planning.signature import SigningKey
 from teachpath.offline.exporter import Exporter, ExportSource
-from teachpath.offline.leftovers import TRANSFERS, remove_leftovers
+from teachpath.offline.leftovers import TRANSFERS, note_unnamed, remove_leftovers
 from teachpath.offline.lock import StationLock
 from teachpath.offline.transfer_folders import TransferFolders
 from teachpath.recorder.annotations import Annotations
@@ -96,8 +96,7 @@ class Station:
         self._state_poller = StatePoller(self.event_hub, self._polls())
 
     def __enter__(self) -> Station:
-        if unfinished := self.store.recordings.unfinished():
-            log.warning("%d recordings were cut off; look at them with: teachpath doctor", len(unfinished))
+        note_unnamed(self.store)
         try:
             self.preview.start()
             self.guidance.start()

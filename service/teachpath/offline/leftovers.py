@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import shutil
 from collections.abc import Collection
 from contextlib import suppress
@@ -10,6 +11,9 @@ from typing import Final
 
 from teachpath.io.store.faults import TEMPORARY
 from teachpath.io.store.motions import MENDING
+from teachpath.io.store.store import Store
+
+log = logging.getLogger("teachpath")
 
 REPAIRS: Final = "repairs"  # folder in which the doctor makes recordings
 TRANSFERS: Final = "transfers"  # folder of uploads and exports
@@ -35,6 +39,16 @@ def remove_leftovers(data_dir: Path, kept_transfers: Collection[str]) -> None:
     for path in find_leftovers(data_dir, kept_transfers):
         with suppress(OSError):
             remove_leftover(path)
+
+
+def note_unnamed(store: Store) -> None:
+    """Let health say of recordings that no row names, as after a database was lost, and log the torn ones."""
+    named, recordings = store.checks.named_recordings(), store.recordings
+    unnamed = sum(recordings.place(file) not in named for file in recordings.finished())
+    if unfinished := len(recordings.unfinished()):
+        log.warning("%d recordings were cut off; look at them with: teachpath doctor", unfinished)
+    if unnamed:
+        store.health.note_lost(f"{unnamed} recordings have no row; stop the service and run: teachpath doctor")
 
 
 def remove_leftover(path: Path) -> None:

@@ -19,6 +19,7 @@ from teachpath.io.store.recordings import RecordingHeader, Recordings, amended, 
 from teachpath.offline.exporting import export_demonstrations
 from teachpath.offline.findings import ExitCode, FaultKind, exit_code
 from teachpath.offline.learning_job import StoredDemonstrations
+from teachpath.offline.leftovers import note_unnamed
 from teachpath.offline.recording_checks import inspect
 from teachpath.records import Calibration, Demonstration
 from tests.unit.offline.damage import (
@@ -301,3 +302,16 @@ def test_an_amended_copy_states_what_is_in_it(whole: bytes, data: Path, tmp_path
     file.write_bytes(amended(whole, row))
     assert find_contradiction(file.read_bytes(), [sample.sequence for sample in salvage(file)[1]]) == ""
     assert '"mark":"good"' in read_facts(file)["demonstration"]
+
+
+def test_a_service_says_that_it_has_recordings_without_rows(template: Path, tmp_path: Path) -> None:
+    data = tmp_path / "data"
+    shutil.copytree(template, data)
+    with opened(data) as store:
+        note_unnamed(store)
+        assert store.health.faults() == []
+    for file in data.glob("teachpath.sqlite*"):
+        file.unlink()
+    with opened(data) as store:
+        note_unnamed(store)
+        assert store.health.faults() == ["3 recordings have no row; stop the service and run: teachpath doctor"]

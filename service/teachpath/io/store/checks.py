@@ -30,6 +30,11 @@ class Checks:
             f"row {row} of {table} names a row of {parent} that is not there" for table, row, parent, _ in orphans
         ]
 
+    def named_recordings(self) -> set[str]:
+        """Return the places of the recordings that rows name."""
+        with Session(self._engine) as session:
+            return set(session.scalars(select(DemonstrationRow.document["recording"].as_string())))
+
     def demonstrations(self) -> Iterator[tuple[str, Demonstration | str]]:
         """Yield all demonstrations by their ids, those of a task in their order; why, where a row says nothing."""
         question = select(DemonstrationRow).order_by(DemonstrationRow.task, DemonstrationRow.number)
