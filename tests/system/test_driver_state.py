@@ -1,5 +1,7 @@
 """A driver of an arm tells its state: the page shows it, and motion that nobody asked for waits for somebody's word."""
 
+import os
+import signal
 import threading
 from collections.abc import Iterator
 from pathlib import Path
@@ -74,7 +76,13 @@ def test_the_page_shows_what_the_driver_says_and_motion_nobody_asked_for_is_ackn
             station.begin_teleoperation("glove", scene="empty")
         arm.get_by_role("button", name="acknowledge").wait_for()
         wait_until(lambda: any("rests again" in entry.answer for entry in station.journal()), "the arm rests")
-        assert unasked_motion(service)  # to rest is not enough
+        (executor,) = service.find("teachpath executor")
+        os.kill(executor, signal.SIGKILL)
+        wait_until(lambda: service.find("teachpath executor") not in ([], [executor]), "another executor is started")
+        station.wait_for_arm(timeout=HANG)
+        with pytest.raises(ClientError, match="although no execution is under way"):
+            station.begin_teleoperation("glove", scene="empty")
+        assert unasked_motion(service)  # neither rest nor another executor is enough
         arm.get_by_role("button", name="acknowledge").click()
         wait_until(lambda: not unasked_motion(service), "it is acknowledged")
         arm.get_by_role("button", name="acknowledge").wait_for(state="hidden")

@@ -160,7 +160,9 @@ class Executions:
             Unreachable: the executor does not answer.
         """
         command = Command(CommandVerb.ACKNOWLEDGE, lease=lease, who=who)
-        return decode_status(self._bus.ask(self._keys.executor_command, _message(command)))
+        status = decode_status(self._bus.ask(self._keys.executor_command, _message(command)))
+        self._monitor.unacknowledged = ""
+        return status
 
     def stop_one(self, execution: str, *, lease: str = "", who: str = "") -> Execution:
         """Stop an execution, and return it when the executor's status shows that it ends or has ended.
@@ -219,6 +221,8 @@ class Executions:
         return self._monitor.page(wanted)
 
     def _start_execution(self, command: Command, header: MotionHeader) -> Execution:
+        if self._monitor.unacknowledged:
+            raise Conflict(self._monitor.unacknowledged)
         key, plan = command.execution, header.plan.id if header.plan else None
         starting = ExecutorStatus(execution=key, state=ExecutorState.STARTING, override=command.override)
         self._monitor.track(key, plan, starting)

@@ -29,6 +29,9 @@ class ExecutorMonitor:
 
     Args:
         on_status: called with each status, on a thread of the bus.
+
+    Attributes:
+        unacknowledged: that the arm moved unasked, as an executor said that died before somebody acknowledged it.
     """
 
     def __init__(
@@ -38,6 +41,7 @@ class ExecutorMonitor:
         self._keys = keys
         self._store = store
         self._on_status = on_status
+        self.unacknowledged = ""
         self._lock = threading.Lock()
         self._latest: ExecutorStatus | None = None
         self._received_at = -SILENCE_TIMEOUT  # [s, monotonic]
@@ -106,6 +110,7 @@ class ExecutorMonitor:
     def end_lost(self, cause: str) -> None:
         """End every execution that is under way as faulted, because the executor died of `cause`."""
         self._received_at = -SILENCE_TIMEOUT  # nothing was heard of the next executor yet
+        self.unacknowledged = (self._latest.unasked_motion if self._latest else "") or self.unacknowledged
         self._end_as_faulted(f"the executor died ({cause}); look where the arm stands, then start again")
 
     def _end_as_faulted(self, reason: str) -> None:
@@ -121,6 +126,8 @@ class ExecutorMonitor:
     def _receive_status(self, _: str, payload: bytes) -> None:
         with suppress(UnusableInput):
             status = decode_status(payload)
+            if self.unacknowledged and not status.unasked_motion:  # the present executor knows nothing of it
+                status = replace(status, unasked_motion=self.unacknowledged)
             with self._lock:
                 if status.execution in self._lost:
                     return  # sent before the executor died

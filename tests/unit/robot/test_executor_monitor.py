@@ -67,6 +67,20 @@ def test_the_death_of_the_executor_ends_what_was_under_way(
     assert monitor.status == ExecutorStatus()
 
 
+def test_motion_nobody_asked_for_stays_unacknowledged_when_the_executor_dies(
+    bus: MemoryBus, monitor: ExecutorMonitor
+) -> None:
+    publish(bus, ExecutorStatus(unasked_motion="the arm moved"))
+    monitor.end_lost("killed by signal 9, Killed")
+    publish(bus, ExecutorStatus())  # of the executor that was started in its place
+    assert monitor.status == ExecutorStatus(unasked_motion="the arm moved")
+    monitor.end_lost("killed by signal 9, Killed")  # that one, too
+    assert monitor.unacknowledged == "the arm moved"
+    monitor.unacknowledged = ""  # somebody acknowledges it
+    publish(bus, ExecutorStatus())
+    assert monitor.status == ExecutorStatus()
+
+
 def test_an_execution_that_has_ended_keeps_its_end(bus: MemoryBus, monitor: ExecutorMonitor, store: Store) -> None:
     begin(monitor)
     ended = ExecutorStatus("e1", ExecutorState.ENDED, "stopped by Ada")
