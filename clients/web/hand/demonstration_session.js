@@ -50,6 +50,7 @@ export class DemonstrationSession {
    */
   constructor({ overlay, view }, scene, task, { onChange, onError }) {
     this.overlay = overlay;
+    this.scene = scene;
     this.task = task;
     this.onChange = onChange;
     this.onError = onError;
@@ -192,11 +193,20 @@ export class DemonstrationSession {
       if (this.phase !== "judging") return;
       if (demonstrations.length > this.demonstrations.length) {
         this.demonstrations = demonstrations;
+        await this.#findObject();
         this.#returnObject("");
       } else if (this.#phaseTime > ASSESSMENT_TIMEOUT) this.#returnObject(await this.#recorderNote());
     } catch {
       // the connection's state says so already, and it is asked again
     }
+  }
+
+  /** The next demonstration begins where the object lies then; it may have been told to lie elsewhere. */
+  async #findObject() {
+    if (!this.scene.carried) return;
+    /** @type {{position: Point}} */
+    const { position } = await get(resourcePath("scenes", this.scene.name, "object"));
+    this.handModel.home = position;
   }
 
   /** Why the recorder has made no demonstration. */

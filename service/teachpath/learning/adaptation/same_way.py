@@ -17,7 +17,7 @@ from teachpath.learning.resampling import arc_lengths
 from teachpath.lengths import describe_length
 from teachpath.records import Array
 
-USUAL_SHAPE_SCATTER = 0.05  # mean distance of two shapes of one way between different ends, as share of the path length
+USUAL_SHAPE_SCATTER = 0.07  # mean distance of two shapes of one way between different ends, as share of the path length
 
 
 def labels_of_ways(courses: Array, start: Array, goal: Array, *, min_separation: float) -> Labels:
