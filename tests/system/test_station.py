@@ -195,8 +195,8 @@ def test_a_taken_endpoint_is_said(service: Service, tmp_path: Path) -> None:
         pytest.param(" ", "the first line must be", id="blank"),
         pytest.param("t,x,y,z\n", "no samples under the header", id="header only"),
         pytest.param("t,x,y,z\n0,0,0,0\n0.02,0.1", "line 3: 2 values", id="cut off"),
-        pytest.param("t,x,y,z\n0,0,0,0\n0.02,nan,0,0\n", "not finite", id="not a number"),
-        pytest.param("t,x,y,z\n0,0,0,0\n0.02,0,0,0\n", "2 samples are under the least", id="too short"),
+        pytest.param("t,x,y,z\n0,0.1,0,0\n0.02,nan,0,0\n", "1 of its 2 samples are tracked", id="not a number"),
+        pytest.param("t,x,y,z\n0,0.1,0,0\n0.02,0.2,0,0\n", "2 samples are under the least", id="too short"),
     ],
 )
 def test_a_file_that_cannot_be_used_is_refused_and_nothing_stored(

@@ -209,11 +209,11 @@ def _check(samples: list[Sample], settings: RecordingSettings, setup: RecordingS
             f"{segmenter.hint or 'the hand closes nowhere'}; check units and calibration, import it as a new task "
             "whose object lies where the hand grasps, or use a scene without an object (empty)"
         )
+    if longest < settings.shortest_transport:
+        raise UnusableRecording(f"{where}: {longest} samples are under the least of {settings.shortest_transport}")
     moved = float(np.ptp([mapped(sample.position) for sample in samples if sample.tracked], axis=0).max())
     if moved <= settings.lift:
         raise UnusableRecording(
             f"{where}: the hand moves by {100 * moved:.2g} cm, limit {100 * settings.lift:.2g} cm (recording.lift): it "
             "carries nothing; are the units right?"
         )
-    if longest < settings.shortest_transport:
-        raise UnusableRecording(f"{where}: {longest} samples are under the least of {settings.shortest_transport}")

@@ -82,7 +82,8 @@ def _check_size(positions: Array, where: str) -> None:
 
 
 def _check_quaternions(orientations: Array, tracked: Booleans, where: str) -> None:
-    norms = np.where(tracked, np.linalg.norm(np.where(tracked[:, None], orientations, 0.0), axis=1), 1.0)
+    with np.errstate(over="ignore"):  # a damaged one may be as long as numbers go
+        norms = np.where(tracked, np.linalg.norm(np.where(tracked[:, None], orientations, 0.0), axis=1), 1.0)
     worst = int(np.argmax(np.abs(norms - 1.0)))
     if not math.isclose(float(norms[worst]), 1.0, abs_tol=UNIT_TOLERANCE):
         raise UnusableRecording(
