@@ -9,25 +9,28 @@ import time
 import numba
 import numpy as np
 
+from teachpath.learning.clustering.average_linkage import MAX_SCIPY_DEMONSTRATIONS
 from teachpath.learning.clustering.distances import pairwise_distances
 from teachpath.learning.clustering.kernels import _mean_distances, blocks_of
 from teachpath.learning.clustering.subsampled_clustering import cluster_paths
+from teachpath.learning.learn import learn
 from teachpath.learning.selection.default_mode import select
 from teachpath.learning.settings import LearningSettings
 from teachpath.records import Array, Trajectory
 from tests.bench.report import Figure, against
+from tests.unit.learning import synthetic
 
 POINTS = 150
 
 
 def measure(*, quick: bool) -> list[Figure]:
     """Return the figures of clustering 10,000 and 25,000 demonstrations, and of selecting among 600."""
-    sizes = (3000, 21_000, 60) if quick else (10_000, 25_000, 600)
+    sizes = (3000, 21_000, 60, 300, 300) if quick else (10_000, 25_000, 600, 1000, 10_000)
     values = {}
-    for part, size in zip(("pairs", "crowd", "selection"), sizes, strict=True):
+    for part, size in zip(("pairs", "crowd", "selection", "whole", "very_many"), sizes, strict=True):
         command = [sys.executable, "-m", "tests.bench.learning_scale", part, str(size)]
         values |= json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout)
-    many, crowd, chosen = sizes
+    many, crowd, chosen, whole, very_many = sizes
     return [
         against(
             f"distances of {many:,} x {POINTS}", [values["pairs"]], "sample pairs/s",
@@ -40,6 +43,9 @@ def measure(*, quick: bool) -> list[Figure]:
         Figure("  its memory", (values["crowd_memory"],), "GB"),
         Figure(f"selecting among {chosen} of one way", (values["selection"],), "s"),
         against("  longest wait for a cancel", [values["selection_wait"]], "s", name="limit", value=1.0),
+        against(f"learning {whole:,} x {POINTS} whole", [values["whole"]], "s", name="limit", value=3.0),
+        against(f"learning {very_many:,} x {POINTS} whole", [values["very_many"]], "s", name="limit", value=25.0),
+        against("  its memory", [values["very_many_memory"]], "GB", name="limit", value=2.0),
     ]  # fmt: skip
 
 
@@ -127,6 +133,27 @@ def selection(count: int) -> dict[str, float]:
     select(1, members, LearningSettings(), on_step=waits)
     waits()
     return {"selection": time.perf_counter() - began, "selection_wait": waits.longest}
+
+
+def whole(count: int) -> dict[str, float]:
+    """Measure all of learning: clustering, selection and fitting of three ways."""
+    rng = np.random.default_rng(1)
+    shown = {
+        str(i): synthetic.demonstration(rng, synthetic.WAYS[i % 3], duration=(POINTS - 1) * synthetic.PERIOD)
+        for i in range(count)
+    }
+    learn(dict(list(shown.items())[: MAX_SCIPY_DEMONSTRATIONS + 10]), LearningSettings())  # compiles
+    began = time.perf_counter()
+    learned = learn(shown, LearningSettings())
+    seconds = time.perf_counter() - began
+    assert len(learned.paths) == 3
+    return {"whole": seconds, "whole_memory": memory()}
+
+
+def very_many(count: int) -> dict[str, float]:
+    """Measure the same under other names."""
+    found = whole(count)
+    return {"very_many": found["whole"], "very_many_memory": found["whole_memory"]}
 
 
 def memory() -> float:

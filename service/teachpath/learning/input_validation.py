@@ -14,6 +14,15 @@ MIN_DISTINCT_POINTS = 5
 MIN_EXTENT = 1e-3  # m, extent below which a hand has not moved
 
 
+def set_aside_motionless(demonstrations: Mapping[str, Trajectory]) -> tuple[dict[str, Trajectory], list[str]]:
+    """Return the demonstrations that move, and a sentence about each of the others; all, if none moves."""
+    moving = {name: each for name, each in demonstrations.items() if not _is_motionless(each)}
+    if not moving:
+        return dict(demonstrations), []
+    still = [name for name in demonstrations if name not in moving]
+    return moving, [f"demonstration {name} {_stillness(demonstrations[name])} and is left out" for name in still]
+
+
 def validate(demonstrations: Mapping[str, Trajectory]) -> None:
     """Refuse a set of demonstrations that no path can be learned from.
 
@@ -42,8 +51,24 @@ def _fault(trajectory: Trajectory) -> str:
     distinct = len(np.unique(positions, axis=0))
     if distinct < MIN_DISTINCT_POINTS:
         return f"has {distinct} distinct points, needs {MIN_DISTINCT_POINTS}"
-    extent = float(np.linalg.norm(np.ptp(positions, axis=0)))
-    if extent < MIN_EXTENT:
-        told, needed = describe_lengths(extent, MIN_EXTENT)
-        return f"moves only {told}, needs {needed}"
-    return ""
+    return _stillness(trajectory) if _extent(trajectory) < MIN_EXTENT else ""
+
+
+def _is_motionless(trajectory: Trajectory) -> bool:
+    positions = trajectory.positions
+    sound = (
+        positions.ndim == 2 and positions.shape[1] == 3 and len(positions) > 0 and bool(np.isfinite(positions).all())
+    )
+    return sound and _extent(trajectory) < MIN_EXTENT
+
+
+def _extent(trajectory: Trajectory) -> float:
+    return float(np.linalg.norm(np.ptp(trajectory.positions, axis=0)))
+
+
+def _stillness(trajectory: Trajectory) -> str:
+    extent = _extent(trajectory)
+    if extent == 0:
+        return "does not move"
+    told, needed = describe_lengths(extent, MIN_EXTENT)
+    return f"moves only {told}, needs {needed}"

@@ -15,7 +15,7 @@ from teachpath.learning.clustering.incomplete import Stop, describe
 from teachpath.learning.clustering.partition import Partition
 from teachpath.learning.clustering.subsampled_clustering import cluster_paths
 from teachpath.learning.fitting.synthesis import fit_mean_path, fit_pooled_points
-from teachpath.learning.input_validation import validate
+from teachpath.learning.input_validation import set_aside_motionless, validate
 from teachpath.learning.resampling import arc_lengths, at_equal_arc_length, smoothed, undersampled
 from teachpath.learning.selection.default_mode import select, step_count
 from teachpath.learning.selection.paper_mode import paper_step_count, select_as_paper
@@ -36,6 +36,7 @@ def learn(
 
     The same demonstrations, settings and library versions give the same result to the last bit. Clusters are
     numbered from 1 in the order of their first members; paths come in the order of the clusters, without id and run.
+    In mode default a demonstration that does not move is left out with a note: it must not hold up the others.
 
     Args:
         demonstrations: id -> trajectory, in listed order.
@@ -45,17 +46,19 @@ def learn(
     Raises:
         LearningFailed: a demonstration cannot be used, or a path cannot keep the error bound.
     """
-    validate(demonstrations)
-    progress(0.0, f"comparing {len(demonstrations)} demonstrations")
+    moving, told = set_aside_motionless(demonstrations) if settings.mode == "default" else (demonstrations, [])
+    validate(moving)
+    progress(0.0, f"comparing {len(moving)} demonstrations")
     metric = metric_of(settings)
-    courses, length = comparable_paths(demonstrations, metric, settings.seed, Subprogress(progress, 0.0, 0.05))
+    courses, length = comparable_paths(moving, metric, settings.seed, Subprogress(progress, 0.0, 0.05))
     ends = common_ends(courses, settings, length)
     if ends is None:
         comparing = Subprogress(progress, 0.05, 0.2)
         grouping = cluster_paths(courses, settings, length=length, metric=metric, progress=comparing)
     else:
         grouping = ends.partition(settings, metric)
-    return learn_partition(demonstrations, courses, grouping, ends, settings, Subprogress(progress, 0.2, 1.0))
+    learned = learn_partition(moving, courses, grouping, ends, settings, Subprogress(progress, 0.2, 1.0))
+    return replace(learned, notes=(*learned.notes, *told))
 
 
 def metric_of(settings: LearningSettings) -> str:

@@ -127,6 +127,19 @@ def spoilt(kind: str) -> Trajectory:
     ],
 )
 def test_an_unusable_demonstration_is_named(settings: LearningSettings, kind: str, sentence: str) -> None:
+    still = kind in ("still", "trembling") and settings.mode == "default"  # which is refused alone only
+    shown = {**({} if still else synthetic.experiment_2(1)), "take-7": spoilt(kind)}
     with pytest.raises(LearningFailed, match=rf"take-7 .*{sentence}") as refused:
-        learn({**synthetic.experiment_2(1), "take-7": spoilt(kind)}, settings)
+        learn(shown, settings)
     assert refused.value.demonstration == "take-7"
+
+
+@pytest.mark.parametrize("kind", ["still", "trembling"])
+def test_one_that_does_not_move_is_left_out_and_told(kind: str) -> None:
+    five = synthetic.experiment_2(1)
+    learned = learn({**five, "take-7": spoilt(kind)}, LearningSettings(repeats=0))
+    assert learned.demonstrations == tuple(five)
+    assert any(note.startswith("demonstration take-7") and "left out" in note for note in learned.notes)
+    np.testing.assert_array_equal(
+        learned.paths[0].curve.control_points, learn(five, LearningSettings(repeats=0)).paths[0].curve.control_points
+    )
