@@ -118,8 +118,10 @@ def add_content_faults(take: SegmentedTake, settings: RecordingSettings) -> tupl
     if span[0] == span[1]:
         return take.statistics, tuple(sorted(foreign))
     carried = ordered[slice(*span)]
-    found = find_outliers(carried, to_world(take.calibration, np.array([s.position for s in carried])), settings)
     repeated = find_repeated_readings(ordered, *span)
+    stale = set(repeated.indices)  # without them, the reading after one is a step over the time it took, and no leap
+    measured = [s for k, s in enumerate(carried, span[0]) if k not in stale]
+    found = find_outliers(measured, to_world(take.calibration, np.array([s.position for s in measured])), settings)
     flaps = find_grip_flaps(take.samples, take.cut, settings)
     statistics = replace(
         take.statistics,

@@ -145,3 +145,13 @@ def test_a_hand_that_does_not_move_is_no_demonstration(store: Store) -> None:
     rows[:, 1:] = rows[0, 1:]
     with pytest.raises(UnusableRecording, match="the hand moves by 0 cm"):
         imported(store, table(rows))
+
+
+def test_a_reading_that_repeats_at_speed_is_no_leap(store: Store) -> None:
+    k = np.arange(60)
+    x = 0.025 * k - 0.7
+    x[31:] += 0.025  # the reading before took the time of two
+    x[30], y = x[29], 0.001 * k
+    y[30] = y[29]
+    row = imported(store, table(np.column_stack([0.01 * k, x, y, 0 * k + 0.5])), whole=True)
+    assert (row.verdict, row.statistics.level_shifts) == ("repaired", 0)
