@@ -26,7 +26,7 @@ from teachpath.motion.timing.timed_trajectory import TimedTrajectory
 
 MIN_OVERRIDE: Final = 0.01  # a smaller override holds
 MAX_RAMPS_PER_PERIOD: Final = 20  # ramps to another rate that are judged in one control period at most
-MAX_SHORTER_RAMPS: Final = 20  # the same to the rate that the present ramp leads to
+MAX_SHORTER_RAMPS: Final = 8  # the same to the rate that the present ramp leads to
 MAX_REVERSE_RATE: Final = 0.96  # of the way back: a plan has its margins on the other side (see `limit_margins`)
 MAX_STOPS: Final = 3  # stops that are judged in one period at most
 MAX_STOP_PERIODS: Final = 500  # of a stop; with none so short the present motion goes on for a while
@@ -83,6 +83,7 @@ class Governor:
         self._ramp_periods, self._ramp_end, self._done = 1, 0.0, 1
         self._trial = np.zeros(8)
         self._stop = np.zeros((MAX_STOP_PERIODS, 3))  # states of a stop
+        self._uses = np.zeros(MAX_STOP_PERIODS)
         self._stop_periods: int | None = None  # of the one from the present state, once that was searched for
         self._motion = np.zeros((3, 7))
         kernels.evaluate_motion(self._table, self._step, self._state, self._motion)
@@ -231,8 +232,12 @@ class Governor:
         given = (self._table, self._step, state, sent, self._limits, self._dt)
         if periods := find_stop(*given, self._max_rate, MAX_STOPS, self._stop):
             return int(periods)
-        found = self._find_ramp(0.0, state, sent, np.inf)
-        return ramp_following.sample_ramp(self._trial, self._dt, self._stop) if found else 0
+        if not self._find_ramp(0.0, state, sent, np.inf):
+            return 0
+        periods = ramp_following.sample_ramp(self._trial, self._dt, self._stop)
+        # A player reads the states as a spline, which differs from the phases where these begin within a period.
+        joined = (state, self._stop, periods, sent, self._limits, self._dt, self._uses)
+        return periods if periods and ramp_checks.check_states(self._table, self._step, *joined) else 0
 
     def _change_rate(self, target: float, within: float) -> None:
         trial, state = self._trial, self._state
