@@ -259,7 +259,8 @@ class Governor:
         given = (self._table, self._step, state, target, sent, self._limits, self._dt)
         peak = -1.0
         if within == np.inf:
-            peak = find_ramp(*given, within, MAX_RAMPS_PER_PERIOD, self._max_rate, self._trial)
+            longest = MAX_STOP_PERIODS * self._dt if target == 0.0 else np.inf
+            peak = find_ramp(*given, longest, MAX_RAMPS_PER_PERIOD, self._max_rate, self._trial)
             if peak < 0.0:
                 return False
             within = float(self._trial[3:6].sum())
