@@ -16,7 +16,7 @@ from teachpath.recorder.recording_setup import RecordingSetup
 from teachpath.recorder.session import RecordingSession
 from teachpath.recording.advice import ending_advice
 from teachpath.recording.settings import RecordingSettings
-from teachpath.records import Calibration, Demonstration, Scene, TaughtPoint, Vector
+from teachpath.records import Calibration, Demonstration, Scene, TaughtPoint, Vector, Verdict
 from tests.unit.recording.hands import demonstration
 
 IDENTITY, EMPTY = Calibration("identity"), Scene("empty")
@@ -114,7 +114,7 @@ def test_a_conversion_judges_again_and_forgives_no_other_fault(store: Store) -> 
     before = recorded(store, newest.measure("lab", shifted((0.0, 0.0, 0.0))).calibration)
     fault = "the tracker has gone in mid-take"
     advice = ending_advice(fault, rejected=False)
-    torn = store.change_demonstration(before.id, verdict="repaired", reasons=(fault,), advice=advice)
+    torn = store.change_demonstration(before.id, verdict=Verdict.REPAIRED, reasons=(fault,), advice=advice)
     newest.measure("lab", [replace(p, world=(p.world[0] + 5.0, *p.world[1:])) for p in shifted((0.0, 0.0, 0.0))])
     (outside,) = newest.convert([torn])
     assert outside.verdict == "reject"
