@@ -54,7 +54,8 @@ def check_torn_files(examination: Examination) -> None:
         if (inspection := examination.inspect(part)) is None:
             continue
         place = examination.store.recordings.place(part)
-        owner = examination.rows.get(part.name.partition(".")[0])
+        key = inspection.stated.id if inspection.stated else part.name.partition(".")[0]
+        owner = examination.rows.get(key)
         if inspection.header is None:
             fault = f"nothing could be read ({inspection.fault})"
             examination.report(FaultKind.TORN, place, fault, partial(_set_aside, inspection, SALVAGED))

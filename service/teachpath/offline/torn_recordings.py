@@ -27,8 +27,8 @@ def repair(
 ) -> list[str]:
     """Make demonstrations of what can be read of a recording, and return their ids; the torn file is kept, renamed.
 
-    They are made in a folder beside, and taken over with their rows in one transaction. Their ids follow from the torn
-    file, so that a repair that was cut off is repeated without making one twice.
+    They are made in a folder beside, and taken over with their rows in one transaction. Their ids follow from what
+    is in it, so that a repair that was cut off is repeated without making one twice.
     """
     folder = data_dir / REPAIRS
     shutil.rmtree(folder, ignore_errors=True)
@@ -63,7 +63,7 @@ def _demonstrations(
     scratch = Store(StoreSettings(data_dir=str(folder), database="sqlite://"))
     try:
         scratch.ensure_task(header.task, scene=scene.name, calibration=header.calibration.name)
-        new_id = derived_ids(f"{torn.file.name} {torn.digest.sha256}")
+        new_id = derived_ids(torn.digest.sha256)
         setup = RecordingSetup(
             header.task,
             header.tracker,

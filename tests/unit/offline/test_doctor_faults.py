@@ -159,6 +159,17 @@ def test_a_copy_of_a_recording_is_set_aside(data: Path) -> None:
     assert sorted(f.name for f in file.parent.glob("*.copy")) == ["demo-2.mcap.part.copy", "demo-9.mcap.copy"]
 
 
+def test_copies_under_the_name_of_a_torn_recording_make_no_second_demonstration(template: Path, tmp_path: Path) -> None:
+    data = tmp_path / "data"
+    shutil.copytree(template, data)
+    (torn,) = data.rglob("*.part")
+    shutil.copy(torn, torn.with_name("other.mcap.part"))
+    shutil.copy(file_of(data, make_row("demo-1")), torn.with_name("third.mcap.part"))
+    examined(data)
+    assert len(rows_of(data)) == 4
+    assert contradictions(data) == []
+
+
 def test_two_rows_of_one_recording_are_told(data: Path) -> None:
     rows = rows_of(data)
     file_of(data, rows[2]).unlink()
