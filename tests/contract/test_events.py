@@ -65,7 +65,7 @@ def test_a_listener_is_first_told_to_read_everything(served: Served) -> None:
 
 def test_every_kind_of_change_is_told_to_all_who_listen(served: Served) -> None:
     with served.listen() as one, served.listen() as other:
-        served.call("PUT", "/tasks/told", json={"scene": "paper"})
+        served.call("PUT", "/tasks/told", json={"scene": "empty"})
         assert until(one, "tasks", "told")["sequence"] == until(other, "tasks", "told")["sequence"]
         served.call("POST", "/tasks/told/demonstrations", content=csv(120, step=0.002))
         made = until(one, "demonstrations")["id"]

@@ -69,4 +69,4 @@ def test_recordings_that_are_not_there_are_said(start: Start, tmp_path: Path) ->
 def test_recordings_that_are_cut_off_are_said(start: Start, tmp_path: Path) -> None:
     torn = tmp_path / "torn.npy"
     torn.write_bytes(b"\x93NUMPY\x01\x00v\x00{'descr': '<f8', 'fortran_order': False, 'shape': (9, 100, 7), }")
-    assert_refused(start("--once", "--recordings", str(torn)), "torn.npy: not a whole .npy array")
+    assert_refused(start("--once", "--recordings", str(torn)), "torn.npy: not a whole file of format robottasks")

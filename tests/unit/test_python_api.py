@@ -126,8 +126,10 @@ def test_a_town_is_not_learned_nor_planned() -> None:
 
 def test_too_short_and_too_still_is_refused_by_name() -> None:
     with pytest.raises(teachpath.LearningFailed, match="demonstration 2 has 3 distinct points, needs 5") as failed:
-        teachpath.learn([shown(0.1), shown(0.1)[:3]])
+        teachpath.learn([shown(0.1), shown(0.1)[::20][:3]])
     assert failed.value.demonstration == "2"
+    one = teachpath.learn([shown(0.1), shown(0.1)[:3]])  # one that does not move keeps nobody from learning
+    assert one.notes == ("demonstration 2 moves only 0.41 mm, needs 1 mm and is left out",)
     with pytest.raises(teachpath.LearningFailed, match="demonstration still has 1 distinct points"):
         teachpath.learn({"still": np.ones((50, 3))})
     with pytest.raises(teachpath.LearningFailed, match="no demonstration to learn from"):

@@ -31,14 +31,14 @@ Show = Callable[[float, str], None]
 
 @contextmanager
 def progress_bar(title: str) -> Iterator[Show]:
-    """Show a bar on the terminal's error stream; yields `show(fraction, sentence)`."""
+    """Show a bar on the error stream where that is a terminal; yields `show(fraction, sentence)`."""
     columns = (
         TextColumn("{task.description:<10}"),
         BarColumn(),
         TextColumn("{task.fields[what]}"),
         TimeElapsedColumn(),
     )
-    with Progress(*columns, console=console) as bar:
+    with Progress(*columns, console=console, disable=not console.is_terminal) as bar:
         row = bar.add_task(title, total=1.0, what="")
         yield lambda fraction, what: bar.update(row, completed=fraction, what=what)
 

@@ -29,8 +29,8 @@ MAX_RAMPS_PER_PERIOD: Final = 20  # ramps to another rate that are judged in one
 MAX_SHORTER_RAMPS: Final = 8  # the same to the rate that the present ramp leads to
 MAX_REVERSE_RATE: Final = 0.96  # of the way back: a plan has its margins on the other side (see `limit_margins`)
 MAX_STOPS: Final = 3  # stops that are judged in one period at most
-MAX_STOP_PERIODS: Final = 150  # of a stop; with none so short the present motion goes on for a while
-STOP_LEADS: Final = (4,)  # periods for which it goes on
+MAX_STOP_PERIODS: Final = 500  # of a stop; with none so short the present motion goes on for a while
+STOP_LEADS: Final = (1, 4, 16, 64)  # periods for which it goes on
 MAX_PERIODS: Final = 5000  # of a ramp, and of a way to rest where nothing but the end of the trajectory is one
 
 
@@ -259,8 +259,7 @@ class Governor:
         given = (self._table, self._step, state, target, sent, self._limits, self._dt)
         peak = -1.0
         if within == np.inf:
-            longest = MAX_STOP_PERIODS * self._dt if target == 0.0 else np.inf
-            peak = find_ramp(*given, longest, MAX_RAMPS_PER_PERIOD, self._max_rate, self._trial)
+            peak = find_ramp(*given, within, MAX_RAMPS_PER_PERIOD, self._max_rate, self._trial)
             if peak < 0.0:
                 return False
             within = float(self._trial[3:6].sum())
