@@ -44,11 +44,18 @@ def browser() -> Iterator[Any]:
         browser.close()
 
 
+# System tests in which no arm moves and no page is drawn: they may run beside another one.
+UNDEMANDING = {
+    f"tests/system/test_{name}.py" for name in ("broken_storage", "crashes", "devices", "evaluate", "kill", "lines")
+}
+
+
 class SystemBesideTheRest(LoadScopeScheduling):
     """One worker runs the system tests, one after the other, while others run whole modules of the rest."""
 
     def _split_scope(self, nodeid: str) -> str:
-        return "tests/system" if nodeid.startswith("tests/system/") else nodeid.partition("::")[0]
+        module = nodeid.partition("::")[0]
+        return "tests/system" if module.startswith("tests/system/") and module not in UNDEMANDING else module
 
 
 def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> SystemBesideTheRest:

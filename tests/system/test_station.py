@@ -192,7 +192,7 @@ def test_a_taken_endpoint_is_said(service: Service, tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "sentence"),
     [
-        pytest.param(" ", "the first line must be", id="blank"),
+        pytest.param(" ", "there are no samples in it", id="blank"),
         pytest.param("t,x,y,z\n", "no samples under the header", id="header only"),
         pytest.param("t,x,y,z\n0,0,0,0\n0.02,0.1", "line 3: 2 values", id="cut off"),
         pytest.param("t,x,y,z\n0,0.1,0,0\n0.02,nan,0,0\n", "1 of its 2 samples are tracked", id="not a number"),

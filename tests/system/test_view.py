@@ -158,10 +158,14 @@ class Visit:
             self.page.add_init_script(script)
         self.said: list[str] = []
         self.page.on("console", lambda message: self.said.append(f"{message.type}: {message.text}"))
-        self.page.on("response", lambda answer: answer.ok or self.said.append(f"{answer.status}: {answer.url}"))
+        self.page.on("response", self._on_response)
         self.page.on("pageerror", lambda error: self.said.append(f"error: {error}"))
         self.page.goto(address)
         self.page.wait_for_selector("html[data-scene=ready]", state="attached")
+
+    def _on_response(self, answer: Any) -> None:
+        if not answer.ok and answer.status != 304:  # what has not changed since the last visit is no fault
+            self.said.append(f"{answer.status}: {answer.url}")
 
     def paths(self) -> list[str]:
         return list(self.page.evaluate("teachpath.objectPaths()"))
