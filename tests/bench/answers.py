@@ -58,8 +58,6 @@ def measure(tracks: list[TimedTrajectory], dt: float, *, runs: int) -> list[Figu
 def _run(track: TimedTrajectory, dt: float, command: Commands, rng: np.random.Generator, found: Answers) -> None:
     """Add the answers to random commands; whatever comes to rest before its answer needs none."""
     governor = Governor(track, dt, override=rng.uniform(0.05, 1.0))
-    sent = np.zeros((6, 6))
-    sent[0] = sent[3] = governor.motion[0, :6]
     pause, waiting = 0, None
     for _ in range(PERIODS):
         if pause == 0:
@@ -67,10 +65,8 @@ def _run(track: TimedTrajectory, dt: float, command: Commands, rng: np.random.Ge
             command(governor, rng)
             pause, waiting = int(rng.integers(10, 160)), []
         pause -= 1
-        before = governor.state, sent
+        before = governor.state, governor.sent
         governor.step()
-        sent = sent.copy()
-        ramp_checks.advance(sent, governor.motion[0], np.ones((3, 6)))
         if waiting is None:
             continue
         waiting.append(before)

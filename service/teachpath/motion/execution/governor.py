@@ -112,6 +112,11 @@ class Governor:
         return self._motion
 
     @property
+    def sent(self) -> Array:
+        """The newest setpoint and its differences (6, 6), as `ramp_checks.advance` keeps them."""
+        return self._sent.copy()
+
+    @property
     def progress(self) -> PathProgress:
         """How far the trajectory is done now."""
         tau, rate, slope = self._state
