@@ -3,12 +3,17 @@
 #   make test    check and all tests          make bench   measured figures
 #   make check   format, lint, types          make proto   regenerate the messages
 #   make experiments [ARGS=--quick]   the paper's experiments, as a report in reports/
+#   make docs    the documents as a site; the service shows it under /help
 #   make pins [ARGS=--upgrade]   choose the versions of requirements/ anew
+#   make sbom    the bill of materials in CycloneDX, in dist/
 #   make clean   remove what the above made
 SHELL  := /bin/sh
 SPEED  ?= 4
 ARGS   ?=
 BIN    := .venv/bin
+# Python keeps the bytecode of what it has loaded, also where the shell says otherwise: each process of a station or of a
+# test would compile its libraries anew, for seconds.
+export PYTHONDONTWRITEBYTECODE :=
 # Looked up once, and only where .venv has to be made. The installer is a uv that is there, else the pinned one from
 # PyPI; `make UV=` leaves the work to pip.
 PYTHON ?= $(eval PYTHON := $(shell for p in python3.13 python3.12 python3.11 python3 python; do \
@@ -20,11 +25,11 @@ READY   := .venv/.ready
 # Every file is checked against its hash, and nothing is installed that requirements/ does not name.
 PINNED  := --no-deps --require-hashes -r requirements
 
-.PHONY: demo serve test check check-page bench experiments pins proto clean setup browser
+.PHONY: demo serve test check check-page bench experiments docs pins sbom proto clean setup programs
 .DEFAULT_GOAL := help
 
 help:
-	@sed -n '1,8s/^# \{0,1\}//p' Makefile
+	@sed -n '1,10s/^# \{0,1\}//p' Makefile
 
 # An environment with pip in it, from scratch where another interpreter's stands; Debian keeps the module that makes one
 # in a package of its own.
@@ -75,15 +80,22 @@ $(PAGE_TOOLS): tools/page/package-lock.json | $(READY)
 check-page: $(PAGE_TOOLS)
 	@$(NPM) run --silent check
 
-# The browser tests need Chromium: found, installed where that is allowed, or named.
-browser:
-	@command -v chromium chromium-browser google-chrome >/dev/null 2>&1 || { \
-		if command -v apt-get >/dev/null && [ "$$(id -u)" = 0 ]; then apt-get update -q && apt-get install -y -q chromium; fi; } || true
-	@command -v chromium chromium-browser google-chrome >/dev/null 2>&1 || \
+# What tests need beside Python's packages: found, installed where that is allowed, or named.
+SEEN = PATH="$$PATH:/usr/sbin" command -v
+programs:
+	@$(SEEN) chromium chromium-browser google-chrome >/dev/null 2>&1 && $(SEEN) nginx >/dev/null 2>&1 || { \
+		if command -v apt-get >/dev/null && [ "$$(id -u)" = 0 ]; then apt-get update -q && apt-get install -y -q chromium nginx-light; fi; } || true
+	@$(SEEN) chromium chromium-browser google-chrome >/dev/null 2>&1 || \
 		echo "no Chromium found: the browser tests will be skipped; get it with: sudo apt-get install chromium"
+	@$(SEEN) postgres >/dev/null 2>&1 || ls /usr/lib/postgresql/*/bin/postgres >/dev/null 2>&1 || { \
+		if command -v apt-get >/dev/null && [ "$$(id -u)" = 0 ]; then apt-get install -y -q postgresql; fi; } || true
+	@$(SEEN) postgres >/dev/null 2>&1 || ls /usr/lib/postgresql/*/bin/postgres >/dev/null 2>&1 || \
+		echo "no PostgreSQL found: its tests will be skipped; get it with: sudo apt-get install postgresql"
+	@$(SEEN) nginx >/dev/null 2>&1 || \
+		echo "no nginx found: the tests behind a proxy will be skipped; get it with: sudo apt-get install nginx-light"
 
 # The system tests run one after the other, the rest beside them.
-test: check browser
+test: check programs
 	$(BIN)/python -m pytest -n 2 --no-loadscope-reorder $(ARGS)
 
 bench: $(READY)
@@ -91,6 +103,9 @@ bench: $(READY)
 
 experiments: $(READY)
 	@$(BIN)/python -m tests.experiments.run $(ARGS)
+
+docs: $(READY)
+	@NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build -q && echo "open service/teachpath/help/index.html, or /help of a running service"
 
 # Versions stay where they are unless ARGS says otherwise: --upgrade, or --upgrade-package NAME.
 COMPILE = $(BIN)/uv pip compile -q --universal --python-version 3.11 --fork-strategy fewest --generate-hashes \
@@ -100,11 +115,14 @@ pins: $(SERVICE)
 	$(COMPILE) --group setup -o requirements/uv.txt
 	$(COMPILE) pyproject.toml --extra service --group build -o requirements/service.txt
 	$(COMPILE) pyproject.toml --extra dev -c requirements/service.txt -o requirements/dev.txt \
-		$$(sed -n 's/^\([a-z0-9-]*\)==.*/--no-emit-package \1/p' requirements/service.txt)
+		$$(sed -n 's/^\([a-z0-9-]*\)==[^;]*$$/--no-emit-package \1/p' requirements/service.txt)
+
+sbom: $(READY)
+	@$(BIN)/python tools/bill_of_materials.py
 
 proto: $(READY)
 	cd proto && ../$(BIN)/python -m grpc_tools.protoc -I . --python_out=. --pyi_out=. teachpath_proto/tracker.proto teachpath_proto/motion.proto teachpath_proto/job.proto
 
 clean:
-	rm -rf .venv tools/page/node_modules .venv.log .mypy_cache .ruff_cache .pytest_cache .hypothesis build dist
+	rm -rf .venv tools/page/node_modules .venv.log .mypy_cache .ruff_cache .pytest_cache .hypothesis build dist service/teachpath/help
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +

@@ -1,5 +1,9 @@
-"""The browser of all tests that look at the page, a last line that says when they were left out, and no deadlines."""
+"""The browser of all tests that look at the page, a last line that says when they were left out, and no deadlines.
 
+The database server of all tests that need one, too.
+"""
+
+import importlib.util
 import os
 import shutil
 import signal
@@ -11,12 +15,19 @@ import pytest
 from hypothesis import HealthCheck, settings
 from xdist.scheduler import LoadScopeScheduling
 
+from teachpath.commands.serving import PRELOADED
+from teachpath.process_server import CONTEXT
+from tests.postgres import MISSING, Server, find_programs, serving
+
 # No example fails because the machine was busy.
 settings.register_profile("teachpath", deadline=None, suppress_health_check=[HealthCheck.too_slow])
 settings.load_profile("teachpath")
 
 # A shell ignores Ctrl-C for what it runs in the background, and all that is started from there inherits that.
 signal.signal(signal.SIGINT, signal.default_int_handler)
+
+# The processes of jobs fork from one that has loaded what they need, as a service's do; the first of them starts it.
+CONTEXT.set_forkserver_preload(list(PRELOADED))
 
 NAMES = ("chromium", "chromium-browser", "google-chrome")
 ABSENT = "no Chromium to look at the page with; get it with: sudo apt-get install chromium"
@@ -44,10 +55,23 @@ def browser() -> Iterator[Any]:
         browser.close()
 
 
+@pytest.fixture(scope="session")
+def postgres() -> Iterator[Server]:
+    """A PostgreSQL server of the tests' own."""
+    if find_programs() is None or importlib.util.find_spec("psycopg") is None:
+        pytest.skip(MISSING)
+    with serving() as server:
+        yield server
+
+
 # System tests in which no arm moves and no page is drawn: they may run beside another one.
 UNDEMANDING = {
-    f"tests/system/test_{name}.py" for name in ("broken_storage", "crashes", "devices", "evaluate", "kill", "lines")
-}
+    f"tests/system/test_{name}.py"
+    for name in (
+        "broken_storage", "crashes", "devices", "disk", "evaluate", "hands_free", "help", "kill", "lines", "other_user",
+        "recording", "several_machines", "station", "tracker_check",
+    )
+}  # fmt: skip
 
 
 class SystemBesideTheRest(LoadScopeScheduling):

@@ -53,7 +53,7 @@ ABOUT = {
 
 def main(arguments: Sequence[str] | None = None) -> None:
     """Run the client's command line."""
-    options = _parser().parse_args(arguments)
+    options = parser_of_commands().parse_args(arguments)
     logging.basicConfig(format="teachpath-client: %(message)s", level=logging.WARNING)
     try:
         options.run(options)
@@ -63,7 +63,8 @@ def main(arguments: Sequence[str] | None = None) -> None:
         sys.exit(130)
 
 
-def _parser() -> argparse.ArgumentParser:
+def parser_of_commands() -> argparse.ArgumentParser:
+    """Return what reads the command line."""
     parser = argparse.ArgumentParser(
         prog="teachpath-client",
         description="Send demonstrations to a teachpath station, as a tracker does: over Zenoh, with sequence numbers, "

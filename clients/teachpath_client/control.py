@@ -23,10 +23,11 @@ class ControlKeeper:
         url: of the station.
         name: under which everybody sees who is in control.
         on_token: called with the token of each lease, and with an empty one when control is lost.
+        token: that says who you are, where the station asks.
     """
 
-    def __init__(self, url: str, name: str, on_token: Callable[[str], object]) -> None:
-        self._rest = WorkResources(url, timeout=LEASE_DURATION)
+    def __init__(self, url: str, name: str, on_token: Callable[[str], object], *, token: str = "") -> None:
+        self._rest = WorkResources(url, timeout=LEASE_DURATION, token=token)
         self._name = name
         self._on_token = on_token
         self._stopping = threading.Event()

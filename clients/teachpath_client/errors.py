@@ -11,7 +11,10 @@ ClientError
 
 from __future__ import annotations
 
-from teachpath_client.models import Execution, Job, Refusal
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from teachpath_client.models import Execution, Job, Refusal
 
 
 class ClientError(Exception):
@@ -32,7 +35,8 @@ class Refused(ClientError):
 
     def __init__(self, status: int, refusal: Refusal) -> None:
         super().__init__(refusal.detail)
-        self.status, self.refusal = status, refusal
+        self.status: int = status
+        self.refusal: Refusal = refusal
 
 
 class NotStopped(ClientError):
@@ -44,7 +48,7 @@ class JobFailed(ClientError):
 
     def __init__(self, job: Job) -> None:
         super().__init__(f"{job.kind} {job.state}: {job.message}")
-        self.job = job
+        self.job: Job = job
 
 
 class ExecutionFaulted(ClientError):
@@ -52,7 +56,7 @@ class ExecutionFaulted(ClientError):
 
     def __init__(self, execution: Execution) -> None:
         super().__init__(f"the execution faulted: {execution.status.reason}")
-        self.execution = execution
+        self.execution: Execution = execution
 
 
 class NotInTime(ClientError):

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Self
 
 from teachpath_client.errors import Unreachable
 from teachpath_client.structuring import structured
+from teachpath_proto.authorities import trusted_authorities
 
 if TYPE_CHECKING:  # loaded when somebody listens: the command line imports this module
     from websockets.sync.client import ClientConnection
@@ -42,12 +43,15 @@ class Events:
 
     Args:
         url: of the station.
+        token: that says who you are, where the station asks.
 
     Raises:
-        Unreachable: no station answers, or it has gone.
+        Unreachable: no station answers, it has gone, or it does not let you look.
     """
 
-    def __init__(self, url: str) -> None:
+    def __init__(self, url: str, *, token: str = "") -> None:
+        self._headers = {"Authorization": f"Bearer {token}"} if token else {}
+        self._trusted = trusted_authorities(url)
         self._address = f"ws{url.removeprefix('http').rstrip('/')}/api/v1/events"
         self._stack = ExitStack()
         self._socket: ClientConnection
@@ -57,7 +61,9 @@ class Events:
         from websockets.sync.client import connect
 
         try:
-            self._socket = self._stack.enter_context(connect(self._address, proxy=None))
+            self._socket = self._stack.enter_context(
+                connect(self._address, proxy=None, additional_headers=self._headers, ssl=self._trusted)
+            )
         except (OSError, WebSocketException) as error:
             raise Unreachable(f"no events from {self._address} ({error}); start it with: teachpath serve") from None
         return self

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import socket
 from collections.abc import Callable
 from typing import Any
 
@@ -34,13 +35,17 @@ class Link:
         self, endpoint: str, *, role: Role = Role.TRACKER, login: Login | None = None, timeout: float = 10.0
     ) -> None:
         try:
-            login = login or find_login(endpoint, role)
+            found = login or find_login(endpoint, role)
         except ValueError as error:
             raise ClientError(str(error)) from None
         try:
-            self._session = open_session(joining(endpoint, login, timeout=timeout))
+            self._session = open_session(joining(endpoint, found, timeout=timeout))
         except zenoh.ZError as error:
-            raise ClientError(_unreachable(endpoint, role, login, error)) from error
+            # Logins outlast their station; who listens there now may ask for none, and refuses whoever shows one.
+            session = _open_without_login(endpoint, timeout) if found is not login else None
+            if session is None:
+                raise ClientError(_unreachable(endpoint, role, found, error)) from error
+            self._session = session
         self._publishers: list[zenoh.ext.AdvancedPublisher] = []
 
     def __enter__(self) -> Link:
@@ -81,6 +86,18 @@ class Link:
             if reply.err is not None:
                 raise ClientError(_reason(reply.err.payload.to_bytes()))
         raise ClientError(f"the station did not answer {key} within {timeout:g} s")
+
+
+def _open_without_login(endpoint: str, timeout: float) -> zenoh.Session | None:
+    protocol, _, address = endpoint.partition("/")
+    host, _, port = address.rpartition(":")
+    try:
+        if protocol == "tcp":
+            socket.create_connection((host.strip("[]"), int(port)), timeout).close()  # nobody there is known at once
+            return open_session(joining(endpoint, None, timeout=timeout))
+    except (OSError, ValueError, zenoh.ZError):
+        pass
+    return None
 
 
 def _unreachable(endpoint: str, role: Role, login: Login | None, error: Exception) -> str:

@@ -9,9 +9,13 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
+Capability = Literal["view", "demonstrate", "teach", "operate", "administer"]
+
 ExecutorState = Literal["idle", "starting", "approaching", "following", "held", "stopping", "ended", "faulted"]
 
 JobState = Literal["queued", "running", "succeeded", "failed", "cancelled"]
+
+LimitSource = Literal["model", "operator", "default"]
 
 Verdict = Literal["clean", "repaired", "reject"]
 
@@ -46,11 +50,16 @@ class Adaptation:
 class AdaptationModel:
     """What a course between other ends is computed from: the numbers of a `CourseModel`, for programs beside this one.
 
+    With the chord c from start a to goal b, its horizontal length D and direction y, and at shares u of the arc length,
+    the course is a + u c + D^0.8 sum_i w_i (R(y - yaw_i) s_i + s_i) / 2 + closeness * own + similarity * edits. The
+    weights w, and a multiplier, are `inverse` times the covariances of (D, y) with the demonstrations, and 1.
+
     Attributes:
         turns: False for closed or vertical paths, whose shapes s_i are added as they are, without D and R.
         shapes: of each demonstration (n, 3), in the axes of the world.
-        distances: of each demonstration D [m].
-        yaws: of each demonstration y [rad].
+        chords: of each demonstration (3,) [m], with its D and y.
+        length: of a typical demonstration [m].
+        places: at how many different starts or goals they were shown.
         inverse: of the kriging system.
         variance: (n,) per unit of scale and of kriging variance; None after one demonstration.
         learned: (n, 3) [m] the path as it was learned.
@@ -61,8 +70,9 @@ class AdaptationModel:
 
     turns: bool
     shapes: list[list[list[float]]]
-    distances: list[float]
-    yaws: list[float]
+    chords: list[list[float]]
+    length: float
+    places: int
     inverse: list[list[float]]
     variance: list[float] | None
     learned: list[list[float]]
@@ -73,10 +83,38 @@ class AdaptationModel:
 
 @dataclass(frozen=True)
 class Advice:
-    """What the operator of a task should do next, in words."""
+    """What the operator of a task should do next, in words.
+
+    Attributes:
+        task: name of the task.
+        sentence: what to do next.
+    """
 
     task: str
     sentence: str
+
+
+@dataclass(frozen=True)
+class ArmSummary:
+    """What a list says of an arm that is kept: its newest version, and its joints by name.
+
+    Attributes:
+        name: of the arm.
+        version: its newest, from 1.
+        hash: of the arm, as `SerialArm.hash`.
+        file: name of the model's file.
+        created_ns: when that version was kept [ns since the Unix epoch].
+        joints: from the base to the tool.
+        held: joints of the model that are no joints of the arm.
+    """
+
+    name: str
+    version: int
+    hash: str
+    file: str
+    created_ns: int
+    joints: list[str]
+    held: list[str]
 
 
 @dataclass(frozen=True)
@@ -86,7 +124,7 @@ class Assessment:
     Attributes:
         lengths: (n,) arc length of the samples [m].
         parameters: (n,) of the curve there.
-        positions: (n, 3) [m].
+        positions: (n, 3) of the path there [m, world].
         faults: (n,) what is wrong at each sample, empty when nothing.
         reach: (n,) how far the wrist is within the arm's reach [m]; negative when out of it.
         limits: (n,) how far the joints are from their nearest limit [rad]; negative beyond.
@@ -115,8 +153,47 @@ class Assessment:
 
 
 @dataclass(frozen=True)
+class AuditEntry:
+    """One entry of the audit log.
+
+    Attributes:
+        number: in the log, from 1.
+        at_ns: when it was written [ns since the Unix epoch].
+        who: did it, as the station knows it.
+        source: address or place from which it came: an IP address, `executor`, `command line`.
+        action: that was asked for.
+        answer: how it was answered.
+        previous: hash of the entry before.
+        hash: of all that stands above (SHA-256, hex).
+    """
+
+    number: int
+    at_ns: int
+    who: str
+    source: str
+    action: str
+    answer: str
+    previous: str
+    hash: str
+
+
+@dataclass(frozen=True)
 class BusSettings:
-    """Where the Zenoh session of this process meets the others."""
+    """Where the Zenoh session of this process meets the others.
+
+    Attributes:
+        endpoint: the service listens here as a Zenoh peer, workers and clients connect here; across machines
+            tls/HOST:PORT.
+        prefix: first segments of every key; one per station.
+        robot: name of the arm in its keys.
+        access_control: every role has its own login and its own keys; false lets every program that reaches the
+            endpoint do everything.
+        certificates: folder of the certificates for a tls/ endpoint, which `teachpath station certificates`
+            makes.
+        router: a Zenoh router listens at the tls/ endpoint instead of the service, configured by `teachpath
+            station router`.
+        connect_timeout: [s] how long to wait for the endpoint when connecting.
+    """
 
     endpoint: str = "tcp/127.0.0.1:7447"
     prefix: str = "teachpath/station"
@@ -129,7 +206,14 @@ class BusSettings:
 
 @dataclass(frozen=True)
 class Calibration:
-    """A named mapping to `world` from `tracker`: p_world = scale * R p_tracker + offset."""
+    """A named mapping to `world` from `tracker`: p_world = scale * R p_tracker + offset.
+
+    Attributes:
+        name: of the mapping, e.g. lab, or lab@2 for a measured version.
+        scale: metres in the world for one unit of the tracker.
+        rotation: to world from tracker, unit quaternion w, x, y, z.
+        offset: of the tracker's origin [m, world].
+    """
 
     name: str
     scale: float = 1.0
@@ -139,7 +223,22 @@ class Calibration:
 
 @dataclass(frozen=True)
 class Certificate:
-    """The proof that the arm can follow a plan; uses are shares of the limits, at most 1."""
+    """The proof that the arm can follow a plan; uses are shares of the limits, at most 1.
+
+    Attributes:
+        digest: SHA-256 over plan, certificate and arm, without the plan's id and the signature (hex).
+        branch: of the arm on the whole path, in words, e.g. righty, elbow up.
+        position_use: largest share of the joints' range.
+        velocity_use: largest share of the joints' speed limits.
+        acceleration_use: largest share of the joints' acceleration limits.
+        jerk_use: largest share of the joints' jerk limits.
+        torque_use: largest share of the motors' torque that any sequence of commands can ask for on the path.
+        least_singular: least singular value of the Jacobian.
+        clearance: least distance of arm and carried object to scene and self [m].
+        tool_speed: the most of elbow, wrist and tool centre point on the path [m/s]; None: it was made before
+            that was measured.
+        signature: None: it was made outside a station, or before stations signed.
+    """
 
     digest: str
     branch: str
@@ -159,9 +258,9 @@ class Clock:
     """The clock of a device against the host's.
 
     Attributes:
-        offset_ns: host clock minus device clock at the newest sample. It includes the minimum one-way transit time,
-            which cannot be observed without a round trip.
-        uncertainty_ns: median transit time minus the minimum.
+        offset_ns: host clock minus device clock at the newest sample [ns]. It includes the minimum one-way
+            transit time, which cannot be observed without a round trip.
+        uncertainty_ns: median transit time minus the minimum [ns].
         rate: seconds of the device's clock in one second of the host's.
     """
 
@@ -175,6 +274,7 @@ class Cluster:
     """Demonstrations that do the task alike, with their scores.
 
     Attributes:
+        index: its number in the run, from 1.
         members: ids, most consistent first.
         scores: same order as `members`.
         convergence: log-likelihood of the model after each training iteration (Fig. 4).
@@ -233,10 +333,11 @@ class Cut:
 
     Attributes:
         clusters: their number.
-        lowest, highest: heights [m] between which a cut leaves that many; None = no upper end.
+        lowest: least height of a cut that leaves that many [m].
+        highest: greatest height of a cut that leaves that many [m]; None: no upper end.
         height: halfway between them [m].
-        leaf_ranges: for each cluster, in the order of its number, the begin and end of its members in the dendrogram's
-            `leaves`; the end is excluded.
+        leaf_ranges: for each cluster, in the order of its number, the begin and end of its members in the
+            dendrogram's `leaves`; the end is excluded.
     """
 
     clusters: int
@@ -252,6 +353,31 @@ class Demonstration:
 
     The transport phase is samples[grasp:release] of the recording, or samples[trim[0]:trim[1]] when the operator has
     trimmed it.
+
+    Attributes:
+        id: of the demonstration.
+        task: name of its task.
+        number: 1, 2, ... within its task.
+        source: name of the tracker or the file.
+        calibration: under which it was recorded.
+        created_ns: when it was made [ns since the Unix epoch].
+        duration: of the transport phase [s].
+        samples: in its recording.
+        grasp: index of the first sample of the transport phase, by the recorder's own cut.
+        release: index behind its last sample.
+        verdict: clean, repaired (usable, with losses) or reject (not learned from).
+        statistics: counts of its samples.
+        recording: place of the MCAP file within the recordings.
+        reasons: why the verdict is not clean, with figures.
+        advice: what the operator should know and do about it, in one sentence.
+        left_out: numbers of the samples that jumped.
+        trim: begin and end (excluded) of the transport phase by the operator's cut, as indices of samples;
+            None: the recorder's holds.
+        mark: the operator's own: good, bad or empty for none.
+        discarded_ns: when it was discarded [ns since the Unix epoch]; 0: it is not.
+        amended_by: who marked, trimmed, discarded or restored it last, where the station asks.
+        digest: of its recording; None: it was stored before digests were.
+        object_pose: of the object before it was grasped; None: as the scene has it.
     """
 
     id: str
@@ -273,6 +399,7 @@ class Demonstration:
     trim: tuple[int, int] | None = None
     mark: str = ""
     discarded_ns: int = 0
+    amended_by: str = ""
     digest: RecordingDigest | None = None
     object_pose: ObjectPose | None = None
 
@@ -283,8 +410,10 @@ class Dendrogram:
 
     Attributes:
         demonstrations: ids in the order of their numbers in `merges`, 0 to m - 1.
-        leaves: ids from left to right; no merge crosses another, and the members of every cluster are neighbours.
-        merges: left, right, height [m] and number of members, as scipy writes them; merge i has the number m + i.
+        leaves: ids from left to right; no merge crosses another, and the members of every cluster are
+            neighbours.
+        merges: left, right, height [m] and number of members, as scipy writes them; merge i has the number m +
+            i.
         threshold: height of the run's own cut [m].
         clusters: number of clusters of the run's own cut.
         cuts: the possible cuts, from one cluster on.
@@ -300,7 +429,13 @@ class Dendrogram:
 
 @dataclass(frozen=True)
 class Deviation:
-    """Where and how a demonstration deviates most from the others of its cluster."""
+    """Where and how a demonstration deviates most from the others of its cluster.
+
+    Attributes:
+        share: begin and end as shares of the arc length, 0 to 1.
+        seconds: begin and end since the first sample [s].
+        sentence: both in words.
+    """
 
     share: tuple[float, float]
     seconds: tuple[float, float]
@@ -328,7 +463,12 @@ class Difference:
 
 @dataclass(frozen=True)
 class EditResult:
-    """A curve after an operation, and its largest distance [m] from the curve before, measured at 401 parameters."""
+    """A curve after an operation, and its largest distance [m] from the curve before, measured at 401 parameters.
+
+    Attributes:
+        curve: after the operation.
+        deviation: its largest distance from the curve before, measured at 401 parameters [m].
+    """
 
     curve: Curve
     deviation: float
@@ -336,7 +476,14 @@ class EditResult:
 
 @dataclass(frozen=True)
 class Execution:
-    """An execution as stored; `plan` is None when the arm followed a live hand."""
+    """An execution as stored; `plan` is None when the arm followed a live hand.
+
+    Attributes:
+        id: of the execution.
+        plan: id of the plan; None: the arm followed a live hand.
+        created_ns: when it was ordered [ns since the Unix epoch].
+        status: the newest of the executor.
+    """
 
     id: str
     plan: str | None
@@ -346,7 +493,36 @@ class Execution:
 
 @dataclass(frozen=True)
 class ExecutorStatus:
-    """Where an execution stands; see proto/teachpath_proto/motion.proto for the fields."""
+    """Where an execution stands; see proto/teachpath_proto/motion.proto for the fields.
+
+    Attributes:
+        execution: id of the newest execution; empty: there was none.
+        state: what it does: idle, approaching, following, held, stopping, ended or faulted.
+        reason: why it is held, stopped or faulted, in words; empty otherwise.
+        progress: share of the path's length, 0 to 1.
+        override: share of the planned speed that is asked for, 0 to 1.
+        cycles: control periods of the loop so far.
+        late: cycles that woke later than half a period.
+        missed: cycles left out because the one before took too long.
+        lateness_p50_us: median lateness of a cycle [us].
+        lateness_p99_us: 99th percentile of the lateness of a cycle [us].
+        lateness_max_us: largest lateness of a cycle [us].
+        limit_use: largest share of a joint limit used by the setpoints sent.
+        tracking_error: largest that the arm has reported [rad].
+        limit_place: where limit_use was reached, in words.
+        duration: from the first setpoint to the newest [s].
+        length: how far along the path the tool is [m].
+        activity: what the arm does, in words, e.g. on the path, closing the gripper.
+        operator: who holds control; empty: nobody.
+        asking: who asks for control; empty: nobody.
+        scheduling: whether the loop runs before all other processes, in words.
+        hand_latency_p50_us: with a live hand, median from a sample's coming to the setpoint that answers it
+            [us].
+        hand_latency_p99_us: with a live hand, 99th percentile of the same [us].
+        ending: whether it is over as soon as the arm rests, because it was stopped or given up.
+        unasked_motion: that the arm moves although nothing is under way, in words; nothing starts before
+            somebody acknowledges it.
+    """
 
     execution: str = ""
     state: ExecutorState = "idle"
@@ -376,7 +552,13 @@ class ExecutorStatus:
 
 @dataclass(frozen=True)
 class Extreme:
-    """A largest or least value on a path and where it occurs."""
+    """A largest or least value on a path and where it occurs.
+
+    Attributes:
+        value: in the unit of what it is the extreme of.
+        place: in words, e.g. joint 3 at s = 0.412 m.
+        s: arc length from the start of the path [m].
+    """
 
     value: float
     place: str
@@ -385,7 +567,16 @@ class Extreme:
 
 @dataclass(frozen=True)
 class Failure:
-    """Where a path fails: the first sample and the stretch [m], why, and what to change."""
+    """Where a path fails: the first sample and the stretch [m], why, and what to change.
+
+    Attributes:
+        fault: reach, limit, turn, singular, collision, start or end.
+        s: arc length of the first sample that fails [m].
+        interval: arc lengths between which the path fails [m].
+        position: of the path where it first fails [m, world].
+        reason: why, in words.
+        suggestion: what to change.
+    """
 
     fault: str
     s: float
@@ -401,6 +592,7 @@ class Fault:
 
     Attributes:
         place: where it is, e.g. body.override
+        fault: what is wrong with it, in words
     """
 
     place: str
@@ -408,8 +600,58 @@ class Fault:
 
 
 @dataclass(frozen=True)
+class FileReport:
+    """What was understood of a file, and what would be made of it.
+
+    Attributes:
+        file: its name.
+        format: name of its reader; empty: no reader could read it.
+        understood: what was taken for time, units, orientation, phases and frame, one phrase each.
+        columns: what the columns of a table are called; those without a name by their numbers from 1.
+        choices: bodies, markers or topics of which one is read; empty: there is no choice.
+        motions: how many there are in it.
+        unsure: numbers of those of which it is not known where the object was taken and put, from 1.
+        motion: number of the one that is shown.
+        dwell_times: where its hand dwells, when that is not known [s].
+        grasp: when its object is taken, from the beginning of the motion [s].
+        release: likewise, when it is put [s].
+        times: of its points, from its beginning [s].
+        positions: of these points [m, world].
+        made: demonstrations that would be made, with their verdicts.
+        refusal: why it cannot be imported as it is, and the way out at the command line; empty: it can.
+        question: what of it an answer would mend; null: it is another fault.
+    """
+
+    file: str
+    format: str = ""
+    understood: list[str] = field(default_factory=list)
+    columns: list[str] = field(default_factory=list)
+    choices: list[str] = field(default_factory=list)
+    motions: int = 0
+    unsure: list[int] = field(default_factory=list)
+    motion: int = 1
+    dwell_times: list[float] = field(default_factory=list)
+    grasp: float | None = None
+    release: float | None = None
+    times: list[float] = field(default_factory=list)
+    positions: list[tuple[float, float, float]] = field(default_factory=list)
+    made: list[Demonstration] = field(default_factory=list)
+    refusal: str = ""
+    question: OpenQuestion | None = None
+
+
+@dataclass(frozen=True)
 class Fit:
-    """Distances [m] of a learned path from the points that it was fitted to, and from the demonstrations."""
+    """Distances [m] of a learned path from the points that it was fitted to, and from the demonstrations.
+
+    Attributes:
+        bound: to which the fit was refined [m].
+        largest: largest distance of a fitted point from the path [m].
+        rms: root mean square of these distances [m].
+        tube: largest distance of a selected demonstration from the path [m].
+        frechet: discrete Fréchet distance from the mean path [m]; None: not measured.
+        turn: largest angle of the orientations from the mean orientations [rad]; None: the path has none.
+    """
 
     bound: float
     largest: float
@@ -424,10 +666,15 @@ class Health:
     """Which parts of a station run, and what an operator should know.
 
     Attributes:
+        version: of the service.
         uptime: since the station was opened [s].
+        bus: where the Zenoh session of the station meets the others.
         processes: of each process beside the service, whether it is `running`, `restarting` or has `ended`.
         recording: trackers that are being recorded.
         backlog: samples that wait for the recorder.
+        longest_backlog: the most samples that have waited since the station was opened.
+        trackers: that are there.
+        guidance: what the operator should do next.
         executor: None until it has said something.
         notes: in words, what needs somebody.
     """
@@ -446,15 +693,41 @@ class Health:
 
 
 @dataclass(frozen=True)
+class Identity:
+    """Who you are at a station.
+
+    Attributes:
+        mode: how it tells who asks; `none`: it does not ask.
+        name: yours; empty where it does not ask.
+        capabilities: what you may do.
+    """
+
+    mode: str
+    name: str
+    capabilities: list[Capability]
+
+
+@dataclass(frozen=True)
 class Job:
     """Background work on a task: `learn`, `recut`, `plan` or `import`.
 
     Attributes:
+        id: of the job.
+        task: name of the task.
+        kind: learn, recut, plan or import.
+        request: what was ordered, as its kind takes it.
+        state: where it stands.
+        fraction: of the work that is done, 0 to 1.
         message: what it does now, or why it failed.
         outcome: id of the run or plan that it made; of an import the numbers of the first and the last
             demonstration, e.g. `3-5`.
+        attempt: how often it was begun; a restart of the service begins it anew.
+        created_ns: when it was queued [ns since the Unix epoch].
+        finished_ns: when it ended [ns since the Unix epoch]; 0: it has not.
         failure: where a path fails that the arm cannot follow, why, and what to change.
         demonstration: id of the one because of which nothing could be learned.
+        who: ordered it, where the station asks.
+        station: that it was ordered at.
     """
 
     id: str
@@ -470,11 +743,54 @@ class Job:
     finished_ns: int
     failure: Failure | None = None
     demonstration: str = ""
+    who: str = ""
+    station: str = ""
+
+
+@dataclass(frozen=True)
+class JointGeometry:
+    """How a joint moves its link: about an axis through a point, both in the link's own frame.
+
+    Attributes:
+        name: of the joint.
+        position: of the link's frame in that of the link before, the world for the first, while the joint is at
+            0 [m].
+        orientation: likewise, unit quaternion w, x, y, z.
+        axis: unit vector about which the link turns.
+        anchor: a point on the axis [m].
+    """
+
+    name: str
+    position: tuple[float, float, float]
+    orientation: tuple[float, float, float, float]
+    axis: tuple[float, float, float]
+    anchor: tuple[float, float, float]
+
+
+@dataclass(frozen=True)
+class JointLimit:
+    """A limit of a joint, and who says so.
+
+    Attributes:
+        value: in the unit of what it limits [rad, rad/s, rad/s^2, rad/s^3 or N m].
+        source: who says so.
+    """
+
+    value: float
+    source: LimitSource
 
 
 @dataclass(frozen=True)
 class JournalEntry:
-    """Who did what to the arm, and how that was answered."""
+    """Who did what to the arm, and how that was answered.
+
+    Attributes:
+        at_ns: when it was answered [ns since the Unix epoch].
+        who: gave the command.
+        verb: what was commanded, or what happened by itself.
+        execution: id of the execution; empty: none was meant.
+        answer: done, or why it was refused or happened.
+    """
 
     at_ns: int
     who: str
@@ -488,9 +804,15 @@ class Learned:
     """The result of one learning run over a task's demonstrations.
 
     Attributes:
+        mode: of learning: default, or paper as it was published.
+        demonstrations: ids, as they are numbered in `linkage`.
         linkage: (m - 1, 4) merges as scipy writes them: left, right, height [m], size; leaves in the order of
             `demonstrations`.
         threshold: height of the cut [m].
+        clusters: the different ways in which the task was done.
+        paths: one for each cluster.
+        notes: what an operator should know of the run, in words.
+        settings: of learning, with which it was computed.
         versions: of the libraries that computed the run.
         inputs: SHA-256 of every demonstration's times, positions and orientations, by id.
     """
@@ -512,9 +834,13 @@ class LearnedPath:
     """The NURBS of one cluster: the path of the object's centre in the world.
 
     Attributes:
+        id: of the path.
+        run: id of the learning run.
+        cluster: number of the cluster in the run.
         version: see `Version`; the learned path itself is version 1.
-        curve: positions [m].
+        curve: positions of the object's centre [m, world].
         fit: None for an edited version, which follows no demonstrations.
+        note: what one should know of the fit, in words; empty: nothing.
         orientation: quaternions at the same parameter, which `nurbs.unit_quaternions` brings to unit length;
             None when not all selected demonstrations carry orientations.
         object_pose: where an adapted path takes the object; None = where the scene has it.
@@ -533,7 +859,16 @@ class LearnedPath:
 
 @dataclass(frozen=True)
 class Lease:
-    """Who is in control; `token` is told only to whom it belongs."""
+    """Who is in control; `token` is told only to whom it belongs.
+
+    Attributes:
+        holder: who is in control; empty: nobody, everybody may command.
+        expires_in: until it lapses without a beat [s].
+        hold_when_lost: whether a moving arm is held when the beats stop.
+        asking: who asks for control; empty: nobody.
+        granted_in: until the one who asks gets it, unless the holder keeps it [s].
+        token: for the header Teachpath-Lease; empty for all but the one who acquired or asked.
+    """
 
     holder: str = ""
     expires_in: float = 0.0
@@ -545,7 +880,13 @@ class Lease:
 
 @dataclass(frozen=True)
 class LinkGeometry:
-    """A link by its standard Denavit-Hartenberg parameters: a and d [m], alpha [rad]."""
+    """A link by its standard Denavit-Hartenberg parameters: a and d [m], alpha [rad].
+
+    Attributes:
+        a: length of the link along its x [m].
+        d: offset along z of the link before [m].
+        alpha: twist about its x [rad].
+    """
 
     a: float
     d: float
@@ -553,14 +894,75 @@ class LinkGeometry:
 
 
 @dataclass(frozen=True)
+class ListedPerson:
+    """Somebody who may sign in, without the password.
+
+    Attributes:
+        name: of the person.
+        roles: what the person may do.
+        created_ns: when the person was added [ns since the Unix epoch].
+        changed_ns: when the password was set [ns since the Unix epoch].
+        sessions: that have not ended.
+        used_ns: when something was asked in one of them last [ns since the Unix epoch]; 0: there is none.
+    """
+
+    name: str
+    roles: list[Capability]
+    created_ns: int
+    changed_ns: int
+    sessions: int
+    used_ns: int
+
+
+@dataclass(frozen=True)
+class ListedToken:
+    """A token, without itself; times in nanoseconds since the Unix epoch, 0: never.
+
+    Attributes:
+        name: of the program.
+        roles: what it may do.
+        created_ns: when it was made [ns since the Unix epoch].
+        expires_ns: from when on it holds no longer [ns since the Unix epoch].
+        used_ns: when it was last used, to the minute [ns since the Unix epoch]; 0: never.
+        revoked_ns: when it was revoked [ns since the Unix epoch]; 0: it was not.
+    """
+
+    name: str
+    roles: list[Capability]
+    created_ns: int
+    expires_ns: int
+    used_ns: int
+    revoked_ns: int
+
+
+@dataclass(frozen=True)
+class MadeToken:
+    """A token that was just made; it is told this once.
+
+    Attributes:
+        token: for the header Authorization, as `Bearer TOKEN`.
+        name: of the program.
+        roles: what it may do.
+        expires_ns: from when on it holds no longer [ns since the Unix epoch].
+    """
+
+    token: str
+    name: str
+    roles: list[Capability]
+    expires_ns: int
+
+
+@dataclass(frozen=True)
 class MeasuredCalibration:
     """A calibration with its origin.
 
     Attributes:
+        calibration: the mapping itself.
         version: counts up by one each time the name is measured anew; 0: it is in the settings.
         points: what it was measured with; none when it is in the settings.
         rms: of their residuals [m].
         source: the tracker that was shown them.
+        created_ns: when it was measured [ns since the Unix epoch]; 0: it is in the settings.
     """
 
     calibration: Calibration
@@ -576,12 +978,13 @@ class MotionPreview:
     """The motion at full speed from the arm's home, at even instants.
 
     Attributes:
+        plan: id of the plan.
         times: (n,) [s], from 0.
         joints: (n, 6) configurations [rad].
         progress: (n,) share of the learned path's length that is done.
-        gripper_closed: (n,)
+        gripper_closed: (n,) whether the gripper is closed.
         object_position: (n, 3) centre of the carried object [m, world]; (0, 3) when the scene has none.
-        object_orientation: (n, 4) w, x, y, z; (0, 4) when the scene has none.
+        object_orientation: (n, 4) to world from object, quaternion w, x, y, z; (0, 4) when the scene has none.
         segments: what the arm does when.
     """
 
@@ -597,10 +1000,51 @@ class MotionPreview:
 
 @dataclass(frozen=True)
 class ObjectPose:
-    """Where the object of a scene lies: its centre [m, world], and its orientation w, x, y, z."""
+    """Where the object of a scene lies: its centre [m, world], and its orientation w, x, y, z.
+
+    Attributes:
+        position: of its centre [m, world].
+        orientation: to world from object, unit quaternion w, x, y, z.
+    """
 
     position: tuple[float, float, float]
     orientation: tuple[float, float, float, float] = (1.0, 0.0, 0.0, 0.0)
+
+
+@dataclass(frozen=True)
+class OpenQuestion:
+    """What a file leaves open; the command line and the page each say in their words where to answer it.
+
+    Attributes:
+        problem: what is open, or wrong as it was read.
+        option: that answers it: columns, time, track or units.
+        values: of the option that may be right; empty: any.
+    """
+
+    problem: str
+    option: str
+    values: list[str] = field(default_factory=list)
+
+
+@dataclass(frozen=True)
+class PathSummary:
+    """A learned path as it is listed.
+
+    Attributes:
+        id: of the path.
+        task: whose demonstrations it was learned from.
+        run: id of the learning run.
+        cluster: number of the cluster in the run.
+        versions: how many there are, the learned one among them.
+        created_ns: when it was learned [ns since the Unix epoch].
+    """
+
+    id: str
+    task: str
+    run: str
+    cluster: int
+    versions: int
+    created_ns: int
 
 
 @dataclass(frozen=True)
@@ -608,6 +1052,10 @@ class Plan:
     """Path plus timing plus certificate: all that the executor needs.
 
     Attributes:
+        id: of the plan.
+        path: id of the learned path.
+        path_version: number of the path's version.
+        scene: that it was checked against.
         lengths: (n,) arc length of the nodes [m], from 0, strictly increasing.
         joints: (n, 6) configurations at the nodes [rad]; between them a quintic spline runs, on even parameters
             from 0 to 1.
@@ -618,6 +1066,7 @@ class Plan:
         above_start: (6,) configuration above the start, from where the object is grasped.
         above_goal: (6,) configuration above the goal, to where the arm retreats.
         duration: of the path at full speed [s].
+        certificate: the proof that the arm can follow it.
         tool_speed: limit of elbow, wrist and tool centre point [m/s], at any override; None: no limit.
     """
 
@@ -637,6 +1086,33 @@ class Plan:
 
 
 @dataclass(frozen=True)
+class PlanSummary:
+    """A plan as it is listed.
+
+    Attributes:
+        id: of the plan.
+        task: whose path it follows.
+        path: id of the path.
+        path_version: number of the path's version.
+        scene: name of the scene that it was checked against.
+        duration: of the path at full speed [s].
+        clearance: least distance of arm and object to scene and self [m].
+        revoked: whether its certificate was taken back.
+        created_ns: when it was made [ns since the Unix epoch].
+    """
+
+    id: str
+    task: str
+    path: str
+    path_version: int
+    scene: str
+    duration: float
+    clearance: float
+    revoked: bool
+    created_ns: int
+
+
+@dataclass(frozen=True)
 class Probe:
     """That the service lives, or is ready.
 
@@ -645,6 +1121,19 @@ class Probe:
     """
 
     version: str
+
+
+@dataclass(frozen=True)
+class ReaderName:
+    """A reader of recordings.
+
+    Attributes:
+        name: as `format` takes it
+        title: what it reads
+    """
+
+    name: str
+    title: str
 
 
 @dataclass(frozen=True)
@@ -671,16 +1160,27 @@ class RecordingReport:
     """The account of a recording: all samples that came, and all that did not; times in nanoseconds.
 
     Attributes:
+        task: name of the task.
+        tracker: name of the tracker.
         demonstrations: ids of those made so far, in order.
-        missing: first and last of the numbers that never came, of the first 20 gaps.
-        idle: samples that belong to no demonstration.
-        gaps: stretches of numbers that never came.
-        conflicts: samples whose number was taken, or contradicts their device time.
+        received: samples that came.
+        lost: numbers that never came.
+        duplicated: samples that came again.
+        reordered: samples that came after newer ones.
         late: samples that came after the demonstration they belong to was cut, which is made without them.
+        refused: samples that could not be used.
+        untracked: samples in which the tracker did not see the hand.
+        gaps: stretches of numbers that never came.
+        missing: first and last of the numbers that never came, of the first 20 gaps.
+        longest_gap_ns: longest time without a sample, device clock [ns].
+        conflicts: samples whose number was taken, or contradicts their device time.
+        clock_jumps: times that the device's clock jumped.
         declared_rate: [Hz] that the client said; 0: none.
         seen_rate: [Hz] numbers a second of the device's clock.
-        clock_offset_ns: host clock minus device clock, with the least transit in it.
+        clock_offset_ns: host clock minus device clock, with the least transit in it [ns].
+        clock_uncertainty_ns: median transit time minus the least [ns].
         clock_rate: seconds of the device's clock in one of the host's; 0: not known.
+        idle: samples that belong to no demonstration.
         phase: of the hand; empty when the recording has ended.
         state: recording, countdown, pausing, paused or lost; empty when the recording has ended.
         pedal_used: whether the pedal has been pressed in this recording.
@@ -722,17 +1222,23 @@ class RecordingReport:
 
 @dataclass(frozen=True)
 class Refusal:
-    """Why a request was refused.
+    """Why a request was refused: problem details after RFC 9457.
 
     Attributes:
+        type: the kind of the error as a URI; about:blank where there is no more to say than the status
+        title: the kind of the error in words, always the same
+        status: of HTTP
         detail: a sentence for the operator: value, limit, place, way out
-        error: kind of the error
+        error: kind of the error, a word for programs
         errors: the unusable fields of the request, at most 20, when that is the reason
         newer: the version saved meanwhile, when that is the reason
         failure: where the path fails, why, and which control point to move
         demonstration: id of the demonstration that is to blame
     """
 
+    type: str
+    title: str
+    status: int
     detail: str
     error: str
     errors: list[Fault] = field(default_factory=list)
@@ -742,20 +1248,56 @@ class Refusal:
 
 
 @dataclass(frozen=True)
+class RevoluteJoint:
+    """A joint that turns its link against the link before.
+
+    Attributes:
+        name: in the model.
+        anchor: a point on the axis, in the frame of the joint's own link [m].
+        axis: unit vector, in the same frame.
+        lower: least angle [rad].
+        upper: largest angle [rad].
+        speed: [rad/s].
+        acceleration: [rad/s^2].
+        jerk: [rad/s^3].
+        torque: of the motor, at the joint [N m].
+        armature: inertia of the motor, at the joint [kg m^2].
+        damping: viscous friction at the joint [N m s].
+        friction: Coulomb friction at the joint [N m].
+    """
+
+    name: str
+    anchor: tuple[float, float, float]
+    axis: tuple[float, float, float]
+    lower: JointLimit
+    upper: JointLimit
+    speed: JointLimit
+    acceleration: JointLimit
+    jerk: JointLimit
+    torque: JointLimit
+    armature: float = 0.0
+    damping: float = 0.0
+    friction: float = 0.0
+
+
+@dataclass(frozen=True)
 class Robot:
     """How the arm is built.
 
     Attributes:
         name: of the arm in its keys.
-        variant: the published table that its lengths and masses come from.
-        links: from the base to the wrist.
+        variant: the published table that its lengths and masses come from; of an arm that was added, its name.
+        model: SHA-256 of an arm that was added (hex); empty for a published one.
+        links: of a published arm, from the base to the wrist; empty for one that was added.
+        joints: from the base to the flange.
         lower: (6,) limits of the joints [rad].
         upper: (6,) likewise.
         speed: (6,) limits [rad/s].
         acceleration: (6,) limits [rad/s^2].
         jerk: (6,) limits [rad/s^3].
         torque: (6,) limits [N m].
-        tool_length: from the flange to the tool centre point [m].
+        tool: its pose to the flange.
+        tool_length: from where the gripper sits to the tool centre point [m]; 0: there is no gripper.
         finger_travel: of each finger [m].
         home: configuration in which the arm waits [rad].
         tool_speed: limit of elbow, wrist and tool centre point [m/s]; None: no limit.
@@ -765,13 +1307,16 @@ class Robot:
 
     name: str
     variant: str
+    model: str
     links: list[LinkGeometry]
+    joints: list[JointGeometry]
     lower: list[float]
     upper: list[float]
     speed: list[float]
     acceleration: list[float]
     jerk: list[float]
     torque: list[float]
+    tool: ToolPose
     tool_length: float
     finger_travel: float
     home: list[float]
@@ -782,7 +1327,14 @@ class Robot:
 
 @dataclass(frozen=True)
 class Run:
-    """A learning run as stored."""
+    """A learning run as stored.
+
+    Attributes:
+        id: of the run.
+        task: name of the task.
+        created_ns: when it was made [ns since the Unix epoch].
+        learned: its result.
+    """
 
     id: str
     task: str
@@ -795,7 +1347,10 @@ class RunSummary:
     """A learning run as it is listed.
 
     Attributes:
-        mode: of learning.
+        id: of the run.
+        task: name of the task.
+        created_ns: when it was made [ns since the Unix epoch].
+        mode: of learning: default, or paper as it was published.
         demonstrations: how many it learned from.
         paths: ids of the learned paths, one for each cluster.
     """
@@ -810,7 +1365,12 @@ class RunSummary:
 
 @dataclass(frozen=True)
 class SavedVersion:
-    """A version of a learned path, and the path itself."""
+    """A version of a learned path, and the path itself.
+
+    Attributes:
+        version: who saved what, and from which one.
+        path: the learned path as it is in this version.
+    """
 
     version: Version
     path: LearnedPath
@@ -824,9 +1384,12 @@ class Scene:
     `keep_out`; nothing stands in these zones, they are rules.
 
     Attributes:
+        name: of the scene.
+        obstacles: what stands there, the table among it.
+        carried: the object where it lies; None: the scene has none.
         floor: height of the floor [m, world]; the arm's foot stands at 0.
-        keep_in: boxes.
-        keep_out: shapes of any kind.
+        keep_in: boxes that arm, gripper and carried object stay inside.
+        keep_out: shapes of any kind that they stay out of.
     """
 
     name: str
@@ -842,10 +1405,13 @@ class Score:
     """The score of one demonstration in the selection of its cluster.
 
     Attributes:
+        demonstration: its id.
         log_likelihood: of its observations under the models that score it.
         rank: 1 = most consistent.
+        selected: whether the path is fitted to it.
         note: why it was not selected, or not scored.
-        margin: distance to the next in rank, in robust z in mode default, else in log-likelihood; None for the last.
+        margin: distance to the next in rank, in robust z in mode default, else in log-likelihood; None for the
+            last.
         z: its worst robust z, at most 0; 0 = consistent, None = not scored.
         stability: share of the repetitions in which it was selected; None when there were none.
         deviation: where it deviates most; None when it is consistent.
@@ -864,7 +1430,13 @@ class Score:
 
 @dataclass(frozen=True)
 class SegmentInterval:
-    """When a stretch of the motion lasts, in words and seconds."""
+    """When a stretch of the motion lasts, in words and seconds.
+
+    Attributes:
+        name: what the arm does, in words.
+        begin: from the start of the motion [s].
+        end: from the start of the motion [s].
+    """
 
     name: str
     begin: float
@@ -872,15 +1444,70 @@ class SegmentInterval:
 
 
 @dataclass(frozen=True)
+class SerialArm:
+    """An arm of six or seven revolute joints, as a user's model describes it.
+
+    Attributes:
+        name: under which it is kept.
+        links: from the base to the tool.
+        tool: its pose to the last link; z points out of the tool.
+        base: pose of the model to the world.
+        base_solids: that do not move, in the model's frame.
+        payload_mass: of what the tool carries besides the scene's object [kg].
+        payload_center: its centre of mass in the tool's frame [m].
+        held: joints of the model that are no joints of the arm (such as fingers); they rest where the model has
+            them.
+        gripper_length: from where teachpath's own gripper sits to the tool, along the tool's z [m]; 0: there is
+            none.
+    """
+
+    name: str
+    links: list[SerialLink]
+    tool: tuple[tuple[float, float, float], tuple[float, float, float, float]]
+    base: tuple[tuple[float, float, float], tuple[float, float, float, float]]
+    base_solids: list[Shape] = field(default_factory=list)
+    payload_mass: float = 0.0
+    payload_center: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    held: list[str] = field(default_factory=list)
+    gripper_length: float = 0.0
+
+
+@dataclass(frozen=True)
+class SerialLink:
+    """A link, with all that is fixed to it.
+
+    Attributes:
+        name: in the model.
+        pose: to the frame of the link before from that of this link, while the joint is at zero.
+        joint: that moves the link.
+        mass: [kg].
+        center: of mass, in the link's frame [m].
+        inertia: moments xx, yy, zz and products xy, xz, yz about the centre of mass, along the link's axes [kg
+            m^2].
+        solids: that may collide, in the link's frame.
+    """
+
+    name: str
+    pose: tuple[tuple[float, float, float], tuple[float, float, float, float]]
+    joint: RevoluteJoint
+    mass: float
+    center: tuple[float, float, float]
+    inertia: list[float]
+    solids: list[Shape]
+
+
+@dataclass(frozen=True)
 class Shape:
     """One body of a scene.
 
     Attributes:
-        kind: `box` (size: full edges x, y, z), `cylinder` (radius, height; axis along its z), `sphere` (radius) or
-            `mesh` (factor from its units to metres).
+        name: of the shape within its scene.
+        kind: `box` (size: full edges x, y, z), `cylinder` (radius, height; axis along its z), `sphere` (radius)
+            or `mesh` (factor from its units to metres).
         size: what its kind says [m].
-        position: of its centre, of a mesh its origin [m].
-        orientation: of the shape in the world.
+        position: of its centre, of a mesh its origin [m, world].
+        color: RGB in 24 bits, 0xRRGGBB.
+        orientation: to world from shape, unit quaternion w, x, y, z.
         file: OBJ or STL file of a mesh, beside the settings.
         vertices: of the mesh's convex hull, which takes its place: three a triangle, in the file's units.
     """
@@ -900,14 +1527,15 @@ class Signature:
     """What a station says with its key of a plan: that it made the plan, and what the certificate holds for.
 
     Attributes:
-        arm: name of the published variant.
-        tool_length: from the flange to the grasp point [m].
+        arm: name of the published variant; of an arm that was added, its name and the begin of its hash.
+        tool_length: from where the gripper sits to the tool centre point [m].
         settings: `motion` settings with which the plan was made.
         calibrations: of the demonstrations that the path was learned from.
         present_calibrations: the newest versions of these when the plan was made.
-        issued_ns: when the plan was made.
-        expires_ns: when the certificate holds no longer.
+        issued_ns: when the plan was made [ns since the Unix epoch].
+        expires_ns: when the certificate holds no longer [ns since the Unix epoch].
         mac: HMAC-SHA256 (hex) over the whole plan and the arm, by the station's signing key.
+        tool: its pose to the flange; None: it lies on the axis of joint 6, `tool_length` ahead of the flange.
     """
 
     arm: str
@@ -918,6 +1546,26 @@ class Signature:
     issued_ns: int
     expires_ns: int
     mac: str
+    tool: ToolPose | None = None
+
+
+@dataclass(frozen=True)
+class StoredArm:
+    """One version of an arm as it is kept.
+
+    Attributes:
+        arm: itself.
+        hash: of the arm, as `SerialArm.hash`.
+        file: name of the model's file.
+        version: of this name, from 1.
+        created_ns: when it was kept [ns since the Unix epoch].
+    """
+
+    arm: SerialArm
+    hash: str
+    file: str
+    version: int = 0
+    created_ns: int = 0
 
 
 @dataclass(frozen=True)
@@ -926,6 +1574,38 @@ class StreamStatistics:
 
     All from `outliers` to `measured_rate` are of the transport phase only. Numbers that were sent are received, less
     the duplicated and conflicting, or lost, or refused.
+
+    Attributes:
+        received: samples that came.
+        lost: numbers that never came.
+        duplicated: samples that came again.
+        reordered: came after newer ones, and were put in their place.
+        late: came after the demonstration they belong to was cut, which is made without them.
+        refused: samples that could not be used.
+        refused_numbers: first and last of the refused numbers in a row, where they can be read.
+        untracked: samples in which the tracker did not see the hand.
+        gaps: stretches of numbers that never came.
+        missing: first and last number of each of them, of the first 20.
+        longest_gap_ns: longest time without a sample, device clock [ns].
+        outliers: positions that their neighbours contradict; left out of the trajectory.
+        level_shifts: places where the position jumps and stays.
+        out_of_workspace: positions where no hand can be.
+        reversals: samples between which no hand could swing back and forth.
+        repeated: readings that repeat the one before while the hand moves; left out of the trajectory.
+        longest_freeze_ns: longest time for which one of them stood, device clock [ns].
+        freeze_at_ns: when that began, since the grasp [ns].
+        measured_rate: readings a second that differ [Hz], where some repeat; 0: none does.
+        conflicts: came with a number that was taken, or that their device time contradicts.
+        flaps: times for which the glove read open or closed too shortly for a hand, from the grasp on.
+        flap_at_ns: when the first of them was, since the grasp [ns].
+        regrasp_ns: how long the hand was open when it had let go, if it closed again at once [ns]; 0: it did
+            not.
+        clock_jumps: times that the device's clock jumped.
+        declared_rate: samples a second that the client declared [Hz]; 0: it said none.
+        seen_rate: numbers a second of the device's clock [Hz].
+        clock: of the device against the host's; None: not known.
+        notes: what an operator should know, in words.
+        dwell_times: where a hand without a glove dwells, if taking and putting are not sure [s].
     """
 
     received: int = 0
@@ -961,7 +1641,13 @@ class StreamStatistics:
 
 @dataclass(frozen=True)
 class Suggestion:
-    """What to change on a path: a control point (from 0), the move proposed for it [m], and both in a sentence."""
+    """What to change on a path: a control point (from 0), the move proposed for it [m], and both in a sentence.
+
+    Attributes:
+        control_point: its number, from 0.
+        move: proposed for it [m, world].
+        sentence: both in words.
+    """
 
     control_point: int
     move: tuple[float, float, float]
@@ -973,8 +1659,12 @@ class Task:
     """What is demonstrated: its name, its scene and the calibration of its demonstrations.
 
     Attributes:
-        object_at_grasp: whether the object lies where the hand grasps, anew in each demonstration, instead of where
-            the scene has it.
+        name: of the task, which is in its addresses.
+        scene: name of what stands around the arm.
+        calibration: name of the mapping to the world from the tracker's frame.
+        created_ns: when it was made [ns since the Unix epoch].
+        object_at_grasp: whether the object lies where the hand grasps, anew in each demonstration, instead of
+            where the scene has it.
     """
 
     name: str
@@ -986,7 +1676,13 @@ class Task:
 
 @dataclass(frozen=True)
 class TaughtPoint:
-    """One place that was shown to a tracker [m], and how far the mapping puts it from where it is [m]."""
+    """One place that was shown to a tracker [m], and how far the mapping puts it from where it is [m].
+
+    Attributes:
+        tracker: where the tracker saw the place, in its frame and units.
+        world: where the place is [m, world].
+        residual: distance between the place and where the mapping puts it [m].
+    """
 
     tracker: tuple[float, float, float]
     world: tuple[float, float, float]
@@ -1021,8 +1717,27 @@ class TimeSeries:
 
 
 @dataclass(frozen=True)
+class ToolPose:
+    """Pose of the tool to the flange: its centre point [m] and orientation; z points out of the gripper.
+
+    Attributes:
+        position: of the tool centre point [m, flange].
+        orientation: to flange from tool, unit quaternion w, x, y, z; z points out of the gripper.
+    """
+
+    position: tuple[float, float, float]
+    orientation: tuple[float, float, float, float]
+
+
+@dataclass(frozen=True)
 class Tracker:
-    """A tracker that is there."""
+    """A tracker that is there.
+
+    Attributes:
+        name: of the tracker in its keys.
+        announced: whether by a liveliness token; a tracker without one only sends.
+        silence: since its last sample [s]; negative: it has sent none.
+    """
 
     name: str
     announced: bool
@@ -1045,6 +1760,21 @@ class Trajectory:
 
 
 @dataclass(frozen=True)
+class Upload:
+    """A file that was sent and waits to be imported, for a day or until the service ends.
+
+    Attributes:
+        id: by which it is examined and imported
+        name: of the file
+        size: bytes
+    """
+
+    id: str
+    name: str
+    size: int
+
+
+@dataclass(frozen=True)
 class Version:
     """One saved version of a path; the curve is the `LearnedPath` with the same number.
 
@@ -1053,6 +1783,10 @@ class Version:
         number: from 1, in the order of saving, over all branches of a path.
         parent: number of the version that was edited; None for the learned path.
         branch: line of versions that this version continues.
+        name: what somebody called it; empty: nothing.
+        author: who edited it; empty: not said.
+        note: why, or how it was made; empty: not said.
+        created_ns: when it was saved [ns since the Unix epoch].
     """
 
     path: str

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
+from contextlib import suppress
 from typing import Any, Self, TypeVar
 
 import httpx
@@ -10,11 +11,14 @@ import httpx
 from teachpath_client.errors import ClientError, NotStopped, Refused, Unreachable
 from teachpath_client.models import Refusal
 from teachpath_client.structuring import structured
+from teachpath_proto.authorities import authorities_folder, trusted_authorities
+from teachpath_proto.tokens import checked_token, find_token
 
 T = TypeVar("T")
 
 LOCAL = "http://127.0.0.1:8765"
 LEASE_HEADER = "Teachpath-Lease"
+UNTRUSTED = "CERTIFICATE_VERIFY_FAILED"  # in the text of an error of TLS
 PAGE_SIZE = 500  # entries of a list that are asked for at a time, as many as a station gives
 STOP_TIMEOUT = 5.0  # [s] for the answer to a stop; a station that lives says within 2 s that nothing was confirmed
 
@@ -27,13 +31,26 @@ class Rest:
         timeout: [s] for an answer.
         operator: your name, for the journal.
         lease: token of the control over the arm, where somebody has taken it.
+        token: that says who you are, where the station asks; unless given, that of the variable TEACHPATH_TOKEN, or of
+            this user's file for the station (`teachpath token create --keep`).
+
+    Raises:
+        ClientError: that token cannot be used.
     """
 
-    def __init__(self, url: str = LOCAL, *, timeout: float = 60.0, operator: str = "", lease: str = "") -> None:
-        self.url = url.rstrip("/")
+    def __init__(
+        self, url: str = LOCAL, *, timeout: float = 60.0, operator: str = "", lease: str = "", token: str = ""
+    ) -> None:
+        self.url: str = url.rstrip("/")
         self._operator = operator
+        self.token: str = _token(self.url, token)
         headers = {"Teachpath-Operator": operator} if operator else {}
-        self._http = httpx.Client(base_url=f"{self.url}/api/v1", timeout=timeout, headers=headers, trust_env=False)
+        if self.token:
+            headers["Authorization"] = f"Bearer {self.token}"
+        trusted = trusted_authorities(self.url) or True
+        self._http = httpx.Client(
+            base_url=f"{self.url}/api/v1", timeout=timeout, headers=headers, verify=trusted, trust_env=False
+        )
         self.set_lease(lease)
 
     def __enter__(self) -> Self:
@@ -109,12 +126,19 @@ class Rest:
         try:
             answer = self._send("POST", resource, None, None, {}, timeout=STOP_TIMEOUT)
         except Unreachable as error:
+            if UNTRUSTED in str(error):
+                self._stop_whoever_answers(resource)
             raise NotStopped(f"NOT STOPPED: {error}; press the emergency stop of the arm") from None
         except Refused as refused:
             if refused.refusal.error == "NotStopped":
                 raise NotStopped(str(refused)) from None
             raise
         return self._record(kind, "POST", resource, answer.json())
+
+    def _stop_whoever_answers(self, resource: str) -> None:
+        """Send a stop to a station whose certificate is not trusted, without a token; its answer proves nothing."""
+        with suppress(httpx.HTTPError):
+            httpx.post(f"{self.url}/api/v1{resource}", verify=False, timeout=STOP_TIMEOUT, trust_env=False)
 
     @staticmethod
     def _record(kind: Callable[..., T], method: str, resource: str, document: Any) -> T:
@@ -123,8 +147,8 @@ class Rest:
         except ValueError as error:
             raise ClientError(f"{method} {resource}: {error}; is the station of the same version?") from None
 
-    def _download(self, resource: str) -> bytes:
-        return self._send("GET", resource, None, None, {}).content
+    def _download(self, resource: str, **query: Any) -> bytes:
+        return self._send("GET", resource, None, None, query).content
 
     def _send(
         self,
@@ -141,14 +165,31 @@ class Rest:
         try:
             answer = self._http.request(method, resource, json=body, content=content, params=parameters, timeout=wait)
         except httpx.HTTPError as error:
-            raise Unreachable(f"no station at {self.url} ({error}); start it with: teachpath serve") from None
+            raise Unreachable(_unreachable(self.url, error)) from None
         if answer.is_error:
             raise Refused(answer.status_code, _refusal(answer))
         return answer
+
+
+def _token(url: str, given: str) -> str:
+    try:
+        return checked_token(given, "the token that was given") if given else find_token(url)
+    except ValueError as error:
+        raise ClientError(str(error)) from None
+
+
+def _unreachable(url: str, error: Exception) -> str:
+    if UNTRUSTED in str(error):
+        return (
+            f"the certificate of {url} is not trusted here ({error}); put the authority.pem of the station, which its "
+            f"page offers at /authority, into {authorities_folder()}"
+        )
+    return f"no station at {url} ({error}); start it with: teachpath serve"
 
 
 def _refusal(answer: httpx.Response) -> Refusal:
     try:
         return structured(Refusal, answer.json())
     except (ValueError, TypeError, AttributeError):
-        return Refusal(f"the station answered {answer.status_code}: {answer.text[:200]}", "")
+        sentence = f"the station answered {answer.status_code}: {answer.text[:200]}"
+        return Refusal("about:blank", answer.reason_phrase, answer.status_code, sentence, "")

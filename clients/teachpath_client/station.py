@@ -44,6 +44,7 @@ class Station(TaskResources, WorkResources):
         timeout: [s] for an answer.
         operator: your name, for the journal.
         lease: token of the control over the arm, where somebody has taken it.
+        token: that says who you are, where the station asks; see `Rest`.
     """
 
     def import_file(
@@ -133,7 +134,7 @@ class Station(TaskResources, WorkResources):
         if self._has_lease:
             yield
             return
-        keeper = ControlKeeper(self.url, self._operator or DEFAULT_OPERATOR, self.set_lease)
+        keeper = ControlKeeper(self.url, self._operator or DEFAULT_OPERATOR, self.set_lease, token=self.token)
         keeper.start()
         try:
             yield
@@ -214,7 +215,7 @@ class Station(TaskResources, WorkResources):
 
     def events(self) -> Events:
         """Return the events from now on; use them as a context manager."""
-        return Events(self.url)
+        return Events(self.url, token=self.token)
 
 
 def _has_ended(what: Job | Execution) -> bool:

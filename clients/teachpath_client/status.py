@@ -16,6 +16,7 @@ from teachpath_proto import tracker_pb2
 BELL = "\a"
 CLEAR_LINE = "\r\x1b[K"
 VERDICT_MARKS = {"clean": "+", "repaired": "~", "reject": "x"}
+VERDICT_WORDS = {"reject": "rejected"}  # others are words already
 SILENCE_TIMEOUT = 3.0  # [s] after which a station that says nothing records nothing; it speaks each second
 SILENCE_WARNING = (
     f"the station has said nothing for {SILENCE_TIMEOUT:g} s; what is shown now may not be recorded: "
@@ -89,7 +90,8 @@ class Status:
 def verdict_line(newest: tracker_pb2.DemonstrationReport) -> str:
     """Return a line about a finished take."""
     reasons = f": {newest.advice or '; '.join(newest.reasons)}" if newest.reasons else ""
-    return f"  {VERDICT_MARKS.get(newest.verdict, '?')} take {newest.number} {newest.verdict}{reasons}"
+    mark, word = VERDICT_MARKS.get(newest.verdict, "?"), VERDICT_WORDS.get(newest.verdict, newest.verdict)
+    return f"  {mark} take {newest.number} {word}{reasons}"
 
 
 def status_line(feedback: tracker_pb2.HandFeedback) -> str:

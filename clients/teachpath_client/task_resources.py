@@ -6,7 +6,9 @@ from collections.abc import Iterable, Sequence
 from typing import Any, Literal
 
 from teachpath_client.models import (
+    ArmSummary,
     Demonstration,
+    FileReport,
     Health,
     Job,
     MeasuredCalibration,
@@ -14,8 +16,10 @@ from teachpath_client.models import (
     RecordingReport,
     Robot,
     Scene,
+    StoredArm,
     Task,
     Trajectory,
+    Upload,
 )
 from teachpath_client.rest import Rest
 
@@ -51,6 +55,18 @@ class TaskResources(Rest):
         """Return how the arm is built."""
         return self._ask(Robot, "GET", "/robot")
 
+    def arms(self) -> list[Robot]:
+        """List the published arms that the station's settings may name; `robot` is the one that they name."""
+        return self._ask(list[Robot], "GET", "/arms")
+
+    def stored_arms(self) -> list[ArmSummary]:
+        """List the arms that were added from models in URDF or MJCF."""
+        return self._ask(list[ArmSummary], "GET", "/arms/stored")
+
+    def stored_arm(self, name: str) -> StoredArm:
+        """Return the newest version of an arm that was added."""
+        return self._ask(StoredArm, "GET", f"/arms/stored/{name}")
+
     def measure_calibration(
         self,
         name: str,
@@ -76,10 +92,18 @@ class TaskResources(Rest):
         return self._ask(Task, "GET", f"/tasks/{task}")
 
     def make_task(
-        self, task: str, *, scene: str = "paper", calibration: str = "identity", object_at_grasp: bool = False
+        self, task: str, *, scene: str = "", calibration: str = "", object_at_grasp: bool | None = None
     ) -> Task:
-        """Make a task; one that exists stays as it is. `object_at_grasp`: the object lies where the hand grasps."""
-        body = {"scene": scene, "calibration": calibration, "object_at_grasp": object_at_grasp}
+        """Make a task. One that exists stays as it is; it is refused (409) where it is not as asked.
+
+        Args:
+            task: its name.
+            scene: what stands around the arm; empty: paper.
+            calibration: of the tracker's frame; empty: identity.
+            object_at_grasp: whether the object lies where the hand grasps; None: it does not.
+        """
+        wanted = {"scene": scene or None, "calibration": calibration or None, "object_at_grasp": object_at_grasp}
+        body = {name: value for name, value in wanted.items() if value is not None}
         return self._ask(Task, "PUT", f"/tasks/{task}", body)
 
     def demonstrations(self, task: str) -> list[Demonstration]:
@@ -95,6 +119,22 @@ class TaskResources(Rest):
             options: name, format (csv, npy, robottasks or mcap), units, rate, scene, calibration, object_at_grasp.
         """
         return self._ask(Job, "POST", f"/tasks/{task}/demonstrations", content=content, **options)
+
+    def upload(self, content: bytes, name: str) -> Upload:
+        """Send a file that is to be examined and imported with others."""
+        return self._ask(Upload, "POST", "/uploads", content=content, name=name)
+
+    def examine(self, upload: str, task: str, **choices: Any) -> FileReport:
+        """Say what is understood of an upload, and what would be made of it in a task.
+
+        Args:
+            choices: name, format, units, time, rate, columns, quaternion, track, grasp, release, whole.
+        """
+        return self._ask(FileReport, "POST", f"/uploads/{upload}/examination", {"task": task, "file": choices})
+
+    def begin_imports(self, task: str, files: Iterable[dict[str, Any]], **options: Any) -> Job:
+        """Queue the import of uploads, all of them or none; each of `files` has `upload` and choices as `examine`."""
+        return self._ask(Job, "POST", f"/tasks/{task}/imports", {"files": list(files)} | options)
 
     def amend(
         self,

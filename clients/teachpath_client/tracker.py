@@ -47,7 +47,7 @@ class Tracker:
     ) -> None:
         if not is_name(name):
             raise ClientError(name_refusal("tracker", name))
-        self.name = name
+        self.name: str = name
         self._link, self._keys = link, Keys(prefix)
         self._clock, self._sleep = clock, sleep
         self._publisher = link.publisher(self._keys.samples(name))

@@ -16,7 +16,9 @@ from teachpath_client.models import (
     LearnedPath,
     Lease,
     MotionPreview,
+    PathSummary,
     Plan,
+    PlanSummary,
     Run,
     RunSummary,
     SavedVersion,
@@ -41,9 +43,9 @@ class WorkResources(Rest):
         """Queue the planning of a path, in its newest version on the main branch or another one."""
         return self._ask(Job, "POST", f"/paths/{path}/plans", {"version": version})
 
-    def jobs(self, task: str) -> list[Job]:
-        """List a task's jobs, newest first."""
-        return self._list(Job, f"/tasks/{task}/jobs")
+    def jobs(self, task: str = "", *, limit: int | None = None) -> list[Job]:
+        """List a task's jobs, or all, newest first, or the newest `limit` of them."""
+        return self._list(Job, _of_task("jobs", task), limit)
 
     def get_job(self, job: str) -> Job:
         """Return one job."""
@@ -53,9 +55,9 @@ class WorkResources(Rest):
         """Cancel a queued or running job."""
         return self._ask(Job, "POST", f"/jobs/{job}/cancel")
 
-    def runs(self, task: str, *, limit: int | None = None) -> list[RunSummary]:
-        """List a task's learning runs, newest first, or the newest `limit` of them."""
-        return self._list(RunSummary, f"/tasks/{task}/runs", limit)
+    def runs(self, task: str = "", *, limit: int | None = None) -> list[RunSummary]:
+        """List a task's learning runs, or all, newest first, or the newest `limit` of them."""
+        return self._list(RunSummary, _of_task("runs", task), limit)
 
     def newest_run(self, task: str) -> Run | None:
         """Return a task's newest learning run; None: nothing was learned of it yet."""
@@ -70,6 +72,10 @@ class WorkResources(Rest):
         return self._ask(Dendrogram, "GET", f"/tasks/{task}/runs/{run}/dendrogram")
 
     # paths and plans
+
+    def paths(self, task: str = "", *, limit: int | None = None) -> list[PathSummary]:
+        """List a task's learned paths, or all, newest first, or the newest `limit` of them."""
+        return self._list(PathSummary, "/paths", limit, **({"task": task} if task else {}))
 
     def get_path(self, path: str) -> LearnedPath:
         """Return the newest version of a path on its main branch."""
@@ -100,6 +106,10 @@ class WorkResources(Rest):
         """Return how far the second of two versions lies from the first."""
         return self._ask(Difference, "GET", f"/paths/{path}/versions/{first}/difference/{second}")
 
+    def plan_summaries(self, task: str = "", *, limit: int | None = None) -> list[PlanSummary]:
+        """List the plans of a task, or all, newest first, without what they hold, or the newest `limit` of them."""
+        return self._list(PlanSummary, "/plans", limit, **({"task": task} if task else {}))
+
     def plans(self, path: str, *, limit: int | None = None) -> list[Plan]:
         """List a path's plans, newest first, or the newest `limit` of them."""
         return self._list(Plan, f"/paths/{path}/plans", limit)
@@ -111,6 +121,16 @@ class WorkResources(Rest):
     def preview(self, plan: str) -> MotionPreview:
         """Return the whole motion of a plan at full speed; nothing moves."""
         return self._ask(MotionPreview, "GET", f"/plans/{plan}/motion")
+
+    def program(self, plan: str, format: str = "csv", *, rate: float | None = None) -> bytes:
+        """Return the motion of a plan as a file of another program; only a plan whose certificate holds leaves.
+
+        Args:
+            plan: id of a plan.
+            format: csv, json, cdr, mcap, urscript, rapid, krl or ls.
+            rate: instants a second [Hz]; None: as the format usually has.
+        """
+        return self._download(f"/plans/{plan}/program", **_wanted(format, rate))
 
     # executions
 
@@ -172,6 +192,10 @@ class WorkResources(Rest):
         """Return all that was sent and done in an execution as an MCAP file."""
         return self._download(f"/executions/{execution}/recording")
 
+    def executed_program(self, execution: str, format: str = "csv", *, rate: float | None = None) -> bytes:
+        """Return what the arm was sent in an execution that has ended, as a file of another program (see `program`)."""
+        return self._download(f"/executions/{execution}/program", **_wanted(format, rate))
+
     def get_lease(self) -> Lease:
         """Return who is in control of the arm; with an empty `holder` everybody may command."""
         return self._ask(Lease, "GET", "/lease")
@@ -195,3 +219,12 @@ class WorkResources(Rest):
     def journal(self, execution: str = "", *, limit: int = 100) -> list[JournalEntry]:
         """List the newest entries of who did what to the arm, newest first."""
         return self._list(JournalEntry, "/journal", limit, execution=execution)
+
+
+def _wanted(format: str, rate: float | None) -> dict[str, Any]:
+    return {"format": format} | ({} if rate is None else {"rate": rate})
+
+
+def _of_task(kind: str, task: str) -> str:
+    """Return the list of a task, or of all where none is named."""
+    return f"/tasks/{task}/{kind}" if task else f"/{kind}"

@@ -18,6 +18,7 @@ export class ApiError extends Error {
   }
 }
 
+const KEEP_TIME = 60_000; // [ms] that a file is kept for the browser to save it
 const PAGE_SIZE = 500; // entries of a list that are asked for at a time, as many as the service gives
 
 /** @param {string} path */
@@ -58,15 +59,47 @@ export const put = (path, body = {}) => call("PUT", path, body);
 /** @param {string} path @param {object} body */
 export const patch = (path, body = {}) => call("PATCH", path, body);
 
+/** @param {string} path */
+export const remove = (path) => call("DELETE", path);
+
+const UPLOAD_TIMEOUT = 600_000; // [ms]
+
+/**
+ * Send a file as it is.
+ * @param {string} path
+ * @param {Blob} content
+ */
+export const upload = async (path, content) =>
+  (await request("POST", path, content, { "Content-Type": "application/octet-stream" }, UPLOAD_TIMEOUT)).document;
+
+/** The content of a file. @param {string} path */
+export const read = async (path) => (await accepted("GET", path, {}, UPLOAD_TIMEOUT)).blob();
+
 /**
  * Where a resource is, e.g. resourcePath("tasks", name, "runs"); every piece is escaped.
  * @param {...(string | number)} pieces
  */
 export const resourcePath = (...pieces) => pieces.map(encodeURIComponent).join("/");
 
-/** @param {string} path below /api/v1 */
+/** @param {string} path below /api/v1, which lies beside the modules' folder, wherever a proxy puts both */
 export function socketUrl(path) {
-  return `${location.protocol === "https:" ? "wss:" : "ws:"}//${location.host}/api/v1/${path}`;
+  const url = new URL(`../api/v1/${path}`, import.meta.url);
+  url.protocol = url.protocol === "https:" ? "wss:" : "ws:";
+  return url.href;
+}
+
+/**
+ * Let the browser save a file under the name that the service gives it.
+ * @param {string} path
+ */
+export async function download(path) {
+  const answer = await accepted("GET", path);
+  const name = answer.headers.get("Content-Disposition")?.match(/filename="([^"]+)"/)?.[1] ?? "";
+  const link = document.createElement("a");
+  link.href = URL.createObjectURL(await answer.blob());
+  link.download = name;
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), KEEP_TIME); // the browser reads it after the click
 }
 
 /**
@@ -92,13 +125,25 @@ async function call(method, path, body, further = {}, timeout = undefined) {
 async function request(method, path, body, further = {}, timeout = undefined) {
   /** @type {Record<string, string>} */
   const headers = { ...further, Accept: "application/json" };
-  if (body !== undefined) headers["Content-Type"] = "application/json";
-  const options = { headers, body: body && JSON.stringify(body) };
+  if (body !== undefined) headers["Content-Type"] ??= "application/json";
+  const content = body instanceof Blob ? body : body && JSON.stringify(body);
+  const answer = await accepted(method, path, { headers, body: content }, timeout);
+  return { answer, document: await answer.json().catch(() => null) };
+}
+
+/**
+ * @param {string} method
+ * @param {string} path
+ * @param {RequestInit} [options]
+ * @param {number} [timeout] [ms]
+ * @returns {Promise<Response>} an answer that is no refusal
+ */
+async function accepted(method, path, options = {}, timeout = undefined) {
   const answer = await send(method, path, options, timeout).catch((error) => {
     throw new ApiError(error.message);
   });
+  if (answer.ok) return answer;
   const document = await answer.json().catch(() => null);
-  if (answer.ok) return { answer, document };
   const { detail, error: kind, newer } = document ?? {};
   const unknown = `The service answered ${method} ${path} with status ${answer.status}; look into its log.`;
   throw new ApiError(detail ?? unknown, { status: answer.status, kind, newer });

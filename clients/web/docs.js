@@ -1,6 +1,6 @@
 // The REST API's documentation, from the service's own OpenAPI description; nothing is fetched from elsewhere.
 globalThis.SwaggerUIBundle({
-  url: "/openapi.json",
+  url: "openapi.json",
   dom_id: "#docs",
   deepLinking: true,
   validatorUrl: null,

@@ -5,6 +5,7 @@ import { ReconnectingSocket } from "./reconnecting_socket.js";
 import { changesAny } from "./store.js";
 
 const TASK_KEY = "task"; // the key that keeps the choice while the page is reloaded
+const PATH_KEY = "path/"; // likewise, and the name of the task
 const POLL_INTERVAL = 3000; // [ms] how often to ask while there is no WebSocket
 
 /** @typedef {import("./lists.js").ListName} ListName */
@@ -60,6 +61,7 @@ export class EventStream {
       if (changed.has("run")) this.#turnToRun(state);
       if (changesAny(changed, "runs", "selectedRun")) this.#readLatestVersions(state);
       if (changed.has("task")) this.#turnToTask(state.task);
+      else if (changed.has("path") && state.path) sessionStorage.setItem(PATH_KEY + state.task, state.path);
     });
   }
 
@@ -157,7 +159,7 @@ export class EventStream {
   #turnToTask(task) {
     sessionStorage.setItem(TASK_KEY, task);
     const nothing = { demonstrations: null, runs: null, jobs: null, selectedRun: null, latestVersions: {} };
-    this.store.set({ ...nothing, run: "", path: "", focus: null });
+    this.store.set({ ...nothing, run: "", path: sessionStorage.getItem(PATH_KEY + task) ?? "", focus: null });
     this.read(...TASK_LISTS);
   }
 

@@ -5,6 +5,7 @@ import { wayColor } from "./way_colors.js";
 
 const GREY = 0x7a8694;
 const RED = 0xd62718;
+const VIOLET = 0x8e44ad; // of what departs; red is for what is forbidden or has failed
 const GREEN = 0x2a8f5a;
 
 /** @typedef {{kind: string, size: number[], vertices?: Point[]}} Solid */
@@ -110,7 +111,7 @@ function tubeOnTop(points, radius, color) {
   const mesh = tubeMesh(points, radius, phongMaterial(color));
   mesh.material.depthTest = false;
   mesh.material.transparent = true; // drawn after all that is opaque
-  mesh.renderOrder = color === RED ? 2 : 1;
+  mesh.renderOrder = color === VIOLET ? 2 : 1;
   mesh.castShadow = false;
   return mesh;
 }
@@ -120,7 +121,7 @@ export const pathTube = (path) => tubeMesh(sampleCurve(path.curve), 0.005, phong
 
 /** @param {Point[]} trajectory @param {number[]} share from where to where it deviates, of its length */
 export const deviationTube = (trajectory, share) =>
-  tubeOnTop(slicePolyline(withoutDuplicates(trajectory), share), 0.0032, RED);
+  tubeOnTop(slicePolyline(withoutDuplicates(trajectory), share), 0.0032, VIOLET);
 
 /** @param {Point[]} trajectory @param {number | undefined} cluster */
 export const highlightTube = (trajectory, cluster) =>

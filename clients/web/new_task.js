@@ -7,6 +7,7 @@ import { isName, nameRefusal } from "./names.js";
 export function newTaskDialog(place, { store, eventStream, attempt, open }) {
   const name = element("input", { type: "text", id: "new-name", required: "", autocomplete: "off" });
   const scene = element("select", { id: "new-scene" });
+  const anywhere = element("input", { type: "checkbox", id: "new-object-at-grasp" });
   const form = element(
     "form",
     {},
@@ -16,6 +17,8 @@ export function newTaskDialog(place, { store, eventStream, attempt, open }) {
     ),
     element("p", { class: "field" }, element("label", { for: "new-name" }, "Name"), name),
     element("p", { class: "field" }, element("label", { for: "new-scene" }, "Scene"), scene),
+    element("p", { class: "field" }, element("label", {}, anywhere, " The object lies elsewhere each time")),
+    hint("Each demonstration then begins where the hand grasps it, not where the scene has it."),
     element("p", { class: "buttons" }, element("button", { type: "submit", class: "primary" }, "Make the task")),
   );
   place.append(form);
@@ -52,10 +55,11 @@ export function newTaskDialog(place, { store, eventStream, attempt, open }) {
     const wanted = name.value.trim();
     if (store.state.tasks?.some((task) => task.name === wanted))
       throw new Error(`There is a task ${wanted} already: choose it above, or give another name.`);
-    await put(resourcePath("tasks", wanted), { scene: scene.value });
+    await put(resourcePath("tasks", wanted), { scene: scene.value, object_at_grasp: anywhere.checked });
     await eventStream.read("tasks");
     if (name.value.trim() !== wanted) return; // another one is named meanwhile
     name.value = "";
+    anywhere.checked = false;
     if (!place.matches(":popover-open")) return; // it was left meanwhile
     store.set({ task: wanted });
     place.hidePopover();

@@ -11,13 +11,16 @@
 //             open(id),                 choose another tab
 //             armStop }                 stops the arm, and tries until it is confirmed (arm/stop.js)
 // A panel reads context.store.state, changes it with context.store.set(), and speaks REST through api.js.
+import { administration } from "./administration.js";
 import { post } from "./api.js";
 import { lease } from "./arm/lease.js";
 import { ArmStop } from "./arm/stop.js";
-import { closest, closestData } from "./elements.js";
+import { closest, closestData, element } from "./elements.js";
 import { eventLog } from "./event_log.js";
 import { EventStream } from "./event_stream.js";
 import { header, stopButton } from "./header.js";
+import { panelHelp } from "./help_links.js";
+import { IdentityControl, missingSentence } from "./identity.js";
 import { Messages } from "./messages.js";
 import { newTaskDialog } from "./new_task.js";
 import { panel as demonstrate } from "./panels/demonstrate.js";
@@ -32,6 +35,9 @@ import { View } from "./view.js";
 import { connectViewControls } from "./view_controls.js";
 import { feedView } from "./view_feed.js";
 
+/** What the tabs are for, as capabilities. @type {Record<string, Identity["capabilities"]>} */
+const NEEDED = { demonstrate: ["demonstrate"], ways: ["teach"], edit: ["teach"], run: ["operate"] };
+const TAB_KEY = "tab"; // chosen in this browser tab, through a reload
 const STOP_TIMEOUT = 3000; // [ms] of one try: the service says within 2 s that it has no confirmation
 
 const root = document.documentElement;
@@ -49,6 +55,20 @@ function byId(id) {
   return /** @type {HTMLElement} */ (document.getElementById(id));
 }
 
+/** @param {Identity} identity */
+function showMissing(identity) {
+  for (const [panel, place] of missing) {
+    place.textContent = missingSentence(identity, NEEDED[panel.id] ?? []);
+    place.hidden = !place.textContent;
+  }
+}
+
+/** Show the links to what the station has. @param {State["station"]} station */
+function showStation(station) {
+  byId("trust").hidden = !station?.authority;
+  for (const link of help) link.hidden = !station?.documents;
+}
+
 /**
  * The page is live when both of its WebSockets are; either may come back first.
  * @param {"connection" | "events"} which
@@ -58,6 +78,7 @@ function byId(id) {
 function showConnection(which, state, { delay = 0 }) {
   root.dataset[which] = state;
   const states = [root.dataset.connection, root.dataset.events];
+  if (state === "lost") identity.check();
   const all = states.includes("lost") ? "lost" : states.includes("connecting") ? "connecting" : "live";
   store.set({ connection: all });
   byId("connection").textContent = {
@@ -67,7 +88,9 @@ function showConnection(which, state, { delay = 0 }) {
   }[all];
 }
 
+const keptTab = sessionStorage.getItem(TAB_KEY) ?? "";
 const tabs = new Tabs(byId("tabs"), byId("panels"), (id) => {
+  sessionStorage.setItem(TAB_KEY, id);
   for (const panel of panels) panel[panel.id === id ? "show" : "hide"]?.();
 });
 const armStop = new ArmStop((path) => post(path, {}, lease.headers, STOP_TIMEOUT));
@@ -86,20 +109,36 @@ const context = {
 };
 /** @type {Panel[]} */
 const panels = [demonstrate, ways, edit, run];
-for (const panel of panels) panel.mount(tabs.add(panel.id, panel.title), context);
+/** @type {Map<Panel, HTMLElement>} what somebody may not do in a panel */
+const missing = new Map();
+const help = [byId("help")]; // links to the documents
+for (const panel of panels) {
+  const place = tabs.add(panel.id, panel.title);
+  const sentence = element("p", { class: "hint missing", hidden: "" });
+  missing.set(panel, sentence);
+  const links = panelHelp(panel.id);
+  help.push(links);
+  place.append(sentence, links);
+  panel.mount(place, context);
+}
 newTaskDialog(byId("new-task"), context);
+administration(byId("access"), byId("access-button"), context);
 eventLog(byId("events"), byId("events-button"), store);
 const taskSelect = /** @type {HTMLSelectElement} */ (byId("task"));
 const stop = /** @type {HTMLButtonElement} */ (byId("stop"));
 header(context, { task: taskSelect, control: byId("control") });
 stopButton(context, armStop, { stop, warning: byId("not-stopped") });
+const identity = new IdentityControl(context, { who: byId("identity"), signIn: byId("sign-in") });
 let mayMove = false; // also while an executor is silent that moved the arm
 store.subscribe((state, changed) => {
   if (state.executor) mayMove = activeExecution(state) !== null;
+  if (changed.has("identity")) showMissing(state.identity);
+  if (changed.has("station")) showStation(state.station);
   for (const panel of panels) panel.update(state, changed);
   sceneLayers.update(state, changed);
 });
 for (const panel of panels) panel.update(store.state, new Set(Object.keys(store.state)));
+tabs.select(keptTab);
 
 byId("panels").addEventListener("click", (event) => {
   const { open } = closestData(event, "[data-open]");
@@ -110,7 +149,7 @@ connectViewControls(view);
 addEventListener(
   "keydown",
   (event) => {
-    const isTyped = closest(event, "input[type=text], input[type=number], textarea");
+    const isTyped = closest(event, "input[type=text], input[type=number], input[type=password], textarea");
     if (event.code !== "Space" || isTyped || !mayMove) return;
     event.preventDefault();
     event.stopPropagation();
@@ -119,8 +158,11 @@ addEventListener(
   { capture: true },
 );
 
-eventStream.start((state, details) => showConnection("events", state, details));
-feedView(view, (state, details) => showConnection("connection", state, details));
+// Whoever has not signed in hears nothing: the WebSockets are opened then.
+identity.whenSeeing(() => {
+  eventStream.start((state, details) => showConnection("events", state, details));
+  feedView(view, (state, details) => showConnection("connection", state, details));
+});
 
 // What the browser tests may ask: the state, whether all of the task is drawn, paths drawn, where they are, how often
 // the view was drawn.

@@ -12,7 +12,7 @@ import {
   shapeMesh,
   spreadTube,
 } from "./meshes.js";
-import { changesAny, latestPaths, waysOfDemonstrations } from "./store.js";
+import { changesAny, latestPaths, selectedPath, waysOfDemonstrations } from "./store.js";
 import { TrajectoryCache, trimKey } from "./trajectory_cache.js";
 
 const MAX_DEMONSTRATIONS = 200; // newest demonstrations
@@ -152,6 +152,7 @@ export class SceneLayers {
    */
   #highlight(state) {
     const { focus } = state;
+    this.view.standOut(selectedPath(state)?.id ?? "");
     this.view.highlight(focus && new Set(focusNames(state, focus)));
     const points = focus?.kind === "demonstrations" ? this.trajectories.get(focus.id) : null;
     const way = focus ? waysOfDemonstrations(state).get(focus.id) : undefined;

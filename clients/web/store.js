@@ -5,15 +5,19 @@
 // runs         [summary of a run] of the task, newest first   jobs           [job] of the task, newest first
 // executions   [execution], newest first                      recordings     [report] of running recordings
 // trackers     [{name, announced}]                            guidance       {task: sentence}
-// station      {version, notes} or null                       executor       status or null when it is silent
+// station      {version, notes, authority, documents} or null executor       status or null when it is silent
 // run          id of the chosen run, "" = the newest          selectedRun    the run that is shown, null = none
-// plan         certified plan of the selected path, or null
+// plan         certified plan of the selected path, or null    identity       who uses the page, and may do what
 // path         id of the selected learned path                focus          {kind, id} under the pointer, or null;
 //                                                                     kind is demonstrations or paths
 // trajectoriesLoaded   how many trajectories of demonstrations have been read
 // latestVersions       {path id: its newest version}, of the run
 // pathSummaries        {path id: duration, clearance, reach ..., see panels/path_summaries.js}
 // Lists are null until they have been read, and stay as they were while the service is away.
+// Until the service has said who uses the page.
+/** @type {Identity} */
+const ANYBODY = { mode: "none", name: "", capabilities: ["view", "demonstrate", "teach", "operate", "administer"] };
+
 /** @type {State} */
 export const INITIAL_STATE = Object.freeze({
   connection: "connecting",
@@ -29,6 +33,7 @@ export const INITIAL_STATE = Object.freeze({
   station: null,
   executor: null,
   lease: null,
+  identity: ANYBODY,
   selectedRun: null,
   run: "",
   path: "",

@@ -14,7 +14,8 @@ const NO_ANSWER = "The service does not answer. Is it running? This page connect
 export async function send(method, path, options, timeout = REQUEST_TIMEOUT) {
   const signal = AbortSignal.timeout(timeout);
   try {
-    return await fetch(`/api/v1/${path}`, { method, signal, ...options });
+    // Modules lie under web/, beside api/, wherever a proxy puts both.
+    return await fetch(new URL(`../api/v1/${path}`, import.meta.url), { method, signal, ...options });
   } catch {
     const late = `The service has not answered for ${timeout / 1000} s; it may be busy. Try again.`;
     throw new Error(signal.aborted ? late : NO_ANSWER);

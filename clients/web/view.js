@@ -5,6 +5,7 @@ import { Overlay } from "./overlay.js";
 
 const SERVICE_OBJECTS = ["robot", "object", "hand"]; // what the service draws; the rest is the page's own
 const LAYERS = ["demonstrations", "paths", "deviations", "spread", "hand"];
+const [PALE, WEAK] = [0.16, 0.4]; // shares of the opacity: beside what is pointed at, beside what is chosen
 
 export class View {
   /**
@@ -20,6 +21,7 @@ export class View {
     this.highlightedNames = null;
     this.draws = 0;
     this.renderTime = 0; // [ms] that handing the newest draw to the graphics card took
+    this.chosenPath = ""; // id of the learned path that stands out
     /** @type {Set<string>} */
     this.dimmedKinds = new Set(); // kinds that are drawn pale, so that what is edited stands out
     this.lastDraw = 0; // [ms]
@@ -68,6 +70,16 @@ export class View {
   }
 
   /**
+   * Draw the learned path that is chosen in full while nothing is highlighted, and the others weaker.
+   * @param {string} id "": none is
+   */
+  standOut(id) {
+    if (id === this.chosenPath) return;
+    this.chosenPath = id;
+    this.refresh();
+  }
+
+  /**
    * Draw a whole kind pale, whatever is highlighted, or not any more.
    * @param {string} kind
    * @param {boolean} dimmed
@@ -86,7 +98,8 @@ export class View {
     for (const kind of ["demonstrations", "paths", "deviations", "spread"]) {
       for (const [id, node] of Object.entries(this.viewer.scene_tree.children[kind]?.children ?? {})) {
         const pale = this.highlightedNames !== null && !this.highlightedNames.has(`${kind}/${id}`);
-        dimMaterial(materialOf(node), pale || this.dimmedKinds.has(kind));
+        const isOther = kind === "paths" && this.highlightedNames === null && this.chosenPath && id !== this.chosenPath;
+        dimMaterial(materialOf(node), pale || this.dimmedKinds.has(kind) ? PALE : isOther ? WEAK : 1);
       }
     }
     this.viewer.set_dirty();
@@ -195,11 +208,11 @@ function materialOf(node) {
   return /** @type {THREE.Material | undefined} */ (drawn?.material);
 }
 
-/** @param {THREE.Material | undefined} material @param {boolean} pale */
-function dimMaterial(material, pale) {
+/** @param {THREE.Material | undefined} material @param {number} share of its opacity */
+function dimMaterial(material, share) {
   if (!material) return;
   material.userData.opacity ??= material.opacity;
-  material.opacity = material.userData.opacity * (pale ? 0.16 : 1);
+  material.opacity = material.userData.opacity * share;
   material.transparent = material.opacity < 1 || !material.depthTest;
   material.depthWrite = material.opacity === 1;
 }

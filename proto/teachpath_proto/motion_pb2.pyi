@@ -8,7 +8,7 @@ from typing import ClassVar as _ClassVar, Optional as _Optional, Union as _Union
 DESCRIPTOR: _descriptor.FileDescriptor
 
 class Setpoint(_message.Message):
-    __slots__ = ("cycle", "nominal_ns", "sent_ns", "position", "velocity", "acceleration", "gripper_closed", "execution", "on_path", "way_to_rest")
+    __slots__ = ("cycle", "nominal_ns", "sent_ns", "position", "velocity", "acceleration", "gripper_closed", "execution", "on_path", "way_to_rest", "way_to_rest_velocity", "way_to_rest_acceleration", "from_rest")
     CYCLE_FIELD_NUMBER: _ClassVar[int]
     NOMINAL_NS_FIELD_NUMBER: _ClassVar[int]
     SENT_NS_FIELD_NUMBER: _ClassVar[int]
@@ -19,6 +19,9 @@ class Setpoint(_message.Message):
     EXECUTION_FIELD_NUMBER: _ClassVar[int]
     ON_PATH_FIELD_NUMBER: _ClassVar[int]
     WAY_TO_REST_FIELD_NUMBER: _ClassVar[int]
+    WAY_TO_REST_VELOCITY_FIELD_NUMBER: _ClassVar[int]
+    WAY_TO_REST_ACCELERATION_FIELD_NUMBER: _ClassVar[int]
+    FROM_REST_FIELD_NUMBER: _ClassVar[int]
     cycle: int
     nominal_ns: int
     sent_ns: int
@@ -29,7 +32,10 @@ class Setpoint(_message.Message):
     execution: str
     on_path: bool
     way_to_rest: bytes
-    def __init__(self, cycle: _Optional[int] = ..., nominal_ns: _Optional[int] = ..., sent_ns: _Optional[int] = ..., position: _Optional[_Iterable[float]] = ..., velocity: _Optional[_Iterable[float]] = ..., acceleration: _Optional[_Iterable[float]] = ..., gripper_closed: _Optional[bool] = ..., execution: _Optional[str] = ..., on_path: _Optional[bool] = ..., way_to_rest: _Optional[bytes] = ...) -> None: ...
+    way_to_rest_velocity: bytes
+    way_to_rest_acceleration: bytes
+    from_rest: bool
+    def __init__(self, cycle: _Optional[int] = ..., nominal_ns: _Optional[int] = ..., sent_ns: _Optional[int] = ..., position: _Optional[_Iterable[float]] = ..., velocity: _Optional[_Iterable[float]] = ..., acceleration: _Optional[_Iterable[float]] = ..., gripper_closed: _Optional[bool] = ..., execution: _Optional[str] = ..., on_path: _Optional[bool] = ..., way_to_rest: _Optional[bytes] = ..., way_to_rest_velocity: _Optional[bytes] = ..., way_to_rest_acceleration: _Optional[bytes] = ..., from_rest: _Optional[bool] = ...) -> None: ...
 
 class JointState(_message.Message):
     __slots__ = ("stamp_ns", "cycle", "position", "velocity", "torque", "tracking_error", "missed", "holding", "gripper_closed", "object_position", "object_orientation", "execution", "late", "stopped", "enabled", "protective_stop", "fault", "gripper_opening")

@@ -11,7 +11,9 @@ if TYPE_CHECKING:
         Cancelled,
         Conflict,
         LearningFailed,
+        NotAllowed,
         NotFound,
+        NotSignedIn,
         NotStopped,
         Outdated,
         OverLimit,
@@ -20,19 +22,22 @@ if TYPE_CHECKING:
         StorageFull,
         StorageUnavailable,
         TeachpathError,
+        TooManyAttempts,
+        TooManyRequests,
         Unreachable,
         UnusableInput,
         UnusableRecording,
         UnusableSample,
         UnusableSettings,
     )
+    from teachpath.io.arm_models.arm_reader import read_arm
     from teachpath.learning.settings import LearningSettings
     from teachpath.motion.arm.model import Arm
     from teachpath.motion.collision.builtin_scenes import empty_scene, paper_scene
     from teachpath.motion.settings import MotionSettings
     from teachpath.nurbs import Curve
     from teachpath.python_api import learn, plan, setpoints
-    from teachpath.records import Learned, LearnedPath, Plan, Scene, Shape, Trajectory
+    from teachpath.records import Learned, LearnedPath, Plan, Scene, SerialArm, Shape, Trajectory
 
 __version__ = "0.1.0"
 
@@ -46,7 +51,9 @@ __all__ = [
     "LearningFailed",
     "LearningSettings",
     "MotionSettings",
+    "NotAllowed",
     "NotFound",
+    "NotSignedIn",
     "NotStopped",
     "Outdated",
     "OverLimit",
@@ -54,10 +61,13 @@ __all__ = [
     "Plan",
     "QueueFull",
     "Scene",
+    "SerialArm",
     "Shape",
     "StorageFull",
     "StorageUnavailable",
     "TeachpathError",
+    "TooManyAttempts",
+    "TooManyRequests",
     "Trajectory",
     "Unreachable",
     "UnusableInput",
@@ -68,6 +78,7 @@ __all__ = [
     "learn",
     "paper_scene",
     "plan",
+    "read_arm",
     "setpoints",
 ]
 
@@ -80,8 +91,9 @@ _MODULES = {
     "Curve": "nurbs",
     "learn": "python_api",
     "plan": "python_api",
+    "read_arm": "io.arm_models.arm_reader",
     "setpoints": "python_api",
-} | dict.fromkeys(("Learned", "LearnedPath", "Plan", "Scene", "Shape", "Trajectory"), "records")
+} | dict.fromkeys(("Learned", "LearnedPath", "Plan", "Scene", "SerialArm", "Shape", "Trajectory"), "records")
 
 
 def __getattr__(name: str) -> object:

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import logging
 import time
 from collections.abc import Callable
+from contextlib import ExitStack
 from dataclasses import asdict
 from datetime import UTC, datetime
 from pathlib import Path
@@ -14,21 +14,26 @@ import numpy as np
 from fastapi import FastAPI
 
 from teachpath import __version__
+from teachpath.access.access import Access
+from teachpath.access.audit import Audit
 from teachpath.api.events import events_router
+from teachpath.api.live_messages import StationState
 from teachpath.api.parts import Advice, Health, Parts
 from teachpath.api.station import build_api
 from teachpath.api.view import view_router
-from teachpath.config import Instructions, Settings, instructions
+from teachpath.config import Settings
+from teachpath.instructions import Instructions, instructions
+from teachpath.io.audit_log import AuditLog
 from teachpath.io.bus import Bus, listen_on_bus
 from teachpath.io.bus_logins import prepare_access
 from teachpath.io.signing_key import prepare_signing_key
-from teachpath.io.store.store import Store
 from teachpath.io.wire import recording_document
 from teachpath.job_kinds import JobKinds
 from teachpath.jobs.curve_assessor import CurveAssessor
 from teachpath.jobs.jobs import Jobs
 from teachpath.jobs.limited_process import LimitedProcess
 from teachpath.live.event_hub import EventHub
+from teachpath.live.preview.asset_paths import has_documents
 from teachpath.live.preview.preview import Preview
 from teachpath.live.state_poller import Poll, StatePoller
 from teachpath.motion.arm.geometry import visual_solids
@@ -36,32 +41,25 @@ from teachpath.motion.planning.signature import SigningKey
 from teachpath.offline.exporter import Exporter, ExportSource
 from teachpath.offline.leftovers import TRANSFERS, note_unnamed, remove_leftovers
 from teachpath.offline.lock import StationLock
+from teachpath.offline.staging import abandoned_notes
 from teachpath.offline.transfer_folders import TransferFolders
-from teachpath.recorder.annotations import Annotations
+from teachpath.periodic_thread import Startable
 from teachpath.recorder.calibrations import Calibrations
 from teachpath.recorder.guidance import GuidanceThread, read_course
 from teachpath.recorder.queries import RecorderQueries
 from teachpath.recorder.recorder import DemonstrationCallbacks, Lookup, Recorder
 from teachpath.recorder.websocket_trackers import WebSocketTrackers
-from teachpath.records import Array, Demonstration, Trajectory
+from teachpath.records import Array, Demonstration
 from teachpath.robot.certificate_status import CertificateStatus
 from teachpath.robot.executions import Executions
 from teachpath.robot.joint_feed import JointFeed
 from teachpath.robot.object_poses import ObjectPoses
-from teachpath.robot.processes import SupervisedProcess, attached_command
+from teachpath.robot.processes import EXECUTOR_SUGGESTION, SIMULATOR_SUGGESTION, SupervisedProcess, attached
+from teachpath.robot.programs import Programs
+from teachpath.stored_arm import open_store
+from teachpath.web.certificate import find_certificate
 from teachpath_proto.keys import Keys
 from teachpath_proto.logins import Role
-
-log = logging.getLogger("teachpath")
-
-# What an operator should do after the death of a process, as the end of a sentence.
-EXECUTOR_SUGGESTION = "its execution ended as faulted: look where the arm stands, then start again"
-SIMULATOR_SUGGESTION = "its execution ended as faulted; its arm stands at home and the object at its start: start again"
-
-
-def trajectory_of(store: Store, settings: Settings, demonstration: Demonstration) -> Trajectory:
-    """Return the object's trajectory of a stored demonstration, from its recording."""
-    return Annotations(store, settings.recording, settings.scene).trajectory(demonstration)
 
 
 class Station:
@@ -76,16 +74,18 @@ class Station:
     """
 
     def __init__(self, settings: Settings) -> None:
-        self.settings = settings
         self._lock = StationLock(Path(settings.store.data_dir))
-        self._lock.__enter__()
-        try:
+        self.event_hub = EventHub()
+        with ExitStack() as on_failure:
+            on_failure.enter_context(self._lock)
+            self.store, self.settings = open_store(settings, self.event_hub.publish_change)
+            on_failure.callback(self.store.close)
+            self.certificate = find_certificate(settings.web, settings.store.data_dir)
+            self._authority = bool(self.certificate and self.certificate.authority)
             self._signing_key = SigningKey(prepare_signing_key(settings.bus.endpoint))
             self._access = prepare_access(settings.bus)
             self.bus: Bus = listen_on_bus(settings.bus, self._access)
-        except BaseException:
-            self._lock.__exit__(None, None, None)
-            raise
+            on_failure.pop_all()
         self.keys = Keys(settings.bus.prefix)
         self._shown = ""
         self._started = time.monotonic()
@@ -98,22 +98,14 @@ class Station:
     def __enter__(self) -> Station:
         note_unnamed(self.store)
         try:
-            self.preview.start()
-            self.guidance.start()
-            self.recorder.start()
-            self._queries.start()
-            self.executions.start()
-            self.objects.start()
-            self.certificate_status.start()
-            self.joints.start()
-            self._state_poller.start()
-            for process in self.processes:
-                process.start()
+            first: tuple[Startable, ...] = (self.audit, self.access, self.preview, self.guidance, self.recorder)
+            then: tuple[Startable, ...] = (self._queries, self.executions, self.objects, self.certificate_status)
+            for part in (*first, *then, self.joints, self._state_poller, *self.processes):
+                part.start()
             remove_leftovers(Path(self.settings.store.data_dir), self.store.awaited_uploads())
             self.jobs.start()
             if tasks := self.store.tasks():
                 self._show_task(tasks[-1].name)
-                self.assessor.warm_up()
             else:
                 self.preview.show_object(self.settings.scenes[0].carried)
         except BaseException:
@@ -125,6 +117,7 @@ class Station:
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         self._state_poller.stop()
+        self.access.stop()
         self.processes[0].request_stop()
         self._queries.stop()
         self.recorder.stop()
@@ -141,19 +134,21 @@ class Station:
         self.joints.stop()
         self.preview.stop()
         self.bus.close()
+        self.audit.stop()
         self.store.close()
         self._lock.__exit__(None, None, None)
 
     def _open_recording(self) -> None:
-        """Open the store, what knows where the objects lie, and all that records."""
+        """Open what knows where the objects lie, and all that records."""
         settings = self.settings
-        self.event_hub = EventHub()
-        self.store = Store(settings.store, changed=self.event_hub.publish_change)
+        self.store.services.begin()
+        self.audit = Audit(AuditLog(Path(settings.store.data_dir)))
+        self.access = Access(settings.auth, self.store.access_tokens, self.store.people)
         self.reader = LimitedProcess(settings.jobs)
         self.calibrations = Calibrations(
             self.store, settings.recording, settings.calibrations, settings.scene, self.reader.call
         )
-        self.executions = Executions(self.bus, self.keys, self.store, robot=settings.bus.robot)
+        self.executions = Executions(self.bus, self.keys, self.store, self.audit.note_journal, robot=settings.bus.robot)
         self.objects = ObjectPoses(self.bus, self.keys, settings.scene, self.executions.is_moving, self._show_object)
         self.recorder = Recorder(
             self.bus,
@@ -184,15 +179,18 @@ class Station:
 
     def _open_robot(self) -> None:
         """Open the service's side of the arm, its picture, and the processes that move it."""
-        settings, robot = self.settings, self.settings.bus.robot
+        settings, robot, store = self.settings, self.settings.bus.robot, self.store
         self.joints = JointFeed(self.bus, self.keys, robot=robot)
         self.certificate_status = CertificateStatus(
-            self.bus, self.keys, self.store, scene=self.objects.scene, calibration=self.calibrations.newest_numbered
+            self.bus, self.keys, store, scene=self.objects.scene, calibration=self.calibrations.newest_numbered
+        )
+        self.programs = Programs(
+            store, self._signing_key, settings.motion, settings.arm, self.executions, self.reader.call, time.time_ns
         )
         self.preview = Preview(
             self.bus,
             self.keys,
-            visual_solids(settings.arm.tool_length),
+            visual_solids(settings.arm),
             arm=settings.arm,
             robot=robot,
             home=np.array(settings.motion.home),
@@ -200,15 +198,8 @@ class Station:
             settings=settings.preview,
         )
         # In the order in which they are stopped: the executor brings the arm to rest.
-        self.processes = [
-            self._process(
-                "executor",
-                Role.EXECUTOR,
-                EXECUTOR_SUGGESTION,
-                self.executions.end_lost,
-                key=self._signing_key.secret,
-            )
-        ]
+        key, on_death = self._signing_key.secret, self.executions.end_lost
+        self.processes = [self._process("executor", Role.EXECUTOR, EXECUTOR_SUGGESTION, on_death, key=key)]
         if settings.simulator.start:
             self.processes.append(self._process("simulator", Role.ROBOT, SIMULATOR_SUGGESTION))
 
@@ -223,7 +214,7 @@ class Station:
     ) -> SupervisedProcess:
         login = self._access.login(role) if self._access else None
         given = instructions(Instructions(self.settings, login, key))
-        return SupervisedProcess(name, attached_command(name), given, suggestion=suggestion, on_death=on_death)
+        return SupervisedProcess(name, attached(name), given, suggestion=suggestion, on_death=on_death)
 
     def _course(self, demonstration: Demonstration) -> Array:
         carried = self.recorder.annotations.carried(demonstration)
@@ -250,9 +241,11 @@ class Station:
         notes = [note for process in self.processes if (note := process.note())]
         notes += self.recorder.faults() + self.executions.faults() + self.store.health.faults()
         notes += self._access.notes(datetime.now(UTC)) if self._access else []
+        notes += self.access.notes() + self.audit.notes()
+        notes += self.certificate.notes(datetime.now(UTC)) if self.certificate else []
         if (unfinished := self.store.recordings.unfinished()) and not self.recorder.statuses():
             notes.append(f"{len(unfinished)} recordings were cut off; stop the service and run: teachpath doctor")
-        return notes
+        return notes + abandoned_notes(Path(self.settings.store.data_dir))
 
     def _polls(self) -> dict[str, Poll]:
         """Return by topic how to read the states that no row of the store holds."""
@@ -264,19 +257,23 @@ class Station:
                 t.name: {"announced": t.announced, "silent": t.is_silent} for t in self.recorder.trackers()
             },
             "guidance": lambda: {task: {"sentence": said} for task, said in self.guidance.all_advice().items()},
-            "station": lambda: {"": {"version": __version__, "notes": self.notes()}},
+            "station": lambda: {"": asdict(StationState(__version__, self.notes(), self._authority, has_documents()))},
             "executor": lambda: {"": asdict(status)} if (status := self.executions.status) else {},
         }
 
     def _parts(self) -> Parts:
         return Parts(
             settings=self.settings,
+            access=self.access,
+            audit=self.audit,
+            certificate=self.certificate,
             store=self.store,
             recorder=self.recorder,
             calibrations=self.calibrations,
             jobs=self.jobs,
             assessor=self.assessor,
             executions=self.executions,
+            programs=self.programs,
             websocket_trackers=self.websocket_trackers,
             joints=self.joints,
             objects=self.objects,

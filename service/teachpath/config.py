@@ -10,12 +10,13 @@ import math
 import os
 import tomllib
 from collections.abc import Iterable, Mapping
-from dataclasses import asdict, dataclass, field, is_dataclass, replace
+from dataclasses import asdict, is_dataclass, replace
 from pathlib import Path
 from typing import Any, get_args, get_type_hints
 
-from pydantic import BaseModel, ConfigDict, ValidationError
+from pydantic import BaseModel, ConfigDict, PrivateAttr, ValidationError
 
+from teachpath.access.settings import AuthSettings, LimitSettings
 from teachpath.errors import NotFound, UnusableSettings
 from teachpath.executor.settings import ExecutorSettings
 from teachpath.executor.teleop.settings import TeleoperationSettings
@@ -28,14 +29,15 @@ from teachpath.learning.settings import LearningSettings
 from teachpath.live.preview.settings import PreviewSettings
 from teachpath.logs import LogSettings
 from teachpath.motion.arm.model import Arm
+from teachpath.motion.arm.mounting import check_mounting
 from teachpath.motion.collision.builtin_scenes import empty_scene, paper_scene
+from teachpath.motion.planning.model_arms import with_home
 from teachpath.motion.settings import MotionSettings
 from teachpath.recording.settings import RecordingSettings
-from teachpath.records import Calibration, Scene, Shape
+from teachpath.records import Calibration, Scene, SerialArm, Shape
 from teachpath.simulator.settings import SimulatorSettings
 from teachpath.web.settings import WebSettings
 from teachpath_proto.keys import is_name, name_refusal
-from teachpath_proto.logins import Login, Role
 
 PREFIX = "TEACHPATH_"
 # former settings -> the one that does their work
@@ -52,6 +54,8 @@ class Settings(BaseModel):
 
     bus: BusSettings = BusSettings()
     web: WebSettings = WebSettings()
+    auth: AuthSettings = AuthSettings()
+    limits: LimitSettings = LimitSettings()
     store: StoreSettings = StoreSettings()
     imports: ImportSettings = ImportSettings()
     recording: RecordingSettings = RecordingSettings()
@@ -66,10 +70,24 @@ class Settings(BaseModel):
     calibrations: tuple[Calibration, ...] = (Calibration("identity"), ROBOTTASKS)
     scenes: tuple[Scene, ...] = (paper_scene(), empty_scene())
 
+    _model: SerialArm | None = PrivateAttr(default=None)
+
     @property
     def arm(self) -> Arm:
-        """The arm that they describe: the published variant `motion.variant`, with its gripper."""
-        return Arm.of_settings(self.motion)
+        """The arm that they describe: the published variant `motion.variant`, or the model of `with_model`."""
+        return Arm.of_model(self._model, self.motion) if self._model else Arm.of_settings(self.motion)
+
+    @property
+    def model(self) -> SerialArm | None:
+        """Model of the arm that `motion.arm` names, as the data folder has it; None: none was read."""
+        return self._model
+
+    def with_model(self, model: SerialArm) -> Settings:
+        """Return the settings with the model of the arm that `motion.arm` names, and its home where they say none."""
+        home = with_home(self.motion, Arm.of_model(model, self.motion))
+        made = self.model_copy(update={"motion": home})
+        made._model = model
+        return made
 
     def scene(self, name: str) -> Scene:
         """Return the scene `name`; raises NotFound with the known ones."""
@@ -82,38 +100,6 @@ class Settings(BaseModel):
         """Return the settings of learning with `changes` laid over them; raises UnusableSettings."""
         _refuse_unknown(changes, LearningSettings, "learning.")
         return _checked({"learning": asdict(self.learning) | dict(changes)}).learning
-
-
-@dataclass(frozen=True)
-class Instructions:
-    """What a process beside the service is given through its standard input, and nowhere else.
-
-    Attributes:
-        settings: of the station.
-        login: on the bus; None without access control.
-        signing_key: of the station, for the executor alone; empty for others.
-    """
-
-    settings: Settings
-    login: Login | None
-    signing_key: bytes = field(default=b"", repr=False)
-
-
-def instructions(given: Instructions) -> str:
-    """Write one line of JSON for a process beside the service."""
-    settings, login = given.settings.model_dump(mode="json"), asdict(given.login) if given.login else None
-    return json.dumps({"settings": settings, "login": login, "signing_key": given.signing_key.hex()})
-
-
-def from_instructions(line: str) -> Instructions:
-    """Read what `instructions` wrote."""
-    document = json.loads(line)
-    login = document["login"]
-    return Instructions(
-        load(document=document["settings"]),
-        Login(**{**login, "role": Role(login["role"])}) if login else None,
-        bytes.fromhex(document["signing_key"]),
-    )
 
 
 def load(file: Path | None = None, *, document: dict[str, Any] | None = None) -> Settings:
@@ -132,7 +118,11 @@ def load(file: Path | None = None, *, document: dict[str, Any] | None = None) ->
         _refuse_unknown(layer, Settings, "")
         given = _laid_over(given, layer)
     settings = _with_meshes(_checked(given), _folder(file))
+    if settings.motion.arm is None:
+        check_mounting(settings.arm)
     _check_names("robot", [settings.bus.robot])
+    if settings.store.station:
+        _check_names("station", [settings.store.station])
     _check_calibrations(settings.calibrations)
     _check_scenes(settings.scenes)
     return settings

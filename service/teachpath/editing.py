@@ -30,7 +30,12 @@ MEASURED_INTERVALS: Final = 400  # of the parameter, at which two curves are com
 
 @dataclass(frozen=True, eq=False)
 class EditResult:
-    """A curve after an operation, and its largest distance [m] from the curve before, measured at 401 parameters."""
+    """A curve after an operation, and its largest distance [m] from the curve before, measured at 401 parameters.
+
+    Attributes:
+        curve: after the operation.
+        deviation: its largest distance from the curve before, measured at 401 parameters [m].
+    """
 
     curve: Curve
     deviation: float
@@ -138,9 +143,10 @@ def _measured(before: Curve, after: Curve, tolerance: float) -> EditResult:
     at = np.linspace(0.0, 1.0, MEASURED_INTERVALS + 1)
     deviation = float(np.linalg.norm(after(at) - before(at), axis=1).max())
     if not deviation <= tolerance:
+        moved, most = describe_lengths(deviation, tolerance)
         raise UnusableInput(
-            f"this would move the curve by {1000 * deviation:.3g} mm, more than {1000 * tolerance:.3g} mm, because its "
-            "knots or weights are too uneven; even them out first"
+            f"this would move the curve by {moved}, more than {most}, because its knots or weights are too uneven; "
+            "even them out first"
         )
     return EditResult(after, deviation)
 

@@ -12,6 +12,10 @@
     │   ├── Outdated           a newer version was saved meanwhile; carries it
     │   ├── Cancelled          the operator cancelled the job
     │   └── QueueFull          too many jobs wait
+    ├── NotSignedIn            nobody knows who asks
+    ├── NotAllowed             whoever asks lacks the capability
+    ├── TooManyRequests        a subject asks for too much at a time; says when to go on
+    │   └── TooManyAttempts    too many sign-ins have failed; says for how long none is tried
     ├── OverLimit              a job takes too much time or memory
     ├── StorageUnavailable     the data folder or the database cannot be read or written now
     │   └── StorageFull        its disk is full
@@ -91,7 +95,33 @@ class Cancelled(Conflict):
 
 
 class QueueFull(Conflict):
-    """Too many jobs wait or run."""
+    """Too many jobs wait or run.
+
+    Attributes:
+        wait: [s] after which to try again.
+    """
+
+    wait = 10.0
+
+
+class NotSignedIn(TeachpathError):
+    """Nobody knows who asks."""
+
+
+class NotAllowed(TeachpathError):
+    """Whoever asks lacks the capability."""
+
+
+class TooManyRequests(TeachpathError):
+    """A subject asks for too much at a time; it may go on in `wait` seconds."""
+
+    def __init__(self, sentence: str, wait: float) -> None:
+        super().__init__(sentence)
+        self.wait = wait
+
+
+class TooManyAttempts(TooManyRequests):
+    """Too many sign-ins have failed; none is tried for `wait` seconds."""
 
 
 class OverLimit(TeachpathError):

@@ -6,20 +6,25 @@ Piegl & Tiller, The NURBS Book, section 5.2 (knot insertion) and 5.4 (knot remov
 from __future__ import annotations
 
 import json
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import scipy
-from geomdl import NURBS, operations
 
 from teachpath.errors import UnusableInput
+from teachpath.lengths import describe_lengths
 from teachpath.nurbs import Array, Curve
+
+if TYPE_CHECKING:
+    from geomdl import NURBS
 
 SAME_SHAPE_TOLERANCE = 1e-6  # m, distance that a removed knot may move the curve
 
 
 def to_geomdl(curve: Curve) -> NURBS.Curve:
     """Return the curve as geomdl's own, rational one."""
+    from geomdl import NURBS
+
     converted = NURBS.Curve(normalize_kv=False)
     converted.degree = curve.degree
     converted.ctrlptsw = np.column_stack([curve.control_points * curve.weights[:, None], curve.weights]).tolist()
@@ -50,6 +55,8 @@ def insert_knot(curve: Curve, u: float) -> Curve:
         raise UnusableInput(
             f"u = {u:g} is a knot {curve.degree} times already, as often as degree {curve.degree} allows"
         )
+    from geomdl import operations  # here, because a station that starts has no curve to edit
+
     return from_geomdl(operations.insert_knot(to_geomdl(curve), [float(u)], [1]))
 
 
@@ -71,9 +78,9 @@ def remove_knot(curve: Curve, u: float, *, tolerance: float = SAME_SHAPE_TOLERAN
     at = np.linspace(0.0, 1.0, 1001)
     moved = float(np.linalg.norm(fewer(at) - curve(at), axis=1).max())
     if not moved <= tolerance:
+        far, most = describe_lengths(moved, tolerance)
         raise UnusableInput(
-            f"without the knot at u = {u:g} the curve moves by {moved * 1e3:.3g} mm, more than "
-            f"{tolerance * 1e3:.3g} mm; move the control points instead"
+            f"without the knot at u = {u:g} the curve moves by {far}, more than {most}; move the control points instead"
         )
     return fewer
 

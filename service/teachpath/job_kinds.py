@@ -16,13 +16,65 @@ from teachpath.jobs import worker
 from teachpath.jobs.jobs import JobKind
 from teachpath.learning.settings import LearningSettings
 from teachpath.motion.planning.signature import CalibrationScope, SigningKey
-from teachpath.offline.import_job import PREPARED, ImportOrder, ImportRequest, PreparedImport, prepare_import
+from teachpath.offline.import_job import PREPARED, ImportOrder, ImportRequest, PreparedImport, prepare_imports
 from teachpath.offline.import_target import import_calibration, import_scene, starts_at_object
 from teachpath.offline.learning_job import StoredDemonstrations, learn_stored, recut_stored
 from teachpath.offline.transfer_folders import TransferFolders
 from teachpath.recorder.calibrations import Calibrations
 from teachpath.records import Demonstration, Job, Learned, LearnedPath, ObjectPose, Plan, Scene, Task
 from teachpath.robot.object_poses import ObjectPoses
+
+
+@dataclass(frozen=True)
+class LearningKinds:
+    """What jobs read and store that learn: nothing but store, recordings and settings.
+
+    Attributes:
+        store: of demonstrations and runs.
+        settings: of the station.
+        calibrations: that demonstrations have to be recorded under, in their present version.
+    """
+
+    store: Store
+    settings: Settings
+    calibrations: Calibrations
+
+    def by_name(self) -> dict[str, JobKind]:
+        """Return these kinds of jobs by the names that REST gives them."""
+        return {
+            "learn": JobKind(self._learning_input, learn_stored, self._store_run),
+            "recut": JobKind(self._recut_input, recut_stored, self._store_run),
+        }
+
+    def _learning_input(self, job: Job) -> tuple[StoredDemonstrations, LearningSettings]:
+        demonstrations = [d for d in self.store.demonstrations(job.task) if d.is_usable]
+        if not demonstrations:
+            raise NotFound(f"task {job.task} has no usable demonstrations yet; show it a few times first")
+        if job.request.get("calibrations") != "recorded":
+            self.calibrations.require_current(demonstrations)
+        wanted = job.request.get("settings")
+        settings = self.settings.learning_with(wanted if isinstance(wanted, dict) else {})
+        return self._stored(job.task, demonstrations), settings
+
+    def _recut_input(self, job: Job) -> tuple[Any, ...]:
+        learned = self.store.run(str(job.request["run"])).learned
+        usable = {d.id: d for d in self.store.demonstrations(job.task) if d.is_usable}
+        chosen = {key: usable[key] for key in learned.demonstrations if key in usable}
+        if job.request.get("calibrations") != "recorded":
+            self.calibrations.require_current(list(chosen.values()), command="recut")
+        return learned, self._stored(job.task, list(chosen.values())), job.request["threshold"], job.request["clusters"]
+
+    def _stored(self, task: str, rows: list[Demonstration]) -> StoredDemonstrations:
+        self.store.require_recorded_here(task)
+        carried = self.settings.scene(self.store.task(task).scene).carried
+        return StoredDemonstrations(
+            Path(self.settings.store.data_dir),
+            tuple(rows),
+            ObjectPose(carried.position, carried.orientation) if carried else None,
+        )
+
+    def _store_run(self, job: Job, learned: Learned) -> str:
+        return self.store.finish_learning(job.id, learned)
 
 
 @dataclass(frozen=True)
@@ -50,39 +102,12 @@ class JobKinds:
     def by_name(self) -> dict[str, JobKind]:
         """Return the kinds of jobs by the names that REST gives them."""
         return {
-            "learn": JobKind(self._learning_input, learn_stored, self._store_run),
-            "recut": JobKind(self._recut_input, recut_stored, self._store_run),
+            **LearningKinds(self.store, self.settings, self.calibrations).by_name(),
             "plan": JobKind(self._planning_input, worker.plan_path, self._store_plan),
             "import": JobKind(
-                self._import_input, prepare_import, self._store_import, lane="files", clean_up=self._remove_upload
+                self._import_input, prepare_imports, self._store_import, lane="files", clean_up=self._remove_uploads
             ),
         }
-
-    def _learning_input(self, job: Job) -> tuple[StoredDemonstrations, LearningSettings]:
-        demonstrations = [d for d in self.store.demonstrations(job.task) if d.is_usable]
-        if not demonstrations:
-            raise NotFound(f"task {job.task} has no usable demonstrations yet; show it a few times first")
-        if job.request.get("calibrations") != "recorded":
-            self.calibrations.require_current(demonstrations)
-        wanted = job.request.get("settings")
-        settings = self.settings.learning_with(wanted if isinstance(wanted, dict) else {})
-        return self._stored(job.task, demonstrations), settings
-
-    def _recut_input(self, job: Job) -> tuple[Any, ...]:
-        learned = self.store.run(str(job.request["run"])).learned
-        usable = {d.id: d for d in self.store.demonstrations(job.task) if d.is_usable}
-        chosen = {key: usable[key] for key in learned.demonstrations if key in usable}
-        if job.request.get("calibrations") != "recorded":
-            self.calibrations.require_current(list(chosen.values()), command="recut")
-        return learned, self._stored(job.task, list(chosen.values())), job.request["threshold"], job.request["clusters"]
-
-    def _stored(self, task: str, rows: list[Demonstration]) -> StoredDemonstrations:
-        carried = self.settings.scene(self.store.task(task).scene).carried
-        return StoredDemonstrations(
-            Path(self.settings.store.data_dir),
-            tuple(rows),
-            ObjectPose(carried.position, carried.orientation) if carried else None,
-        )
 
     def _planning_input(self, job: Job) -> tuple[Any, ...]:
         path, version = str(job.request["path"]), job.request.get("version")
@@ -99,42 +124,51 @@ class JobKinds:
         recorded = tuple(map(self.calibrations.numbered, used))
         return CalibrationScope(recorded, tuple(map(self.calibrations.newest_numbered, recorded)))
 
-    def _import_input(self, job: Job) -> tuple[ImportOrder]:
+    def _import_input(self, job: Job) -> tuple[tuple[ImportOrder, ...]]:
         given = from_document(ImportRequest, job.request)
+        scene = self._scene_of(job.task, given)
+        at_grasp = starts_at_object(self.store, job.task, given.object_at_grasp)
         return (
-            ImportOrder(
-                job.id,
-                self.transfers.folder(given.upload),
-                job.task,
-                given.name,
-                given.format,
-                given.options,
-                given.marks,
-                self._scene_of(job.task, given),
-                import_calibration(self.store, self.calibrations, job.task, given.format, given.calibration),
-                self.settings.recording,
-                self.settings.imports,
-                starts_at_object(self.store, job.task, given.object_at_grasp),
+            tuple(
+                ImportOrder(
+                    key=f"{job.id} {number}",
+                    folder=self.transfers.folder(file.upload),
+                    task=job.task,
+                    name=file.name,
+                    kind=file.format,
+                    options=file.options,
+                    marks=file.marks,
+                    scene=scene,
+                    calibration=import_calibration(
+                        self.store, self.calibrations, job.task, file.format, given.calibration
+                    ),
+                    recording=self.settings.recording,
+                    limits=self.settings.imports,
+                    object_at_grasp=at_grasp,
+                    motion_marks=file.motion_marks,
+                )
+                for number, file in enumerate(given.files)
             ),
         )
 
     def _scene_of(self, task: str, given: ImportRequest) -> Scene:
         return self.settings.scene(import_scene(self.store, task, given.scene))
 
-    def _store_import(self, job: Job, prepared: PreparedImport) -> str:
-        given, made = from_document(ImportRequest, job.request), prepared.made
-        task = Task(job.task, self._scene_of(job.task, given).name, made[0].calibration.name, 0, given.object_at_grasp)
-        outcome = self.store.finish_import(
-            job.id, task, made, self.transfers.folder(given.upload) / PREPARED / RECORDINGS
-        )
+    def _store_import(self, job: Job, prepared: list[PreparedImport]) -> str:
+        given = from_document(ImportRequest, job.request)
+        calibration = prepared[0].made[0].calibration.name
+        task = Task(job.task, self._scene_of(job.task, given).name, calibration, 0, given.object_at_grasp)
+        batch = [
+            (each.made, self.transfers.folder(file.upload) / PREPARED / RECORDINGS)
+            for each, file in zip(prepared, given.files, strict=True)
+        ]
+        outcome = self.store.finish_import(job.id, task, batch)
         self.imported(job.task)
         return outcome
 
-    def _remove_upload(self, job: Job) -> None:
-        self.transfers.remove(from_document(ImportRequest, job.request).upload)
-
-    def _store_run(self, job: Job, learned: Learned) -> str:
-        return self.store.finish_learning(job.id, learned)
+    def _remove_uploads(self, job: Job) -> None:
+        for file in from_document(ImportRequest, job.request).files:
+            self.transfers.remove(file.upload)
 
     def _store_plan(self, job: Job, plan: Plan) -> str:
         return self.store.finish_planning(job.id, plan)

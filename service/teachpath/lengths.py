@@ -5,7 +5,8 @@ from __future__ import annotations
 from math import ceil, floor, log10
 
 # The least length [m] that is told in a unit, the unit [m], and its name.
-UNITS = ((1.0, 1.0, "m"), (0.01, 0.01, "cm"), (1e-5, 0.001, "mm"), (1e-300, 1e-6, "µm"), (0.0, 0.001, "mm"))
+UNITS = ((1.0, 1.0, "m"), (0.01, 0.01, "cm"), (1e-5, 0.001, "mm"), (1e-9, 1e-6, "µm"), (0.0, 0.001, "mm"))
+ROUNDING = 1e-9  # [m] below which a length is none
 DIGITS = 2
 
 
@@ -33,7 +34,7 @@ def describe_lengths(one: float, other: float) -> tuple[str, str]:
 
 
 def _rounded(value: float, digits: int, up: bool) -> float:
-    if value == 0:
+    if value < ROUNDING:
         return 0.0
     step = digits - 1 - floor(log10(value))
     if not up:

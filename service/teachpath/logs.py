@@ -1,7 +1,7 @@
 """The log: lines with time, level, part of the station, and the number of the request that they belong to.
 
-Processes beside the service write each line as JSON on their error stream; the service, which reads it, writes it with
-its own, on the error stream and into the file of the settings.
+Processes beside the service write each line as JSON, on their error stream or into a pipe; the service, which reads it,
+writes it with its own, on the error stream and into the file of the settings.
 """
 
 from __future__ import annotations
@@ -10,6 +10,7 @@ import json
 import logging
 import sys
 import uuid
+from collections.abc import Callable, Sequence
 from contextvars import ContextVar
 from dataclasses import dataclass
 from datetime import UTC, datetime
@@ -73,6 +74,15 @@ def log_to_stderr(settings: LogSettings | None = None, *, part: str = SERVICE, a
         handlers.append(
             RotatingFileHandler(settings.file, maxBytes=settings.largest_file, backupCount=settings.kept_files)
         )
+    _install(handlers, formatter, part)
+
+
+def log_as_json(send: Callable[[str], None], *, part: str) -> None:
+    """Call `send` with each line of the log of this process, a `part` of the station, for the service to relay."""
+    _install([_Sending(send)], _JsonFormatter(), part)
+
+
+def _install(handlers: Sequence[logging.Handler], formatter: logging.Formatter, part: str) -> None:
     root = logging.getLogger()
     root.setLevel(logging.INFO)
     for handler in handlers:
@@ -102,6 +112,17 @@ def relay(line: str) -> str:
     record.exc_text = document.get("exception")
     logging.getLogger(name).handle(record)
     return f"{level} {name}: {text}" + (f"\n{record.exc_text}" if record.exc_text else "")
+
+
+class _Sending(logging.Handler):
+    """Passes every line on."""
+
+    def __init__(self, send: Callable[[str], None]) -> None:
+        super().__init__()
+        self._send = send
+
+    def emit(self, record: logging.LogRecord) -> None:
+        self._send(self.format(record))
 
 
 class _Context(logging.Filter):

@@ -5,8 +5,16 @@ from __future__ import annotations
 import logging
 import threading
 from collections.abc import Callable
+from typing import Protocol
 
 log = logging.getLogger("teachpath")
+
+
+class Startable(Protocol):
+    """A part that works on threads of its own from its start on."""
+
+    def start(self) -> object:
+        """Begin to work."""
 
 
 class PeriodicThread:

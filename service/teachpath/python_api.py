@@ -19,7 +19,7 @@ from teachpath.motion.planning.plan import plan as plan_path
 from teachpath.motion.planning.signature import certified_arm
 from teachpath.motion.settings import MotionSettings
 from teachpath.nurbs import Curve
-from teachpath.records import Array, Learned, LearnedPath, Plan, Scene
+from teachpath.records import Array, Learned, LearnedPath, Plan, Scene, SerialArm
 from teachpath.trajectories import to_trajectories
 
 
@@ -61,7 +61,7 @@ def plan(
     scene: Scene | None = None,
     settings: MotionSettings | None = None,
     *,
-    arm: Arm | None = None,
+    arm: Arm | SerialArm | None = None,
 ) -> Plan:
     """Plan how the arm follows a path, and certify that it can.
 
@@ -72,21 +72,22 @@ def plan(
         path: a learned path, or a curve of positions [m, world].
         scene: what stands around; None: a table, and nothing on it.
         settings: the defaults when None.
-        arm: the published one that the settings name when None.
+        arm: the published one that the settings name when None; or one of six joints that `read_arm` read. That has no
+            gripper, and waits in the middle of its joints' ranges unless `settings.home` says otherwise.
 
     Returns:
         The plan with its certificate: how much of every limit it uses, and where.
 
     Raises:
         PathRefused: the arm cannot follow it; `failure` says where, why, and which control point to move.
-        UnusableInput: it is no path in space.
+        UnusableInput: it is no path in space, or plans are not made for that arm.
     """
     plan_id = f"plan-{uuid.uuid4().hex[:12]}"
-    return plan_path(_learned_path(path), scene or empty_scene(), settings, arm=arm, plan_id=plan_id)
+    return plan_path(_learned_path(path), scene or empty_scene(), settings, arm=_arm(arm, settings), plan_id=plan_id)
 
 
 def setpoints(
-    plan: Plan, rate: float = 250.0, *, settings: MotionSettings | None = None, arm: Arm | None = None
+    plan: Plan, rate: float = 250.0, *, settings: MotionSettings | None = None, arm: Arm | SerialArm | None = None
 ) -> tuple[Array, Array]:
     """Return the times (n,) [s] and the joints (n, 6) [rad] of a plan's motion along its path, at full speed.
 
@@ -104,11 +105,16 @@ def setpoints(
     """
     if not 1.0 <= rate <= 10_000.0:
         raise UnusableInput(f"a rate of {rate:g} Hz is outside 1 to 10000")
-    verify(plan, arm or certified_arm(plan) or Arm.of_settings(settings or MotionSettings()))
+    given = _arm(arm, settings)
+    verify(plan, given or certified_arm(plan) or Arm.of_settings(settings or MotionSettings()))
     trajectory = plan_trajectory(plan)
     count = int(np.ceil(trajectory.duration * rate)) + 1
     times = np.arange(count) / rate
     return times, trajectory(times)[:, :6]
+
+
+def _arm(arm: Arm | SerialArm | None, settings: MotionSettings | None) -> Arm | None:
+    return Arm.of_model(arm, settings or MotionSettings()) if isinstance(arm, SerialArm) else arm
 
 
 def _learned_path(path: Any) -> LearnedPath:

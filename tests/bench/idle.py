@@ -9,6 +9,7 @@ from tests.bench.report import Figure, against
 SETTLED = 3.0  # [s] until a station that has just begun is at rest
 SECONDS = 10.0  # [s] of each measurement
 REPEATS = 2
+PARTS = ("executor", "simulator")
 
 
 def measure() -> list[Figure]:
@@ -29,17 +30,17 @@ def measure() -> list[Figure]:
 
 
 def _children() -> dict[str, int]:
-    """Return the workers by name: `python -m teachpath <name> --attached`."""
-    found = {}
+    """Return executor and simulated arm by name; they are forked from a child of this process."""
+    names, parents = {}, {}
     for folder in Path("/proc").glob("[0-9]*"):
         try:
-            words = (folder / "cmdline").read_text().split("\0")
-            parent = int((folder / "stat").read_text().rpartition(")")[2].split()[1])
+            names[int(folder.name)] = (folder / "comm").read_text().strip()
+            parents[int(folder.name)] = int((folder / "stat").read_text().rpartition(")")[2].split()[1])
         except OSError:
             continue  # it has just ended
-        if parent == os.getpid() and "teachpath" in words:
-            found[words[words.index("teachpath") + 1]] = int(folder.name)
-    return found
+    return {
+        name: pid for pid, name in names.items() if name in PARTS and parents.get(parents.get(pid, 0)) == os.getpid()
+    }
 
 
 def _seconds(pid: int) -> float:

@@ -1,6 +1,10 @@
-"""Learning from thousands, in a process of its own so that its memory is its own: prints figures as JSON."""
+"""python -m tests.bench.learning_scale: learning from thousands, each part in a process of its own.
+
+So the memory of each is its own; with the name of a part and a number it measures that part and prints JSON.
+"""
 
 import json
+import os
 import resource
 import subprocess
 import sys
@@ -17,7 +21,7 @@ from teachpath.learning.learn import learn
 from teachpath.learning.selection.default_mode import select
 from teachpath.learning.settings import LearningSettings
 from teachpath.records import Array, Trajectory
-from tests.bench.report import Figure, against
+from tests.bench.report import Figure, against, print_report
 from tests.unit.learning import synthetic
 
 POINTS = 150
@@ -29,7 +33,9 @@ def measure(*, quick: bool) -> list[Figure]:
     values = {}
     for part, size in zip(("pairs", "crowd", "selection", "whole", "very_many"), sizes, strict=True):
         command = [sys.executable, "-m", "tests.bench.learning_scale", part, str(size)]
-        values |= json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout)
+        environment = os.environ | {"OPENBLAS_NUM_THREADS": "1"}  # as in the processes of a station
+        done = subprocess.run(command, env=environment, check=True, capture_output=True, text=True)
+        values |= json.loads(done.stdout)
     many, crowd, chosen, whole, very_many = sizes
     return [
         against(
@@ -162,4 +168,7 @@ def memory() -> float:
 
 
 if __name__ == "__main__":
-    print(json.dumps(globals()[sys.argv[1]](int(sys.argv[2]))))
+    if sys.argv[1:] in ([], ["--quick"]):
+        print_report("Learning from thousands", measure(quick="--quick" in sys.argv))
+    else:
+        print(json.dumps(globals()[sys.argv[1]](int(sys.argv[2]))))

@@ -19,7 +19,6 @@ from tests.bench.busy import learner_and_page
 from tests.bench.report import Figure, against
 
 POLL = 0.002  # [s]
-LONGEST_LEARNING = 0.5  # [s]
 LONGEST_ADAPTATION = 0.5  # [s]
 
 
@@ -67,25 +66,20 @@ def show(endpoint: str) -> None:
 
 def _jobs(station: Station, repeats: int) -> tuple[list[Figure], str]:
     """Learn and plan as jobs of the service; returns the figures and a plan."""
-    learning, planning = [], []
-    for _ in range(repeats + 1):
-        learned, seconds = _job(station, lambda: station.begin_job("demo", "learn"))
-        learning.append(seconds)
-    cold, *warm = learning
+    learned, _ = timed_job(station, lambda: station.begin_job("demo", "learn"))
     path = station.get_run("demo", learned.outcome).learned.paths[0].id
+    planning = []
     for _ in range(repeats):
-        planned, seconds = _job(station, lambda: station.begin_planning(path))
+        planned, seconds = timed_job(station, lambda: station.begin_planning(path))
         planning.append(seconds)
     adapting = _adaptations(station, path, repeats)
     # A learning job that has nothing to learn from ends at once: what is left is the way there and back.
     station.make_task("nothing", scene="empty")
     begin = partial(station.begin_job, "nothing", "learn")
-    empty = [_job(station, begin, state="failed")[1] for _ in range(5 * repeats)]
+    empty = [timed_job(station, begin, state="failed")[1] for _ in range(5 * repeats)]
     round_trip = median(empty)
     return [
         Figure("job round trip over REST, nothing to do", tuple(empty), "s"),
-        against("learning job in a warm worker, POST to outcome", warm, "s", name="limit", value=LONGEST_LEARNING),
-        Figure("  the first one, which loads the libraries", (cold,), "s"),
         against("planning job, POST to outcome", planning, "s", name="round trip alone", value=round_trip),
         against("a path adapted, POST to certificate", adapting, "s", name="asked for", value=LONGEST_ADAPTATION),
     ], planned.outcome
@@ -97,7 +91,7 @@ def _adaptations(station: Station, path: str, repeats: int) -> list[float]:
     taken = []
     for count in range(1, repeats + 1):
         goal = {"position": [x + 0.005 * count, y, z]}
-        taken.append(_job(station, partial(_adaptation, station, path, goal))[1])
+        taken.append(timed_job(station, partial(_adaptation, station, path, goal))[1])
     return taken
 
 
@@ -105,11 +99,14 @@ def _adaptation(station: Station, path: str, goal: dict[str, object]) -> Job:
     return station.adapt(path, goal=goal).job
 
 
-def _job(station: Station, begin: Callable[[], Job], *, state: str = "succeeded") -> tuple[Job, float]:
+def timed_job(
+    station: Station, begin: Callable[[], Job], *, state: str = "succeeded", poll: float = POLL
+) -> tuple[Job, float]:
+    """Begin a job and wait for its end; return it and how long it took [s]."""
     began = time.perf_counter()
     job = begin()
     while job.state in ("queued", "running"):  # asked more often than `Station.wait` does: its time is the figure
-        time.sleep(POLL)
+        time.sleep(poll)
         job = station.get_job(job.id)
     if job.state != state:
         raise SystemExit(f"bench: the {job.kind} job {job.state}: {job.message}")

@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 import zenoh
 
-from teachpath.commands.serving import free_port
+from teachpath.commands.serving import free_port, short_pauses
 from teachpath.io.bus import Bus, BusSettings, listen_on_bus
 from teachpath.io.store.settings import StoreSettings
 from teachpath.io.store.store import Store
@@ -33,7 +33,7 @@ BARE = "a bare Zenoh subscriber"
 
 def measure(*, seconds: float) -> list[Figure]:
     """Return the figures of `TRACKERS` trackers at 50 Hz that each show one demonstration of `seconds`."""
-    with tempfile.TemporaryDirectory(prefix="teachpath-bench-") as folder:
+    with tempfile.TemporaryDirectory(prefix="teachpath-bench-") as folder, short_pauses():  # as the service
         sent, lost, demonstrations, cpu, backlog, transits = _record(folder, seconds)
     counted_cpu, counted_transits = _count(seconds)
     what = f"{TRACKERS} trackers at {crowd.RATE:g} Hz for {seconds:g} s"
@@ -67,6 +67,7 @@ def _record(folder: str, seconds: float) -> tuple[int, float, float, float, floa
     bus = listen_on_bus(settings)
     try:
         with _recorder(bus, folder) as (recorder, store):
+            bus.serve(crowd.RECEIVED, lambda _: b"")
             for number in range(TRACKERS):
                 recorder.begin(RecordingRequest(TASK, crowd.name(number), scene="empty"))
             with _watched(recorder) as backlogs:
@@ -131,6 +132,7 @@ def _count(seconds: float) -> tuple[float, np.ndarray]:
     taken: list[tuple[bytes, int]] = []
     session = zenoh.open(config)
     try:
+        session.declare_queryable(crowd.RECEIVED, lambda query: query.reply(crowd.RECEIVED, b""))
         session.declare_subscriber(
             crowd.KEYS.all_samples, lambda sample: taken.append((sample.payload.to_bytes(), time.time_ns()))
         )
@@ -150,7 +152,7 @@ def _crowd(endpoint: str, seconds: float) -> tuple[float, int]:
         words = [sys.executable, str(Path(crowd.__file__)), endpoint, str(i * share), str(share), str(seconds)]
         processes.append(subprocess.Popen(words, stdout=subprocess.PIPE, text=True))
     try:
-        sent = [int(process.communicate(timeout=seconds + 120)[0]) for process in processes]
+        sent = [int(process.communicate(timeout=seconds + 150)[0]) for process in processes]
     finally:
         for process in processes:
             with suppress(ProcessLookupError):

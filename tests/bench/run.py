@@ -6,10 +6,12 @@ import time
 
 from teachpath.records import Trajectory
 from tests.bench import (
+    access,
     doctor_kills,
     inverse,
     lateness,
     learning,
+    learning_jobs,
     learning_peers,
     learning_scale,
     lists,
@@ -18,6 +20,7 @@ from tests.bench import (
     plans,
     recording,
     recording_load,
+    starting,
     stop_latency,
     timing,
 )
@@ -40,8 +43,11 @@ def main() -> None:
         learning.measure(trajectories, repeats=3 if quick else 7),
     )
     print_report("Learning beside other libraries: the same data, the same bound", _peers(trajectories, quick=quick))
+    print_report("What a start costs", starting.measure(starts=1 if quick else 3))
+    print_report("Learning jobs of a served station", learning_jobs.measure(starts=1 if quick else 5))
     print_report("Learning from thousands", learning_scale.measure(quick=quick))
     print_report("Lists of a large station: 5,000 demonstrations, 2,000 runs", lists.measure())
+    print_report("Who sends a request", access.measure())
     print_report("Inverse kinematics beside another library", inverse.measure(repeats=3 if quick else 7))
     print_report(
         "Timing: how near to the limits, how soon it stops, what a cycle costs",

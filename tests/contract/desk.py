@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from fastapi.routing import APIRoute
+from fastapi.routing import iter_route_contexts
 from httpx import ASGITransport, AsyncClient, Response
 from pydantic import TypeAdapter
 from starlette.routing import Match
@@ -23,24 +23,35 @@ class Desk:
 
     def __init__(self, station: Station, loop: asyncio.Runner) -> None:
         self.station, self._loop = station, loop
+        self.described = 0  # answers that were held against their description
         app = ASGITransport(station.web, raise_app_exceptions=False)
         self._client = AsyncClient(transport=app, base_url="http://127.0.0.1:8765")
+        self._operations = _responses(station)
         self.data_dir = Path(station.settings.store.data_dir)
         self._news: queue.SimpleQueue[bytes] = queue.SimpleQueue()
         station.bus.subscribe(station.keys.job("*"), lambda _, payload: self._news.put(payload))
 
     def send(self, method: str, address: str, **options: Any) -> Response:
         answer = self._loop.run(self._client.request(method, address, **options))
-        if answer.is_success:
-            self._check_described(answer)
+        self._client.cookies.clear()  # each request stands for itself
+        self._check_described(answer)
         return answer
 
     def _check_described(self, answer: Response) -> None:
-        """Check that an answer holds exactly what the description of the API says."""
+        """Check that an answer is one that the description of the API gives the operation, and holds exactly that."""
         scope = {"type": "http", "method": answer.request.method, "path": answer.request.url.path}
-        route = next(r for r in self.station.web.routes if r.matches(scope)[0] is Match.FULL)
-        if isinstance(route, APIRoute) and route.response_model is not None:
-            model, document = TypeAdapter(route.response_model), answer.json()
+        routes = iter_route_contexts(self.station.web.routes)
+        route = next((r for r in routes if r.matches(scope)[0] is Match.FULL), None)
+        if route is None or route.name not in self._operations or answer.text == "Invalid host header":
+            return
+        promised = self._operations[route.name].get(str(answer.status_code))
+        assert promised is not None, f"{route.name} does not say that it answers {answer.status_code}: {answer.text}"
+        if answer.content:
+            assert answer.headers["content-type"].partition(";")[0] in promised["content"]
+        assert ("location" in answer.headers) == ("Location" in promised.get("headers", {}))
+        if answer.is_success and (described := getattr(route, "response_model", None)) is not None:
+            self.described += 1
+            model, document = TypeAdapter(described), answer.json()
             assert model.dump_python(model.validate_python(document), mode="json") == document
 
     def get(self, resource: str, **options: Any) -> Response:
@@ -76,6 +87,12 @@ class Desk:
             if job["finished_ns"]:
                 return job
             self._news.get(timeout=HANG)
+
+
+def _responses(station: Station) -> dict[str, dict[str, Any]]:
+    """Return what the description of the API says of the answers of each operation, by its id."""
+    methods = [operation for path in station.web.openapi()["paths"].values() for operation in path.values()]
+    return {operation["operationId"]: operation["responses"] for operation in methods}
 
 
 def refused(response: Response, status: int, sentence: str) -> None:

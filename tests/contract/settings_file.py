@@ -11,6 +11,7 @@ from typing import Any, get_args, get_type_hints
 
 from annotated_types import Ge, Gt, Le, Len, Lt
 
+from teachpath.api.answers import meanings
 from teachpath.config import Settings
 from teachpath.records import Calibration, Scene, Shape
 
@@ -33,7 +34,15 @@ MORE = {
 }
 RARE = ("orientation", "file", "vertices")  # of a shape, not shown
 # A setting without a default shows one that it could have.
-EXAMPLES = {"motion.tool_speed": 0.25, "learning.threshold": 0.06, "learning.clusters": 3, "learning.degree": 3}
+EXAMPLES = {
+    "motion.arm": "light",
+    "motion.tool_position": (0.05, 0.0, 0.18),
+    "motion.tool_orientation": (0.9659258, 0.0, 0.258819, 0.0),
+    "motion.tool_speed": 0.25,
+    "learning.threshold": 0.06,
+    "learning.clusters": 3,
+    "learning.degree": 3,
+}
 WORDS = {Ge: ("ge", "at least"), Gt: ("gt", "over"), Le: ("le", "at most"), Lt: ("lt", "under")}
 
 
@@ -87,7 +96,9 @@ def summary(kind: type) -> str:
 
 
 def comments(kind: type) -> dict[str, str]:
-    """Return the comment above each field of a settings class."""
+    """Return what the docstring of a settings class, or the comment above each field, says of it."""
+    if described := meanings(kind):
+        return {name: text.removesuffix(".") for name, text in described.items()}
     source = inspect.getsource(kind).splitlines()
     (body,) = ast.parse(inspect.cleandoc("\n".join(source))).body
     assert isinstance(body, ast.ClassDef)

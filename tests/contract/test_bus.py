@@ -139,16 +139,23 @@ def test_a_subscription_that_counts_what_it_missed_serves_plain_publishers_and_e
     ends: tuple[Bus, Bus],
 ) -> None:
     here, there = ends
-    got: queue.Queue[bytes] = queue.Queue()
+    got: queue.Queue[tuple[bytes, str]] = queue.Queue()
     missed: list[int] = []
-    handle = there.subscribe("t/*/samples", lambda _, payload: got.put(payload), missed=missed.append)
+
+    def keep(_: str, payload: bytes, source: str) -> None:
+        got.put((payload, source))
+
+    handle = there.subscribe_with_source("t/*/samples", keep, missed=missed.append)
     wait_reachable(here, there)
     for i in range(200):
         here.publish("t/a/samples", str(i).encode())
-    assert [got.get(timeout=HANG) for _ in range(200)] == [str(i).encode() for i in range(200)]
+    came = [got.get(timeout=HANG) for _ in range(200)]
+    assert [payload for payload, _ in came] == [str(i).encode() for i in range(200)]
+    assert len({source for _, source in came}) == 1
+    assert came[0][1] != ""
     handle.close()
     here.publish("t/a/samples", b"late")
-    there.subscribe("t/*/samples", lambda _, payload: got.put(payload), missed=missed.append)
+    there.subscribe_with_source("t/*/samples", keep, missed=missed.append)
     assert got.empty()
     assert missed == []
 
@@ -161,7 +168,9 @@ def test_what_a_client_sends_comes_once_and_in_order_from_the_first_that_comes()
     try:
         with Link(settings.endpoint) as link:
             publisher, sent = link.publisher("t/a/samples"), itertools.count()
-            bus.subscribe("t/*/samples", lambda _, payload: got.put(int(payload)), missed=missed.append)
+            bus.subscribe_with_source(
+                "t/*/samples", lambda _, payload, source: got.put(int(payload)), missed=missed.append
+            )
             while got.empty():
                 publisher.put(str(next(sent)).encode())
             for _ in range(500):

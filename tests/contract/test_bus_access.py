@@ -19,7 +19,7 @@ from teachpath.io.bus_logins import local_login, new_password, prepare_access
 from teachpath_proto.keys import Keys
 from teachpath_proto.logins import Login, Role, find_login, logins_path, read_logins, write_logins
 from tests.contract.test_bus import free_endpoint
-from tests.waiting import wait_until
+from tests.waiting import HANG, wait_until
 
 PREFIX = "teachpath/station"
 MEMBERS = (Role.EXECUTOR, Role.ROBOT, Role.TRACKER, Role.OPERATOR, Role.VIEWER)
@@ -46,6 +46,7 @@ recorder/amend           -         -      a        a         -
 recorder/status          -         -      a        a         a
 jobs/job-1               -         -      -        h         h
 station/certificate      a         -      -        -         -
+station/scene            a         -      -        -         -
 scenes/paper/object      -         -      p        p         -
 elsewhere                -         -      -        -         -
 """
@@ -53,7 +54,6 @@ VERBS = {"p": "put", "h": "subscribe", "s": "serve", "a": "ask"}
 ROWS = [line.split() for line in TABLE.strip().splitlines()]
 KEYS = [f"{PREFIX}/{key}" for key, *_ in ROWS[1:]]
 STOP = f"{PREFIX}/executor/stop"
-WAIT = 30.0  # [s] that only bounds a hang
 DENIED = 1.0  # [s] until a question that nobody lets through is given up
 
 
@@ -114,7 +114,7 @@ def test_a_part_shows_that_it_is_alive_under_its_own_kind_alone(
     handle = service.watch(f"{PREFIX}/alive/**", lambda key, alive: seen.put(key) if alive else None)
     for kind in kinds:
         bus.announce(f"{PREFIX}/alive/{kind}/it")
-    came = {seen.get(timeout=WAIT)} if login.role in kinds else set()
+    came = {seen.get(timeout=HANG)} if login.role in kinds else set()
     time.sleep(0.1)  # whatever else would come, in threads of their own
     came |= {seen.get() for _ in range(seen.qsize())}
     assert came == {f"{PREFIX}/alive/{kind}/it" for kind in kinds if kind == login.role}
@@ -135,7 +135,7 @@ def test_puts_arrive_from_those_who_may(station: tuple[BusSettings, BusAccess, B
         bus.publish(key, b"last")
     came = set(drain(heard))
     while not {(key, b"last") for key in may} <= came:  # every subscription is served by a thread of its own
-        came.add(heard.get(timeout=WAIT))
+        came.add(heard.get(timeout=HANG))
     came |= set(drain(heard))
     assert {key for key, payload in came if payload == b"mine"} == may
     assert {key for key, _ in came} == may
@@ -154,7 +154,7 @@ def test_only_those_hear_who_may(station: tuple[BusSettings, BusAccess, Bus], me
             time.sleep(0.01)
     for key in KEYS:
         service.publish(key, b"theirs")
-    came = {heard.get(timeout=WAIT) for _ in may}
+    came = {heard.get(timeout=HANG) for _ in may}
     time.sleep(0.1)  # whatever else would come, in threads of their own
     while not heard.empty():
         came.add(heard.get())
@@ -180,7 +180,7 @@ def test_only_those_are_answered_who_may_ask(
     may = allowed(login, "ask")
 
     def ask(key: str) -> None:
-        answers[key] = asked(bus, key, WAIT if key in may else DENIED)
+        answers[key] = asked(bus, key, HANG if key in may else DENIED)
 
     threads = [threading.Thread(target=ask, args=(key,)) for key in KEYS]
     for thread in threads:
@@ -226,15 +226,15 @@ def test_a_stop_reaches_the_executor_from_everybody_and_cannot_be_swallowed(
     while not asked(service, STOP):
         pass
     for _ in range(20):
-        assert service.ask(STOP, timeout=WAIT) == b"the executor"
+        assert service.ask(STOP, timeout=HANG) == b"the executor"
     assert not swallowed
     told: queue.Queue[bytes] = queue.Queue()
     subscriber = executor.declare_subscriber(STOP, lambda sample: told.put(sample.payload.to_bytes()))
     for role in (Role.ROBOT, Role.TRACKER, Role.OPERATOR, Role.VIEWER):
         bus = open_bus(settings, access.login(role))
         bus.publish(STOP, role.value.encode())
-        assert told.get(timeout=WAIT) == role.value.encode()
-        assert bus.ask(STOP, timeout=WAIT) == b"the executor"
+        assert told.get(timeout=HANG) == role.value.encode()
+        assert bus.ask(STOP, timeout=HANG) == b"the executor"
         bus.close()
     for declared in (impostor, queryable, subscriber):
         declared.undeclare()
@@ -251,7 +251,7 @@ def test_a_tracker_that_is_held_to_one_name_is_no_other(station: tuple[BusSettin
     for _ in range(2):
         bus.publish(f"{PREFIX}/trackers/right/samples", b"hijacked")
         bus.publish(f"{PREFIX}/trackers/left/samples", b"mine")
-        assert heard.get(timeout=WAIT) == f"{PREFIX}/trackers/left/samples"
+        assert heard.get(timeout=HANG) == f"{PREFIX}/trackers/left/samples"
         bus.ask(f"{PREFIX}/recorder/status")  # from now on its session knows who hears it, and sends to nobody else
     bus.close()
     answering.close()
@@ -267,7 +267,7 @@ def test_a_driver_that_is_held_to_its_arm_takes_part_in_everything_that_an_arm_d
     service.watch(keys.all_alive, lambda key, _: heard.put(key))
     executor.watch(keys.alive("robot", "puma560"), lambda key, _: heard.put(key))
     driver.announce(keys.alive("robot", "puma560"))
-    assert {heard.get(timeout=WAIT), heard.get(timeout=WAIT)} == {keys.alive("robot", "puma560")}
+    assert {heard.get(timeout=HANG), heard.get(timeout=HANG)} == {keys.alive("robot", "puma560")}
     driver.serve(keys.reset("puma560"), lambda _: b"done")
     executor.subscribe(keys.state("puma560"), lambda key, _: heard.put(key))
     driver.subscribe(keys.setpoint("puma560"), lambda key, _: heard.put(key))
@@ -275,7 +275,7 @@ def test_a_driver_that_is_held_to_its_arm_takes_part_in_everything_that_an_arm_d
     for _ in range(2):  # the second ones when the sessions know who hears them
         for bus, key in ((driver, keys.state("puma560")), (executor, keys.setpoint("puma560"))):
             bus.publish(key, b"")
-            assert heard.get(timeout=WAIT) == key
+            assert heard.get(timeout=HANG) == key
         assert answered(executor, keys.reset("puma560"))
     driver.close()
     executor.close()

@@ -46,7 +46,7 @@ def served() -> Iterator[Served]:
         served = Served(opened)
         yield served
         served.server.should_exit = True
-        served.thread.join(10)
+        served.thread.join(HANG)
 
 
 def until(socket: ClientConnection, topic: str, key: str = "") -> dict[str, Any]:

@@ -13,15 +13,15 @@ SERVICE = ROOT / "service" / "teachpath"
 
 # A room may import rooms of lower floors, and itself. Rooms of one floor are strangers.
 FLOORS = [
-    ["errors", "lengths", "logs", "periodic_thread", "realtime", "time_source"],
+    ["compiled", "errors", "lengths", "logs", "periodic_thread", "process_server", "realtime", "time_source"],
     ["nurbs"],
     ["exchange", "records"],
     ["editing", "trajectories"],
     ["learning", "motion", "recording", "io"],
-    ["recorder", "jobs", "executor", "simulator", "robot", "live", "web"],
+    ["access", "recorder", "jobs", "executor", "simulator", "robot", "live", "web"],
     ["offline", "config", "python_api"],
-    ["api", "job_kinds"],
-    ["app"],
+    ["api", "instructions", "job_kinds", "stored_arm"],
+    ["app", "job_service"],
     ["commands"],
     ["__main__"],
 ]
@@ -30,11 +30,11 @@ FLOOR = {room: level for level, rooms in enumerate(FLOORS) for room in rooms}
 # The same within a room: its folders and files. A group of one floor knows no other of it.
 GROUPS = {
     "learning": [
-        ["settings", "resampling", "matching", "input_validation", "compiled"],
+        ["settings", "resampling", "matching", "input_validation"],
         ["clustering", "selection", "fitting"],
         ["summary", "compare", "adaptation"],
         ["learn"],
-        ["relearn"],
+        ["relearn", "evaluation"],
     ],
     "motion": [
         ["settings", "refusals"],
@@ -52,20 +52,28 @@ GENERATED = "teachpath_proto.*_pb2"  # the modules that protoc generates
 DOORS = {
     GENERATED: ["io/wire"],
     "zenoh": ["io/bus.py"],
-    "cryptography": ["io/certificates.py"],
+    "argon2": ["access/passwords.py"],
+    "cryptography": ["io/certificates.py", "io/web_certificates.py"],
+    "segno": ["api/authority.py"],
     "google": ["io/wire"],
     "cattrs": ["io/documents.py"],
     "sqlalchemy": ["io/store"],
     "alembic": ["io/store"],
-    "mcap": ["io/store"],
+    "mcap": ["io/store", "io/programs/rosbag.py"],
     "mcap_protobuf": ["io/store"],
     "foxglove_schemas_protobuf": ["io/store"],
-    "jinja2": ["offline/report/package.py"],
+    "jinja2": ["offline/report/package.py", "io/programs/robot_program.py"],
     "hmmlearn": ["learning/selection/hmm.py"],
     "geomdl": ["exchange.py"],
     "ruckig": ["motion/execution/tool_motion.py", "motion/timing/joint_moves.py", "motion/timing/ruckig_check.py"],
-    "numba": ["learning/compiled.py", "learning/clustering/kernels.py", "motion/timing/kernels.py"],
-    "mujoco": ["motion/collision/collision_model.py", "motion/arm/dynamics.py", "simulator/arm.py"],
+    "numba": ["compiled.py", "learning/clustering/kernels.py"],
+    "mujoco": [
+        "io/arm_models",
+        "motion/collision/collision_model.py",
+        "motion/collision/self_collision.py",
+        "motion/arm/dynamics.py",
+        "simulator/arm.py",
+    ],
     "meshcat": ["live/preview"],
     "umsgpack": ["live/preview"],
     "fastapi": ["api", "app.py"],
@@ -75,6 +83,7 @@ DOORS = {
     "rich": ["commands"],
     "prometheus_client": ["api/metrics.py"],
     "pyarrow": ["io/lerobot.py"],
+    "rosbags": ["io/readers/bags.py"],
     "pydantic": ["config.py", "api"],
 }
 
@@ -202,7 +211,20 @@ def test_ruckigs_network_service_is_never_asked() -> None:
         ("teachpath.simulator.loop", {"scipy.linalg", "numba", "hmmlearn", "sqlalchemy", "fastapi"}),
         ("teachpath.executor.loop", {"hmmlearn", "sqlalchemy", "fastapi", "meshcat"}),
         ("teachpath.learning.relearn", {"numba", "sklearn", "scipy.stats", "scipy.signal", "matplotlib"}),
-        ("teachpath.app", {"numba", "hmmlearn", "mujoco", "cryptography"}),
+        (
+            "teachpath.app",
+            {
+                "numba",
+                "hmmlearn",
+                "mujoco",
+                "cryptography",
+                "alembic",
+                "jinja2",
+                "geomdl",
+                "segno",
+                "scipy.interpolate",
+            },
+        ),
         ("teachpath.live.preview.commands", {"meshcat", "meshcat.visualizer", "IPython", "tornado", "zmq", "PIL"}),
     ],
 )

@@ -41,3 +41,19 @@ def test_a_command_carries_the_number_of_its_request_to_the_executor(desk: Desk)
         handle.close()
     assert answered.is_success, answered.text
     assert [command.id for command in heard] == [answered.headers["teachpath-request"]]
+
+
+def test_answers_of_the_api_are_kept_and_guessed_by_no_browser_and_given_to_no_other_site(desk: Desk) -> None:
+    for place in ("/api/v1/tasks", "/api/v1/nothing"):
+        headers = desk.send("GET", place).headers
+        assert headers["x-content-type-options"] == "nosniff"
+        assert headers["cache-control"] == "no-store"
+        assert headers["cross-origin-resource-policy"] == "same-origin"
+
+
+@pytest.mark.parametrize(
+    "name", ["%00", "a%00.js", "x" * 5000 + ".js", "a/" * 3000 + "b.js", "%ff%fe.js", "%ED%A0%80", "page.js/a.js"]
+)
+def test_what_no_file_can_be_named_is_not_there(desk: Desk, name: str) -> None:
+    for folder in ("web", "vendor"):
+        assert desk.send("GET", f"/{folder}/{name}").status_code == 404

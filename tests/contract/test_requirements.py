@@ -13,7 +13,12 @@ FILES = {name: (ROOT / "requirements" / f"{name}.txt").read_text() for name in (
 
 def pinned(text: str) -> list[str]:
     """Return the names of the distributions that a requirements file pins."""
-    return re.findall(r"^([a-z0-9-]+)==", text, re.MULTILINE)
+    return [name for name, _, _ in pins(text)]
+
+
+def pins(text: str) -> list[tuple[str, str, str]]:
+    """Return name, version and marker of each distribution that a requirements file pins."""
+    return re.findall(r"^([a-z0-9-]+)==([^ ]+) (?:; ([^\\]+))?", text, re.MULTILINE)
 
 
 def wanted(*lists: list[str]) -> set[str]:
@@ -34,13 +39,16 @@ def test_everything_that_is_asked_for_is_pinned() -> None:
     extras, groups = PYPROJECT["project"]["optional-dependencies"], PYPROJECT["dependency-groups"]
     service, dev = set(pinned(FILES["service"])), set(pinned(FILES["dev"]))
     assert wanted(PYPROJECT["project"]["dependencies"], extras["service"], groups["build"]) <= service
-    assert wanted(extras["dev"], extras["lerobot"]) <= service | dev
+    assert wanted(extras["dev"], extras["lerobot"], extras["ros"]) <= service | dev
     assert wanted(groups["setup"]) == set(pinned(FILES["uv"]))
 
 
 def test_a_distribution_is_pinned_in_one_place() -> None:
-    names = [name for text in FILES.values() for name in pinned(text)]
-    assert len(names) == len(set(names))
+    """What the service needs on some systems alone stands again where the tools need it on all, in the same version."""
+    everywhere = [name for text in FILES.values() for name, _, marker in pins(text) if not marker]
+    assert len(everywhere) == len(set(everywhere))
+    versions = {(name, version) for text in FILES.values() for name, version, _ in pins(text)}
+    assert len(versions) == len({name for name, _ in versions})
 
 
 def test_what_only_the_server_of_meshcat_needs_is_left_out() -> None:

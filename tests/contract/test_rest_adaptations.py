@@ -147,7 +147,7 @@ def test_what_is_no_request_is_refused(desk: Desk, taught: Taught, raw: str) -> 
 
 
 def test_an_unknown_path_or_version_is_not_found(desk: Desk, taught: Taught) -> None:
-    refused(adapted(desk, taught, [0.05, 0, 0], version=999), 404, "no version 999")
+    refused(adapted(desk, taught, [0.05, 0, 0], version=999), 422, "no version 999")
     body = {"start": {"position": [0.4, 0.1, 0.5]}, "goal": {"position": [0.4, 0.2, 0.6]}}
     refused(desk.post("/paths/moon/adaptations", body), 404, "there is no path 'moon'")
 
@@ -155,7 +155,7 @@ def test_an_unknown_path_or_version_is_not_found(desk: Desk, taught: Taught) -> 
 def test_a_path_is_adapted_on_the_command_line(desk: Desk, taught: Taught, port: int) -> None:
     x, y, z = taught.goal
     words = ["adapt", taught.path, "--start", ",".join(map(str, taught.start)), "--goal", f"{x + 0.03},{y},{z}"]
-    said = CliRunner().invoke(app, [*words, "--url", f"http://127.0.0.1:{port}"], catch_exceptions=False).stdout
+    said = CliRunner().invoke(app, [*words, "--url", f"http://127.0.0.1:{port}"], catch_exceptions=False).output
     newest = desk.get(f"/paths/{taught.path}").json()
     assert f"version {newest['version']} of {taught.path}, on branch main: by 6 demonstrations at 2 places" in said
     np.testing.assert_allclose(newest["curve"]["control_points"][-1], [x + 0.03, y, z], atol=1e-9)

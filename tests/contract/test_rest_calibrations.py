@@ -70,5 +70,5 @@ def test_learning_refuses_a_former_version_until_it_is_converted_or_wanted(desk:
     assert desk.ended(desk.post("/tasks/moved/jobs", {"kind": "learn"}))["state"] == "succeeded"
     back = desk.post("/tasks/moved/calibration", {"calibration": "bench@1"}).json()
     assert back == made
-    refused(desk.post("/tasks/moved/calibration", {"calibration": "bench@9"}), 404, "no version 9")
+    refused(desk.post("/tasks/moved/calibration", {"calibration": "bench@9"}), 422, "no version 9")
     refused(desk.post("/tasks/moon/calibration", {}), 404, "task 'moon'")

@@ -7,6 +7,8 @@ import pytest
 
 from tests.contract.desk import Desk, csv, refused
 
+BESIDE = {"archive": {"task.json", "SHA256SUMS"}}  # the files of the demonstrations
+
 
 @pytest.mark.parametrize("kind", ["csv", "mcap", "trajectory"])
 def test_a_demonstration_is_taken_away_and_brought_back(desk: Desk, kind: str) -> None:
@@ -19,7 +21,7 @@ def test_a_demonstration_is_taken_away_and_brought_back(desk: Desk, kind: str) -
     assert ways[0]["positions"] == ways[1]["positions"]
 
 
-@pytest.mark.parametrize("kind", ["csv", "mcap", "trajectory", "lerobot"])
+@pytest.mark.parametrize("kind", ["csv", "mcap", "trajectory", "lerobot", "archive"])
 def test_a_task_is_taken_away_as_a_zip(desk: Desk, kind: str) -> None:
     task = f"zipped-{kind}"
     made = [desk.import_(task, csv())[0] for _ in range(2)]
@@ -28,7 +30,11 @@ def test_a_task_is_taken_away_as_a_zip(desk: Desk, kind: str) -> None:
         archive = zipfile.ZipFile(io.BytesIO(desk.get(f"/tasks/{task}/export?format={kind}&all={all_}").content))
         assert archive.testzip() is None
         names = archive.namelist()
-        assert (f"{task}/meta/info.json" in names) if kind == "lerobot" else (len(names) == count)
+        if kind == "lerobot":
+            assert f"{task}/meta/info.json" in names
+        else:
+            assert len(names) - len(BESIDE.get(kind, ())) == count
+            assert {name.partition("/")[2] for name in names} >= BESIDE.get(kind, set())
 
 
 def test_what_is_not_there_or_not_known_is_said(desk: Desk) -> None:

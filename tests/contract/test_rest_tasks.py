@@ -45,7 +45,7 @@ SHORT = "t,x,y,z\n" + "".join(f"{i * 0.02},{i},0,0\n" for i in range(6))
         (csv()[:-8], {}, "line 61"),
         (csv() + ",1,0,0\n", {}, "line 62: a row without a time"),
         ("t,x,y,z\n" + "".join(reversed(csv().splitlines(True)[1:])), {}, "sort by t"),
-        (csv().replace("0.6\n", "1e300\n"), {}, "a position is 1e+300 m away, limit 100; are the units right"),
+        (csv().replace("0.6\n", "1e300\n"), {}, "a position is 1e+300 m away, limit 100; say their unit with --units"),
         (csv(), {"units": "mm", "scene": "paper"}, "check units and calibration"),
         (csv() + "1e300,0,0,0\n", {}, "a time of 1e+300 s is no time"),
         ("t,x,y,z\n" + "9" * 200_000, {}, "CSV"),

@@ -106,7 +106,7 @@ def test_one_single_demonstration_is_learned_and_its_outcome_is_found(desk: Desk
 
     desk.put("/tasks/other", {})
     refused(desk.get(f"/tasks/other/runs/{run['id']}"), 404, "it is of task single")
-    refused(desk.post("/tasks/other/jobs", {"kind": "plan", "path": path["id"]}), 404, "it is of task single")
+    refused(desk.post("/tasks/other/jobs", {"kind": "plan", "path": path["id"]}), 422, "it is of task single")
     for accepted in (
         desk.post(f"/paths/{path['id']}/plans"),
         desk.post("/tasks/single/jobs", {"kind": "plan", "path": path["id"]}),
@@ -127,7 +127,7 @@ def assess_while_editing(desk: Desk, path: dict[str, Any]) -> None:
     assert (failed["failure"]["fault"], failed["duration"]) == ("reach", None)
     assert failed["failure"]["suggestion"]["sentence"] in failed["sentence"]
     assert desk.get(f"/paths/{path['id']}").json() == path
-    refused(desk.post(place, {"version": 99}), 404, "99")
+    refused(desk.post(place, {"version": 99}), 422, "99")
     refused(desk.post(place, {"curve": away | {"weights": [-1.0]}}), 422, "weights")
     refused(desk.post("/paths/none/assessment", {}), 404, "none")
     point = away | {"control_points": [away["control_points"][0]] * len(away["control_points"])}
@@ -170,9 +170,9 @@ def test_the_cut_of_a_run_is_moved_by_a_job(desk: Desk) -> None:
 
     for wrong, sentence in (({}, "give one of the two"), ({"clusters": 5}, "give 1 to 4"), ({"threshold": 0}, "0 m")):
         refused(desk.post("/tasks/recut/jobs", {"kind": "recut", "run": run} | wrong), 422, sentence)
-    refused(desk.post("/tasks/recut/jobs", {"kind": "recut", "run": "moon"}), 404, "no run 'moon'")
+    refused(desk.post("/tasks/recut/jobs", {"kind": "recut", "run": "moon"}), 422, "no run 'moon'")
     desk.put("/tasks/other", {})
-    refused(desk.post("/tasks/other/jobs", {"kind": "recut", "run": run, "clusters": 1}), 404, "it is of task recut")
+    refused(desk.post("/tasks/other/jobs", {"kind": "recut", "run": run, "clusters": 1}), 422, "it is of task recut")
 
     desk.send("PATCH", f"{API}/demonstrations/{drawn['leaves'][0]}", json={"discarded": True})
     job = desk.ended(desk.post("/tasks/recut/jobs", {"kind": "recut", "run": run, "clusters": 1}))

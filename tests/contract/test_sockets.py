@@ -9,9 +9,11 @@ from typing import Any
 
 import numpy as np
 import pytest
+from pydantic import TypeAdapter
 from websockets.exceptions import ConnectionClosed, InvalidStatus
 from websockets.sync.client import ClientConnection, connect
 
+from teachpath.api.live_messages import JointMessage
 from teachpath.app import Station
 from teachpath.io.wire import encode_sample, encode_state
 from teachpath.records import JointState
@@ -204,6 +206,7 @@ def test_joint_states_come_decimated_and_the_newest_wins(desk: Desk, port: int) 
         stamps = [frame["stamp_ns"] for frame in frames]
         assert stamps == sorted(set(stamps))
         assert frames[-1]["position"] == [0.199] * 6
+        TypeAdapter(JointMessage).validate_python(frames[-1], extra="forbid")
         assert frames[-1]["status"] is None
         socket.send("hello")
         assert "nothing is expected here" in closed(socket)

@@ -11,6 +11,7 @@ from websockets.sync.client import connect
 
 from tests.contract import openapi
 from tests.contract.desk import API, Desk, refused
+from tests.waiting import HANG
 
 DESCRIPTION: dict[str, Any] = json.loads(openapi.FILE.read_text())
 STOPS = {f"{API}/stop", f"{API}/executions/{{execution}}/stop"}  # answered whatever comes with them
@@ -76,7 +77,7 @@ def test_every_object_of_a_request_is_closed() -> None:
     waiting = [model(operation) for _, _, operation in OPERATIONS]
     while waiting:
         schema = waiting.pop()
-        if schema is None:
+        if schema is None or "enum" in schema:  # a word is no object
             continue
         assert schema["additionalProperties"] is False, schema["title"]
         inner = re.findall(r"#/components/schemas/(\w+)", json.dumps(schema))
@@ -95,7 +96,7 @@ def test_a_field_within_a_field_is_named(desk: Desk) -> None:
 def test_a_socket_has_no_parameters(port: int, resource: str) -> None:
     with connect(f"ws://127.0.0.1:{port}/api/v1/{resource}") as socket:
         with suppress(ConnectionClosed):
-            socket.recv(timeout=60)
+            socket.recv(timeout=HANG)
         assert socket.close_code == 1008
         assert "there is no parameter" in (socket.close_reason or "")
 
@@ -112,4 +113,4 @@ def test_a_socket_has_no_parameters(port: int, resource: str) -> None:
 def test_a_message_of_a_tracker_is_closed(port: int, message: dict[str, Any], sentence: str) -> None:
     with connect(f"ws://127.0.0.1:{port}/api/v1/trackers/page-closed/samples") as socket:
         socket.send(json.dumps(message))
-        assert sentence in json.loads(socket.recv(timeout=60))["refused"]
+        assert sentence in json.loads(socket.recv(timeout=HANG))["refused"]

@@ -28,8 +28,7 @@ def moved(by: float) -> dict[str, Any]:
 @pytest.fixture
 def path(desk: Desk, request: pytest.FixtureRequest) -> str:
     """A learned path of the test's own."""
-    name = str(request.node.callspec.id if hasattr(request.node, "callspec") else request.node.name)
-    key = f"learn-{abs(hash(name)):x}"
+    key = f"learn-{abs(hash(request.node.name)):x}"
     desk.put("/tasks/t", {})
     desk.station.store.add_job(a_job(key))
     return f"{desk.station.store.finish_learning(key, learned())}-1"
@@ -144,8 +143,8 @@ def test_what_has_no_such_version_says_which_there_are(desk: Desk, path: str) ->
     has = f"there is no version 7 of path {path!r}; it has 1 to 1"
     refused(desk.get(f"/paths/{path}/versions/7"), 404, has)
     refused(desk.get(f"/paths/{path}/versions/1/difference/7"), 404, has)
-    refused(save(desk, path, 7, CURVE), 404, has)
-    refused(desk.post(f"/paths/{path}/plans", {"version": 7}), 404, has)
+    refused(save(desk, path, 7, CURVE), 422, has)
+    refused(desk.post(f"/paths/{path}/plans", {"version": 7}), 422, has)
     refused(desk.get(f"/paths/{path}/versions/{10**30}"), 404, "it has 1 to 1")
     for resource in ("/paths/moon/versions", "/paths/moon/versions/1", "/paths/moon/versions/1/difference/2"):
         refused(desk.get(resource), 404, "there is no path 'moon'")
@@ -170,7 +169,10 @@ def test_a_plan_is_of_the_version_that_was_asked_for(desk: Desk, path: str) -> N
     save(desk, path, 1, moved(0.05), branch="aside")
     wanted = [(None, 2), ({}, 2), ({"version": 1}, 1), ({"version": 3}, 3)]
     for body, version in wanted:
-        assert desk.post(f"/paths/{path}/plans", body).json()["request"] == {"path": path, "version": version}
+        key = {"Idempotency-Key": f"plan {version}"}
+        first, again = (desk.post(f"/paths/{path}/plans", body, headers=key).json() for _ in range(2))
+        assert first["request"] == {"path": path, "version": version}
+        assert again["id"] == first["id"]
     job = desk.post("/tasks/t/jobs", {"kind": "plan", "path": path, "version": 3}).json()
     assert job["request"] == {"path": path, "version": 3}
 

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from teachpath.learning.evaluation import Rate
 from teachpath.learning.selection.consistency import Part, robust_z
 from teachpath.learning.selection.default_mode import measure_members
 from teachpath.learning.selection.features import positions_and_velocities
@@ -17,7 +18,7 @@ from teachpath.learning.selection.likelihoods import score_likelihoods
 from teachpath.learning.settings import LearningSettings
 from teachpath.records import Array, Trajectory
 from tests.experiments.selection_cases import CASES, FAULTLESS, FAULTY
-from tests.experiments.trials import Rate, rate
+from tests.experiments.trials import rate
 
 MODEL = "hidden Markov model"
 MODEL_SPREAD = 0.8  # nats a frame, usual spread of faultless demonstrations

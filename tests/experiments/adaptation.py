@@ -17,11 +17,10 @@ from rich.console import Console
 from rich.table import Table
 from scipy.spatial.transform import Rotation
 
-from teachpath.learning.adaptation.adapt import AdaptedPath, adapt
 from teachpath.learning.adaptation.even_parameters import even_parameters
 from teachpath.learning.adaptation.target import Target
+from teachpath.learning.evaluation import adapted_to, two_sd
 from teachpath.learning.fitting.orientation_fit import mean_orientations, rotation_angles
-from teachpath.learning.learn import learn
 from teachpath.learning.resampling import at_equal_arc_length, smoothed
 from teachpath.learning.settings import LearningSettings
 from teachpath.nurbs import unit_quaternions
@@ -109,7 +108,7 @@ def predict(shown: Sequence[Trajectory], truth: Trajectory) -> Prediction:
     paths = {name: method(courses, course[0], course[-1]) for name, method in METHODS.items()}
     turns = mean_orientations([truth], POINTS)
     target = Target(course[0], course[-1], *([] if turns is None else turns[[0, -1]]))
-    found = _adapted({str(number): each for number, each in enumerate(shown)}, target)
+    found = adapted_to({str(number): each for number, each in enumerate(shown)}, target, SETTINGS)
     u = even_parameters(found.curve, POINTS)
     paths[ADAPTED] = found.curve(u)
     off = {name: np.linalg.norm(path - course, axis=1) for name, path in paths.items()}
@@ -117,19 +116,8 @@ def predict(shown: Sequence[Trajectory], truth: Trajectory) -> Prediction:
     turn = None
     if found.orientation is not None and turns is not None:
         turn = float(np.sqrt(np.mean(rotation_angles(unit_quaternions(found.orientation, u), turns) ** 2)))
-    held = rms[ADAPTED] < float(np.sqrt(np.mean(found.spread**2)))
-    return Prediction(rms, {name: float(each.max()) for name, each in off.items()}, held, turn)
-
-
-def _adapted(shown: Mapping[str, Trajectory], target: Target) -> AdaptedPath:
-    """Learn from demonstrations and adapt the path of the way that most of them take, as the service does."""
-    learned = learn(shown, SETTINGS)
-    selected = [[score.demonstration for score in of.scores if score.selected] for of in learned.clusters]
-    way = int(np.argmax([len(names) for names in selected]))
-    others = [name for number, names in enumerate(selected) if number != way for name in names]
-    path = learned.paths[way]
-    members = [shown[name] for name in selected[way]]
-    return adapt(path, path.curve, members, [shown[name] for name in others], target, SETTINGS)
+    largest = {name: float(each.max()) for name, each in off.items()}
+    return Prediction(rms, largest, rms[ADAPTED] < two_sd(found), turn)
 
 
 def measure(folder: Path | None, count: int, runs: int, seed: int) -> list[Prediction]:

@@ -12,11 +12,12 @@ from rich.table import Table
 from teachpath.learning.clustering.dendrogram import Labels, labels_for_count
 from teachpath.learning.clustering.partition import Partition
 from teachpath.learning.clustering.subsampled_clustering import cluster_paths
+from teachpath.learning.evaluation import Rate
 from teachpath.learning.learn import comparable_paths
 from teachpath.learning.settings import LearningSettings
 from teachpath.records import Trajectory
 from tests.experiments.clustering_cases import GROUPS
-from tests.experiments.trials import Rate, rate
+from tests.experiments.trials import rate
 
 CASES = {f"{group}: {case.title}": case for group, cases in GROUPS.items() for case in cases}
 HEADS = ("Right", "Right, or the next cut", "Incomplete ones named", "Called ambiguous")
@@ -74,6 +75,9 @@ def targets(found: Mapping[str, Any]) -> list[tuple[str, str, str, bool]]:
         if case.stops:
             named = _revived(found[key][2])
             rows.append((f"incomplete named: {key}", f"≥ {case.target:.0%}", str(named), named.share >= case.target))
+        if case.called < 1:
+            called = _revived(found[key][3])
+            rows.append((f"called ambiguous: {key}", f"≤ {case.called:.0%}", str(called), called.share <= case.called))
     return rows
 
 

@@ -23,8 +23,9 @@ def table(experiments: Mapping[str, Found]) -> str:
         "figures alone (“tight fitting of the sampled points”), without bound, degree or number of control points. "
         "Modes paper and repaired approximate as the publication's library does: from the polygon of the sorted "
         "points, by removing knots (The NURBS Book, A9.8 to A9.10). No part swings farther than the bound. But sorted "
-        "by distance to the start, the points of two demonstrations alternate, so that their polygon zigzags; and a "
-        "path that comes down on its goal ends at the sample farthest from the start. The bound of 0.5 cm is widened "
+        "by Euclidean distance to the start, as the publication has it (III-C), the points of two demonstrations "
+        "alternate, so that their polygon zigzags, and A9.8 to A9.10 keep the order that they are given; and a path "
+        "that comes down on its goal ends at the sample farthest from the start. The bound of 0.5 cm is widened "
         "until 60 control points suffice."
         f"</caption><tr>{HEAD}{''.join(rows)}</table>"
     )

@@ -18,10 +18,11 @@ from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 from matplotlib.ticker import PercentFormatter
 
+from teachpath.learning.evaluation import Rate
 from teachpath.records import Array, Learned, Trajectory
 from tests.experiments import quoted
 from tests.experiments.scenarios import GROUPINGS, SCENARIOS, SHAPES, along
-from tests.experiments.trials import MODES, Rate, course, learn, settings
+from tests.experiments.trials import MODES, course, learn, settings
 
 PAGE_STYLE = Path(__file__).parents[2] / "clients" / "web" / "style.css"
 PALETTE = re.findall(r"--way-\d+: (#[0-9a-f]{6})", PAGE_STYLE.read_text())  # as on the page

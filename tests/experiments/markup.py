@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from html import escape
 from pathlib import Path
 
-from tests.experiments.trials import Rate
+from teachpath.learning.evaluation import Rate
 
 STYLE = """
 :root { color-scheme: light; }

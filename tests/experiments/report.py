@@ -9,6 +9,7 @@ from typing import Any
 
 from scipy.stats import binom
 
+from teachpath.learning.evaluation import Rate
 from tests.experiments import (
     ablation,
     adaptation_report,
@@ -16,6 +17,7 @@ from tests.experiments import (
     curves,
     degrees,
     quoted,
+    recorded_sets,
     rule,
     scale,
     stream_faults,
@@ -24,7 +26,7 @@ from tests.experiments.markup import STYLE, figure, listed, short
 from tests.experiments.results import Found, by_place, outranked, revived, right, uneven
 from tests.experiments.scenarios import GROUPINGS, SCENARIOS
 from tests.experiments.targets import targets, worst
-from tests.experiments.trials import BY_KEY, MODES, THRESHOLD, Rate
+from tests.experiments.trials import BY_KEY, MODES, THRESHOLD
 
 HANDS = "the recordings of a hand"
 SYNTHETIC = "36 synthetic demonstrations with scattered starts and goals"
@@ -49,6 +51,7 @@ def page(found: Found, folder: Path) -> str:
             ablation.table(found["ablation"]),
             *_grouping(found, folder),
             clustering.table(found["clustering"]),
+            *recorded_sets.section(found["recorded_sets"]),
             *_shapes(found, folder),
             *_degrees(found),
             *adaptation_report.section(found["adaptation"], HANDS if found["made"]["hands"] else SYNTHETIC),

@@ -11,10 +11,11 @@ from typing import Any
 import numpy as np
 from scipy.stats import chi2_contingency
 
+from teachpath.learning.evaluation import Rate
 from teachpath.records import Learned, Trajectory
 from tests.experiments import degrees, rule, scale
 from tests.experiments.scenarios import GROUPINGS, SCENARIOS, SHAPES
-from tests.experiments.trials import MODES, Outcome, Rate, rate, settled, strays
+from tests.experiments.trials import MODES, Outcome, rate, settled, strays
 
 Found = dict[str, Any]
 

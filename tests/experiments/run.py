@@ -10,7 +10,7 @@ import platform
 import time
 from collections.abc import Callable, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor, as_completed
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from functools import partial
 from importlib.metadata import version
 from pathlib import Path
@@ -25,6 +25,7 @@ from tests.experiments import (
     clustering,
     degrees,
     figures,
+    recorded_sets,
     report,
     results,
     rule,
@@ -40,6 +41,21 @@ REPORTS = Path(__file__).parents[2] / "reports"
 PROCESSES = 2
 CHUNK = 5  # runs sent to a process at once
 SEED = 1  # of the single runs that tables and pictures show
+# What is repeated, in the order of the outcomes of `_repeated`.
+PARTS = (
+    "selection",
+    "grouping",
+    "shapes",
+    "repetitions",
+    "scale",
+    "degrees",
+    "adaptation",
+    "ablation",
+    "stream faults",
+    "clustering",
+    "faultless streams",
+    "recorded sets",
+)
 THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "NUMBA_NUM_THREADS")
 
 
@@ -54,9 +70,15 @@ class Sizes:
     shape: int = 20
     degree: int = 12
     fault: int = 100
+    faultless: int = 25  # batches
     datasets: int = 30
     repetitions: int = 40
     adaptation: int = 50
+    mixture: int = 40
+
+    def reduced(self, share: float) -> Sizes:
+        """Return a share of the runs, at least one of each."""
+        return Sizes(**{name: max(1, round(share * count)) for name, count in asdict(self).items()})
 
 
 QUICK = Sizes(
@@ -67,9 +89,11 @@ QUICK = Sizes(
     shape=1,
     degree=1,
     fault=2,
+    faultless=1,
     datasets=3,
     repetitions=8,
     adaptation=2,
+    mixture=2,
 )
 
 
@@ -78,19 +102,23 @@ def main() -> None:
     parser = argparse.ArgumentParser(description="Run the experiments of the paper in every mode.")
     parser.add_argument("--quick", action="store_true", help="few runs: to see the report, not to believe it")
     parser.add_argument("--hands", type=Path, help="folder of hand-polhemus, for adapted paths; else synthetic ones")
+    parser.add_argument("--sets", type=Path, help="folder of RoboTasks, for recorded sets; else they are left out")
+    parser.add_argument("--share", type=float, default=1.0, help="of the runs, e.g. 0.1; the intervals tell its price")
     parser.add_argument("--out", type=Path, default=REPORTS, help="folder of the report")
     asked = parser.parse_args()
     for name in THREADS:
         os.environ[name] = "1"  # read by the processes to come: they are many enough
-    sizes = QUICK if asked.quick else Sizes()
+    sizes = QUICK if asked.quick else Sizes().reduced(asked.share)
     asked.out.mkdir(parents=True, exist_ok=True)
     began = time.monotonic()
-    *repeated, adapted, scored, faulty, clustered = _repeated(sizes, asked.hands)
+    outcomes, parts = _repeated(sizes, asked.hands, asked.sets)
+    *repeated, adapted, scored, faulty, clustered, faultless, mixed = outcomes
     found = results.summary(*repeated, sizes=sizes)
     found["adaptation"] = adaptation.summary({count: outcome for (_, count, *_), outcome in adapted})
-    found["stream_faults"] = stream_faults.summary(faulty)
+    found["stream_faults"] = stream_faults.summary(faulty, (batch for _, batch in faultless))
     found["ablation"] = ablation.summary([(key, scores) for (key, _), scores in scored])
     found["clustering"] = clustering.summary([(key, told) for (key, _), told in clustered])
+    found["recorded_sets"] = recorded_sets.summary([(count, mixture) for (_, count, _), mixture in mixed])
     shown_1, learned_1 = trials.table_1(SEED)
     shown_2, learned_2 = trials.experiment_2(SEED)
     found["experiment_1"] = results.single(learned_1, shown_1)
@@ -111,15 +139,22 @@ def main() -> None:
         **_circumstances(asked.quick),
         "hands": asked.hands is not None,
         "seconds": round(time.monotonic() - began),
+        "processor_seconds": parts,
     }
     (asked.out / "experiments.json").write_text(json.dumps(found, indent=1, allow_nan=False) + "\n")
     (asked.out / "experiments.html").write_text(report.page(found, asked.out))
     targets.print_short(found)
+    of_parts = ", ".join(f"{name} {seconds}" for name, seconds in sorted(parts.items(), key=lambda part: -part[1]))
+    print(f"seconds of a processor: {of_parts}")
     print(f"{asked.out / 'experiments.html'}, {found['made']['seconds']} s")
 
 
-def _repeated(sizes: Sizes, hands: Path | None) -> tuple[list[Any], ...]:
-    """Run all that is repeated, in processes, and return the outcomes of each kind, see `results.summary`."""
+def _repeated(sizes: Sizes, hands: Path | None, sets: Path | None) -> tuple[tuple[list[Any], ...], dict[str, int]]:
+    """Run all that is repeated, in processes.
+
+    Returns:
+        the outcomes of each of `PARTS`, see `results.summary`, and how long each took, in seconds of a processor.
+    """
     work: list[tuple[int, Callable[..., Any], tuple[Any, ...]]] = []
     work += [(0, trials.select_once, (scenario.key, run)) for scenario in SCENARIOS for run in range(sizes.selection)]
     work += [(1, trials.group_once, (ways.key, seed)) for ways in GROUPINGS for seed in range(sizes.grouping)]
@@ -133,6 +168,10 @@ def _repeated(sizes: Sizes, hands: Path | None) -> tuple[list[Any], ...]:
         (8, stream_faults.fault_once, (*case, seed)) for case in stream_faults.CASES for seed in range(sizes.fault)
     ]
     work += [(9, clustering.cluster_once, (key, seed)) for key in clustering.CASES for seed in range(sizes.clustering)]
+    work += [(10, stream_faults.faultless_batch, (batch,)) for batch in range(sizes.faultless)]
+    if sets is not None:
+        counts = recorded_sets.drawn_counts(sizes.mixture)
+        work += [(11, recorded_sets.mixed_once, (sets, count, seed)) for seed, count in enumerate(counts)]
     chunks = [work[at : at + CHUNK] for at in range(0, len(work), CHUNK)]
     gathered: dict[Future[list[Any]], int] = {}
     context = multiprocessing.get_context("spawn")
@@ -142,15 +181,24 @@ def _repeated(sizes: Sizes, hands: Path | None) -> tuple[list[Any], ...]:
             gathered[pool.submit(_chunk, chunk)] = number
         for done in as_completed(gathered):
             bar.advance(row, len(done.result()))
-    found: tuple[list[Any], ...] = tuple([] for _ in range(10))
+    found: tuple[list[Any], ...] = tuple([] for _ in PARTS)
+    taken = [0.0] * len(PARTS)
     for done, number in gathered.items():
-        for (kind, _, arguments), outcome in zip(chunks[number], done.result(), strict=True):
+        for (kind, _, arguments), (outcome, seconds) in zip(chunks[number], done.result(), strict=True):
             found[kind].append((arguments, outcome))
-    return found
+            taken[kind] += seconds
+    return found, {name: round(seconds) for name, seconds in zip(PARTS, taken, strict=True)}
 
 
-def _chunk(work: Sequence[tuple[int, Callable[..., Any], tuple[Any, ...]]]) -> list[Any]:
-    return [function(*arguments) for _, function, arguments in work]
+def _chunk(work: Sequence[tuple[int, Callable[..., Any], tuple[Any, ...]]]) -> list[tuple[Any, float]]:
+    return [_timed(function, arguments) for _, function, arguments in work]
+
+
+def _timed(function: Callable[..., Any], arguments: tuple[Any, ...]) -> tuple[Any, float]:
+    """Call a function; return what it returns, and how long that took of this process [s]."""
+    began = time.process_time()
+    outcome = function(*arguments)
+    return outcome, time.process_time() - began
 
 
 def _draw(folder: Path, pictures: dict[str, Callable[[Path], None]]) -> None:

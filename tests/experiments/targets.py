@@ -8,7 +8,7 @@ from typing import Any
 from rich.console import Console
 from rich.table import Table
 
-from tests.experiments import ablation, adaptation_report, clustering
+from tests.experiments import ablation, adaptation_report, clustering, recorded_sets
 from tests.experiments.results import Found, by_place, outranked, revived, right, uneven
 from tests.experiments.scenarios import GROUPINGS, SCENARIOS
 from tests.experiments.trials import MODES
@@ -45,7 +45,7 @@ def targets(found: Found) -> list[tuple[str, str, str, bool]]:
         largest = spread["largest"]
         kept = spread["failed"] == 0 and largest is not None and largest <= SHAPE_BOUND
         rows.append((f"Fréchet distance: {shape}", "≤ 1 cm", worst(spread), kept))
-    rows += clustering.targets(found["clustering"])
+    rows += clustering.targets(found["clustering"]) + recorded_sets.targets(found["recorded_sets"])
     return rows + ablation.targets(found["ablation"]) + adaptation_report.targets(found["adaptation"])
 
 

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import sqrt
 
 import numpy as np
 from scipy.spatial import cKDTree
 
 from teachpath.errors import LearningFailed
+from teachpath.learning.evaluation import Rate
 from teachpath.learning.learn import learn
 from teachpath.learning.matching import frechet_distance
 from teachpath.learning.resampling import at_equal_arc_length
@@ -132,39 +132,6 @@ def experiment_2(seed: int) -> tuple[dict[str, Trajectory], dict[str, Learned]]:
     """Learn experiment 2 in every mode: five demonstrations of 200 samples, the fifth wiggles."""
     demonstrations = synthetic.experiment_2(seed)
     return demonstrations, {mode: learn(demonstrations, settings(mode, seed)) for mode in MODES}
-
-
-@dataclass(frozen=True)
-class Rate:
-    """How often something happened, with the 95 % interval of Wilson (1927)."""
-
-    hits: int
-    n: int
-
-    @property
-    def share(self) -> float:
-        return self.hits / self.n
-
-    @property
-    def interval(self) -> tuple[float, float]:
-        z = 1.96
-        p, n = self.share, self.n
-        middle = (p + z * z / (2 * n)) / (1 + z * z / n)
-        half = z * sqrt(p * (1 - p) / n + z * z / (4 * n * n)) / (1 + z * z / n)
-        return max(0.0, middle - half), min(1.0, middle + half)
-
-    def document(self) -> dict[str, object]:
-        low, high = self.interval
-        return {
-            "share": round(self.share, 4),
-            "hits": self.hits,
-            "n": self.n,
-            "interval": [round(low, 4), round(high, 4)],
-        }
-
-    def __str__(self) -> str:
-        low, high = self.interval
-        return f"{self.share:.1%} ({low:.1%} to {high:.1%})"
 
 
 def rate(values: Sequence[bool]) -> Rate:

@@ -71,7 +71,28 @@ class Stream:
         return dict(counts)
 
 
-def shown(rng: np.random.Generator) -> Stream:
+@dataclass(frozen=True)
+class Hand:
+    """How a task is shown.
+
+    Attributes:
+        noise: of the tracker [m].
+        samples: that carrying takes, least and most.
+    """
+
+    noise: float = NOISE
+    samples: tuple[int, int] = (90, 130)
+
+
+def any_hand(rng: np.random.Generator) -> Hand:
+    """Return a hand that carries quickly or slowly, with a good or a poor tracker."""
+    return Hand(10 ** rng.uniform(-4.0, -3.0), (50, 250))
+
+
+USUAL = Hand()
+
+
+def shown(rng: np.random.Generator, hand: Hand = USUAL) -> Stream:
     """Show a task without a fault: reach, take, carry along a bow, put, return and rest."""
     x, y, z = OBJECT
     away = rng.uniform(0.25, 0.35)
@@ -79,7 +100,7 @@ def shown(rng: np.random.Generator) -> Stream:
         [
             _move(rng, (x, y + away, z), OBJECT, 50),
             np.tile(OBJECT, (int(rng.integers(8, 20)), 1)),
-            _move(rng, OBJECT, (x + 0.4, y, z), int(rng.integers(90, 130)), bow=0.15),
+            _move(rng, OBJECT, (x + 0.4, y, z), int(rng.integers(*hand.samples)), bow=0.15),
             np.tile((x + 0.4, y, z), (int(rng.integers(8, 20)), 1)),
             _move(rng, (x + 0.4, y, z), (x + 0.4, y + away, z), 50),
             np.tile((x + 0.4, y + away, z), (30, 1)),
@@ -88,7 +109,7 @@ def shown(rng: np.random.Generator) -> Stream:
     moving = np.flatnonzero(np.linalg.norm(np.diff(places, axis=0), axis=1) > 0.0)
     grasp = int(moving[moving > 50][0]) - 3
     release = int(moving[moving < len(places) - 81][-1]) + 5
-    places = places + rng.normal(0.0, NOISE, places.shape)
+    places = places + rng.normal(0.0, hand.noise, places.shape)
     events = []
     for k, place in enumerate(places.tolist()):
         closure = (CLOSED if grasp <= k < release else OPEN) + rng.uniform(-0.05, 0.05)

@@ -1,11 +1,14 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { linkFrames } from "../../clients/web/arm/kinematics.js";
+import { linkFrames, toolPose } from "../../clients/web/arm/kinematics.js";
 import { Motion } from "../../clients/web/arm/motion.js";
 import { assertClose, fixture } from "./fixtures.js";
 
-test("every link is where the service says, for every published arm", () => {
-  for (const { links, q, frames } of fixture("link_poses")) assertClose(linkFrames(links, q), frames);
+test("every link and any tool are where the service says, for every arm", () => {
+  for (const { arm, q, frames, tool } of fixture("link_poses")) {
+    assertClose(linkFrames(arm.joints, q), frames);
+    assertClose(toolPose(arm, q), tool);
+  }
 });
 
 test("a motion is interpolated between its samples, and holds its ends", () => {

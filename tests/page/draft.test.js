@@ -109,3 +109,17 @@ test("saving makes the curve the version's, and going on from another version ca
   edited.undo();
   assert.ok(curvesEqual(edited.curve, moved(1)));
 });
+
+test("undo after another version was taken goes back to the version that mine was made from", () => {
+  const edited = draft();
+  edited.change(moved(1), "mine");
+  edited.rebase({ number: 2, branch: "main" }, moved(2), "theirs");
+  edited.undo();
+  assert.deepEqual(edited.base, BASE); // so that saving it asks again
+  assert.ok(curvesEqual(edited.curve, moved(1)) && edited.edited);
+  edited.redo();
+  assert.equal(edited.base.number, 2);
+  assert.ok(!edited.edited);
+  edited.undo();
+  assert.deepEqual(edited.base, BASE);
+});

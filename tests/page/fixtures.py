@@ -8,22 +8,28 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from teachpath.io.arm_models.arm_reader import read_arm
 from teachpath.io.documents import to_document
 from teachpath.learning.adaptation.adapted_course import CourseModel
 from teachpath.learning.adaptation.kriged_shapes import KrigedShapes
-from teachpath.motion.arm.kinematics import link_frames
+from teachpath.motion.arm.description import describe_arm
+from teachpath.motion.arm.kinematics import link_frames, tool_pose
 from teachpath.motion.arm.model import Arm
 from teachpath.motion.arm.puma560 import VARIANTS
+from teachpath.motion.settings import MotionSettings
 from teachpath.nurbs import Curve
+from teachpath.records import ToolPose
 from teachpath_proto.keys import is_name, name_refusal
 from teachpath_proto.tracker_pb2 import HandSample, Quaternion, Vector3
 
 FOLDER = Path(__file__).parent / "fixtures"
+TILTED = (math.cos(0.3), 0.6 * math.sin(0.3), 0.8 * math.sin(0.3), 0.0)
 GRASP, CLUTCH = 1, 4  # bits of HandSample.buttons
 
 NAMES = ["demo", "a", "A9", "first-task", "x.y_z-0", "a" * 64]
@@ -54,18 +60,22 @@ def _curve(chance: np.random.Generator, degree: int, inner: tuple[float, ...]) -
 
 
 def link_poses() -> list[dict[str, Any]]:
-    """Poses of all links of every published arm, at several configurations; column by column, as three.js has them."""
+    """Poses of all links of published arms and of a model; column by column, as three.js has them."""
     chance = np.random.default_rng(2)
-    return [
-        _link_poses(Arm.of_variant(name), chance.uniform(-math.pi, math.pi, 6)) for name in VARIANTS for _ in range(3)
+    model = read_arm("six-axis", base=((0.1, 0.2, 0.5), TILTED), gripper_length=0.13)
+    return [_link_poses(Arm.of_model(model, MotionSettings()), chance.uniform(-math.pi, math.pi, 6))] + [
+        _link_poses(replace(Arm.of_variant(name), tool=tool), chance.uniform(-math.pi, math.pi, 6))
+        for name in VARIANTS
+        for tool in (None, ToolPose((0.05, -0.02, 0.18), (0.5, 0.5, -0.5, 0.5)), ToolPose((0.0, 0.1, -0.05), TILTED))
     ]
 
 
 def _link_poses(arm: Arm, q: np.ndarray) -> dict[str, Any]:
     return {
-        "links": [{"a": link.a, "d": link.d, "alpha": link.alpha} for link in arm.links],
+        "arm": to_document(describe_arm(arm, name="puma560", home=(0.0,) * 6)),
         "q": q.tolist(),
         "frames": [frame.T.ravel().tolist() for frame in link_frames(q, arm)],
+        "tool": tool_pose(q, arm).T.ravel().tolist(),
     }
 
 
@@ -161,12 +171,16 @@ def _adaptation(chance: np.random.Generator, count: int, closed: bool) -> dict[s
     edited = shown[0] + 0.05 * np.sin(np.pi * share) ** 2 * chance.normal(0, 1, 3)
     model = CourseModel(KrigedShapes(np.array(shown)), shown[0], edited)
     predictions = []
-    for spread in (0.0, 0.005, 0.15):
-        start, goal = (shown[0][end] + chance.normal(0, 1, 3) * spread for end in (0, -1))
+    ends = [tuple(shown[0][end] + chance.normal(0, 1, 3) * spread for end in (0, -1)) for spread in (0.0, 0.005, 0.15)]
+    first, last = shown[0][[0, -1]]
+    beyond = ([0.7, 0.7, 0.0], [0.0, 0.0, 0.6], [0.5, -0.65, 0.0])  # farther, higher, and in another direction
+    ends += [(first, last + np.array(shift)) for shift in beyond]
+    for start, goal in ends:
         found = model.predict(start, goal)
         named = {"start": start, "goal": goal, "path": found.path, "deviation": found.deviation}
-        predictions.append({name: values.tolist() for name, values in named.items()})
-    return {"model": to_document(model.export()), "predictions": predictions}
+        numbers = {name: values.tolist() for name, values in named.items()}
+        predictions.append({**numbers, "extrapolates": found.extrapolates})
+    return {"model": to_document(model.export(min(count, 2))), "predictions": predictions}
 
 
 FIXTURES: dict[str, Callable[[], list[dict[str, Any]]]] = {

@@ -23,7 +23,7 @@ def assert_same(stored: Any, computed: Any, place: str) -> None:
     """Compare documents: figures to 1e-12, since the last bits of a sum are the processor's, all else exactly."""
     if isinstance(computed, float):
         np.testing.assert_allclose(stored, computed, rtol=1e-12, atol=1e-12, err_msg=place)
-    elif isinstance(computed, list):
+    elif isinstance(computed, list | tuple):
         assert len(stored) == len(computed), place
         for i, (left, right) in enumerate(zip(stored, computed, strict=True)):
             assert_same(left, right, f"{place}[{i}]")

@@ -24,10 +24,14 @@ class Late:
         visit.page.route(re.compile(rf".*/api/v1/{pattern}(\?.*)?$"), self._keep)
 
     def _keep(self, route: Any) -> None:
-        if route.request.method == self._method and not self._over:
-            self.kept.append((route, route.fetch()))
-        else:
+        if route.request.method != self._method or self._over:
             route.fallback()
+            return
+        answer = route.fetch()
+        if self._over:  # since this was asked
+            route.fulfill(response=answer)
+        else:
+            self.kept.append((route, answer))
 
     def wait(self, count: int = 1) -> None:
         """Wait until so many answers are kept."""

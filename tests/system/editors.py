@@ -16,8 +16,7 @@ class Desk(Visit):
     """A page for the tab Edit; what its console said is judged when it closes."""
 
     def __init__(self, browser: Any, url: str, path: str = "") -> None:
-        super().__init__(browser, url)
-        self.page.set_viewport_size({"width": 1000, "height": 620})  # fewer pixels to draw without a graphics card
+        super().__init__(browser, url, size=(1000, 620))
         if path:
             self.open(path)
 

@@ -142,8 +142,9 @@ class Leader(Operator):
         return bool(self.page.evaluate("teachpath.teleop()?.clutchPressed"))
 
     @property
-    def _follows(self) -> bool:
-        return bool(self.status()["state"] == "following")
+    def _is_led(self) -> bool:
+        """Whether the clutch is pressed and has not to be let go; an arm that was late goes on by itself."""
+        return self._pressed and not self.status()["reason"].startswith((*STARVED, AGAIN))
 
     def lead(self, press: Callable[[], None], move: Callable[[], None], let_go: Callable[[], None], done: Done) -> None:
         """Hold the clutch, move, and wait for what is expected; then let go, and wait until the arm is held."""
@@ -153,9 +154,9 @@ class Leader(Operator):
             press()
             looks = itertools.count()
             self._visit.wait(lambda: self._pressed or next(looks) > 40)  # a press beside the ball is none
-            self._visit.wait(lambda: self._follows or not self._pressed or self.status()["reason"].startswith(AGAIN))
+            self._visit.wait(lambda: self.status()["state"] == "following" or not self._is_led)
             move()
-            self._visit.wait(lambda: done() or not self._follows)
+            self._visit.wait(lambda: done() or not self._is_led)
             reached = done()
             let_go()
             return reached

@@ -11,6 +11,8 @@ from types import TracebackType
 
 import httpx
 
+from teachpath_client.errors import NotStopped
+from teachpath_client.models import Execution
 from teachpath_client.station import Station
 from tests.waiting import HANG, wait_until
 
@@ -28,6 +30,7 @@ BUSY = {
     "TEACHPATH_EXECUTOR__SILENCE_TIMEOUT": "60",
     "TEACHPATH_EXECUTOR__REST_TIMEOUT": "30",
     "TEACHPATH_EXECUTOR__HAND_SILENCE": "5",
+    "TEACHPATH_EXECUTOR__HAND_RETURN_TIMEOUT": "60",
 }
 FAMILY = "SYSTEM_TEST_FAMILY"  # in the environment of a command and of all that it starts
 
@@ -91,7 +94,7 @@ class Command:
         return [command for _, command in family(self.family)]
 
     def find(self, words: str) -> list[int]:
-        """Return the ids of the processes that it started and whose command line holds `words`."""
+        """Return the ids of the processes that it started and whose command line or `[name]` holds `words`."""
         return [pid for pid, command in family(self.family) if words in command]
 
     def wait_gone(self) -> None:
@@ -106,15 +109,28 @@ class Command:
 
 
 def family(name: str) -> list[tuple[int, str]]:
-    """Return process ids and command lines of all that belong to a command."""
+    """Return process ids and command lines of all that belong to a command, with their names: `COMMAND [NAME]`."""
     found = []
     for folder in Path("/proc").glob("[0-9]*"):
         try:
             if f"{FAMILY}={name}".encode() in (folder / "environ").read_bytes().split(b"\0"):
-                found.append((int(folder.name), (folder / "cmdline").read_bytes().replace(b"\0", b" ").decode()))
+                command = (folder / "cmdline").read_bytes().replace(b"\0", b" ").decode()
+                found.append((int(folder.name), f"{command}[{(folder / 'comm').read_text().strip()}]"))
         except OSError:  # it ended meanwhile, or belongs to somebody else
             continue
     return found
+
+
+def stop_arm(station: Station, execution: str) -> Execution:
+    """Stop an execution; on a busy machine the executor may confirm it later than a station waits for."""
+
+    def stopped() -> Execution | None:
+        try:
+            return station.stop(execution)
+        except NotStopped:
+            return None
+
+    return wait_until(stopped, "the executor confirms a stop")
 
 
 def run(*arguments: str, folder: Path) -> Command:
@@ -176,6 +192,6 @@ class Service(Command):
     def _answers(self) -> bool:
         assert self.process.poll() is None, self.err
         try:
-            return httpx.get(f"{self.url}/api/v1/health", timeout=HANG, trust_env=False).is_success
+            return httpx.get(f"{self.url}/api/v1/health/live", timeout=HANG, trust_env=False).is_success
         except httpx.TransportError:
             return False

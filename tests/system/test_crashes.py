@@ -70,8 +70,11 @@ def test_a_kill_in_mid_take_costs_only_what_was_not_yet_flushed(tmp_path: Path) 
 def test_a_job_under_way_is_run_again_once(tmp_path: Path) -> None:
     with Service(tmp_path / "data") as killed:
         assert len(record(killed, "carry", 12).demonstrations) == 12
-        workers = wait_until(lambda: killed.find("spawn_main"), "the process of the jobs is there")
-        for worker in workers:  # the one of the jobs is among them
+        parts = lambda: {*killed.find("[executor]"), *killed.find("[simulator]")}  # noqa: E731
+        lanes = lambda: len(found := {*killed.find("forkserver")} - parts()) > 2 and found  # noqa: E731
+        wait_until(lambda: len(parts()) == 2, "executor and simulated arm are there")
+        workers = wait_until(lanes, "the processes of both lanes are there, beside the one they are forked from")
+        for worker in workers:
             os.kill(worker, signal.SIGSTOP)  # so that the job cannot end before the kill
         job = killed.station.begin_job("carry", "learn")
         running = lambda: killed.station.get_job(job.id).state == "running"  # noqa: E731

@@ -23,6 +23,13 @@ def test_tells_the_whole_story_once_and_leaves_nothing(start: Start) -> None:
     assert_nothing_left(demo)
 
 
+def test_tells_it_with_an_arm_from_a_model(start: Start) -> None:
+    demo = start("--once", "--speed", "10", "--arm", "six-axis")
+    assert demo.wait() == 0, demo.err
+    assert_story(demo.out)
+    assert_nothing_left(demo)
+
+
 @pytest.mark.parametrize("signalled", ["Ctrl-C in a terminal", "SIGINT to the command alone"])
 def test_ctrl_c_in_the_middle_of_recording_ends_everything(start: Start, signalled: str) -> None:
     demo = start("--speed", "4", port=(port := free_ports(1)[0]))

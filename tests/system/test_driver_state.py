@@ -76,9 +76,9 @@ def test_the_page_shows_what_the_driver_says_and_motion_nobody_asked_for_is_ackn
             station.begin_teleoperation("glove", scene="empty")
         arm.get_by_role("button", name="acknowledge").wait_for()
         wait_until(lambda: any("rests again" in entry.answer for entry in station.journal()), "the arm rests")
-        (executor,) = service.find("teachpath executor")
+        (executor,) = service.find("[executor]")
         os.kill(executor, signal.SIGKILL)
-        wait_until(lambda: service.find("teachpath executor") not in ([], [executor]), "another executor is started")
+        wait_until(lambda: service.find("[executor]") not in ([], [executor]), "another executor is started")
         station.wait_for_arm(timeout=HANG)
         with pytest.raises(ClientError, match="although no execution is under way"):
             station.begin_teleoperation("glove", scene="empty")

@@ -27,4 +27,4 @@ def test_diff_says_the_same_over_rest_and_from_the_data_folder(tmp_path: Path) -
     assert asked.out == read.out
     assert asked.out.startswith("setting error_bound: 0.005 became 0.01\n")
     assert missing.process.returncode == 1
-    assert missing.err == "teachpath: there is no run 'moon'\n"
+    assert missing.err == "teachpath: there is no run 'moon'; list them with: teachpath runs\n"

@@ -191,7 +191,7 @@ def test_the_key_is_nowhere_but_in_its_file(service: Service, plans: list[Plan])
     secrets = (key.encode(), bytes.fromhex(key))
     for file in [*service.data.rglob("*"), *service.data.parent.glob("*.err"), *service.data.parent.glob("*.out")]:
         assert not file.is_file() or not any(secret in file.read_bytes() for secret in secrets), file
-    for pid in service.find("teachpath") + service.find("spawn_main"):
+    for pid in service.find("teachpath") + service.find("forkserver"):
         for place in ("environ", "cmdline"):
             with suppress(FileNotFoundError):
                 assert not any(s in Path(f"/proc/{pid}/{place}").read_bytes() for s in secrets)

@@ -24,7 +24,7 @@ A_WHILE = 1000  # [ms] in which what must not happen would show, on most machine
 @pytest.fixture(scope="module")
 def learned(service: Service) -> Run:
     """A run of a task with three ways; the first of them has a plan and a second version, the others are as learned."""
-    record(service, TASK, 12, speed=8.0)
+    record(service, TASK, 12)
     run = service.station.learn(TASK)
     service.station.plan(run.learned.paths[0].id)
     return run

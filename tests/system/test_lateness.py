@@ -54,7 +54,7 @@ def ready_plan(service: Service, task: str) -> Plan:
 
 def executor(service: Service) -> int:
     """The process that streams the setpoints."""
-    (pid,) = (pid for pid, command in family(service.family) if " executor --attached" in command)
+    (pid,) = (pid for pid, command in family(service.family) if "[executor]" in command)
     return pid
 
 

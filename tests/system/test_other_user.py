@@ -86,7 +86,7 @@ def secrets(service: Service, place: Path) -> list[str]:
     assert {"teachpath.sqlite", f"tcp-127.0.0.1-{service.ports[1]}.json", f"tcp-127.0.0.1-{service.ports[1]}.key"} <= {
         Path(file).name for file in files
     }
-    pids = [pid for words in ("teachpath", "spawn_main") for pid in service.find(words)]
+    pids = [pid for words in ("teachpath", "forkserver") for pid in service.find(words)]
     return files + [f"/proc/{pid}/{file}" for pid in pids for file in ("fd/0", "environ", "mem")]
 
 

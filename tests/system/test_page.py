@@ -30,7 +30,7 @@ SOCKETS = ("view", "events", "joints", "trackers/page-x/samples")
 
 def learn(service: Service, task: str) -> Run:
     """Show the paper's first experiment, learn it, and return the run."""
-    record(service, task, 12, speed=8.0)
+    record(service, task, 12)
     return service.station.learn(task)
 
 
@@ -43,8 +43,7 @@ def learned(service: Service) -> Run:
 @pytest.fixture
 def visit(browser: Any, service: Service, learned: Run) -> Iterator[Visit]:
     """A page of its own for every test, in which the task is chosen."""
-    visit = Visit(browser, service.url)
-    visit.page.set_viewport_size({"width": 1000, "height": 600})
+    visit = Visit(browser, service.url, size=(1000, 600))
     choose(visit, TASK)
     yield visit
     visit.page.close()
@@ -85,12 +84,14 @@ def test_a_task_is_made_in_the_page_and_kept_through_a_reload(visit: Visit, serv
         page.locator("#new-task-button").click()
         page.get_by_label("Name", exact=True).fill(name)
         page.get_by_label("Scene", exact=True).select_option("empty")
+        page.get_by_label("The object lies elsewhere each time").check()
         page.get_by_role("button", name="Make the task").click()
         if name == TASK:
             page.wait_for_selector("#message .error:has-text('already')")
             page.keyboard.press("Escape")
     visit.wait(lambda: page.locator("#task").input_value() == "another")
-    assert service.station.get_task("another").scene == "empty"
+    another = service.station.get_task("another")
+    assert (another.scene, another.object_at_grasp) == ("empty", True)
     page.select_option("#task", TASK)
     page.reload()
     page.wait_for_selector("html[data-scene=ready]", state="attached")
@@ -198,9 +199,9 @@ def test_after_a_restart_of_the_service_the_page_shows_the_truth_again(browser: 
     for name in TABS:
         tab(visit, name)
         assert grave(page, f"without the service, {name}") == []
-    assert "the arm holds" in page.locator("#arm .state").inner_text()
+    visit.wait(lambda: "the arm holds" in page.locator("#arm .state").inner_text())
     tab(visit, "demonstrate")
-    assert "Not known" in page.locator("#recordings").inner_text()
+    visit.wait(lambda: "Not known" in page.locator("#recordings").inner_text())
     tab(visit, "ways")
     page.get_by_role("button", name="Learn anew").click()
     page.wait_for_selector("#message .error:has-text('Is it running?')")
@@ -210,9 +211,10 @@ def test_after_a_restart_of_the_service_the_page_shows_the_truth_again(browser: 
         again.station.make_task("made-meanwhile")
         page.wait_for_selector("html[data-connection=live][data-events=live]", state="attached")
         page.wait_for_selector("#task option[value=made-meanwhile]", state="attached")
-        assert page.locator("#connection").inner_text() == "Connected"
+        visit.wait(lambda: page.locator("#connection").inner_text() == "Connected")
         visit.wait(lambda: "At rest" in page.locator("#arm .state").inner_text())
         page.locator("#events-button").click()
+        page.wait_for_selector("#events:has-text('The service answers again')")
         said = page.locator("#events").inner_text()
         assert said.index("The service answers again") < said.index("The service does not answer any more")
         page.close()
@@ -223,7 +225,7 @@ def test_the_review_package_answers_as_the_service_does_and_keeps_nobody_out(
 ) -> None:
     service.station.plan(learned.learned.paths[0].id)
     data = ("--data", str(service.data))
-    out = run("export", "--report", TASK, "--into", str(tmp_path), *data, folder=tmp_path)
+    out = run("export", "report", TASK, "--into", str(tmp_path), *data, folder=tmp_path)
     assert out.process.returncode == 0, out.err
     assert str(tmp_path / f"{TASK}.html") in out.out
     found = []

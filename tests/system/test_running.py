@@ -1,7 +1,6 @@
 """Run: what was shown by mouse and by a headset's hand is learned, certified, previewed, executed and steered."""
 
 from collections.abc import Iterator
-from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -14,7 +13,7 @@ from teachpath_client.models import Plan
 from tests.system.access import grave
 from tests.system.carriers import HEADSET, NEXT, START, begin, carry, carry_worn, move_hand, phase
 from tests.system.operators import RESTING, Leader, Operator, Status
-from tests.system.processes import Service
+from tests.system.processes import Service, stop_arm
 from tests.system.test_view import REST, Visit
 from tests.waiting import wait_until
 
@@ -32,20 +31,20 @@ TAP = """() => {
   for (const name of ["pointerdown", "pointerup"]) button.dispatchEvent(new PointerEvent(name, { bubbles: true }));
 }"""
 SCRIPT = (ASSETS / "iwer" / "iwer.min.js").read_text() + HEADSET
-SMALL, SMALLER = ({"width": 900, "height": height} for height in (420, 240))  # less to draw
+SMALL, SMALLER = (900, 420), (900, 240)  # less to draw
 Plans = list[Plan]  # one a way, in the order in which the ways were shown: by mouse, by the headset's hand
 
 
 @pytest.fixture(scope="module")
 def plans(browser: Any, service: Service) -> Plans:
     """What was shown twice by mouse and twice by a headset's hand, learned and certified: all in the page."""
-    visit = Visit(browser, service.url, script=SCRIPT)
+    visit = Visit(browser, service.url, script=SCRIPT, size=SMALL)
     for size, button, show in (
         (SMALL, "Show it here", lambda _: carry(visit)),
         # No hand does the same twice: two that agree to the bit would make any other two look like two ways.
         (SMALLER, "In a headset", lambda nth: carry_worn(visit, move_hand, rise=0.24 + 0.005 * nth)),
     ):
-        visit.page.set_viewport_size(size)
+        visit.page.set_viewport_size({"width": size[0], "height": size[1]})
         begin(visit, service, TASK, button=button)
         for nth in range(2):
             show(nth)
@@ -74,8 +73,7 @@ def plans(browser: Any, service: Service) -> Plans:
 @pytest.fixture
 def visit(browser: Any, service: Service, plans: Plans) -> Iterator[Visit]:
     """A page of its own for every test."""
-    visit = Visit(browser, service.url, script=SCRIPT)
-    visit.page.set_viewport_size(SMALL)
+    visit = Visit(browser, service.url, script=SCRIPT, size=SMALL)
     yield visit
     visit.page.close()
 
@@ -95,7 +93,7 @@ def operator(visit: Visit, service: Service, plans: Plans) -> Iterator[Operator]
     yield operator
     for one in operator.executions():
         if one.status.state not in RESTING:
-            service.station.stop(one.id)
+            stop_arm(service.station, one.id)
     wait_until(lambda: all(one.status.state in RESTING for one in operator.executions()), "the arm rests")
 
 
@@ -131,6 +129,17 @@ def test_the_preview_is_the_plan_and_moves_no_arm(
     assert operator.said == []
 
 
+def test_the_motion_is_taken_away_as_the_file_that_a_program_gets(
+    visit: Visit, service: Service, operator: Operator, plans: Plans
+) -> None:
+    visit.page.get_by_text("Take it with you").click()
+    with visit.page.expect_download() as begun:
+        visit.page.get_by_role("button", name="Table (CSV)").click()
+    assert begun.value.suggested_filename == f"{plans[0].id}.csv"
+    assert begun.value.path().read_bytes() == service.station.program(plans[0].id)
+    assert operator.said == []
+
+
 def test_a_start_must_be_meant_and_the_path_is_gone_step_by_step_and_back(visit: Visit, operator: Operator) -> None:
     count = len(operator.executions())
     visit.page.wait_for_selector("button.hold:not([disabled])")
@@ -145,9 +154,7 @@ def test_a_start_must_be_meant_and_the_path_is_gone_step_by_step_and_back(visit:
     assert visit.page.locator("#arm .state").inner_text().startswith("Held on the path: held by")  # and why
     assert grave(visit.page, "held") == []
     for name, way in (("+ 1 cm", 0.01), ("− 1 cm", -0.01), ("− 1 cm", -0.01)):
-        goal = operator.status()["length"] + way  # as it stands now: an arm that was late may have come to rest since
-        operator.press(name)
-        held = operator.until(partial(is_held, goal))
+        held = step(operator, name, way)
     lengths = [held["length"]]
 
     def back(status: Status) -> bool:
@@ -160,6 +167,19 @@ def test_a_start_must_be_meant_and_the_path_is_gone_step_by_step_and_back(visit:
     operator.press("Resume")
     operator.until(lambda status: status["state"] == "following" and status["length"] > 0.0)
     assert operator.said == []
+
+
+def step(operator: Operator, name: str, way: float) -> Status:
+    """Go a step; where setpoints were missed on it, so that the arm came to rest by itself, go one from there."""
+    before = operator.status()
+    goal = before["length"] + way
+
+    def rests(now: Status) -> bool:
+        return is_held(goal, now) or (now["state"] == "held" and now["missed"] > before["missed"])
+
+    operator.press(name)
+    status = operator.until(rests)
+    return status if is_held(goal, status) else step(operator, name, way)
 
 
 def is_held(length: float, status: Status) -> bool:

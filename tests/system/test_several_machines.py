@@ -17,7 +17,7 @@ from teachpath_client.errors import ClientError
 from teachpath_proto.keys import Keys
 from teachpath_proto.logins import Login, Role, read_logins
 from tests.system.processes import Command, Service, free_ports, run
-from tests.system.test_hijacked_hand import Hand
+from tests.system.test_hijacked_hand import Hand, leads, moves
 from tests.waiting import HANG, wait_until
 
 pytestmark = pytest.mark.system
@@ -28,7 +28,6 @@ ROUTER = (
     "import sys, zenoh; s = zenoh.open(zenoh.Config.from_file(sys.argv[1])); print('up', flush=True); sys.stdin.read()"
 )
 REFUSAL = 2.0  # [s] until a program that is not let in gives up
-STILL = 1e-3  # [rad] that an arm at rest gives way
 LOGINS = {
     "glove": ("tracker", "--only", "glove-1"),
     "leader": ("tracker", "--only", "glove-2"),
@@ -142,10 +141,8 @@ def follow(service: Service, desk: Link, endpoint: str, logins: dict[str, Login]
         hand.put = leader.publisher(KEYS.samples("glove-2")).put
         led = service.station.begin_teleoperation("glove-2", scene="empty")
         wait_until(lambda: "press the clutch" in service.station.get_execution(led.id).status.reason, "it waits")
-        hand.pressed = True
-        wait_until(lambda: service.station.get_execution(led.id).status.state == "following", "the hand leads")
-        hand.place = (0.0, 0.03, 0.02)
-        wait_until(lambda: positions and np.ptp(positions[-20:], axis=0).max() > STILL, "the arm follows it")
+        wait_until(lambda: leads(hand, service.station, led.id), "the hand leads")
+        wait_until(lambda: moves(hand, service.station, led.id, positions), "the arm follows it")
         screen.publisher(KEYS.setpoint(ARM)).put(b"mine")
         screen.publisher(KEYS.executor_stop).put(b"")  # which a viewer may, so the setpoint has come before it
         wait_until(lambda: service.station.get_execution(led.id).status.state == "ended", "the viewer stops the arm")

@@ -42,9 +42,7 @@ navigator.getGamepads = () => [pad];
 
 @pytest.fixture
 def visit(browser: Any, service: Service) -> Iterator[Visit]:
-    visit = Visit(browser, service.url, script=GAMEPAD)
-    # Without a graphics card every pixel costs: a small view leaves the machine to the sampling.
-    visit.page.set_viewport_size({"width": 900, "height": 420})
+    visit = Visit(browser, service.url, script=GAMEPAD, size=(900, 420))  # which leaves the machine to the sampling
     yield visit
     visit.page.close()
 
@@ -158,8 +156,7 @@ def test_a_hidden_page_stops_and_throws_away_what_was_carried(visit: Visit, serv
 @pytest.fixture
 def worn(browser: Any, service: Service) -> Iterator[Visit]:
     script = (ASSETS / "iwer" / "iwer.min.js").read_text() + HEADSET
-    visit = Visit(browser, service.url, script=script)
-    visit.page.set_viewport_size({"width": 900, "height": 240})  # the frames of a headset are drawn in software here
+    visit = Visit(browser, service.url, script=script, size=(900, 240))  # the frames of a headset are drawn, too
     yield visit
     visit.page.close()
 

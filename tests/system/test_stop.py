@@ -24,7 +24,7 @@ from teachpath_client.models import Plan
 from teachpath_proto.control import CommandVerb, ExecutorState
 from teachpath_proto.logins import Login, Role, find_login
 from tests.system.access import grave
-from tests.system.processes import Service, run
+from tests.system.processes import Service, run, stop_arm
 from tests.system.test_lateness import executor, ready_plan
 from tests.system.test_view import KEYS, Server, Visit
 from tests.waiting import wait_until
@@ -116,11 +116,11 @@ def plan(service: Service) -> Plan:
 
 
 def begin(service: Service, plan: Plan) -> str:
-    """Move the arm along a plan, slowly; return the execution once it is on its way."""
+    """Move the arm along a plan, slowly; return the execution once it is on its way, clear of where the object lay."""
     station = service.station
     station.wait_for_arm()
-    execution = station.begin_execution(plan.id, override=0.3).id
-    wait_until(lambda: station.get_execution(execution).status.progress > 0.05, "it is on its way")
+    execution = station.begin_execution(plan.id, override=0.2).id
+    wait_until(lambda: station.get_execution(execution).status.progress > 0.2, "it is on its way")
     return execution
 
 
@@ -182,7 +182,7 @@ def test_a_client_of_the_bus_cannot_swallow_a_stop(service: Service, plan: Plan)
     session, swallowed = impostor(service.endpoint, find_login(service.endpoint, Role.TRACKER))
     try:
         execution = begin(service, plan)
-        assert service.station.stop(execution).status.ending
+        assert stop_arm(service.station, execution).status.ending
         wait_ended(service, execution)
         assert not swallowed
     finally:
@@ -203,8 +203,8 @@ def test_whoever_answers_a_stop_on_an_open_bus_the_arm_stops(tmp_path: Path) -> 
         try:
             execution = begin(service, plan)
             before = len(swallowed)
-            assert service.station.stop(execution).status.ending
-            assert len(swallowed) > before  # the question was swallowed
+            assert stop_arm(service.station, execution).status.ending
+            wait_until(lambda: len(swallowed) > before, "the question was swallowed")
             wait_ended(service, execution)
         finally:
             bus.close()

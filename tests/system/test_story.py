@@ -33,7 +33,7 @@ def test_what_the_demo_has_learned_is_edited_certified_run_and_replayed(
     assert found is not None, demo.err
     with Station(found[1]) as station:
         tell(browser, found[1], station, tmp_path)
-    assert any("executor" in line for line in demo.relatives())
+    assert any("[executor]" in line for line in demo.relatives())
     demo.interrupt()
     assert demo.wait() == 0
     assert "Traceback" not in demo.err

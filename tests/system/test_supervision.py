@@ -15,7 +15,7 @@ from teachpath.robot.processes import MAX_DEATHS
 from teachpath_client.errors import Refused
 from teachpath_client.models import Execution
 from tests.contract.rows import a_job, learned
-from tests.system.processes import Command, Service
+from tests.system.processes import Command, Service, stop_arm
 from tests.unit.motion.ways import MIDDLE, way
 from tests.waiting import wait_until
 
@@ -93,7 +93,7 @@ def follow(service: Service) -> Execution:
 
 
 def kill(service: Service, part: str) -> int:
-    (pid,) = service.find(f"{part} --attached")
+    (pid,) = service.find(f"[{part}]")
     os.kill(pid, signal.SIGKILL)
     return pid
 
@@ -111,7 +111,7 @@ def test_the_death_of_the_executor_ends_its_execution_and_another_executor_takes
     status = wait_state(service, execution, "faulted").status
     assert status.reason.startswith("the executor died (killed by signal 9"), status.reason
     wait_note(service, "the executor died (killed by signal 9", "look where the arm stands, then start again")
-    assert service.station.stop(execution.id).status.state == "faulted"
+    assert stop_arm(service.station, execution.id).status.state == "faulted"
     again = service.station.finish(begin(service))
     assert (again.status.state, again.status.progress) == ("ended", pytest.approx(1.0))
     assert service.station.get_execution(execution.id).status == status
@@ -132,12 +132,12 @@ def test_an_executor_that_dies_again_and_again_is_given_up(data: Path) -> None:
     killed: set[int] = set()
     with Service(data) as service:
         for _ in range(MAX_DEATHS):
-            wait_until(lambda: set(service.find("executor --attached")) - killed, "another executor is there")
+            wait_until(lambda: set(service.find("[executor]")) - killed, "another executor is there")
             killed.add(kill(service, "executor"))
         note = wait_note(service, "the executor died", "is not started again", "then restart the service")
         assert f"{MAX_DEATHS} times" in note
         assert service.station.health().processes == {"executor": "ended", "simulator": "running"}
-        assert service.find("executor --attached") == []
+        assert service.find("[executor]") == []
 
 
 def test_nothing_is_under_way_after_the_service_was_killed(data: Path) -> None:
@@ -164,11 +164,11 @@ def test_an_execution_that_has_ended_leaves_an_arm_that_may_start_at_once(servic
     execution = follow(service)
     assert execution.plan is not None
     for _ in range(10):
-        service.station.stop(execution.id)
+        stop_arm(service.station, execution.id)
         wait_state(service, execution, "ended")
         execution = service.station.begin_execution(execution.plan)  # without another try
         wait_state(service, execution, "approaching", "following")
-    service.station.stop(execution.id)
+    stop_arm(service.station, execution.id)
     wait_state(service, execution, "ended")
 
 
@@ -204,7 +204,7 @@ def test_the_arm_holds_when_the_command_that_moves_it_is_killed(service: Service
     assert held.reason.startswith("nothing was heard of teachpath run, who was in control; resume"), held.reason
     service.station.steer(execution.id, "resume")
     wait_state(service, execution, "following")
-    service.station.stop(execution.id)
+    stop_arm(service.station, execution.id)
     wait_state(service, execution, "ended")
 
 

@@ -16,6 +16,10 @@ from scipy.cluster.hierarchy import linkage
 from websockets.exceptions import InvalidStatus
 from websockets.sync.client import connect
 
+from teachpath.access.access import Access
+from teachpath.access.memory_people import MemoryPeople
+from teachpath.access.memory_tokens import MemoryTokens
+from teachpath.access.settings import AuthSettings
 from teachpath.api.events import events_router
 from teachpath.api.view import view_router
 from teachpath.io import wire
@@ -31,7 +35,7 @@ from teachpath.motion.collision.builtin_scenes import paper_scene
 from teachpath.motion.planning.assessment import assess
 from teachpath.motion.settings import MotionSettings
 from teachpath.nurbs import Curve
-from teachpath.records import Cluster, Fit, JointState, Learned, LearnedPath, RunSummary, Task, Trajectory
+from teachpath.records import Capability, Cluster, Fit, JointState, Learned, LearnedPath, RunSummary, Task, Trajectory
 from teachpath_proto.keys import Keys
 from tests.contract.rows import demonstration
 from tests.waiting import HANG, wait_until
@@ -76,6 +80,7 @@ class Server:
     def web_app(self, demonstrations: int) -> FastAPI:
         """The preview, and what the REST API says of a task with so many demonstrations."""
         app = FastAPI()
+        app.state.access = Access(AuthSettings(), MemoryTokens(), MemoryPeople())
         app.include_router(view_router(self.preview))
         app.include_router(events_router(EventHub()))
         for resource, document in documents(demonstrations).items():
@@ -113,6 +118,7 @@ def documents(count: int) -> dict[str, Any]:
         paths=tuple(way(k) for k in (1, 2, 3)),
     )
     return {
+        "identity": {"mode": "none", "name": "", "capabilities": list(Capability)},
         "tasks": [to_document(Task("t", "paper", "identity", 1))],
         "scenes": [to_document(paper_scene())],
         "executions": [],
@@ -149,10 +155,10 @@ def server() -> Iterator[Server]:
 
 
 class Visit:
-    """The page as opened in the browser, with all its console said."""
+    """The page as opened in the browser, with all its console said; without a graphics card every pixel costs."""
 
-    def __init__(self, browser: Any, address: str, *, script: str = "") -> None:
-        self.page = browser.new_page(viewport={"width": 1280, "height": 800})
+    def __init__(self, browser: Any, address: str, *, script: str = "", size: tuple[int, int] = (1280, 800)) -> None:
+        self.page = browser.new_page(viewport={"width": size[0], "height": size[1]})
         self.page.set_default_timeout(1000 * HANG)
         if script:
             self.page.add_init_script(script)

@@ -6,6 +6,7 @@ import threading
 import pytest
 
 from teachpath.periodic_thread import PeriodicThread
+from tests.waiting import HANG
 
 LONG = 3600.0  # [s] longer than any test
 
@@ -17,7 +18,7 @@ def test_it_calls_until_it_is_stopped_and_can_be_started_again() -> None:
         assert not thread.is_running
         thread.start()
         assert thread.is_running
-        assert all(calls.acquire(timeout=10) for _ in range(3))
+        assert all(calls.acquire(timeout=HANG) for _ in range(3))
         thread.stop()
         thread.stop()
         while calls.acquire(blocking=False):  # what was called before the stop
@@ -43,9 +44,9 @@ def test_a_call_that_returns_true_is_followed_without_a_pause() -> None:
             enough.set()
         return calls < 1000
 
-    thread = PeriodicThread("test", 0.2, action)
+    thread = PeriodicThread("test", 1.0, action)
     thread.start()
-    assert enough.wait(60)  # with its pauses it would take 200 s
+    assert enough.wait(HANG)  # with its pauses it would take 1000 s
     thread.stop()
 
 
@@ -54,12 +55,12 @@ def test_a_stop_waits_for_the_call_that_is_under_way() -> None:
 
     def action() -> None:
         begun.set()
-        go_on.wait(10)
+        go_on.wait(HANG)
         ended.set()
 
     thread = PeriodicThread("test", 0.001, action)
     thread.start()
-    assert begun.wait(10)
+    assert begun.wait(HANG)
     threading.Timer(0.01, go_on.set).start()
     thread.stop()
     assert ended.is_set()
@@ -79,6 +80,6 @@ def test_an_error_is_logged_once_in_a_row_and_does_not_end_the_calls(caplog: pyt
     thread = PeriodicThread("flusher", 0.001, action)
     with caplog.at_level(logging.ERROR, "teachpath"):
         thread.start()
-        assert enough.wait(10)
+        assert enough.wait(HANG)
         thread.stop()
     assert [record.message for record in caplog.records] == ["flusher failed; trying again every 0.001 s"] * 2

@@ -72,7 +72,7 @@ class GloveProtocol:
         self._polled = settings.mode == "polled" or settings.touch != "off"
         self._polling = Polling(settings.rate, clock)
         self._sent_amplitude = 0
-        self.amplitude = 0  # what the hand should feel now
+        self.amplitude: int = 0  # what the hand should feel now
 
     def set_up(self, line: SerialLine) -> GloveParser:
         """Set the glove up; raises ClientError when it does not answer or is not the glove it should be."""
@@ -149,8 +149,8 @@ class GloveSource(LiveDevice[Raw]):
             raise ClientError(
                 "the glove needs the option calibration=FILE; make one with teachpath-client glove-calibrate"
             )
-        self.settings = settings
-        self.calibration = GloveCalibration.load(Path(settings.calibration))
+        self.settings: GloveSettings = settings
+        self.calibration: GloveCalibration = GloveCalibration.load(Path(settings.calibration))
         self._protocol = GloveProtocol(settings, len(self.calibration.offset), clock)
         super().__init__(connect(settings, self._protocol, clock))
 

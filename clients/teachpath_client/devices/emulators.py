@@ -51,17 +51,19 @@ class Emulator:
         corrupt: Corruption | None = None,
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
-        self.simulator, self._link, self._rate, self._hold = simulator, link, rate, hold
+        self.simulator: ProtocolSimulator = simulator
+        self._link, self._rate, self._hold = link, rate, hold
         self._moving = moving
-        self.corrupt, self._clock = corrupt, clock
+        self.corrupt: Corruption | None = corrupt
+        self._clock = clock
         self._script: deque[HandReading] = deque()
         self._now = HandReading(0.0, (0.0, 0.0, 0.0), None, (0.0,) * 22)
         self._master = self._slave = -1
         self._over = threading.Event()
         self._thread: threading.Thread | None = None
         self.intact: list[tuple[float, HandReading]] = []  # what went out undamaged, and when
-        self.corrupted = 0  # records that did not
-        self.played = threading.Event()  # all that was to be played went out
+        self.corrupted: int = 0  # records that did not
+        self.played: threading.Event = threading.Event()  # all that was to be played went out
 
     def __enter__(self) -> Self:
         self.plug()

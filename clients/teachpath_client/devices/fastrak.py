@@ -149,7 +149,7 @@ class FastrakSource(LiveDevice[Pose]):
     def __init__(self, settings: FastrakSettings, *, clock: Callable[[], float] = time.monotonic) -> None:
         line, protocol = SerialLine(settings.port, settings.baud), FastrakProtocol(settings, clock)
         super().__init__(Connection(line, protocol, silence=settings.silence, clock=clock))
-        self.settings = settings
+        self.settings: FastrakSettings = settings
 
     @property
     def capabilities(self) -> Capabilities:

@@ -51,7 +51,7 @@ class LiveDevice(ABC, Generic[Record]):
     """
 
     def __init__(self, connection: Connection[Record]) -> None:
-        self.connection = connection
+        self.connection: Connection[Record] = connection
         self._over = False
 
     def __enter__(self) -> Self:

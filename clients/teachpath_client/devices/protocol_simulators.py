@@ -40,11 +40,12 @@ class FastrakSimulator:
 
     def power_up(self) -> None:
         """Return to the factory's settings: ASCII, inches, not continuous, all receivers on."""
-        self.binary = self.streaming = False
-        self.unit = "in"
-        self.active = set(self._present)
-        self.items = dict.fromkeys(self._present, "2,4,1")
-        self.hemispheres = dict.fromkeys(self._present, "1,0,0")
+        self.binary: bool = False
+        self.streaming: bool = False
+        self.unit: str = "in"
+        self.active: set[int] = set(self._present)
+        self.items: dict[int, str] = dict.fromkeys(self._present, "2,4,1")
+        self.hemispheres: dict[int, str] = dict.fromkeys(self._present, "1,0,0")
         self._heard = b""
 
     def receive(self, content: bytes, reading: HandReading) -> bytes:
@@ -110,13 +111,13 @@ class GloveSimulator:
 
     def __init__(self, calibration: GloveCalibration, *, cybertouch: bool = True) -> None:
         self._calibration, self._cybertouch = calibration, cybertouch
-        self.sensors = len(calibration.offset)
+        self.sensors: int = len(calibration.offset)
         self.amplitudes: list[int] = []  # amplitudes of the first actuator, in the order they were set
         self.power_up()
 
     def power_up(self) -> None:
         """Stop the stream and the vibration."""
-        self.streaming = False
+        self.streaming: bool = False
         self._letter = b"S"
         self._heard = b""
 

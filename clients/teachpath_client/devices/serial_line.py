@@ -24,7 +24,8 @@ class SerialLine:
         if baud not in BAUD_RATES:
             known = ", ".join(map(str, BAUD_RATES))
             raise ClientError(f"{baud} baud is no speed of a serial line; there are {known}")
-        self.path, self.baud = path, baud
+        self.path: str = path
+        self.baud: int = baud
         self._port = Serial()
 
     def open(self) -> None:

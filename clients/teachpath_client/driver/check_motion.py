@@ -46,6 +46,7 @@ class Move:
         moving = 0.0 < time < DURATION
         share, rate, change = _profile(time)
         travel = self.end - self.begin
+        places, velocities, accelerations = self._packed_way_to_rest(time) if moving else (b"", b"", b"")
         return Setpoint(
             cycle=self.first_cycle + index,
             nominal_ns=begin_ns + round(1e9 * index * PERIOD),
@@ -55,7 +56,9 @@ class Move:
             acceleration=change * travel,
             gripper_closed=self.gripper_closed,
             execution=self.execution,
-            way_to_rest=self._way_to_rest(time).astype("<f8").tobytes() if moving else b"",
+            way_to_rest=places,
+            way_to_rest_velocity=velocities,
+            way_to_rest_acceleration=accelerations,
         )
 
     def rest_of(self, cycle: int) -> Array:
@@ -63,14 +66,20 @@ class Move:
         time = (cycle - self.first_cycle - STANDSTILL) * PERIOD
         if not 0.0 < time < DURATION:
             return self.begin if time <= 0.0 else self.end
-        return np.asarray(self._way_to_rest(time)[-1])
+        return np.asarray(self._way_to_rest(time)[-1, 0])
 
     def _way_to_rest(self, time: float) -> Array:
-        """Return positions (n, 6) along the same line, on which the rate falls smoothly to zero."""
+        """Return states (n, 3, 6) along the same line, on which the rate falls smoothly to zero."""
         x = np.arange(1, round(BRAKING / PERIOD) + 1) * PERIOD / BRAKING
-        ahead = BRAKING * (x - (x**6 - 3 * x**5 + 2.5 * x**4))  # its rate is 1 - (10 x^3 - 15 x^4 + 6 x^5)
-        shares = np.array([_profile(time + each)[0] for each in ahead])
-        return np.asarray(self.begin + shares[:, None] * (self.end - self.begin))
+        ahead = BRAKING * (x - (x**6 - 3 * x**5 + 2.5 * x**4))
+        pace, slope = 1 - (10 * x**3 - 15 * x**4 + 6 * x**5), -30 * (x**2 - 2 * x**3 + x**4) / BRAKING
+        share, rate, change = np.transpose([_profile(time + each) for each in ahead])
+        states = np.stack([share, rate * pace, change * pace**2 + rate * slope], axis=1)
+        return np.asarray(states[:, :, None] * (self.end - self.begin) + [self.begin, np.zeros(6), np.zeros(6)])
+
+    def _packed_way_to_rest(self, time: float) -> tuple[bytes, bytes, bytes]:
+        places, velocities, accelerations = np.moveaxis(self._way_to_rest(time).astype("<f8"), 1, 0)
+        return places.tobytes(), velocities.tobytes(), accelerations.tobytes()
 
 
 def _profile(time: float) -> tuple[float, float, float]:

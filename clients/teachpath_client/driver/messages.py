@@ -16,7 +16,7 @@ from teachpath_proto.motion_pb2 import Setpoint as SetpointMessage
 
 @dataclass(frozen=True, eq=False)
 class Setpoint:
-    """One control period; joint arrays are (6,) in rad, rad/s, rad/s^2, `way_to_rest` (n, 6) in rad."""
+    """One control period; joint arrays are (6,) in rad, rad/s, rad/s^2, `way_to_rest` (n, 3, 6) in the same."""
 
     cycle: int
     nominal_ns: int
@@ -37,7 +37,8 @@ def decode_setpoint(payload: bytes) -> Setpoint:
     try:
         m = SetpointMessage.FromString(payload)
         arrays = [np.array(values, dtype=np.float64) for values in (m.position, m.velocity, m.acceleration)]
-        way = np.frombuffer(m.way_to_rest, dtype="<f8").reshape(-1, 6)
+        ways = (m.way_to_rest, m.way_to_rest_velocity, m.way_to_rest_acceleration)
+        way = np.stack([np.frombuffer(rows, dtype="<f8").reshape(-1, 6) for rows in ways], axis=1)
     except Exception as error:
         raise ValueError(f"no setpoint: {error}") from None
     if any(array.shape != (6,) for array in arrays) or not all(np.isfinite(array).all() for array in (*arrays, way)):

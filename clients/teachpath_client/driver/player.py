@@ -1,6 +1,6 @@
 """The player of a driver: what an arm should do now, from the setpoints that have come.
 
-Every setpoint carries the way to rest from there: positions one control period apart that the executor has checked
+Every setpoint carries the way to rest from there: the motion, one control period apart, that the executor has checked
 against all limits. The player plays setpoints a fixed delay behind their nominal time. When the next one is not there
 in time, it follows the way to rest of the last one, says so, and takes nothing up until setpoints begin where the arm
 rests. So a setpoint that is late, lost or doubled, a burst of them, or an executor that dies, stops the arm on its path
@@ -18,6 +18,7 @@ from typing import Final, Protocol
 import numpy as np
 
 from teachpath_client.driver.interpolation import BLEND_TIME, Array, Quintic, WayToRest, blended
+from teachpath_client.driver.least_jerk import LeastJerk
 
 MAX_QUEUE: Final = 2000  # setpoints that wait at most; with more the sender's clock is wrong
 MAX_CLOCK_ERROR: Final = 1.0  # s, of a clock that is so far off that its times cannot be meant
@@ -60,7 +61,7 @@ class SetpointLike(Protocol):
 
     @property
     def way_to_rest(self) -> Array:
-        """(n, 6) positions one period apart, the first one period behind it, to rest [rad]; empty at rest."""
+        """(n, 3, 6) position, velocity, acceleration a period apart, the first one behind it, to rest; else empty."""
 
 
 class PlayerState(StrEnum):
@@ -92,11 +93,11 @@ class SetpointPlayer:
 
     def __init__(self, position: Array | Sequence[float], *, delay: float = 0.03, period: float = 0.004) -> None:
         still = np.zeros(6)
-        self.state = PlayerState.IDLE
-        self.target = TargetMotion(np.array(position, dtype=np.float64), still, still)
-        self.missed = 0  # setpoints that never came since the execution began
-        self.late = 0  # setpoints that came after they should have been played
-        self.stops = 0  # ways to rest that were followed since the execution began
+        self.state: PlayerState = PlayerState.IDLE
+        self.target: TargetMotion = TargetMotion(np.array(position, dtype=np.float64), still, still)
+        self.missed: int = 0  # setpoints that never came since the execution began
+        self.late: int = 0  # setpoints that came after they should have been played
+        self.stops: int = 0  # ways to rest that were followed since the execution began
         self.last_reached: SetpointLike | None = None  # the newest setpoint that was played
         self._delay, self._period = delay, period
         self._queue: deque[SetpointLike] = deque()
@@ -104,7 +105,7 @@ class SetpointPlayer:
         self._begin_ns = 0  # nominal time from which `_played` counts
         self._played = 0.0  # s
         self._zero_ns = 0  # real time at which `_played` would be 0 without any lateness
-        self._piece: Quintic | None = None
+        self._piece: Quintic | LeastJerk | None = None
         self._way: WayToRest | None = None
         self._blend: tuple[Array, float] = (still, BLEND_TIME)  # what is left to take up, and since when [s]
 
@@ -266,7 +267,8 @@ class SetpointPlayer:
                 self.state = PlayerState.STOPPED
         elif self._queue:
             if self._piece is None or self._piece.one is not last or self._piece.two is not self._queue[0]:
-                self._piece = Quintic(last, self._queue[0])
+                gap = self._queue[0].cycle - last.cycle > 1
+                self._piece = LeastJerk(last, self._queue[0]) if gap else Quintic(last, self._queue[0])
             p, v, a = self._piece(self._played - self._time_of(last))
         else:
             p, v, a = last.position, still, still

@@ -41,8 +41,8 @@ class TrackerBench:
 
     def __init__(self, endpoint: str, prefix: str) -> None:
         self._keys = Keys(prefix)
-        self.seen = Observation()
-        self.ended = threading.Event()
+        self.seen: Observation = Observation()
+        self.ended: threading.Event = threading.Event()
         try:
             self._session = open_session(listening([endpoint]))
         except zenoh.ZError as error:

@@ -1,6 +1,6 @@
 // A ghost arm: a pale copy of the drawn arm and of what it carries, posed by the page alone.
 import { shapeGeometry } from "../meshes.js";
-import { linkFrames } from "./kinematics.js";
+import { linkFrames, toolInFlange } from "./kinematics.js";
 
 const COLOR = 0x2f7fb5;
 
@@ -25,6 +25,7 @@ export class GhostArm {
     const { THREE } = overlay;
     this.overlay = overlay;
     this.arm = arm;
+    this.closing = toolInFlange(arm).slice(4, 7); // the axis along which the fingers close, in the flange's frame
     const behind = { polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 4 }; // the arm, where both are in one place
     this.material = new THREE.MeshLambertMaterial({
       color: COLOR,
@@ -35,7 +36,7 @@ export class GhostArm {
     });
     this.group = new THREE.Group();
     const robot = view.viewer.scene_tree.children.robot?.children ?? {};
-    for (let i = 0; i <= arm.links.length; i++) this.#links.push(this.#copy(robot[`link${i}`]));
+    for (let i = 0; i <= arm.joints.length; i++) this.#links.push(this.#copy(robot[`link${i}`]));
     if (carried) {
       this.#object = new THREE.Mesh(shapeGeometry(carried), this.material);
       this.group.add(this.#object);
@@ -48,8 +49,9 @@ export class GhostArm {
    * @param {import("./motion.js").MotionSample} sample
    */
   setPose({ q, closed, position, orientation }) {
-    for (const [i, frame] of linkFrames(this.arm.links, q).entries()) this.#links[i].matrix.fromArray(frame);
-    for (const finger of this.#fingers) finger.node.position.y = closed ? 0 : finger.side * this.arm.finger_travel;
+    for (const [i, frame] of linkFrames(this.arm.joints, q).entries()) this.#links[i].matrix.fromArray(frame);
+    for (const { node, side } of this.#fingers)
+      node.position.fromArray(this.closing).multiplyScalar(closed ? 0 : side * this.arm.finger_travel);
     if (this.#object && position && orientation) {
       this.#object.position.fromArray(position);
       const [w, x, y, z] = orientation;
@@ -83,7 +85,7 @@ export class GhostArm {
       const side = FINGER_SIDES[name];
       const holder = new this.overlay.THREE.Group();
       if (side) {
-        copy.position.y = 0; // the view's own gripper may be open now
+        copy.position.set(0, 0, 0); // the view's own gripper may be open now
         copy.matrixAutoUpdate = true;
         this.#fingers.push({ node: holder, side });
       }

@@ -1,24 +1,60 @@
-// Where the arm's links are, as the service computes it: standard Denavit-Hartenberg, poses to world from link 0 to 6.
+// Where the arm's links are, as the service computes it: poses to world from link 0, the world itself, to the flange.
 
 /**
- * Compute 7 poses, each 16 numbers column by column, as three.js wants them.
- * @param {LinkGeometry[]} links as GET /robot gives them
+ * Compute a pose for each link, 16 numbers column by column, as three.js wants them.
+ * @param {JointGeometry[]} joints as GET /robot gives them
  * @param {number[]} q [rad]
  */
-export function linkFrames(links, q) {
-  const frames = [identity()];
-  for (const [i, link] of links.entries()) frames.push(multiply(frames[i], denavitHartenberg(q[i], link)));
+export function linkFrames(joints, q) {
+  const frames = [pose([0, 0, 0], [1, 0, 0, 0])];
+  for (const [i, joint] of joints.entries()) {
+    const { position, orientation } = joint;
+    frames.push(multiply(multiply(frames[i], pose(position, orientation)), turn(joint, q[i])));
+  }
   return frames;
 }
 
-/** @param {number} angle @param {LinkGeometry} link */
-function denavitHartenberg(angle, { d, a, alpha }) {
-  const [c, s, ca, sa] = [Math.cos(angle), Math.sin(angle), Math.cos(alpha), Math.sin(alpha)];
-  return [c, s, 0, 0, -s * ca, c * ca, sa, 0, s * sa, -c * sa, ca, 0, a * c, a * s, d, 1];
+/**
+ * Compute the pose of the tool to world: 16 numbers column by column.
+ * @param {Robot} arm as GET /robot gives it
+ * @param {number[]} q [rad]
+ */
+export function toolPose(arm, q) {
+  return multiply(linkFrames(arm.joints, q)[arm.joints.length], toolInFlange(arm));
 }
 
-function identity() {
-  return [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1];
+/**
+ * Compute the pose of the tool to the flange: 16 numbers column by column.
+ * @param {Robot} arm as GET /robot gives it
+ */
+export function toolInFlange({ tool }) {
+  return pose(tool.position, tool.orientation);
+}
+
+/**
+ * Compute the pose of a position and a unit quaternion: 16 numbers column by column.
+ * @param {number[]} position [m]
+ * @param {number[]} orientation w, x, y, z
+ */
+function pose(position, [w, x, y, z]) {
+  return [
+    ...[1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y), 0],
+    ...[2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x), 0],
+    ...[2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y), 0],
+    ...[...position, 1],
+  ];
+}
+
+/**
+ * Compute the motion of a link by an angle about its joint's axis.
+ * @param {JointGeometry} joint
+ * @param {number} angle [rad]
+ */
+function turn({ axis, anchor }, angle) {
+  const [s, c] = [Math.sin(angle / 2), Math.cos(angle / 2)];
+  const about = pose([0, 0, 0], [c, s * axis[0], s * axis[1], s * axis[2]]);
+  const back = anchor.map((value) => -value);
+  return multiply(multiply(pose(anchor, [1, 0, 0, 0]), about), pose(back, [1, 0, 0, 0]));
 }
 
 /** @param {number[]} left @param {number[]} right */

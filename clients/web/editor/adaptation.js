@@ -2,8 +2,9 @@
 // saves and certifies the adapted version.
 import { ApiError, get, post, put, resourcePath } from "../api.js";
 import { element } from "../elements.js";
-import { capitalize, formatLength } from "../texts.js";
+import { capitalize } from "../texts.js";
 import { predictPath } from "./adaptation_model.js";
+import { describeCertainty } from "./adaptation_range.js";
 import { ENDS, TargetOverlay } from "./target_overlay.js";
 
 /** @typedef {import("./target_overlay.js").End} End */
@@ -139,7 +140,7 @@ class AdaptationSection {
     this.editor.timings.measureFrame(() => {
       const { points, deviation } = predictPath(model, start, goal);
       this.targets.draw(points);
-      this.#say(2 * Math.max(...deviation));
+      this.#say(describeCertainty(model, start, goal, deviation));
       for (const end of ENDS) {
         for (const [axis, input] of this.inputs[end].entries()) {
           if (input !== document.activeElement) input.value = (1000 * this.#ends[end][axis]).toFixed(1);
@@ -148,15 +149,12 @@ class AdaptationSection {
     }, this.editor.context.view);
   }
 
-  /** @param {number} [spread] [m] that holds nineteen of twenty demonstrations */
-  #say(spread) {
+  /** @param {string} [certainty] of the path as it is dragged */
+  #say(certainty) {
     if (!this.#model) this.status.textContent = HELP;
     else if (this.editor.draft?.edited) this.status.textContent = EDITED;
     else if (this.#note) this.status.textContent = this.#note;
-    else if (spread !== undefined) {
-      const within = formatLength(spread);
-      this.status.textContent = `Someone who shows it between these ends would stay within ${within} of it, nineteen times of twenty.`;
-    }
+    else if (certainty !== undefined) this.status.textContent = certainty;
   }
 
   async #adapt() {
@@ -192,7 +190,7 @@ class AdaptationSection {
   #fields(end) {
     return AXES.map((name, axis) => {
       const label = `${name} of ${end === "start" ? "the object" : "the goal"} in millimetres`;
-      const limits = { min: String(-1000 * MAX_COORDINATE), max: String(1000 * MAX_COORDINATE), step: "0.1" };
+      const limits = { min: String(-1000 * MAX_COORDINATE), max: String(1000 * MAX_COORDINATE), step: "any" };
       const input = element("input", { type: "number", id: `edit-${end}-${name}`, "aria-label": label, ...limits });
       input.addEventListener("change", () => {
         if (input.value === "" || !input.checkValidity()) input.value = (1000 * this.#ends[end][axis]).toFixed(1);

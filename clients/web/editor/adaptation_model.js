@@ -13,7 +13,7 @@ const SINGLE_SPREAD = 0.12; // standard deviation after one demonstration, as sh
  * @param {Point} goal
  */
 export function predictPath(model, start, goal) {
-  const chord = goal.map((value, axis) => value - start[axis]);
+  const chord = chordOf([start, goal]);
   const weights = krigingWeights(model, chord);
   const { points, scale } = krigedPoints(model, start, chord, weights);
   const own = closeness(model, chord);
@@ -27,13 +27,13 @@ export function predictPath(model, start, goal) {
 }
 
 /** @param {number[]} chord */
-const distanceOf = ([x, y]) => Math.hypot(x, y);
+export const distanceOf = ([x, y]) => Math.hypot(x, y);
 
 /** @param {number[]} chord */
-const yawOf = ([x, y]) => Math.atan2(y, x);
+export const yawOf = ([x, y]) => Math.atan2(y, x);
 
 /** @param {number[][]} path */
-const chordOf = (path) => path[path.length - 1].map((value, axis) => value - path[0][axis]);
+export const chordOf = (path) => path[path.length - 1].map((value, axis) => value - path[0][axis]);
 
 /** @param {number} yaw @param {number} distance @param {number} otherYaw @param {number} otherDistance */
 function shapeCovariance(yaw, distance, otherYaw, otherDistance) {
@@ -51,9 +51,8 @@ const covariance = (one, other) => shapeCovariance(yawOf(one), distanceOf(one), 
  * @param {AdaptationModel} model
  * @param {number[]} chord
  */
-function krigingWeights({ turns, yaws, distances, inverse }, chord) {
-  const [yaw, distance] = [yawOf(chord), distanceOf(chord)];
-  const known = yaws.map((other, i) => (turns ? shapeCovariance(yaw, distance, other, distances[i]) : 1));
+function krigingWeights({ turns, chords, inverse }, chord) {
+  const known = chords.map((other) => (turns ? covariance(chord, other) : 1));
   known.push(1);
   const solved = inverse.map((row) => row.reduce((sum, value, i) => sum + value * known[i], 0));
   const explained = known.reduce((sum, value, i) => sum + value * solved[i], 0);
@@ -66,7 +65,7 @@ function krigingWeights({ turns, yaws, distances, inverse }, chord) {
  * @param {number[]} chord
  * @param {{weights: number[]}} kriging
  */
-function krigedPoints({ turns, yaws, shapes }, start, chord, { weights }) {
+function krigedPoints({ turns, chords, shapes }, start, chord, { weights }) {
   const yaw = yawOf(chord);
   const scale = turns ? distanceOf(chord) ** DISTANCE_POWER : 1;
   const last = shapes[0].length - 1;
@@ -74,7 +73,8 @@ function krigedPoints({ turns, yaws, shapes }, start, chord, { weights }) {
   for (const [i, shape] of shapes.entries()) {
     const weight = scale * weights[i];
     // The mean of the shape turned with the chord and of the shape kept in the world.
-    const [cos, sin] = turns ? [Math.cos(yaw - yaws[i]), Math.sin(yaw - yaws[i])] : [1, 0];
+    const turn = turns ? yaw - yawOf(chords[i]) : 0;
+    const [cos, sin] = [Math.cos(turn), Math.sin(turn)];
     for (const [k, [x, y, z]] of shape.entries()) {
       points[k][0] += (weight * (cos * x - sin * y + x)) / 2;
       points[k][1] += (weight * (sin * x + cos * y + y)) / 2;

@@ -2,7 +2,7 @@
 import { get, post, resourcePath } from "../api.js";
 import { closest, element, progressBar } from "../elements.js";
 import { patchChildren } from "../patch_children.js";
-import { formatNumber } from "../texts.js";
+import { formatLength, formatNumber } from "../texts.js";
 import { versionTitle } from "./versions.js";
 
 /** @typedef {Job & {path: string, version: import("./draft.js").BaseVersion, plan?: Plan}} Planning */
@@ -67,9 +67,7 @@ function content({ state, message, fraction, plan, version }) {
   if (!plan) return [element("p", {}, message || "waiting to be planned …"), progressBar(fraction, "planning")];
   const { duration, certificate } = plan;
   const clearance =
-    certificate.clearance.place === "far"
-      ? "nothing near"
-      : `clearance ${formatNumber(1000 * certificate.clearance.value, 0, "mm")}`;
+    certificate.clearance.place === "far" ? "nothing near" : `clearance ${formatLength(certificate.clearance.value)}`;
   return [
     element(
       "p",

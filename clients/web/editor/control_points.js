@@ -18,7 +18,7 @@ export function controlPointsSection(place, editor) {
     "aria-label": "control points, several may be chosen",
   });
   const fields = AXES.map((axis) =>
-    field(axis, `${axis} in millimetres`, { min: String(-MAX_COORDINATE), max: String(MAX_COORDINATE), step: "0.1" }),
+    field(axis, `${axis} in millimetres`, { min: String(-MAX_COORDINATE), max: String(MAX_COORDINATE), step: "any" }),
   );
   const weight = field("weight", "weight", { ...WEIGHT_RANGE, step: "any" });
   const pins = element("input", { type: "checkbox", id: "edit-unlock" });

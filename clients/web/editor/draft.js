@@ -8,7 +8,8 @@ const MAX_STORED_CHARACTERS = 1_500_000; // beyond, the older steps are left out
 
 /**
  * @typedef {Pick<Version, "number" | "branch" | "name">} BaseVersion the version that is edited
- * @typedef {{curve: Curve, what: string}} Step what was before it, and its name
+ * @typedef {{base: BaseVersion, original: Curve}} Origin
+ * @typedef {{curve: Curve, what: string, origin?: Origin}} Step what was before it, and its name; the origin where it changed
  */
 
 export class Draft {
@@ -120,9 +121,12 @@ export class Draft {
    * @param {string} what
    */
   rebase(base, original, what) {
+    const origin = { base: this.base, original: this.original };
     this.base = base;
     this.original = original;
+    if (curvesEqual(original, this.curve)) return this.persist();
     this.change(original, what);
+    this.#past[this.#past.length - 1].origin = origin; // to which undo goes back, lest mine be saved as made from theirs
     this.persist();
   }
 
@@ -172,7 +176,9 @@ export class Draft {
     const step = from.pop();
     if (!step) return;
     this.cancelDrag();
-    to.push({ curve: this.curve, what: step.what });
+    const origin = step.origin && { base: this.base, original: this.original };
+    to.push({ curve: this.curve, what: step.what, origin });
+    if (step.origin) Object.assign(this, step.origin);
     this.#setCurve(step.curve);
     this.persist();
   }

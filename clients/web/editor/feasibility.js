@@ -1,7 +1,7 @@
 // Whether the arm can follow the draft: a sentence, the segment that fails, what to move, and the colors along the curve.
 import { closest, element, svgElement } from "../elements.js";
 import { patchChildren } from "../patch_children.js";
-import { capitalize, formatNumber } from "../texts.js";
+import { capitalize, formatLength, formatNumber } from "../texts.js";
 import { colorFunction, legendColors, METRICS } from "./color_scale.js";
 import { movePoints } from "./curve_edits.js";
 
@@ -46,9 +46,9 @@ function content({ draft, feasibility }) {
   if (!feasibility?.assessment) return [element("p", { class: "note" }, "The service is assessing the curve …")];
   const { failure, duration, sentence: outlook, lengths, clearance } = feasibility.assessment;
   if (!failure) {
-    const [length, least] = [lengths[lengths.length - 1], 1000 * Math.min(...clearance)];
+    const [length, least] = [lengths[lengths.length - 1], Math.min(...clearance)];
     const time = duration === null ? "" : `, about ${formatNumber(duration, 2, "s")}`;
-    const facts = `${formatNumber(length, 3, "m")}${time}, least clearance ${formatNumber(least, 0, "mm")}`;
+    const facts = `${formatNumber(length, 3, "m")}${time}, least clearance ${formatLength(least)}`;
     return [element("p", { class: "good" }, `${capitalize(outlook)}.`), element("p", { class: "note" }, facts)];
   }
   const { interval, reason, suggestion } = failure;
@@ -68,7 +68,7 @@ function content({ draft, feasibility }) {
         element(
           "button",
           { type: "button", id: "edit-suggestion", "data-key": "suggestion", ...(pinned && { disabled: "" }) },
-          `Move control point ${suggestion.control_point + 1} by ${formatNumber(1000 * size, 0, "mm")}`,
+          `Move control point ${suggestion.control_point + 1} by ${formatLength(size)}`,
         ),
       ),
     size > 0 && pinned && element("p", { class: "note" }, "It is pinned; unlock start and goal first."),

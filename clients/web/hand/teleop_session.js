@@ -2,7 +2,7 @@
 //
 // The page is a tracker during the session, and its samples say whether the clutch is held: a page that is closed, hidden
 // or stalled releases the clutch by itself.
-import { linkFrames } from "../arm/kinematics.js";
+import { toolPose } from "../arm/kinematics.js";
 import { CarriedObject } from "./carried_object.js";
 import { FixedRateTimer } from "./fixed_rate_timer.js";
 import { HandModel } from "./hand_model.js";
@@ -90,8 +90,7 @@ export class TeleopSession {
     if (this.clutchPressed) return;
     this.handClosed = gripperClosed;
     if (!same) this.onChange();
-    const tool = linkFrames(this.arm.links, q)[this.arm.links.length];
-    this.handModel.position = [12, 13, 14].map((i) => tool[i] + this.arm.tool_length * tool[i - 4]);
+    this.handModel.position = toolPose(this.arm, q).slice(12, 15);
     this.handModel.target = [...this.handModel.position];
     this.isPositioned = true;
     if (this.usesPageHand && !this.usesHeadset) this.#handle ??= new CarriedObject(this.overlay, HANDLE);

@@ -9,7 +9,8 @@ const SESSION_FEATURES = { requiredFeatures: ["local-floor"], optionalFeatures: 
 
 // Why a headset cannot be used, or "" when it can.
 export async function xrUnavailableReason() {
-  if (!isSecureContext) return "A headset needs a secure page: open this one at localhost, or behind https.";
+  if (!isSecureContext)
+    return "A headset needs a secure page: open this one at localhost, or by https (teachpath tls init).";
   if (!navigator.xr)
     return "This browser has no WebXR. Open the page in the headset's own browser, or in Chrome with a headset connected.";
   const able = await navigator.xr.isSessionSupported("immersive-vr").catch(() => false);

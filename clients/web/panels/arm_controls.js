@@ -29,6 +29,8 @@ class ArmControls {
   #polling = 0;
   #isSending = false; // an override
   #isOverrideNewer = false; // than the one that is being sent
+  /** @type {number | null} */
+  #sentOverride = null; // that the executor has not told yet
 
   /** @param {HTMLElement} place @param {Context} context */
   constructor(place, context) {
@@ -118,9 +120,21 @@ class ArmControls {
       const status = activeExecution(this.context.store.state);
       if (!status) continue;
       const [path, override] = [resourcePath("executions", status.execution, "override"), Number(speed.value) / 100];
-      await this.context.attempt(() => post(path, { override }, lease.headers));
+      this.#sentOverride = override;
+      const answer = await this.context.attempt(() => post(path, { override }, lease.headers).then(() => true));
+      if (!answer) this.#sentOverride = null;
     }
     this.#isSending = false;
+  }
+
+  /** Show the speed at which the arm goes, but for one that it has just been told. @param {ExecutorStatus | null} active */
+  #showOverride(active) {
+    const { speed, share } = this.parts;
+    if (!active || Math.abs(active.override - (this.#sentOverride ?? active.override)) < 0.005)
+      this.#sentOverride = null;
+    if (!active || this.#isSending || this.#sentOverride !== null || speed.matches(":active")) return;
+    speed.value = String(Math.round(100 * active.override));
+    share.textContent = formatPercent(active.override);
   }
 
   #operatorName() {
@@ -147,6 +161,7 @@ class ArmControls {
     for (const button of parts.commands.querySelectorAll("button")) {
       button.disabled = !active || !isAvailable(button.dataset.verb, active);
     }
+    this.#showOverride(active);
     patchChildren(parts.owner, isAway ? "Who holds control is not known." : leaseOwner(state.lease));
     parts.nameField.hidden = lease.token !== "";
   }
@@ -164,7 +179,7 @@ function startBlocker(state, active, isOthers) {
   if (!state.plan) return "It starts with a certified motion only: plan one above.";
   return isOthers
     ? `${state.lease?.holder} holds control: ask for it below.`
-    : "Keep the button pressed until the bar is full.";
+    : "Keep the button pressed until the bar is full. The space bar stops the arm.";
 }
 
 /**
@@ -203,7 +218,7 @@ function leaseOwner(state) {
 function createParts() {
   /** @param {string} verb @param {string} text @param {string} [title] */
   const order = (verb, text, title) => element("button", { type: "button", "data-verb": verb, title }, text);
-  const state = element("div", { role: "status" });
+  const state = element("div", {});
   const driver = element("div", { class: "driver" });
   const unaskedText = element("span", {});
   const acknowledge = element("button", { type: "button" }, "I have seen why: acknowledge");
@@ -214,7 +229,11 @@ function createParts() {
     element("p", { class: "failed" }, unaskedText),
     acknowledgeRow,
   );
-  const start = element("button", { type: "button", class: "primary hold", disabled: "" }, "Hold to start the arm");
+  const start = element(
+    "button",
+    { type: "button", class: "primary hold", disabled: "" },
+    "Keep pressed to start the arm",
+  );
   const why = element("p", { class: "note" });
   const commands = element(
     "p",

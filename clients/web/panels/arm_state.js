@@ -34,8 +34,8 @@ export function armState(status, isRunning, isAway) {
   ];
 }
 
-/** @param {...Child} children */
-const stateLine = (...children) => element("p", { class: "state" }, children);
+/** The one part that a screen reader says when it changes: the figures change all the time. @param {...Child} children */
+const stateLine = (...children) => element("p", { class: "state", role: "status" }, children);
 
 /**
  * What is held need not be on the path yet.

@@ -1,6 +1,7 @@
 // Demonstrate: the page's own hand, what is being recorded, and the demonstrations so far with their verdicts.
 import { demonstrationList } from "./demonstration_list.js";
 import { demonstrationPanel } from "./demonstration_panel.js";
+import { importFiles } from "./import_files.js";
 import { recordingList } from "./recordings.js";
 import { sectionedPanel } from "./sectioned_panel.js";
 
@@ -10,6 +11,7 @@ let session;
 const demonstrate = sectionedPanel("demonstrate", "Demonstrate", [
   ["demonstration-session", "Show it here", (place, context) => (session = demonstrationPanel(place, context))],
   ["recordings", "Recording", recordingList],
+  ["import-files", "From files", importFiles],
   ["demonstrations", "Demonstrations", demonstrationList],
 ]);
 

@@ -6,6 +6,7 @@ import { changesAny, waysOfDemonstrations } from "../store.js";
 import { capitalize, formatNumber, pluralize } from "../texts.js";
 import { filterDemonstrations, groupsWithWays, NO_FILTER, ORDERS } from "./demonstration_filter.js";
 import { demonstrationRow, MARK_SYMBOLS, thumbnailMaker } from "./demonstration_rows.js";
+import { DemonstrationSelection } from "./demonstration_selection.js";
 import { markFocus, trackFocus } from "./focus.js";
 
 const PAGE_SIZE = 60; // rows that are shown at a time
@@ -17,15 +18,21 @@ const ABOUT_MARKS = `${MARK_SYMBOLS[""]} marks one good, then bad: the bad ones 
 /** @param {HTMLElement} place @param {Context} context @returns {Section} */
 export function demonstrationList(place, { store, sceneLayers, attempt, readOnly }) {
   let [filter, page] = [NO_FILTER, 0];
+  const selection = new DemonstrationSelection(() => render(store.state));
   const tools = filterTools((chosen) => {
     [filter, page] = [chosen, 0];
     render(store.state);
   });
-  const [head, rows, foot] = ["div", "div", "div"].map((tag) => element(/** @type {"div"} */ (tag), {}));
-  place.append(head, tools.element, rows, foot);
+  const [head, several, rows, foot] = ["div", "div", "div", "div"].map((tag) =>
+    element(/** @type {"div"} */ (tag), {}),
+  );
+  place.append(head, tools.element, several, rows, foot);
   trackFocus(place, store);
   place.addEventListener("click", (event) => {
-    const { verb, discard, restore, marked, mark, turn } = closestData(event);
+    const { verb, discard, restore, marked, mark, turn, select, change } = closestData(event);
+    if (select === "all") selection.toggleAll(filtered(store.state));
+    else if (select) selection.turn(select === "on");
+    if (change) attempt(() => selection.change(change));
     if (marked) attempt(() => patch(resourcePath("demonstrations", marked), { mark }));
     const id = discard ?? restore;
     if (id) attempt(() => patch(resourcePath("demonstrations", id), { discarded: Boolean(discard) }));
@@ -36,28 +43,44 @@ export function demonstrationList(place, { store, sceneLayers, attempt, readOnly
     rows.querySelector("ol")?.scrollTo(0, 0);
   });
 
+  place.addEventListener("change", ({ target }) => {
+    if (target instanceof HTMLInputElement && target.dataset.chosen)
+      selection.choose(target.dataset.chosen, target.checked);
+    if (!(target instanceof HTMLSelectElement) || !target.dataset.move || !target.value) return;
+    attempt(() => selection.move(target.value));
+  });
+
+  /** @param {State} state */
+  const filtered = (state) => filterDemonstrations(state.demonstrations ?? [], waysOfDemonstrations(state), filter);
+
   /** @param {State} state */
   function render(state) {
     const [ways, all] = [waysOfDemonstrations(state), state.demonstrations ?? []];
-    const found = filterDemonstrations(all, ways, filter);
+    const found = filtered(state);
     page = Math.max(0, Math.min(page, Math.ceil(found.length / PAGE_SIZE) - 1));
     const shown = found.slice(page * PAGE_SIZE, (page + 1) * PAGE_SIZE);
     if (!readOnly) sceneLayers.trajectories.request(shown);
     tools.update(all.length > FEW, groupsWithWays(ways));
     patchChildren(head, summary(state));
+    const others = (state.tasks ?? []).map(({ name }) => name).filter((name) => name !== state.task);
+    patchChildren(several, !readOnly && all.length > 1 && selection.toolbar(found, others));
     const scrolled = rows.querySelector("ol")?.scrollTop ?? 0;
     patchChildren(
       rows,
-      all.length > 0 && list(state, shown, sceneLayers.trajectories, readOnly),
+      all.length > 0 && list(state, shown, sceneLayers.trajectories, readOnly, selection.isOn ? selection.ids : null),
       pager(found.length, page),
     );
+    for (const box of rows.querySelectorAll("input")) box.checked = box.hasAttribute("checked");
     rows.querySelector("ol")?.scrollTo(0, scrolled);
     patchChildren(foot, !readOnly && all.length > 0 && orders(state.task, all));
   }
 
   return {
     update(state, changed) {
-      if (changed.has("task")) [filter, page] = [tools.reset(), 0];
+      if (changed.has("task")) {
+        [filter, page] = [tools.reset(), 0];
+        selection.turn(false);
+      }
       const isNew = changesAny(changed, "demonstrations", "guidance", "task", "tasks", "runs", "selectedRun");
       if (isNew || changed.has("trajectoriesLoaded")) render(state);
       markFocus(place, state.focus); // also on what has just been drawn anew
@@ -119,14 +142,15 @@ function summary({ task, tasks, demonstrations, guidance }) {
  * @param {Demonstration[]} shown
  * @param {import("../trajectory_cache.js").TrajectoryCache} trajectories
  * @param {boolean} readOnly
+ * @param {Set<string> | null} chosen ids of those that are selected; null: nothing is selected here
  */
-function list(state, shown, trajectories, readOnly) {
+function list(state, shown, trajectories, readOnly, chosen) {
   if (!shown.length) return hint("No demonstration is like that: search for less, or show all.");
   const draw = thumbnailMaker(state, shown, trajectories);
   return element(
     "ol",
     { class: "demonstration-list", "aria-label": "demonstrations" },
-    shown.map((d) => demonstrationRow(d, draw(d.id), readOnly)),
+    shown.map((d) => demonstrationRow(d, draw(d.id), readOnly, chosen)),
   );
 }
 
@@ -190,7 +214,7 @@ function discardButtons(kept, all) {
  * @param {string} task
  */
 function exportLinks(task) {
-  const path = `/api/v1/${resourcePath("tasks", task, "export")}`;
+  const path = `api/v1/${resourcePath("tasks", task, "export")}`;
   /** @param {string} format @param {string} name */
   const link = (format, name) => element("a", { href: `${path}?format=${format}`, download: "" }, name);
   const [mcap, csv, lerobot] = [link("mcap", "MCAP"), link("csv", "CSV"), link("lerobot", "LeRobot")];

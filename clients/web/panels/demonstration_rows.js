@@ -28,20 +28,37 @@ export function thumbnailMaker(state, demonstrations, trajectories) {
   };
 }
 
-/** @param {Demonstration} demonstration @param {Child} preview @param {boolean} readOnly */
-export function demonstrationRow(demonstration, preview, readOnly) {
+/**
+ * @param {Demonstration} demonstration
+ * @param {Child} preview
+ * @param {boolean} readOnly
+ * @param {Set<string> | null} [chosen] ids of those that are selected; null: nothing is selected here
+ */
+export function demonstrationRow(demonstration, preview, readOnly, chosen = null) {
   const { id, number, verdict, mark, trim, duration, discarded_ns, statistics } = demonstration;
   const word = discarded_ns ? "discarded" : verdict;
   return element(
     "li",
     { class: word, value: String(number), "data-focus": `demonstrations ${id}` },
-    element("span", { class: "number" }, String(number)),
+    element("span", { class: "number" }, chosen ? choice(demonstration, chosen) : String(number)),
     element("span", { class: "preview" }, preview),
     element("span", { class: "verdict" }, word),
     element("span", { class: "figure" }, statistics.lost > 0 && `${statistics.lost} lost`),
     element("span", { class: "figure" }, formatNumber(duration, 1, "s")),
     !readOnly && rowButtons(demonstration),
     verdictExplanation(demonstration, mark && `marked ${mark}`, trim ? "trimmed" : ""),
+  );
+}
+
+/** @param {Demonstration} demonstration @param {Set<string>} chosen */
+function choice({ id, number }, chosen) {
+  const checked = chosen.has(id) ? "" : null;
+  const box = { type: "checkbox", "data-chosen": id, "data-key": `choose ${id}`, checked };
+  return element(
+    "label",
+    {},
+    element("input", { ...box, "aria-label": `Select demonstration ${number}` }),
+    String(number),
   );
 }
 

@@ -7,6 +7,7 @@ import { MotionPlayer } from "../arm/motion_player.js";
 import { closestData, element } from "../elements.js";
 import { patchChildren } from "../patch_children.js";
 import { capitalize, formatNumber } from "../texts.js";
+import { PlanNames } from "./plan_names.js";
 
 const MAX_POINTS = 1500; // of the plots
 const MAX_LISTED = 20;
@@ -28,6 +29,7 @@ class ExecutionReplay {
   #execution = ""; // id of the one that is shown
   /** @type {JointPlots | null} */
   #plots = null;
+  #names = new PlanNames();
 
   /** @param {HTMLElement} place @param {Context} context */
   constructor(place, context) {
@@ -53,7 +55,15 @@ class ExecutionReplay {
 
   /** @param {State} state @param {Changed} changed */
   update(state, changed) {
-    if (changed.has("executions")) this.#render(state.executions);
+    if (!changed.has("executions")) return;
+    this.#render(state.executions);
+    this.#readNames(state.executions ?? []);
+  }
+
+  /** @param {Execution[]} executions */
+  async #readNames(executions) {
+    const plans = executions.slice(0, MAX_LISTED).flatMap(({ plan }) => (plan ? [plan] : []));
+    if (await this.#names.read(plans)) this.#render(this.context.store.state.executions);
   }
 
   hide() {
@@ -102,7 +112,7 @@ class ExecutionReplay {
   /** @param {Execution[] | null} executions */
   #render(executions) {
     const newest = (executions ?? []).slice(0, MAX_LISTED);
-    const rows = newest.map((one) => executionRow(one, one.id === this.#execution));
+    const rows = newest.map((one) => executionRow(one, this.#names.of(one.plan), one.id === this.#execution));
     patchChildren(this.list, rows.length ? rows : element("li", { class: "hint" }, NOTHING));
   }
 }
@@ -131,18 +141,23 @@ function plotRows({ times, positions, velocities, tracking_error, lateness }, ar
   );
 }
 
-/** @param {Execution} execution @param {boolean} open */
-function executionRow({ id, created_ns, status }, open) {
+/** @param {Execution} execution @param {string} name of what was executed @param {boolean} open */
+function executionRow({ id, plan, created_ns, status }, name, open) {
   const digits = /** @type {const} */ ({ hour: "2-digit", minute: "2-digit", second: "2-digit" });
   const when = new Date(created_ns / 1e6).toLocaleTimeString([], { ...digits, hour12: false });
   const time = status.duration > 0 ? ` after ${formatNumber(status.duration, 1, "s")}` : "";
   const reason = status.reason ? `: ${status.reason}` : "";
-  const label = { "aria-label": `Replay the execution of ${when}`, "aria-pressed": String(open) };
+  const label = { "aria-label": `Replay the execution of ${when}${name && `: ${name}`}`, "aria-pressed": String(open) };
   return element(
     "li",
     { class: open ? "open" : "" },
     element("span", {}, when),
-    element("span", { class: "why" }, `${capitalize(status.state)}${time}${reason}`),
+    element(
+      "span",
+      { class: "why" },
+      plan ? name && `${capitalize(name)}. ` : "A live hand. ",
+      `${capitalize(status.state)}${time}${reason}`,
+    ),
     element("button", { type: "button", "data-execution": id, "data-key": id, ...label }, "Replay"),
   );
 }

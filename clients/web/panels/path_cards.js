@@ -66,20 +66,24 @@ function content(state, readOnly) {
     run.learned.notes.map((note) => element("p", { class: "note" }, capitalize(note))),
     run.learned.clusters.map((cluster) => pathCard(state, cluster, readOnly)),
     run.id === runs?.[0]?.id && fresh > 0 && hint(`${fresh} ${pluralize(fresh, "demonstration")} came after this run.`),
-    !readOnly && learnButton(state, fresh > 0 ? "Learn again" : "Learn anew"),
+    !readOnly && learnButton(state, fresh > 0 ? "Learn again" : "Learn anew", fresh > 0),
   ];
 }
 
 /** @param {Demonstration} demonstration */
 const isUsable = ({ verdict, mark, discarded_ns }) => verdict !== "reject" && mark !== "bad" && !discarded_ns;
 
-/** @param {State} state @param {string} text */
-function learnButton({ jobs }, text) {
+/** @param {State} state @param {string} text @param {boolean} isNext whether it is what to do next */
+function learnButton({ jobs }, text, isNext = true) {
   const busy = (jobs ?? []).some(
     ({ state, kind }) => ["running", "queued"].includes(state) && ["learn", "recut"].includes(kind),
   );
   const data = { "data-learn": "1", "data-key": "learn" };
-  return element("p", {}, element("button", { type: "button", class: "primary", ...data, disabled: busy && "" }, text));
+  return element(
+    "p",
+    {},
+    element("button", { type: "button", class: isNext && "primary", ...data, disabled: busy && "" }, text),
+  );
 }
 
 /** @param {RunSummary[]} runs @param {Run} selected */

@@ -1,7 +1,7 @@
 // Summaries of the paths: duration, clearance and reach, from the newest plan, else from an assessment.
 import { ApiError, get, post, resourcePath } from "../api.js";
 import { latestPaths } from "../store.js";
-import { formatNumber, formatPercent } from "../texts.js";
+import { formatLength, formatNumber, formatPercent } from "../texts.js";
 
 /** @typedef {Pick<PathSummary, "facts" | "error">} Summary */
 
@@ -27,7 +27,7 @@ export class PathSummaries {
       const plan = job?.state === "succeeded" ? job.outcome : "";
       const key = plan || `${path.id} ${path.version}`;
       this.#request(key, () => (plan ? summarizePlan(plan) : summarizeAssessment(path)));
-      const refused = job?.state === "failed" ? { error: `Not certified: ${job.message}` } : {};
+      const refused = job?.state === "failed" ? { facts: [], error: `Not certified: ${job.message}` } : {};
       const planning = job?.state === "queued" || job?.state === "running";
       found[path.id] = { ...this.#summaries.get(key), ...refused, planning, planned: plan !== "" };
     }
@@ -73,7 +73,7 @@ async function summarizePlan(id) {
   return {
     facts: [
       ["Duration", formatNumber(duration, 2, "s")],
-      ["Clearance", formatNumber(certificate.clearance.value * 1000, 0, "mm")],
+      ["Clearance", formatLength(certificate.clearance.value)],
       ["Reach", `the whole way, ${range} of joint range`],
     ],
   };
@@ -83,15 +83,13 @@ async function summarizePlan(id) {
 async function summarizeAssessment({ id, version, curve }) {
   /** @type {Assessment} */
   const assessment = await post(resourcePath("paths", id, "assessment"), { version, curve });
-  const { duration, clearance, reach, failure, sentence } = assessment;
-  const [least, left] = [Math.min(...clearance) * 1000, Math.min(...reach) * 1000];
-  const reached = left >= 0 ? "the whole way" : `${formatNumber(-left, 0, "mm")} short`;
+  const { duration, clearance, failure, sentence } = assessment;
+  if (failure) return { error: sentence }; // which says by how much; estimates beside it would say otherwise
   return {
     facts: [
       ["Duration", duration !== null && `about ${formatNumber(duration, 1, "s")}`],
-      ["Clearance", clearance.length > 0 && `about ${formatNumber(least, 0, "mm")}`],
-      ["Reach", reach.length > 0 && reached],
+      ["Clearance", `about ${formatLength(Math.min(...clearance))}`],
+      ["Reach", "the whole way"],
     ],
-    error: failure ? sentence : "",
   };
 }

@@ -6,7 +6,8 @@ import { MotionPlayer } from "../arm/motion_player.js";
 import { definitionList, element, hint, progressBar, tabButton } from "../elements.js";
 import { patchChildren } from "../patch_children.js";
 import { changesAny, selectedPath } from "../store.js";
-import { formatNumber, formatPercent } from "../texts.js";
+import { formatLength, formatNumber, formatPercent } from "../texts.js";
+import { programMenu } from "./program_menu.js";
 
 const NOTHING =
   "Nothing to run yet. Show a task, learn its ways and choose one: its motion is planned and certified before the arm may move.";
@@ -33,6 +34,8 @@ class PlanPreview {
   #key = "";
   #fetched = 0; // requests so far: only the newest one's answer counts
   #opened = 0;
+  /** @type {string | undefined} */
+  #offered; // id of the plan whose files the menu offers
 
   /** @param {HTMLElement} place @param {Context} context */
   constructor(place, context) {
@@ -47,7 +50,8 @@ class PlanPreview {
       onClose: () => this.#render(),
     });
     const buttons = element("p", { class: "buttons" }, this.planButton, this.previewButton);
-    place.append(this.facts, buttons, this.player.element);
+    this.programs = element("div", {});
+    place.append(this.facts, buttons, this.programs, this.player.element);
     this.planButton.addEventListener("click", () => context.attempt(() => this.#requestPlan()));
     this.previewButton.addEventListener("click", () => context.attempt(() => this.#openPreview()));
     this.#render();
@@ -82,6 +86,7 @@ class PlanPreview {
     if (path?.id !== this.#path?.id) {
       this.#plan = undefined; // nobody starts the former path's plan meanwhile
       this.context.store.set({ plan: null });
+      this.#showPrograms();
       this.player.close();
     }
     this.#path = path;
@@ -95,7 +100,15 @@ class PlanPreview {
     this.#newestVersion = newest?.version ?? 0;
     if (this.#plan?.id !== before) this.player.close();
     this.context.store.set({ plan: this.#plan });
+    this.#showPrograms();
     this.#render();
+  }
+
+  #showPrograms() {
+    const plan = this.context.readOnly ? null : this.#plan;
+    if (plan?.id === this.#offered) return; // an open menu stays open
+    this.#offered = plan?.id;
+    this.programs.replaceChildren(...(plan ? [programMenu(plan.id, this.context.attempt)] : []));
   }
 
   async #requestPlan() {
@@ -162,7 +175,7 @@ function planFacts({ duration, certificate, tool_speed: limit }) {
   const most = uses.reduce((a, b) => (a.value >= b.value ? a : b));
   return definitionList([
     ["Time on the path", formatNumber(duration, 2, "s")],
-    ["Least clearance", formatNumber(1000 * certificate.clearance.value, 0, "mm")],
+    ["Least clearance", formatLength(certificate.clearance.value)],
     ["Nearest to a limit", `${formatPercent(most.value)}, ${most.place}`],
     toolSpeed && [
       "Fastest",

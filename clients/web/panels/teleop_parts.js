@@ -89,12 +89,14 @@ export function refill(select, names) {
  */
 export function teleopText({ state, reason, activity }, { usesPageHand, usesHeadset }) {
   const hindrance = activity.split(": ").slice(1).join(": ");
-  if (state === "following") return hindrance ? `The arm follows. ${capitalize(hindrance)}.` : "The arm follows.";
+  const scene = /^mirroring \S+( in scene [^:]+)/.exec(activity)?.[1] ?? "";
+  if (state === "following") return `The arm follows${scene}.${hindrance && ` ${capitalize(hindrance)}.`}`;
   if (state === "stopping") return "Let go: the arm comes to rest.";
   if (hindrance) return `The arm is held. ${capitalize(hindrance)}.`;
   if (!reason.startsWith(WAITING_FOR_CLUTCH)) return `The arm is held: ${reason}.`;
-  if (usesHeadset) return "The arm is held. Close the left hand, and it follows the right one.";
+  const held = `The arm is held${scene}.`;
+  if (usesHeadset) return `${held} Close the left hand, and it follows the right one.`;
   return usesPageHand
-    ? "The arm is held. Press on the ball at the gripper and drag it, or hold the clutch."
-    : "The arm is held. Hold the clutch, and it follows the hand.";
+    ? `${held} Press on the ball at the gripper and drag it, or hold the clutch.`
+    : `${held} Hold the clutch, and it follows the hand.`;
 }

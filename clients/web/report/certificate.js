@@ -1,7 +1,7 @@
 // The certificate of the chosen way's plan: how near each limit is approached and where, and what it was signed as.
 import { definitionList, element, hideSection } from "../elements.js";
 import { patchChildren } from "../patch_children.js";
-import { formatNumber, formatPercent } from "../texts.js";
+import { formatLength, formatNumber, formatPercent } from "../texts.js";
 
 /** @type {[name: string, key: "position_use" | "velocity_use" | "acceleration_use" | "jerk_use" | "torque_use"][]} */
 const USES = [
@@ -32,7 +32,7 @@ function content({ certificate }) {
         return /** @type {Fact} */ ([name, `${formatPercent(value)}, ${place}`]);
       }),
       tool_speed && ["Speed in space", `${formatNumber(tool_speed.value, 3, "m/s")}, ${tool_speed.place}`],
-      ["Clearance", `${formatNumber(1000 * clearance.value, 1, "mm")}, ${clearance.place}`],
+      ["Clearance", `${formatLength(clearance.value)}, ${clearance.place}`],
     ]),
     element("p", { class: "note" }, "Shares of the limits, at most 100\u202f% of each, and where they are reached."),
     element("p", { class: "digest" }, "SHA-256 ", element("code", {}, digest)),

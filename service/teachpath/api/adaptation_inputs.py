@@ -12,7 +12,6 @@ from teachpath.errors import UnusableInput
 from teachpath.io.store.rows import Run
 from teachpath.jobs.curve_assessor import Shown
 from teachpath.learning.settings import settings_of_run
-from teachpath.learning.summary import fingerprint
 from teachpath.records import Demonstration, LearnedPath, Trajectory
 
 MAX_DEMONSTRATIONS: Final = 50  # more tell nothing new of a shape, and an answer would be late
@@ -48,5 +47,7 @@ def _some(demonstrations: Sequence[Demonstration], most: int) -> list[Demonstrat
 
 def _trajectories(parts: Parts, run: Run, demonstrations: Sequence[Demonstration]) -> list[Trajectory]:
     """Return the trajectories that are those that were learned from."""
+    from teachpath.learning.summary import fingerprint  # here, because it loads what clusters demonstrations
+
     found = ((d.id, parts.trajectory(d)) for d in demonstrations)
     return [trajectory for key, trajectory in found if fingerprint(trajectory) == run.learned.inputs.get(key)]

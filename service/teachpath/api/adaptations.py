@@ -3,18 +3,20 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 from fastapi import APIRouter, Response
 from pydantic import Field
 
+from teachpath.api.access import TEACH, VIEW, Sender, signed
 from teachpath.api.adaptation_inputs import shown_for
-from teachpath.api.answers import json_response, model_of
+from teachpath.api.answers import json_response, located, model_of
 from teachpath.api.parts import Parts
 from teachpath.api.poses import Component, Coordinate
+from teachpath.api.problems import refusals
 from teachpath.api.strict_requests import Body
-from teachpath.api.versions import BRANCH_PATTERN, LINE_PATTERN
+from teachpath.api.versions import BRANCH_PATTERN, LINE_PATTERN, wanted_version
 from teachpath.editing import check_editable
 from teachpath.errors import UnusableInput
 from teachpath.io.store.store import Store
@@ -76,6 +78,12 @@ class Adaptation:
     job: Job
 
 
+UNCHANGED: Final[dict[str, Any]] = {
+    "model": model_of(Adaptation),
+    "description": "It begins and ends there already: no new version.",
+}
+
+
 def adaptations_router(parts: Parts) -> APIRouter:
     """Return the route of adaptations."""
     router = APIRouter(tags=["versions"])
@@ -85,23 +93,28 @@ def adaptations_router(parts: Parts) -> APIRouter:
         "/paths/{path}/adaptations",
         status_code=201,
         response_model=model_of(Adaptation),
-        responses={200: {"description": "It begins and ends there already: no new version."}},
+        responses={200: UNCHANGED | located(200, "the version")[200]}
+        | located(201, "the version")
+        | refusals(409, 507),
+        dependencies=TEACH,
     )
-    def adapt_path(path: str, wanted: NewAdaptation) -> Response:
+    def adapt_path(path: str, wanted: NewAdaptation, sender: Sender) -> Response:
         """Adapt a path to another start and goal of the object: a new version, and a job that certifies it.
 
         The shape is learned from all demonstrations of the run that do the task in the same way, wherever they did it.
         The version takes the object where it begins; its plans start when the object lies there (PUT
         /scenes/{scene}/object).
         """
-        base = store.path(path) if wanted.version is None else versions.get(path, wanted.version)[1]
+        base = wanted_version(store, path, wanted.version)
         run = store.run(base.run)
         scene = parts.objects.scene(store.task(run.task).scene)
         target = _target(base, scene, wanted)
         shown = shown_for(parts, run, base)
         adapted = parts.assessor.adapt(base, shown, target)
-        saved = _saved(store, base, wanted, adapted, _object_pose(scene, target))
-        job = parts.jobs.submit(run.task, "plan", {"path": path, "version": saved.number})
+        author = signed(sender, wanted.author)
+        saved = _saved(store, base, wanted, author, adapted, _object_pose(scene, target))
+        order = {"path": path, "version": saved.number}
+        job = parts.jobs.submit(run.task, "plan", order, who=sender.name)
         answer = Adaptation(
             saved,
             versions.get(path, saved.number)[1],
@@ -117,8 +130,7 @@ def adaptations_router(parts: Parts) -> APIRouter:
         return json_response(answer, status=status, headers={"Location": location})
 
     @router.get(
-        "/paths/{path}/versions/{number}/adaptation-model",
-        response_model=model_of(AdaptationModel),
+        "/paths/{path}/versions/{number}/adaptation-model", response_model=model_of(AdaptationModel), dependencies=VIEW
     )
     def get_adaptation_model(path: str, number: int) -> Response:
         """Return what a version between other ends is computed from, so that a page can draw it while it is dragged."""
@@ -130,13 +142,18 @@ def adaptations_router(parts: Parts) -> APIRouter:
 
 
 def _saved(
-    store: Store, base: LearnedPath, wanted: NewAdaptation, adapted: AdaptedPath, object_pose: ObjectPose | None
+    store: Store,
+    base: LearnedPath,
+    wanted: NewAdaptation,
+    author: str,
+    adapted: AdaptedPath,
+    object_pose: ObjectPose | None,
 ) -> Version:
     """Save an adapted path, unless it is the base as it is; return the version."""
     present = store.versions.get(base.id, base.version)[0]
     if adapted.is_base and wanted.branch.strip() in ("", present.branch):
         return present
-    edit = Edit(base.version, wanted.branch.strip(), wanted.name.strip(), wanted.author.strip(), adapted.note)
+    edit = Edit(base.version, wanted.branch.strip(), wanted.name.strip(), author, adapted.note)
     curve = check_editable(adapted.curve)
     return store.versions.save(base.id, curve, edit, orientation=adapted.orientation, object_pose=object_pose)
 

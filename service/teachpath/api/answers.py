@@ -9,7 +9,7 @@ from dataclasses import fields, is_dataclass
 from functools import cache, reduce
 from operator import or_
 from types import UnionType
-from typing import Any, Union, get_args, get_origin, get_type_hints
+from typing import Any, Final, Union, get_args, get_origin, get_type_hints
 
 import numpy as np
 from fastapi import Response
@@ -17,7 +17,21 @@ from pydantic import BaseModel, Field, create_model
 
 from teachpath.io.documents import encode
 
+MCAP: Final = "application/octet-stream"  # it has no registered media type
+Responses = dict[int | str, dict[str, Any]]
 FIELD = re.compile(r"^ {4}(\w+): (.+(?:\n {8}.+)*)", re.MULTILINE)  # of the section Attributes of a docstring
+
+
+def files(*media_types: str) -> Responses:
+    """Return what a route declares whose answer is a file of one of some media types."""
+    content = {media: {"schema": {"type": "string", "format": "binary"}} for media in media_types}
+    return {200: {"content": content, "description": "The file."}}
+
+
+def located(status: int, what: str) -> Responses:
+    """Return what a route declares whose answer has the header Location, with the address of `what`."""
+    header = {"description": f"address of {what}", "required": True, "schema": {"type": "string"}}
+    return {status: {"headers": {"Location": header}}}
 
 
 def json_response(record: object, *, status: int = 200, headers: dict[str, str] | None = None) -> Response:
@@ -46,14 +60,22 @@ def model_of(kind: Any) -> Any:
 
 
 def _model(record: type) -> type[BaseModel]:
-    text = inspect.cleandoc(record.__doc__ or "")
-    meanings = {name: " ".join(meaning.split()) for name, meaning in FIELD.findall(text.partition("Attributes:")[2])}
-    kinds = get_type_hints(record)
+    kinds, texts = get_type_hints(record), meanings(record)
     described: dict[str, Any] = {
-        field.name: (model_of(kinds[field.name]), Field(description=meanings.get(field.name)))
-        for field in fields(record)
+        field.name: (model_of(kinds[field.name]), Field(description=texts.get(field.name))) for field in fields(record)
     }
-    return create_model(record.__name__, __doc__=text.partition("\n")[0], **described)
+    return create_model(record.__name__, __doc__=opening(record), **described)
+
+
+def meanings(record: type) -> dict[str, str]:
+    """Return what the docstring of a record says of each of its fields."""
+    section = inspect.cleandoc(record.__doc__ or "").partition("Attributes:")[2]
+    return {name: " ".join(meaning.split()) for name, meaning in FIELD.findall(section)}
+
+
+def opening(record: type) -> str:
+    """Return what the docstring of a record says before its fields."""
+    return inspect.cleandoc(record.__doc__ or "").partition("Attributes:")[0].strip()
 
 
 def _holds_arrays(kind: Any) -> bool:

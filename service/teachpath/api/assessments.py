@@ -5,10 +5,13 @@ from __future__ import annotations
 from fastapi import APIRouter, Response
 from pydantic import Field
 
+from teachpath.api.access import TEACH
 from teachpath.api.answers import json_response, model_of
 from teachpath.api.curves import CurveBody
 from teachpath.api.parts import Parts
+from teachpath.api.problems import refusals
 from teachpath.api.strict_requests import Body
+from teachpath.api.versions import wanted_version
 from teachpath.records import Assessment
 
 
@@ -24,14 +27,16 @@ def assessments_router(parts: Parts) -> APIRouter:
     router = APIRouter(tags=["curves"])
     store = parts.store
 
-    @router.post("/paths/{path}/assessment", response_model=model_of(Assessment))
+    @router.post(
+        "/paths/{path}/assessment", response_model=model_of(Assessment), responses=refusals(409), dependencies=TEACH
+    )
     def assess_path(path: str, wanted: CurveToAssess) -> Response:
         """Look quickly at a curve: reach, joint limits and clearance along it, what fails first and what to move.
 
         Nothing is stored and nothing certified: that is for a plan. When a newer curve of the same path comes while
         one still waits, the older one is refused with 409.
         """
-        stored = store.path(path) if wanted.version is None else store.versions.get(path, wanted.version)[1]
+        stored = wanted_version(store, path, wanted.version)
         scene = parts.objects.scene_for(store.task(store.run(stored.run).task).scene, stored)
         curve = wanted.curve.curve() if wanted.curve else stored.curve
         settings = parts.settings

@@ -7,8 +7,10 @@ from typing import Annotated
 from fastapi import APIRouter
 from pydantic import Field
 
+from teachpath.api.access import TEACH, VIEW
 from teachpath.api.parts import Parts
-from teachpath.api.strict_requests import Body
+from teachpath.api.problems import refusals
+from teachpath.api.strict_requests import Body, named_in_body
 from teachpath.errors import NotFound
 from teachpath.records import Demonstration, MeasuredCalibration, TaughtPoint
 
@@ -46,18 +48,18 @@ def calibrations_router(parts: Parts) -> APIRouter:
     router = APIRouter(tags=["calibrations"])
     calibrations, store = parts.calibrations, parts.store
 
-    @router.get("/calibrations")
+    @router.get("/calibrations", dependencies=VIEW)
     def list_calibrations() -> list[MeasuredCalibration]:
         """List the mappings to the world from the trackers' frames: of the settings, and the newest measured ones."""
         return calibrations.newest()
 
-    @router.get("/calibrations/{name}")
-    def list_versions(name: str) -> list[MeasuredCalibration]:
+    @router.get("/calibrations/{name}", dependencies=VIEW)
+    def list_calibration_versions(name: str) -> list[MeasuredCalibration]:
         """List the versions of a calibration, newest first, with the points and residuals of each."""
         found = store.calibrations.versions(name)
         return found or [MeasuredCalibration(calibrations.get(name))]
 
-    @router.put("/calibrations/{name}")
+    @router.put("/calibrations/{name}", responses=refusals(409, 507), dependencies=TEACH)
     def measure_calibration(name: str, new: NewCalibration) -> MeasuredCalibration:
         """Fit a calibration to taught points and keep it as the next version of its name.
 
@@ -71,13 +73,14 @@ def calibrations_router(parts: Parts) -> APIRouter:
             keep=new.keep,
         )
 
-    @router.post("/tasks/{task}/calibration")
+    @router.post("/tasks/{task}/calibration", responses=refusals(409, 507), dependencies=TEACH)
     def convert_demonstrations(task: str, choice: CalibrationChoice) -> list[Demonstration]:
         """Put all demonstrations of a task under a calibration as it is today and judge them again; can be undone."""
         stored = store.demonstrations(store.task(task).name)
         if not stored:
             raise NotFound(f"task {task} has no demonstrations yet")
-        changed = calibrations.convert(stored, choice.calibration)
+        with named_in_body("calibration"):
+            changed = calibrations.convert(stored, choice.calibration)
         parts.recorder.annotations.on_change(changed[-1])
         return changed
 

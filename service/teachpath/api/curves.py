@@ -7,6 +7,7 @@ from typing import Annotated, Any, Literal
 from fastapi import APIRouter, Response
 from pydantic import Field
 
+from teachpath.api.access import TEACH
 from teachpath.api.answers import json_response, model_of
 from teachpath.api.parts import Parts
 from teachpath.api.strict_requests import Body
@@ -22,7 +23,7 @@ Point = tuple[float, float, float]
 class CurveBody(Body):
     """A clamped NURBS on [0, 1]."""
 
-    degree: int = Field(ge=1, le=7)
+    degree: int = Field(ge=1, le=7, description="of the polynomials")
     knots: list[float] = Field(
         max_length=MAX_CONTROL_POINTS + 8, description="non-decreasing, degree + 1 times 0 and 1"
     )
@@ -38,14 +39,14 @@ class CurveBody(Body):
 class CurveEvaluation(Body):
     """Where to evaluate a curve."""
 
-    curve: CurveBody
+    curve: CurveBody = Field(description="to evaluate")
     u: list[Annotated[float, Field(ge=0.0, le=1.0)]] = Field(max_length=MAX_PARAMETERS, description="parameters")
 
 
 class CurveOperation(Body):
     """A curve to operate on."""
 
-    curve: CurveBody
+    curve: CurveBody = Field(description="to operate on")
     u: float | None = Field(None, description="insert-knot, remove-knot: the parameter of the knot, in (0, 1)")
     tolerance: float = Field(SAME_SHAPE_TOLERANCE, description="remove-knot: distance by which the curve may move [m]")
 
@@ -54,14 +55,16 @@ def curves_router(parts: Parts) -> APIRouter:
     """Return the routes of operations on curves."""
     router = APIRouter(tags=["curves"])
 
-    @router.post("/curves/evaluate")
+    @router.post("/curves/evaluate", dependencies=TEACH)
     def evaluate_curve(evaluation: CurveEvaluation) -> list[list[float]]:
         """Return the points of a curve [m] at parameters u."""
         points: list[list[float]] = evaluation.curve.curve()(evaluation.u).tolist() if evaluation.u else []  # type: ignore[arg-type]
         return points
 
-    @router.post("/curves/{operation}", response_model=model_of(EditResult))
-    def operate(operation: Literal["insert-knot", "remove-knot", "elevate"], wanted: CurveOperation) -> Response:
+    @router.post("/curves/{operation}", response_model=model_of(EditResult), dependencies=TEACH)
+    def operate_on_curve(
+        operation: Literal["insert-knot", "remove-knot", "elevate"], wanted: CurveOperation
+    ) -> Response:
         """Insert or remove a knot, or raise the degree, and leave the shape; `deviation` is how far it moved [m]."""
         return json_response(_operated(operation, wanted))
 

@@ -10,8 +10,10 @@ from fastapi import APIRouter, Query, Response
 from fastapi.responses import FileResponse
 from pydantic import Field
 
-from teachpath.api.answers import model_of
+from teachpath.api.access import DEMONSTRATE, VIEW, Sender
+from teachpath.api.answers import MCAP, files, model_of
 from teachpath.api.parts import MAX_READERS, Parts
+from teachpath.api.problems import refusals
 from teachpath.api.strict_requests import Body
 from teachpath.recorder.recording_work import encode_trajectory
 from teachpath.records import Amendment, Demonstration, Trajectory
@@ -33,19 +35,18 @@ def demonstrations_router(parts: Parts) -> APIRouter:
     store = parts.store
     readers = CapacityLimiter(MAX_READERS)
 
-    @router.get("/demonstrations/{demonstration}")
+    @router.get("/demonstrations/{demonstration}", dependencies=VIEW)
     def get_demonstration(demonstration: str) -> Demonstration:
         """Return one demonstration."""
         return store.demonstration(demonstration)
 
-    @router.patch("/demonstrations/{demonstration}")
-    def amend_demonstration(demonstration: str, changes: DemonstrationChanges) -> Demonstration:
+    @router.patch("/demonstrations/{demonstration}", responses=refusals(409, 507), dependencies=DEMONSTRATE)
+    def amend_demonstration(demonstration: str, changes: DemonstrationChanges, sender: Sender) -> Demonstration:
         """Mark, discard, restore or trim a demonstration; its recording and the recorder's own cut stay."""
-        return parts.recorder.annotations.amend(
-            demonstration, Amendment(mark=changes.mark, discarded=changes.discarded, trim=changes.trim)
-        )
+        amendment = Amendment(mark=changes.mark, discarded=changes.discarded, trim=changes.trim)
+        return parts.recorder.annotations.amend(demonstration, amendment, who=sender.name)
 
-    @router.get("/demonstrations/{demonstration}/trajectory", response_model=model_of(Trajectory))
+    @router.get("/demonstrations/{demonstration}/trajectory", response_model=model_of(Trajectory), dependencies=VIEW)
     async def get_trajectory(
         demonstration: str,
         most: Annotated[int, Query(ge=2, le=100_000, description="points; further ones are left out evenly")] = 100_000,
@@ -59,12 +60,17 @@ def demonstrations_router(parts: Parts) -> APIRouter:
 
         return Response(await run_sync(encoded, limiter=readers), media_type="application/json")
 
-    @router.get("/demonstrations/{demonstration}/recording", response_class=FileResponse)
-    def get_recording(demonstration: str) -> FileResponse:
+    @router.get(
+        "/demonstrations/{demonstration}/recording",
+        response_class=FileResponse,
+        responses=files(MCAP),
+        dependencies=VIEW,
+    )
+    def download_demonstration(demonstration: str) -> FileResponse:
         """Return the MCAP file with every sample."""
         row = store.demonstration(demonstration)
         store.recordings.content(row.recording, row.digest)  # so that a changed one is refused
         file = store.recordings.path(row.recording)
-        return FileResponse(file, media_type="application/octet-stream", filename=file.name)
+        return FileResponse(file, media_type=MCAP, filename=file.name)
 
     return router

@@ -1,6 +1,6 @@
 """The events: a WebSocket that sends changes and states, so that a page need not poll.
 
-Each message is one JSON document: `{"sequence", "topic", "id"}` says that a resource has changed and may be read anew;
+Each message is one JSON document (`live_messages.py`): `{"sequence", "topic", "id"}` says that a resource has changed;
 with `now` it carries a state (null: the thing has gone). The topic `all` means: read everything anew. It comes first,
 and again when a subscriber has fallen behind. Topics are the names of the resources (tasks, demonstrations, runs,
 paths, plans, jobs, executions), and, with `now`, `station`, `executor` (also who has control), `trackers`,
@@ -12,6 +12,7 @@ from __future__ import annotations
 from fastapi import APIRouter, WebSocket
 
 from teachpath.api import sockets
+from teachpath.api.access import VIEW
 from teachpath.live.event_hub import Event, EventHub, Subscriber
 
 
@@ -19,7 +20,7 @@ def events_router(hub: EventHub) -> APIRouter:
     """Return the route of the events: `/api/v1/events`."""
     router = APIRouter(include_in_schema=False)
 
-    @router.websocket("/api/v1/events")
+    @router.websocket("/api/v1/events", dependencies=VIEW)
     async def events(socket: WebSocket) -> None:
         async def send(event: Event) -> None:
             await socket.send_text(event.text)

@@ -11,11 +11,13 @@ from fastapi import APIRouter, Header, Query, Response
 from fastapi.responses import FileResponse
 from pydantic import AfterValidator, Field
 
-from teachpath.api.answers import model_of
+from teachpath.api.access import MAX_HEADER_LENGTH, OPEN, OPERATE, VIEW, Sender, Who, signed
+from teachpath.api.answers import MCAP, files, located, model_of
 from teachpath.api.names import TrackerName, TrackerNameOrEmpty
 from teachpath.api.pages import WantedPage
 from teachpath.api.parts import MAX_READERS, Parts
-from teachpath.api.strict_requests import Body
+from teachpath.api.problems import refusals
+from teachpath.api.strict_requests import Body, named_in_body
 from teachpath.errors import UnusableInput
 from teachpath.io.store.lists import Execution
 from teachpath.motion.analysis.time_series import TimeSeries
@@ -23,7 +25,6 @@ from teachpath.records import Command, ExecutorStatus, TeleopRequest
 from teachpath.robot.executions import Executions, encode_series
 from teachpath_proto.control import CommandVerb
 
-MAX_HEADER_LENGTH: Final = 64  # characters of a name or a token
 MAX_STOPS: Final = 100  # that wait for the executor at a time
 Token = Annotated[
     str,
@@ -33,20 +34,10 @@ Token = Annotated[
         description="token of POST /lease, when somebody holds control",
     ),
 ]
-Who = Annotated[
-    str,
-    Header(
-        alias="Teachpath-Operator",
-        max_length=MAX_HEADER_LENGTH,
-        description="your name, for the journal, without a lease",
-    ),
-]
-
-
 # Of a stop, which is never refused for what comes with it: cut to what the journal can hold.
-AnyWho = Annotated[
+AnyLabel = Annotated[
     str,
-    Header(alias="Teachpath-Operator", description="your name, for the journal, without a lease"),
+    Header(alias="Teachpath-Operator", description="your name, for the journal"),
     AfterValidator(lambda name: "".join(filter(str.isprintable, name))[:MAX_HEADER_LENGTH]),
 ]
 AnyToken = Annotated[
@@ -68,7 +59,9 @@ class NewTeleoperation(Body):
 
     tracker: TrackerName = Field(description="name of the tracker")
     calibration: str = Field("identity", description="to the world from the tracker's frame")
-    scene: str = Field("paper", description="what stands around the arm")
+    scene: str = Field(
+        "", description="what stands around the arm; left out: `executor.hand_scene`, or paper where that is empty"
+    )
     scale: float = Field(1.0, ge=0.05, le=5.0, description="of the tool's way over the hand's")
     share: float = Field(0.5, ge=0.05, le=1.0, description="of the joints' speed, acceleration and jerk limits")
     clutch: TrackerNameOrEmpty = Field(
@@ -105,15 +98,26 @@ def executions_router(parts: Parts) -> APIRouter:
 def _add_beginnings(router: APIRouter, parts: Parts) -> None:
     executions = parts.executions
 
-    @router.post("/executions", status_code=202)
-    def begin_execution(new: NewExecution, response: Response, lease: Token = "", who: Who = "") -> Execution:
+    @router.post(
+        "/executions",
+        status_code=202,
+        responses=refusals(409, 507) | located(202, "the execution"),
+        dependencies=OPERATE,
+    )
+    def begin_execution(new: NewExecution, response: Response, who: Who, lease: Token = "") -> Execution:
         """Move the arm: approach, grasp, follow the path, release, retreat."""
-        row = executions.execute(new.plan, override=new.override, lease=lease, who=who)
+        with named_in_body("plan"):
+            row = executions.execute(new.plan, override=new.override, lease=lease, who=who)
         response.headers["Location"] = f"/api/v1/executions/{row.id}"
         return row
 
-    @router.post("/teleoperation", status_code=202)
-    def begin_teleoperation(new: NewTeleoperation, response: Response, lease: Token = "", who: Who = "") -> Execution:
+    @router.post(
+        "/teleoperation",
+        status_code=202,
+        responses=refusals(409, 507) | located(202, "the execution"),
+        dependencies=OPERATE,
+    )
+    def begin_teleoperation(new: NewTeleoperation, response: Response, who: Who, lease: Token = "") -> Execution:
         """Let the arm mirror a live hand while its clutch (button bit 2) is pressed; steer and stop it as an execution.
 
         The clutch may be another tracker's: whoever looks on presses it then, and lets go to hold the arm. Both names
@@ -125,8 +129,10 @@ def _add_beginnings(router: APIRouter, parts: Parts) -> None:
         The arm keeps its limits, it and what it carries stay clear of the scene, and all rests when the clutch is let
         go or the hand is lost.
         """
-        calibration = parts.calibrations.get(new.calibration)
-        scene = parts.objects.scene(new.scene)
+        with named_in_body("calibration"):
+            calibration = parts.calibrations.get(new.calibration)
+        with named_in_body("scene"):
+            scene = parts.objects.scene(new.scene or parts.settings.executor.hand_scene or "paper").name
         orientation = new.orientation or parts.settings.teleoperation.orientation
         owners = parts.recorder.owners
         for name in filter(None, (new.tracker, new.clutch)):
@@ -151,26 +157,28 @@ def _add_looks(router: APIRouter, parts: Parts) -> None:
     executions = parts.executions
     readers = CapacityLimiter(MAX_READERS)
 
-    @router.get("/executions", response_model=model_of(list[Execution]))
+    @router.get("/executions", response_model=model_of(list[Execution]), dependencies=VIEW)
     def list_executions(page: WantedPage) -> Response:
         """List the executions, newest first."""
         return page.answer(executions.page(page.wanted))
 
-    @router.get("/executions/{execution}")
+    @router.get("/executions/{execution}", dependencies=VIEW)
     def get_execution(execution: str) -> Execution:
         """Return one execution with its newest status."""
         return executions.get(execution)
 
-    @router.get("/executions/{execution}/recording", response_class=FileResponse)
-    def get_recording(execution: str) -> FileResponse:
+    @router.get(
+        "/executions/{execution}/recording", response_class=FileResponse, responses=files(MCAP), dependencies=VIEW
+    )
+    def download_execution(execution: str) -> FileResponse:
         """Return all that was sent and done as an MCAP file: setpoints, states, statuses, journal; plan and path in it.
 
         `teachpath run --check FILE` judges it. While the execution runs, the file has no end yet.
         """
         file = executions.recording(execution)
-        return FileResponse(file, media_type="application/octet-stream", filename=f"{execution}.mcap")
+        return FileResponse(file, media_type=MCAP, filename=f"{execution}.mcap")
 
-    @router.get("/executions/{execution}/series", response_model=model_of(TimeSeries))
+    @router.get("/executions/{execution}/series", response_model=model_of(TimeSeries), dependencies=VIEW)
     async def get_series(
         execution: str, points: Annotated[int, Query(ge=2, le=20_000, description="at most")] = 500
     ) -> Response:
@@ -186,15 +194,15 @@ def _add_looks(router: APIRouter, parts: Parts) -> None:
 
 
 def _add_steering(router: APIRouter, executions: Executions) -> None:
-    @router.post("/executions/{execution}/override")
-    def set_override(execution: str, wanted: Override, lease: Token = "", who: Who = "") -> Execution:
+    @router.post("/executions/{execution}/override", responses=refusals(409), dependencies=OPERATE)
+    def set_override(execution: str, wanted: Override, who: Who, lease: Token = "") -> Execution:
         """Change the speed while the arm moves; 0 is a hold on the path."""
         return executions.command(
             execution, Command(CommandVerb.OVERRIDE, execution, override=wanted.override, lease=lease, who=who)
         )
 
-    @router.post("/executions/{execution}/step")
-    def step(execution: str, wanted: Step, lease: Token = "", who: Who = "") -> Execution:
+    @router.post("/executions/{execution}/step", responses=refusals(409), dependencies=OPERATE)
+    def step_execution(execution: str, wanted: Step, who: Who, lease: Token = "") -> Execution:
         """Move the held arm by a length or a number of nodes along the path, and hold it there."""
         if (wanted.length is None) == (wanted.nodes is None):
             raise UnusableInput("a step has a length in metres or a number of nodes: one of the two")
@@ -203,9 +211,9 @@ def _add_steering(router: APIRouter, executions: Executions) -> None:
         )
         return executions.command(execution, command)
 
-    @router.post("/executions/{execution}/{verb}")
-    def steer(
-        execution: str, verb: Literal["hold", "resume", "reverse"], lease: Token = "", who: Who = ""
+    @router.post("/executions/{execution}/{verb}", responses=refusals(409), dependencies=OPERATE)
+    def steer_execution(
+        execution: str, verb: Literal["hold", "resume", "reverse"], who: Who, lease: Token = ""
     ) -> Execution:
         """Hold on the path, resume, or go back along it.
 
@@ -213,8 +221,8 @@ def _add_steering(router: APIRouter, executions: Executions) -> None:
         """
         return executions.command(execution, Command(CommandVerb(verb), execution, lease=lease, who=who))
 
-    @router.post("/robot/acknowledge")
-    def acknowledge_motion(lease: Token = "", who: Who = "") -> ExecutorStatus:
+    @router.post("/robot/acknowledge", responses=refusals(409), dependencies=OPERATE)
+    def acknowledge_motion(who: Who, lease: Token = "") -> ExecutorStatus:
         """Say that you have seen why the arm moved although nothing was under way (`unasked_motion` of its status).
 
         Nothing starts before; it is refused while the arm does not rest.
@@ -227,8 +235,8 @@ def stops_router(parts: Parts) -> APIRouter:
     router, executions = APIRouter(tags=["executions"]), parts.executions
     threads = CapacityLimiter(MAX_STOPS)  # of stops alone, so that a stop waits for no other request
 
-    @router.post("/executions/{execution}/stop")
-    async def stop(execution: str, lease: AnyToken = "", who: AnyWho = "") -> Execution:
+    @router.post("/executions/{execution}/stop", dependencies=OPEN)
+    async def stop_execution(execution: str, sender: Sender, lease: AnyToken = "", label: AnyLabel = "") -> Execution:
         """Stop and end an execution; everybody may do it, and more than once.
 
         It is answered when the executor's own status shows that the execution ends or has ended; an answer of 503
@@ -236,11 +244,13 @@ def stops_router(parts: Parts) -> APIRouter:
         rest on its path: it is not an emergency stop. It is never refused for a field or parameter that it does not
         know.
         """
+        who = signed(sender, label)
         return await run_sync(partial(executions.stop_one, execution, lease=lease, who=who), limiter=threads)
 
-    @router.post("/stop")
-    async def stop_whatever_moves(lease: AnyToken = "", who: AnyWho = "") -> ExecutorStatus:
+    @router.post("/stop", dependencies=OPEN)
+    async def stop_arm(sender: Sender, lease: AnyToken = "", label: AnyLabel = "") -> ExecutorStatus:
         """Stop whatever moves the arm, on its path, as the stop of an execution does; everybody may do it."""
+        who = signed(sender, label)
         return await run_sync(partial(executions.stop_all, lease=lease, who=who), limiter=threads)
 
     return router

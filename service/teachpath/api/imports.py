@@ -3,18 +3,23 @@
 from __future__ import annotations
 
 from dataclasses import asdict, replace
+from functools import partial
 from pathlib import Path
 from typing import Annotated, Final
 
 from fastapi import APIRouter, Query, Request, Response
 from starlette.concurrency import run_in_threadpool
 
+from teachpath.api.access import DEMONSTRATE, Sender
+from teachpath.api.answers import located
 from teachpath.api.parts import Parts
-from teachpath.api.work import accepted, submitter_of
+from teachpath.api.problems import refusals
+from teachpath.api.work import IdempotencyKey, accepted, submitter_of
 from teachpath.errors import UnusableInput
 from teachpath.io.readers.registry import check_options
 from teachpath.io.store.faults import storage_fault
-from teachpath.offline.import_job import UPLOAD, ImportRequest
+from teachpath.jobs.idempotency import begun_by
+from teachpath.offline.import_job import UPLOAD, ImportRequest, UploadedFile
 from teachpath.offline.import_target import import_calibration, import_scene
 from teachpath.offline.track_samples import PhaseMarks
 from teachpath.records import Job
@@ -30,9 +35,16 @@ def imports_router(parts: Parts) -> APIRouter:
     """Return the route of imports."""
     router = APIRouter(tags=["tasks"])
 
-    @router.post("/tasks/{task}/demonstrations", status_code=202, openapi_extra={"requestBody": FILE_BODY})
+    @router.post(
+        "/tasks/{task}/demonstrations",
+        status_code=202,
+        openapi_extra={"requestBody": FILE_BODY},
+        responses=refusals(409, 507) | located(202, "the job"),
+        dependencies=DEMONSTRATE,
+    )
     async def import_demonstrations(
         task: str,
+        sender: Sender,
         request: Request,
         response: Response,
         name: Annotated[str, Query(description="name of the source", max_length=200)] = "upload",
@@ -51,6 +63,7 @@ def imports_router(parts: Parts) -> APIRouter:
         object_at_grasp: Annotated[
             bool, Query(description="of a new task: each motion begins at its object, wherever that is")
         ] = False,
+        key: IdempotencyKey = "",
     ) -> Job:
         """Queue the import of a file sent as the request's body; `Location` names the job.
 
@@ -60,20 +73,24 @@ def imports_router(parts: Parts) -> APIRouter:
         if not is_name(task):
             raise UnusableInput(name_refusal("task", task))
         marks = PhaseMarks(grasp, release, whole)
-        order = ImportRequest(
-            "", name, format, units, rate, scene, calibration, time, columns, quaternion, track, marks, object_at_grasp
-        )
-        check_options(name, format, order.options)
+        file = UploadedFile("", name, format, units, rate, time, columns, quaternion, track, marks)
+        check_options(name, format, file.options)
         store, calibrations = parts.store, parts.calibrations
         parts.settings.scene(await run_in_threadpool(import_scene, store, task, scene))
         await run_in_threadpool(import_calibration, store, calibrations, task, format, calibration)
-        submitter = submitter_of(request)
+        submitter = submitter_of(request, sender)
+        order = ImportRequest((file,), scene, calibration, object_at_grasp)
+        if known := await run_in_threadpool(begun_by, store, task, "import", asdict(order), submitter, key):
+            return accepted(known, response)
         parts.jobs.require_room(submitter)
         folder = await run_in_threadpool(parts.transfers.make)
-        order = replace(order, upload=folder.name)
+        order = replace(order, files=(replace(file, upload=folder.name),))
         try:
-            await _receive(request, folder / UPLOAD, name)
-            job = await run_in_threadpool(parts.jobs.submit, task, "import", asdict(order), submitter)
+            await receive_file(request, folder / UPLOAD, name)
+            submit = partial(
+                parts.jobs.submit, task, "import", asdict(order), submitter, who=sender.name, idempotency_key=key
+            )
+            job = await run_in_threadpool(submit)
         except BaseException:
             parts.transfers.remove(folder.name)
             raise
@@ -82,7 +99,7 @@ def imports_router(parts: Parts) -> APIRouter:
     return router
 
 
-async def _receive(request: Request, file: Path, name: str) -> None:
+async def receive_file(request: Request, file: Path, name: str) -> None:
     """Write the body of a request to a file as it comes, so that it never is in memory as a whole."""
     try:
         with file.open("wb") as stream:

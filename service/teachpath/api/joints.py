@@ -11,6 +11,7 @@ from typing import Any, Final
 from fastapi import APIRouter, WebSocket, WebSocketDisconnect
 
 from teachpath.api import sockets
+from teachpath.api.access import VIEW
 from teachpath.api.parts import Parts
 from teachpath.records import ExecutorStatus
 from teachpath.robot.joint_feed import JointFrame
@@ -23,7 +24,7 @@ def joints_router(parts: Parts) -> APIRouter:
     """Return the WebSocket `/joints`."""
     router = APIRouter()
 
-    @router.websocket("/joints")
+    @router.websocket("/joints", dependencies=VIEW)
     async def joints(socket: WebSocket) -> None:
         """Send the joint state whenever it has changed; refuse a page of another origin."""
         if not await sockets.accept(socket):
@@ -64,6 +65,7 @@ async def _send(socket: WebSocket, parts: Parts) -> None:
 
 
 def _document(frame: JointFrame, status: ExecutorStatus | None) -> dict[str, Any]:
+    """Return a `JointMessage` without its time."""
     state = frame.state
     return {
         "execution": state.execution,

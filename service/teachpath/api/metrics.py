@@ -12,6 +12,7 @@ from prometheus_client.exposition import CONTENT_TYPE_LATEST
 from prometheus_client.registry import Collector
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
+from teachpath.api.access import VIEW
 from teachpath.api.parts import Parts
 from teachpath.records import ExecutorStatus
 from teachpath_proto.control import ExecutorState
@@ -103,7 +104,7 @@ def metrics_router(parts: Parts, registry: CollectorRegistry) -> APIRouter:
     router = APIRouter(include_in_schema=False)
     registry.register(StationMetrics(parts))
 
-    @router.get("/metrics")
+    @router.get("/metrics", dependencies=VIEW)
     def get_metrics() -> Response:
         return Response(generate_latest(registry), headers={"Content-Type": CONTENT_TYPE_LATEST})
 

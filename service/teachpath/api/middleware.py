@@ -3,19 +3,23 @@
 from __future__ import annotations
 
 import asyncio
+import re
 from typing import Final
 
 from starlette.datastructures import Headers
 from starlette.exceptions import HTTPException
-from starlette.responses import JSONResponse
+from starlette.responses import Response
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
+from teachpath.api.problems import refuse
 from teachpath.api.sockets import same_origin
 from teachpath.web.settings import WebSettings
 
 MAX_DOCUMENT_SIZE: Final = 1024 * 1024  # bytes of a request that is no upload
 MIN_UPLOAD_RATE: Final = 1000.0  # [bytes/s] of a body, after the time that every request has
 SAFE_METHODS: Final = ("GET", "HEAD", "OPTIONS")
+STOP: Final = re.compile(r"/api/v1/(executions/[^/]+/)?stop")  # never refused for what else is asked for
+UPLOADS: Final = ("/demonstrations", "/uploads")  # ends of the paths that take whole files
 
 
 class RequestLimits:
@@ -25,7 +29,7 @@ class RequestLimits:
 
     Args:
         app: receives what is not refused.
-        settings: `largest_upload` is for a body sent to `.../demonstrations`; all others are documents.
+        settings: `largest_upload` is for a body sent to one of `UPLOADS`; all others are documents.
     """
 
     def __init__(self, app: ASGIApp, *, settings: WebSettings) -> None:
@@ -37,7 +41,7 @@ class RequestLimits:
             await self._app(scope, receive, send)
             return
         headers = Headers(scope=scope)
-        limit = self._settings.largest_upload if scope["path"].endswith("/demonstrations") else MAX_DOCUMENT_SIZE
+        limit = self._settings.largest_upload if scope["path"].endswith(UPLOADS) else MAX_DOCUMENT_SIZE
         announced = headers.get("content-length", "0")
         if not same_origin(headers):
             sentence = f"a page of {headers['origin']} may not give orders here; use the station's own address"
@@ -46,6 +50,24 @@ class RequestLimits:
             await _refuse(413, _too_large(announced, limit))(scope, receive, send)
         else:
             await self._app(scope, _LimitedBody(receive, limit, self._settings.request_timeout), send)
+
+
+class HeadRequests:
+    """Answers HEAD as GET, without the body."""
+
+    def __init__(self, app: ASGIApp) -> None:
+        self._app = app
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Pass the request on."""
+        if scope["type"] != "http" or scope["method"] != "HEAD":
+            await self._app(scope, receive, send)
+            return
+
+        async def send_head(message: Message) -> None:
+            await send({**message, "body": b""} if message["type"] == "http.response.body" else message)
+
+        await self._app({**scope, "method": "GET"}, receive, send_head)
 
 
 class AnswersAtTheEnd:
@@ -73,6 +95,11 @@ class AnswersAtTheEnd:
             if begun or scope["type"] != "http":
                 raise
             await _refuse(503, "the service ends; ask again when it runs")(scope, receive, send)
+
+
+def is_stop(scope: Scope) -> bool:
+    """Tell whether a request stops the arm."""
+    return scope["type"] == "http" and scope["method"] == "POST" and STOP.fullmatch(scope["path"]) is not None
 
 
 class _LimitedBody:
@@ -109,5 +136,5 @@ def _too_large(count: str, limit: int) -> str:
     return f"a body of {count[:20]} bytes is over the limit of {limit}; split the file, or use: teachpath import"
 
 
-def _refuse(status: int, sentence: str) -> JSONResponse:
-    return JSONResponse({"detail": sentence, "error": "Refused"}, status)
+def _refuse(status: int, sentence: str) -> Response:
+    return refuse(status, sentence, "Refused")

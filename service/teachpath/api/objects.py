@@ -5,6 +5,7 @@ from __future__ import annotations
 from fastapi import APIRouter
 from pydantic import Field
 
+from teachpath.api.access import TEACH, VIEW
 from teachpath.api.parts import Parts
 from teachpath.api.poses import Component, Coordinate
 from teachpath.api.strict_requests import Body
@@ -25,12 +26,12 @@ def objects_router(parts: Parts) -> APIRouter:
     router = APIRouter(tags=["station"])
     poses = parts.objects
 
-    @router.get("/scenes/{scene}/object")
+    @router.get("/scenes/{scene}/object", dependencies=VIEW)
     def get_object(scene: str) -> ObjectPose:
         """Return where the object of a scene lies."""
         return poses.pose(scene)
 
-    @router.put("/scenes/{scene}/object")
+    @router.put("/scenes/{scene}/object", dependencies=TEACH)
     def put_object(scene: str, seen: SeenObject) -> ObjectPose:
         """Say where the object of a scene lies, and return where it lies now.
 
@@ -40,7 +41,7 @@ def objects_router(parts: Parts) -> APIRouter:
         """
         return poses.tell(scene, ObjectPose(seen.position, seen.orientation))
 
-    @router.delete("/scenes/{scene}/object")
+    @router.delete("/scenes/{scene}/object", dependencies=TEACH)
     def reset_object(scene: str) -> ObjectPose:
         """Put the object of a scene back to where the settings have it, and return where that is."""
         return poses.forget(scene)

@@ -14,6 +14,7 @@ from fastapi import Request, Response
 from teachpath.live.preview.page_modules import imported_modules
 
 LEAST_COMPRESSED: Final = 1000  # bytes; a shorter file gains nothing
+NONE: Final[Mapping[str, str]] = {}
 PRELOAD: Final = "<!-- preload -->"  # where the page announces its modules
 
 
@@ -37,7 +38,9 @@ class PageFiles:
         self._headers = dict(headers)
         self._contents: dict[Path, tuple[tuple[int, int], _Content]] = {}
 
-    def answer(self, request: Request, file: Path, media_type: str, *, entry: str = "") -> Response:
+    def answer(
+        self, request: Request, file: Path, media_type: str, *, entry: str = "", headers: Mapping[str, str] = NONE
+    ) -> Response:
         """Return a file as an answer, or 304 where the browser has it; raises FileNotFoundError.
 
         Args:
@@ -45,15 +48,16 @@ class PageFiles:
             file: to send.
             media_type: of the file.
             entry: name of the page's first module beside the file; all that it imports is announced in the file.
+            headers: of this answer, beside those of all.
         """
         content = self._read(file, entry)
-        headers = self._headers | {"ETag": content.tag, "Vary": "Accept-Encoding"}
+        sent = self._headers | {"ETag": content.tag, "Vary": "Accept-Encoding"} | dict(headers)
         if content.tag in request.headers.get("if-none-match", ""):
-            return Response(status_code=304, headers=headers)
+            return Response(status_code=304, headers=sent)
         body = content.plain
         if content.packed and "gzip" in request.headers.get("accept-encoding", ""):
-            body, headers["Content-Encoding"] = content.packed, "gzip"
-        return Response(body, headers=headers, media_type=media_type)
+            body, sent["Content-Encoding"] = content.packed, "gzip"
+        return Response(body, headers=sent, media_type=media_type)
 
     def _read(self, file: Path, entry: str) -> _Content:
         state = file.stat()
@@ -73,4 +77,4 @@ class PageFiles:
 def _preload_links(folder: Path, entry: str) -> str:
     """Return elements that let a browser read all modules at once; else it finds them from import to import."""
     modules = imported_modules(entry, lambda path: (folder / path).read_text())
-    return "\n  ".join(f'<link rel="modulepreload" href="/web/{path}">' for path in modules)
+    return "\n  ".join(f'<link rel="modulepreload" href="web/{path}">' for path in modules)

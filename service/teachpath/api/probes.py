@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from fastapi import APIRouter
 
 from teachpath import __version__
+from teachpath.api.access import OPEN
 from teachpath.api.parts import Parts
 from teachpath.errors import TeachpathError, Unreachable
 
@@ -27,12 +28,12 @@ def probes_router(parts: Parts) -> APIRouter:
     """Return the routes of the probes."""
     router = APIRouter(tags=["station"])
 
-    @router.get("/health/live")
+    @router.get("/health/live", dependencies=OPEN)
     async def get_liveness() -> Probe:
         """Say that the service answers; it does even while every other request waits."""
         return Probe(__version__)
 
-    @router.get("/health/ready")
+    @router.get("/health/ready", dependencies=OPEN)
     def get_readiness() -> Probe:
         """Say that the station is ready to record, learn and move the arm; 503 with the reasons while it is not."""
         if reasons := list(_reasons(parts)):

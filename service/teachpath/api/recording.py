@@ -4,11 +4,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from fastapi import APIRouter
+from fastapi import APIRouter, Response
 from pydantic import Field
 
+from teachpath.api.access import DEMONSTRATE, VIEW, Sender
+from teachpath.api.answers import located
 from teachpath.api.parts import Parts
-from teachpath.api.strict_requests import Body
+from teachpath.api.problems import refusals
+from teachpath.api.strict_requests import Body, named_in_body
 from teachpath.errors import UnusableInput
 from teachpath.io.documents import from_document
 from teachpath.io.wire import recording_document
@@ -46,16 +49,27 @@ class RecordingReport:
     """The account of a recording: all samples that came, and all that did not; times in nanoseconds.
 
     Attributes:
+        task: name of the task.
+        tracker: name of the tracker.
         demonstrations: ids of those made so far, in order.
-        missing: first and last of the numbers that never came, of the first 20 gaps.
-        idle: samples that belong to no demonstration.
-        gaps: stretches of numbers that never came.
-        conflicts: samples whose number was taken, or contradicts their device time.
+        received: samples that came.
+        lost: numbers that never came.
+        duplicated: samples that came again.
+        reordered: samples that came after newer ones.
         late: samples that came after the demonstration they belong to was cut, which is made without them.
+        refused: samples that could not be used.
+        untracked: samples in which the tracker did not see the hand.
+        gaps: stretches of numbers that never came.
+        missing: first and last of the numbers that never came, of the first 20 gaps.
+        longest_gap_ns: longest time without a sample, device clock [ns].
+        conflicts: samples whose number was taken, or contradicts their device time.
+        clock_jumps: times that the device's clock jumped.
         declared_rate: [Hz] that the client said; 0: none.
         seen_rate: [Hz] numbers a second of the device's clock.
-        clock_offset_ns: host clock minus device clock, with the least transit in it.
+        clock_offset_ns: host clock minus device clock, with the least transit in it [ns].
+        clock_uncertainty_ns: median transit time minus the least [ns].
         clock_rate: seconds of the device's clock in one of the host's; 0: not known.
+        idle: samples that belong to no demonstration.
         phase: of the hand; empty when the recording has ended.
         state: recording, countdown, pausing, paused or lost; empty when the recording has ended.
         pedal_used: whether the pedal has been pressed in this recording.
@@ -106,15 +120,24 @@ def recording_router(parts: Parts) -> APIRouter:
 def _add_recordings(router: APIRouter, parts: Parts) -> None:
     recorder = parts.recorder
 
-    @router.get("/tasks/{task}/recording")
+    @router.get("/tasks/{task}/recording", dependencies=VIEW)
     def get_recording_state(task: str) -> list[RecordingReport]:
         """Return the accounts of the task's running recordings."""
         name = parts.store.task(task).name
         return [_report(s) for s in recorder.statuses(with_statistics=True) if s.task == name]
 
-    @router.post("/tasks/{task}/recording", status_code=201)
-    def start_recording(task: str, recording: NewRecording) -> RecordingReport:
+    @router.post(
+        "/tasks/{task}/recording",
+        status_code=201,
+        responses=refusals(409, 507) | located(201, "the running recordings of the task"),
+        dependencies=DEMONSTRATE,
+    )
+    def start_recording(task: str, recording: NewRecording, response: Response) -> RecordingReport:
         """Start recording from a tracker; demonstrations are cut by themselves as the hand grasps and releases."""
+        if recording.calibration:
+            with named_in_body("calibration"):
+                parts.calibrations.get(recording.calibration)
+        response.headers["Location"] = f"/api/v1/tasks/{task}/recording"
         return _report(
             recorder.begin(
                 RecordingRequest(
@@ -127,17 +150,17 @@ def _add_recordings(router: APIRouter, parts: Parts) -> None:
             )
         )
 
-    @router.post("/tasks/{task}/recording/stop")
+    @router.post("/tasks/{task}/recording/stop", responses=refusals(507), dependencies=DEMONSTRATE)
     def stop_recording(task: str, end: RecordingEnd) -> RecordingReport:
         """Stop recording and return the account of every sample."""
         return _report(recorder.end(StopRequest(of_task(task, end.tracker), discard=end.discard)))
 
-    @router.post("/tasks/{task}/recording/pause")
+    @router.post("/tasks/{task}/recording/pause", dependencies=DEMONSTRATE)
     def pause_recording(task: str, choice: TrackerChoice) -> RecordingReport:
         """Pause until `resume`; an object that is being carried is recorded until it is released."""
         return _report(recorder.pause(of_task(task, choice.tracker)))
 
-    @router.post("/tasks/{task}/recording/resume")
+    @router.post("/tasks/{task}/recording/resume", dependencies=DEMONSTRATE)
     def resume_recording(task: str, choice: TrackerChoice) -> RecordingReport:
         """Resume a paused recording."""
         return _report(recorder.resume(of_task(task, choice.tracker)))
@@ -151,15 +174,15 @@ def _add_recordings(router: APIRouter, parts: Parts) -> None:
 
 
 def _add_newest(router: APIRouter, recorder: Recorder) -> None:
-    @router.post("/tasks/{task}/recording/discard")
-    def discard_last(task: str) -> Demonstration:
+    @router.post("/tasks/{task}/recording/discard", responses=refusals(507), dependencies=DEMONSTRATE)
+    def discard_last(task: str, sender: Sender) -> Demonstration:
         """Discard the newest demonstration that is kept; it is marked, not deleted."""
-        return recorder.annotations.discard_last(task)
+        return recorder.annotations.discard_last(task, who=sender.name)
 
-    @router.post("/tasks/{task}/recording/restore")
-    def restore_last(task: str) -> Demonstration:
+    @router.post("/tasks/{task}/recording/restore", responses=refusals(507), dependencies=DEMONSTRATE)
+    def restore_last(task: str, sender: Sender) -> Demonstration:
         """Bring back the demonstration that was discarded last."""
-        return recorder.annotations.restore_last(task)
+        return recorder.annotations.restore_last(task, who=sender.name)
 
 
 def _report(status: RecordingStatus) -> RecordingReport:

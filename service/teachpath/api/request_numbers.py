@@ -13,6 +13,13 @@ from teachpath.api.middleware import SAFE_METHODS
 from teachpath.logs import begin_request
 
 HEADER: Final = "Teachpath-Request"
+API: Final = "/api/"
+# Of its answers, unless they say otherwise: no browser guesses what they are, keeps them, or gives them to other sites.
+OF_API: Final = {
+    "X-Content-Type-Options": "nosniff",
+    "Cache-Control": "no-store",
+    "Cross-Origin-Resource-Policy": "same-origin",
+}
 ROUTINE: Final = ("/lease/beat",)  # ends of the paths of what programs send all the time
 
 log = logging.getLogger(__name__)
@@ -33,7 +40,11 @@ class RequestNumbers:
 
         async def numbered(message: Message) -> None:
             if message["type"] == "http.response.start":
-                MutableHeaders(scope=message)[HEADER] = number
+                headers = MutableHeaders(scope=message)
+                headers[HEADER] = number
+                if scope["path"].startswith(API):
+                    for name, value in OF_API.items():
+                        headers.setdefault(name, value)
                 if scope["method"] not in SAFE_METHODS and not scope["path"].endswith(ROUTINE):
                     took = 1e3 * (time.monotonic() - begin)
                     log.info("%s %s: %d, %.0f ms", scope["method"], scope["path"], message["status"], took)

@@ -2,37 +2,55 @@
 
 from __future__ import annotations
 
+from typing import Any, Final
+
 from fastapi import APIRouter, Depends, FastAPI
+from fastapi.routing import APIRoute
 from starlette.middleware.trustedhost import TrustedHostMiddleware
 
 from teachpath import __version__
+from teachpath.api.access import OPEN, VIEW
+from teachpath.api.access_routes import access_router
 from teachpath.api.adaptations import adaptations_router
 from teachpath.api.assessments import assessments_router
+from teachpath.api.audit import AuditRequests, audit_router
+from teachpath.api.authority import authority_router
 from teachpath.api.calibrations import calibrations_router
 from teachpath.api.control import control_router
 from teachpath.api.curves import curves_router
 from teachpath.api.demonstrations import demonstrations_router
+from teachpath.api.description import DescribedApi
 from teachpath.api.executions import executions_router, stops_router
 from teachpath.api.exports import exports_router
-from teachpath.api.faults import REFUSALS, answer_errors
+from teachpath.api.faults import answer_errors
+from teachpath.api.https_only import HttpsOnly
 from teachpath.api.imports import imports_router
 from teachpath.api.joints import joints_router
+from teachpath.api.limits import LimitSubjects
+from teachpath.api.live_description import live_description
+from teachpath.api.loopback_only import LoopbackOnly
 from teachpath.api.metrics import RequestMetrics, metrics_router, new_registry
-from teachpath.api.middleware import AnswersAtTheEnd, RequestLimits
+from teachpath.api.middleware import AnswersAtTheEnd, HeadRequests, RequestLimits
 from teachpath.api.objects import objects_router
 from teachpath.api.parts import Health, Parts
+from teachpath.api.people_routes import people_router
 from teachpath.api.probes import probes_router
+from teachpath.api.programs import programs_router
 from teachpath.api.recording import recording_router
 from teachpath.api.request_numbers import RequestNumbers
+from teachpath.api.revocable_sockets import RevocableSockets
 from teachpath.api.robot import robot_router
 from teachpath.api.strict_requests import refuse_unknown
 from teachpath.api.tasks import tasks_router
 from teachpath.api.trackers import trackers_router
+from teachpath.api.uploads import uploads_router
 from teachpath.api.versions import versions_router
 from teachpath.api.work import jobs_router, results_router
 from teachpath.records import Scene
+from teachpath.web.server import possible_connections
 
-PREFIX = "/api/v1"
+PREFIX: Final = "/api/v1"
+UNSPECIFIED: Final = {"0.0.0.0", "::", ""}  # where to listen, and no name of a station
 
 DESCRIPTION = """Show a task a few times; teachpath finds the different ways it was done, learns a path for each, proves
 that the arm can follow it, and moves the arm. Metres, radians, seconds; quaternions w, x, y, z; times ending in `_ns`
@@ -41,19 +59,39 @@ are nanoseconds since the Unix epoch. Every refusal has a sentence in `detail`."
 
 def build_api(parts: Parts, *pages: APIRouter) -> FastAPI:
     """Return the web application: the REST API under /api/v1, and what the page needs beside it."""
-    app = FastAPI(title="teachpath", version=__version__, description=DESCRIPTION, docs_url=None, redoc_url=None)
+    app = DescribedApi(
+        title="teachpath",
+        version=__version__,
+        description=DESCRIPTION,
+        docs_url=None,
+        redoc_url=None,
+        openapi_url=None,
+        generate_unique_id_function=_operation_id,
+    )
+    app.state.access = parts.access
     # Another name for this address is how a foreign page would reach a loopback service (DNS rebinding).
-    hosts = ["127.0.0.1", "localhost", "[::1]", parts.settings.web.host, *parts.settings.web.hosts]
-    app.add_middleware(RequestLimits, settings=parts.settings.web)
+    web = parts.settings.web
+    hosts = ["127.0.0.1", "localhost", "[::1]", *({web.host} - UNSPECIFIED), *web.hosts]
+    app.add_middleware(HeadRequests)
+    app.add_middleware(RevocableSockets, access=parts.access)
+    if parts.access.mode == "none":
+        app.add_middleware(LoopbackOnly)
+    app.add_middleware(RequestLimits, settings=web)
+    connections = possible_connections(web.max_connections)
+    app.add_middleware(LimitSubjects, access=parts.access, settings=parts.settings.limits, max_connections=connections)
+    if parts.certificate:
+        app.add_middleware(HttpsOnly)
     app.add_middleware(TrustedHostMiddleware, allowed_hosts=hosts)
     app.add_middleware(AnswersAtTheEnd)
     registry = new_registry()
     app.add_middleware(RequestMetrics, registry=registry)
     app.add_middleware(RequestNumbers)
+    app.add_middleware(AuditRequests, audit=parts.audit)
     answer_errors(app)
     routers = (
         tasks_router,
         imports_router,
+        uploads_router,
         demonstrations_router,
         recording_router,
         exports_router,
@@ -66,33 +104,58 @@ def build_api(parts: Parts, *pages: APIRouter) -> FastAPI:
         objects_router,
         assessments_router,
         executions_router,
+        programs_router,
         control_router,
         robot_router,
         station_router,
+        access_router,
+        people_router,
+        audit_router,
         probes_router,
     )
-    app.include_router(stops_router(parts), prefix=PREFIX, responses=REFUSALS)  # never refused for what comes with it
+    app.include_router(stops_router(parts), prefix=PREFIX)  # never refused for what comes with it
     closed = [Depends(refuse_unknown)]
     for router in routers:
-        app.include_router(router(parts), prefix=PREFIX, responses=REFUSALS, dependencies=closed)
+        app.include_router(router(parts), prefix=PREFIX, dependencies=closed)
     for socket in (trackers_router, joints_router):
         app.include_router(socket(parts), prefix=PREFIX)
     app.include_router(metrics_router(parts, registry))
+    app.include_router(description_router(app))
+    app.include_router(authority_router(parts))
     for page in pages:
         app.include_router(page)
     return app
+
+
+def _operation_id(route: APIRoute) -> str:
+    return route.name
+
+
+def description_router(app: FastAPI) -> APIRouter:
+    """Return the routes of the descriptions: of the REST API in OpenAPI, of the WebSockets in AsyncAPI."""
+    router = APIRouter(include_in_schema=False)
+
+    @router.get("/openapi.json", dependencies=OPEN)
+    def get_description() -> dict[str, Any]:
+        return app.openapi()
+
+    @router.get("/asyncapi.json", dependencies=OPEN)
+    def get_live_description() -> dict[str, Any]:
+        return live_description()
+
+    return router
 
 
 def station_router(parts: Parts) -> APIRouter:
     """Return the routes of the station itself."""
     router = APIRouter(tags=["station"])
 
-    @router.get("/health")
+    @router.get("/health", dependencies=VIEW)
     def get_health() -> Health:
         """Say which parts run, and what an operator should know."""
         return parts.health()
 
-    @router.get("/scenes")
+    @router.get("/scenes", dependencies=VIEW)
     def list_scenes() -> list[Scene]:
         """List the scenes: table, obstacles and the object where it lies."""
         return [parts.objects.scene(scene.name) for scene in parts.settings.scenes]

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Iterator, Sequence
+from contextlib import contextmanager
 from typing import Any, Final, get_args
 
 from fastapi import Request
 from fastapi.exceptions import RequestValidationError
 from pydantic import BaseModel, ConfigDict
+
+from teachpath.errors import NotFound, UnusableInput
 
 EXTRA_FIELD: Final = "extra_forbidden"  # pydantic's name of this fault
 EMPTY_BODIES: Final = (b"", b"{}", b"null")  # bodies that say nothing
@@ -19,6 +22,19 @@ class Body(BaseModel):
     """A request body; a field that it does not have is refused."""
 
     model_config = ConfigDict(extra="forbid")
+
+
+@contextmanager
+def named_in_body(field: str) -> Iterator[None]:
+    """Refuse a request as unusable whose body names in `field` what is not there: only the address answers 404.
+
+    Raises:
+        UnusableInput: instead of NotFound.
+    """
+    try:
+        yield
+    except NotFound as error:
+        raise UnusableInput(f"body.{field}: {error}") from None
 
 
 async def refuse_unknown(request: Request) -> None:

@@ -5,11 +5,13 @@ from __future__ import annotations
 from fastapi import APIRouter, Response
 from pydantic import Field
 
+from teachpath.api.access import DEMONSTRATE, VIEW
 from teachpath.api.answers import model_of
 from teachpath.api.pages import WantedPage
 from teachpath.api.parts import Parts
-from teachpath.api.strict_requests import Body
-from teachpath.errors import UnusableInput
+from teachpath.api.problems import refusals
+from teachpath.api.strict_requests import Body, named_in_body
+from teachpath.errors import Conflict, UnusableInput
 from teachpath.records import Demonstration, Task
 from teachpath_proto.keys import is_name, name_refusal
 
@@ -36,22 +38,27 @@ def tasks_router(parts: Parts) -> APIRouter:
 def _add_tasks(router: APIRouter, parts: Parts) -> None:
     store = parts.store
 
-    @router.get("/tasks", response_model=model_of(list[Task]))
+    @router.get("/tasks", response_model=model_of(list[Task]), dependencies=VIEW)
     def list_tasks(page: WantedPage) -> Response:
         """List the tasks, oldest first."""
         return page.answer(store.lists.tasks(page.wanted))
 
-    @router.put("/tasks/{task}")
+    @router.put("/tasks/{task}", responses=refusals(409, 507), dependencies=DEMONSTRATE)
     def make_task(task: str, new: NewTask) -> Task:
-        """Make a task; one that exists stays as it is."""
+        """Make a task. One that exists stays as it is; what is asked of it and is otherwise there is refused."""
         if not is_name(task):
             raise UnusableInput(name_refusal("task", task))
-        scene, calibration = parts.settings.scene(new.scene), parts.calibrations.get(new.calibration)
-        return store.ensure_task(
+        with named_in_body("scene"):
+            scene = parts.settings.scene(new.scene)
+        with named_in_body("calibration"):
+            calibration = parts.calibrations.get(new.calibration)
+        made = store.ensure_task(
             task, scene=scene.name, calibration=calibration.name, object_at_grasp=new.object_at_grasp
         )
+        _require_same(made, new)
+        return made
 
-    @router.get("/tasks/{task}")
+    @router.get("/tasks/{task}", dependencies=VIEW)
     def get_task(task: str) -> Task:
         """Return one task."""
         return store.task(task)
@@ -60,7 +67,20 @@ def _add_tasks(router: APIRouter, parts: Parts) -> None:
 def _add_demonstrations(router: APIRouter, parts: Parts) -> None:
     store = parts.store
 
-    @router.get("/tasks/{task}/demonstrations", response_model=model_of(list[Demonstration]))
+    @router.get("/tasks/{task}/demonstrations", response_model=model_of(list[Demonstration]), dependencies=VIEW)
     def list_demonstrations(task: str, page: WantedPage) -> Response:
         """List a task's demonstrations in their order, each with its verdict and account."""
         return page.answer(store.lists.demonstrations(store.task(task).name, page.wanted))
+
+
+def _require_same(task: Task, wanted: NewTask) -> None:
+    """Raise Conflict where a task is not as it is wanted; what was left out is as it is."""
+    for name in sorted(wanted.model_fields_set):
+        present, asked = getattr(task, name), getattr(wanted, name)
+        if name == "calibration" and "@" not in asked:
+            present = present.partition("@")[0]  # a name without a version means any of them
+        if present != asked:
+            raise Conflict(
+                f"task {task.name} exists, and its {name} is {present}, not {asked}; a task keeps it: leave {name} "
+                "out, or make a task of another name"
+            )

@@ -24,6 +24,7 @@ from fastapi import APIRouter, WebSocket, WebSocketDisconnect
 from starlette.concurrency import run_in_threadpool
 
 from teachpath.api import sockets
+from teachpath.api.access import DEMONSTRATE
 from teachpath.api.parts import Parts
 from teachpath.api.strict_requests import unknown_name
 from teachpath.errors import TeachpathError, UnusableInput
@@ -43,7 +44,7 @@ def trackers_router(parts: Parts, *, silence: float = SILENCE_TIMEOUT) -> APIRou
     """Return the WebSocket `/trackers/{name}/samples`."""
     router = APIRouter()
 
-    @router.websocket("/trackers/{name}/samples")
+    @router.websocket("/trackers/{name}/samples", dependencies=DEMONSTRATE)
     async def samples(socket: WebSocket, name: str, session: str = "") -> None:
         if not await sockets.accept(socket, parameters=("session",)):
             return

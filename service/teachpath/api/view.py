@@ -9,8 +9,10 @@ from fastapi import APIRouter, Request, Response, WebSocket
 from fastapi.responses import PlainTextResponse
 
 from teachpath.api import sockets
+from teachpath.api.access import OPEN, VIEW
+from teachpath.api.help import help_router
 from teachpath.api.page_files import PageFiles
-from teachpath.live.preview.asset_paths import VIEWER_STYLES, viewer_files, web_files
+from teachpath.live.preview.asset_paths import VIEWER_STYLES, help_files, viewer_files, web_files
 from teachpath.live.preview.preview import Preview
 from teachpath.live.preview.scene_tree import Viewer
 
@@ -46,38 +48,45 @@ _VENDORED: Final = {
 
 
 def view_router(preview: Preview) -> APIRouter:
-    """Return the routes of the pages, their files and the view: `/`, `/docs`, `/web/`, `/vendor/`, `/api/v1/view`."""
+    """Return the routes of the pages, their files and the view.
+
+    They are `/`, `/docs`, `/help/`, `/web/`, `/vendor/` and `/api/v1/view`.
+    """
     router = APIRouter(include_in_schema=False)
+    router.include_router(help_router(help_files()))
     root, viewer, files = web_files(), viewer_files(), PageFiles(HEADERS)
 
     def answer(request: Request, path: Path, suffix: str) -> Response:
         return files.answer(request, path, MEDIA[suffix]) if path.is_file() else _missing(path.name)
 
-    @router.get("/")
+    @router.get("/", dependencies=OPEN)
     def page(request: Request) -> Response:
         return files.answer(request, root / "index.html", HTML, entry="page.js")
 
-    @router.get("/docs")
+    @router.get("/docs", dependencies=OPEN)
     def docs(request: Request) -> Response:
         return files.answer(request, root / "docs.html", HTML)
 
-    @router.get("/favicon.ico")
+    @router.get("/favicon.ico", dependencies=OPEN)
     def icon(request: Request) -> Response:
         return answer(request, root / "icon.svg", ".svg")
 
-    @router.get("/web/{name:path}")
+    @router.get("/web/{name:path}", dependencies=OPEN)
     def module(request: Request, name: str) -> Response:
-        path = (root / name).resolve()
+        try:
+            path = (root / name).resolve(strict=True)
+        except (OSError, ValueError):  # no name that a file can have
+            return _missing(name)
         if path.suffix not in MEDIA or not path.is_relative_to(root.resolve()):
             return _missing(name)
         return answer(request, path, path.suffix)
 
-    @router.get("/vendor/{name}")
+    @router.get("/vendor/{name}", dependencies=OPEN)
     def vendored(request: Request, name: str) -> Response:
         place, suffix = _VENDORED.get(name, ("", ""))
         return answer(request, viewer / place, suffix) if place else _missing(name)
 
-    @router.websocket("/api/v1/view")
+    @router.websocket("/api/v1/view", dependencies=VIEW)
     async def view(socket: WebSocket) -> None:
         if await sockets.accept(socket):
             await sockets.serve(socket, preview.connect, preview.disconnect, socket.send_bytes, _acknowledge)

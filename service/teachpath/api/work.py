@@ -4,19 +4,22 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Final, Literal, Self
 
-from fastapi import APIRouter, Query, Request, Response
+from fastapi import APIRouter, Header, Query, Request, Response
 from pydantic import Field, model_validator
 from pydantic_core import PydanticCustomError
 
-from teachpath.api.answers import json_response, model_of
+from teachpath.api.access import TEACH, VIEW, Sender
+from teachpath.api.answers import json_response, located, model_of
 from teachpath.api.pages import WantedPage
 from teachpath.api.parts import Parts
-from teachpath.api.strict_requests import Body, unknown_name
+from teachpath.api.problems import refusals
+from teachpath.api.strict_requests import Body, named_in_body, unknown_name
+from teachpath.api.versions import wanted_version
 from teachpath.errors import NotFound
 from teachpath.io.store.rows import Run
 from teachpath.io.store.store import Store
 from teachpath.learning.clustering.cuts import Dendrogram, dendrogram, recut_members
-from teachpath.records import Job, LearnedPath, Plan, RunSummary
+from teachpath.records import Job, LearnedPath, PathSummary, Plan, PlanSummary, RunSummary, Subject
 
 # The fields that each kind of job takes.
 FIELDS_OF_KIND: Final = {
@@ -24,6 +27,18 @@ FIELDS_OF_KIND: Final = {
     "recut": {"kind", "run", "threshold", "clusters", "calibrations"},
     "plan": {"kind", "path", "version"},
 }
+
+
+IdempotencyKey = Annotated[
+    str,
+    Header(
+        alias="Idempotency-Key",
+        max_length=100,
+        description="a text of yours, new for each order; an order that comes again with it begins nothing, and is "
+        "answered with its job",
+    ),
+]
+OfTask = Annotated[str | None, Query(description="name of the task; all unless given")]
 
 
 class NewJob(Body):
@@ -69,36 +84,52 @@ def jobs_router(parts: Parts) -> APIRouter:
     router = APIRouter(tags=["jobs"])
     store, jobs = parts.store, parts.jobs
 
-    @router.get("/tasks/{task}/jobs", response_model=model_of(list[Job]))
+    @router.get("/tasks/{task}/jobs", response_model=model_of(list[Job]), dependencies=VIEW)
     def list_jobs(task: str, page: WantedPage) -> Response:
         """List a task's jobs, newest first."""
         return page.answer(store.lists.jobs(store.task(task).name, page.wanted))
 
-    @router.post("/tasks/{task}/jobs", status_code=202)
-    def begin_job(task: str, new: NewJob, request: Request, response: Response) -> Job:
+    @router.get("/jobs", response_model=model_of(list[Job]), dependencies=VIEW)
+    def list_all_jobs(page: WantedPage) -> Response:
+        """List the jobs of all tasks, newest first."""
+        return page.answer(store.lists.jobs(None, page.wanted))
+
+    @router.post(
+        "/tasks/{task}/jobs",
+        status_code=202,
+        responses=refusals(409, 507) | located(202, "the job"),
+        dependencies=TEACH,
+    )
+    def begin_job(
+        task: str, new: NewJob, sender: Sender, request: Request, response: Response, key: IdempotencyKey = ""
+    ) -> Job:
         """Queue a job; `Location` names it. It survives a restart of the service."""
         stored = store.task(task)
         if new.kind == "learn":
             parts.settings.learning_with(new.settings)
             order: dict[str, Any] = {"settings": new.settings, "calibrations": new.calibrations}
         elif new.kind == "recut":
-            run = store.run(new.run)
-            _of_task(stored.name, run.task, f"run {run.id!r}")
+            with named_in_body("run"):
+                run = store.run(new.run)
+                _of_task(stored.name, run.task, f"run {run.id!r}")
             recut_members(run.learned, threshold=new.threshold, clusters=new.clusters)
             order = {"run": run.id, "threshold": new.threshold, "clusters": new.clusters}
             order["calibrations"] = new.calibrations
         else:
-            path = _versioned(store, new.path, new.version)
-            _of_task(stored.name, store.run(path.run).task, f"path {path.id!r}")
+            with named_in_body("path"):
+                path = wanted_version(store, new.path, new.version)
+                _of_task(stored.name, store.run(path.run).task, f"path {path.id!r}")
             order = {"path": path.id, "version": path.version}
-        return accepted(jobs.submit(stored.name, new.kind, order, submitter_of(request)), response)
+        submitter = submitter_of(request, sender)
+        job = jobs.submit(stored.name, new.kind, order, submitter, who=sender.name, idempotency_key=key)
+        return accepted(job, response)
 
-    @router.get("/jobs/{job}")
+    @router.get("/jobs/{job}", dependencies=VIEW)
     def get_job(job: str) -> Job:
         """Return one job: its state, progress, and its outcome (id of a run or a plan, numbers of demonstrations)."""
         return store.job(job)
 
-    @router.post("/jobs/{job}/cancel")
+    @router.post("/jobs/{job}/cancel", responses=refusals(409, 507), dependencies=TEACH)
     def cancel_job(job: str) -> Job:
         """Cancel a queued or running job."""
         return jobs.cancel(job)
@@ -109,25 +140,43 @@ def jobs_router(parts: Parts) -> APIRouter:
 def results_router(parts: Parts) -> APIRouter:
     """Return the routes of runs, paths and plans."""
     router = APIRouter(tags=["results"])
+    _add_summaries(router, parts.store)
     _add_runs(router, parts.store)
     _add_paths(router, parts)
     return router
 
 
+def _add_summaries(router: APIRouter, store: Store) -> None:
+    @router.get("/runs", response_model=model_of(list[RunSummary]), dependencies=VIEW)
+    def list_all_runs(page: WantedPage) -> Response:
+        """List the learning runs of all tasks, newest first."""
+        return page.answer(store.lists.runs(None, page.wanted))
+
+    @router.get("/paths", response_model=model_of(list[PathSummary]), dependencies=VIEW)
+    def list_paths(page: WantedPage, task: OfTask = None) -> Response:
+        """List the learned paths of a task, or of all, newest first; each is at its own address."""
+        return page.answer(store.lists.path_summaries(task and store.task(task).name, page.wanted))
+
+    @router.get("/plans", response_model=model_of(list[PlanSummary]), dependencies=VIEW)
+    def list_all_plans(page: WantedPage, task: OfTask = None) -> Response:
+        """List the plans of a task, or of all, newest first; each is at its own address."""
+        return page.answer(store.lists.plan_summaries(task and store.task(task).name, page.wanted))
+
+
 def _add_runs(router: APIRouter, store: Store) -> None:
-    @router.get("/tasks/{task}/runs", response_model=model_of(list[RunSummary]))
+    @router.get("/tasks/{task}/runs", response_model=model_of(list[RunSummary]), dependencies=VIEW)
     def list_runs(task: str, page: WantedPage) -> Response:
         """List a task's learning runs, newest first; what one has learned is at its own address."""
         return page.answer(store.lists.runs(store.task(task).name, page.wanted))
 
-    @router.get("/tasks/{task}/runs/{run}", response_model=model_of(Run))
+    @router.get("/tasks/{task}/runs/{run}", response_model=model_of(Run), dependencies=VIEW)
     def get_run(task: str, run: str) -> Response:
         """Return one learning run: clusters, scores, dendrogram, convergence, paths."""
         stored = store.run(run)
         _of_task(store.task(task).name, stored.task, f"run {run!r}")
         return json_response(stored)
 
-    @router.get("/tasks/{task}/runs/{run}/dendrogram", response_model=model_of(Dendrogram))
+    @router.get("/tasks/{task}/runs/{run}/dendrogram", response_model=model_of(Dendrogram), dependencies=VIEW)
     def get_dendrogram(
         task: str,
         run: str,
@@ -147,42 +196,52 @@ def _add_runs(router: APIRouter, store: Store) -> None:
 def _add_paths(router: APIRouter, parts: Parts) -> None:
     store, jobs = parts.store, parts.jobs
 
-    @router.get("/paths/{path}", response_model=model_of(LearnedPath))
+    @router.get("/paths/{path}", response_model=model_of(LearnedPath), dependencies=VIEW)
     def get_path(path: str) -> Response:
         """Return the newest version of a learned path on its main branch: degree, knots, control points, weights."""
         return json_response(store.path(path))
 
-    @router.get("/paths/{path}/plans", response_model=model_of(list[Plan]))
+    @router.get("/paths/{path}/plans", response_model=model_of(list[Plan]), dependencies=VIEW)
     def list_plans(path: str, page: WantedPage) -> Response:
         """List a path's plans, newest first."""
         return page.answer(store.lists.plans(store.path(path).id, page.wanted))
 
-    @router.post("/paths/{path}/plans", status_code=202)
-    def begin_plan(path: str, request: Request, response: Response, new: NewPlan | None = None) -> Job:
+    @router.post(
+        "/paths/{path}/plans",
+        status_code=202,
+        responses=refusals(409, 507) | located(202, "the job"),
+        dependencies=TEACH,
+    )
+    def begin_plan(
+        path: str,
+        sender: Sender,
+        request: Request,
+        response: Response,
+        new: NewPlan | None = None,
+        key: IdempotencyKey = "",
+    ) -> Job:
         """Queue the planning of a version of a path; `Location` names the job, its outcome the plan."""
-        stored = _versioned(store, path, new.version if new else None)
+        stored = wanted_version(store, path, new.version if new else None)
         order = {"path": stored.id, "version": stored.version}
-        return accepted(jobs.submit(store.run(stored.run).task, "plan", order, submitter_of(request)), response)
+        task, submitter = store.run(stored.run).task, submitter_of(request, sender)
+        job = jobs.submit(task, "plan", order, submitter, who=sender.name, idempotency_key=key)
+        return accepted(job, response)
 
-    @router.get("/plans/{plan}", response_model=model_of(Plan))
+    @router.get("/plans/{plan}", response_model=model_of(Plan), dependencies=VIEW)
     def get_plan(plan: str) -> Response:
         """Return one plan with its certificate."""
         return json_response(store.plan(plan))
 
 
-def submitter_of(request: Request) -> str:
-    """Return who counts as the submitter of a job: the address that the request comes from."""
-    return request.client.host if request.client else ""
+def submitter_of(request: Request, sender: Subject) -> str:
+    """Return who counts as the submitter of a job: the sender, or where nobody asks for that, its address."""
+    return sender.name or (request.client.host if request.client else "")
 
 
 def accepted(job: Job, response: Response) -> Job:
     """Return a queued job as the answer; `Location` names it."""
     response.headers["Location"] = f"/api/v1/jobs/{job.id}"
     return job
-
-
-def _versioned(store: Store, path: str, version: int | None) -> LearnedPath:
-    return store.path(path) if version is None else store.versions.get(path, version)[1]
 
 
 def _of_task(task: str, owner: str, what: str) -> None:

@@ -2,42 +2,55 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any
+import sys
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from teachpath.commands.options import LOCAL, Url
-from teachpath.commands.tables import plan_lines
-from teachpath.commands.work import job_shown, progress_bar
+from teachpath.commands.options import Json, Url, connected
+from teachpath.commands.printing import print_json
+from teachpath.commands.progress import job_shown, progress_bar
+from teachpath.commands.references import find_path
 from teachpath.errors import UnusableInput
-from teachpath_client.models import Plan
-from teachpath_client.station import Station
+
+if TYPE_CHECKING:
+    from teachpath_client.models import Plan
+    from teachpath_client.station import Station
 
 
 def adapt(
-    path: Annotated[str, typer.Argument(help="Id of a learned path.")],
+    path: Annotated[str, typer.Argument(help="TASK/CLUSTER, or an id or its beginning.")],
     start: Annotated[
         str, typer.Option(help="Where the object lies: x,y,z [m], or x,y,z,qw,qx,qy,qz; as the station knows it.")
     ] = "",
     goal: Annotated[str, typer.Option(help="Where it is to go, likewise; where the version ends.")] = "",
     version: Annotated[int | None, typer.Option(help="To adapt; the newest on its main branch.")] = None,
     branch: Annotated[str, typer.Option(help="To continue or to begin; that of the version.")] = "",
-    url: Url = LOCAL,
+    url: Url = "",
+    json_: Json = False,
 ) -> None:
     """Adapt a learned path to an object that lies elsewhere, and certify it.
 
     Saves a new version with the shape of all demonstrations of the same way, between the new start and goal.
     """
-    with Station(url) as station:
-        plan = adapted_plan(station, path, start, goal, version=version, branch=branch)
-    print(plan_lines(plan))
+    from teachpath.commands.tables import plan_lines
+
+    with connected(url) as station:
+        plan = adapted_plan(station, find_path(station, path), start, goal, version=version, branch=branch)
+    if json_:
+        print_json(plan)
+    else:
+        print(plan_lines(plan))
 
 
 def adapted_plan(station: Station, path: str, start: str, goal: str, **options: Any) -> Plan:
     """Adapt a path, print how sure that is, and return the plan; empty ends are left to the station."""
     ends = {"start": pose(start, "--start") if start else None, "goal": pose(goal, "--goal") if goal else None}
     adapted = station.adapt(path, **ends, **options)
-    print(f"version {adapted.version.number} of {path}, on branch {adapted.version.branch}: {adapted.note}")
+    print(
+        f"version {adapted.version.number} of {path}, on branch {adapted.version.branch}: {adapted.note}",
+        file=sys.stderr,
+    )
     with progress_bar("planning") as show:
         return station.get_plan(station.outcome(adapted.job, job_shown(show)))
 
@@ -46,7 +59,8 @@ def object_(
     scene: Annotated[str, typer.Argument(help="Name of the scene.")],
     at: Annotated[str, typer.Option(help="Where its object lies: x,y,z [m], or x,y,z,qw,qx,qy,qz.")] = "",
     reset: Annotated[bool, typer.Option("--reset", help="It lies where the settings have it.")] = False,
-    url: Url = LOCAL,
+    url: Url = "",
+    json_: Json = False,
 ) -> None:
     """Say where the object of a scene lies, or ask it.
 
@@ -54,11 +68,14 @@ def object_(
     """
     if at and reset:
         raise UnusableInput("--at says where the object lies, --reset puts it back; give one of them")
-    with Station(url) as station:
+    with connected(url) as station:
         if at:
             lies = station.tell_object(scene, **pose(at, "--at"))
         else:
             lies = station.reset_object(scene) if reset else station.get_object(scene)
+    if json_:
+        print_json(lies)
+        return
     print(f"the object of scene {scene} lies at {', '.join(f'{value:.3f}' for value in lies.position)} m")
 
 

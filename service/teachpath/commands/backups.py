@@ -8,12 +8,17 @@ from typing import Annotated
 
 import typer
 
-from teachpath.commands.options import Config, Data, settings_of
-from teachpath.commands.work import progress_bar
+from teachpath.commands.audit import note
+from teachpath.commands.options import Config, Data, Json, settings_of, stored_settings
+from teachpath.commands.printing import print_json
+from teachpath.commands.progress import progress_bar
 
 
 def backup(
-    into: Annotated[Path, typer.Argument(help="New folder to write into.")], config: Config = None, data: Data = None
+    into: Annotated[Path, typer.Argument(help="New folder to write into.")],
+    config: Config = None,
+    data: Data = None,
+    json_: Json = False,
 ) -> None:
     """Copy rows and recordings into a new folder, each file with its SHA-256; the service may run.
 
@@ -22,12 +27,16 @@ def backup(
     """
     from teachpath.offline.backup import back_up
 
-    settings = settings_of(config, data)
+    settings = stored_settings(config, data)
     with progress_bar("copying") as show:
         made = back_up(settings.store, into, show)
-    print(f"{into}: {made.files} files, {made.size / 1e6:.1f} MB")
-    for fault in made.faults:
-        print(fault, file=sys.stderr)
+    note(settings, f"back up into {into}: {made.files} files")
+    if json_:
+        print_json(made)
+    else:
+        print(f"{into}: {made.files} files, {made.size / 1e6:.1f} MB")
+        for fault in made.faults:
+            print(fault, file=sys.stderr)
     if made.faults:
         raise typer.Exit(4)
 
@@ -47,6 +56,7 @@ def restore(
 
     settings = settings_of(config, data)
     aside = bring_back(source, settings.store, replace=replace)
+    note(settings, f"restore {source}{f', what was there is in {aside}' if aside else ''}")
     print(f"{settings.store.data_dir}: restored from {source}" + (f"; what was there is in {aside}" if aside else ""))
 
 
@@ -56,10 +66,17 @@ def prune(
     dry_run: Annotated[bool, typer.Option("--dry-run", help="Only say what would be removed.")] = False,
     config: Config = None,
     data: Data = None,
+    json_: Json = False,
 ) -> None:
-    """Remove what doctor and restore have set aside, and no demonstration. Stop the service first."""
+    """Remove what doctor and restore have set aside and what imports left, no demonstration. Stop the service first."""
     from teachpath.offline.pruning import prune as removed
 
-    settings = settings_of(config, data)
-    for path in removed(Path(settings.store.data_dir), older_than, dry_run=dry_run, executions=executions):
+    settings = stored_settings(config, data)
+    paths = list(removed(Path(settings.store.data_dir), older_than, dry_run=dry_run, executions=executions))
+    if not dry_run:
+        note(settings, f"prune what is older than {older_than:g} days: {len(paths)} removed")
+    if json_:
+        print_json([str(path) for path in paths])
+        return
+    for path in paths:
         print(path)

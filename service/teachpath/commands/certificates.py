@@ -4,17 +4,17 @@ from __future__ import annotations
 
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from teachpath.commands.audit import note
 from teachpath.commands.options import Config, settings_of
 from teachpath.errors import UnusableInput
-from teachpath.io.bus_access import RENEWAL
-from teachpath.io.bus_settings import BusSettings
-from teachpath.io.router_config import router_config
 from teachpath_proto.logins import Login, Role, write_logins
-from teachpath_proto.sessions import is_tls
+
+if TYPE_CHECKING:
+    from teachpath.io.bus_settings import BusSettings
 
 app = typer.Typer(help="A bus over several machines: its certificates, its router.", no_args_is_help=True)
 Host = Annotated[
@@ -36,8 +36,10 @@ def certificates(
     alone. authority.key is needed here only: keep it where nobody else comes.
     """
     from teachpath.io import certificates as files
+    from teachpath.io.bus_access import RENEWAL
 
-    bus, now = settings_of(config, None).bus, datetime.now(UTC)
+    settings, now = settings_of(config, None), datetime.now(UTC)
+    bus = settings.bus
     folder = Path(bus.certificates)
     if files.prepare_authority(folder, now):
         print(f"authority made; whoever has {folder}/authority.key can make certificates of the station")
@@ -45,6 +47,7 @@ def certificates(
     server = Role.ROUTER if bus.router else Role.SERVICE
     roles = [role for role in Role if role is not Role.ROUTER or bus.router]
     wanted = {role.value: Login(role.value, "", role) for role in roles} | there
+    issued = []
     for name, login in wanted.items():
         hosts = _hosts(bus, there.get(name), host or []) if name == server else []
         has_hosts = name not in there or set(hosts) <= set(files.hosts_of(there[name]))
@@ -52,10 +55,12 @@ def certificates(
             print(f"{name}: valid until {files.expiry(login):%Y-%m-%d}")
             continue
         made = files.issue(folder, login, now, hosts=hosts)
+        issued.append(name)
         print(f"{name}: {'renewed' if name in there else 'made'}, valid until {files.expiry(made):%Y-%m-%d}")
         if made.role.value != name:
             write_logins(file := folder / f"{name}.login.json", [made])
             print(f"  give {file} to it")
+    note(settings, f"make certificates of the bus: {', '.join(issued) or 'none'}")
     print("what runs now goes on with the old ones until it is started again")
 
 
@@ -63,6 +68,8 @@ def certificates(
 def router(config: Config = None) -> None:
     """Print the configuration of a Zenoh router for this station: teachpath station router > zenohd.json5."""
     from teachpath.io import certificates as files
+    from teachpath.io.router_config import router_config
+    from teachpath_proto.sessions import is_tls
 
     bus = settings_of(config, None).bus
     if not (bus.router and is_tls(bus.endpoint)):

@@ -8,6 +8,8 @@ from pathlib import Path
 
 import numpy as np
 
+from teachpath.commands.options import connected, with_arm
+from teachpath.commands.references import find_plan
 from teachpath.config import load
 from teachpath.errors import UnusableRecording
 from teachpath.io.documents import from_document
@@ -17,7 +19,6 @@ from teachpath.motion.analysis.log_check import SetpointLog, check_log
 from teachpath.motion.planning.signature import certified_arm
 from teachpath.nurbs import Curve
 from teachpath.records import Plan
-from teachpath_client.station import Station
 
 
 def judge_file(file: Path, plan: str | None, url: str, config: Path | None) -> None:
@@ -39,7 +40,8 @@ def judge_file(file: Path, plan: str | None, url: str, config: Path | None) -> N
         log, meant, path = _read_csv(content, file.name), None, None
     if plan is not None:
         meant, path = _meant(plan, url)
-    judgement = check_log(log, path, (meant and certified_arm(meant)) or load(config).arm)
+    arm = with_arm(load(config)).arm
+    judgement = check_log(log, path, (meant and certified_arm(meant, arm)) or arm)
     for sentence in judgement.measured:
         print(sentence)
     if judgement.faults:
@@ -63,6 +65,7 @@ def _read_motion(file: Path) -> tuple[SetpointLog, Plan | None, Curve | None]:
         positions=np.array([s.position for s in sent]),
         on_path=np.array([s.on_path for s in sent]),
         missing=int(np.sum(np.diff(cycles) - 1)),
+        restarts=tuple(row for row, s in enumerate(sent) if row and s.from_rest),
     )
     path = motion.header.path if motion.header else None
     return log, motion.header.plan if motion.header else None, path.curve if path else None
@@ -75,7 +78,7 @@ def _read_csv(content: bytes, name: str) -> SetpointLog:
 
 def _meant(plan: str, url: str) -> tuple[Plan, Curve]:
     """Ask the service for a plan and its path."""
-    with Station(url) as station:
-        stored = station.get_plan(plan)
+    with connected(url) as station:
+        stored = station.get_plan(find_plan(station, plan))
         curve = station.get_version(stored.path, stored.path_version).path.curve
     return from_document(Plan, asdict(stored)), from_document(Curve, asdict(curve))

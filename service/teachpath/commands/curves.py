@@ -1,41 +1,45 @@
-"""curve: the versions of a learned path, out to other programs and in from them, in geomdl's JSON format."""
+"""curve: the versions of a learned path, out to other programs (geomdl's JSON, DXF, IGES) and in from them (JSON)."""
 
 from __future__ import annotations
 
 import sys
+from collections.abc import Callable
 from dataclasses import asdict
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, Final
 
 import typer
-from rich.console import Console
-from rich.table import Table
 
-from teachpath.commands.options import LOCAL, Url
+from teachpath.commands.options import Json, Url, connected
+from teachpath.commands.printing import print_columns, print_json
+from teachpath.commands.references import find_path
 from teachpath.errors import UnusableInput
-from teachpath.exchange import from_json, to_json
-from teachpath.io.documents import from_document, to_document
-from teachpath.nurbs import Curve
-from teachpath_client.models import LearnedPath
-from teachpath_client.station import Station
+
+if TYPE_CHECKING:
+    from teachpath.nurbs import Curve
+    from teachpath_client.models import LearnedPath
+    from teachpath_client.station import Station
 
 MAX_FILE_SIZE = 1024 * 1024  # bytes of a file with one curve
 
+FORMATS: Final = ("json", "dxf", "iges")
+
 app = typer.Typer(help="Versions of a learned path: list, export, import, compare.", no_args_is_help=True)
 
-Path_ = Annotated[str, typer.Argument(metavar="PATH", help="Id of the learned path.")]
+Path_ = Annotated[str, typer.Argument(metavar="PATH", help="TASK/CLUSTER, or an id or its beginning.")]
 Number = Annotated[int | None, typer.Option(help="Its version; without it the newest on the main branch.")]
 
 
-@app.command("versions")
-def versions(path: Path_, url: Url = LOCAL) -> None:
+@app.command("list")
+def list_(path: Path_, url: Url = "", json_: Json = False) -> None:
     """List the versions of a learned path."""
-    table = Table("version", "name", "branch", "from", "by", "note")
-    with Station(url) as station:
-        for v in station.versions(path):
-            parent = "" if v.parent is None else str(v.parent)
-            table.add_row(str(v.number), v.name, v.branch, parent, v.author, v.note)
-    Console().print(table)
+    with connected(url) as station:
+        listed = station.versions(find_path(station, path))
+    if json_:
+        print_json(listed)
+        return
+    rows = [(v.number, v.name, v.branch, "" if v.parent is None else v.parent, v.author, v.note) for v in listed]
+    print_columns(("version", "name", "branch", "from", "by", "note"), rows, none="")
 
 
 @app.command("export")
@@ -43,14 +47,22 @@ def export(
     path: Path_,
     version: Number = None,
     out: Annotated[Path | None, typer.Option(help="File to write; without it to the terminal.")] = None,
-    url: Url = LOCAL,
+    format: Annotated[
+        str, typer.Option(help="json of geomdl (NURBS-Python), dxf (SPLINE) or iges (entity 126).")
+    ] = "json",
+    url: Url = "",
 ) -> None:
-    """Write a version as JSON that geomdl (NURBS-Python) reads."""
-    with Station(url) as station:
+    """Write a version exactly, weights included: for NURBS-Python, or in metres for CAD."""
+    if format not in FORMATS:
+        raise UnusableInput(f"there is no format {format!r} of curves; known: {', '.join(FORMATS)}")
+    from teachpath.io.documents import from_document
+    from teachpath.nurbs import Curve
+
+    with connected(url) as station:
         stored = _version(station, path, version)
-    text = to_json(from_document(Curve, asdict(stored.curve)))
+    text = curve_writer(format)(from_document(Curve, asdict(stored.curve)))
     if out is None:
-        sys.stdout.write(text + "\n")
+        sys.stdout.write(text)
     else:
         out.write_text(text, encoding="utf-8")
         print(f"version {stored.version} of {path} written to {out}")
@@ -65,11 +77,15 @@ def import_(
     name: Annotated[str, typer.Option(help="What to call the version.")] = "",
     author: Annotated[str, typer.Option(help="Who made it.")] = "",
     note: Annotated[str, typer.Option(help="Why.")] = "",
-    url: Url = LOCAL,
+    url: Url = "",
 ) -> None:
     """Save a curve from a file as a new version; none is ever saved over another."""
+    from teachpath.exchange import from_json
+    from teachpath.io.documents import to_document
+
     curve = to_document(from_json(_text(file)))
-    with Station(url) as station:
+    with connected(url) as station:
+        path = find_path(station, path)
         number = base if base is not None else _version(station, path, None).version
         saved = station.save_version(path, curve, base=number, branch=branch, name=name, author=author, note=note)
     print(f"saved as version {saved.number} of {path}, on branch {saved.branch}; certify it with: teachpath plan")
@@ -80,15 +96,30 @@ def compare(
     path: Path_,
     first: Annotated[int, typer.Argument(help="A version.")],
     second: Annotated[int, typer.Argument(help="Another one.")],
-    url: Url = LOCAL,
+    url: Url = "",
+    json_: Json = False,
 ) -> None:
     """Say how far two versions lie apart and which control points were moved."""
-    with Station(url) as station:
-        print(station.difference(path, first, second).sentence)
+    with connected(url) as station:
+        difference = station.difference(find_path(station, path), first, second)
+    if json_:
+        print_json(difference)
+    else:
+        print(difference.sentence)
+
+
+def curve_writer(format: str) -> Callable[[Curve], str]:
+    """Return what writes a curve as text in one of `FORMATS`."""
+    from teachpath.exchange import to_json
+    from teachpath.io.curve_dxf import curve_dxf
+    from teachpath.io.curve_iges import curve_iges
+
+    return {"json": lambda curve: to_json(curve) + "\n", "dxf": curve_dxf, "iges": curve_iges}[format]
 
 
 def _version(station: Station, path: str, number: int | None) -> LearnedPath:
-    return station.get_path(path) if number is None else station.get_version(path, number).path
+    found = find_path(station, path)
+    return station.get_path(found) if number is None else station.get_version(found, number).path
 
 
 def _text(file: Path) -> str:

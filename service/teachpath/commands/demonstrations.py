@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 from enum import StrEnum
-from typing import Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
-from rich.console import Console
-from rich.table import Table
 
-from teachpath.commands.options import LOCAL, Url
+from teachpath.commands.options import Json, Url, connected
+from teachpath.commands.printing import print_json, verdict_word
 from teachpath.commands.work import Task
 from teachpath.errors import NotFound, UnusableInput
-from teachpath_client.models import Demonstration
-from teachpath_client.station import Station
+
+if TYPE_CHECKING:
+    from teachpath_client.models import Demonstration
 
 
 class Mark(StrEnum):
@@ -27,16 +27,27 @@ class Mark(StrEnum):
 MARKS: dict[Mark, Literal["", "good", "bad"]] = {Mark.GOOD: "good", Mark.BAD: "bad", Mark.NONE: ""}  # as stored
 
 
-def demonstrations(task: Task, url: Url = LOCAL) -> None:
+def demonstrations(task: Task, url: Url = "", json_: Json = False) -> None:
     """List the demonstrations of a task with their verdicts and marks."""
-    with Station(url) as station:
-        table = Table()
-        for column in ("No.", "Verdict", "Transport [s]", "Lost", "Said", "Why"):
-            table.add_column(column, justify="right" if column in ("No.", "Transport [s]", "Lost") else "left")
-        for d in station.demonstrations(task):
-            lost, why = str(d.statistics.lost), "; ".join(d.reasons)
-            table.add_row(str(d.number), d.verdict, f"{d.duration:.2f}", lost, _said(d), why)
-        Console().print(table)
+    with connected(url) as station:
+        shown = station.demonstrations(task)
+    if json_:
+        print_json(shown)
+    else:
+        _print(shown)
+
+
+def _print(shown: list[Demonstration]) -> None:
+    from rich.console import Console
+    from rich.table import Table
+
+    table = Table()
+    for column in ("No.", "Verdict", "Transport [s]", "Lost", "Said", "Why"):
+        table.add_column(column, justify="right" if column in ("No.", "Transport [s]", "Lost") else "left")
+    for d in shown:
+        lost, why = str(d.statistics.lost), "; ".join(d.reasons)
+        table.add_row(str(d.number), verdict_word(d.verdict), f"{d.duration:.2f}", lost, _said(d), why)
+    Console().print(table)
 
 
 def amend(
@@ -48,12 +59,13 @@ def amend(
         typer.Option(metavar="BEGIN,END", help="[s] to take off both ends of the recorder's own cut; 0,0 undoes it."),
     ] = "",
     discard: Annotated[bool | None, typer.Option("--discard/--restore", help="Or bring it back.")] = None,
-    url: Url = LOCAL,
+    url: Url = "",
+    json_: Json = False,
 ) -> None:
     """Mark, trim or discard a demonstration. Nothing of it is ever deleted."""
     if mark is None and discard is None and not trim:
         raise UnusableInput("say what is to be changed: --mark, --trim, --discard or --restore")
-    with Station(url) as station:
+    with connected(url) as station:
         found = [d for d in station.demonstrations(task) if d.number == number]
         if not found:
             raise NotFound(
@@ -61,7 +73,10 @@ def amend(
             )
         trimmed = _trimmed(found[0], trim) if trim else None
         d = station.amend(found[0].id, mark=MARKS[mark] if mark else None, discarded=discard, trim=trimmed)
-        print(f"{task} {number}: {'; '.join([d.verdict, _said(d) or 'nothing said', *d.reasons])}")
+    if json_:
+        print_json(d)
+    else:
+        print(f"{task} {number}: {'; '.join([verdict_word(d.verdict), _said(d) or 'nothing said', *d.reasons])}")
 
 
 def _trimmed(d: Demonstration, trim: str) -> tuple[int, int]:

@@ -12,10 +12,11 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from teachpath.commands.options import Config, Data, settings_of
-from teachpath.config import Settings
+from teachpath.commands.audit import note
+from teachpath.commands.options import Config, Data, settings_of, stored_settings
 
 if TYPE_CHECKING:
+    from teachpath.config import Settings
     from teachpath.io.store.store import Store
     from teachpath.offline.findings import Finding
 
@@ -32,6 +33,9 @@ def doctor(
         ),
     ] = False,
     scene: Annotated[str, typer.Option(help="Scene of tasks whose scene no row and no file says.")] = "",
+    system: Annotated[
+        bool, typer.Option("--system", help="Look at the machine instead: what it lacks, and how to get it.")
+    ] = False,
     config: Config = None,
     data: Data = None,
 ) -> None:
@@ -43,17 +47,22 @@ def doctor(
 
     Exit code: 0 everything is whole, or was mended; 1 it could not examine the folder; 3 a dry run found faults that
     the doctor mends; 4 a fault is left that somebody must see to, and the sentence says how.
+    With --system: 0 nothing is lacking; 4 something is.
     """
+    if system:
+        raise typer.Exit(_examine_system(config, data, json_))
     from teachpath.offline.doctor import examine
     from teachpath.offline.findings import exit_code
 
-    settings = settings_of(config, data)
+    settings = stored_settings(config, data)
     scenes = {each.name: each for each in settings.scenes}
-    folder = Path(settings.store.data_dir)
+    folder = Path(settings.store.data_dir).absolute()
     if scene:
         settings.scene(scene)
     with _opened(settings, dry_run=dry_run, rebuild=rebuild) as store:
         findings = examine(store, settings.recording, scenes, folder, mend=not dry_run, default_scene=scene)
+    if not dry_run:
+        note(settings, f"doctor{' --rebuild' if rebuild else ''}: {len(findings)} faults found")
     code = exit_code(findings)
     if json_:
         said = {"data": str(folder), "exit_code": int(code), "findings": [asdict(finding) for finding in findings]}
@@ -61,6 +70,25 @@ def doctor(
     else:
         _print(findings, folder)
     raise typer.Exit(int(code))
+
+
+def _examine_system(config: Path | None, data: Path | None, json_: bool) -> int:
+    from teachpath.io.running_services import running_services
+    from teachpath.offline.system_check import examine_system
+
+    settings = settings_of(config, data)
+    host, _, port = settings.bus.endpoint.rpartition("/")[2].rpartition(":")
+    ports = [("web.port", settings.web.host, settings.web.port)]
+    if not settings.bus.router:
+        ports.append(("bus.endpoint", host.strip("[]"), int(port)))
+    findings = list(examine_system(Path(settings.store.data_dir), ports, running_services()))
+    if json_:
+        print(json.dumps([asdict(finding) for finding in findings], indent=2))
+    else:
+        for finding in findings:
+            mark = ("lacks" if finding.needed_by == "station" else "tests") if finding.lacking else "ok"
+            print(f"{mark:6}{finding.name}: {finding.sentence}")
+    return 4 if any(finding.lacking and finding.needed_by == "station" for finding in findings) else 0
 
 
 def _print(findings: list[Finding], folder: Path) -> None:

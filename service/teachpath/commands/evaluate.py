@@ -9,18 +9,19 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from math import comb
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
-from rich.console import Console
-from rich.table import Table
 
-from teachpath.commands.options import Config, Data, settings_of
-from teachpath.commands.work import progress_bar
+from teachpath.commands.options import Config, Data, connected, settings_of, stored_settings
+from teachpath.commands.progress import progress_bar
 from teachpath.errors import NotFound, UnusableRecording
 from teachpath.lengths import describe_length
-from teachpath.records import Cluster, Learned, Trajectory
-from teachpath_client.station import Station
+
+if TYPE_CHECKING:
+    from teachpath.learning.evaluation import OneWay
+    from teachpath.records import Cluster, Learned, Trajectory
+    from teachpath_client.station import Station
 
 SUFFIXES = {"csv": ".csv", "robottasks": ".npy"}
 
@@ -37,20 +38,28 @@ def evaluate(
 ) -> None:
     """Learn from recordings of known groups and say how accurate the result is.
 
-    All groups are learned as if they were one task; the clusters found are compared with the groups. The command needs
-    neither a service nor a data folder.
+    All groups are learned as if they were one task, and the clusters found are compared with the groups. Then each
+    group is learned alone: is it one way, how many are left out (with the 95 % interval), and how far is each
+    demonstration from what the others predict from its start and goal? The command needs neither a service nor a data
+    folder.
     """
+    from teachpath.learning.evaluation import evaluate_way, predicted_names
     from teachpath.learning.learn import learn
+    from teachpath.learning.settings import StepCounter, Subprogress
 
     changes: dict[str, Any] = {"mode": mode} if mode else {}
     settings = settings_of(config, None).learning_with(
         changes if threshold is None else {**changes, "threshold": threshold}
     )
     grouped = read_groups(folder, format, units=units, rate=rate)
-    pooled = {f"{group}/{i}": t for group, trajectories in grouped.items() for i, t in enumerate(trajectories, 1)}
+    named = {group: {f"{group}/{i}": t for i, t in enumerate(shown, 1)} for group, shown in grouped.items()}
+    pooled = {name: trajectory for shown in named.values() for name, trajectory in shown.items()}
     with progress_bar("evaluating") as show:
-        learned = learn(pooled, settings, progress=show)
-    report = evaluation(learned)
+        learned = learn(pooled, settings, progress=Subprogress(show, 0.0, 0.3))
+        steps = sum(1 + len(predicted_names(shown)) for shown in named.values())
+        on_step = StepCounter(Subprogress(show, 0.3, 1.0), steps, "learning each group alone")
+        alone = {group: evaluate_way(shown, settings, on_step=on_step) for group, shown in named.items()}
+    report = evaluation(learned) | {"alone": alone_report(alone)}
     if as_json:
         print(json.dumps(report, allow_nan=False, indent=2))
     else:
@@ -69,10 +78,10 @@ def diff(
     from teachpath.learning.compare import compare
 
     if url:
-        with Station(url) as station:
+        with connected(url) as station:
             before, after = _fetched(station, one), _fetched(station, other)
     else:
-        store = Store(settings_of(config, data).store)
+        store = Store(stored_settings(config, data).store)
         try:
             before, after = store.run(one).learned, store.run(other).learned
         finally:
@@ -160,12 +169,42 @@ def evaluation(learned: Learned) -> dict[str, Any]:
     }
 
 
+def alone_report(alone: Mapping[str, OneWay]) -> list[dict[str, Any]]:
+    """Say how each group is learned alone, and last all of them together, ready for JSON."""
+    rows = [_alone_row(group, [found]) for group, found in alone.items()]
+    return rows if len(rows) == 1 else [*rows, _alone_row("all", list(alone.values()))]
+
+
+def _alone_row(group: str, found: Sequence[OneWay]) -> dict[str, Any]:
+    from statistics import median
+
+    from teachpath.learning.evaluation import Rate
+
+    predicted = [each for one in found for each in one.predicted]
+    row: dict[str, Any] = {
+        "group": group,
+        "ways": sum(one.ways for one in found),
+        "ambiguous": sum(one.is_ambiguous for one in found),
+        "left_out": Rate(sum(one.left_out.hits for one in found), sum(one.left_out.n for one in found)).document(),
+        "predicted": None,
+        "unpredicted": "; ".join(dict.fromkeys(one.unpredicted for one in found if one.unpredicted)),
+    }
+    if predicted:
+        rms, line = median(each.rms for each in predicted), median(each.line for each in predicted)
+        held = Rate(sum(each.held for each in predicted), len(predicted)).document()
+        row["predicted"] = {"rms": rms, "of_the_line": rms / line if line else None, "held_by_two_sd": held}
+    return row
+
+
 def _flags(cluster: Cluster, of_path: str) -> list[str]:
     told = [f"{s.demonstration}: {s.note}" for s in cluster.scores if s.note and not s.selected]
     return [*filter(None, (cluster.note, cluster.ambiguous, of_path)), *told]
 
 
 def _print(report: Mapping[str, Any]) -> None:
+    from rich.console import Console
+    from rich.table import Table
+
     clusters, groups = report["clusters"], report["groups"]
     title = (
         f"{report['demonstrations']} demonstrations of {len(groups)} {'group' if len(groups) == 1 else 'groups'}, "
@@ -189,11 +228,50 @@ def _print(report: Mapping[str, Any]) -> None:
     print(title)
     Console(width=None if sys.stdout.isatty() else 140).print(table)
     print(f"adjusted Rand index {report['adjusted_rand_index']:.3f} (1: clusters and groups are the same)")
+    _print_alone(report["alone"])
     for note in report["notes"]:
         print(f"note: {note}")
     for cluster in clusters:
         for flag in cluster["flags"]:
             print(f"cluster {cluster['cluster']}: {flag}")
+
+
+def _print_alone(rows: Sequence[Mapping[str, Any]]) -> None:
+    from rich.console import Console
+    from rich.table import Table
+
+    table = Table(title="Each group alone", title_justify="left")
+    for head in (
+        "Group",
+        "Ways",
+        "Ambiguous",
+        "Left out",
+        "Predicted within",
+        "Of a straight line's",
+        "Held by two sd",
+    ):
+        table.add_column(head, justify="left" if head == "Group" else "right")
+    for row in rows:
+        predicted = row["predicted"] or {}
+        share = predicted.get("of_the_line")
+        table.add_row(
+            row["group"],
+            str(row["ways"]),
+            str(row["ambiguous"]),
+            _rate_in_words(row["left_out"]),
+            _length_in_words(predicted.get("rms")),
+            "" if share is None else f"{share:.2f}",
+            _rate_in_words(predicted["held_by_two_sd"]) if predicted else "",
+        )
+    Console(width=None if sys.stdout.isatty() else 140).print(table)
+    for row in rows:
+        if row["unpredicted"] and row["group"] != "all":
+            print(f"group {row['group']} is not predicted: {row['unpredicted']}")
+
+
+def _rate_in_words(rate: Mapping[str, Any]) -> str:
+    low, high = rate["interval"]
+    return f"{rate['hits']} of {rate['n']} ({100 * low:.0f} to {100 * high:.0f} %)"
 
 
 def _length_in_words(metres: float | None) -> str:
@@ -202,8 +280,9 @@ def _length_in_words(metres: float | None) -> str:
 
 def _fetched(station: Station, run: str) -> Learned:
     from teachpath.io.documents import from_document
+    from teachpath.records import Learned
 
     for task in station.tasks():
         if run in (found.id for found in station.runs(task.name)):
             return from_document(Learned, asdict(station.get_run(task.name, run).learned))
-    raise NotFound(f"there is no run {run!r}")
+    raise NotFound(f"there is no run {run!r}; list them with: teachpath runs")

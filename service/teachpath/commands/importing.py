@@ -4,31 +4,42 @@ from __future__ import annotations
 
 import sys
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from teachpath.commands.options import Config, Data, settings_of
-from teachpath.commands.work import progress_bar
+from teachpath.commands.audit import note
+from teachpath.commands.options import Config, Data, Json, stored_settings
+from teachpath.commands.printing import print_json, verdict_word
+from teachpath.commands.progress import progress_bar
 from teachpath.errors import UnusableRecording
 
 if TYPE_CHECKING:
+    from teachpath.io.import_settings import ImportSettings
     from teachpath.offline.batch_import import FileOutcome
+    from teachpath.offline.file_report import FileReport
+    from teachpath.records import Demonstration, Task
 
 REJECTED = 3  # exit status: all are stored, and some are rejected
-SUFFIXES = (".csv", ".tsv", ".npy", ".npz", ".traj", ".trc", ".tum", ".mcap")  # that are imported of a folder
+FIRST_SECOND = 1.0  # [s] of a motion that a dry run shows
+MAX_SHOWN = 5  # points of it
+# That are imported of a folder.
+SUFFIXES = (".csv", ".tsv", ".npy", ".npz", ".traj", ".trc", ".tum", ".mcap", ".db3", ".bag")
 
 
 def import_(
     task: Annotated[str, typer.Argument(help="Task to add demonstrations to; made when missing.")],
-    file: Annotated[list[Path], typer.Argument(help="Files to import, or folders of files.")],
+    file: Annotated[
+        list[Path], typer.Argument(help="Files to import, folders of files, or one archive of a task (zip).")
+    ],
     format: Annotated[
         str,
         typer.Option(
-            help="csv, npy, npz, matrices (4x4), robottasks (.npy), motive, vicon, trc, tum, euroc, mcap, or of an "
-            "installed reader; empty: what the file has."
+            help="csv, npy, npz, matrices (4x4), robottasks (.npy), motive, vicon, trc, tum, euroc, rosbag, mcap, or "
+            "of an installed reader; empty: what the file has."
         ),
     ] = "",
     units: Annotated[str, typer.Option(help="Of the positions: m, cm, mm or in; empty: as the file says.")] = "",
@@ -42,7 +53,7 @@ def import_(
         ),
     ] = "",
     quaternion: Annotated[str, typer.Option(help="Order of four columns without names: wxyz or xyzw.")] = "",
-    track: Annotated[str, typer.Option(help="Which body or marker, of a file with several.")] = "",
+    track: Annotated[str, typer.Option(help="Which body, marker, topic or frame, of a file with several.")] = "",
     grasp: Annotated[float | None, typer.Option(help="[s] at which the object is taken; 0: the file begins.")] = None,
     release: Annotated[float | None, typer.Option(help="[s] at which it is put.")] = None,
     whole: Annotated[bool, typer.Option("--whole", help="All of every motion is the transport.")] = False,
@@ -54,6 +65,7 @@ def import_(
     dry_run: Annotated[bool, typer.Option("--dry-run", help="Only say what would be made of the files.")] = False,
     config: Config = None,
     data: Data = None,
+    json_: Json = False,
 ) -> None:
     """Make demonstrations from files, all of them or none.
 
@@ -66,39 +78,67 @@ def import_(
     from teachpath.io.store.store import Store
     from teachpath.jobs.limited_process import LimitedProcess
     from teachpath.offline.batch_import import import_batch
+    from teachpath.offline.file_report import examine_files
     from teachpath.offline.import_job import ImportOrder
     from teachpath.offline.import_target import import_calibration, import_scene, starts_at_object
     from teachpath.offline.track_samples import PhaseMarks
     from teachpath.recorder.calibrations import Calibrations
 
-    settings = settings_of(config, data)
+    settings = stored_settings(config, data, may_make=True)
     options = ReadOptions(units, time, rate, columns, quaternion, track)
     check_options("import", format, options)
-    files = _files(file)
-    store, process = Store(settings.store), LimitedProcess(settings.jobs)
-    try:
+    folder = Path(settings.store.data_dir)
+    with _inputs(file, settings.imports) as (files, exported), ExitStack() as opened:
+        if exported:
+            scene, object_at_grasp = scene or exported.scene, object_at_grasp or exported.object_at_grasp
+        store, process = Store(settings.store), LimitedProcess(settings.jobs)
+        opened.callback(store.close)
+        opened.callback(process.stop)
         calibrations = Calibrations(store, settings.recording, settings.calibrations, settings.scene)
-        order = ImportOrder(
-            "",
-            Path(),
-            task,
-            "",
-            format,
-            options,
-            PhaseMarks(grasp, release, whole),
-            settings.scene(import_scene(store, task, scene)),
-            import_calibration(store, calibrations, task, format, calibration),
-            settings.recording,
-            settings.imports,
-            starts_at_object(store, task, object_at_grasp),
+        order = ImportOrder(  # without a key, folder and name: the batch gives each file its own
+            key="",
+            folder=Path(),
+            task=task,
+            name="",
+            kind=format,
+            options=options,
+            marks=PhaseMarks(grasp, release, whole),
+            scene=settings.scene(import_scene(store, task, scene)),
+            calibration=import_calibration(store, calibrations, task, format, calibration),
+            recording=settings.recording,
+            limits=settings.imports,
+            object_at_grasp=starts_at_object(store, task, object_at_grasp),
         )
-        with progress_bar("importing") as show:
-            folder = Path(settings.store.data_dir)
-            outcomes = import_batch(store, folder, files, order, call=process.call, progress=show, dry_run=dry_run)
-    finally:
-        process.stop()
-        store.close()
-    _report(task, outcomes, dry_run=dry_run)
+        with progress_bar("examining" if dry_run else "importing") as show:
+            if dry_run:
+                reports = examine_files(files, order, call=process.call, progress=show)
+            else:
+                outcomes = import_batch(store, folder, files, order, call=process.call, progress=show)
+                if made := sum(len(each.made) for each in outcomes):
+                    note(settings, f"import into {task}: {made} demonstrations of {', '.join(f.name for f in file)}")
+    if json_:
+        found: list[FileReport | FileOutcome] = [*reports] if dry_run else [*outcomes]
+        print_json(found)
+        raise typer.Exit(_status([each.made for each in found], any(each.refusal for each in found)))
+    if dry_run:
+        _report_examination(reports)
+    else:
+        _report(task, outcomes, folder)
+
+
+@contextmanager
+def _inputs(given: Sequence[Path], limits: ImportSettings) -> Iterator[tuple[list[Path], Task | None]]:
+    """Return the files to import, and the task as it was exported where they come from an archive of one."""
+    from teachpath.offline.task_archive import SUFFIX, unpacked_archive
+
+    archives = [path for path in given if path.suffix.lower() == SUFFIX]
+    if not archives:
+        yield _files(given), None
+        return
+    if len(given) > 1:
+        raise UnusableRecording(f"{archives[0]} is an archive: import it alone; a second one into a task of its own")
+    with unpacked_archive(archives[0], limits) as unpacked:
+        yield list(unpacked.files), unpacked.task
 
 
 def _files(given: Sequence[Path]) -> list[Path]:
@@ -119,7 +159,36 @@ def _files(given: Sequence[Path]) -> list[Path]:
     return found
 
 
-def _report(task: str, outcomes: Sequence[FileOutcome], *, dry_run: bool) -> None:
+def _report_examination(reports: Sequence[FileReport]) -> None:
+    """Say what was understood of each file, and leave with the exit status that its import would have."""
+    for report in reports:
+        if report.understood:
+            print(f"{report.file}: {'; '.join(report.understood)}")
+        if report.columns:
+            print(f"{report.file}: columns {', '.join(report.columns)}")
+        if report.times:
+            print(f"{report.file}: begins at {_first_second(report)}")
+        if report.dwell_times:
+            dwells = ", ".join(f"{time:.2f}" for time in report.dwell_times)
+            print(f"{report.file}: the hand dwells at {dwells} s; say where it takes and puts: --grasp, --release")
+        if report.refusal:
+            print(f"{report.file}: cannot be used: {report.refusal}")
+        for made in report.made:
+            print(f"{report.file}: {_sentence(made)}")
+    refused = [report.refusal for report in reports if report.refusal]
+    if len(reports) == 1 and refused:
+        raise UnusableRecording(refused[0])
+    _summarize([report.made for report in reports], len(refused), "nothing stored")
+
+
+def _first_second(report: FileReport) -> str:
+    shown = [k for k, time in enumerate(report.times) if time - report.times[0] <= FIRST_SECOND]
+    chosen = shown[:: max(len(shown) // MAX_SHOWN, 1)][:MAX_SHOWN]
+    places = [(report.times[k], ", ".join(f"{c:.3f}" for c in report.positions[k])) for k in chosen]
+    return "; ".join(f"{time:.2f} s ({place})" for time, place in places) + " m, world"
+
+
+def _report(task: str, outcomes: Sequence[FileOutcome], folder: Path) -> None:
     """Say what became of each file, and leave with the exit status."""
     refused = [outcome for outcome in outcomes if outcome.refusal]
     if len(outcomes) == 1 and refused:
@@ -130,18 +199,29 @@ def _report(task: str, outcomes: Sequence[FileOutcome], *, dry_run: bool) -> Non
             continue
         if outcome.understood:
             print(f"{outcome.file}: {'; '.join(outcome.understood)}")
-        for d in outcome.made:
-            where = f"{outcome.file}" if dry_run else f"{task} {d.number}"
-            told = (*d.reasons, *d.statistics.notes)
-            reasons = f": {'; '.join(told)}" if told else ""
-            print(f"{where}: {d.samples} samples, {d.duration:.2f} s, {d.verdict}{reasons} ({d.id})")
-    if refused:
-        raise UnusableRecording(f"nothing was imported: {len(refused)} of {len(outcomes)} files cannot be used")
-    verdicts = Counter(str(d.verdict) for outcome in outcomes for d in outcome.made)
-    summary = ", ".join(f"{count} {verdict}" for verdict, count in verdicts.items())
-    print(
-        f"{len(outcomes)} files, {verdicts.total()} demonstrations: {summary}"
-        + (" (nothing stored)" if dry_run else "")
+        for made in outcome.made:
+            print(f"{task} {made.number}: {_sentence(made)} ({made.id})")
+    _summarize([outcome.made for outcome in outcomes], len(refused), f"in {folder.absolute()}")
+
+
+def _sentence(made: Demonstration) -> str:
+    told = (*made.reasons, *made.statistics.notes)
+    return f"{made.samples} samples, {made.duration:.2f} s, {verdict_word(made.verdict)}" + (
+        f": {'; '.join(told)}" if told else ""
     )
-    if verdicts["reject"]:
-        raise typer.Exit(REJECTED)
+
+
+def _summarize(files: Sequence[Sequence[Demonstration]], refused: int, where: str) -> None:
+    if refused:
+        raise UnusableRecording(f"nothing was imported: {refused} of {len(files)} files cannot be used")
+    verdicts = Counter(verdict_word(made.verdict) for file in files for made in file)
+    summary = ", ".join(f"{count} {verdict}" for verdict, count in verdicts.items())
+    print(f"{len(files)} files, {verdicts.total()} demonstrations: {summary}" + f" ({where})")
+    if status := _status(files, bool(refused)):
+        raise typer.Exit(status)
+
+
+def _status(files: Sequence[Sequence[Demonstration]], refused: bool) -> int:
+    """Return the exit status of an import."""
+    rejected = any(made.verdict == "reject" for file in files for made in file)
+    return 1 if refused else REJECTED if rejected else 0

@@ -6,15 +6,13 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
-from rich.console import Console
-from rich.table import Table
 
-from teachpath.commands.options import Config, settings_of
+from teachpath.commands.audit import note
+from teachpath.commands.options import Config, Json, settings_of
+from teachpath.commands.printing import print_columns, print_json
 from teachpath.errors import Conflict, NotFound, UnusableInput
-from teachpath.io.bus_logins import LOCAL, add_login, revoke_login, station_logins
 from teachpath_proto.keys import is_name, name_refusal
 from teachpath_proto.logins import Login, Role, write_logins
-from teachpath_proto.sessions import is_tls
 
 app = typer.Typer(
     help="Logins on the bus: create, list, revoke. This user's own programs need none: they find theirs themselves.",
@@ -37,37 +35,49 @@ def create(
     The other side names the file: teachpath-client --login FILE, or Link(endpoint, login=...) in Python. Where the
     station's endpoint is over TLS, it holds a certificate instead of a password.
     """
+    from teachpath.io.bus_logins import add_login, station_logins
+
     if role in (Role.SERVICE, Role.ROUTER):
         raise UnusableInput(f"nobody else may be the {role} of a station; use another role")
     for what, text in (("login", name), ("tracker or robot", only)):
         if text and not is_name(text):
             raise UnusableInput(name_refusal(what, text))
-    bus = settings_of(config, None).bus
+    settings = settings_of(config, None)
+    bus = settings.bus
     if name in {login.user for login in station_logins(bus)} | {role.value for role in Role} | {"authority"}:
         raise Conflict(f"there is a login {name!r} already; revoke it first, or take another name")
     login = add_login(bus, Login(name, "", role, only))
     file = into or Path(f"{name}.login.json")
     write_logins(file, [login])
+    note(settings, f"create login {name}, {role}{f', only {only}' if only else ''}")
     print(f"login {name} ({role}{f', only {only}' if only else ''}) is in {file}: keep it secret; {RESTART}")
 
 
 @app.command("list")
-def list_(config: Config = None) -> None:
+def list_(config: Config = None, json_: Json = False) -> None:
     """List the logins of the station, without their passwords."""
-    table = Table("name", "role", "only")
-    for login in station_logins(settings_of(config, None).bus):
-        table.add_row(login.user, login.role.value, login.only)
-    Console().print(table)
+    from teachpath.io.bus_logins import station_logins
+
+    rows = [(login.user, login.role.value, login.only) for login in station_logins(settings_of(config, None).bus)]
+    if json_:
+        print_json([{"name": name, "role": role, "only": only} for name, role, only in rows])
+        return
+    print_columns(("name", "role", "only"), rows, none="no logins yet; start the service once")
 
 
 @app.command("revoke")
 def revoke(name: Name, config: Config = None) -> None:
     """Take a login back; one of this user's own programs gets a new password."""
-    bus = settings_of(config, None).bus
+    from teachpath.io.bus_logins import LOCAL, revoke_login, station_logins
+    from teachpath_proto.sessions import is_tls
+
+    settings = settings_of(config, None)
+    bus = settings.bus
     users = [login.user for login in station_logins(bus)]
     if name not in users:
         known = ", ".join(users) or "none; start the service once"
         raise NotFound(f"there is no login {name!r}; known: {known}")
     revoke_login(bus, name)
+    note(settings, f"revoke login {name}")
     renewed = name in LOCAL and not is_tls(bus.endpoint)
     print(f"login {name} is {'given a new password' if renewed else 'revoked'}; {RESTART}")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gc
+import json
 import os
 import signal
 import socket
@@ -12,15 +13,26 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Final
 
-from teachpath.config import Settings
+from teachpath.commands.options import web_address
 from teachpath.errors import Unreachable
 
 if TYPE_CHECKING:
     from teachpath.app import Station
+    from teachpath.config import Settings
 
 # [s] for which one thread keeps the interpreter while another waits for it; a stop passes through several threads
 SWITCH_INTERVAL: Final = 0.0005
 SIGNALS = frozenset({signal.SIGINT, signal.SIGTERM})
+# What executor, simulated arm and processes of jobs have loaded when they begin; the last is what they take for theirs.
+PARTS: Final = ("teachpath.config", "teachpath.executor.loop", "teachpath.simulator.loop")
+PRELOADED: Final = (
+    "teachpath.offline.learning_job",
+    "teachpath.learning.relearn",
+    "teachpath.motion.planning.plan",
+    "teachpath.learning.adaptation.adapt",
+    "teachpath.motion.planning.assessment",
+    "teachpath.__main__",
+)
 
 
 @contextmanager
@@ -32,27 +44,56 @@ def serving(settings: Settings) -> Iterator[Station]:
     Raises:
         Unreachable: the web port or the Zenoh endpoint is taken.
         Conflict: another service uses the data folder.
+        UnusableSettings: it would be open to whoever reaches it.
     """
-    from teachpath.app import Station
-    from teachpath.web.server import web_server
+    from teachpath.access.loopback import require_safe_binding
+    from teachpath.process_server import start_process_server
 
     web = settings.web
+    require_safe_binding(settings.auth.mode, web.host, web.hosts, web.proxies)
     listener = listen(web.host, web.port)
     umask = os.umask(0o077)
+    gc.disable()  # what a start loads stays: to look through it again and again takes a tenth of the start
     try:
+        # Their matrices are small: threads of linear algebra would spend their time on waiting for each other.
+        os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+        start_process_server((*PARTS, *PRELOADED))  # which loads them while this process loads what follows
+        from teachpath.app import Station
+        from teachpath.io.running_services import announced
+        from teachpath.web.server import web_server
+
         with Station(settings) as station:
-            server = web_server(station.web, web)
+            context = station.certificate.context if station.certificate else None
+            station.audit.note("the service", "", f"begins: {changed_settings(settings)}", "running")
+            server = web_server(station.web, web, context)
             thread = threading.Thread(target=server.run, kwargs={"sockets": [listener]}, name="web", daemon=True)
             thread.start()
             try:
-                with short_pauses():
+                with short_pauses(), announced(web_address(settings)):
                     yield station
             finally:
                 server.should_exit = True
                 thread.join(timeout=2.0)
+                station.audit.note("the service", "", "ends", "")
     finally:
+        gc.enable()
         os.umask(umask)
         listener.close()
+
+
+def changed_settings(settings: Settings) -> str:
+    """Return the settings that are not at their defaults, as JSON; the database's may have a password in it."""
+    from teachpath.config import Settings
+
+    default = Settings().model_dump(mode="json")
+    changed = {
+        room: values
+        if not isinstance(values, dict)
+        else {name: value for name, value in values.items() if value != default[room][name] and name != "database"}
+        for room, values in settings.model_dump(mode="json").items()
+        if values != default[room]
+    }
+    return json.dumps(changed)
 
 
 @contextmanager
@@ -64,6 +105,7 @@ def short_pauses() -> Iterator[None]:
     before = sys.getswitchinterval()
     sys.setswitchinterval(SWITCH_INTERVAL)
     gc.freeze()
+    gc.enable()
     try:
         yield
     finally:

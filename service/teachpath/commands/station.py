@@ -8,22 +8,18 @@ import sys
 import threading
 import time
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from teachpath.commands.options import Config, Data, settings_of
-from teachpath.commands.serving import serving, until_signalled
-from teachpath.config import Instructions, from_instructions, load
+from teachpath.commands.options import Config, Data, motion_arm, settings_of, web_address, with_arm
 from teachpath.errors import UnusableSettings
-from teachpath.io.bus import open_bus
-from teachpath.io.bus_logins import local_login
-from teachpath.io.signing_key import read_signing_key
 from teachpath.logs import LogSettings, log_to_stderr
-from teachpath.realtime import SIMULATOR_PRIORITY, request_realtime
-from teachpath.robot.processes import STOP_TIMEOUT
 from teachpath_proto.keys import Keys
 from teachpath_proto.logins import Role
+
+if TYPE_CHECKING:
+    from teachpath.instructions import Instructions
 
 log = logging.getLogger("teachpath")
 
@@ -35,6 +31,7 @@ Attached = Annotated[bool, typer.Option("--attached", hidden=True)]
 def serve(
     config: Config = None,
     data: Data = None,
+    arm: Annotated[str, typer.Option(help="Arm of the station: one of teachpath arms, or of teachpath arm list.")] = "",
     port: Annotated[int | None, typer.Option(help="Web port; 8765 unless set.")] = None,
     log_format: Annotated[
         str, typer.Option(help="Of the lines of the log: text or json; as the settings say, unless set.")
@@ -44,14 +41,33 @@ def serve(
 
     It records what trackers show, works on jobs, moves the simulated arm, and serves the page and the REST API.
     """
-    changes: dict[str, Any] = {} if port is None else {"web": {"port": port}}
+    from teachpath.commands.serving import serving, until_signalled
+
+    changes: dict[str, Any] = ({} if port is None else {"web": {"port": port}}) | motion_arm(arm)
     if log_format:
         changes["log"] = {"format": log_format}
     settings = settings_of(config, data, **changes)
     _log(settings.log)
     with until_signalled() as stop, serving(settings):
-        print(f"teachpath serves http://{settings.web.host}:{settings.web.port} (API docs at /docs)", flush=True)
+        print(f"teachpath serves {web_address(settings)} (API docs at /docs)", flush=True)
         print(f"trackers publish to {settings.bus.endpoint}; Ctrl-C ends it", flush=True)
+        stop.wait()
+
+
+def worker(config: Config = None, data: Data = None) -> None:
+    """Do learning jobs for a station until Ctrl-C, on another machine or beside its service.
+
+    It needs the station's settings, its database on PostgreSQL (store.database), and its data folder on a shared disk.
+    """
+    from teachpath.commands.serving import PRELOADED, until_signalled
+    from teachpath.job_service import JobService
+    from teachpath.process_server import start_process_server
+
+    settings = settings_of(config, data)
+    _log(settings.log)
+    start_process_server(PRELOADED)
+    with until_signalled() as stop, JobService(settings):
+        print(f"teachpath works on the learning jobs of station {settings.store.station!r}; Ctrl-C ends it", flush=True)
         stop.wait()
 
 
@@ -60,7 +76,10 @@ def executor(config: Config = None, attached: Attached = False) -> None:
 
     It streams the setpoints of certified plans.
     """
+    from teachpath.commands.serving import until_signalled
     from teachpath.executor.loop import Executor
+    from teachpath.io.bus import open_bus
+    from teachpath.io.signing_key import read_signing_key
     from teachpath.motion.planning.signature import SigningKey
 
     given = _instructions(config, attached, Role.EXECUTOR)
@@ -84,10 +103,13 @@ def executor(config: Config = None, attached: Attached = False) -> None:
 
 
 def simulator(config: Config = None, attached: Attached = False) -> None:
-    """Run the simulated Puma 560 alone.
+    """Run the simulated arm alone.
 
     It follows the setpoints and publishes its joint state, as the driver of a real arm would.
     """
+    from teachpath.commands.serving import until_signalled
+    from teachpath.io.bus import open_bus
+    from teachpath.realtime import SIMULATOR_PRIORITY, request_realtime
     from teachpath.simulator.loop import Simulator
 
     given = _instructions(config, attached, Role.ROBOT)
@@ -112,10 +134,14 @@ def simulator(config: Config = None, attached: Attached = False) -> None:
 
 
 def _instructions(config: Path | None, attached: bool, role: Role) -> Instructions:
+    from teachpath.config import load
+    from teachpath.instructions import Instructions, from_instructions
+    from teachpath.io.bus_logins import local_login
+
     log_to_stderr(part=PARTS[role], attached=attached)
     if attached:
         return from_instructions(sys.stdin.readline())
-    settings = load(config)
+    settings = with_arm(load(config))
     return Instructions(settings, local_login(settings.bus, role))
 
 
@@ -123,6 +149,7 @@ def _leave_with_parent(stop: threading.Event, attached: bool) -> None:
     """Stop when the service that started this process is gone, even if it was killed."""
     if not attached:
         return
+    from teachpath.robot.processes import STOP_TIMEOUT
 
     def wait() -> None:
         # The parent never writes again: reading returns when its end of the pipe is closed.

@@ -7,6 +7,8 @@ from typing import Annotated
 
 import typer
 
+from teachpath.commands.audit import note
+
 app = typer.Typer(help="The database of a station.", no_args_is_help=True)
 
 
@@ -25,7 +27,8 @@ def copy(
     A URL is as in the setting store.database, e.g. postgresql+psycopg://user@host/teachpath. Recordings stay in the
     data folder, which is used with either database. Stop the service first.
     """
-    from teachpath.io.store.copying import copy_rows
+    from teachpath.config import Settings
+    from teachpath.io.store.copying import copy_rows, without_password
     from teachpath.io.store.database_files import database_url, make_data_folder
     from teachpath.io.store.settings import StoreSettings
     from teachpath.offline.lock import StationLock
@@ -38,6 +41,10 @@ def copy(
                 locks.enter_context(StationLock(make_data_folder(settings)))
             urls.append(place if "://" in place else database_url(settings))
         counts = copy_rows(*urls)
+    for place in (source, target):
+        if "://" not in place:
+            said = f"copy all rows from {without_password(source)} to {without_password(target)}"
+            note(Settings(store=StoreSettings(data_dir=place)), said)
     for name, count in counts.items():
         print(f"{count:8} {name}")
     print(f"{sum(counts.values()):8} rows, the same in both")

@@ -4,10 +4,26 @@ from __future__ import annotations
 
 from datetime import datetime
 
+from rich.console import Console
 from rich.table import Table
 
 from teachpath.lengths import describe_length
 from teachpath_client.models import Dendrogram, Plan, Run, Signature
+
+
+def print_run(run: Run, numbers: dict[str, int], console: Console | None = None) -> None:
+    """Print what a run learned: clusters, paths, and what an operator should know.
+
+    Args:
+        run: of learning.
+        numbers: of the demonstrations, by id.
+        console: to print to; None: the standard output.
+    """
+    out = console or Console()
+    out.print(clusters_table(run, numbers))
+    out.print(paths_table(run))
+    for line in reasons(run, numbers):
+        out.print(line, highlight=False)
 
 
 def clusters_table(run: Run, numbers: dict[str, int]) -> Table:
@@ -87,7 +103,7 @@ def plan_lines(plan: Plan) -> str:
         f"plan {plan.id}: {plan.duration:.2f} s along {plan.lengths[-1]:.3f} m, arm {c.branch}\n"
         f"  largest use of the limits: {', '.join(f'{name} {use.value:.0%}' for name, use in uses.items())}\n"
         f"{speed_line}"
-        f"  least clearance {1e3 * c.clearance.value:.1f} mm ({c.clearance.place})\n"
+        f"  least clearance {describe_length(c.clearance.value)} ({c.clearance.place})\n"
         f"  {_scope(c.signature)}"
     )
 
@@ -99,4 +115,6 @@ def _scope(signature: Signature | None) -> str:
     names = ", ".join(calibration.name for calibration in signature.calibrations)
     until = datetime.fromtimestamp(signature.expires_ns / 1e9).astimezone()
     under = f", calibration {names}" if names else ""
-    return f"holds for the {signature.arm}{under}, until {until:%Y-%m-%d %H:%M}"
+    place = ", ".join(f"{1e3 * value:.6g}" for value in signature.tool.position) if signature.tool else ""
+    tool = f" with its tool at ({place}) mm" if place else ""
+    return f"holds for the {signature.arm}{tool}{under}, until {until:%Y-%m-%d %H:%M}"

@@ -24,11 +24,11 @@ from teachpath.executor.joint_state_monitor import JointStateMonitor
 from teachpath.executor.lease import ControlLease
 from teachpath.executor.program_factory import PreparedProgram, ProgramFactory
 from teachpath.executor.settings import ExecutorSettings
-from teachpath.executor.unasked_motion import UnaskedMotionDetector
+from teachpath.executor.unasked_motion import UnaskedMotionDetector, moved_since_order
 from teachpath.io import documents, wire
 from teachpath.io.bus import Bus, Handle
 from teachpath.logs import continue_request
-from teachpath.records import Command, ExecutorStatus, JournalEntry
+from teachpath.records import Array, Command, ExecutorStatus, JournalEntry
 from teachpath.time_source import TimeSource
 from teachpath_proto.control import CommandVerb, ExecutorState, LeaseAction
 from teachpath_proto.keys import Keys
@@ -179,7 +179,7 @@ class CommandHandler:
         if command.verb == CommandVerb.OVERRIDE:
             if current.state is ExecutorState.HELD:  # at an override of zero: another one moves the arm again
                 current.confirm()
-            self.pending.append(lambda execution: execution.set_override(command.override))
+            self.pending.append(lambda execution: execution.program.set_override(command.override))
         elif command.verb == CommandVerb.HOLD:
             reason = "held by the operator" if who == DEFAULT_OPERATOR else f"held by {who}"
             self.pending.append(lambda execution: execution.hold(reason))
@@ -257,10 +257,23 @@ class CommandHandler:
             with self._lock:
                 self._begin(command.execution, prepared, stops_before)
 
-    def _begin(self, execution: str, prepared: PreparedProgram, stops_before: int) -> None:
+    def _check_begin(self, start_q: Array, stops_before: int) -> None:
+        """Refuse to begin when a stop came, or the arm has moved, since the execution was ordered: that took time."""
         if self._stop_count != stops_before:
-            prepared.program.close()
             raise Conflict("it was stopped before it began")
+        if self._unasked_motion.reason:
+            raise Conflict(self._unasked_motion.reason)
+        arm_q = self._joint_states.resting_q(self._settings.rest_speed)
+        off = float(np.abs(arm_q - start_q).max())
+        if off > self._settings.unasked_motion:
+            raise Conflict(moved_since_order(off))
+
+    def _begin(self, execution: str, prepared: PreparedProgram, stops_before: int) -> None:
+        try:
+            self._check_begin(prepared.program.current_q, stops_before)
+        except TeachpathError:
+            prepared.program.close()
+            raise
         if self.current is not None:
             self.current.program.close()
         self._on_start()

@@ -103,6 +103,16 @@ class Execution:
         """Whether the execution has been held for so long that the arm itself rests."""
         return self.state is ExecutorState.HELD and self._rest_setpoints > SETTLING_TIME * self._rate
 
+    @property
+    def has_begun(self) -> bool:
+        """Whether a setpoint was sent."""
+        return self._sent_count > 0
+
+    def refuse(self, reason: str) -> None:
+        """End as faulted before the first setpoint: nothing was sent, so there is nothing to come to rest from."""
+        self._final_state = self.state = ExecutorState.FAULTED
+        self.reason = reason
+
     def arm_has_stopped(self, arm: JointState) -> bool:
         """Tell whether the arm has taken up a setpoint of the present standstill."""
         return arm.execution == self.id and arm.cycle >= self._sent_count - self._rest_setpoints
@@ -129,14 +139,11 @@ class Execution:
             self.program.set_waiting(False)
 
     def restart(self, cycle: int, due: int) -> bool:
-        """Go on from where the arm rests that has followed the way to rest of a setpoint.
+        """Go on from where the arm rests that has followed the way to rest of a setpoint; tell whether that is known.
 
         Args:
             cycle: of that setpoint.
             due: now [ns of the loop's clock].
-
-        Returns:
-            Whether it is known where that is.
         """
         point = self._rest_points.find(cycle)
         if point is None:
@@ -154,10 +161,6 @@ class Execution:
         """Tell whether it went on from the rest of that setpoint just now, so that the arm may not know yet."""
         before, at = self._restarted
         return before == cycle and due - at < RESTART_TIMEOUT_NS
-
-    def set_override(self, share: float) -> None:
-        """Go at `share` of the full speed."""
-        self.program.set_override(share)
 
     def hold(self, reason: str) -> None:
         """Come to rest on the path and stay there, unless the execution is over or being ended."""
@@ -204,10 +207,6 @@ class Execution:
             self._final_state, self.reason = state, reason
             self.program.hold()
 
-    def advance_planning(self) -> None:
-        """Let the program plan in the time that is left behind a setpoint."""
-        self.program.advance_planning()
-
     def skip_period(self) -> None:
         """Let a period pass without a setpoint, because the arm was pushed away and stays where it is."""
         self.state = self._current_state()
@@ -239,6 +238,7 @@ class Execution:
             execution=self.id,
             on_path=motion.on_path,
             way_to_rest=way_to_rest,
+            from_rest=self._standstill_left == STANDSTILL_SETPOINTS - 1,
         )
         self._sent_count += 1
         self.state = self._current_state()
@@ -282,12 +282,11 @@ class Execution:
         return self.reason or (self.program.hold_reason if self.state is ExecutorState.HELD else "")
 
     def _current_state(self) -> ExecutorState:
-        program = self.program
         if self._is_over:
             return self._state_at_end()
-        if program.held:
-            return ExecutorState.HELD if program.at_rest else ExecutorState.STOPPING
-        return ExecutorState.APPROACHING if program.before_path else ExecutorState.FOLLOWING
+        if self.program.held:
+            return ExecutorState.HELD if self.program.at_rest else ExecutorState.STOPPING
+        return ExecutorState.APPROACHING if self.program.before_path else ExecutorState.FOLLOWING
 
     def _state_at_end(self) -> ExecutorState:
         """Return the final state as soon as the arm itself rests; without that the end is a fault."""

@@ -6,7 +6,7 @@ from typing import Final
 
 import numpy as np
 
-from teachpath.motion.arm.kinematics import link_frames
+from teachpath.motion.arm.kinematics import gripper_frame, link_frames
 from teachpath.motion.arm.model import Arm
 from teachpath.motion.collision.collision_model import shape_pose
 from teachpath.motion.collision.grasp import grasp_width
@@ -40,8 +40,8 @@ class GraspMonitor:
         carried = plan.scene.carried
         if carried is None:
             return cls()
-        flange = link_frames(plan.joints[0], arm)[6]
-        return cls(carried.name, grasp_width(carried, np.linalg.inv(flange) @ shape_pose(carried)))
+        gripper = gripper_frame(link_frames(plan.joints[0], arm)[-1], arm)
+        return cls(carried.name, grasp_width(carried, np.linalg.inv(gripper) @ shape_pose(carried)))
 
     def fault(self, state: JointState, *, closed: bool, carries: bool, now: int) -> str:
         """Return that the closed gripper holds nothing, in words; empty while it may hold its object.

@@ -8,7 +8,7 @@ from typing import Final, Protocol
 import numpy as np
 
 from teachpath.motion.arm.model import Arm
-from teachpath.motion.arm.tool_speed import POINT_NAMES, monitored_points
+from teachpath.motion.arm.tool_speed import monitored_points, point_names
 from teachpath.records import Array
 
 _NAMES: Final = ("speed", "acceleration", "jerk")
@@ -73,4 +73,4 @@ class LimitMeter:
         worst = int(np.argmax(use))
         if use[worst] > self.max_use:
             self.max_use = float(use[worst])
-            self.max_use_location = f"speed of {POINT_NAMES[worst]} {where.location}"
+            self.max_use_location = f"speed of {point_names(self._arm)[worst]} {where.location}"

@@ -21,7 +21,7 @@ from teachpath.executor.joint_state_monitor import JointStateMonitor, SetpointSt
 from teachpath.executor.pacing import Pacer
 from teachpath.executor.program_factory import ProgramFactory
 from teachpath.executor.settings import ExecutorSettings
-from teachpath.executor.unasked_motion import UnaskedMotionDetector
+from teachpath.executor.unasked_motion import UnaskedMotionDetector, moved_since_order
 from teachpath.io import wire
 from teachpath.io.bus import Bus
 from teachpath.motion.arm.model import Arm
@@ -131,6 +131,8 @@ class Executor:
         self._joint_states.poll()
         self._command_handler.obey_stops()
         current = self._command_handler.current
+        if current is not None and not (current.has_begun or current.is_resting):
+            self._look_before_start(current, due)
         if current is not None and not current.is_resting:
             pending = self._command_handler.pending
             while pending:
@@ -142,11 +144,21 @@ class Executor:
             else:
                 setpoint = current.step(due, self._time.wall_ns())
                 self._bus.publish(self._keys.setpoint(self._robot), wire.encode_setpoint(setpoint))
-                current.advance_planning()
+                current.program.advance_planning()
             self._unasked.forget()
         else:
             self._watch_resting_arm(due)
         self._publish_status(due)
+
+    def _look_before_start(self, current: Execution, due: int) -> None:
+        """Refuse an execution before its first setpoint when the arm has moved since it was ordered."""
+        self._watch_resting_arm(due)
+        arm = self._speaking_arm(due)
+        off = float(np.abs(arm.position - current.program.current_q).max()) if arm is not None else 0.0
+        if self._unasked.reason:
+            current.refuse(self._unasked.reason)
+        elif off > self._settings.unasked_motion:
+            current.refuse(moved_since_order(off))
 
     def _watch_resting_arm(self, due: int) -> None:
         latest = self._joint_states.latest(due)

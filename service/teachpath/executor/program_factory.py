@@ -6,11 +6,12 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Final
 
-from teachpath.errors import UnusableInput
+from teachpath.errors import PathRefused, UnusableInput
 from teachpath.executor.certificate_check import CertificateCheck
 from teachpath.executor.grasp_monitor import GraspMonitor
 from teachpath.executor.joint_state_monitor import JointStateMonitor
 from teachpath.executor.settings import ExecutorSettings
+from teachpath.executor.station_scene import ask_scene
 from teachpath.executor.teleop.hand_input import HandInput
 from teachpath.executor.teleop.program import TeleopProgram
 from teachpath.io import documents
@@ -82,7 +83,9 @@ class ProgramFactory:
 
         Raises:
             UnusableInput: the command holds no plan or request, or one with values outside their ranges.
-            PathRefused: the certificate does not hold, or the way to the start is not free.
+            PathRefused: the certificate does not hold, the way to the start is not free, the scene is none for a live
+                hand, or the service does not answer for it.
+            NotFound: the station has no scene of the name.
             Conflict: the arm still moves.
             Unreachable: the arm is silent.
         """
@@ -105,6 +108,11 @@ class ProgramFactory:
 
     def _follow_hand(self, command: Command) -> PreparedProgram:
         request = documents.decode(TeleopRequest, command.teleop)
+        if self.arm.model is not None:
+            raise PathRefused(
+                f"a live hand leads the Puma 560 alone, and this arm is {self.arm.identity}; show the task and let the "
+                "arm follow the learned path, or leave out motion.arm"
+            )
         for name, value, (low, high) in (
             ("scale", request.scale, SCALE_RANGE),
             ("share", request.share, SHARE_RANGE),
@@ -112,6 +120,13 @@ class ProgramFactory:
             if not low <= value <= high:
                 raise UnusableInput(f"{name} {value:g} is outside {low:g} to {high:g}")
         check_calibration(request.calibration)
+        only = self._settings.hand_scene
+        if only and request.scene != only:
+            raise PathRefused(
+                f"a live hand leads the arm in scene {only} alone (executor.hand_scene), not in {request.scene}; name "
+                "that scene, or set another where another one stands around the arm"
+            )
+        scene = ask_scene(self._bus, self._keys, request.scene)
         start_q = self._joint_states.resting_q(self._settings.rest_speed)
         monotonic_ns = self._time.monotonic_ns
         hand = HandInput(self._bus, self._keys, request, silence=self._settings.hand_silence, clock=monotonic_ns)
@@ -119,14 +134,16 @@ class ProgramFactory:
             program = TeleopProgram(
                 hand,
                 request,
+                scene,
                 start_q,
                 self._motion,
                 self.arm,
                 joint_states=self._joint_states,
+                return_timeout=self._settings.hand_return_timeout,
                 period=1.0 / self._settings.rate,
                 clock=monotonic_ns,
             )
         except BaseException:
             hand.close()
             raise
-        return PreparedProgram(program, "", request.scene, lambda: None, GraspMonitor())
+        return PreparedProgram(program, "", scene, lambda: None, GraspMonitor())

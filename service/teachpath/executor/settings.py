@@ -24,6 +24,10 @@ class ExecutorSettings:
     silence_timeout: Annotated[float, Gt(0), Le(600)] = 10.0
     # [s] without a tracked sample after which a live hand is lost, or who presses its clutch
     hand_silence: Annotated[float, Gt(0), Le(5)] = 0.15
+    # [s] within which a lost hand that is back where it was, or one whose arm was late, is followed again by itself
+    hand_return_timeout: Annotated[float, Ge(0), Le(60)] = 1.0
+    # the only scene in which a live hand leads the arm: the one that stands around it; empty: any that the station has
+    hand_scene: str = ""
     # [rad] tracking error of a joint at which the execution is given up
     largest_error: Annotated[float, Gt(0), Le(0.5)] = 0.05
     # [rad/s] that the arm may still move when an execution starts or has ended

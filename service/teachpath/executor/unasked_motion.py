@@ -105,3 +105,11 @@ class UnaskedMotionDetector:
             "another program send setpoints? nothing starts before somebody has seen why and acknowledges it (page, or "
             "teachpath acknowledge)"
         )
+
+
+def moved_since_order(off: float) -> str:
+    """Say that the arm has moved by `off` [rad] since an execution was ordered, and that therefore nothing starts."""
+    return (
+        f"the arm moved by {off:.2f} rad while its motion was made ready: does somebody push it, or another program "
+        "send setpoints? look why, then start again"
+    )

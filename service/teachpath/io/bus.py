@@ -46,19 +46,18 @@ class Bus(Protocol):
     def publish(self, key: str, payload: bytes) -> None:
         """Send `payload` to all subscribers of `key`."""
 
-    def subscribe(self, key: str, receive: Receive, *, missed: Missed | None = None) -> Handle:
-        """Call `receive(key, payload)` for all that is published on keys matching `key` (`*` one segment, `**` any).
+    def subscribe(self, key: str, receive: Receive) -> Handle:
+        """Call `receive(key, payload)` for all that is published on keys matching `key` (`*` one segment, `**` any)."""
+
+    def subscribe_with_source(self, key: str, receive: ReceiveWithSource, *, missed: Missed | None = None) -> Handle:
+        """Call `receive(key, payload, source)` likewise; `source` names the session that published.
 
         With `missed`, samples of publishers that keep a cache are asked for again when one is missing, and those that
         could not be had are counted: `missed(count)`. Plain publishers are served as well, without that.
-        """
 
-    def subscribe_with_source(self, key: str, receive: ReceiveWithSource) -> Handle:
-        """Call `receive(key, payload, source)` likewise; `source` names the session that published.
-
-        It is empty where a foreign program's plain publisher does not say, for Zenoh tells nothing of it; then two of
-        them cannot be told apart. A session's name is a secret of those who hear it, as a password is: whoever knows it
-        can claim to be that session.
+        The source is empty where a foreign program's plain publisher does not say, for Zenoh tells nothing of it; then
+        two of them cannot be told apart. A session's name is a secret of those who hear it, as a password is: whoever
+        knows it can claim to be that session.
         """
 
     def serve(self, key: str, answer: Answer) -> Handle:
@@ -138,9 +137,15 @@ class ZenohBus:
                 self._publishers[key] = publisher
         publisher.put(payload, attachment=self._source)
 
-    def subscribe(self, key: str, receive: Receive, *, missed: Missed | None = None) -> Handle:
+    def subscribe(self, key: str, receive: Receive) -> Handle:
         def callback(sample: zenoh.Sample) -> None:
             receive(str(sample.key_expr), sample.payload.to_bytes())
+
+        return self._keep(Declaration(self._session.declare_subscriber(key, callback).undeclare))
+
+    def subscribe_with_source(self, key: str, receive: ReceiveWithSource, *, missed: Missed | None = None) -> Handle:
+        def callback(sample: zenoh.Sample) -> None:
+            receive(str(sample.key_expr), sample.payload.to_bytes(), _source(sample))
 
         if missed is None:
             return self._keep(Declaration(self._session.declare_subscriber(key, callback).undeclare))
@@ -153,12 +158,6 @@ class ZenohBus:
             subscriber.undeclare()  # type: ignore[no-untyped-call]
 
         return self._keep(Declaration(undeclare))
-
-    def subscribe_with_source(self, key: str, receive: ReceiveWithSource) -> Handle:
-        def callback(sample: zenoh.Sample) -> None:
-            receive(str(sample.key_expr), sample.payload.to_bytes(), _source(sample))
-
-        return self._keep(Declaration(self._session.declare_subscriber(key, callback).undeclare))
 
     def serve(self, key: str, answer: Answer) -> Handle:
         return self._keep(_Server(self._session, key, answer))

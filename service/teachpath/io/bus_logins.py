@@ -117,12 +117,14 @@ def revoke_login(bus: BusSettings, name: str) -> None:
 
 
 def local_login(bus: BusSettings, role: Role) -> Login | None:
-    """Return this user's login of a role; None where the station keeps none for this user.
+    """Return this user's login of a role; None where the station keeps none for this user, or asks for none.
 
     Raises:
         UnusableSettings: it cannot be read.
     """
     folder = Path(bus.certificates)
+    if not bus.access_control:
+        return None
     if is_tls(bus.endpoint) and (folder / f"{role}.pem").exists():
         from teachpath.io import certificates
 

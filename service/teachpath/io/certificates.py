@@ -44,10 +44,10 @@ def prepare_authority(folder: Path, now: datetime) -> bool:
         return False
     key = ec.generate_private_key(ec.SECP256R1())
     name = x509.Name([x509.NameAttribute(NameOID.COMMON_NAME, "teachpath authority")])
-    builder = _builder(name, name, key, now, AUTHORITY_LIFE)
+    builder = certificate_builder(name, name, key, now, AUTHORITY_LIFE)
     builder = builder.add_extension(x509.BasicConstraints(ca=True, path_length=0), critical=True)
-    builder = builder.add_extension(_usage(signs=True), critical=True)
-    _write(folder, AUTHORITY, builder.sign(key, hashes.SHA256()), key)
+    builder = builder.add_extension(key_usage(signs=True), critical=True)
+    write_pair(folder, AUTHORITY, builder.sign(key, hashes.SHA256()), key)
     _write_file(folder / ISSUED, "{}")
     return True
 
@@ -72,16 +72,16 @@ def issue(folder: Path, who: Login, now: datetime, *, hosts: Sequence[str] = ())
     issuer, issuer_key = _authority(folder, now)
     who = replace(who, generation=_next_generation(folder, who.user))
     key = ec.generate_private_key(ec.SECP256R1())
-    builder = _builder(_subject(who), issuer.subject, key, now, min(LIFE, issuer.not_valid_after_utc - now))
+    builder = certificate_builder(_subject(who), issuer.subject, key, now, min(LIFE, issuer.not_valid_after_utc - now))
     builder = builder.add_extension(x509.BasicConstraints(ca=False, path_length=None), critical=True)
-    builder = builder.add_extension(_usage(signs=False), critical=True)
+    builder = builder.add_extension(key_usage(signs=False), critical=True)
     purposes: list[ObjectIdentifier] = [ExtendedKeyUsageOID.CLIENT_AUTH]
     if hosts:
         purposes.append(ExtendedKeyUsageOID.SERVER_AUTH)
-        names = x509.SubjectAlternativeName([_host(host) for host in sorted(set(hosts))])
+        names = x509.SubjectAlternativeName([general_name(host) for host in sorted(set(hosts))])
         builder = builder.add_extension(names, critical=False)
     builder = builder.add_extension(x509.ExtendedKeyUsage(purposes), critical=False)
-    _write(folder, who.user, builder.sign(issuer_key, hashes.SHA256()), key)
+    write_pair(folder, who.user, builder.sign(issuer_key, hashes.SHA256()), key)
     return read_login(folder, who.user)
 
 
@@ -152,9 +152,10 @@ def _authority(folder: Path, now: datetime) -> tuple[x509.Certificate, ec.Ellipt
     return certificate, key
 
 
-def _builder(
+def certificate_builder(
     subject: x509.Name, issuer: x509.Name, key: ec.EllipticCurvePrivateKey, now: datetime, life: timedelta
 ) -> x509.CertificateBuilder:
+    """Return what every certificate of a station has: whose it is, by whom signed, and from when for how long."""
     return (
         x509.CertificateBuilder()
         .subject_name(subject)
@@ -197,7 +198,8 @@ def _subject(who: Login) -> x509.Name:
     return x509.Name([x509.NameAttribute(oid, value) for oid, value in fields])
 
 
-def _usage(*, signs: bool) -> x509.KeyUsage:
+def key_usage(*, signs: bool) -> x509.KeyUsage:
+    """Return what a key is for: signing certificates, or showing whose it is."""
     return x509.KeyUsage(
         digital_signature=not signs,
         key_cert_sign=signs,
@@ -211,7 +213,8 @@ def _usage(*, signs: bool) -> x509.KeyUsage:
     )
 
 
-def _host(host: str) -> x509.GeneralName:
+def general_name(host: str) -> x509.GeneralName:
+    """Return a host as certificates have it: as an address where it is one, else as a name."""
     try:
         return x509.IPAddress(ipaddress.ip_address(host))
     except ValueError:
@@ -223,7 +226,8 @@ def _field(certificate: x509.Certificate, oid: ObjectIdentifier) -> str:
     return str(found[0].value) if found else ""
 
 
-def _write(folder: Path, name: str, certificate: x509.Certificate, key: ec.EllipticCurvePrivateKey) -> None:
+def write_pair(folder: Path, name: str, certificate: x509.Certificate, key: ec.EllipticCurvePrivateKey) -> None:
+    """Write NAME.key and NAME.pem, for their owner alone; raises UnusableSettings."""
     private = key.private_bytes(
         serialization.Encoding.PEM, serialization.PrivateFormat.PKCS8, serialization.NoEncryption()
     )

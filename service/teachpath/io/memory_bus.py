@@ -25,10 +25,10 @@ class MemoryBus:
         for receive in receivers:
             receive(key, payload, source)
 
-    def subscribe(self, key: str, receive: Receive, *, missed: Missed | None = None) -> Handle:
+    def subscribe(self, key: str, receive: Receive) -> Handle:
         return self.subscribe_with_source(key, lambda key, payload, _: receive(key, payload))
 
-    def subscribe_with_source(self, key: str, receive: ReceiveWithSource) -> Handle:
+    def subscribe_with_source(self, key: str, receive: ReceiveWithSource, *, missed: Missed | None = None) -> Handle:
         handle = Declaration(lambda: self._receivers.pop(handle, None))
         with self._lock:
             self._receivers[handle] = (_pattern(key), receive)

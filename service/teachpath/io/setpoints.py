@@ -1,4 +1,4 @@
-"""Logs of setpoints that other programs wrote, as CSV: t, q1 to q6 and perhaps on_path."""
+"""Logs of setpoints as CSV: t, q1 to q6, perhaps on_path or speeds and accelerations; lines with # are remarks."""
 
 from __future__ import annotations
 
@@ -11,6 +11,8 @@ from teachpath.errors import UnusableRecording
 from teachpath.records import Array
 
 COLUMNS = ["t", "q1", "q2", "q3", "q4", "q5", "q6"]
+ON_PATH = "on_path"
+DERIVATIVES = [f"{quantity}{joint}" for quantity in "va" for joint in range(1, 7)]  # which are not read
 LARGEST = 256 * 1024 * 1024  # bytes
 
 
@@ -29,18 +31,19 @@ def read_setpoints(content: bytes, name: str) -> tuple[Array, Array, Array | Non
         rows = list(csv.reader(io.StringIO(content.decode("utf-8-sig"))))
     except (UnicodeDecodeError, csv.Error) as error:
         raise UnusableRecording(f"{name}: this is no CSV ({error})") from None
-    header = [column.strip() for column in rows[0]] if rows else []
-    if header not in (COLUMNS, [*COLUMNS, "on_path"]):
+    numbered = [(line, row) for line, row in enumerate(rows, 1) if row and not row[0].startswith("#")]
+    header = [column.strip() for column in numbered[0][1]] if numbered else []
+    if header not in (COLUMNS, [*COLUMNS, ON_PATH], [*COLUMNS, *DERIVATIVES]):
         raise UnusableRecording(f"{name}: the first line must be {','.join(COLUMNS)} (s and rad), perhaps with on_path")
-    values = np.array([_numbers(row, line, len(header), name) for line, row in enumerate(rows[1:], 2) if row])
+    values = np.array([_numbers(row, line, len(header), name) for line, row in numbered[1:]])
     if len(values) < 4:
         raise UnusableRecording(f"{name}: {len(values)} setpoints are too few to difference; at least 4")
     backward = np.flatnonzero(np.diff(values[:, 0]) <= 0)
     if len(backward):
-        raise UnusableRecording(f"{name}, line {backward[0] + 3}: time does not go on")
+        raise UnusableRecording(f"{name}, line {numbered[backward[0] + 2][0]}: time does not go on")
     if np.abs(values[:, 1:7]).max() > 4 * np.pi:
         raise UnusableRecording(f"{name}: a joint is at {np.abs(values[:, 1:7]).max():.1f} rad; are these degrees?")
-    return values[:, 0], values[:, 1:7], values[:, 7] if len(header) == 8 else None
+    return values[:, 0], values[:, 1:7], values[:, 7] if ON_PATH in header else None
 
 
 def _numbers(row: list[str], line: int, count: int, name: str) -> list[float]:

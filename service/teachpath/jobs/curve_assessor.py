@@ -54,7 +54,7 @@ class CurveAssessor:
     """
 
     def __init__(self) -> None:
-        self._pool = KillablePool(_init_worker)
+        self._pool = KillablePool(_init_worker, part="assessor")
         self._lock = threading.Lock()
         self._newest: dict[str, object] = {}
 
@@ -126,7 +126,8 @@ def _adapt(path: LearnedPath, shown: Shown, target: Target) -> AdaptedPath:
 def _adaptation_model(path: LearnedPath, shown: Shown) -> AdaptationModel:
     from teachpath.learning.adaptation.adapt import course_model
 
-    return course_model(path, shown.learned, shown.members, shown.others, shown.settings)[0].export()
+    model, _, places = course_model(path, shown.learned, shown.members, shown.others, shown.settings)
+    return model.export(places)
 
 
 def _assess(curve: Curve, scene: Scene, settings: MotionSettings, arm: Arm, orientation: Curve | None) -> Assessment:

@@ -6,17 +6,18 @@ import logging
 import queue
 import threading
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from concurrent.futures import Future
 from concurrent.futures.process import BrokenProcessPool
+from contextlib import suppress
 from dataclasses import dataclass
-from multiprocessing import get_context
 from multiprocessing.queues import Queue
 from typing import Any, Final
 
 from teachpath.errors import Cancelled, OverLimit
 from teachpath.jobs import worker
 from teachpath.jobs.pool import KillablePool
+from teachpath.process_server import CONTEXT
 
 log = logging.getLogger("teachpath")
 
@@ -51,17 +52,15 @@ class JobLane:
     ) -> None:
         self.name, self._limits, self._process = name, limits, process
         self._queue: queue.SimpleQueue[str | None] = queue.SimpleQueue()
-        self._cancel = get_context("spawn").Event()
+        self._cancel = CONTEXT.Event()
         self._stopping = threading.Event()
         self._pool = KillablePool(worker.init_worker, progress, self._cancel, limits.memory)
         self._thread = threading.Thread(target=self._run, name=f"jobs: {name}", daemon=True)
         self.running = ""
 
-    def start(self, expected: Sequence[Callable[..., Any]] = ()) -> None:
-        """Begin to work; the process starts at once where work is expected, and loads what that needs."""
+    def start(self) -> None:
+        """Begin to work."""
         self._thread.start()
-        if expected:
-            self._pool.submit(worker.warm_up, list(expected))
 
     def stop(self) -> None:
         """Stop at once, even in the middle of a job."""
@@ -131,6 +130,8 @@ class JobLane:
                 )
 
     def _run(self) -> None:
+        with suppress(BrokenProcessPool):  # told to stop already
+            self._pool.submit(worker.begin)
         while (key := self._queue.get()) is not None and not self._stopping.is_set():
             self._cancel.clear()
             self.running = key

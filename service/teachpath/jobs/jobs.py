@@ -5,27 +5,21 @@ from __future__ import annotations
 import logging
 import threading
 import time
-import uuid
 from collections.abc import Callable
 from concurrent.futures.process import BrokenProcessPool
+from contextlib import suppress
 from dataclasses import dataclass
-from multiprocessing import get_context
 from typing import TYPE_CHECKING, Any, Final, Literal
 
-from teachpath.errors import (
-    Cancelled,
-    Conflict,
-    LearningFailed,
-    PathRefused,
-    QueueFull,
-    StorageUnavailable,
-    TeachpathError,
-)
-from teachpath.io.documents import to_document
+from teachpath.errors import Cancelled, Conflict, QueueFull, StorageUnavailable, TeachpathError
 from teachpath.io.wire import encode_progress
+from teachpath.jobs.idempotency import begun_by, job_id
+from teachpath.jobs.job_faults import disk_sentence, evidence_of
 from teachpath.jobs.job_lane import JobLane, LaneLimits
 from teachpath.jobs.settings import JobSettings
+from teachpath.jobs.shared_jobs import OwnJobs, SharedJobs
 from teachpath.logs import continue_request, request_number
+from teachpath.process_server import CONTEXT
 from teachpath.records import Job, JobState
 from teachpath_proto.keys import Keys
 
@@ -84,7 +78,7 @@ class Jobs:
         self._settings = settings
         self._kinds = kinds
         self._on_finished = on_finished
-        self._progress = get_context("spawn").Queue()
+        self._progress = CONTEXT.Queue()
         limits = {
             "learning": LaneLimits(settings.max_memory, settings.max_duration),
             "files": LaneLimits(settings.max_file_memory, settings.max_file_duration),
@@ -93,21 +87,32 @@ class Jobs:
         self._lock = threading.Lock()
         self._requests: dict[str, str] = {}  # numbers of the requests that queued the unfinished jobs
         self._submitters: dict[str, str] = {}  # of the unfinished jobs: who submitted them
+        self._queued: set[str] = set()  # ids that wait in a lane
+        own = OwnJobs(
+            list(kinds), self._running, self._break_off, self._enqueue, self._on_changed_elsewhere, self._forget_ended
+        )
+        self._shared = SharedJobs(store, own)
         self._reporter = threading.Thread(target=self._pass_on_progress, name="job progress", daemon=True)
 
     def start(self) -> None:
         """Begin to work; jobs that an earlier service left unfinished come first."""
         for job in self._store.jobs(unfinished=True):
             self._submitters[job.id] = ""
-            self._lane(job).put(job.id)
+            if job.kind in self._kinds:
+                self._enqueue(job)
         self._reporter.start()
-        self._lanes["learning"].start([kind.work for kind in self._kinds.values() if kind.lane == "learning"])
-        self._lanes["files"].start()
+        self._shared.start()
+        for lane in self._lanes.values():
+            lane.start()
 
     def stop(self) -> None:
-        """Stop at once; a running job stays unfinished in the store and is run again at the next start."""
+        """Stop at once; a running job waits in the store for the next start, or for another service."""
+        self._shared.stop()
+        under_way = self._running()
         for lane in self._lanes.values():
             lane.stop()
+        with suppress(StorageUnavailable):
+            self._store.claims.give_back(under_way)
         self._progress.put(None)
         if self._reporter.ident is not None:
             self._reporter.join(timeout=10.0)
@@ -127,19 +132,46 @@ class Jobs:
                     f"{count} {whose}, limit {limit} (jobs.{setting}); wait until one has ended, or cancel some"
                 )
 
-    def submit(self, task: str, kind: str, request: dict[str, Any], submitter: str = "") -> Job:
+    def submit(
+        self,
+        task: str,
+        kind: str,
+        request: dict[str, Any],
+        submitter: str = "",
+        *,
+        who: str = "",
+        idempotency_key: str = "",
+    ) -> Job:
         """Queue a job and return it.
+
+        Args:
+            task: that it is of.
+            kind: of work.
+            request: what that kind takes.
+            submitter: whose jobs are counted together.
+            who: ordered it, for whoever reads of it.
+            idempotency_key: of the order; the job that it has begun before is returned.
 
         Raises:
             QueueFull: too many jobs wait, or too many of this submitter.
+            Conflict: the key is of another order.
         """
+        if known := begun_by(self._store, task, kind, request, submitter, idempotency_key):
+            return known
         self.require_room(submitter)
-        key = f"{kind}-{uuid.uuid4().hex[:12]}"
-        job = Job(key, task, kind, request, JobState.QUEUED, 0.0, "", "", 0, time.time_ns(), 0)
-        self._store.add_job(job)
+        key = job_id(task, kind, submitter, idempotency_key)
+        station, now = self._store.services.station, time.time_ns()
+        job = Job(key, task, kind, request, JobState.QUEUED, 0.0, "", "", 0, now, 0, who=who, station=station)
         with self._lock:
             self._submitters[key], self._requests[key] = submitter, request_number()
-        self._lane(job).put(key)
+        try:
+            self._store.add_job(job)
+        except BaseException:
+            if known := begun_by(self._store, task, kind, request, submitter, idempotency_key):
+                return known  # the same order came at the same time
+            self._forget(key)
+            raise
+        self._enqueue(job)
         return job
 
     def cancel(self, key: str) -> Job:
@@ -148,18 +180,57 @@ class Jobs:
         if job.state is JobState.RUNNING and key == self._lane(job).running:
             self._lane(job).cancel()
             return self._store.job(key)
-        return self._finish(key, JobState.CANCELLED, "cancelled before it began")
+        cancelled = self._store.claims.cancel(key)
+        if cancelled.finished_ns:
+            self._announce(cancelled)
+        return cancelled
 
     def _lane(self, job: Job) -> JobLane:
         return self._lanes[self._kinds[job.kind].lane]
 
+    def _enqueue(self, job: Job) -> None:
+        with self._lock:
+            if job.id in self._queued or job.id in self._running():
+                return
+            self._queued.add(job.id)
+        self._lane(job).put(job.id)
+
+    def _running(self) -> list[str]:
+        return [lane.running for lane in self._lanes.values() if lane.running]
+
+    def _break_off(self, key: str) -> None:
+        for lane in self._lanes.values():
+            if lane.running == key:
+                lane.cancel()
+
+    def _on_changed_elsewhere(self, key: str) -> None:
+        """Pass on what another service has done with a job of this station, and do what it leaves."""
+        job = self._store.job(key)
+        if job.station != self._store.services.station or job.kind not in self._kinds:
+            return
+        if job.state is JobState.QUEUED:
+            self._enqueue(job)
+        if key in self._submitters or not job.finished_ns:
+            self._announce(job)
+
+    def _forget_ended(self) -> None:
+        unfinished = {job.id for job in self._store.jobs(unfinished=True)}
+        for key in set(self._submitters) - unfinished:
+            self._forget(key)
+
+    def _forget(self, key: str) -> str:
+        """Return the number of the request that queued a job, which counts no longer."""
+        with self._lock:
+            self._submitters.pop(key, None)
+            return self._requests.pop(key, "")
+
     def _run(self, lane: JobLane, key: str) -> None:
+        self._queued.discard(key)
         continue_request(self._requests.get(key, ""))
-        log.info("%s begins", key, extra={"part": LOG_PART})
         try:
             self._process(lane, key)
         except Conflict:
-            return  # cancelled while it was queued
+            return  # it was ended, or taken up, by another service
         except StorageUnavailable as error:
             log.warning("job %s waits for the store: %s", key, error)
             if not lane.wait_for_stop(STORE_INTERVAL):
@@ -169,8 +240,10 @@ class Jobs:
                 self._finish(key, JobState.FAILED, f"this is a fault of teachpath, please report it: {error!r}")
 
     def _process(self, lane: JobLane, key: str) -> None:
-        attempt = max(self._store.job(key).attempt, 1)
-        job = self._store.set_job(key, state=JobState.RUNNING.value, attempt=attempt)
+        job = self._store.claims.claim(key)
+        if job is None:
+            return  # it was cancelled while it was queued, or another service does it
+        log.info("%s begins", key, extra={"part": LOG_PART})
         kind = self._kinds[job.kind]
         try:
             kind.finish(job, lane.work(kind.work, kind.prepare(job)))
@@ -181,9 +254,9 @@ class Jobs:
         except StorageUnavailable:
             raise
         except TeachpathError as error:
-            self._finish(key, JobState.FAILED, str(error), **_evidence(error))
+            self._finish(key, JobState.FAILED, str(error), **evidence_of(error))
         except OSError as error:
-            self._finish(key, JobState.FAILED, _disk_sentence(error))
+            self._finish(key, JobState.FAILED, disk_sentence(error))
         except BrokenProcessPool:
             if not lane.is_stopping:
                 self._count_crash(lane, job)
@@ -203,9 +276,7 @@ class Jobs:
 
     def _announce(self, job: Job) -> None:
         if job.finished_ns:
-            with self._lock:
-                self._submitters.pop(job.id, None)
-                request = self._requests.pop(job.id, "")
+            request = self._forget(job.id)
             said = job.outcome or job.message
             log.info("%s %s: %s", job.id, job.state, said, extra={"part": LOG_PART, "request": request})
             self._kinds[job.kind].clean_up(job)
@@ -222,18 +293,3 @@ class Jobs:
             except (Conflict, StorageUnavailable):
                 continue  # ended meanwhile; or the next report is stored
             self._bus.publish(self._keys.job(key), encode_progress(job))
-
-
-def _disk_sentence(error: OSError) -> str:
-    from teachpath.io.store.faults import storage_fault  # beside a store only, as above
-
-    return str(storage_fault(error, "the data folder") or f"this is a fault of teachpath, please report it: {error!r}")
-
-
-def _evidence(error: TeachpathError) -> dict[str, Any]:
-    """Return the records that an error carries, as a job keeps them."""
-    if isinstance(error, PathRefused) and error.failure is not None:
-        return {"failure": to_document(error.failure)}
-    if isinstance(error, LearningFailed):
-        return {"demonstration": error.demonstration}
-    return {}

@@ -24,7 +24,7 @@ class LimitedProcess:
 
     def __init__(self, settings: JobSettings) -> None:
         self._settings = settings
-        self._pool = KillablePool(worker.init_limited, settings.max_file_memory)
+        self._pool = KillablePool(worker.init_limited, settings.max_file_memory, part="reader")
 
     def call(self, function: Callable[..., T], *arguments: Any) -> T:
         """Return what a function returns; blocks, so call it on a thread.

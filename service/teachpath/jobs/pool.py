@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-import signal
 import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from concurrent.futures import Future, ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
-from contextlib import contextmanager
-from multiprocessing import get_context
+from multiprocessing.connection import Connection
 from typing import Any, TypeVar
+
+from teachpath.jobs.process_log import ProcessLog, write_to_service
+from teachpath.logs import continue_request, request_number
+from teachpath.process_server import CONTEXT, process_start
 
 T = TypeVar("T")
 
@@ -17,16 +19,19 @@ T = TypeVar("T")
 class KillablePool:
     """Runs calls in a process of its own, in their order; the process starts with the first call.
 
-    Only work without side effects belongs here: what a killed process was at is lost.
+    Only work without side effects belongs here: what a killed process was at is lost. What it logs stands in the log of
+    the service, under the number of the request that its call belongs to.
 
     Args:
         initializer: called first in every new process.
         initargs: arguments of the initializer.
+        part: of the station, in the log.
     """
 
-    def __init__(self, initializer: Callable[..., object], *initargs: Any) -> None:
+    def __init__(self, initializer: Callable[..., object], *initargs: Any, part: str = "worker") -> None:
         self._initializer = initializer
         self._initargs = initargs
+        self._part = part
         self._lock = threading.Lock()
         self._executor: ProcessPoolExecutor | None = None
         self._closed = False
@@ -43,10 +48,17 @@ class KillablePool:
         with self._lock:
             if self._closed:
                 raise BrokenProcessPool("the pool is closed")
+            log = None
             if self._executor is None:
-                self._executor = ProcessPoolExecutor(1, get_context("spawn"), self._initializer, self._initargs)
-            with _without_interrupts():
-                return self._executor.submit(function, *arguments)
+                log = ProcessLog(self._part)
+                initargs = (log.writer, self._part, self._initializer, self._initargs)
+                self._executor = ProcessPoolExecutor(1, CONTEXT, _init_process, initargs)
+            try:
+                with process_start():
+                    return self._executor.submit(_call, request_number(), function, arguments)
+            finally:
+                if log is not None:  # the process has begun with its first call
+                    log.leave_writer()
 
     def close(self) -> None:
         """Kill the process, and let no other start."""
@@ -67,11 +79,11 @@ class KillablePool:
             process.join()
 
 
-@contextmanager
-def _without_interrupts() -> Iterator[None]:
-    """Let a process that starts meanwhile never see Ctrl-C, which goes to all of a terminal before it can ignore it."""
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
-    try:
-        yield
-    finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+def _init_process(writer: Connection, part: str, initializer: Callable[..., object], initargs: tuple[Any, ...]) -> None:
+    write_to_service(writer, part)
+    initializer(*initargs)
+
+
+def _call(number: str, function: Callable[..., T], arguments: tuple[Any, ...]) -> T:
+    continue_request(number)
+    return function(*arguments)

@@ -1,17 +1,19 @@
 """What runs in the process of the jobs: the work itself, which reports its progress and can be cancelled.
 
-The service only names these functions. What they call is loaded in this process, with the first job.
+The service only names these functions. What they call is loaded in this process, or before it is forked
+(`process_server.py`).
 """
 
 from __future__ import annotations
 
+import logging
 import os
 import resource
 import signal
 import threading
 import time
 import uuid
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass
 from multiprocessing import Queue, parent_process
@@ -19,12 +21,14 @@ from multiprocessing.synchronize import Event
 from pathlib import Path
 from typing import Any
 
-from teachpath.errors import Cancelled
+from teachpath.errors import Cancelled, TeachpathError
 from teachpath.learning.settings import LearningSettings
 from teachpath.motion.arm.model import Arm
 from teachpath.motion.planning.signature import CalibrationScope, SigningKey, sign_plan
 from teachpath.motion.settings import MotionSettings
 from teachpath.records import Learned, LearnedPath, Plan, Scene, Trajectory
+
+log = logging.getLogger("teachpath")
 
 Progress = Callable[[float, str], None]
 
@@ -45,9 +49,13 @@ def init_worker(progress: Queue[tuple[str, float, str]], cancel: Event, memory_l
 
 
 def init_limited(memory_limit: int) -> None:
-    """Prepare this process: it ends with its parent, lets others go first, and knows its limit of memory [bytes]."""
+    """Prepare this process: it ends with its parent, lets others go first, and knows its limit of memory [bytes].
+
+    What it writes is for its user alone.
+    """
     global _memory_limit
     _memory_limit = memory_limit
+    os.umask(0o077)
     exit_with_parent()
     lower_priority()
 
@@ -76,12 +84,8 @@ def _exit_with_parent() -> None:
     os._exit(1)
 
 
-def warm_up(_work: Sequence[Callable[..., Any]]) -> None:
-    """Load the libraries that the first job needs; the modules of its work are loaded as it is received."""
-    from teachpath.learning.relearn import relearn
-    from teachpath.motion.planning.plan import plan
-
-    del relearn, plan
+def begin() -> None:
+    """Do nothing: with its first call this process begins."""
 
 
 def work(key: str, function: Callable[..., Any], inputs: tuple[Any, ...]) -> Any:
@@ -102,7 +106,16 @@ def work(key: str, function: Callable[..., Any], inputs: tuple[Any, ...]) -> Any
             _progress_queue.put((key, fraction, sentence))
             reported, due = sentence, now + PROGRESS_INTERVAL
 
-    return function(*inputs, progress=progress)
+    begun = time.monotonic()
+    try:
+        made = function(*inputs, progress=progress)
+    except (TeachpathError, MemoryError, OSError):
+        raise  # a refusal, which the service tells
+    except Exception:
+        log.exception("%s failed; please report this fault of teachpath", key)
+        raise
+    log.info("%s took %.2f s of its process", key, time.monotonic() - begun)
+    return made
 
 
 def limit_memory() -> None:

@@ -105,43 +105,70 @@ def learn_partition(
     names, inputs = tuple(demonstrations), {name: fingerprint(shown) for name, shown in demonstrations.items()}
     if ends is not None:
         demonstrations, courses = ends.brought(demonstrations), ends.courses
-    members = members_by_label(names, grouping.labels)
-    choosing = Subprogress(progress, 0.0, 0.75)
-    stops = {names[number]: stop for number, stop in grouping.incomplete.items()}
-    if settings.mode == "default":
-        on_step = StepCounter(choosing, step_count([len(ids) for ids in members]), SELECTION_MESSAGE)
-        clusters = tuple(
-            _select_complete(index + 1, ids, demonstrations, stops, settings, on_step)
-            for index, ids in enumerate(members)
-        )
-    else:
-        on_step = StepCounter(choosing, paper_step_count(len(members), settings.repeats), SELECTION_MESSAGE)
-        clusters = select_as_paper(dict(zip(names, courses, strict=True)), members, settings, on_step=on_step)
+    clusters = _selected(demonstrations, courses, grouping, settings, Subprogress(progress, 0.0, 0.75))
+    fitted = _fitted(clusters, demonstrations, settings, Subprogress(progress, 0.75, 1.0))
     central = representatives(courses, _labels_of_complete(grouping))
-    found = _fitted(clusters, demonstrations, settings, Subprogress(progress, 0.75, 1.0))
-    paths = tuple(path for path, _ in found)
-    described = [
-        replace(cluster, representative=names[member], spread=spread, ambiguous=doubt)
-        for cluster, (_, spread), member, doubt in zip(clusters, found, central, ambiguities(grouping), strict=True)
-    ]
-    incomplete = [f"demonstration {name} {describe(stop)}" for name, stop in stops.items()]
-    told = []
+    notes = _partition_notes(names, grouping, ends)
     if settings.mode == "default":
-        moving = moving_ends(courses[central], min_separation=settings.min_separation) if ends is None else []
-        told = [*moving, *copies(inputs)]
-    progress(1.0, f"learned {len(paths)} {'path' if len(paths) == 1 else 'paths'}")
+        notes += moving_ends(courses[central], min_separation=settings.min_separation) if ends is None else []
+        notes += copies(inputs)
+    progress(1.0, f"learned {len(fitted)} {'path' if len(fitted) == 1 else 'paths'}")
     return Learned(
         mode=settings.mode,
         demonstrations=names,
         linkage=grouping.linkage,
         threshold=grouping.threshold,
-        clusters=tuple(described),
-        paths=paths,
-        notes=tuple(note for note in (ends.note if ends else "", grouping.note, *incomplete, *told) if note),
+        clusters=_described(clusters, fitted, [names[number] for number in central], ambiguities(grouping)),
+        paths=tuple(path for path, _ in fitted),
+        notes=tuple(notes),
         settings=asdict(settings),
         versions=dict(LIBRARY_VERSIONS),
         inputs=inputs,
     )
+
+
+def _selected(
+    demonstrations: Mapping[str, Trajectory],
+    courses: Array,
+    grouping: Partition,
+    settings: LearningSettings,
+    progress: Progress,
+) -> tuple[Cluster, ...]:
+    """Select in every cluster, as the mode does."""
+    names = tuple(demonstrations)
+    members = members_by_label(names, grouping.labels)
+    if settings.mode != "default":
+        on_step = StepCounter(progress, paper_step_count(len(members), settings.repeats), SELECTION_MESSAGE)
+        return select_as_paper(dict(zip(names, courses, strict=True)), members, settings, on_step=on_step)
+    on_step = StepCounter(progress, step_count([len(ids) for ids in members]), SELECTION_MESSAGE)
+    stops = _stops(names, grouping)
+    return tuple(
+        _select_complete(index, ids, demonstrations, stops, settings, on_step) for index, ids in enumerate(members, 1)
+    )
+
+
+def _described(
+    clusters: Sequence[Cluster],
+    fitted: Sequence[tuple[LearnedPath, Array]],
+    central: Sequence[str],
+    doubts: Sequence[str],
+) -> tuple[Cluster, ...]:
+    """Return the clusters with their central demonstrations, the tubes around their paths, and what is doubtful."""
+    return tuple(
+        replace(cluster, representative=name, spread=spread, ambiguous=doubt)
+        for cluster, (_, spread), name, doubt in zip(clusters, fitted, central, doubts, strict=True)
+    )
+
+
+def _partition_notes(names: Sequence[str], grouping: Partition, ends: CommonEnds | None) -> list[str]:
+    told = [ends.note if ends else "", grouping.note]
+    told += [f"demonstration {name} {describe(stop)}" for name, stop in _stops(names, grouping).items()]
+    return list(filter(None, told))
+
+
+def _stops(names: Sequence[str], grouping: Partition) -> dict[str, Stop]:
+    """Return where incomplete demonstrations stop, by their ids."""
+    return {names[number]: stop for number, stop in grouping.incomplete.items()}
 
 
 def _select_complete(

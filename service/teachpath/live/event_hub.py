@@ -15,6 +15,7 @@ from typing import Any, Final
 Document = dict[str, Any]
 Key = tuple[str, str]
 RESYNC_TOPIC: Final = "all"  # of the first event, and of the one after an overflow: read everything anew
+PRIVATE: Final = frozenset({"access_tokens", "people", "sessions"})  # the id of a session's row is its secret's hash
 MAX_PENDING_CHANGES: Final = 256  # changed resources that wait for one subscriber
 
 
@@ -95,8 +96,9 @@ class EventHub:
             self._subscribers.discard(subscriber)
 
     def publish_change(self, topic: str, key: str) -> None:
-        """Publish that a resource has changed."""
-        self._publish((topic, key), {})
+        """Publish that a resource has changed; of who signs in, nobody hears."""
+        if topic not in PRIVATE:
+            self._publish((topic, key), {})
 
     def publish_state(self, topic: str, key: str, now: Document | None) -> None:
         """Publish the state `now` of a thing, to later subscribers too; None: it has gone."""

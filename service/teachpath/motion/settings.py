@@ -12,11 +12,20 @@ from annotated_types import Ge, Gt, Le, Len
 class MotionSettings:
     """How paths are planned."""
 
+    # arm that was added to the data folder (teachpath arm add), by its name; left out = the Puma 560
+    arm: str | None = None
     # published table of the Puma 560; they differ in lengths (the arm's offset by 25 mm), inertia and friction
     variant: Literal["corke-armstrong", "armstrong-khatib-burdick", "fu-gonzalez-lee", "corke-1996"] = "corke-armstrong"
-    # [m] from the flange to the tool centre point, which follows the path, on the axis of joint 6; what reaches beyond
-    # the gripper's fingers (0.135) is checked for collisions as a rod 22 mm thick
+    # [m] from where the gripper sits to the tool centre point, which follows the path; what reaches beyond its fingers
+    # (0.135) is checked for collisions as a rod 22 mm thick
     tool_length: Annotated[float, Ge(0.05), Le(0.5)] = 0.13
+    # [m] tool centre point in the flange's frame, whose z is the axis of joint 6; left out = on that axis, tool_length
+    # ahead. The gripper sits tool_length behind it, and what lies between flange and gripper is checked as a straight
+    # adapter 40 mm thick
+    tool_position: Annotated[tuple[Annotated[float, Ge(-0.5), Le(0.5)], ...], Len(3, 3)] | None = None
+    # orientation of the tool in the flange's frame (w, x, y, z): its z points out of the gripper, along y the fingers
+    # close; left out = as the flange
+    tool_orientation: Annotated[tuple[Annotated[float, Ge(-1), Le(1)], ...], Len(4, 4)] | None = None
     # [kg] of what the flange carries besides the gripper and the scene's object, e.g. a camera or another tool
     payload_mass: Annotated[float, Ge(0), Le(10)] = 0.0
     # [m] its centre of mass in the flange's frame: z along the axis of joint 6, y as the fingers close

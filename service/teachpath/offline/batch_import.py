@@ -6,26 +6,23 @@ once. An import that was killed goes on from there when the same files are impor
 
 from __future__ import annotations
 
-import fcntl
 import hashlib
 import shutil
-import uuid
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from teachpath.errors import Conflict, OverLimit, UnusableInput, UnusableRecording
+from teachpath.errors import OverLimit, UnusableInput, UnusableRecording
 from teachpath.io.documents import decode, encode
 from teachpath.io.private_files import write_private
 from teachpath.io.store.recordings import RECORDINGS
 from teachpath.io.store.store import Store
 from teachpath.offline.import_job import PREPARED, UPLOAD, ImportOrder, PreparedImport, prepare_import
+from teachpath.offline.staging import STAGING, begin_session, locked_staging
 from teachpath.records import Demonstration, Task
 
-STAGING = "imports"  # in the folder of the data
-RESULT, SESSION = "made.json", "session"
+RESULT = "made.json"
 
 # `call(function, *arguments)` returns what the function returns, perhaps from another process.
 Call = Callable[..., Any]
@@ -63,7 +60,6 @@ def import_batch(
     *,
     call: Call,
     progress: Callable[[float, str], None] = lambda fraction, what: None,
-    dry_run: bool = False,
 ) -> list[FileOutcome]:
     """Import files into a task, all or none.
 
@@ -74,7 +70,6 @@ def import_batch(
         order: what all of them have in common; `key`, `folder` and `name` are those of each file.
         call: calls what reads a file.
         progress: called with the share of the work that is done, and a sentence.
-        dry_run: make the demonstrations, and store none of them.
 
     Returns:
         What became of each file. If one is refused, nothing is stored.
@@ -84,19 +79,18 @@ def import_batch(
         Conflict: the same import is under way elsewhere.
     """
     digests = [_digest(file) for file in files]
-    common = f"{dry_run} {replace(order, key='', folder=Path(), name='')!r}"
+    common = repr(replace(order, key="", folder=Path(), name=""))
     key = hashlib.sha256("\n".join([common, *(file.name for file in files), *digests]).encode()).hexdigest()[:16]
     staging, summary = data_dir / STAGING / key, data_dir / STAGING / f"{key}.json"
     staging.mkdir(parents=True, exist_ok=True)
-    with _locked(staging):
+    with locked_staging(staging):
         if summary.exists():  # of an import that was killed after all was stored
             outcomes = list(decode(_Summary, summary.read_bytes()).outcomes)
         else:
             outcomes = _prepare_all(staging, files, digests, order, call, progress)
-            refused = any(outcome.refusal for outcome in outcomes)
-            if refused or dry_run:
+            if any(outcome.refusal for outcome in outcomes):
                 shutil.rmtree(staging)
-                return [replace(outcome, made=()) for outcome in outcomes] if refused else outcomes
+                return [replace(outcome, made=()) for outcome in outcomes]
             progress(0.95, "taking over")
             outcomes = _store_all(store, staging, order, outcomes)
             write_private(summary, encode(_Summary(tuple(outcomes))).decode())
@@ -113,24 +107,6 @@ def _digest(file: Path) -> str:
         raise UnusableRecording(f"cannot read {file}: {error.strerror}") from None
 
 
-@contextmanager
-def _locked(staging: Path) -> Iterator[None]:
-    with (staging / "lock").open("a") as file:
-        try:
-            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except OSError:
-            raise Conflict("the same files are being imported by another process; wait for it") from None
-        yield
-
-
-def _session(staging: Path) -> str:
-    """Return the name of this import, which is the same when it goes on after it was killed."""
-    file = staging / SESSION
-    if not file.exists():
-        write_private(file, uuid.uuid4().hex)
-    return file.read_text()
-
-
 def _prepare_all(
     staging: Path,
     files: Sequence[Path],
@@ -139,7 +115,7 @@ def _prepare_all(
     call: Call,
     progress: Callable[[float, str], None],
 ) -> list[FileOutcome]:
-    session = _session(staging)
+    session = begin_session(staging, order.task, [file.name for file in files]).id
     outcomes = []
     for number, (file, digest) in enumerate(zip(files, digests, strict=True)):
         progress(0.9 * number / len(files), f"{file.name}, {number + 1} of {len(files)}")

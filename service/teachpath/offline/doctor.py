@@ -6,6 +6,7 @@ any moment and run again. Nothing is deleted but temporary files: what is replac
 
 from __future__ import annotations
 
+import shutil
 from functools import partial
 from pathlib import Path
 
@@ -18,9 +19,12 @@ from teachpath.offline.findings import FaultKind, Finding
 from teachpath.offline.leftovers import find_leftovers, remove_leftover
 from teachpath.offline.lock import StationLock
 from teachpath.offline.row_faults import check_rows
+from teachpath.offline.staging import AbandonedImport, abandoned_imports
 from teachpath.offline.torn_recordings import SALVAGED, set_aside
 from teachpath.recording.settings import RecordingSettings
 from teachpath.records import Scene
+
+ABANDONED = "import the same files again, and it goes on; or remove it: teachpath prune --older-than 0"
 
 
 def examine(
@@ -51,6 +55,7 @@ def examine(
         examination = Examination(store, settings, scenes, data_dir, mend, default_scene)
         _check_database(examination)
         _check_leftovers(examination)
+        _check_imports(examination)
         _check_motions(examination)
         examination.read()
         check_rows(examination)
@@ -76,6 +81,19 @@ def _check_leftovers(examination: Examination) -> None:
 def _remove(path: Path) -> Repair:
     remove_leftover(path)
     return Repair("removed")
+
+
+def _check_imports(examination: Examination) -> None:
+    for each in abandoned_imports(examination.data_dir):
+        name = each.folder.relative_to(examination.data_dir).as_posix()
+        repair = partial(_clear, each) if each.is_stored else None
+        examination.report(FaultKind.ABANDONED, name, each.fault, repair, advice=ABANDONED)
+
+
+def _clear(each: AbandonedImport) -> Repair:
+    shutil.rmtree(each.folder, ignore_errors=True)
+    each.summary.unlink(missing_ok=True)
+    return Repair("removed what it left")
 
 
 def _check_motions(examination: Examination) -> None:

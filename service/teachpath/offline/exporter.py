@@ -19,6 +19,7 @@ from teachpath.jobs import worker
 from teachpath.jobs.pool import KillablePool
 from teachpath.jobs.settings import JobSettings
 from teachpath.offline.exporting import export_demonstrations
+from teachpath.offline.task_archive import SUFFIX
 from teachpath.recorder.annotations import Annotations
 from teachpath.recording.settings import RecordingSettings
 from teachpath.records import Demonstration, Scene
@@ -40,7 +41,7 @@ class Exporter:
 
     def __init__(self, source: ExportSource, settings: JobSettings) -> None:
         self._source, self._settings = source, settings
-        self._pool = KillablePool(worker.init_limited, settings.max_file_memory)
+        self._pool = KillablePool(worker.init_limited, settings.max_file_memory, part="exporter")
         self._waiting: Counter[str] = Counter()  # exports by who asked for them
 
     async def write(
@@ -57,8 +58,10 @@ class Exporter:
         self._require_room(submitter)
         self._waiting[submitter] += 1
         try:
-            future = self._pool.submit(_write, self._source, list(demonstrations), kind, folder, zipped)
-            return await self._result(future)
+            begun = asyncio.to_thread(
+                self._pool.submit, _write, self._source, list(demonstrations), kind, folder, zipped
+            )
+            return await self._result(await begun)  # a process that begins may be waited for
         except BrokenProcessPool:
             self._pool.kill()
             raise Unreachable("the process that writes exports died; try again") from None
@@ -72,13 +75,13 @@ class Exporter:
             self._pool.kill()
             raise OverLimit(
                 f"the export takes over {self._settings.max_file_duration:g} s, the limit (jobs.max_file_duration); "
-                "export fewer demonstrations, or use: teachpath export"
+                "export fewer demonstrations, or use: teachpath export demonstrations"
             ) from None
         except MemoryError:
             self._pool.kill()
             raise OverLimit(
                 f"the export needs over {self._settings.max_file_memory} bytes of memory, the limit "
-                "(jobs.max_file_memory); export fewer demonstrations, or use: teachpath export"
+                "(jobs.max_file_memory); export fewer demonstrations, or use: teachpath export demonstrations"
             ) from None
         except asyncio.CancelledError:
             if not future.cancelled():
@@ -108,7 +111,7 @@ def _write(source: ExportSource, demonstrations: list[Demonstration], kind: str,
         written = export_demonstrations(store, demonstrations, kind, folder / FILES, trajectory=trajectory)
     finally:
         store.close()
-    if not zipped:
+    if not zipped or written[0].suffix == SUFFIX:
         return written[0]
     with zipfile.ZipFile(folder / "export.zip", "w", zipfile.ZIP_DEFLATED) as archive:
         for file in written:

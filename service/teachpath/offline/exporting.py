@@ -1,4 +1,4 @@
-"""Demonstrations become files: MCAP, CSV, or a LeRobot dataset; whole or not at all."""
+"""Demonstrations become files: MCAP, CSV, a LeRobot dataset, or an archive of the task; whole or not at all."""
 
 from __future__ import annotations
 
@@ -15,9 +15,10 @@ from teachpath.errors import Conflict, NotFound, UnusableInput
 from teachpath.io.sample_files import write_samples
 from teachpath.io.store.recordings import amended
 from teachpath.io.store.store import Store
+from teachpath.offline import task_archive
 from teachpath.records import Demonstration, Trajectory
 
-FORMATS = ("csv", "mcap", "lerobot", "trajectory")
+FORMATS = ("csv", "mcap", "lerobot", "trajectory", "archive")
 SUFFIXES = {"csv": ".csv", "mcap": ".mcap", "trajectory": "-trajectory.csv"}
 PART = ".part"
 Progress = Callable[[float, str], None]
@@ -50,8 +51,9 @@ def export_demonstrations(
     """Write demonstrations of one task into a folder, which is made when it is missing, and return what was written.
 
     csv and mcap make a file each, `TASK-NUMBER.csv`, with every sample; trajectory makes a CSV file of the object's
-    motion, as `trajectory` gives it; lerobot makes one dataset, the folder `TASK`. What is being written ends in
-    `.part` and is renamed when it is whole; what is there already is never overwritten.
+    motion, as `trajectory` gives it; lerobot makes one dataset, the folder `TASK`, and archive one file, `TASK.zip`
+    (`task_archive`). What is being written ends in `.part` and is renamed when it is whole; what is there already is
+    never overwritten.
 
     Raises:
         UnusableInput: an unknown format, a folder that cannot be written, or pyarrow is missing.
@@ -65,6 +67,9 @@ def export_demonstrations(
         into.mkdir(parents=True, exist_ok=True)
         if kind == "lerobot":
             return [_whole(into / first.task, lambda part: _write_lerobot(store, demonstrations, part, progress))]
+        if kind == "archive":
+            archive = into / f"{first.task}{task_archive.SUFFIX}"
+            return [_whole(archive, lambda part: task_archive.write_archive(store, demonstrations, part, progress))]
         written = []
         for done, d in enumerate(demonstrations):
             progress(done / len(demonstrations), f"demonstration {d.number}")

@@ -10,11 +10,12 @@ import numpy as np
 from teachpath.errors import UnusableRecording
 from teachpath.io.documents import decode_demonstration
 from teachpath.io.import_settings import ImportSettings
+from teachpath.io.readers.bags import is_bag
 from teachpath.io.readers.contract import ReadOptions, Track
-from teachpath.io.readers.registry import read_motions
+from teachpath.io.readers.registry import read_motions, recognized
 from teachpath.io.sample_files import holds_samples, read_samples
 from teachpath.io.store.recordings import read_facts_stream, salvage_stream
-from teachpath.offline.track_samples import PhaseMarks, samples_of
+from teachpath.offline.track_samples import MotionMarks, PhaseMarks, samples_of
 from teachpath.recorder.annotations import MARKS
 from teachpath.recording.settings import RecordingSettings
 from teachpath.records import Calibration, Demonstration, Sample
@@ -29,7 +30,8 @@ class Source:
     Attributes:
         kind: mcap (a recording of ours), or the name of a reader; empty: what the file has.
         options: what the user says of its format.
-        marks: what the user says of its phases.
+        marks: what the user says of the phases of its motions.
+        motion_marks: of single motions, before those.
     """
 
     name: str
@@ -37,6 +39,7 @@ class Source:
     kind: str = ""
     options: ReadOptions = field(default_factory=ReadOptions)
     marks: PhaseMarks = field(default_factory=PhaseMarks)
+    motion_marks: tuple[MotionMarks, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,7 +47,9 @@ class FileSamples:
     """What a file holds: its motions, and what it says of them when it was written here.
 
     Attributes:
+        format: of the file: mcap, or the name of a reader.
         understood: what was taken for time, units and phases.
+        choices: names of the bodies, markers or topics of which one was read; empty: there is no choice.
         dwell_times: of each motion; not empty: it is not sure which dwells are taking and putting.
         notes: of each motion, for the operator.
     """
@@ -53,9 +58,16 @@ class FileSamples:
     calibration: Calibration
     motions: list[list[Sample]]
     stated: Demonstration | None = None
+    format: str = "mcap"
     understood: tuple[str, ...] = ()
+    choices: tuple[str, ...] = ()
     dwell_times: tuple[tuple[float, ...], ...] = ()
     notes: tuple[tuple[str, ...], ...] = ()
+
+    def only(self, motion: int) -> FileSamples:
+        """Return the same with one of its motions, by its number from 1."""
+        one = slice(motion - 1, motion)
+        return replace(self, motions=self.motions[one], dwell_times=self.dwell_times[one], notes=self.notes[one])
 
 
 def read_source(
@@ -67,21 +79,31 @@ def read_source(
         UnusableRecording: it cannot be used; the message names the row and column.
     """
     content, name = source.content, source.name
-    kind = source.kind or ("mcap" if content.startswith(MCAP_MAGIC) or name.endswith(".mcap") else "")
+    kind = source.kind
+    if not kind and not is_bag(content) and (content.startswith(MCAP_MAGIC) or name.endswith(".mcap")):
+        kind = "mcap"
     if kind == "mcap":
         return _read_recording(source, limits)
     if kind in ("", "csv") and holds_samples(content):
         stated, samples = read_samples(content, name, limits)
-        return FileSamples(stated.source, stated.calibration, [samples], _believed(stated, samples, name))
+        return FileSamples(stated.source, stated.calibration, [samples], _believed(stated, samples, name), "csv")
     found = read_motions(content, name, kind, source.options, limits)
     marks = replace(source.marks, whole=True) if found.whole_motion else source.marks
-    motions = [samples_of(track, name, marks, settings) for track in found.tracks]
+    count = len(found.tracks)
+    own = {each.motion: each for each in source.motion_marks if each.says_anything}
+    if unknown := [number for number in own if not 1 <= number <= count]:
+        raise UnusableRecording(f"{name}: motion {unknown[0]} is marked, of {count} that it has")
+    motions = [
+        samples_of(track, name, own.get(number, marks), settings) for number, track in enumerate(found.tracks, 1)
+    ]
     phases = motions[0].phases if len(motions) == 1 else f"{len(motions)} motions, the first: {motions[0].phases}"
     return FileSamples(
         name,
         calibration,
         [motion.samples for motion in motions],
+        format=kind or recognized(content, name),
         understood=(*found.understood, _extent(found.tracks[0]), phases),
+        choices=found.choices,
         dwell_times=tuple(motion.dwell_times for motion in motions),
         notes=tuple(motion.notes for motion in motions),
     )

@@ -12,6 +12,7 @@ class FaultKind(StrEnum):
 
     DATABASE = "database"  # the database contradicts itself
     LEFTOVER = "leftover"  # a temporary file of a process that was killed
+    ABANDONED = "abandoned"  # an import that was killed
     TORN = "torn"  # a recording that was never finished
     ORPHANED = "orphaned"  # a finished recording without a row
     DOUBLED = "doubled"  # a second copy of a recording, or a second row of one

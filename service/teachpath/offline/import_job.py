@@ -1,53 +1,64 @@
-"""Imports as jobs: an uploaded file becomes demonstrations in a folder of its own; the service takes them over."""
+"""Imports as jobs: uploaded files become demonstrations, each in a folder of its own; the service takes them over."""
 
 from __future__ import annotations
 
 import itertools
 import shutil
 import uuid
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from teachpath.errors import NotFound
+from teachpath.errors import NotFound, UnusableInput, UnusableRecording
 from teachpath.io.import_settings import ImportSettings
 from teachpath.io.readers.contract import ReadOptions
 from teachpath.io.store.settings import StoreSettings
 from teachpath.io.store.store import Store
-from teachpath.offline.file_samples import Source, read_source
+from teachpath.offline.file_samples import FileSamples, Source, read_source
 from teachpath.offline.importing import import_samples
-from teachpath.offline.track_samples import PhaseMarks
+from teachpath.offline.track_samples import MotionMarks, PhaseMarks
 from teachpath.recording.settings import RecordingSettings
-from teachpath.records import Calibration, Demonstration, Scene
+from teachpath.records import Calibration, Demonstration, Scene, Trajectory
 
 UPLOAD, PREPARED = "upload", "prepared"  # in the folder of an import: the file, and what was made of it
 
 
-@dataclass(frozen=True, slots=True)
-class ImportRequest:
-    """What a job of kind `import` keeps of its request; `upload` names the folder of the file.
+Progress = Callable[[float, str], None]
 
-    Scene and calibration are those of the task where they are empty.
-    """
+
+@dataclass(frozen=True, slots=True)
+class UploadedFile:
+    """What a job keeps of one file and of how it is read; `upload` names its folder."""
 
     upload: str
     name: str
     format: str = ""
     units: str = ""
     rate: float = 0.0
-    scene: str = ""
-    calibration: str = ""
     time_unit: str = ""
     columns: str = ""
     quaternion: str = ""
     track: str = ""
     marks: PhaseMarks = field(default_factory=PhaseMarks)
-    object_at_grasp: bool = False
+    motion_marks: tuple[MotionMarks, ...] = ()
 
     @property
     def options(self) -> ReadOptions:
-        """What the request says of the format of the file."""
+        """What is said of the format of the file."""
         return ReadOptions(self.units, self.time_unit, self.rate, self.columns, self.quaternion, self.track)
+
+
+@dataclass(frozen=True, slots=True)
+class ImportRequest:
+    """What a job of kind `import` keeps of its request.
+
+    Scene and calibration are those of the task where they are empty.
+    """
+
+    files: tuple[UploadedFile, ...]
+    scene: str = ""
+    calibration: str = ""
+    object_at_grasp: bool = False
 
 
 @dataclass(frozen=True)
@@ -70,6 +81,7 @@ class ImportOrder:
     recording: RecordingSettings
     limits: ImportSettings
     object_at_grasp: bool = False
+    motion_marks: tuple[MotionMarks, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,9 +97,31 @@ class PreparedImport:
     understood: tuple[str, ...] = ()
 
 
-def prepare_import(
-    order: ImportOrder, *, progress: Callable[[float, str], None] = lambda fraction, what: None
-) -> PreparedImport:
+def prepare_imports(
+    orders: Sequence[ImportOrder], *, progress: Progress = lambda fraction, what: None
+) -> list[PreparedImport]:
+    """Make the demonstrations of several files, as `prepare_import`.
+
+    Raises:
+        UnusableRecording: some cannot be used; each is named with its reason.
+    """
+    if len(orders) == 1:
+        return [prepare_import(orders[0], progress=progress)]
+    prepared, refusals = [], []
+    for number, order in enumerate(orders):
+        progress(number / len(orders), f"{order.name}, {number + 1} of {len(orders)}")
+        try:
+            prepared.append(prepare_import(order))
+        except UnusableInput as error:
+            refusals.append(str(error))
+    if refusals:
+        raise UnusableRecording(
+            f"nothing was imported, {len(refusals)} of {len(orders)} files cannot be used: {'; '.join(refusals)}"
+        )
+    return prepared
+
+
+def prepare_import(order: ImportOrder, *, progress: Progress = lambda fraction, what: None) -> PreparedImport:
     """Make the demonstrations of an uploaded file, with their recordings below `order.folder / PREPARED`.
 
     Their numbers, and the places of their recordings, are those of a station that has nothing else.
@@ -99,15 +133,36 @@ def prepare_import(
     prepared = order.folder / PREPARED
     shutil.rmtree(prepared, ignore_errors=True)  # of an attempt whose process died
     progress(0.05, f"reading {order.name}")
+    read = read_upload(order)
+    made = record_upload(order, read, prepared, progress=progress)
+    return PreparedImport(tuple(demonstration for demonstration, _ in made), read.understood)
+
+
+def read_upload(order: ImportOrder) -> FileSamples:
+    """Return what an uploaded file holds; raises as `prepare_import`."""
+    return read_source(
+        Source(order.name, upload_content(order), order.kind, order.options, order.marks, order.motion_marks),
+        order.calibration,
+        order.limits,
+        order.recording,
+    )
+
+
+def upload_content(order: ImportOrder) -> bytes:
+    """Return the bytes of an uploaded file; raises NotFound."""
     try:
-        content = (order.folder / UPLOAD).read_bytes()
+        return (order.folder / UPLOAD).read_bytes()
     except OSError as error:
         raise NotFound(f"the upload of {order.name} cannot be read: {error.strerror}; send it again") from None
-    source = Source(order.name, content, order.kind, order.options, order.marks)
-    store = Store(StoreSettings(data_dir=str(prepared), database="sqlite://"))
+
+
+def record_upload(
+    order: ImportOrder, read: FileSamples, folder: Path, *, progress: Progress = lambda fraction, what: None
+) -> list[tuple[Demonstration, Trajectory]]:
+    """Make demonstrations of what was read from a file, with their recordings in a folder; raises UnusableInput."""
+    store = Store(StoreSettings(data_dir=str(folder), database="sqlite://"))
     try:
-        read = read_source(source, order.calibration, order.limits, order.recording)
-        made = import_samples(
+        return import_samples(
             store,
             order.recording,
             read,
@@ -121,7 +176,6 @@ def prepare_import(
         )
     finally:
         store.close()
-    return PreparedImport(tuple(demonstration for demonstration, _ in made), read.understood)
 
 
 def derived_ids(key: str) -> Callable[[], str]:

@@ -12,8 +12,9 @@ from scipy.spatial.transform import Rotation
 from teachpath.io.lerobot import Dataset, Feature, write_dataset
 from teachpath.io.store.store import Store
 from teachpath.recording.demonstration import carried_numbers, to_world
-from teachpath.recording.phases import GRASP_BUTTON, TransportSpan
+from teachpath.recording.phases import TransportSpan
 from teachpath.records import Array, Demonstration, Sample
+from teachpath_proto.sample_rules import GRASP_BUTTON
 
 RATE = 50  # [Hz] said of demonstrations whose own rate is not known
 

@@ -15,13 +15,14 @@ from teachpath.offline.backup import ASIDE, EXECUTIONS
 from teachpath.offline.file_faults import COPY
 from teachpath.offline.lock import StationLock
 from teachpath.offline.row_faults import DAMAGED
+from teachpath.offline.staging import abandoned_imports
 from teachpath.offline.torn_recordings import SALVAGED
 
 DAY: Final = 86_400.0  # [s]
 
 
 def prune(data: Path, days: float, *, dry_run: bool = False, executions: bool = False) -> list[Path]:
-    """Remove what is older than so many days and return it: what the doctor and a restore have set aside.
+    """Remove what is older than so many days and return it: what doctor and restore set aside, and abandoned imports.
 
     Args:
         data: folder of the station's data.
@@ -42,6 +43,8 @@ def prune(data: Path, days: float, *, dry_run: bool = False, executions: bool = 
             *data.glob(f"{ASIDE}-*"),
             *data.glob(f"{DATABASE}{DATABASE_ASIDE}*"),
         ]
+        abandoned = [path for each in abandoned_imports(data) for path in (each.folder, each.summary)]
+        found += [path for path in abandoned if path.exists()]
         found += (data / EXECUTIONS).glob("*.mcap") if executions else ()
         before = time.time() - days * DAY
         old = sorted(path for path in found if path.stat().st_mtime <= before)

@@ -12,9 +12,9 @@ from teachpath.errors import UnusableRecording
 from teachpath.io.readers.contract import Track
 from teachpath.recording.clock_numbers import number_by_clock, without_stride
 from teachpath.recording.motion_phases import PhaseEvidence, find_motion_phases
-from teachpath.recording.phases import GRASP_BUTTON
 from teachpath.recording.settings import RecordingSettings
 from teachpath.records import Array, Quaternion, Sample, Vector
+from teachpath_proto.sample_rules import GRASP_BUTTON
 
 EPOCH_NS = 10**17  # stamps over it (1973) count from the Unix epoch
 Booleans = NDArray[np.bool_]
@@ -33,6 +33,30 @@ class PhaseMarks:
     grasp: float | None = None
     release: float | None = None
     whole: bool = False
+
+    @property
+    def says_anything(self) -> bool:
+        """Whether anything is said."""
+        return self.whole or self.grasp is not None or self.release is not None
+
+    def where(self, name: str) -> str:
+        """Return the place in a file that it is about."""
+        return name
+
+
+@dataclass(frozen=True, slots=True)
+class MotionMarks(PhaseMarks):
+    """What the user says of the phases of one motion of several.
+
+    Attributes:
+        motion: its number in the file, from 1.
+    """
+
+    motion: int = 1
+
+    def where(self, name: str) -> str:
+        """Return the place in a file that it is about."""
+        return f"{name}, motion {self.motion}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,7 +98,7 @@ def samples_of(track: Track, name: str, marks: PhaseMarks, settings: RecordingSe
     begin = int(track.stamps_ns.min())
     now = time.time_ns()
     shift = 0 if begin > EPOCH_NS else now - begin
-    flexions = track.flexions if track.flexions is not None and not _is_marked(marks) else None
+    flexions = track.flexions if track.flexions is not None and not marks.says_anything else None
     samples = []
     for k, stamp in enumerate(track.stamps_ns.tolist()):
         x, y, z = positions[k].tolist()
@@ -118,10 +142,6 @@ def _last_known(tracked: Booleans) -> NDArray[np.intp]:
     return np.where(last < 0, np.argmax(tracked), last)
 
 
-def _is_marked(marks: PhaseMarks) -> bool:
-    return marks.whole or marks.grasp is not None or marks.release is not None
-
-
 def _closed(
     track: Track, tracked: Booleans, positions: Array, name: str, marks: PhaseMarks, settings: RecordingSettings
 ) -> tuple[Booleans, str, tuple[float, ...]]:
@@ -130,7 +150,7 @@ def _closed(
     times = (track.stamps_ns - track.stamps_ns.min()) * 1e-9
     if marks.whole:
         return np.ones(count, np.bool_), "all of it is the transport, as said", ()
-    if _is_marked(marks):
+    if marks.says_anything:
         return *_marked(times, name, marks), ()
     if track.flexions is not None:
         return np.zeros(count, np.bool_), "phases from the flexions", ()
@@ -141,7 +161,7 @@ def _closed(
     found = find_motion_phases(times[order], positions[order])
     if found.evidence is PhaseEvidence.DWELLS:
         taken, put = times[order[found.grasp]], times[order[found.release - 1]]
-        words = f"taken at {taken:.2f} s and put at {put:.2f} s, where the hand dwells (--whole if not)"
+        words = f"taken at {taken:.2f} s and put at {put:.2f} s, where the hand dwells"
         return (times >= taken) & (times <= put), words, ()
     unsure = found.dwell_times if found.evidence is PhaseEvidence.UNSURE else ()
     words = (
@@ -158,8 +178,8 @@ def _marked(times: Array, name: str, marks: PhaseMarks) -> tuple[Booleans, str]:
     release = last if marks.release is None else marks.release
     if not 0.0 <= grasp < release <= last + 1e-9:
         raise UnusableRecording(
-            f"{name}: the marks {grasp:g} and {release:g} s must rise and lie in the motion, 0 to {last:.3f} s "
-            "from its start"
+            f"{marks.where(name)}: the marks {grasp:g} and {release:g} s must rise and lie in the motion, 0 to "
+            f"{last:.3f} s from its start"
         )
     return (times >= grasp) & (times <= release), f"taken at {grasp:g} s and put at {release:g} s, as marked"
 

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import shutil
+import time
 import uuid
+from collections.abc import Collection
 from pathlib import Path
 
 
@@ -16,12 +18,19 @@ class TransferFolders:
 
     def __init__(self, root: Path) -> None:
         self._root = root
+        self._owners: dict[str, str] = {}  # by the name of the folder
 
-    def make(self) -> Path:
-        """Make a folder of a new name."""
+    def make(self, owner: str = "") -> Path:
+        """Make a folder of a new name, for somebody."""
         folder = self._root / uuid.uuid4().hex
         folder.mkdir(parents=True)
+        self._owners[folder.name] = owner
         return folder
+
+    def size_of(self, owner: str) -> int:
+        """Return how many bytes are in the folders of somebody."""
+        own = [name for name, each in tuple(self._owners.items()) if each == owner]
+        return sum(_size(file) for name in own for file in self.folder(name).glob("*"))
 
     def folder(self, name: str) -> Path:
         """Return the folder of that name."""
@@ -30,3 +39,22 @@ class TransferFolders:
     def remove(self, name: str) -> None:
         """Remove a folder with all that is in it."""
         shutil.rmtree(self._root / name, ignore_errors=True)
+        self._owners.pop(name, None)
+
+    def names(self) -> list[str]:
+        """Return the names of all folders."""
+        return [folder.name for folder in self._root.glob("*")]
+
+    def remove_forgotten(self, kept: Collection[str], lifetime: float) -> None:
+        """Remove the folders that are older than `lifetime` [s], but for those in `kept`."""
+        now = time.time()
+        for folder in self._root.glob("*"):
+            if folder.name not in kept and now - folder.stat().st_mtime > lifetime:
+                self.remove(folder.name)
+
+
+def _size(file: Path) -> int:
+    try:
+        return file.stat().st_size
+    except OSError:  # it was imported or removed meanwhile
+        return 0

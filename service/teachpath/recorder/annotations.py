@@ -24,6 +24,7 @@ class Annotations:
         scene: returns the scene of a name; raises NotFound.
         on_change: called with every demonstration that has changed.
         call: calls what reads a whole recording.
+        wait_for_takes: waits until the takes that have ended are stored, of which one may be meant.
     """
 
     store: Store
@@ -31,6 +32,7 @@ class Annotations:
     scene: Callable[[str], Scene]
     on_change: Callable[[Demonstration], None] = field(default=lambda demonstration: None)
     call: Call = call_directly
+    wait_for_takes: Callable[[], None] = lambda: None
 
     def trajectory(self, demonstration: Demonstration) -> Trajectory:
         """Return the object's trajectory of a stored demonstration, from its recording."""
@@ -46,29 +48,31 @@ class Annotations:
         carried = self.scene(self.store.task(demonstration.task).scene).carried
         return carried.position if carried else None
 
-    def discard_last(self, task: str) -> Demonstration:
+    def discard_last(self, task: str, *, who: str = "") -> Demonstration:
         """Discard the newest demonstration of a task that is kept; raises NotFound when there is none."""
+        self.wait_for_takes()
         kept = [d for d in self.store.demonstrations(self.store.task(task).name) if not d.discarded_ns]
         if not kept:
             raise NotFound(f"task {task} has no demonstration that could be discarded")
-        return self.amend(kept[-1].id, Amendment(discarded=True))
+        return self.amend(kept[-1].id, Amendment(discarded=True), who=who)
 
-    def restore_last(self, task: str) -> Demonstration:
+    def restore_last(self, task: str, *, who: str = "") -> Demonstration:
         """Bring back the demonstration of a task that was discarded last; raises NotFound when there is none."""
+        self.wait_for_takes()
         discarded = [d for d in self.store.demonstrations(self.store.task(task).name) if d.discarded_ns]
         if not discarded:
             raise NotFound(f"task {task} has no discarded demonstration")
-        return self.amend(max(discarded, key=lambda d: d.discarded_ns).id, Amendment(discarded=False))
+        return self.amend(max(discarded, key=lambda d: d.discarded_ns).id, Amendment(discarded=False), who=who)
 
-    def amend(self, key: str, amendment: Amendment) -> Demonstration:
-        """Change a demonstration and return it; after a trim its quality is assessed again.
+    def amend(self, key: str, amendment: Amendment, *, who: str = "") -> Demonstration:
+        """Change a demonstration and return it; after a trim its quality is assessed again. `who` changes it.
 
         Raises:
             NotFound: no such demonstration.
             UnusableInput: an unknown mark, or a trim outside the recording or too short.
         """
         stored = self.store.demonstration(key)
-        changes: dict[str, Any] = {}
+        changes: dict[str, Any] = {"amended_by": who}
         if amendment.mark is not None:
             if amendment.mark not in MARKS:
                 raise UnusableInput(f"{amendment.mark!r} is no mark: say good, bad, or nothing")

@@ -14,11 +14,17 @@ MAX_TRACKERS = 1000  # a flood of names must not fill the memory
 
 @dataclass(frozen=True, slots=True)
 class Tracker:
-    """A tracker that is there."""
+    """A tracker that is there.
+
+    Attributes:
+        name: of the tracker in its keys.
+        announced: whether by a liveliness token; a tracker without one only sends.
+        silence: since its last sample [s]; negative: it has sent none.
+    """
 
     name: str
-    announced: bool  # by a liveliness token; a tracker without one only sends
-    silence: float  # [s] since its last sample; negative: it has sent none
+    announced: bool
+    silence: float
 
     @property
     def is_silent(self) -> bool:

@@ -63,8 +63,8 @@ class DemonstrationCallbacks:
     """What the recorder calls when demonstrations come or change.
 
     Attributes:
-        added: called with each new demonstration, synchronously on the recording thread or on the thread that called
-            `begin` or `end`; it must not block.
+        added: called with each new demonstration, on a thread that completes takes; the next take of its recording
+            waits for it.
         changed: called with each demonstration that an operator has discarded, restored, marked or trimmed.
     """
 
@@ -103,7 +103,6 @@ class Recorder:
         self._lookup = lookup
         self._callbacks = callbacks or DemonstrationCallbacks()
         self._clock = clock
-        self.annotations = Annotations(store, settings, lookup.scene, self._callbacks.changed, call)
         self.owners = TrackerOwners(keys, clock)
         self._presence = Presence(clock)
         self._queues = SampleQueues(keys, self._presence, settings.longest_backlog)
@@ -115,6 +114,9 @@ class Recorder:
             on_discard_request=self._discard_last_of,
             clock=clock,
         )
+        self.annotations = Annotations(
+            store, settings, lookup.scene, self._callbacks.changed, call, self._recording.wait_for_takes
+        )
         self._feedback = FeedbackPublisher(bus, keys, self.statuses, store.demonstration, clock=clock)
         self._missed = 0
         self._totals = SampleTotals()
@@ -125,8 +127,7 @@ class Recorder:
         self._recording.start()
         self._feedback.start()
         self._handles = [
-            self._bus.subscribe(self._keys.all_samples, self._queues.on_sample, missed=self._count_missed),
-            self._bus.subscribe_with_source(self._keys.all_samples, self.owners.on_sample),
+            self._bus.subscribe_with_source(self._keys.all_samples, self._on_sample, missed=self._count_missed),
             self._bus.watch(self._keys.all_trackers_alive, self._queues.on_liveliness),
         ]
 
@@ -157,18 +158,18 @@ class Recorder:
         setup = self._setup(request)
         with self._recording.condition:
             before = sessions.get(tracker)
-            finished = self._recording.drain(before) if before is not None else []
+            if before is not None:
+                self._recording.drain(before)
             if before is not None and before.state is not RecordingState.LOST:
                 raise Conflict(f"{tracker} is already recording {before.task}; stop that first")
-            session = RecordingSession(self._store, self._settings, setup, clock=self._clock)
+            completer = self._recording.take_queue()
+            session = RecordingSession(self._store, self._settings, setup, completer=completer, clock=self._clock)
             if before is not None:
-                finished += before.finish()
+                before.finish()
                 self._totals.end_recording(before.counter.statistics())
             sessions[tracker] = session
             self._queues.open(tracker)
-            status = session.status(with_statistics=True)
-        self._report_finished(finished)
-        return status
+            return session.status(with_statistics=True)
 
     def end(self, request: StopRequest) -> RecordingStatus:
         """End the recording of a tracker and return its status.
@@ -185,15 +186,15 @@ class Recorder:
             if last_sequence is not None:
                 arrived = lambda: session.counter.highest >= last_sequence  # noqa: E731
                 self._recording.condition.wait_for(arrived, timeout=self._settings.handshake_timeout)
-            finished = self._recording.drain(session)
+            self._recording.drain(session)
             if last_sequence is not None:
                 session.counter.count_missing_until(last_sequence)
             if self._recording.sessions.get(tracker) is session:
                 del self._recording.sessions[tracker]
                 self._queues.close(tracker)
                 self._totals.end_recording(session.counter.statistics())
-            finished += session.finish(discard=request.discard)
-        self._report_finished(finished)
+            session.finish(discard=request.discard)
+        session.completer.wait()
         return replace(session.status(with_statistics=True), state=None, phase=None)
 
     def pause(self, tracker: str) -> RecordingStatus:
@@ -226,6 +227,10 @@ class Recorder:
         with self._recording.condition:
             running = [session.counter.statistics() for session in self._recording.sessions.values()]
             return self._totals.with_running(running)
+
+    def wait_for_takes(self) -> None:
+        """Wait until the takes that have ended are stored; their recordings go on meanwhile."""
+        self._recording.wait_for_takes()
 
     def trackers(self) -> list[Tracker]:
         """Return the trackers that are there: those with a liveliness token, and those that send."""
@@ -270,16 +275,20 @@ class Recorder:
             object_at_grasp=task.object_at_grasp,
         )
 
+    def _on_sample(self, key: str, payload: bytes, source: str) -> None:  # on the transport's thread
+        self._queues.on_sample(key, payload)
+        self.owners.on_sample(key, payload, source)
+
     def _count_missed(self, count: int) -> None:  # on the transport's thread
         self._missed += count
 
-    def _report_finished(self, finished: list[FinishedTake]) -> None:
-        for demonstration, trajectory in finished:
-            self._totals.end_take(demonstration.verdict)
-            try:
-                self._callbacks.added(demonstration, trajectory)
-            except Exception:  # the display may fail; the demonstration is stored, and recording goes on
-                log.exception("demonstration %s is stored, but could not be shown", demonstration.id)
+    def _report_finished(self, finished: FinishedTake) -> None:
+        demonstration, trajectory = finished
+        self._totals.end_take(demonstration.verdict)
+        try:
+            self._callbacks.added(demonstration, trajectory)
+        except Exception:  # the display may fail; the demonstration is stored, and recording goes on
+            log.exception("demonstration %s is stored, but could not be shown", demonstration.id)
 
     def _discard_last_of(self, session: RecordingSession) -> None:
         for key in reversed(session.demonstrations):

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
+from teachpath.io.store.recordings import RecordingHeader
+from teachpath.recorder.object_place import ObjectPlace
 from teachpath.recorder.take import random_id
 from teachpath.records import Calibration, ObjectPose, Routine, Scene
 
@@ -30,3 +32,15 @@ class RecordingSetup:
     new_id: Callable[[], str] = random_id
     reported_object: Callable[[], ObjectPose | None] = lambda: None
     object_at_grasp: bool = False
+
+    def header(self, place: ObjectPlace) -> RecordingHeader:
+        """Return what the recording of a take is of, whose object lies at `place`."""
+        return RecordingHeader(
+            self.task,
+            self.tracker,
+            self.calibration,
+            self.scene.name,
+            place.scene_position,
+            place.reported,
+            self.object_at_grasp,
+        )

@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from functools import partial
 
 from teachpath.errors import NotFound, UnusableSample
 from teachpath.io.wire import decode_sample
 from teachpath.periodic_thread import PeriodicThread
+from teachpath.recorder.closed_take import TakeQueue
 from teachpath.recorder.presence import Presence
 from teachpath.recorder.sample_queues import QueueItem, SampleQueues
 from teachpath.recorder.session import RecordingSession
@@ -16,15 +19,20 @@ from teachpath.recording.settings import RecordingSettings
 
 FLUSH_INTERVAL = 0.75  # [s] under a second, with a margin for a busy machine
 ROUND_INTERVAL = 0.02  # [s] pause between two rounds; none while more samples wait than one round records
+COMPLETING_THREADS = 3  # takes that are completed at once; a long one keeps the others of its tracker waiting alone
 BATCH_SIZE = 200  # samples of one tracker that are recorded before the turn of the next
+# Recordings that have their turn in one round. With hundreds, several samples of each wait then, and what is known of
+# one is read into the processor's cache once for them all.
+TURNS_IN_A_ROUND = 100
 
 
 class RecordingThread:
     """Holds the running recordings, one a tracker, and writes into them the samples that wait in the queues.
 
     Args:
-        on_finished: called with new demonstrations, on this thread.
-        on_discard_request: called with a recording whose hand commands to discard its last demonstration.
+        on_finished: called with new demonstrations, on a thread that completes takes.
+        on_discard_request: called, on such a thread, with a recording whose hand commands to discard its last
+            demonstration.
         clock: [s] monotonic.
 
     Attributes:
@@ -38,7 +46,7 @@ class RecordingThread:
         presence: Presence,
         settings: RecordingSettings,
         *,
-        on_finished: Callable[[list[FinishedTake]], None],
+        on_finished: Callable[[FinishedTake], None],
         on_discard_request: Callable[[RecordingSession], None],
         clock: Callable[[], float],
     ) -> None:
@@ -50,6 +58,8 @@ class RecordingThread:
         self._clock = clock
         self.sessions: dict[str, RecordingSession] = {}
         self.condition = threading.Condition()
+        self._completing = ThreadPoolExecutor(COMPLETING_THREADS, thread_name_prefix="takes")
+        self._next_turn = 0  # of the running recordings, whose turn it is in the next round
         self._thread = PeriodicThread("recorder", ROUND_INTERVAL, self.process_round)
 
     def start(self) -> None:
@@ -60,10 +70,14 @@ class RecordingThread:
         """Record the samples that still wait, end every recording, and stop; a second call does nothing."""
         self._thread.stop()
         with self.condition:
-            for session in self.sessions.values():
+            sessions = list(self.sessions.values())
+            for session in sessions:
                 self.drain(session)
                 session.finish()
             self.sessions.clear()
+        for session in sessions:
+            session.completer.wait()
+        self._completing.shutdown()
 
     def session(self, tracker: str) -> RecordingSession:
         """Return the running recording of a tracker; raises NotFound."""
@@ -72,15 +86,26 @@ class RecordingThread:
             raise NotFound(f"{tracker!r} is not being recorded; running: {sorted(self.sessions) or 'none'}")
         return session
 
-    def drain(self, session: RecordingSession) -> list[FinishedTake]:
+    def take_queue(self) -> TakeQueue:
+        """Return what completes the takes of one recording, beside those of the others."""
+        return TakeQueue(self._completing, self.condition, self._on_finished)
+
+    def wait_for_takes(self) -> None:
+        """Wait until the takes that have ended are stored."""
+        with self.condition:
+            sessions = list(self.sessions.values())
+        for session in sessions:
+            session.completer.wait()
+
+    def drain(self, session: RecordingSession) -> None:
         """Record all samples of one tracker that wait; the caller holds `condition`."""
-        finished = []
         while batch := self._queues.pop(session.tracker, BATCH_SIZE):
-            finished += self._record(session, batch)
-        return finished
+            self._record(session, batch)
 
     def process_round(self) -> bool:
         """Record one batch of each tracker in turn, so that no tracker keeps the others waiting.
+
+        Of more than `TURNS_IN_A_ROUND` trackers the next ones have their turn.
 
         Returns:
             Whether a batch was full, so that more samples wait and the next round should begin at once. Samples that
@@ -89,45 +114,52 @@ class RecordingThread:
         """
         with self.condition:
             sessions = list(self.sessions.values())
+        sessions = self._choose(sessions)
         now, more = self._clock(), False
         for session in sessions:
+            if session.completer.is_behind:
+                continue
             if not self._queues.is_empty(session.tracker) or now - session.last_flush >= FLUSH_INTERVAL:
                 more |= self._process(session, now) == BATCH_SIZE
             elif session.is_carrying:
                 self._check_silence(session)
         return more
 
+    def _choose(self, sessions: list[RecordingSession]) -> list[RecordingSession]:
+        begin = self._next_turn if self._next_turn < len(sessions) else 0
+        self._next_turn = begin + TURNS_IN_A_ROUND
+        return sessions[begin : self._next_turn]
+
     def _process(self, session: RecordingSession, now: float) -> int:
         with self.condition:
             batch = self._queues.pop(session.tracker, BATCH_SIZE)
-            finished = self._record(session, batch)
+            self._record(session, batch)
             if now - session.last_flush >= FLUSH_INTERVAL:
                 session.flush(now)
-            discard_requested = session.pop_discard_request()
+            if session.pop_discard_request():
+                session.completer.call(partial(self._on_discard_request, session))
             self.condition.notify_all()
-        self._on_finished(finished)
-        if discard_requested:
-            self._on_discard_request(session)
         return len(batch)
 
-    def _record(self, session: RecordingSession, batch: list[QueueItem]) -> list[FinishedTake]:
+    def _record(self, session: RecordingSession, batch: list[QueueItem]) -> None:
         if batch and batch[-1].payload is not None:
             self._presence.on_sample(session.tracker)
         if dropped := self._queues.dropped(session.tracker):
             session.counter.note(f"{dropped} samples came faster than they can be recorded, and were turned away")
-        return [made for item in batch if (made := self._record_item(session, item)) is not None]
+        for item in batch:
+            self._record_item(session, item)
 
-    def _record_item(self, session: RecordingSession, item: QueueItem) -> FinishedTake | None:
+    def _record_item(self, session: RecordingSession, item: QueueItem) -> None:
         payload, receive_ns = item
         try:
             if payload is None:
-                return session.on_tracker_lost("the tracker has gone" + " in mid-take" * session.is_carrying)
-            return session.add(decode_sample(session.tracker, payload, receive_ns), payload)
+                session.on_tracker_lost("the tracker has gone" + " in mid-take" * session.is_carrying)
+            else:
+                session.add(decode_sample(session.tracker, payload, receive_ns), payload)
         except UnusableSample as error:
             session.counter.count_refused(str(error), error.sequence)
         except Exception as error:  # one take's fault must not end the others
             session.fail(f"recording failed: {error!r}")
-        return None
 
     def _check_silence(self, session: RecordingSession) -> None:
         limit = self._settings.longest_silence
@@ -138,9 +170,6 @@ class RecordingThread:
             if not (self._queues.is_empty(session.tracker) and session.is_carrying):
                 return
             try:
-                finished = session.on_tracker_lost(f"no sample came for {limit:g} s in mid-take")
+                session.on_tracker_lost(f"no sample came for {limit:g} s in mid-take")
             except Exception as error:  # one take's fault must not end the others
-                finished = None
                 session.fail(f"recording failed: {error!r}")
-        if finished is not None:
-            self._on_finished([finished])

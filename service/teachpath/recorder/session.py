@@ -4,34 +4,31 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
+from functools import partial
 
-from teachpath.io.store.recordings import RecordingHeader
 from teachpath.io.store.store import Store
+from teachpath.recorder.closed_take import ClosedTake, Completer, DirectCompleter
 from teachpath.recorder.object_place import ObjectPlace
 from teachpath.recorder.recording_setup import RecordingSetup
-from teachpath.recorder.take import FinishedTake, Take
+from teachpath.recorder.take import FinishedTake, Take, TakeOutcome
 from teachpath.recording.arrival import Arrival
 from teachpath.recording.demonstration import object_pose, point_to_world
 from teachpath.recording.fist_gesture import FistGesture
 from teachpath.recording.phases import TOGGLE_BUTTON, Segmenter, TransportSpan, hand_closure
+from teachpath.recording.reversed_order import ReversedOrder
 from teachpath.recording.settings import RecordingSettings
 from teachpath.recording.state_machine import RecordingStateMachine
 from teachpath.recording.stream_statistics import StreamCounter
-from teachpath.records import (
-    FistCommand,
-    HandState,
-    Phase,
-    RecordingState,
-    RecordingStatus,
-    Sample,
-    Vector,
-)
+from teachpath.records import FistCommand, HandState, Phase, RecordingState, RecordingStatus, Sample, Vector
 
 
 class RecordingSession:
     """Writes the samples of one tracker and cuts them into demonstrations; not thread-safe, its owner locks.
 
+    Methods that may end a take return the demonstration that it makes, unless that is made later.
+
     Args:
+        completer: completes takes; None: at once.
         clock: [s] monotonic.
 
     Attributes:
@@ -46,8 +43,10 @@ class RecordingSession:
         settings: RecordingSettings,
         setup: RecordingSetup,
         *,
+        completer: Completer | None = None,
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
+        self.completer = completer or DirectCompleter()
         self._store = store
         self._settings = settings
         self._setup = setup
@@ -56,6 +55,7 @@ class RecordingSession:
         self.counter = StreamCounter(declared_rate=setup.rate, largest_clock_step=settings.largest_clock_step)
         self._state_machine = RecordingStateMachine(setup.routine, clock(), countdown=settings.countdown)
         self._object = ObjectPlace(setup.scene.carried, setup.reported_object, at_grasp=setup.object_at_grasp)
+        self._order = ReversedOrder()
         self._to_world = point_to_world(setup.calibration)
         self.demonstrations: list[str] = []
         self.last_flush = clock()
@@ -98,6 +98,8 @@ class RecordingSession:
     def add(self, sample: Sample, payload: bytes = b"") -> FinishedTake | None:
         """Write one sample, `payload` as it came; return the demonstration that it completes."""
         arrival = self.counter.observe(sample)
+        if self._order.observe(sample):
+            self.counter.note(self._order.hint)
         fresh = arrival is Arrival.IN_ORDER
         if self.counter.has_restarted:
             self._idle += 1
@@ -117,6 +119,9 @@ class RecordingSession:
         if not fresh:
             self._segmenter.skip()
             self._take.write(sample, payload)
+            if self._segmenter.phase is Phase.REACH and self._take.seconds_received > self._settings.longest_reach:
+                self.counter.note("a long reach began anew: its samples came late or twice")  # they would fill memory
+                self._drop_take()
             return None
         return self._follow_phases(sample, payload, position)
 
@@ -195,7 +200,7 @@ class RecordingSession:
             pending_command=self._gesture.pending_command,
             pedal_used=self._pedal_used,
             idle=self._idle,
-            hint=self._segmenter.hint,
+            hint=self._order.hint or self._segmenter.hint,
             carried=self._object.shape(grasped=self._segmenter.phase.has_object),
             hand=self._hand() if with_hand else None,
             statistics=self.counter.statistics() if with_statistics else None,
@@ -259,14 +264,23 @@ class RecordingSession:
         # A device without a glove releases by ending its recording; a glove would have shown the release.
         if cut.open_ended and not fault and (self._is_torn or self._take.samples[-1].flexions):
             fault = "the recording ended before the hand let go"
-        statistics = self.counter.interval(excluding=following)
-        if (finished := self._take.finalize(cut, statistics, self._object, fault)) is None:
-            self._idle += len(self._take.samples)
-        else:
-            self.demonstrations.append(finished[0].id)
-        self._state_machine.end_take(self._clock(), made=finished is not None)
+        take, statistics = self._take, self.counter.interval(excluding=following)
+        expected = take.can_be_finalized(cut)
+        settle = partial(self._settle, take, expected)
+        closed = ClosedTake(take, cut, statistics, self._object.start, self._object.pose, fault, settle)
+        self._state_machine.end_take(self._clock(), made=expected)
         self._begin_take(following)
-        return finished
+        return self.completer.complete(closed)
+
+    def _settle(self, take: Take, expected: bool, outcome: TakeOutcome) -> None:
+        """Take note of what became of a take that was `expected` to be a demonstration; another may be open."""
+        for note in outcome.notes:
+            self.counter.note(note, in_interval=False)
+        if outcome.finished is not None:
+            self.demonstrations.append(outcome.finished[0].id)
+        else:
+            self._idle += len(take.samples)
+            self._state_machine.withdraw_take(counted=expected)
 
     def _drop_take(self) -> None:
         self._take.discard()
@@ -280,14 +294,6 @@ class RecordingSession:
 
     def _new_take(self) -> Take:
         self._take_number += 1
-        setup, place = self._setup, self._object
-        header = RecordingHeader(
-            setup.task,
-            setup.tracker,
-            setup.calibration,
-            setup.scene.name,
-            place.scene_position,
-            place.reported,
-            setup.object_at_grasp,
+        return Take(
+            self._store, self._settings, self._setup.header(self._object), self.counter.note, self._setup.new_id
         )
-        return Take(self._store, self._settings, header, self.counter.note, self._setup.new_id)

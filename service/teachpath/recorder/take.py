@@ -4,17 +4,26 @@ from __future__ import annotations
 
 import uuid
 from collections.abc import Callable
+from dataclasses import dataclass
 
 from teachpath.errors import StorageUnavailable, UnusableRecording
 from teachpath.io.store.recordings import RecordingFile, RecordingHeader
+from teachpath.io.store.sample_rows import SampleRows
 from teachpath.io.store.store import Store
-from teachpath.recorder.object_place import ObjectPlace
 from teachpath.recorder.take_completion import SegmentedTake, complete_take
 from teachpath.recording.phases import TransportSpan
 from teachpath.recording.settings import RecordingSettings
-from teachpath.records import Demonstration, Sample, StreamStatistics, Trajectory
+from teachpath.records import Demonstration, ObjectPose, Sample, StreamStatistics, Trajectory, Vector
 
 FinishedTake = tuple[Demonstration, Trajectory]
+
+
+@dataclass(frozen=True, slots=True)
+class TakeOutcome:
+    """What became of a take that was completed: a demonstration, or sentences for the operator why there is none."""
+
+    finished: FinishedTake | None
+    notes: tuple[str, ...] = ()
 
 
 def random_id() -> str:
@@ -48,7 +57,9 @@ class Take:
         self._settings = settings
         self._header = header
         self._note = note
-        self.samples: list[Sample] = []
+        self.samples = SampleRows()
+        self._first: Sample | None = None
+        self._last: Sample | None = None
         self.fault = ""
         self._id = new_id()
         self._file: RecordingFile | None = None
@@ -56,10 +67,16 @@ class Take:
     @property
     def seconds(self) -> float:
         """Duration so far, by the device's clock."""
-        return (self.samples[-1].device_ns - self.samples[0].device_ns) * 1e-9 if self.samples else 0.0
+        return (self._last.device_ns - self._first.device_ns) * 1e-9 if self._first and self._last else 0.0
+
+    @property
+    def seconds_received(self) -> float:
+        """Duration so far, by our clock."""
+        return (self._last.receive_ns - self._first.receive_ns) * 1e-9 if self._first and self._last else 0.0
 
     def write(self, sample: Sample, payload: bytes) -> None:
         """Add a sample, `payload` as it came."""
+        self._first, self._last = self._first or sample, sample
         self.samples.append(sample)
         if self.fault:
             return
@@ -80,43 +97,68 @@ class Take:
 
     def fail(self, reason: str) -> None:
         """Write no more of this take, and leave its file as it is."""
-        self.fault = reason
+        self._leave(reason)
         self._note(reason)
-        if self._file is not None:
-            self._file.leave()
-            self._file = None
+
+    def can_be_finalized(self, cut: TransportSpan) -> bool:
+        """Tell whether a demonstration will come of it, as far as that is known before it is finalized."""
+        return self._file is not None and cut.release - cut.grasp >= self._settings.shortest_transport
 
     def finalize(
-        self, cut: TransportSpan, statistics: StreamStatistics, place: ObjectPlace, fault: str
-    ) -> FinishedTake | None:
-        """Make and store its demonstration; if that is impossible, note why, and leave no file.
+        self,
+        cut: TransportSpan,
+        statistics: StreamStatistics,
+        carried: Vector | None,
+        object_pose: ObjectPose | None,
+        fault: str,
+    ) -> TakeOutcome:
+        """Make and store its demonstration; if that is impossible, say why, and leave no file.
+
+        Nothing may be written meanwhile. It may be called on another thread, because it changes this take alone.
 
         Args:
             cut: its transport phase.
             statistics: of its samples.
-            place: where the object was grasped.
+            carried: start of the object's centre [m, world], or None.
+            object_pose: of the object before it was grasped; None = where the scene has it.
             fault: why the take ended too early, or empty.
         """
         try:
             if self._file is None:
                 raise UnusableRecording(f"a demonstration was lost: {self.fault}")
             identity = {"id": self._id, "task": self._header.task, "source": self._header.tracker}
-            take = SegmentedTake(
-                self.samples, cut, statistics, self._header.calibration, place.start, place.pose, fault
-            )
-            return complete_take(self._store, self._settings, self._file, take, identity)
+            samples, calibration = self.samples[:], self._header.calibration
+            take = SegmentedTake(samples, cut, statistics, calibration, carried, object_pose, fault)
+            return TakeOutcome(complete_take(self._store, self._settings, self._file, take, identity))
         except UnusableRecording as error:
-            self._note(str(error))
             self.discard()
             if self.fault:
                 self._note_lost(f"its file could not be written ({self.fault})")
+            return TakeOutcome(None, (str(error),))
         except OSError as error:
-            self.fail(_disk_fault("finished", error))
-            self._note_lost(self.fault)
+            return self.lose(_disk_fault("finished", error))
         except StorageUnavailable as error:
-            self.fail(f"the recording is whole, and its row could not be stored: {error}")
-            self._note_lost(f"its recording is whole, but {error}; its row is made by: teachpath doctor")
-        return None
+            return self.lose(
+                f"the recording is whole, and its row could not be stored: {error}",
+                f"its recording is whole, but {error}; its row is made by: teachpath doctor",
+            )
+
+    def lose(self, fault: str, reason: str = "") -> TakeOutcome:
+        """Make no demonstration because of a fault, and leave the file for the doctor.
+
+        Args:
+            fault: for the operator of the recording.
+            reason: for health; the fault when empty.
+        """
+        self._leave(fault)
+        self._note_lost(reason or fault)
+        return TakeOutcome(None, (fault,))
+
+    def _leave(self, fault: str) -> None:
+        self.fault = fault
+        if self._file is not None:
+            self._file.leave()
+            self._file = None
 
     def _note_lost(self, reason: str) -> None:
         header = self._header

@@ -14,7 +14,7 @@ from teachpath.errors import UnusableRecording
 from teachpath.io.store.recordings import RecordingFile, facts_of
 from teachpath.io.store.store import Store
 from teachpath.recording.advice import ending_advice
-from teachpath.recording.demonstration import carried_numbers, object_trajectory, to_world, usable_samples
+from teachpath.recording.demonstration import carried_numbers, is_in_order, object_trajectory, to_world, usable_samples
 from teachpath.recording.grip_flaps import find_grip_flaps
 from teachpath.recording.phase_statistics import PhaseStatistics, phase_statistics, tell_arrivals
 from teachpath.recording.phases import TransportSpan
@@ -109,10 +109,7 @@ def add_content_faults(take: SegmentedTake, settings: RecordingSettings) -> tupl
 
     Left out are positions that jump, readings that repeat the one before, and samples of another source.
     """
-    arrivals = tell_arrivals(take.samples, take.statistics, settings)
-    own = {s.sequence for s, arrival in zip(take.samples, arrivals, strict=True) if arrival.belongs}
-    foreign = {s.sequence for s in take.samples} - own
-    ordered = [s for s in usable_samples(take.samples) if s.sequence in own]
+    ordered, foreign = _own_samples(take, settings)
     grasp, after = carried_numbers(take.samples, take.cut)
     span = bisect_left(ordered, grasp, key=_number), bisect_left(ordered, after, key=_number)
     if span[0] == span[1]:
@@ -139,6 +136,16 @@ def add_content_faults(take: SegmentedTake, settings: RecordingSettings) -> tupl
     )
     left_out = {*found.outliers, *(ordered[k].sequence for k in repeated.indices), *foreign}
     return statistics, tuple(sorted(left_out))
+
+
+def _own_samples(take: SegmentedTake, settings: RecordingSettings) -> tuple[list[Sample], set[int]]:
+    """Return the usable samples of the take's own source in the order of their numbers, and the numbers of others."""
+    usable = usable_samples(take.samples)
+    if is_in_order(take.samples):
+        return usable, set()
+    arrivals = tell_arrivals(take.samples, take.statistics, settings)
+    own = {s.sequence for s, arrival in zip(take.samples, arrivals, strict=True) if arrival.belongs}
+    return [s for s in usable if s.sequence in own], {s.sequence for s in take.samples} - own
 
 
 def reassess(

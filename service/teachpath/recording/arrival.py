@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from enum import Enum, auto
+from functools import cached_property
 
 
 class Arrival(Enum):
@@ -14,7 +15,7 @@ class Arrival(Enum):
     DUPLICATED = auto()  # for a second time, unchanged
     CONFLICTING = auto()  # with a number that is taken, or with a time that contradicts its number
 
-    @property
+    @cached_property  # asked for every sample; it costs a microsecond to look members up
     def belongs(self) -> bool:
         """Whether the sample has a place of its own in the current interval."""
         return self in (Arrival.IN_ORDER, Arrival.REORDERED)

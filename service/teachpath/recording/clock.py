@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from array import array
+
 import numpy as np
 
 from teachpath.records import Clock, Sample
@@ -15,9 +17,9 @@ class DeviceClock:
     """Follows the clock of one device."""
 
     def __init__(self) -> None:
-        # ring buffers in arrays, because hundreds of clocks are estimated several times a second
-        self._device = np.zeros(WINDOW_SIZE, dtype=np.int64)
-        self._receive = np.zeros(WINDOW_SIZE, dtype=np.int64)
+        # Ring buffers: each sample is put in, and hundreds of clocks are estimated as arrays several times a second.
+        self._device = array("q", bytes(8 * WINDOW_SIZE))
+        self._receive = array("q", bytes(8 * WINDOW_SIZE))
         self._observed = 0
 
     def observe(self, sample: Sample) -> None:
@@ -39,9 +41,9 @@ class DeviceClock:
         if self._observed < MIN_SAMPLES:
             return None
         filled, newest = min(self._observed, WINDOW_SIZE), (self._observed - 1) % WINDOW_SIZE
-        first_device, first_receive = int(self._device[0]), int(self._receive[0])
-        device = (self._device[:filled] - first_device) * 1e-9
-        receive = (self._receive[:filled] - first_receive) * 1e-9
+        first_receive = self._receive[0]
+        device = (np.frombuffer(self._device, np.int64)[:filled] - self._device[0]) * 1e-9
+        receive = (np.frombuffer(self._receive, np.int64)[:filled] - first_receive) * 1e-9
         away = device - device.mean()
         spread = float(away @ away)
         slope = float(away @ receive) / spread if spread else 1.0
@@ -53,4 +55,4 @@ class DeviceClock:
         transit = receive - slope * device  # plus a constant
         least = float(transit.min())
         due = first_receive + round(1e9 * (slope * float(device[newest]) + least))
-        return Clock(due - int(self._device[newest]), round(1e9 * (float(np.median(transit)) - least)), rate)
+        return Clock(due - self._device[newest], round(1e9 * (float(np.median(transit)) - least)), rate)

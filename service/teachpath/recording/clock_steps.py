@@ -81,8 +81,10 @@ class ClockSteps:
 
     def _is_explained(self, sample: Sample, numbers: int, excess: int, receive: int) -> bool:
         """Tell whether the numbers explain a step (loss), or our clock does (a pause, also behind a slow transit)."""
+        if excess <= 0:
+            return True
         rate = min(max(self.device_ns / max(self._receive_ns, 1), 1.0), MAX_CLOCK_RATE)
-        if excess <= max(0.0, numbers * self.period_ns, receive * rate):
+        if excess <= max(numbers * self.period_ns, receive * rate):
             return True
         # A clock that was set ahead leaves less transit than there ever was; a pause after a slow transit does not.
         transit = sample.receive_ns - sample.device_ns

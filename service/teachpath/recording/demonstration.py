@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Sequence
+from itertools import pairwise
 
 import numpy as np
 from scipy.spatial.transform import Rotation
@@ -40,8 +41,15 @@ def point_to_world(calibration: Calibration) -> Callable[[Vector], Vector]:
     return mapped
 
 
+def is_in_order(samples: Sequence[Sample]) -> bool:
+    """Tell whether samples came in the order of their numbers, each once, as nearly all takes do."""
+    return all(one.sequence < next_.sequence for one, next_ in pairwise(samples))
+
+
 def usable_samples(samples: Sequence[Sample]) -> list[Sample]:
     """Return the tracked samples in the order of their numbers, each once."""
+    if is_in_order(samples):
+        return [sample for sample in samples if sample.tracked]
     used: dict[int, Sample] = {}
     for sample in samples:
         if sample.tracked:

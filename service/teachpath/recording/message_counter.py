@@ -46,10 +46,11 @@ class IntervalMessages:
         self.all = MessageCounter(rest)
         self.interval = MessageCounter(rest)
 
-    def add(self, sentence: str) -> None:
-        """Count one message."""
+    def add(self, sentence: str, *, in_interval: bool = True) -> None:
+        """Count one message; with `in_interval` it is of the current interval too."""
         self.all.add(sentence)
-        self.interval.add(sentence)
+        if in_interval:
+            self.interval.add(sentence)
 
     def begin_interval(self) -> None:
         """Begin another interval."""

@@ -10,9 +10,8 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.ndimage import gaussian_filter1d, median_filter
-from scipy.signal import find_peaks
 
 from teachpath.records import Array
 
@@ -110,7 +109,7 @@ def _without_borders(positions: Array, kept: Indices) -> Indices:
     if count < MIN_READINGS:
         return kept
     steps = np.linalg.norm(np.diff(positions[kept], axis=0), axis=1)
-    leaps = np.flatnonzero(steps > LEAP * median_filter(steps, size=LEAP_WINDOW, mode="nearest"))
+    leaps = np.flatnonzero(steps > LEAP * scipy.ndimage.median_filter(steps, size=LEAP_WINDOW, mode="nearest"))
     begin = max((k + 1 for k in leaps if k + 1 <= BORDER * count), default=0)
     end = min((k + 1 for k in leaps if k >= (1.0 - BORDER) * count - 1), default=count)
     return kept[begin:end]
@@ -119,15 +118,17 @@ def _without_borders(positions: Array, kept: Indices) -> Indices:
 def _smoothed(times: Array, positions: Array) -> tuple[Array, Array, Array]:
     """Return an even grid of times (m,) [s], the positions (m, 3) there and the smoothed speed (m,)."""
     grid = np.linspace(times[0], times[-1], min(len(times), MAX_GRID))
-    calm = median_filter(positions, size=(SPIKE_WINDOW, 1), mode="nearest")
+    calm = scipy.ndimage.median_filter(positions, size=(SPIKE_WINDOW, 1), mode="nearest")
     even = np.column_stack([np.interp(grid, times, axis) for axis in calm.T])
     width = SMOOTHING * (len(grid) - 1)
-    speed = np.linalg.norm(gaussian_filter1d(even, width, axis=0, order=1, mode="nearest"), axis=1)
+    speed = np.linalg.norm(scipy.ndimage.gaussian_filter1d(even, width, axis=0, order=1, mode="nearest"), axis=1)
     return grid, even, np.maximum(speed, max(LEAST_SPEED * float(speed.max()), np.finfo(float).tiny))
 
 
 def _ranked_minima(speed: Array) -> tuple[Indices, Array]:
     """Return the indices of the minima on the way, one a dwell, and their prominences, the most prominent first."""
+    from scipy.signal import find_peaks  # here, because it loads scipy.stats, and each station would start later
+
     moving = np.flatnonzero(speed > MOVING * speed.max())
     minima, properties = find_peaks(-np.log(speed), prominence=0.0)
     on_the_way = (minima > moving[0]) & (minima < moving[-1])

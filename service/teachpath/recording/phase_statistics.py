@@ -5,13 +5,13 @@ from __future__ import annotations
 from bisect import bisect_left
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from itertools import pairwise
 from typing import Any, Final
 
 from teachpath.recording.arrival import Arrival
-from teachpath.recording.demonstration import NO_END, carried_numbers
+from teachpath.recording.demonstration import NO_END, carried_numbers, is_in_order
 from teachpath.recording.phases import TransportSpan
 from teachpath.recording.settings import RecordingSettings
+from teachpath.recording.steady_counts import count_steady
 from teachpath.recording.stream_statistics import StreamCounter
 from teachpath.records import Sample, StreamStatistics
 
@@ -56,17 +56,19 @@ def phase_statistics(
         cut: its transport phase.
         whole: the statistics of the take.
     """
-    arrivals = tell_arrivals(samples, whole, settings)
-    came = list(zip(range(len(samples)), samples, arrivals, strict=True))
-    placed = sorted((sample for _, sample, arrival in came if arrival.belongs), key=_number)
+    placed, irregular = samples, []
+    if not is_in_order(samples):
+        came = list(zip(range(len(samples)), samples, tell_arrivals(samples, whole, settings), strict=True))
+        placed = sorted((sample for _, sample, arrival in came if arrival.belongs), key=_number)
+        irregular = [each for each in came if each[2] is not Arrival.IN_ORDER]
     grasp, after = carried_numbers(samples, cut)
     end = placed[min(bisect_left(placed, after, key=_number), len(placed) - 1)].sequence if after < NO_END else NO_END
-    phases = _placed(placed, (grasp, end + 1), _counter(whole, settings))
+    phases = _phases(placed, (grasp, end + 1), whole, settings)
     unplaced: list[dict[str, Any]] = [dict.fromkeys(COUNTED_AS.values(), 0) for _ in phases]
-    for index, sample, arrival in came:
+    for index, sample, arrival in irregular:
         if arrival is Arrival.CONFLICTING:  # its number says nothing about its place
             unplaced[(index >= cut.grasp) + (index > cut.release)]["conflicts"] += 1
-        elif arrival is not Arrival.IN_ORDER:
+        else:
             unplaced[(sample.sequence >= grasp) + (sample.sequence > end)][COUNTED_AS[arrival]] += 1
     refused = [_overlap(whole.refused_numbers, *span) for span in ((0, grasp - 1), (grasp, end), (end + 1, NO_END))]
     refused[1] += max(whole.refused - sum(refused), 0)
@@ -96,7 +98,7 @@ def tell_arrivals(samples: Sequence[Sample], whole: StreamStatistics, settings: 
         samples: in the order received.
         whole: the statistics of the take.
     """
-    if all(one.sequence < next_.sequence for one, next_ in pairwise(samples)):
+    if is_in_order(samples):
         return [Arrival.IN_ORDER] * len(samples)
     counter = _counter(whole, settings)
     return [counter.observe(sample) for sample in samples]
@@ -110,10 +112,17 @@ def _counter(whole: StreamStatistics, settings: RecordingSettings) -> StreamCoun
     return counter
 
 
-def _placed(samples: Sequence[Sample], borders: tuple[int, int], counter: StreamCounter) -> list[StreamStatistics]:
+def _phases(
+    placed: Sequence[Sample], borders: tuple[int, int], whole: StreamStatistics, settings: RecordingSettings
+) -> list[StreamStatistics]:
     """Return the statistics of samples in the order of their numbers, up to each border and after the last."""
+    if not whole.refused_numbers:
+        steady = count_steady(placed, borders, settings.largest_clock_step)
+        if steady is not None:
+            return steady
+    counter = _counter(whole, settings)
     phases: list[StreamStatistics] = []
-    for sample in samples:
+    for sample in placed:
         while len(phases) < len(borders) and sample.sequence >= borders[len(phases)]:
             phases.append(counter.interval())
             counter.begin_interval(counts_loss_before=True)

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 
 from teachpath.recording.settings import RecordingSettings
 from teachpath.records import Phase, Sample, Vector
+from teachpath_proto.sample_rules import GRASP_BUTTON
 
-GRASP_BUTTON = 1  # bit of Sample.buttons; held while a hand without a glove grasps
 HALF_CLOSED_TIME = 0.5  # [s] after which a hand at the object that is neither open nor closed is told so
 FAR_AWAY = 0.5  # [m] from the object; a hand that closes there may be mapped to the wrong place
 TOGGLE_BUTTON = 2  # bit of Sample.buttons; pressed to pause or resume
@@ -170,5 +170,8 @@ class Segmenter:
     def _rests(self, now_ns: int) -> bool:
         while now_ns - self._recent[0][0] > self._rest_ns:
             self._recent.popleft()
+        (_, first), (_, last) = self._recent[0], self._recent[-1]
+        if max(abs(a - b) for a, b in zip(first, last, strict=True)) > self._settings.rest_motion:
+            return False  # a hand that is on its way needs no look at all its places
         spread: float = max(max(axis) - min(axis) for axis in zip(*(p for _, p in self._recent), strict=True))
         return spread <= self._settings.rest_motion

@@ -123,7 +123,7 @@ def _unsure_phases(dwell_times: Sequence[float]) -> str:
     at = ", ".join(f"{seconds:.2f}" for seconds in dwell_times[:MAX_LISTED_DWELLS])
     return (
         f"not sure where the object was taken and put: the hand dwells at {places} (at {at} s); mark it: trim it, or "
-        "import it with --grasp and --release, or with --whole if all of it is the transport"
+        "say at the import when it was taken and put, or that all of it is the transport"
     )
 
 

@@ -72,6 +72,10 @@ class RecordingStateMachine:
         elif self.state is RecordingState.RECORDING:
             self._arm(now)
 
+    def withdraw_take(self, *, counted: bool) -> None:
+        """Take note that a take became no demonstration, although it `counted` as made; a pause that it made stays."""
+        self._made = max(self._made - counted, 0)
+
     def _arm(self, now: float) -> None:
         self._begins_at = now + self._countdown
         self.state = RecordingState.COUNTDOWN if self._countdown else RecordingState.RECORDING

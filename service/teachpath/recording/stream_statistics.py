@@ -122,9 +122,9 @@ class StreamCounter:
             self.highest = last_sequence
             self._gaps.reach(last_sequence)
 
-    def note(self, sentence: str) -> None:
-        """Keep a sentence for the operator."""
-        self._notes.add(sentence)
+    def note(self, sentence: str, *, in_interval: bool = True) -> None:
+        """Keep a sentence for the operator; with `in_interval` it is of the current interval too."""
+        self._notes.add(sentence, in_interval=in_interval)
 
     def begin_interval(self, *, counts_loss_before: bool = False, first: Sample | None = None) -> None:
         """Begin another interval.

@@ -4,8 +4,10 @@ Conventions (ARCHITECTURE.md): metres, radians, seconds inside; integer nanoseco
 (names end in `_ns`); quaternions w, x, y, z; frame `world` unless another is named.
 """
 
+from teachpath.records.access import ROLES, AccessToken, Capability, Person, Session, Subject, capabilities_of
 from teachpath.records.arrays import Array, Matrix, Pose, Quaternion, Vector
 from teachpath.records.assessments import Assessment, Failure, Suggestion
+from teachpath.records.audit import AuditEntry
 from teachpath.records.calibrations import Calibration, MeasuredCalibration, TaughtPoint
 from teachpath.records.control import Command, JournalEntry, Lease, LeaseRequest, TeleopRequest
 from teachpath.records.demonstrations import (
@@ -19,19 +21,29 @@ from teachpath.records.demonstrations import (
     Trajectory,
     Verdict,
 )
-from teachpath.records.learned import Cluster, Deviation, Fit, Learned, LearnedPath, RunSummary, Score
+from teachpath.records.execution import ExecutorStatus, JointState, Setpoint
+from teachpath.records.learned import (
+    Cluster,
+    Deviation,
+    Fit,
+    Learned,
+    LearnedPath,
+    PathSummary,
+    PlanSummary,
+    RunSummary,
+    Score,
+)
 from teachpath.records.motion import (
     Certificate,
     CertificateQuery,
-    ExecutorStatus,
     Extreme,
-    JointState,
     ObjectPose,
     Plan,
     Scene,
-    Setpoint,
+    SceneQuery,
     Shape,
     Signature,
+    ToolPose,
 )
 from teachpath.records.previews import MotionPreview, SegmentInterval
 from teachpath.records.recording import (
@@ -45,15 +57,30 @@ from teachpath.records.recording import (
     StopRequest,
     TaskReference,
 )
+from teachpath.records.sampled_motion import SampledMotion
+from teachpath.records.serial_arms import (
+    ArmSummary,
+    JointLimit,
+    LimitSource,
+    RevoluteJoint,
+    SerialArm,
+    SerialLink,
+    StoredArm,
+)
 from teachpath.records.versions import MAIN_BRANCH, ControlPointChange, Difference, Version
 from teachpath.records.work import Job, JobState
 
 __all__ = [
     "MAIN_BRANCH",
+    "ROLES",
+    "AccessToken",
     "Amendment",
+    "ArmSummary",
     "Array",
     "Assessment",
+    "AuditEntry",
     "Calibration",
+    "Capability",
     "Certificate",
     "CertificateQuery",
     "Clock",
@@ -71,42 +98,57 @@ __all__ = [
     "HandState",
     "Job",
     "JobState",
+    "JointLimit",
     "JointState",
     "JournalEntry",
     "Learned",
     "LearnedPath",
     "Lease",
     "LeaseRequest",
+    "LimitSource",
     "Matrix",
     "MeasuredCalibration",
     "MotionPreview",
     "ObjectPose",
+    "PathSummary",
+    "Person",
     "Phase",
     "Plan",
+    "PlanSummary",
     "Pose",
     "Quaternion",
     "RecordingDigest",
     "RecordingRequest",
     "RecordingState",
     "RecordingStatus",
+    "RevoluteJoint",
     "Routine",
     "RunSummary",
     "Sample",
+    "SampledMotion",
     "Scene",
+    "SceneQuery",
     "Score",
     "SegmentInterval",
+    "SerialArm",
+    "SerialLink",
+    "Session",
     "Setpoint",
     "Shape",
     "Signature",
     "StopRequest",
+    "StoredArm",
     "StreamStatistics",
+    "Subject",
     "Suggestion",
     "Task",
     "TaskReference",
     "TaughtPoint",
     "TeleopRequest",
+    "ToolPose",
     "Trajectory",
     "Vector",
     "Verdict",
     "Version",
+    "capabilities_of",
 ]

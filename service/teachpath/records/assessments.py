@@ -9,7 +9,13 @@ from teachpath.records.arrays import Array, Matrix, Vector
 
 @dataclass(frozen=True, slots=True)
 class Suggestion:
-    """What to change on a path: a control point (from 0), the move proposed for it [m], and both in a sentence."""
+    """What to change on a path: a control point (from 0), the move proposed for it [m], and both in a sentence.
+
+    Attributes:
+        control_point: its number, from 0.
+        move: proposed for it [m, world].
+        sentence: both in words.
+    """
 
     control_point: int
     move: Vector
@@ -18,9 +24,18 @@ class Suggestion:
 
 @dataclass(frozen=True, slots=True)
 class Failure:
-    """Where a path fails: the first sample and the stretch [m], why, and what to change."""
+    """Where a path fails: the first sample and the stretch [m], why, and what to change.
 
-    fault: str  # reach, limit, turn, singular, collision, start or end
+    Attributes:
+        fault: reach, limit, turn, singular, collision, start or end.
+        s: arc length of the first sample that fails [m].
+        interval: arc lengths between which the path fails [m].
+        position: of the path where it first fails [m, world].
+        reason: why, in words.
+        suggestion: what to change.
+    """
+
+    fault: str
     s: float
     interval: tuple[float, float]
     position: Vector
@@ -35,7 +50,7 @@ class Assessment:
     Attributes:
         lengths: (n,) arc length of the samples [m].
         parameters: (n,) of the curve there.
-        positions: (n, 3) [m].
+        positions: (n, 3) of the path there [m, world].
         faults: (n,) what is wrong at each sample, empty when nothing.
         reach: (n,) how far the wrist is within the arm's reach [m]; negative when out of it.
         limits: (n,) how far the joints are from their nearest limit [rad]; negative beyond.

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from typing import Literal
 
 from teachpath.records.calibrations import Calibration
-from teachpath.records.motion import Scene
 from teachpath_proto.control import CommandVerb, LeaseAction
 
 
@@ -35,7 +34,7 @@ class TeleopRequest:
     Attributes:
         tracker: whose samples drive the arm while its clutch is pressed.
         calibration: to the world from its frame.
-        scene: that stands around the arm.
+        scene: name of what stands around the arm; the executor asks the station for it.
         scale: of the tool's way over the hand's, 0.05 to 5.
         share: of the joints' speed, acceleration and jerk limits, 0.05 to 1.
         clutch: tracker whose button bit 2 is the clutch; empty: the hand's own.
@@ -47,7 +46,7 @@ class TeleopRequest:
 
     tracker: str
     calibration: Calibration
-    scene: Scene
+    scene: str
     scale: float = 1.0
     share: float = 0.5
     clutch: str = ""
@@ -69,19 +68,36 @@ class LeaseRequest:
 
 @dataclass(frozen=True, slots=True)
 class Lease:
-    """Who is in control; `token` is told only to whom it belongs."""
+    """Who is in control; `token` is told only to whom it belongs.
+
+    Attributes:
+        holder: who is in control; empty: nobody, everybody may command.
+        expires_in: until it lapses without a beat [s].
+        hold_when_lost: whether a moving arm is held when the beats stop.
+        asking: who asks for control; empty: nobody.
+        granted_in: until the one who asks gets it, unless the holder keeps it [s].
+        token: for the header Teachpath-Lease; empty for all but the one who acquired or asked.
+    """
 
     holder: str = ""
-    expires_in: float = 0.0  # [s] without a beat
+    expires_in: float = 0.0
     hold_when_lost: bool = False
     asking: str = ""
-    granted_in: float = 0.0  # [s] until the one who asks gets it, unless the holder keeps it
+    granted_in: float = 0.0
     token: str = ""
 
 
 @dataclass(frozen=True, slots=True)
 class JournalEntry:
-    """Who did what to the arm, and how that was answered."""
+    """Who did what to the arm, and how that was answered.
+
+    Attributes:
+        at_ns: when it was answered [ns since the Unix epoch].
+        who: gave the command.
+        verb: what was commanded, or what happened by itself.
+        execution: id of the execution; empty: none was meant.
+        answer: done, or why it was refused or happened.
+    """
 
     at_ns: int
     who: str

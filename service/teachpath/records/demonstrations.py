@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import StrEnum
+from functools import cached_property
 
 import numpy as np
 
@@ -21,12 +22,12 @@ class Phase(StrEnum):
     RELEASE = "release"  # the hand opens
     RETURN = "return"
 
-    @property
+    @cached_property  # asked for every sample; it costs a microsecond to look members up
     def is_hand_closed(self) -> bool:
         """Whether the hand is closed around the object."""
         return self in (Phase.GRASP, Phase.TRANSPORT)
 
-    @property
+    @cached_property
     def has_object(self) -> bool:
         """Whether the object is in the hand, until it is certain that the hand has released it."""
         return self.is_hand_closed or self is Phase.RELEASE
@@ -64,6 +65,10 @@ class Task:
     """What is demonstrated: its name, its scene and the calibration of its demonstrations.
 
     Attributes:
+        name: of the task, which is in its addresses.
+        scene: name of what stands around the arm.
+        calibration: name of the mapping to the world from the tracker's frame.
+        created_ns: when it was made [ns since the Unix epoch].
         object_at_grasp: whether the object lies where the hand grasps, anew in each demonstration, instead of where
             the scene has it.
     """
@@ -106,9 +111,9 @@ class Clock:
     """The clock of a device against the host's.
 
     Attributes:
-        offset_ns: host clock minus device clock at the newest sample. It includes the minimum one-way transit time,
-            which cannot be observed without a round trip.
-        uncertainty_ns: median transit time minus the minimum.
+        offset_ns: host clock minus device clock at the newest sample [ns]. It includes the minimum one-way transit
+            time, which cannot be observed without a round trip.
+        uncertainty_ns: median transit time minus the minimum [ns].
         rate: seconds of the device's clock in one second of the host's.
     """
 
@@ -123,37 +128,68 @@ class StreamStatistics:
 
     All from `outliers` to `measured_rate` are of the transport phase only. Numbers that were sent are received, less
     the duplicated and conflicting, or lost, or refused.
+
+    Attributes:
+        received: samples that came.
+        lost: numbers that never came.
+        duplicated: samples that came again.
+        reordered: came after newer ones, and were put in their place.
+        late: came after the demonstration they belong to was cut, which is made without them.
+        refused: samples that could not be used.
+        refused_numbers: first and last of the refused numbers in a row, where they can be read.
+        untracked: samples in which the tracker did not see the hand.
+        gaps: stretches of numbers that never came.
+        missing: first and last number of each of them, of the first 20.
+        longest_gap_ns: longest time without a sample, device clock [ns].
+        outliers: positions that their neighbours contradict; left out of the trajectory.
+        level_shifts: places where the position jumps and stays.
+        out_of_workspace: positions where no hand can be.
+        reversals: samples between which no hand could swing back and forth.
+        repeated: readings that repeat the one before while the hand moves; left out of the trajectory.
+        longest_freeze_ns: longest time for which one of them stood, device clock [ns].
+        freeze_at_ns: when that began, since the grasp [ns].
+        measured_rate: readings a second that differ [Hz], where some repeat; 0: none does.
+        conflicts: came with a number that was taken, or that their device time contradicts.
+        flaps: times for which the glove read open or closed too shortly for a hand, from the grasp on.
+        flap_at_ns: when the first of them was, since the grasp [ns].
+        regrasp_ns: how long the hand was open when it had let go, if it closed again at once [ns]; 0: it did not.
+        clock_jumps: times that the device's clock jumped.
+        declared_rate: samples a second that the client declared [Hz]; 0: it said none.
+        seen_rate: numbers a second of the device's clock [Hz].
+        clock: of the device against the host's; None: not known.
+        notes: what an operator should know, in words.
+        dwell_times: where a hand without a glove dwells, if taking and putting are not sure [s].
     """
 
     received: int = 0
     lost: int = 0
     duplicated: int = 0
-    reordered: int = 0  # came after newer ones, and were put in their place
-    late: int = 0  # came after the demonstration they belong to was cut, which is made without them
+    reordered: int = 0
+    late: int = 0
     refused: int = 0
-    refused_numbers: tuple[tuple[int, int], ...] = ()  # first and last of those in a row, where they can be read
+    refused_numbers: tuple[tuple[int, int], ...] = ()
     untracked: int = 0
-    gaps: int = 0  # stretches of numbers that never came
-    missing: tuple[tuple[int, int], ...] = ()  # first and last number of each of them, of the first 20
-    longest_gap_ns: int = 0  # device clock
-    outliers: int = 0  # positions that their neighbours contradict; left out of the trajectory
-    level_shifts: int = 0  # places where the position jumps and stays
+    gaps: int = 0
+    missing: tuple[tuple[int, int], ...] = ()
+    longest_gap_ns: int = 0
+    outliers: int = 0
+    level_shifts: int = 0
     out_of_workspace: int = 0
-    reversals: int = 0  # samples between which no hand could swing back and forth
-    repeated: int = 0  # readings that repeat the one before while the hand moves; left out of the trajectory
-    longest_freeze_ns: int = 0  # longest time for which one of them stood, device clock
-    freeze_at_ns: int = 0  # since the grasp
-    measured_rate: float = 0.0  # [Hz] readings that differ, where some repeat; 0: none does
-    conflicts: int = 0  # came with a number that was taken, or that their device time contradicts
-    flaps: int = 0  # times for which the glove read open or closed too shortly for a hand, from the grasp on
-    flap_at_ns: int = 0  # the first of them, since the grasp
-    regrasp_ns: int = 0  # how long the hand was open when it had let go, if it closed again at once; 0: it did not
+    reversals: int = 0
+    repeated: int = 0
+    longest_freeze_ns: int = 0
+    freeze_at_ns: int = 0
+    measured_rate: float = 0.0
+    conflicts: int = 0
+    flaps: int = 0
+    flap_at_ns: int = 0
+    regrasp_ns: int = 0
     clock_jumps: int = 0
-    declared_rate: float = 0.0  # [Hz] 0: the client said none
-    seen_rate: float = 0.0  # [Hz] numbers a second of the device's clock
+    declared_rate: float = 0.0
+    seen_rate: float = 0.0
     clock: Clock | None = None
     notes: tuple[str, ...] = ()
-    dwell_times: tuple[float, ...] = ()  # [s] where a hand without a glove dwells, if taking and putting are not sure
+    dwell_times: tuple[float, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -181,29 +217,55 @@ class Demonstration:
 
     The transport phase is samples[grasp:release] of the recording, or samples[trim[0]:trim[1]] when the operator has
     trimmed it.
+
+    Attributes:
+        id: of the demonstration.
+        task: name of its task.
+        number: 1, 2, ... within its task.
+        source: name of the tracker or the file.
+        calibration: under which it was recorded.
+        created_ns: when it was made [ns since the Unix epoch].
+        duration: of the transport phase [s].
+        samples: in its recording.
+        grasp: index of the first sample of the transport phase, by the recorder's own cut.
+        release: index behind its last sample.
+        verdict: clean, repaired (usable, with losses) or reject (not learned from).
+        statistics: counts of its samples.
+        recording: place of the MCAP file within the recordings.
+        reasons: why the verdict is not clean, with figures.
+        advice: what the operator should know and do about it, in one sentence.
+        left_out: numbers of the samples that jumped.
+        trim: begin and end (excluded) of the transport phase by the operator's cut, as indices of samples; None: the
+            recorder's holds.
+        mark: the operator's own: good, bad or empty for none.
+        discarded_ns: when it was discarded [ns since the Unix epoch]; 0: it is not.
+        amended_by: who marked, trimmed, discarded or restored it last, where the station asks.
+        digest: of its recording; None: it was stored before digests were.
+        object_pose: of the object before it was grasped; None: as the scene has it.
     """
 
     id: str
     task: str
-    number: int  # 1, 2, ... within its task
-    source: str  # tracker name or file name
+    number: int
+    source: str
     calibration: Calibration
     created_ns: int
-    duration: float  # of the transport phase [s]
+    duration: float
     samples: int
     grasp: int
     release: int
     verdict: Verdict
     statistics: StreamStatistics
-    recording: str  # place of the MCAP file within the recordings
-    reasons: tuple[str, ...] = ()  # why the verdict is not clean, with figures
-    advice: str = ""  # what the operator should know and do about it, in one sentence
-    left_out: tuple[int, ...] = ()  # numbers of the samples that jumped
+    recording: str
+    reasons: tuple[str, ...] = ()
+    advice: str = ""
+    left_out: tuple[int, ...] = ()
     trim: tuple[int, int] | None = None
-    mark: str = ""  # the operator's own: good, bad or none
-    discarded_ns: int = 0  # when it was discarded; 0: it is not
-    digest: RecordingDigest | None = None  # of its recording; None: it was stored before digests were
-    object_pose: ObjectPose | None = None  # of the object before it was grasped; None = as the scene has it
+    mark: str = ""
+    discarded_ns: int = 0
+    amended_by: str = ""
+    digest: RecordingDigest | None = None
+    object_pose: ObjectPose | None = None
 
     @property
     def transport(self) -> tuple[int, int]:

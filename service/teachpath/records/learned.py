@@ -11,10 +11,16 @@ from teachpath.records.motion import ObjectPose
 
 @dataclass(frozen=True, slots=True)
 class Deviation:
-    """Where and how a demonstration deviates most from the others of its cluster."""
+    """Where and how a demonstration deviates most from the others of its cluster.
 
-    share: tuple[float, float]  # begin and end as shares of the arc length
-    seconds: tuple[float, float]  # begin and end since the first sample
+    Attributes:
+        share: begin and end as shares of the arc length, 0 to 1.
+        seconds: begin and end since the first sample [s].
+        sentence: both in words.
+    """
+
+    share: tuple[float, float]
+    seconds: tuple[float, float]
     sentence: str
 
 
@@ -23,8 +29,10 @@ class Score:
     """The score of one demonstration in the selection of its cluster.
 
     Attributes:
+        demonstration: its id.
         log_likelihood: of its observations under the models that score it.
         rank: 1 = most consistent.
+        selected: whether the path is fitted to it.
         note: why it was not selected, or not scored.
         margin: distance to the next in rank, in robust z in mode default, else in log-likelihood; None for the last.
         z: its worst robust z, at most 0; 0 = consistent, None = not scored.
@@ -48,6 +56,7 @@ class Cluster:
     """Demonstrations that do the task alike, with their scores.
 
     Attributes:
+        index: its number in the run, from 1.
         members: ids, most consistent first.
         scores: same order as `members`.
         convergence: log-likelihood of the model after each training iteration (Fig. 4).
@@ -70,14 +79,23 @@ class Cluster:
 
 @dataclass(frozen=True, slots=True)
 class Fit:
-    """Distances [m] of a learned path from the points that it was fitted to, and from the demonstrations."""
+    """Distances [m] of a learned path from the points that it was fitted to, and from the demonstrations.
+
+    Attributes:
+        bound: to which the fit was refined [m].
+        largest: largest distance of a fitted point from the path [m].
+        rms: root mean square of these distances [m].
+        tube: largest distance of a selected demonstration from the path [m].
+        frechet: discrete Fréchet distance from the mean path [m]; None: not measured.
+        turn: largest angle of the orientations from the mean orientations [rad]; None: the path has none.
+    """
 
     bound: float
     largest: float
     rms: float
-    tube: float  # largest distance of a selected demonstration from the path
-    frechet: float | None = None  # discrete Fréchet distance from the mean path
-    turn: float | None = None  # largest angle [rad] of the orientations from the mean orientations
+    tube: float
+    frechet: float | None = None
+    turn: float | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,9 +103,13 @@ class LearnedPath:
     """The NURBS of one cluster: the path of the object's centre in the world.
 
     Attributes:
+        id: of the path.
+        run: id of the learning run.
+        cluster: number of the cluster in the run.
         version: see `Version`; the learned path itself is version 1.
-        curve: positions [m].
+        curve: positions of the object's centre [m, world].
         fit: None for an edited version, which follows no demonstrations.
+        note: what one should know of the fit, in words; empty: nothing.
         orientation: quaternions at the same parameter, which `nurbs.unit_quaternions` brings to unit length; None when
             not all selected demonstrations carry orientations.
         object_pose: where an adapted path takes the object; None = where the scene has it.
@@ -109,9 +131,15 @@ class Learned:
     """The result of one learning run over a task's demonstrations.
 
     Attributes:
+        mode: of learning: default, or paper as it was published.
+        demonstrations: ids, as they are numbered in `linkage`.
         linkage: (m - 1, 4) merges as scipy writes them: left, right, height [m], size; leaves in the order of
             `demonstrations`.
         threshold: height of the cut [m].
+        clusters: the different ways in which the task was done.
+        paths: one for each cluster.
+        notes: what an operator should know of the run, in words.
+        settings: of learning, with which it was computed.
         versions: of the libraries that computed the run.
         inputs: SHA-256 of every demonstration's times, positions and orientations, by id.
     """
@@ -133,7 +161,10 @@ class RunSummary:
     """A learning run as it is listed.
 
     Attributes:
-        mode: of learning.
+        id: of the run.
+        task: name of the task.
+        created_ns: when it was made [ns since the Unix epoch].
+        mode: of learning: default, or paper as it was published.
         demonstrations: how many it learned from.
         paths: ids of the learned paths, one for each cluster.
     """
@@ -144,3 +175,51 @@ class RunSummary:
     mode: str
     demonstrations: int
     paths: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class PathSummary:
+    """A learned path as it is listed.
+
+    Attributes:
+        id: of the path.
+        task: whose demonstrations it was learned from.
+        run: id of the learning run.
+        cluster: number of the cluster in the run.
+        versions: how many there are, the learned one among them.
+        created_ns: when it was learned [ns since the Unix epoch].
+    """
+
+    id: str
+    task: str
+    run: str
+    cluster: int
+    versions: int
+    created_ns: int
+
+
+@dataclass(frozen=True, slots=True)
+class PlanSummary:
+    """A plan as it is listed.
+
+    Attributes:
+        id: of the plan.
+        task: whose path it follows.
+        path: id of the path.
+        path_version: number of the path's version.
+        scene: name of the scene that it was checked against.
+        duration: of the path at full speed [s].
+        clearance: least distance of arm and object to scene and self [m].
+        revoked: whether its certificate was taken back.
+        created_ns: when it was made [ns since the Unix epoch].
+    """
+
+    id: str
+    task: str
+    path: str
+    path_version: int
+    scene: str
+    duration: float
+    clearance: float
+    revoked: bool
+    created_ns: int

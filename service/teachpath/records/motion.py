@@ -1,15 +1,13 @@
-"""What moves: scenes, plans with their certificates, setpoints, joint states."""
+"""What is planned: scenes, plans and their certificates."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-import numpy as np
-
 from teachpath.records.arrays import Array, Matrix, Quaternion, Vector
 from teachpath.records.calibrations import Calibration
-from teachpath_proto.control import ExecutorState
+from teachpath.records.later_fields import LATER
 
 
 @dataclass(frozen=True, slots=True)
@@ -17,11 +15,13 @@ class Shape:
     """One body of a scene.
 
     Attributes:
+        name: of the shape within its scene.
         kind: `box` (size: full edges x, y, z), `cylinder` (radius, height; axis along its z), `sphere` (radius) or
             `mesh` (factor from its units to metres).
         size: what its kind says [m].
-        position: of its centre, of a mesh its origin [m].
-        orientation: of the shape in the world.
+        position: of its centre, of a mesh its origin [m, world].
+        color: RGB in 24 bits, 0xRRGGBB.
+        orientation: to world from shape, unit quaternion w, x, y, z.
         file: OBJ or STL file of a mesh, beside the settings.
         vertices: of the mesh's convex hull, which takes its place: three a triangle, in the file's units.
     """
@@ -38,7 +38,12 @@ class Shape:
 
 @dataclass(frozen=True, slots=True)
 class ObjectPose:
-    """Where the object of a scene lies: its centre [m, world], and its orientation w, x, y, z."""
+    """Where the object of a scene lies: its centre [m, world], and its orientation w, x, y, z.
+
+    Attributes:
+        position: of its centre [m, world].
+        orientation: to world from object, unit quaternion w, x, y, z.
+    """
 
     position: Vector
     orientation: Quaternion = (1.0, 0.0, 0.0, 0.0)
@@ -52,9 +57,12 @@ class Scene:
     `keep_out`; nothing stands in these zones, they are rules.
 
     Attributes:
+        name: of the scene.
+        obstacles: what stands there, the table among it.
+        carried: the object where it lies; None: the scene has none.
         floor: height of the floor [m, world]; the arm's foot stands at 0.
-        keep_in: boxes.
-        keep_out: shapes of any kind.
+        keep_in: boxes that arm, gripper and carried object stay inside.
+        keep_out: shapes of any kind that they stay out of.
     """
 
     name: str
@@ -78,11 +86,30 @@ class Scene:
 
 @dataclass(frozen=True, slots=True)
 class Extreme:
-    """A largest or least value on a path and where it occurs."""
+    """A largest or least value on a path and where it occurs.
+
+    Attributes:
+        value: in the unit of what it is the extreme of.
+        place: in words, e.g. joint 3 at s = 0.412 m.
+        s: arc length from the start of the path [m].
+    """
 
     value: float
-    place: str  # in words: "joint 3 at s = 0.412 m"
-    s: float  # arc length from the start of the path [m]
+    place: str
+    s: float
+
+
+@dataclass(frozen=True, slots=True)
+class ToolPose:
+    """Pose of the tool to the flange: its centre point [m] and orientation; z points out of the gripper.
+
+    Attributes:
+        position: of the tool centre point [m, flange].
+        orientation: to flange from tool, unit quaternion w, x, y, z; z points out of the gripper.
+    """
+
+    position: Vector
+    orientation: Quaternion
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,14 +117,15 @@ class Signature:
     """What a station says with its key of a plan: that it made the plan, and what the certificate holds for.
 
     Attributes:
-        arm: name of the published variant.
-        tool_length: from the flange to the grasp point [m].
+        arm: name of the published variant; of an arm that was added, its name and the begin of its hash.
+        tool_length: from where the gripper sits to the tool centre point [m].
         settings: `motion` settings with which the plan was made.
         calibrations: of the demonstrations that the path was learned from.
         present_calibrations: the newest versions of these when the plan was made.
-        issued_ns: when the plan was made.
-        expires_ns: when the certificate holds no longer.
+        issued_ns: when the plan was made [ns since the Unix epoch].
+        expires_ns: when the certificate holds no longer [ns since the Unix epoch].
         mac: HMAC-SHA256 (hex) over the whole plan and the arm, by the station's signing key.
+        tool: its pose to the flange; None: it lies on the axis of joint 6, `tool_length` ahead of the flange.
     """
 
     arm: str
@@ -108,6 +136,7 @@ class Signature:
     issued_ns: int
     expires_ns: int
     mac: str
+    tool: ToolPose | None = field(default=None, metadata=LATER)
 
 
 @dataclass(frozen=True, slots=True)
@@ -118,22 +147,43 @@ class CertificateQuery:
     mac: str
 
 
+@dataclass(frozen=True, slots=True)
+class SceneQuery:
+    """The executor's question what stands around the arm in a scene now: the scene's name."""
+
+    name: str
+
+
 @dataclass(frozen=True, eq=False)
 class Certificate:
-    """The proof that the arm can follow a plan; uses are shares of the limits, at most 1."""
+    """The proof that the arm can follow a plan; uses are shares of the limits, at most 1.
 
-    digest: str  # SHA-256 over plan, certificate and arm, without the plan's id and the signature
+    Attributes:
+        digest: SHA-256 over plan, certificate and arm, without the plan's id and the signature (hex).
+        branch: of the arm on the whole path, in words, e.g. righty, elbow up.
+        position_use: largest share of the joints' range.
+        velocity_use: largest share of the joints' speed limits.
+        acceleration_use: largest share of the joints' acceleration limits.
+        jerk_use: largest share of the joints' jerk limits.
+        torque_use: largest share of the motors' torque that any sequence of commands can ask for on the path.
+        least_singular: least singular value of the Jacobian.
+        clearance: least distance of arm and carried object to scene and self [m].
+        tool_speed: the most of elbow, wrist and tool centre point on the path [m/s]; None: it was made before that was
+            measured.
+        signature: None: it was made outside a station, or before stations signed.
+    """
+
+    digest: str
     branch: str
     position_use: Extreme
     velocity_use: Extreme
     acceleration_use: Extreme
     jerk_use: Extreme
-    torque_use: Extreme  # the most that any sequence of commands can ask for on the path
+    torque_use: Extreme
     least_singular: Extreme
-    clearance: Extreme  # of arm and carried object to scene and self [m]
-    # the most of elbow, wrist and tool centre point on the path [m/s]; None: it was made before that was measured
+    clearance: Extreme
     tool_speed: Extreme | None = None
-    signature: Signature | None = None  # None: it was made outside a station, or before stations signed
+    signature: Signature | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -141,17 +191,22 @@ class Plan:
     """Path plus timing plus certificate: all that the executor needs.
 
     Attributes:
+        id: of the plan.
+        path: id of the learned path.
+        path_version: number of the path's version.
+        scene: that it was checked against.
         lengths: (n,) arc length of the nodes [m], from 0, strictly increasing.
-        joints: (n, 6) configurations at the nodes [rad]; between them a quintic spline runs, on even parameters from
-            0 to 1.
-        squared_rates: (m,) coefficients of the square of the parameter's rate at full speed, a quadratic spline on even
-            intervals [1/s^2].
+        joints: (n, 6) configurations at the nodes [rad]; between them a quintic spline runs, on even parameters from 0
+            to 1.
+        squared_rates: (m,) coefficients of the square of the parameter's rate at full speed, a quadratic spline on
+            even intervals [1/s^2].
         limits: (3, 6) of the joints' speed [rad/s], acceleration [rad/s^2] and jerk [rad/s^3] while they follow the
             path, at any override.
-        tool_speed: limit of elbow, wrist and tool centre point [m/s], at any override; None: no limit.
         above_start: (6,) configuration above the start, from where the object is grasped.
         above_goal: (6,) configuration above the goal, to where the arm retreats.
         duration: of the path at full speed [s].
+        certificate: the proof that the arm can follow it.
+        tool_speed: limit of elbow, wrist and tool centre point [m/s], at any override; None: no limit.
     """
 
     id: str
@@ -167,92 +222,3 @@ class Plan:
     duration: float
     certificate: Certificate
     tool_speed: float | None = None
-
-
-@dataclass(frozen=True, eq=False)
-class Setpoint:
-    """What the arm should do in one control period; joint arrays are (6,) in rad, rad/s, rad/s^2."""
-
-    cycle: int
-    nominal_ns: int
-    sent_ns: int
-    position: Array
-    velocity: Array
-    acceleration: Array
-    gripper_closed: bool
-    execution: str
-    on_path: bool = False
-    # (n, 6) [rad], one control period apart, the first one period behind this setpoint; checked against all limits
-    way_to_rest: Array = field(default_factory=lambda: np.empty((0, 6)))
-
-
-@dataclass(frozen=True, eq=False)
-class JointState:
-    """What the arm does; joint arrays are (6,), `tracking_error` is the largest over the joints [rad].
-
-    An arm that is `holding` follows the way to rest of setpoint `cycle`; once it is `stopped`, it rests at its end.
-
-    Attributes:
-        enabled: whether the drives are on.
-        protective_stop: whether the arm's own controller has stopped it.
-        fault: what is wrong with the arm, in words; empty: nothing.
-        gripper_opening: measured between the fingers [m]; None where the arm does not measure it.
-    """
-
-    stamp_ns: int
-    cycle: int
-    position: Array
-    velocity: Array
-    torque: Array
-    tracking_error: float
-    missed: int
-    holding: bool
-    gripper_closed: bool
-    object_position: Vector
-    object_orientation: Quaternion
-    execution: str = ""
-    late: int = 0
-    stopped: bool = False
-    enabled: bool = True
-    protective_stop: bool = False
-    fault: str = ""
-    gripper_opening: float | None = None
-
-    @property
-    def inability(self) -> str:
-        """Why the arm can follow no setpoint, and the way out, in words; empty when it can."""
-        if self.fault:
-            return f"the arm reports a fault: {self.fault}; clear it at the arm"
-        if self.protective_stop:
-            return "the arm's own controller has stopped it (protective stop): see why, and release it at the arm"
-        return "" if self.enabled else "the arm's drives are off: switch them on at the arm"
-
-
-@dataclass(frozen=True, slots=True)
-class ExecutorStatus:
-    """Where an execution stands; see proto/teachpath_proto/motion.proto for the fields."""
-
-    execution: str = ""
-    state: ExecutorState = ExecutorState.IDLE
-    reason: str = ""
-    progress: float = 0.0
-    override: float = 1.0
-    cycles: int = 0
-    late: int = 0
-    missed: int = 0
-    lateness_p50_us: float = 0.0
-    lateness_p99_us: float = 0.0
-    lateness_max_us: float = 0.0
-    limit_use: float = 0.0
-    tracking_error: float = 0.0
-    limit_place: str = ""
-    duration: float = 0.0
-    length: float = 0.0
-    activity: str = ""
-    operator: str = ""
-    asking: str = ""
-    scheduling: str = ""
-    hand_latency_p50_us: float = 0.0
-    hand_latency_p99_us: float = 0.0
-    ending: bool = False
-    unasked_motion: str = ""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import StrEnum
+from functools import cached_property
 
 from teachpath.errors import UnusableInput
 from teachpath.records.arrays import Pose, Vector
@@ -22,7 +23,7 @@ class RecordingState(StrEnum):
     PAUSED = "paused"
     LOST = "lost"  # the tracker has gone; recording goes on when it comes back
 
-    @property
+    @cached_property  # asked for every sample; it costs a microsecond to look members up
     def is_writing(self) -> bool:
         """Whether the samples that come are written into a take."""
         return self in (RecordingState.RECORDING, RecordingState.PAUSING)

@@ -16,6 +16,10 @@ class Version:
         number: from 1, in the order of saving, over all branches of a path.
         parent: number of the version that was edited; None for the learned path.
         branch: line of versions that this version continues.
+        name: what somebody called it; empty: nothing.
+        author: who edited it; empty: not said.
+        note: why, or how it was made; empty: not said.
+        created_ns: when it was saved [ns since the Unix epoch].
     """
 
     path: str

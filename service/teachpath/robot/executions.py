@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import uuid
+from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
@@ -19,7 +20,7 @@ from teachpath.io.wire import decode_lease, decode_status, encode_command, encod
 from teachpath.logs import request_number
 from teachpath.motion.analysis.time_series import time_series
 from teachpath.motion.arm.model import Arm
-from teachpath.records import Command, ExecutorStatus, Lease, LeaseRequest, TeleopRequest
+from teachpath.records import Command, ExecutorStatus, JournalEntry, Lease, LeaseRequest, TeleopRequest
 from teachpath.robot.executor_monitor import ExecutorMonitor
 from teachpath.robot.motion_recorder import SETTLING_NS, STOPPING_NS, MotionRecorder
 from teachpath.robot.stopper import Stopper
@@ -39,10 +40,13 @@ class Executions:
     """Starts and steers executions, one at a time.
 
     Args:
+        on_entry: called with each entry of the executor's journal.
         robot: name of the robot.
     """
 
-    def __init__(self, bus: Bus, keys: Keys, store: Store, *, robot: str) -> None:
+    def __init__(
+        self, bus: Bus, keys: Keys, store: Store, on_entry: Callable[[JournalEntry], object], *, robot: str
+    ) -> None:
         self._bus = bus
         self._keys = keys
         self._store = store
@@ -50,7 +54,7 @@ class Executions:
         self._recorder = MotionRecorder(bus, keys, store.motions, robot=robot)
         self._stopper = Stopper(bus, keys)
         self._starting: set[str] = set()  # executions that the executor has not answered for yet
-        self._monitor = ExecutorMonitor(bus, keys, store, on_status=self._stopper.on_status)
+        self._monitor = ExecutorMonitor(bus, keys, store, on_status=self._stopper.on_status, on_entry=on_entry)
 
     def start(self) -> None:
         """Receive the executor's statuses and journal from now on."""

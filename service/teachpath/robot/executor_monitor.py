@@ -29,18 +29,26 @@ class ExecutorMonitor:
 
     Args:
         on_status: called with each status, on a thread of the bus.
+        on_entry: called with each entry of the journal, after it was stored.
 
     Attributes:
         unacknowledged: that the arm moved unasked, as an executor said that died before somebody acknowledged it.
     """
 
     def __init__(
-        self, bus: Bus, keys: Keys, store: Store, *, on_status: Callable[[ExecutorStatus], None] = lambda status: None
+        self,
+        bus: Bus,
+        keys: Keys,
+        store: Store,
+        *,
+        on_status: Callable[[ExecutorStatus], None] = lambda status: None,
+        on_entry: Callable[[JournalEntry], object] = lambda entry: None,
     ) -> None:
         self._bus = bus
         self._keys = keys
         self._store = store
         self._on_status = on_status
+        self._on_entry = on_entry
         self.unacknowledged = ""
         self._lock = threading.Lock()
         self._latest: ExecutorStatus | None = None
@@ -150,5 +158,6 @@ class ExecutorMonitor:
         while (received := self._to_store.get()) is not None:
             if isinstance(received, JournalEntry):
                 self._store.journal.write(received)
+                self._on_entry(received)
             elif received.execution in self._plans:
                 self._store.put_execution(received.execution, self._plans[received.execution], received)

@@ -13,7 +13,7 @@ import numpy as np
 from teachpath.errors import NotFound, TeachpathError, UnusableInput
 from teachpath.io import documents
 from teachpath.io.bus import Bus, Handle
-from teachpath.records import LearnedPath, ObjectPose, Scene
+from teachpath.records import LearnedPath, ObjectPose, Scene, SceneQuery
 from teachpath.records.poses import SAME_PLACE, SAME_TURN, unit_quaternion
 from teachpath_proto.keys import Keys
 
@@ -50,17 +50,19 @@ class ObjectPoses:
         self._lock = threading.Lock()
         self._reported: dict[str, ObjectPose] = {}  # newest
         self._current: dict[str, ObjectPose] = {}  # that scenes are given with
-        self._handle: Handle | None = None
+        self._handles: list[Handle] = []
 
     def start(self) -> None:
-        """Listen on the bus from now on."""
-        self._handle = self._bus.subscribe(self._keys.all_objects, self._receive)
+        """Listen on the bus, and answer the executor what stands in a scene, from now on."""
+        self._handles = [
+            self._bus.subscribe(self._keys.all_objects, self._receive),
+            self._bus.serve(self._keys.station_scene, self._answer),
+        ]
 
     def stop(self) -> None:
-        """Listen no longer."""
-        if self._handle is not None:
-            self._handle.close()
-            self._handle = None
+        """Listen and answer no longer."""
+        while self._handles:
+            self._handles.pop().close()
 
     def scene(self, name: str) -> Scene:
         """Return a scene with its object where it was told to lie; raises NotFound."""
@@ -118,6 +120,9 @@ class ObjectPoses:
         if self._current.get(name) is not before:
             self._on_change(name)
         return now
+
+    def _answer(self, payload: bytes) -> bytes:
+        return documents.encode(self.scene(documents.decode(SceneQuery, payload).name))
 
     def _receive(self, key: str, payload: bytes) -> None:
         try:

@@ -1,21 +1,23 @@
 """The processes beside the service, executor and simulated arm: started with it, started again when they die.
 
-None outlives the service: each reads its settings from its standard input, and ends when that is closed.
+They are forked from the process server. None outlives the service: each reads its settings from its standard input, and
+ends when that is closed.
 """
 
 from __future__ import annotations
 
-import contextlib
 import logging
 import signal
-import subprocess
 import sys
 import threading
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
+from functools import partial
+from importlib import import_module
 from typing import Final
 
 from teachpath.logs import relay
+from teachpath.robot.forked_process import LOST, ForkedProcess
 from teachpath.robot.last_error import LastError
 
 log = logging.getLogger("teachpath")
@@ -26,11 +28,21 @@ MAX_DEATHS: Final = 5  # in a row, each within `SHORT_LIFE` of its start; then a
 SHORT_LIFE: Final = 60.0  # [s]
 NOTE_TIME: Final = 600.0  # [s] for which a note tells of a death
 READ_TIMEOUT: Final = 1.0  # [s] to read what a process wrote before it died
+# What an operator should do after the death of a process, as the end of a sentence.
+EXECUTOR_SUGGESTION: Final = "its execution ended as faulted: look where the arm stands, then start again"
+SIMULATOR_SUGGESTION: Final = (
+    "its execution ended as faulted; its arm stands at home and the object at its start: start again"
+)
 
 
-def attached_command(name: str) -> Sequence[str]:
-    """Return the command that runs a part of the station as a process beside the service."""
-    return (sys.executable, "-m", "teachpath", name, "--attached")
+def attached(name: str) -> Callable[[], None]:
+    """Return what runs a part of the station in a process beside the service: `teachpath NAME --attached`."""
+    return partial(_run_command, name, "--attached")
+
+
+def _run_command(*arguments: str) -> None:
+    sys.argv[1:] = arguments
+    import_module("teachpath.__main__").main()
 
 
 class SupervisedProcess:
@@ -38,7 +50,7 @@ class SupervisedProcess:
 
     Args:
         name: of the part, for the operator.
-        command: what to run.
+        function: what it runs; it can be pickled.
         instructions: one line for its standard input.
         suggestion: what the operator should do after a death, as the end of a sentence.
         on_death: called with the cause of each death, before the process is started again.
@@ -47,41 +59,42 @@ class SupervisedProcess:
     def __init__(
         self,
         name: str,
-        command: Sequence[str],
+        function: Callable[[], object],
         instructions: str,
         *,
         suggestion: str,
         on_death: Callable[[str], None] = lambda cause: None,
     ) -> None:
         self.name = name
-        self._command = command
+        self._function = function
         self._instructions = instructions
         self._suggestion = suggestion
         self._on_death = on_death
         self._lock = threading.Lock()
         self._stopping = threading.Event()
-        self._process: subprocess.Popen[str] | None = None
+        self._process: ForkedProcess | None = None
         self._supervisor: threading.Thread | None = None
         self._started_at = 0.0  # [s, monotonic]
         self._short_lives = 0  # in a row
         self._death: tuple[float, str] | None = None  # the last one: when [s, monotonic], and its cause
 
     def start(self) -> None:
-        """Start the process; it is ready when it announces itself on the bus."""
+        """Begin to start the process, which waits for the process server; it announces itself on the bus."""
         self._supervisor = threading.Thread(target=self._supervise, name=f"{self.name} supervisor", daemon=True)
-        self._spawn()
         self._supervisor.start()
 
     def is_alive(self) -> bool:
         """Tell whether the process runs."""
-        return self._process is not None and self._process.poll() is None
+        return self._process is not None and self._process.is_alive()
 
     @property
     def state(self) -> str:
-        """`running`, `restarting`, or `ended` when it is stopped or has died too often."""
+        """`running`, from `start` on, `restarting`, or `ended` when it is stopped or has died too often."""
         if self.is_alive():
             return "running"
-        return "ended" if self.is_given_up or self._stopping.is_set() else "restarting"
+        if self.is_given_up or self._stopping.is_set():
+            return "ended"
+        return "restarting" if self._process or self._death else "running"
 
     def note(self) -> str:
         """Return what the operator should know and do about the last death; empty when it is long ago."""
@@ -104,57 +117,41 @@ class SupervisedProcess:
         """Ask the process to end by itself; it is not started again."""
         self._stopping.set()
         with self._lock:
-            if self.is_alive():
-                assert self._process is not None
+            if self._process is not None:
                 self._process.send_signal(signal.SIGTERM)
 
     def stop(self) -> None:
         """End the process; it is killed when it does not end in time."""
         self.request_stop()
-        process = self._process
-        if process is None:
-            return
-        with contextlib.suppress(OSError):
-            process.stdin.close()  # type: ignore[union-attr]
-        try:
-            process.wait(STOP_TIMEOUT)
-        except subprocess.TimeoutExpired:
-            process.kill()
-            process.wait()
+        if self._process is not None:
+            self._process.close_input()
         if self._supervisor is not None:
+            self._supervisor.join(STOP_TIMEOUT)
+            if self._process is not None:
+                self._process.send_signal(signal.SIGKILL)
             self._supervisor.join()
 
-    def _spawn(self) -> None:
-        with self._lock:
+    def _supervise(self) -> None:
+        while not self._stopping.is_set():
+            cause = self._run()
             if self._stopping.is_set():
                 return
-            self._started_at = time.monotonic()
-            self._process = subprocess.Popen(
-                self._command,
-                stdin=subprocess.PIPE,
-                stderr=subprocess.PIPE,
-                text=True,
-                errors="replace",
-                # its own session: Ctrl-C goes to the service alone, which then stops its parts in order
-                start_new_session=True,
-            )
-            assert self._process.stdin is not None
-            with contextlib.suppress(OSError):  # it may have died already
-                self._process.stdin.write(self._instructions + "\n")
-                self._process.stdin.flush()
-
-    def _supervise(self) -> None:
-        cause = self._wait_for_end()
-        while not self._stopping.is_set():
             self._note_death(cause)
             if self.is_given_up or self._stopping.wait(RESTART_DELAY):
                 return
+
+    def _run(self) -> str:
+        """Start the process, wait until it has ended, and return how, in words."""
+        with self._lock:
+            if self._stopping.is_set():
+                return ""
+            self._started_at = time.monotonic()
             try:
-                self._spawn()
-            except OSError as error:
-                cause = f"it cannot be started: {error}"
-            else:
-                cause = self._wait_for_end()
+                process = self._process = ForkedProcess(self.name, self._function)
+            except (OSError, EOFError) as error:
+                return f"it cannot be started: {error}"
+            process.write_line(self._instructions)
+        return self._wait_for_end(process)
 
     def _note_death(self, cause: str) -> None:
         now = time.monotonic()
@@ -166,23 +163,18 @@ class SupervisedProcess:
         except Exception:  # whatever it is, the process must be started again
             log.exception("what follows the death of the %s failed", self.name)
 
-    def _wait_for_end(self) -> str:
-        """Wait until the process has ended, and return how, in words."""
-        process = self._process
-        assert process is not None
+    def _wait_for_end(self, process: ForkedProcess) -> str:
         error = LastError()
         reader = threading.Thread(target=self._read, args=(process, error), name=f"{self.name} stderr", daemon=True)
         reader.start()
-        process.wait()
+        status = process.wait()
         reader.join(READ_TIMEOUT)
-        with contextlib.suppress(OSError):
-            process.stdin.close()  # type: ignore[union-attr]
-        return _describe_end(process.returncode, error.text)
+        process.close_input()
+        return _describe_end(status, error.text)
 
-    def _read(self, process: subprocess.Popen[str], error: LastError) -> None:
+    def _read(self, process: ForkedProcess, error: LastError) -> None:
         """Pass on what a process writes, and look for its last error."""
-        assert process.stderr is not None
-        with process.stderr as lines:
+        with open(process.errors, encoding="utf-8", errors="replace") as lines:
             for line in lines:
                 try:
                     told = relay(line)
@@ -195,7 +187,9 @@ class SupervisedProcess:
 
 def _describe_end(returncode: int, error: str) -> str:
     """Return in words how a process ended, with its last error if it wrote one."""
-    if returncode < 0:
+    if returncode == LOST:
+        how = "the process server ended, which it was forked from"
+    elif returncode < 0:
         how = f"killed by signal {-returncode}, {signal.strsignal(-returncode)}"
     else:
         how = f"exit status {returncode}" if returncode else "it ended by itself"

@@ -1,1 +1,1 @@
-"""The simulated arm: a dynamic Puma 560 that plays the setpoints."""
+"""The simulated arm: a dynamic arm that plays the setpoints."""

@@ -1,4 +1,4 @@
-"""The physics of the simulated arm: a dynamic Puma 560, its gripper, the object and the obstacles, in MuJoCo."""
+"""The physics of the simulated arm: a dynamic arm, its gripper, the object and the obstacles, in MuJoCo."""
 
 from __future__ import annotations
 
@@ -23,7 +23,8 @@ class SimulatedArm:
     """The physics: arm, gripper, object and obstacles, advanced by 1 ms a step.
 
     Attributes:
-        gripper_opening: between the fingers [m]: the object's width while they hold it, else all or nothing.
+        gripper_opening: between the fingers [m]: the object's width while they hold it, else all or nothing; None
+            without a gripper.
     """
 
     def __init__(self, scene: Scene, arm: Arm, settings: SimulatorSettings, position: Sequence[float]) -> None:
@@ -40,6 +41,7 @@ class SimulatedArm:
         self._rate = np.zeros(self._model.nv)
         self._force = np.zeros(self._model.nv)
         self._integral = np.zeros(6)  # [N m]
+        self.gripper_opening: float | None = None
         self.data = mujoco.MjData(self._model)
         self.reset()
 
@@ -48,7 +50,7 @@ class SimulatedArm:
         mujoco.mj_resetData(self._model, self.data)
         self.data.qpos[:6] = self._start
         self._integral[:] = 0.0
-        self.gripper_opening = 2 * HALF_OPENING
+        self._open()
         mujoco.mj_forward(self._model, self.data)
 
     @property
@@ -106,6 +108,8 @@ class SimulatedArm:
 
     def grasp(self) -> bool:
         """Grasp the object as it lies between the fingers; return False when the gripper does not take it there."""
+        if not self._arm.has_gripper:
+            return False
         self.gripper_opening = 0.0
         if self._object is None:
             return False
@@ -114,9 +118,11 @@ class SimulatedArm:
         pose = np.eye(4)
         pose[:3, :3] = rotation.T @ carried.xmat.reshape(3, 3)
         pose[:3, 3] = rotation.T @ (carried.xpos - hand.xpos)
-        if grasp_fault(self._object, pose, self._arm):
+        mount = self._arm.gripper_mount
+        in_gripper = pose if mount is None else np.linalg.inv(mount) @ pose
+        if grasp_fault(self._object, in_gripper, self._arm):
             return False
-        self.gripper_opening = grasp_width(self._object, pose)
+        self.gripper_opening = grasp_width(self._object, in_gripper)
         back, turn = np.empty(4), np.empty(4)
         mujoco.mju_negQuat(back, hand.xquat)
         mujoco.mju_mulQuat(turn, back, carried.xquat)
@@ -129,6 +135,9 @@ class SimulatedArm:
 
     def release(self) -> None:
         """Let the object go."""
-        self.gripper_opening = 2 * HALF_OPENING
+        self._open()
         if self._object is not None:
             self.data.eq_active[self._model.equality(GRASP_WELD).id] = False
+
+    def _open(self) -> None:
+        self.gripper_opening = 2 * HALF_OPENING if self._arm.has_gripper else None

@@ -1,4 +1,4 @@
-"""The simulated arm: a dynamic Puma 560 that follows the setpoints on the bus and publishes its joint state.
+"""The simulated arm: a dynamic arm that follows the setpoints on the bus and publishes its joint state.
 
 It uses the two keys that the driver of a real arm uses, and answers one query that puts the object back to its start.
 """

@@ -9,12 +9,20 @@ from __future__ import annotations
 
 import asyncio
 import json
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from http import HTTPStatus
-from typing import Any
+from typing import Any, Protocol
 
 from uvicorn.protocols.http.h11_impl import H11Protocol
 from uvicorn.protocols.websockets.websockets_sansio_impl import WebSocketsSansIOProtocol
+
+
+class Waiting(Protocol):
+    """A connection that has sent no whole head of a request yet."""
+
+    def drop(self) -> None:
+        """Close it at once."""
 
 
 @dataclass(frozen=True)
@@ -25,11 +33,26 @@ class ConnectionLimits:
         request_timeout: [s] for the head of a request, and for a reader that takes nothing of an answer.
         max_connections: that may be open at a time.
         waiting: connections that have sent no whole head of a request yet, oldest first.
+        undecided: those of them that are neither HTTP nor TLS yet, or amid the handshake of TLS.
     """
 
     request_timeout: float
     max_connections: int
-    waiting: dict[LimitedProtocol, None] = field(default_factory=dict)
+    waiting: dict[Waiting, None] = field(default_factory=dict)
+    undecided: dict[Waiting, None] = field(default_factory=dict)
+
+    def make_room(self, count: int) -> bool:
+        """Close the oldest connection that waits when `count` of HTTP and the undecided ones are too many.
+
+        Returns:
+            Whether there is room now.
+        """
+        if count + len(self.undecided) <= self.max_connections:
+            return True
+        if self.waiting:
+            next(iter(self.waiting)).drop()
+            return True
+        return False
 
 
 class _ReaderTimeout:
@@ -73,27 +96,28 @@ class LimitedProtocol(_ReaderTimeout, H11Protocol):
 
     Args:
         limits: of all connections of its port.
+        on_made: called when the connection is made, before anything else.
         given: what uvicorn gives to a protocol.
     """
 
-    def __init__(self, limits: ConnectionLimits, **given: Any) -> None:
+    def __init__(self, limits: ConnectionLimits, on_made: Callable[[], None] = lambda: None, **given: Any) -> None:
         super().__init__(**given)
         self._limits = limits
+        self._on_made = on_made
         self._head_timer: asyncio.TimerHandle | None = None
 
     def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]
         """Wait for a request; close the oldest connection that waits for one when there are too many."""
+        self._on_made()
         super().connection_made(transport)
-        if len(self.connections) > self._limits.max_connections:
-            if not self._limits.waiting:
-                self._refuse(
-                    503,
-                    f"{self._limits.max_connections} connections are open, the limit "
-                    "(web.max_connections); close some pages or programs, or raise the setting",
-                )
-                return
-            next(iter(self._limits.waiting)).drop()
-        self._wait_for_head()
+        if self._limits.make_room(len(self.connections)):
+            self._wait_for_head()
+        else:
+            self._refuse(
+                503,
+                f"{self._limits.max_connections} connections are open, the limit "
+                "(web.max_connections); close some pages or programs, or raise the setting",
+            )
 
     def connection_lost(self, exc: Exception | None) -> None:
         """Stop waiting."""
@@ -136,9 +160,11 @@ class LimitedProtocol(_ReaderTimeout, H11Protocol):
 
     def _refuse(self, status: int, sentence: str) -> None:
         """Answer a connection that has no request, and close it."""
-        body = json.dumps({"detail": sentence, "error": "Refused"}).encode()
+        title = HTTPStatus(status).phrase
+        problem = {"type": "about:blank", "title": title, "status": status, "detail": sentence, "error": "Refused"}
+        body = json.dumps(problem).encode()
         head = (
-            f"HTTP/1.1 {status} {HTTPStatus(status).phrase}\r\nContent-Type: application/json\r\n"
+            f"HTTP/1.1 {status} {title}\r\nContent-Type: application/problem+json\r\n"
             f"Content-Length: {len(body)}\r\nConnection: close\r\n\r\n"
         )
         self.transport.write(head.encode() + body)

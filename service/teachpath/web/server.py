@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import resource
 import socket
+import ssl
 from functools import partial
 from typing import Any, Final
 
@@ -11,6 +12,7 @@ import uvicorn
 
 from teachpath.web.connections import ConnectionLimits, LimitedProtocol, LimitedWebSocket
 from teachpath.web.settings import WebSettings
+from teachpath.web.tls import TlsOrHttp
 
 OTHER_FILES: Final = 256  # that the service has open beside its connections: recordings, database, bus, processes
 
@@ -26,37 +28,59 @@ class _Server(uvicorn.Server):
     asyncio has one number for both: how many may wait in the system, and how many are accepted in one round.
     """
 
+    def __init__(self, config: uvicorn.Config, limits: ConnectionLimits) -> None:
+        super().__init__(config)
+        self._limits = limits
+
     async def startup(self, sockets: list[socket.socket] | None = None) -> None:
         await super().startup(sockets)
         for listener in sockets or ():
             listener.listen(BACKLOG)
 
+    async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
+        for connection in tuple(self._limits.undecided):  # uvicorn knows nothing of them
+            connection.drop()
+        await super().shutdown(sockets)
 
-def web_server(application: Any, settings: WebSettings) -> uvicorn.Server:
+
+def web_server(application: Any, settings: WebSettings, context: ssl.SSLContext | None = None) -> uvicorn.Server:
     """Return a server of an ASGI application, to be run on a thread with a listening socket.
+
+    With a context of TLS it speaks https, and http on the same port; the scheme of a request tells them apart.
 
     Messages of WebSockets are not compressed: compressing an event for 200 pages costs more time than sending it, and
     a request waits for it.
     """
     limits = ConnectionLimits(settings.request_timeout, allow_connections(settings.max_connections))
+    protocol = partial(TlsOrHttp, context, limits) if context else partial(LimitedProtocol, limits)
     config = uvicorn.Config(
         application,
-        http=partial(LimitedProtocol, limits),  # type: ignore[arg-type]  # it is called, whatever it is
+        http=protocol,  # type: ignore[arg-type]  # it is called, whatever it is
         ws=partial(LimitedWebSocket, limits),  # type: ignore[arg-type]
         ws_per_message_deflate=False,
         backlog=ACCEPTS_A_ROUND,
+        proxy_headers=bool(settings.proxies),
+        forwarded_allow_ips=list(settings.proxies),
         log_level="warning",
         access_log=False,
         timeout_graceful_shutdown=1,
     )
-    return _Server(config)
+    return _Server(config, limits)
 
 
 def allow_connections(count: int) -> int:
     """Let this process have so many connections open, where the system allows it; return how many it may have."""
     soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
+    possible = possible_connections(count)
     if soft < count + OTHER_FILES and soft != resource.RLIM_INFINITY:
-        soft = count + OTHER_FILES if hard == resource.RLIM_INFINITY else min(hard, count + OTHER_FILES)
-        resource.setrlimit(resource.RLIMIT_NOFILE, (soft, hard))
-        return max(soft - OTHER_FILES, 1)
-    return count
+        wanted = count + OTHER_FILES if hard == resource.RLIM_INFINITY else min(hard, count + OTHER_FILES)
+        resource.setrlimit(resource.RLIMIT_NOFILE, (wanted, hard))
+    return possible
+
+
+def possible_connections(count: int) -> int:
+    """Return how many of so many connections the system would let this process have open."""
+    soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
+    if resource.RLIM_INFINITY in (soft, hard):
+        return count
+    return max(1, min(count, hard - OTHER_FILES))

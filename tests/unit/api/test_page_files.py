@@ -40,7 +40,7 @@ def test_a_file_that_is_gone_is_told(tmp_path: Path) -> None:
 def test_the_page_announces_every_module_that_it_imports() -> None:
     root = web_files()
     page = bytes(PageFiles({}).answer(request(), root / "index.html", "text/html", entry="page.js").body).decode()
-    announced = re.findall(r'<link rel="modulepreload" href="/web/([^"]+)">', page)
+    announced = re.findall(r'<link rel="modulepreload" href="web/([^"]+)">', page)
     assert announced == imported_modules("page.js", lambda path: (root / path).read_text())
     assert {"page.js", "panels/run.js", "vendor/three/three.js"} <= set(announced)
     assert PRELOAD not in page

@@ -30,7 +30,7 @@ class Setpoint:
     acceleration: np.ndarray
     gripper_closed: bool = False
     execution: str = "e"
-    way_to_rest: np.ndarray = field(default_factory=lambda: np.empty((0, 6)))
+    way_to_rest: np.ndarray = field(default_factory=lambda: np.empty((0, 3, 6)))
 
 
 def path(x: float) -> np.ndarray:
@@ -50,12 +50,17 @@ def motion(t: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 
 def way_to_rest(t: float) -> np.ndarray:
-    """Positions along the same curve while its rate falls to zero, smoothly."""
+    """The motion along the same curve while its rate falls to zero, smoothly."""
     if not 0.0 < t < SECONDS:
-        return np.empty((0, 6))
+        return np.empty((0, 3, 6))
     x = np.arange(1, round(BRAKING / PERIOD) + 1) * PERIOD / BRAKING
-    ahead = BRAKING * (x - (x**6 - 3 * x**5 + 2.5 * x**4))  # rate 1 - (10 x^3 - 15 x^4 + 6 x^5)
-    return np.array([path((t + each) / SECONDS) for each in ahead])
+    ahead = BRAKING * (x - (x**6 - 3 * x**5 + 2.5 * x**4))
+    rates, slopes = 1 - (10 * x**3 - 15 * x**4 + 6 * x**5), -30 * (x**2 - 2 * x**3 + x**4) / BRAKING
+    states = []
+    for each, rate, slope in zip(ahead, rates, slopes, strict=True):
+        p, v, a = motion(t + each)
+        states.append((p, v * rate, a * rate**2 + v * slope))
+    return np.array(states)
 
 
 def setpoint(k: int, *, start: float = 0.0, **changes: object) -> Setpoint:
@@ -144,7 +149,7 @@ def test_an_arm_without_setpoints_rests_on_its_path_within_its_limits(pause: flo
     assert player.state is PlayerState.STOPPED
     assert player.stops == 1
     assert player.last_reached is STREAM[at - 1]
-    np.testing.assert_allclose(player.target.position, STREAM[at - 1].way_to_rest[-1], atol=1e-12)
+    np.testing.assert_allclose(player.target.position, STREAM[at - 1].way_to_rest[-1, 0], atol=1e-12)
     assert not player.target.velocity.any()
 
 
@@ -211,7 +216,7 @@ def test_a_way_to_rest_whose_jerk_changes_from_period_to_period_is_read_as_it_wa
         rows.append(state)
         state = np.array([p + h * (v + h * (a / 2 + h * jerk / 6)), v + h * (a + h * jerk / 2), a + h * jerk])
     backwards = np.array([*rows, state])[::-1] * np.array([[1.0], [-1.0], [1.0]])
-    way = WayToRest(Setpoint(0, NOW, *backwards[0], way_to_rest=backwards[fine::fine, 0]), PERIOD)
+    way = WayToRest(Setpoint(0, NOW, *backwards[0], way_to_rest=backwards[fine::fine]), PERIOD)
     for k, (position, velocity, _) in enumerate(backwards):
         read = way(k * h)
         np.testing.assert_allclose(read[0], position, atol=1e-10)
@@ -220,7 +225,7 @@ def test_a_way_to_rest_whose_jerk_changes_from_period_to_period_is_read_as_it_wa
 
 def test_a_setpoint_that_moves_without_a_way_to_rest_is_braked_straight_ahead() -> None:
     player = SetpointPlayer(START, delay=DELAY)
-    bare = [setpoint(k, way_to_rest=np.empty((0, 6))) for k in range(150)]
+    bare = [setpoint(k, way_to_rest=np.empty((0, 3, 6))) for k in range(150)]
     for each in bare:
         player.add(each, NOW)
     for ms in range(1000):

@@ -200,7 +200,7 @@ def test_the_ways_to_rest_of_the_move_lie_on_its_line_and_end_at_rest() -> None:
     move = Move("e", HOME, HOME + np.array([0.2, -0.2, 0.1, 0.0, 0.2, 0.2]))
     for index in range(COUNT):
         setpoint = decode_setpoint(move.setpoint(index, NOW).SerializeToString())
-        rows = np.vstack([setpoint.position, setpoint.way_to_rest])
+        rows = np.vstack([setpoint.position, setpoint.way_to_rest[:, 0]])
         off = np.linalg.norm(np.cross(rows[:, :3] - HOME[:3], (move.end - HOME)[:3]), axis=1)
         assert off.max() < 1e-12
         assert np.abs(np.diff(rows, axis=0)).max(initial=0.0) / PERIOD <= move.top_speed.max() * (1 + 1e-9)

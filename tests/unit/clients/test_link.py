@@ -10,6 +10,7 @@ import zenoh
 
 from teachpath_client.errors import ClientError
 from teachpath_client.link import Link
+from teachpath_proto.logins import Login, Role, logins_path, write_logins
 from tests.system.processes import free_ports
 from tests.waiting import HANG, wait_until
 
@@ -84,3 +85,12 @@ def test_a_subscriber_that_comes_late_can_ask_for_what_was_published() -> None:
 def test_a_station_that_is_not_there_is_said() -> None:
     with pytest.raises(ClientError, match="is `teachpath serve` running there"):
         Link(f"tcp/127.0.0.1:{free_ports(1)[0]}", timeout=0.2)
+
+
+def test_the_login_of_a_station_that_is_gone_keeps_nobody_from_one_that_asks_for_none() -> None:
+    with Station() as station:
+        write_logins(logins_path(station.endpoint), [Login("tracker", "of before", Role.TRACKER)])
+        with Link(station.endpoint, timeout=6.0):
+            pass
+        with pytest.raises(ClientError, match="does it still know the login 'tracker'"):
+            Link(station.endpoint, login=Login("tracker", "of before", Role.TRACKER), timeout=0.2)

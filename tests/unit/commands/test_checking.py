@@ -1,5 +1,6 @@
 """run --check judges by the arm that a signed plan names, else by the one that is configured."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -50,14 +51,33 @@ def test_a_csv_is_judged_by_the_configured_arm(tmp_path: Path, slow: Plan) -> No
     assert "keeps every limit" in judged(log, config)
 
 
-def test_a_recording_is_judged_by_the_arm_of_its_plan(tmp_path: Path, slow: Plan) -> None:
-    signed = sign_plan(slow, Arm.of_settings(SLOW), SLOW, KEY, issued_ns=EPOCH)
-    store = Motions(tmp_path)
-    take = store.begin(MotionHeader("execution-1", "puma560", signed, way(MIDDLE)))
-    for cycle, position in enumerate(setpoints(signed)):
-        stamp, still = EPOCH + cycle * 4_000_000, np.zeros(6)
-        sent = Setpoint(cycle, stamp, stamp, position, still, still, True, "execution-1", on_path=True)
-        take.write("setpoints", encode_setpoint(sent), stamp)
-    said = judged(take.finish({}))  # by the default arm it would lie millimetres off its path
+def recorded(folder: Path, signed: Plan, parts: list[np.ndarray], *, from_rest: bool = False) -> Path:
+    """Record setpoints; `from_rest` says of the first one of each part that the motion begins anew there."""
+    still, stamp, cycle = np.zeros(6), EPOCH, -1
+    take = Motions(folder).begin(MotionHeader("execution-1", "puma560", signed, way(MIDDLE)))
+    for part in parts:
+        for row, position in enumerate(part):
+            stamp, cycle = stamp + 4_000_000, cycle + 1
+            sent = Setpoint(cycle, stamp, stamp, position, still, still, True, "execution-1", on_path=True)
+            take.write("setpoints", encode_setpoint(replace(sent, from_rest=from_rest and row == 0)), stamp)
+    return take.finish({})
+
+
+@pytest.fixture(scope="module")
+def signed(slow: Plan) -> Plan:
+    return sign_plan(slow, Arm.of_settings(SLOW), SLOW, KEY, issued_ns=EPOCH)
+
+
+def test_a_recording_is_judged_by_the_arm_of_its_plan(tmp_path: Path, signed: Plan) -> None:
+    said = judged(recorded(tmp_path, signed, [setpoints(signed)]))  # by the default arm: millimetres off its path
     assert "allowed 0.25 m/s" in said
     assert "keeps every limit and the path" in said
+
+
+def test_where_setpoints_came_late_a_recording_is_judged_from_rest_to_rest(tmp_path: Path, signed: Plan) -> None:
+    whole = setpoints(signed)
+    parts = [whole[: len(whole) // 2], whole]
+    said = judged(recorded(tmp_path / "known", signed, parts, from_rest=True))
+    assert "1 times setpoints were late and the arm came to rest by itself" in said
+    assert "keeps every limit and the path" in said
+    assert "breaks 4 of what it must keep" in judged(recorded(tmp_path / "silent", signed, parts))

@@ -61,6 +61,15 @@ def test_sub_folders_are_groups_and_are_found_again(tmp_path: Path, three_ways: 
     assert report["groups"] == {"a": 3, "b": 3, "c": 3}
     assert [cluster["groups"] for cluster in report["clusters"]] == [{"a": 3}, {"b": 3}, {"c": 3}]
     assert all(cluster["largest"] <= cluster["bound"] for cluster in report["clusters"])
+    *alone, together = report["alone"]
+    assert [(row["group"], row["ways"], row["left_out"]["n"]) for row in alone] == [
+        ("a", 1, 3),
+        ("b", 1, 3),
+        ("c", 1, 3),
+    ]
+    assert (together["group"], together["ways"], together["left_out"]["n"]) == ("all", 3, 9)
+    assert together["predicted"]["of_the_line"] < 1.0
+    assert together["predicted"]["held_by_two_sd"]["n"] == 9
 
 
 def test_every_array_is_a_group_and_the_table_says_what_was_found(
@@ -72,6 +81,7 @@ def test_every_array_is_a_group_and_the_table_says_what_was_found(
     assert "9 demonstrations of 3 groups, 3 clusters found" in printed
     assert "adjusted Rand index 1.000" in printed
     assert all(f"3 {name} " in printed for name in "abc")
+    assert printed.count("of 3 (0 to ") >= 3  # left out of each group alone, with its interval
 
 
 def test_a_wrong_cut_is_told(tmp_path: Path, three_ways: dict[str, list[Trajectory]]) -> None:
@@ -158,5 +168,6 @@ def test_diff_says_why_two_stored_runs_differ(tmp_path: Path) -> None:
 
 
 def test_diff_of_a_run_that_is_not_there_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "data").mkdir()
     with pytest.raises(NotFound, match="run 'run-9'"):
         called("diff", "run-9", "run-8", "--data", tmp_path / "data")

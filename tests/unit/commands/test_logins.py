@@ -1,5 +1,6 @@
 """Logins made, listed and revoked on the command line."""
 
+import json
 import stat
 from pathlib import Path
 
@@ -36,6 +37,7 @@ def test_a_login_is_made_for_another_program_and_taken_back(settings: tuple[str,
     assert (login.user, login.role, login.only) == ("lab", Role.TRACKER, "glove-2")
     assert login in read_logins(logins_path(endpoint))
     assert login.password not in said(config, "list")
+    assert json.loads(said(config, "list", "--json")) == [{"name": "lab", "role": "tracker", "only": "glove-2"}]
     assert "revoked" in said(config, "revoke", "lab")
     assert read_logins(logins_path(endpoint)) == []
 

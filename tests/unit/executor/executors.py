@@ -1,20 +1,33 @@
 """An executor on a clock of its own, for the tests."""
 
+import gc
 import threading
 from collections.abc import Callable
 from typing import Any, Literal
 
 import numpy as np
 
+from teachpath.errors import NotFound
 from teachpath.executor.loop import Executor
 from teachpath.executor.settings import ExecutorSettings
 from teachpath.io import wire
-from teachpath.io.documents import encode
+from teachpath.io.documents import decode, encode
 from teachpath.io.memory_bus import MemoryBus
 from teachpath.motion.arm.model import Arm
+from teachpath.motion.collision.builtin_scenes import builtin_scenes
 from teachpath.motion.planning.signature import SigningKey, sign_plan
 from teachpath.motion.settings import MotionSettings
-from teachpath.records import Command, ExecutorStatus, JointState, JournalEntry, Lease, LeaseRequest, Plan, Setpoint
+from teachpath.records import (
+    Command,
+    ExecutorStatus,
+    JointState,
+    JournalEntry,
+    Lease,
+    LeaseRequest,
+    Plan,
+    SceneQuery,
+    Setpoint,
+)
 from teachpath.time_source import TimeSource
 from teachpath_proto.control import CommandVerb, LeaseAction
 from teachpath_proto.keys import Keys
@@ -47,6 +60,8 @@ class Bench:
         position: np.ndarray = HOME,
         motion: MotionSettings | None = None,
         failed_grasp: Literal["fault", "hold"] = "fault",
+        hand_scene: str = "",
+        arm: Arm | None = None,
     ) -> None:
         self.bus = MemoryBus()
         self.now = 0
@@ -72,14 +87,23 @@ class Bench:
         self.bus.subscribe(KEYS.executor_journal, lambda _, p: self.journal.append(wire.decode_entry(p)))
         self.confirm: Callable[[bytes], bytes] = lambda query: query
         self.service = self.bus.serve(KEYS.station_certificate, lambda query: self.confirm(query))
+        self.scenes = builtin_scenes()
+        self.bus.serve(KEYS.station_scene, self._answer_scene)
         self.executor = Executor(
             self.bus,
             KEYS,
-            ExecutorSettings(realtime=False, failed_grasp=failed_grasp),
+            ExecutorSettings(realtime=False, failed_grasp=failed_grasp, hand_scene=hand_scene),
             signing_key=KEY,
             motion=motion,
+            arm=arm,
             time_source=TimeSource(lambda: self.now, lambda: EPOCH + self.now, self.sleep),
         )
+
+    def _answer_scene(self, payload: bytes) -> bytes:
+        name = decode(SceneQuery, payload).name
+        if name not in self.scenes:
+            raise NotFound(f"there is no scene {name!r}")
+        return encode(self.scenes[name])
 
     def when(self, condition: Callable[[], bool], act: Callable[[], object]) -> None:
         """Do something as soon as a condition holds, one thing behind the other."""
@@ -87,6 +111,7 @@ class Bench:
 
     def run(self) -> None:
         """Run until all is done and `stop` is set."""
+        gc.freeze()  # the executor collects garbage first: not in the thousands of tests that this process holds
         self.executor.run(self.stop)
 
     def sleep(self, duration: float) -> None:

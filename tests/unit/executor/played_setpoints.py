@@ -7,11 +7,12 @@ import numpy as np
 from teachpath.io import wire
 from teachpath.motion.arm.kinematics import tool_pose
 from teachpath.motion.arm.model import Arm
+from teachpath.motion.settings import MotionSettings
 from teachpath.records import JointState, Plan, Setpoint
 from teachpath.simulator.arm import SimulatedArm
 from teachpath.simulator.settings import SimulatorSettings
 from teachpath_client.driver import PlayerState, SetpointPlayer
-from tests.unit.executor.executors import EPOCH, HOME, KEYS, Bench
+from tests.unit.executor.executors import EPOCH, KEYS, MOTION, Bench
 
 ARM = Arm.of_variant()
 DELAY = 0.03
@@ -26,12 +27,14 @@ def at_once(cycle: int) -> list[float]:
 class PlayedBench(Bench):
     """An executor whose setpoints come late, doubled or not at all to an arm that plays them."""
 
-    def __init__(self, arrivals: Arrivals = at_once) -> None:
-        super().__init__()
+    def __init__(
+        self, arrivals: Arrivals = at_once, motion: MotionSettings | None = None, arm: Arm | None = None
+    ) -> None:
+        super().__init__(motion=motion, arm=arm)
         self._arrivals = arrivals
         self._coming: list[tuple[float, int, Setpoint]] = []
         self._heard = 0
-        self.player = SetpointPlayer(HOME, delay=DELAY)
+        self.player = SetpointPlayer(np.array((motion or MOTION).home), delay=DELAY)
         self.played: list[np.ndarray] = []
 
     def sleep(self, duration: float) -> None:
@@ -86,14 +89,22 @@ class PlayedBench(Bench):
 class MovedBench(PlayedBench):
     """An executor whose setpoints move the simulated arm, one step a millisecond."""
 
-    def __init__(self, plan: Plan, arrivals: Arrivals = at_once) -> None:
-        super().__init__(arrivals)
-        self._arm = SimulatedArm(plan.scene, ARM, SimulatorSettings(), HOME)
+    def __init__(
+        self,
+        plan: Plan,
+        arrivals: Arrivals = at_once,
+        motion: MotionSettings | None = None,
+        arm: Arm | None = None,
+    ) -> None:
+        super().__init__(arrivals, motion, arm)
+        motion = motion or MOTION
+        self._arm = SimulatedArm(plan.scene, arm or Arm.of_settings(motion), SimulatorSettings(), motion.home)
         self._closed = False
         self._empty_handed = plan.scene.carried is None
         self.positions: list[np.ndarray] = []
         self.velocities: list[np.ndarray] = []
         self.torques: list[np.ndarray] = []
+        self.object_positions: list[np.ndarray] = []
 
     def _play_on(self) -> None:
         super()._play_on()
@@ -108,12 +119,13 @@ class MovedBench(PlayedBench):
         self.positions.append(self._arm.position)
         self.velocities.append(self._arm.velocity)
         self.torques.append(self._arm.torque)
+        self.object_positions.append(np.array(self._arm.object_pose[0]))
 
 
-def off_path(played: np.ndarray, path: np.ndarray) -> float:
+def off_path(played: np.ndarray, path: np.ndarray, arm: Arm = ARM) -> float:
     """The largest distance of the tool from the way [m], seen as chords."""
     chords, worst = np.diff(path, axis=0), 0.0
-    for tool in tool_pose(played[::10], ARM)[:, :3, 3]:
+    for tool in tool_pose(played[::10], arm)[:, :3, 3]:
         ahead = tool - path[:-1]
         share = np.einsum("ij,ij->i", ahead, chords) / np.maximum(np.sum(chords**2, axis=1), 1e-24)
         distance = np.linalg.norm(ahead - np.clip(share, 0.0, 1.0)[:, None] * chords, axis=1)
@@ -121,8 +133,8 @@ def off_path(played: np.ndarray, path: np.ndarray) -> float:
     return worst
 
 
-def largest_uses(played: np.ndarray) -> list[float]:
+def largest_uses(played: np.ndarray, arm: Arm = ARM) -> list[float]:
     """The largest use of speed, acceleration and jerk limits by differences at the setpoints' period."""
     rows = played[::4]
-    limits = ((1, ARM.limits.speed), (2, ARM.limits.acceleration), (3, ARM.limits.jerk))
+    limits = ((1, arm.limits.speed), (2, arm.limits.acceleration), (3, arm.limits.jerk))
     return [float((np.abs(np.diff(rows, k, axis=0)) * 250.0**k / limit).max()) for k, limit in limits]

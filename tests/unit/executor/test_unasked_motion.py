@@ -9,8 +9,9 @@ from teachpath.errors import Conflict
 from teachpath.executor.settings import ExecutorSettings
 from teachpath.executor.unasked_motion import REST_TIME, SETTLING_TIME
 from teachpath.io.documents import encode
+from teachpath.io.wire import encode_state
 from teachpath.records import Plan
-from tests.unit.executor.executors import HOME, Bench
+from tests.unit.executor.executors import HOME, KEYS, Bench
 
 THRESHOLD = ExecutorSettings().unasked_motion
 
@@ -52,6 +53,12 @@ class Pushed(Bench):
 
         self.when(lambda: True, refused)
 
+    def jump(self, angle: float) -> None:
+        """Move a joint at once, and say so."""
+        self.foreign[1] += angle
+        self.position = HOME + self.foreign
+        self.bus.publish(KEYS.state("puma560"), encode_state(self.joint_state()))
+
     def acknowledge(self) -> None:
         self.command("acknowledge")
 
@@ -92,6 +99,34 @@ def test_an_arm_that_moves_unasked_is_noticed_and_nothing_starts_before_it_rests
     assert "rests again" in rested
     assert "nothing starts" in noticed
     assert next(entry.execution for entry in bench.journal if entry.answer == noticed) == ""
+
+
+@pytest.mark.parametrize("rest", [SETTLING_TIME + 0.1, 0.1])  # noticed by where it rested, or by where it was to start
+def test_an_arm_that_moves_while_its_motion_is_made_ready_is_not_started(middle: Plan, rest: float) -> None:
+    bench = Pushed(middle)
+
+    def reset(_: bytes) -> bytes:
+        bench.jump(2 * THRESHOLD)
+        return b""
+
+    bench.bus.serve(KEYS.reset("puma560"), reset)  # asked when the motion is ready, before it begins
+    bench.wait(rest)
+    bench.attempt(bench.start_now)
+    bench.when(lambda: True, bench.stop.set)
+    bench.run()
+    assert f"moved by {2 * THRESHOLD:.2f} rad while its motion was made ready" in bench.refusals[0]
+    assert bench.setpoints == []
+
+
+@pytest.mark.parametrize("rest", [SETTLING_TIME + 0.1, 0.1])
+def test_an_arm_that_moves_before_the_first_setpoint_is_sent_none(middle: Plan, rest: float) -> None:
+    bench = Pushed(middle)
+    bench.wait(rest)
+    bench.when(lambda: True, lambda: (bench.start_now(), bench.jump(2 * THRESHOLD)))
+    bench.when(lambda: bench.state == "faulted", bench.stop.set)
+    bench.run()
+    assert bench.setpoints == []
+    assert f"the arm moved by {2 * THRESHOLD:.2f} rad" in bench.statuses[-1].reason
 
 
 def test_only_who_is_in_control_acknowledges_it_and_nothing_else_clears_it(middle: Plan) -> None:

@@ -2,7 +2,9 @@
 
 import io
 import zlib
+from typing import NamedTuple
 
+import numpy as np
 import pytest
 from google.protobuf.message import Message as ProtobufMessage
 from mcap.reader import make_reader
@@ -10,14 +12,30 @@ from mcap.records import Chunk, ChunkIndex, Footer, Message, MessageIndex
 from mcap.stream_reader import StreamReader, get_chunk_data_stream
 from mcap.writer import Writer
 
-from teachpath.io.store.mcap_file import FOOTER, MAGIC, McapFile, StampedMessage
+from teachpath.io.store.mcap_file import FOOTER, MAGIC, McapFile, MessageBatch
 from teachpath_proto import tracker_pb2
 
 KINDS: list[type[ProtobufMessage]] = [tracker_pb2.HandSample, tracker_pb2.Vector3]
+
+
+class Sent(NamedTuple):
+    channel: int
+    sequence: int
+    log_time: int
+    publish_time: int
+    data: bytes
+
+
 BATCHES = [
-    [StampedMessage(1 + i % 2, i, 1000 * batch + 10 * i, i + 1, bytes([i]) * (i + batch)) for i in range(20)]
+    [Sent(1 + i % 2, 2**31 + i, 1000 * batch + 10 * i, i + 1, bytes([i]) * (i + batch)) for i in range(20)]
     for batch in range(1, 4)
 ]
+
+
+def batch_of(channel: int, messages: list[Sent]) -> MessageBatch:
+    chosen = [m for m in messages if m.channel == channel]
+    times = (np.array([getattr(m, name) for m in chosen], np.uint64) for name in Sent._fields[1:4])
+    return MessageBatch(channel, *times, [m.data for m in chosen])
 
 
 @pytest.fixture
@@ -28,8 +46,9 @@ def written() -> bytes:
         assert file.add_channel(f"topic-{i}", kind) == i + 1
     file.add_metadata("facts", {"a": "1"})
     for batch in BATCHES:
-        file.add_messages(batch)
+        file.add_messages(batch_of(channel, batch) for channel in (1, 2))
         file.add_messages([])
+        file.add_messages([batch_of(3, batch)])
     file.finish()
     return stream.getvalue()
 

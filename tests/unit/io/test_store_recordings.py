@@ -1,5 +1,6 @@
 import math
 from dataclasses import replace
+from itertools import islice
 from pathlib import Path
 
 import numpy as np
@@ -7,6 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from mcap.reader import make_reader
+from mcap.stream_reader import StreamReader
 from mcap.writer import Writer
 from mcap_protobuf.decoder import DecoderFactory
 from mcap_protobuf.schema import register_schema
@@ -14,6 +16,7 @@ from scipy.spatial.transform import Rotation
 
 from teachpath.errors import NotFound, UnusableRecording
 from teachpath.io.documents import encode
+from teachpath.io.store.mcap_records import read_records
 from teachpath.io.store.recordings import RecordingFile, RecordingHeader, Recordings, read_facts, salvage
 from teachpath.io.wire import encode_sample
 from teachpath.recording.demonstration import to_world
@@ -54,6 +57,11 @@ def test_a_recording_gives_back_every_sample_as_it_came(tmp_path: Path) -> None:
     assert salvage(file)[0] == HEADER
 
 
+def test_the_records_of_a_file_are_those_that_the_library_reads(whole: Path) -> None:
+    with whole.open("rb") as stream, whole.open("rb") as again:
+        assert list(read_records(stream)) == list(StreamReader(again).records)[1:]  # the first is the header
+
+
 def test_what_was_flushed_is_there_before_the_end(tmp_path: Path) -> None:
     recordings, begun = take(tmp_path)
     begun.flush()
@@ -63,6 +71,25 @@ def test_what_was_flushed_is_there_before_the_end(tmp_path: Path) -> None:
     assert fault
     begun.discard()
     assert recordings.unfinished() == []
+
+
+@settings(max_examples=60, deadline=None)
+@given(parts=st.lists(st.tuples(st.integers(1, 90), st.booleans()), min_size=1, max_size=8))
+def test_parts_of_a_recording_are_kept_whether_the_hand_is_tracked_or_not(
+    tmp_path_factory: pytest.TempPathFactory, parts: list[tuple[int, bool]]
+) -> None:
+    samples = iter(SAMPLES)
+    recordings, begun = take(tmp_path_factory.mktemp("recordings"), [])
+    written: list[Sample] = []
+    for size, tracked in parts:
+        for sample in islice(samples, size):
+            written.append(replace(sample, tracked=tracked))
+            begun.write(written[-1])
+        begun.flush()
+    begun.finish({})
+    kept = recordings.samples("lift/d.mcap")
+    assert same(kept, written)
+    assert [sample.tracked for sample in kept] == [sample.tracked for sample in written]
 
 
 @pytest.mark.parametrize("place", ["lift/moon.mcap", "", "..", "lift"])

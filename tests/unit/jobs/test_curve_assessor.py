@@ -35,8 +35,10 @@ def test_a_path_is_adapted_as_in_this_process(assessor: CurveAssessor, case: tup
     np.testing.assert_allclose(there.curve(U), here.curve(U), atol=1e-9)
     assert (there.note, there.is_base, here.is_base) == (here.note, False, False)
     assert assessor.adapt(path, shown, to(path, np.zeros(3))).is_base
-    model = course_model(path, shown.learned, shown.members, shown.others, SETTINGS)[0].export()
-    np.testing.assert_allclose(assessor.adaptation_model(path, shown).version, model.version, atol=1e-9)
+    model, _, places = course_model(path, shown.learned, shown.members, shown.others, SETTINGS)
+    exported = assessor.adaptation_model(path, shown)
+    np.testing.assert_allclose(exported.version, model.version, atol=1e-9)
+    assert exported.places == places
 
 
 def test_a_refusal_comes_back_as_it_was_raised(assessor: CurveAssessor, case: tuple[LearnedPath, Shown]) -> None:

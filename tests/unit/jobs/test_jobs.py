@@ -108,7 +108,7 @@ def test_a_refusal_keeps_its_sentence_and_a_fault_is_named(bench: Bench) -> None
 def test_a_refusal_keeps_the_record_that_it_carries(bench: Bench) -> None:
     for kind in ("refuse", "block", "echo"):
         bench.jobs.submit("t", kind, {"word": "x"})
-    refused, blocked, fine = (bench.ended.get(timeout=30) for _ in range(3))
+    refused, blocked, fine = (bench.ended.get(timeout=HANG) for _ in range(3))
     assert (refused.demonstration, refused.failure) == ("demonstration-7", None)
     assert (blocked.demonstration, blocked.failure) == ("", FAILURE)
     assert (fine.demonstration, fine.failure) == ("", None)

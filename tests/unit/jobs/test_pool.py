@@ -1,3 +1,4 @@
+import logging
 import os
 import signal
 import time
@@ -10,6 +11,7 @@ from pathlib import Path
 import pytest
 
 from teachpath.jobs.pool import KillablePool
+from teachpath.logs import continue_request
 from tests.waiting import HANG, wait_until
 
 
@@ -28,6 +30,10 @@ def hang(begun: Path) -> None:
 
 def die() -> None:
     os.kill(os.getpid(), signal.SIGKILL)
+
+
+def tell(what: str) -> None:
+    logging.getLogger("teachpath.work").info(what)
 
 
 @pytest.fixture
@@ -91,3 +97,20 @@ def test_a_kill_spares_the_processes_of_others(pool: KillablePool) -> None:
 def test_ctrl_c_reaches_no_process_of_the_pool_from_its_first_moment(pool: KillablePool) -> None:
     assert signal.SIGINT in pool.submit(signal.pthread_sigmask, signal.SIG_BLOCK, ()).result()
     assert signal.SIGINT not in signal.pthread_sigmask(signal.SIG_BLOCK, ())
+
+
+def test_what_a_process_logs_stands_in_the_log_of_the_service_under_its_request(
+    pool: KillablePool, caplog: pytest.LogCaptureFixture
+) -> None:
+    for number, what in (("one", "begun"), ("two", "goes on")):
+        continue_request(number)
+        pool.submit(tell, what).result(HANG)
+    continue_request("")
+    pool.kill()  # what was written is passed on all the same
+    wait_until(lambda: len(said(caplog)) == 2, "both lines are there")
+    assert said(caplog) == [("worker", "one", "begun"), ("worker", "two", "goes on")]
+
+
+def said(caplog: pytest.LogCaptureFixture) -> list[tuple[str, str, str]]:
+    own = [record for record in caplog.records if record.name == "teachpath.work"]
+    return [(vars(record)["part"], vars(record)["request"], record.getMessage()) for record in own]

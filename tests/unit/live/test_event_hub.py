@@ -33,6 +33,15 @@ def test_a_subscriber_reads_everything_first_and_then_gets_changes_in_their_orde
     assert events[0]["sequence"] < events[1]["sequence"]
 
 
+def test_nobody_hears_who_signs_in() -> None:
+    hub = EventHub()
+    subscriber = subscribed(hub)
+    popped(subscriber)
+    for topic in ("sessions", "people", "access_tokens"):
+        hub.publish_change(topic, "the hash of a secret")
+    assert popped(subscriber) == []
+
+
 def test_what_changes_twice_is_published_once_and_later() -> None:
     hub = EventHub()
     subscriber = subscribed(hub)

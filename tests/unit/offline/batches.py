@@ -13,8 +13,9 @@ from teachpath.io.import_settings import ImportSettings
 from teachpath.io.readers.contract import ReadOptions
 from teachpath.io.store.settings import StoreSettings
 from teachpath.io.store.store import Store
-from teachpath.offline.batch_import import STAGING, FileOutcome, import_batch
+from teachpath.offline.batch_import import FileOutcome, import_batch
 from teachpath.offline.import_job import ImportOrder
+from teachpath.offline.staging import STAGING
 from teachpath.offline.track_samples import PhaseMarks
 from teachpath.recorder.recording_work import call_directly
 from teachpath.recording.settings import RecordingSettings
@@ -37,15 +38,17 @@ def write_files(folder: Path, *, bad: bool = False) -> list[Path]:
     return files
 
 
-def run_batch(data: Path, files: list[Path], *, dry_run: bool = False) -> list[FileOutcome]:
+ORDER = ImportOrder(
+    "", Path(), TASK, "", "", ReadOptions(), PhaseMarks(), Scene("empty"), Calibration("identity"),
+    RecordingSettings(), ImportSettings(),
+)  # fmt: skip
+
+
+def run_batch(data: Path, files: list[Path]) -> list[FileOutcome]:
     """Import files into the store of a folder."""
     store = Store(StoreSettings(data_dir=str(data)))
-    order = ImportOrder(
-        "", Path(), TASK, "", "", ReadOptions(), PhaseMarks(), Scene("empty"), Calibration("identity"),
-        RecordingSettings(), ImportSettings(),
-    )  # fmt: skip
     try:
-        return import_batch(store, data, files, order, call=call_directly, dry_run=dry_run)
+        return import_batch(store, data, files, ORDER, call=call_directly)
     finally:
         store.close()
 

@@ -9,9 +9,9 @@ from teachpath.io.store.store import Store
 from teachpath.recorder.annotations import Annotations
 from teachpath.recorder.recording_setup import RecordingSetup
 from teachpath.recorder.session import RecordingSession
-from teachpath.recording.phases import GRASP_BUTTON
 from teachpath.recording.settings import RecordingSettings
 from teachpath.records import Calibration, Demonstration, Sample, Scene, Trajectory
+from teachpath_proto.sample_rules import GRASP_BUTTON
 from tests.unit.recording.hands import demonstration
 
 EMPTY = Scene("empty")

@@ -57,7 +57,7 @@ def prepared(folder: Path) -> list[Demonstration]:
 
 
 def finish(store: Store, folder: Path) -> str:
-    return store.finish_import(JOB, TASK, prepared(folder), folder / PREPARED / RECORDINGS)
+    return store.finish_import(JOB, TASK, [(prepared(folder), folder / PREPARED / RECORDINGS)])
 
 
 def finish_and_die(data: Path, folder: Path) -> None:

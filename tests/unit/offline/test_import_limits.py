@@ -4,7 +4,7 @@ import io
 import json
 import subprocess
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import lz4.frame
@@ -17,8 +17,9 @@ from mcap.records import Chunk, Header
 # Far above what a refusal takes, which is 0.1 s and 20 MB; an import without limits takes 5 s and 2 GB.
 MAX_PROCESSOR_TIME = 1.0  # [s]
 MAX_MEMORY = 100e6  # [bytes] more than before the import
-IMPORT = """
-import json, sys, time
+# Loads what an import needs once; every import is then a process of its own, forked from that.
+IMPORTS = """
+import json, os, sys, time
 from pathlib import Path
 from teachpath.errors import TeachpathError
 from teachpath.io.import_settings import ImportSettings
@@ -33,16 +34,35 @@ def peak():
     status = Path("/proc/self/status").read_text()
     return int(status.partition("VmHWM:")[2].split()[0]) * 1024
 
-store = Store(StoreSettings(data_dir=sys.argv[1]))
-content, refusal = Path(sys.argv[2]).read_bytes(), ""
-memory, start = peak(), time.process_time()
-try:
-    import_file(store, RecordingSettings(), Source("file", content, sys.argv[3]), task="wipe", scene=Scene("empty"),
-                calibration=Calibration("identity"), limits=ImportSettings())
-except TeachpathError as error:
-    refusal = str(error)
-print(json.dumps([refusal, time.process_time() - start, peak() - memory, len(store.tasks())]))
+def tried(data, file, kind):
+    store = Store(StoreSettings(data_dir=data))
+    content, refusal = Path(file).read_bytes(), ""
+    memory, start = peak(), time.process_time()
+    try:
+        import_file(store, RecordingSettings(), Source("file", content, kind), task="wipe", scene=Scene("empty"),
+                    calibration=Calibration("identity"), limits=ImportSettings())
+    except TeachpathError as error:
+        refusal = str(error)
+    return [refusal, time.process_time() - start, peak() - memory, len(store.tasks())]
+
+for line in sys.stdin:
+    child = os.fork()
+    if child == 0:
+        print(json.dumps(tried(*json.loads(line))), flush=True)
+        os._exit(0)
+    if os.waitpid(child, 0)[1] != 0:
+        print(json.dumps("it died"), flush=True)
 """
+
+
+@pytest.fixture(scope="module")
+def importer() -> Iterator[subprocess.Popen[str]]:
+    """A process that imports: takes folder, file and kind, and says refusal, time [s], memory [bytes] and tasks."""
+    command = [sys.executable, "-c", IMPORTS]
+    with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True) as process:
+        yield process
+        assert process.stdin is not None
+        process.stdin.close()
 
 
 def mcap(compression: str, data: bytes, stated: int, chunks: int = 1) -> bytes:
@@ -116,14 +136,15 @@ BOMBS: dict[str, tuple[str, Callable[[], bytes], str]] = {
 @pytest.mark.skipif(not Path("/proc/self/status").exists(), reason="the system does not tell the peak of memory")
 @pytest.mark.parametrize(("kind", "content", "sentence"), BOMBS.values(), ids=BOMBS)
 def test_a_file_that_expands_is_refused_before_it_takes_memory(
-    tmp_path: Path, kind: str, content: Callable[[], bytes], sentence: str
+    importer: subprocess.Popen[str], tmp_path: Path, kind: str, content: Callable[[], bytes], sentence: str
 ) -> None:
+    assert importer.stdin is not None
+    assert importer.stdout is not None
     file = tmp_path / "file"
     file.write_bytes(content())
-    run = subprocess.run(
-        [sys.executable, "-c", IMPORT, tmp_path / "data", file, kind], capture_output=True, text=True, check=True
-    )
-    refusal, processor_time, memory, tasks = json.loads(run.stdout)
+    importer.stdin.write(json.dumps([str(tmp_path / "data"), str(file), kind]) + "\n")
+    importer.stdin.flush()
+    refusal, processor_time, memory, tasks = json.loads(importer.stdout.readline())
     assert sentence in refusal
     assert tasks == 0
     assert memory < MAX_MEMORY

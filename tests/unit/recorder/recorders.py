@@ -56,16 +56,25 @@ class Bench:
         return list(tracker_pb2.RecorderStatus.FromString(self.bus.ask(KEYS.recorder_status)).recordings)
 
     def received(self, count: int, tracker: str = "glove") -> tracker_pb2.RecordingReport:
-        """Return the report of a running recording as soon as `count` samples are in it."""
+        """Return the report of a running recording as soon as `count` samples, and their takes, are in it."""
         return self.until(lambda report: report.received >= count, tracker)
 
     def until(
-        self, true: Callable[[tracker_pb2.RecordingReport], bool], tracker: str = "glove"
+        self,
+        true: Callable[[tracker_pb2.RecordingReport], bool],
+        tracker: str = "glove",
+        *,
+        settled: bool = True,
     ) -> tracker_pb2.RecordingReport:
+        """Return the report of a running recording as soon as it is so, and with `settled` its takes are stored."""
+
         def found() -> tracker_pb2.RecordingReport | None:
             (report,) = (r for r in self.reports() if r.tracker == tracker)
             return report if true(report) else None
 
-        report = wait_until(found, "the recording is so")
+        assert wait_until(found, "the recording is so") is not None
+        if settled:
+            self.recorder.wait_for_takes()
+        report = found()
         assert report is not None
         return report

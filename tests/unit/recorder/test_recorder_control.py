@@ -5,9 +5,10 @@ from dataclasses import replace
 import pytest
 
 from teachpath.errors import Conflict, NotFound, UnusableInput
-from teachpath.recording.phases import GRASP_BUTTON, TOGGLE_BUTTON
+from teachpath.recording.phases import TOGGLE_BUTTON
 from teachpath.records import Sample, StopRequest
 from teachpath_proto import tracker_pb2
+from teachpath_proto.sample_rules import GRASP_BUTTON
 from tests.unit.recorder.recorders import KEYS, Bench
 from tests.unit.recording.hands import CLOSED, PERIOD_NS, START_NS, demonstration, sample
 

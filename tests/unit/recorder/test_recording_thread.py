@@ -8,7 +8,7 @@ from teachpath.io.store.store import Store
 from teachpath.io.wire import encode_sample
 from teachpath.recorder.presence import Presence
 from teachpath.recorder.recording_setup import RecordingSetup
-from teachpath.recorder.recording_thread import BATCH_SIZE, FLUSH_INTERVAL, RecordingThread
+from teachpath.recorder.recording_thread import BATCH_SIZE, FLUSH_INTERVAL, TURNS_IN_A_ROUND, RecordingThread
 from teachpath.recorder.sample_queues import SampleQueues
 from teachpath.recorder.session import RecordingSession
 from teachpath.recording.settings import RecordingSettings
@@ -78,3 +78,18 @@ def test_a_flush_that_is_due_is_no_reason_to_hurry(desk: Desk) -> None:
     desk.now = 2 * FLUSH_INTERVAL
     assert not desk.thread.process_round()
     assert desk.thread.sessions["left"].last_flush == desk.now
+
+
+def test_of_hundreds_each_has_its_turn_within_a_few_rounds(store: Store) -> None:
+    trackers = tuple(f"glove-{i}" for i in range(2 * TURNS_IN_A_ROUND + 1))
+    desk = Desk(store, trackers)
+    counts = []
+    for _ in range(6):
+        for tracker in trackers:
+            desk.send(tracker, 1)
+        assert not desk.thread.process_round()
+        counts.append([desk.recorded(tracker) for tracker in trackers])
+    assert sum(counts[0]) == TURNS_IN_A_ROUND
+    assert counts[2] == [1] * TURNS_IN_A_ROUND + [2] * TURNS_IN_A_ROUND + [3]
+    assert min(counts[5]) == 4
+    desk.thread.stop()

@@ -62,3 +62,28 @@ def test_guidance_that_stalls_does_not_delay_the_recorder(store: object) -> None
         go_on.set()
         guidance.stop()
         bench.recorder.stop()
+
+
+def test_a_take_that_takes_long_to_complete_delays_no_sample(store: object) -> None:
+    go_on, asked = threading.Event(), threading.Event()
+
+    def stall(made: Demonstration, _: object) -> None:
+        if made.source == "slow":
+            asked.set()
+            go_on.wait()
+
+    bench = Bench(store, recorded=stall)  # type: ignore[arg-type]
+    try:
+        for tracker in ("slow", "glove"):
+            bench.begin(tracker)
+        bench.send(demonstration(), "slow")
+        assert asked.wait(HANG)
+        bench.send(demonstration(), "glove")
+        bench.send(demonstration(1 + SHOWN), "slow")
+        assert len(bench.end(SHOWN, "glove").demonstrations) == 1
+        bench.until(lambda report: report.received == 2 * SHOWN, "slow", settled=False)
+        go_on.set()
+        assert len(bench.end(2 * SHOWN, "slow").demonstrations) == 2
+    finally:
+        go_on.set()
+        bench.recorder.stop()

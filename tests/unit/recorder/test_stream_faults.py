@@ -11,8 +11,8 @@ from teachpath.recording.settings import RecordingSettings
 from teachpath.recording.stream_statistics import StreamCounter
 from tests.experiments.stream_faults import counted, expected
 from tests.faults.faults import FAULTS, Fault, delay, double, drop, refuse, swap, swap_first, untrack
-from tests.faults.routes import ROUTES, run
-from tests.faults.streams import Stream, shown
+from tests.faults.routes import ROUTES, run, run_all
+from tests.faults.streams import Stream, any_hand, shown
 
 COMPOSED = (drop, delay, swap, swap_first, double, refuse, untrack)
 TRIED = [
@@ -66,8 +66,9 @@ def test_no_fault_over_its_limit_is_clean_and_all_routes_agree(fault: Fault, str
 
 @pytest.mark.parametrize("route", ROUTES)
 def test_a_stream_without_a_fault_is_clean(route: str) -> None:
-    for seed in range(5):
-        assert run(shown(np.random.default_rng(seed)), route).verdict == "clean"
+    randoms = [np.random.default_rng(seed) for seed in range(10)]
+    streams = [shown(random, any_hand(random)) for random in randoms]
+    assert [str(row.verdict) for row in run_all(streams, route).rows] == ["clean"] * len(streams)
 
 
 @given(seed=st.integers(0, 10_000), places=st.integers(1, 150))

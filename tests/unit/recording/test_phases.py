@@ -3,9 +3,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from teachpath.recording.phases import GRASP_BUTTON, Segmenter, TransportSpan
+from teachpath.recording.phases import Segmenter, TransportSpan
 from teachpath.recording.settings import RecordingSettings
 from teachpath.records import Phase, Sample
+from teachpath_proto.sample_rules import GRASP_BUTTON
 from tests.unit.recording.hands import CLOSED, OPEN, demonstration, sample
 
 OBJECT = (0.5, 0.0, 0.5)

@@ -8,10 +8,10 @@ from collections.abc import Iterator
 import pytest
 
 from teachpath.errors import NotFound, UnusableInput
-from teachpath.io.documents import encode
+from teachpath.io.documents import decode, encode
 from teachpath.io.memory_bus import MemoryBus
 from teachpath.motion.collision.builtin_scenes import builtin_scenes
-from teachpath.records import ObjectPose, Scene
+from teachpath.records import ObjectPose, Scene, SceneQuery
 from teachpath.robot.object_poses import SAME_PLACE, ObjectPoses
 from teachpath_proto.keys import Keys
 
@@ -54,6 +54,14 @@ def test_a_scene_is_as_configured_until_its_object_is_told_to_lie_elsewhere(seen
     seen.poses.forget("paper")
     assert seen.poses.scene("paper") == PAPER
     assert seen.changes == ["paper", "paper"]
+
+
+def test_the_executor_is_answered_what_stands_in_a_scene_and_where_its_object_lies(seen: Seen) -> None:
+    seen.poses.tell("paper", ELSEWHERE)
+    answer = seen.bus.ask(KEYS.station_scene, encode(SceneQuery("paper")))
+    assert decode(Scene, answer) == PAPER.with_object(ELSEWHERE)
+    with pytest.raises(NotFound, match="no scene 'moon'"):
+        seen.bus.ask(KEYS.station_scene, encode(SceneQuery("moon")))
 
 
 def test_a_camera_tells_it_on_the_bus(seen: Seen) -> None:

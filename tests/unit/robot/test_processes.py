@@ -2,17 +2,47 @@
 
 import os
 import signal
+import subprocess
 import sys
 from collections.abc import Callable, Iterator
+from functools import partial
 from pathlib import Path
 
 import pytest
 
 from teachpath.robot.processes import MAX_DEATHS, SupervisedProcess
-from tests.waiting import wait_until
+from tests.waiting import HANG, wait_until
 
 Supervise = Callable[..., SupervisedProcess]
 LISTEN = "import sys; sys.stdin.readline(); sys.stdin.read()"  # lives until its standard input is closed
+
+LOSS = """
+import os, signal, time
+from functools import partial
+from pathlib import Path
+from teachpath.robot.processes import SupervisedProcess
+
+def of(pid):
+    return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
+
+def wait_for(true):
+    while not true():
+        time.sleep(0.01)
+
+if __name__ == "__main__":
+    causes = []
+    process = SupervisedProcess(
+        "executor", partial(exec, "import sys; sys.stdin.read()", {}), "", suggestion="", on_death=causes.append
+    )
+    process.start()
+    wait_for(process.is_alive)
+    first = process._process.pid
+    os.kill(int(of(first)[1]), signal.SIGKILL)
+    wait_for(lambda: process.is_alive() and process._process.pid != first)
+    wait_for(lambda: not Path(f"/proc/{first}").exists() or of(first)[0] == "Z")  # until init waits for it
+    print(*causes)
+    process.stop()
+"""
 
 
 @pytest.fixture
@@ -24,10 +54,10 @@ def causes() -> list[str]:
 def supervise(causes: list[str]) -> Iterator[Supervise]:
     started: list[SupervisedProcess] = []
 
-    def start(program: str, *arguments: str) -> SupervisedProcess:
-        command = (sys.executable, "-c", program, *arguments)
+    def start(program: str, **names: str) -> SupervisedProcess:
+        function = partial(exec, program, dict(names))
         started.append(
-            SupervisedProcess("executor", command, "{}", suggestion="look at the arm", on_death=causes.append)
+            SupervisedProcess("executor", function, "{}", suggestion="look at the arm", on_death=causes.append)
         )
         started[-1].start()
         return started[-1]
@@ -72,9 +102,8 @@ def test_what_follows_a_death_may_fail_and_the_process_is_started_again_all_the_
     def fail(cause: str) -> None:
         raise RuntimeError(cause)
 
-    program = "import sys; open(sys.argv[1], 'a').write('x')"
-    command = (sys.executable, "-c", program, str(tmp_path / "starts"))
-    process = SupervisedProcess("executor", command, "{}", suggestion="look at the arm", on_death=fail)
+    function = partial(exec, "open(file, 'a').write('x')", {"file": str(tmp_path / "starts")})
+    process = SupervisedProcess("executor", function, "{}", suggestion="look at the arm", on_death=fail)
     process.start()
     wait_until(lambda: process.is_given_up, "it has died often")
     process.stop()
@@ -82,7 +111,7 @@ def test_what_follows_a_death_may_fail_and_the_process_is_started_again_all_the_
 
 
 def test_a_process_that_is_stopped_stays_stopped(supervise: Supervise, causes: list[str], tmp_path: Path) -> None:
-    process = supervise(f"import sys; open(sys.argv[1], 'a').write('started\\n'); {LISTEN}", str(tmp_path / "starts"))
+    process = supervise(f"open(file, 'a').write('started\\n'); {LISTEN}", file=str(tmp_path / "starts"))
     wait_until((tmp_path / "starts").exists, "it has started")
     process.stop()
     process.stop()
@@ -94,10 +123,16 @@ def test_a_process_that_is_stopped_stays_stopped(supervise: Supervise, causes: l
 
 def test_a_process_that_ignores_its_end_is_killed(supervise: Supervise, tmp_path: Path) -> None:
     process = supervise(
-        "import signal, sys, time; signal.signal(signal.SIGTERM, signal.SIG_IGN); open(sys.argv[1], 'w'); "
-        "time.sleep(600)",
-        str(tmp_path / "begun"),
+        "import signal, time; signal.signal(signal.SIGTERM, signal.SIG_IGN); open(file, 'w'); time.sleep(600)",
+        file=str(tmp_path / "begun"),
     )
     wait_until((tmp_path / "begun").exists, "it ignores its end")
     process.stop()
     assert not process.is_alive()
+
+
+def test_what_has_lost_the_server_that_it_was_forked_from_ends_and_is_started_again(tmp_path: Path) -> None:
+    program = tmp_path / "program.py"
+    program.write_text(LOSS)
+    done = subprocess.run([sys.executable, str(program)], capture_output=True, text=True, timeout=HANG, check=False)
+    assert (done.returncode, done.stdout) == (0, "the process server ended, which it was forked from\n"), done.stderr

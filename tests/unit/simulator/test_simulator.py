@@ -30,7 +30,7 @@ HOME = np.array(MotionSettings().home)
 START = 1_700_000_000_000_000_000
 PERIOD_NS = 4_000_000
 
-NOWHERE = np.empty((0, 6))
+NOWHERE = np.empty((0, 3, 6))
 
 
 class Bench:
@@ -171,7 +171,9 @@ def test_an_impossible_move_saturates_the_torques_instead_of_passing_them() -> N
 
 def test_without_setpoints_it_follows_the_way_to_rest_says_so_and_waits_for_a_stream_that_begins_there() -> None:
     bench, step = Bench(), np.array([0.3, 0, 0, 0, 0, 0])
-    way = np.array([HOME + step * (1 - (1 - x) ** 3) for x in np.linspace(0.0, 1.0, 51)[1:]])  # [rad]
+    left = 1.0 - np.linspace(0.0, 1.0, 51)[1:, None, None]  # of the way, whose rate falls with its square
+    shares = np.concatenate([1 - left**3, 3 * left**2 / 0.2, -6 * left / 0.2**2], axis=1)
+    way = shares * step + [HOME, np.zeros(6), np.zeros(6)]
     velocity = 3 * step / 0.2  # with which the way begins
 
     def begin(now: int) -> None:

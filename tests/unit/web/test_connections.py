@@ -41,6 +41,10 @@ async def wait_for_ever(request: Request) -> PlainTextResponse:
     raise AssertionError
 
 
+async def client(request: Request) -> PlainTextResponse:
+    return PlainTextResponse(f"{request.client and request.client.host} by {request.url.scheme}")
+
+
 async def pour(request: Request) -> PlainTextResponse:
     return PlainTextResponse("x" * LARGE)
 
@@ -57,6 +61,7 @@ def served(**settings: Any) -> Iterator[int]:
     """Serve an application with these settings; yields the port."""
     routes = [
         Route("/", answer, methods=["GET", "POST"]),
+        Route("/client", client),
         Route("/large", pour),
         Route("/never", wait_for_ever),
         WebSocketRoute("/messages", pour_messages),
@@ -97,6 +102,17 @@ def refusal(answered: bytes, status: int) -> str:
 def is_answered(port: int) -> bool:
     with opened(port, b"GET / HTTP/1.1\r\nHost: x\r\nConnection: close\r\n\r\n") as connection:
         return rest(connection).endswith(b"0 bytes")
+
+
+@pytest.mark.parametrize(
+    ("proxies", "told"),
+    [((), b"127.0.0.1 by http"), (("10.0.0.1",), b"127.0.0.1 by http"), (("127.0.0.1",), b"192.0.2.7 by https")],
+)
+def test_only_a_proxy_that_is_named_is_believed_for_whom_it_asks(proxies: tuple[str, ...], told: bytes) -> None:
+    said = b"X-Forwarded-For: 192.0.2.7\r\nX-Forwarded-Proto: https\r\n"
+    sent = b"GET /client HTTP/1.1\r\nHost: x\r\nConnection: close\r\n" + said + b"\r\n"
+    with served(proxies=proxies) as port, opened(port, sent) as connection:
+        assert rest(connection).endswith(told)
 
 
 @pytest.mark.parametrize("sent", [b"", b"GET / HTTP/1.1\r\nHost: "])

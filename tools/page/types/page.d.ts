@@ -42,9 +42,10 @@ declare global {
     recordings: ActiveRecording[];
     trackers: { name: string }[];
     guidance: Record<string, string>;
-    station: { notes: string[] } | null;
+    station: { notes: string[]; authority: boolean; documents: boolean } | null;
     executor: ExecutorStatus | null;
     lease: LeaseState | null;
+    identity: Identity;
     run: string;
     path: string;
     plan: Plan | null;

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Final
 
 from teachpath.errors import UnusableSample
@@ -15,6 +16,14 @@ from teachpath_proto.keys import Keys
 CLUTCH_BUTTON: Final = 4  # mask of the button in a sample
 RELEASE_FIRST_HINT: Final = "let the clutch go, and press it again to move the arm"
 PRESS_HINT: Final = "press the clutch (button bit 2) to move the arm"
+
+
+@dataclass(frozen=True)
+class _Pause:
+    """Until when the arm goes on by itself [ns of a clock], and why it does not any more after that."""
+
+    lapsed: str
+    deadline_ns: int
 
 
 class Clutch:
@@ -31,24 +40,55 @@ class Clutch:
         self.hold_requested = False
         self.reason = PRESS_HINT
         self._released = False  # whether the button was up since the clutch was last engaged
+        self._pause: _Pause | None = None
 
     def update(self, pressed: bool) -> bool:
         """Take whether the button is pressed; return whether the clutch has just engaged."""
         if not pressed:
-            if self.engaged:
+            if self.engaged or self.is_paused:
                 self.disengage(PRESS_HINT)
             self._released = True
-            self.reason = PRESS_HINT if self.reason == RELEASE_FIRST_HINT else self.reason
+            self.reason = PRESS_HINT if self.reason.startswith(RELEASE_FIRST_HINT) else self.reason
         elif self._released and not self.hold_requested:
             self.engaged, self._released, self.reason = True, False, ""
             return True
-        elif not self.engaged and not self.hold_requested:
-            self.reason = RELEASE_FIRST_HINT
+        elif not (self.engaged or self.is_paused or self.hold_requested):
+            self._ask_for_release()
         return False
+
+    @property
+    def is_paused(self) -> bool:
+        """Whether the arm goes on without another press when what was lost is back."""
+        return self._pause is not None
+
+    def pause(self, reason: str, lapsed: str, deadline_ns: int) -> None:
+        """Let the arm rest until `go_on`; at the deadline [ns of a clock] the button has to be released first.
+
+        Args:
+            reason: why the arm rests, in words.
+            lapsed: the same from the deadline on.
+        """
+        self.disengage(reason)
+        self._pause = _Pause(lapsed, deadline_ns)
+
+    def go_on(self) -> None:
+        """Let the arm follow again after a pause."""
+        self.disengage("")
+        self.engaged = True
+
+    def give_up_pause(self, now: int) -> None:
+        """Let the button be released before the arm follows again, if the deadline has passed by `now` [ns]."""
+        if self._pause is not None and now >= self._pause.deadline_ns:
+            self.disengage(self._pause.lapsed)
 
     def disengage(self, reason: str) -> None:
         """Let the arm rest, whatever the button does: it must be released before the arm follows again."""
-        self.engaged, self._released, self.reason = False, False, reason
+        self.engaged, self._released, self.reason, self._pause = False, False, reason, None
+
+    def _ask_for_release(self) -> None:
+        if not self.reason.startswith(RELEASE_FIRST_HINT):
+            why, way_out, _ = self.reason.partition(";")
+            self.reason = f"{RELEASE_FIRST_HINT}: {why}" if way_out else RELEASE_FIRST_HINT
 
     def hold(self) -> None:
         """Disengage until `resume`."""

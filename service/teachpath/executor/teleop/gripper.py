@@ -6,8 +6,9 @@ from typing import Final
 
 import numpy as np
 
-from teachpath.motion.arm.kinematics import rotation_matrices, tool_pose
+from teachpath.motion.arm.kinematics import tool_pose
 from teachpath.motion.arm.model import Arm
+from teachpath.motion.arm.rotations import rotation_matrices
 from teachpath.motion.collision.collision_model import Load
 from teachpath.recording.phases import hand_closure
 from teachpath.records import JointState, Sample

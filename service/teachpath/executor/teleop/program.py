@@ -19,10 +19,12 @@ from teachpath.motion.execution.segments import Detour, MotionState, RestPoint
 from teachpath.motion.execution.teleop_follower import TeleopFollower
 from teachpath.motion.settings import MotionSettings
 from teachpath.recording.demonstration import to_world, turn_to_world
-from teachpath.records import Array, Sample, TeleopRequest
+from teachpath.records import Array, Sample, Scene, TeleopRequest
 
 MAX_LATENCIES: Final = 5000  # newest latencies of which the percentiles are taken
+MAX_OFFSET: Final = 0.1  # [m] that a hand may be off where it was last followed, to be followed again by itself
 LATE_ARM_HINT: Final = "the arm is late; let the clutch go and press it again"
+MOVED_HINT: Final = "the hand moved too far while it was not followed; let the clutch go and press it again"
 NO_TURN_HINT: Final = "the hand's own turns are not measured, so the tool keeps its orientation"
 
 
@@ -31,10 +33,12 @@ class TeleopProgram:
 
     Args:
         hand: samples of the tracker and state of its clutch; closed with the program.
-        request: tracker, calibration, scene and scale.
+        request: tracker, calibration and scale.
+        scene: what the station has around the arm.
         start_q: (6,) where the arm rests [rad].
         arm: that follows.
         joint_states: monitor of the arm, which says what its gripper does and where the object is.
+        return_timeout: within which a hand that was lost is followed again while its clutch stays pressed [s].
         period: between two setpoints [s].
         clock: returns monotonic nanoseconds.
 
@@ -46,11 +50,13 @@ class TeleopProgram:
         self,
         hand: HandInput,
         request: TeleopRequest,
+        scene: Scene,
         start_q: Array,
         settings: MotionSettings,
         arm: Arm,
         *,
         joint_states: JointStateMonitor,
+        return_timeout: float,
         period: float,
         clock: Callable[[], int],
     ) -> None:
@@ -60,19 +66,23 @@ class TeleopProgram:
         self._joint_states = joint_states
         self._clock = clock
         self._gripper = GripperFollower(joint_states.current().gripper_closed)
-        model = CollisionModel(request.scene, arm)
+        model = CollisionModel(scene, arm)
+        self._has_object = scene.carried is not None
         self._follower = TeleopFollower(
             model, start_q, settings, scale=request.scale, share=request.share, period=period
         )
-        if request.scene.carried is not None:
-            self._follower.load = Load(position=request.scene.carried.position)
+        if scene.carried is not None:
+            self._follower.load = Load(position=scene.carried.position)
         self._state = MotionState(np.array(start_q), np.zeros(6), np.zeros(6), self._gripper.closed)
         self._clutch = Clutch()
+        self._return_timeout_ns = round(return_timeout * 1e9)
+        self._followed = np.zeros(3)  # [m] where the hand was in the newest sample that was followed
+        self.waiting = False
         self._latencies: deque[float] = deque(maxlen=MAX_LATENCIES)
         self._answered_stamp = 0
         self._turn_hint = ""
 
-    before_path = waiting = False
+    before_path = False
     finished = False
     progress = 0.0
     arc_length = 0.0
@@ -106,7 +116,7 @@ class TeleopProgram:
     @property
     def activity(self) -> str:
         """What the arm does, and why the tool is not where the hand is."""
-        following = f"mirroring {self._request.tracker}"
+        following = f"mirroring {self._request.tracker} in scene {self._request.scene}"
         intrusion = self._hand.intrusion(self._clock())
         hindrances = (self._follower.reason, intrusion, self._turn_hint) if self._clutch.engaged else (intrusion,)
         hindrance = "; ".join(filter(None, hindrances))
@@ -132,6 +142,7 @@ class TeleopProgram:
             self._take_sample(*newest)
         if self._clutch.engaged:
             self._check_presence(now)
+        self._clutch.give_up_pause(now)
         position, velocity, acceleration = self._follower.step()
         if self._follower.answered_stamp != self._answered_stamp:
             self._answered_stamp = self._follower.answered_stamp
@@ -145,15 +156,14 @@ class TeleopProgram:
         return self._state
 
     def way_to_rest(self) -> tuple[Array, RestPoint]:
-        """Return the positions (n, 6) of the way to rest from the newest setpoint, and where it ends."""
+        """Return the states (n, 3, 6) of the way to rest from the newest setpoint, and where it ends."""
         way = self._follower.way_to_rest()
-        return way, RestPoint(way[-1] if len(way) else self._state.position)
+        return way, RestPoint(way[-1, 0] if len(way) else self._state.position)
 
     def restart(self, point: RestPoint) -> None:
-        """Stand where the arm rests, with the clutch open: the hand is elsewhere by now."""
+        """Stand where the arm rests; the arm follows again if the hand is near to where it was."""
         if self._clutch.engaged:
-            self._clutch.disengage(LATE_ARM_HINT)
-        self._follower.disengage()
+            self._pause(LATE_ARM_HINT)
         self._follower.rest_at(point.position)
         still = np.zeros(6)
         self._state = MotionState(point.position, still, still, self._gripper.closed)
@@ -168,10 +178,10 @@ class TeleopProgram:
         self._follower.disengage()
 
     def set_waiting(self, waiting: bool) -> None:
-        """Open the clutch when the arm is late: it would go where the hand no longer is."""
+        """Rest while the arm is late; it follows again if the hand is near to where it was."""
+        self.waiting = waiting
         if waiting and self._clutch.engaged:
-            self._clutch.disengage(LATE_ARM_HINT)
-            self._follower.disengage()
+            self._pause(LATE_ARM_HINT)
 
     def resume(self) -> None:
         """Let the clutch be pressed again."""
@@ -205,27 +215,50 @@ class TeleopProgram:
     def _check_presence(self, now: int) -> None:
         """Open the clutch when nobody presses it any more, or when the hand is lost."""
         loss = self._hand.loss(now)
-        if loss:
+        if loss and self._hand.intrusion(now):
             self._clutch.disengage(loss)
+        elif loss:
+            self._pause(loss)
         elif self._hand.is_remote_clutch_released:
             self._clutch.update(False)
-        if not self._clutch.engaged:
+        if not (self._clutch.engaged or self._clutch.is_paused):
             self._follower.disengage()
+
+    def _pause(self, why: str) -> None:
+        """Rest, for a reason and what to do about it in words; for a while the arm goes on by itself."""
+        seconds = self._return_timeout_ns / 1e9
+        reason = f"{why.partition(';')[0]}; the arm goes on by itself if that ends within {seconds:g} s"
+        self._clutch.pause(reason, why, self._clock() + self._return_timeout_ns)
+        self._follower.pause()
+
+    def _go_on(self, hand: Array, sample: Sample) -> None:
+        """Follow again after a pause, unless the hand was moved far meanwhile: nobody expects the arm to go there."""
+        now = self._clock()
+        if self.waiting or self._hand.loss(now) or self._hand.intrusion(now):
+            return
+        if np.linalg.norm(hand - self._followed) > MAX_OFFSET:
+            self._clutch.disengage(MOVED_HINT)
+            return
+        self._clutch.go_on()
+        self._gripper.engage(sample)
 
     def _take_sample(self, came_ns: int, sample: Sample) -> None:
         latest = self._joint_states.latest(came_ns)
-        if latest is not None and self._request.scene.carried is not None:
+        if latest is not None and self._has_object:
             self._follower.load = observed_load(latest[1], self._arm, self._follower.load)
         was_engaged = self._clutch.engaged
         hand, orientation = to_world(self._request.calibration, np.array(sample.position)), self._orientation(sample)
         if self._clutch.update(self._hand.is_clutch_pressed(sample)):
             self._gripper.engage(sample)
             self._follower.engage(hand, orientation)
-        elif self._clutch.engaged:
+        elif self._clutch.is_paused:
+            self._go_on(hand, sample)
+        elif was_engaged and not self._clutch.engaged:
+            self._follower.disengage()
+        if self._clutch.engaged:
+            self._followed = hand
             self._gripper.follow(sample)
             self._follower.set_hand(hand, came_ns, orientation)
-        elif was_engaged:
-            self._follower.disengage()
 
     def _orientation(self, sample: Sample) -> Array | None:
         """Return the orientation (3, 3) of the hand in the world, if the tool is to turn with it and it is measured."""

@@ -14,7 +14,16 @@ from scipy.spatial.transform import Rotation
 
 from teachpath.errors import UnusableRecording
 from teachpath.io.import_settings import ImportSettings
-from teachpath.io.readers.contract import TIME_UNITS, UNITS, FileMotions, Integers, Reader, ReadOptions, Track
+from teachpath.io.readers.contract import (
+    TIME_UNITS,
+    UNITS,
+    FileMotions,
+    Integers,
+    OptionNeeded,
+    Reader,
+    ReadOptions,
+    Track,
+)
 from teachpath.io.readers.text import numbered_lines
 from teachpath.io.readers.time_units import time_unit
 from teachpath.records import Array
@@ -128,9 +137,7 @@ def read_matrices(content: bytes, name: str, options: ReadOptions, limits: Impor
     positions, orientations = _poses(np.array(rows).reshape(-1, 4, 4), name)
     length, rate = options.units or "m", options.rate or RATE
     track = Track(_even_stamps(len(positions), rate), positions * UNITS[length], orientations)
-    return FileMotions(
-        [track], (f"{rate:g} Hz, it has no clock (--rate)", f"position in {length}", "orientation from matrices")
-    )
+    return FileMotions([track], (f"{rate:g} Hz, it has no clock", f"position in {length}", "orientation from matrices"))
 
 
 def _poses(matrices: Array, name: str) -> tuple[Array, Array]:
@@ -214,9 +221,7 @@ def _stamps(times: NDArray[Any], unit: str, name: str) -> Integers:
         return times.astype(np.int64) * TIME_UNITS[unit]
     stamps = np.asarray(times, np.float64) * TIME_UNITS[unit]
     if np.abs(stamps).max() >= 2.0**62:
-        raise UnusableRecording(
-            f"{name}: a time of {float(np.abs(stamps).max()) * 1e-9:g} s; is the unit right (--time)?"
-        )
+        raise OptionNeeded(f"{name}: a time of {float(np.abs(stamps).max()) * 1e-9:g} s is no time", "time")
     return np.round(stamps).astype(np.int64)
 
 
@@ -226,7 +231,7 @@ def _quaternions(values: Array, options: ReadOptions) -> Array:
 
 
 def _order(options: ReadOptions) -> str:
-    return f"quaternion {', '.join(options.quaternion or 'wxyz')} (--quaternion)"
+    return f"quaternion {', '.join(options.quaternion or 'wxyz')}"
 
 
 NPY = Reader("npy", "array of t, x, y, z[, quaternion]", read_npy, lambda content, name: content[:6] == b"\x93NUMPY")

@@ -9,13 +9,13 @@ import numpy as np
 
 from teachpath.errors import UnusableRecording
 from teachpath.io.import_settings import ImportSettings
-from teachpath.io.readers.contract import UNITS, Booleans, Track
+from teachpath.io.readers.contract import UNITS, Booleans, OptionNeeded, Track
 from teachpath.io.wire import MAX_COORDINATE
 from teachpath.records import Array
+from teachpath_proto.sample_rules import UNIT_TOLERANCE
 
 LARGEST_SPAN = 10.0  # [m] of a motion in one axis; an arm reaches 1 m
 LIKELY_SPAN = (0.02, 5.0)  # [m] of a motion, if another unit were right
-UNIT_TOLERANCE = 0.01  # by which the length of a quaternion may differ from 1
 
 
 def checked(track: Track, where: str, limits: ImportSettings) -> Track:
@@ -53,16 +53,17 @@ def _tracked(track: Track) -> Booleans:
 def _check_clock(track: Track, where: str, limits: ImportSettings) -> None:
     span = (int(track.stamps_ns.max()) - int(track.stamps_ns.min())) * 1e-9
     if span > limits.max_duration:
-        raise UnusableRecording(
-            f"{where}: it lasts {span:g} s, limit {limits.max_duration:g} (imports.max_duration); is the unit of t "
-            "right (--time)?"
+        raise OptionNeeded(
+            f"{where}: it lasts {span:g} s, limit {limits.max_duration:g} (imports.max_duration), if t is in the right "
+            "unit",
+            "time",
         )
     steps = np.diff(track.stamps_ns)
     back = int(np.count_nonzero(steps < 0))
     if back > len(steps) // 2:
         raise UnusableRecording(f"{where}: t runs backwards at {back} of {len(steps)} steps; sort by t")
     if not np.any(steps):
-        raise UnusableRecording(f"{where}: t never changes; name the column of the clock with --columns t=...")
+        raise OptionNeeded(f"{where}: t never changes, so that it is no clock", "columns", "t=...")
 
 
 def _check_size(positions: Array, where: str) -> None:
@@ -77,8 +78,7 @@ def _check_size(positions: Array, where: str) -> None:
     ]
     what = f"the motion spans {span:.3g} m" if span > LARGEST_SPAN else f"a position is {farthest:.3g} m away"
     limit = LARGEST_SPAN if span > LARGEST_SPAN else MAX_COORDINATE
-    hint = f"--units {' or '.join(likely)}?" if likely else "are the units right (--units)?"
-    raise UnusableRecording(f"{where}: {what}, limit {limit:g}; {hint}")
+    raise OptionNeeded(f"{where}: {what}, limit {limit:g}", "units", *likely)
 
 
 def _check_quaternions(orientations: Array, tracked: Booleans, where: str) -> None:

@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from teachpath.errors import UnusableInput, UnusableRecording
+from teachpath.io.readers.contract import OptionNeeded
 
 POSITION, ROTATION = ("x", "y", "z"), ("qw", "qx", "qy", "qz")
 FLEXION = re.compile(r"f([1-9]\d?)")
@@ -76,7 +77,7 @@ def parse_columns(text: str) -> dict[str, str]:
         role, mark, column = (piece.strip() for piece in part.partition("="))
         if not mark or not column or role not in ROLES or role in named:
             raise UnusableInput(
-                f"--columns has {part!r}; write role=column, each role once, e.g. t=Time,x=Position.X,y=3; roles: "
+                f"columns: {part!r} is none; write role=column, each role once, e.g. t=Time,x=Position.X,y=3; roles: "
                 f"{', '.join(ROLES)}"
             )
         named[role] = column
@@ -92,7 +93,7 @@ def map_columns(header: Sequence[str], named: Mapping[str, str], name: str) -> C
         name: of the file, for errors.
 
     Raises:
-        UnusableRecording: a column is missing, or two could be meant.
+        OptionNeeded: a column is missing, or two could be meant.
     """
     plain, units = zip(*(_without_unit(cell) for cell in header), strict=True) if header else ((), ())
     places = {role: _place(header, column, role, name) for role, column in named.items()}
@@ -102,7 +103,7 @@ def map_columns(header: Sequence[str], named: Mapping[str, str], name: str) -> C
         found = [k for k, cell in enumerate(plain) if k not in places.values() and cell in _names(role)]
         if len(found) > 1:
             several = " and ".join(header[k] for k in found)
-            raise UnusableRecording(f"{name}: {several} could all be {role}; say which: --columns {role}=...")
+            raise OptionNeeded(f"{name}: {several} could all be {role}", "columns", f"{role}=...")
         if found:
             places[role] = found[0]
     _require(header, places, name)
@@ -118,16 +119,17 @@ def map_columns(header: Sequence[str], named: Mapping[str, str], name: str) -> C
 
 def _require(header: Sequence[str], places: Mapping[str, int], name: str) -> None:
     if len(set(places.values())) < len(places):
-        raise UnusableRecording(f"{name}: one column has two roles; say what is where with --columns")
+        raise OptionNeeded(f"{name}: one column has two roles", "columns")
     missing = [role for role in ("t", *POSITION) if role not in places]
     rotation = [role for role in ROTATION if role not in places]
     if 0 < len(rotation) < len(ROTATION):
         missing += rotation
     if missing:
         shown = ", ".join(cell or "''" for cell in header[:12]) + (", ..." if len(header) > 12 else "")
-        raise UnusableRecording(
-            f"{name}: no column for {', '.join(missing)}; its {len(header)} columns are {shown or 'without names'}; "
-            "say which is which, by name or number: --columns t=1,x=2,y=3,z=4"
+        raise OptionNeeded(
+            f"{name}: no column for {', '.join(missing)}; its {len(header)} columns are {shown or 'without names'}",
+            "columns",
+            "t=1,x=2,y=3,z=4",
         )
 
 
@@ -160,8 +162,8 @@ def _place(header: Sequence[str], column: str, role: str, name: str) -> int:
     if not exact and column.isdecimal() and 1 <= int(column) <= len(header):
         return int(column) - 1
     problem = f"{len(exact)} columns are" if exact else "no column is"
-    raise UnusableRecording(
-        f"{name}: --columns {role}={column}: {problem} called {column!r}; they are {', '.join(header[:20])}"
+    raise OptionNeeded(
+        f"{name}: {problem} called {column!r}, which was to be {role}; they are {', '.join(header[:20])}", "columns"
     )
 
 

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from teachpath.errors import UnusableRecording
 from teachpath.io.import_settings import ImportSettings
 from teachpath.records import Array, Trajectory
 
@@ -39,6 +40,45 @@ class ReadOptions:
     columns: str = ""
     quaternion: str = ""
     track: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class OpenQuestion:
+    """What a file leaves open; the command line and the page each say in their words where to answer it.
+
+    Attributes:
+        problem: what is open, or wrong as it was read.
+        option: that answers it: columns, time, track or units.
+        values: of the option that may be right; empty: any.
+    """
+
+    problem: str
+    option: str
+    values: tuple[str, ...] = ()
+
+
+class OptionNeeded(UnusableRecording):
+    """A file cannot be read as it was asked for; an option would mend it."""
+
+    def __init__(self, problem: str, option: str, *values: str) -> None:
+        super().__init__(problem, option, *values)  # which a process that reads files sends back
+        self.question = OpenQuestion(problem, option, values)
+
+    def __str__(self) -> str:
+        """Return the problem and the option of the command line."""
+        values = self.question.values
+        *first, last = [*values[:MAX_NAMED], "another one"] if len(values) > MAX_NAMED else values or ("",)
+        said = f" {', '.join(first)} or {last}" if first else f" {last}".rstrip()
+        return f"{self.question.problem}; {WAYS_OUT[self.question.option]} --{self.question.option}{said}"
+
+
+MAX_NAMED = 12  # values in a sentence
+WAYS_OUT = {
+    "columns": "say which is which with",
+    "time": "say its unit with",
+    "track": "choose one with",
+    "units": "say their unit with",
+}
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,11 +125,13 @@ class FileMotions:
         tracks: the motions, each of which becomes a demonstration.
         understood: what was taken for time, units, orientation and frame, one phrase each.
         whole_motion: every motion is the transport alone, by the nature of the format.
+        choices: what `ReadOptions.track` may name: bodies, markers or topics; empty: there is no choice.
     """
 
     tracks: Sequence[Track]
     understood: tuple[str, ...] = ()
     whole_motion: bool = False
+    choices: tuple[str, ...] = ()
 
 
 def _never(content: bytes, name: str) -> bool:
@@ -104,7 +146,7 @@ class Reader:
         name: of the format, as `--format` has it.
         title: of the format, for people.
         read: called with the content of a file, its name (for errors), the options and the limits. It raises
-            UnusableRecording with a sentence that names the row, the value and the way out.
+            UnusableRecording with a sentence that names the row, the value and the way out, or OptionNeeded.
         recognizes: tells whether content and name are certainly of this format.
         defaults: options of the format where neither the user nor the file says anything.
     """

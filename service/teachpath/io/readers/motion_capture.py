@@ -9,7 +9,7 @@ from dataclasses import replace
 from teachpath.errors import UnusableRecording
 from teachpath.io.import_settings import ImportSettings
 from teachpath.io.readers.columns import UNIT_NAMES
-from teachpath.io.readers.contract import UNITS, FileMotions, Reader, ReadOptions
+from teachpath.io.readers.contract import UNITS, FileMotions, OptionNeeded, Reader, ReadOptions
 from teachpath.io.readers.tables import Rows, read_rows
 from teachpath.io.readers.text import cells_of, numbered_lines
 
@@ -28,14 +28,15 @@ def read_motive(content: bytes, name: str, options: ReadOptions, limits: ImportS
     kinds, axes = rows[at - 1][1], rows[at][1]
     bodies: dict[str, dict[str, int]] = {}
     for k in range(2, len(axes)):
-        body, kind = (line[k] if k < len(line) else "" for line in (names, kinds))
+        named, kind = (line[k] if k < len(line) else "" for line in (names, kinds))
         role = axes[k].lower() if kind == "Position" else f"q{axes[k].lower()}" if kind == "Rotation" else ""
         if role in (*AXES, "qw", "qx", "qy", "qz"):
-            bodies.setdefault(body, {})[role] = k
-    whole = {body: places for body, places in bodies.items() if len(places) == 7}  # markers have no rotation
-    places = {"number": 0, "t": 1} | _chosen(whole or bodies, options.track, name)
+            bodies.setdefault(named, {})[role] = k
+    whole = {named: places for named, places in bodies.items() if len(places) == 7}  # markers have no rotation
+    body, choices = _chosen(whole or bodies, options.track, name)
     unit = UNIT_NAMES.get(about.get("Length Units", "").lower(), "")
-    return _read(rows[at + 1 :], len(axes), places, name, options, unit=unit, time="s")
+    places = {"number": 0, "t": 1} | body
+    return replace(_read(rows[at + 1 :], len(axes), places, name, options, unit=unit), choices=choices)
 
 
 def read_vicon(content: bytes, name: str, options: ReadOptions, limits: ImportSettings) -> FileMotions:
@@ -54,13 +55,15 @@ def read_vicon(content: bytes, name: str, options: ReadOptions, limits: ImportSe
         role = axis.lower().removeprefix("t")
         if k >= 2 and role in AXES:
             bodies.setdefault(names[k] if k < len(names) else "", {})[role] = k
-    places = {"number": 0} | _chosen(bodies, options.track, name)
+    body, choices = _chosen(bodies, options.track, name)
+    places = {"number": 0} | body
     unit = UNIT_NAMES.get(units[places["x"]].lower() if places["x"] < len(units) else "", "")
     timed = [(line, [*row, _time_of(row[0], rate, name, line)]) for line, row in rows[at + 2 :]]
     width = len(axes)
     padded = [(line, [*row[:-1], *[""] * (width + 1 - len(row)), row[-1]]) for line, row in timed]
-    found = _read(padded, width + 1, places | {"t": width}, name, options, unit=unit, time="s")
-    return replace(found, understood=(*found.understood, f"time from frames at {rate:g} Hz", "rotations not read"))
+    found = _read(padded, width + 1, places | {"t": width}, name, options, unit=unit)
+    understood = (*found.understood, f"time from frames at {rate:g} Hz", "rotations not read")
+    return replace(found, understood=understood, choices=choices)
 
 
 def read_trc(content: bytes, name: str, options: ReadOptions, limits: ImportSettings) -> FileMotions:
@@ -71,18 +74,16 @@ def read_trc(content: bytes, name: str, options: ReadOptions, limits: ImportSett
     about = dict(zip(rows[1][1], rows[2][1], strict=False))
     markers = [marker for marker in rows[3][1][2:] if marker]
     bodies = {marker: {axis: 2 + 3 * k + j for j, axis in enumerate(AXES)} for k, marker in enumerate(markers)}
-    places = {"number": 0, "t": 1} | _chosen(bodies, options.track, name)
+    body, choices = _chosen(bodies, options.track, name)
     unit = UNIT_NAMES.get(about.get("Units", "").lower(), "")
-    width = 2 + 3 * len(markers)
-    body = [(line, row[:width] + [""] * (width - len(row))) for line, row in rows[4:] if row[0].isdecimal()]
-    return _read(body, width, places, name, options, unit=unit, time="s")
+    width, places = 2 + 3 * len(markers), {"number": 0, "t": 1} | body
+    samples = [(line, row[:width] + [""] * (width - len(row))) for line, row in rows[4:] if row[0].isdecimal()]
+    return replace(_read(samples, width, places, name, options, unit=unit), choices=choices)
 
 
-def _read(
-    rows: Rows, width: int, places: dict[str, int], name: str, options: ReadOptions, *, unit: str, time: str
-) -> FileMotions:
+def _read(rows: Rows, width: int, places: dict[str, int], name: str, options: ReadOptions, *, unit: str) -> FileMotions:
     columns = options.columns or ",".join(f"{role}={k + 1}" for role, k in places.items())
-    filled = replace(options, columns=columns, time_unit=options.time_unit or time)
+    filled = replace(options, columns=columns, time_unit=options.time_unit or "s")
     return read_rows(rows, [""] * width, ",", name, filled, units=unit if unit in UNITS else "")
 
 
@@ -93,15 +94,16 @@ def _rows(content: bytes, name: str, limits: ImportSettings, delimiter: str) -> 
         raise UnusableRecording(f"{name}: not a table: {error}") from None
 
 
-def _chosen(bodies: dict[str, dict[str, int]], wanted: str, name: str) -> dict[str, int]:
+def _chosen(bodies: dict[str, dict[str, int]], wanted: str, name: str) -> tuple[dict[str, int], tuple[str, ...]]:
+    """Return the columns of a body, and the names of all bodies if there are several."""
     whole = {body: places for body, places in bodies.items() if all(axis in places for axis in AXES)}
     if wanted and wanted not in whole:
-        raise UnusableRecording(f"{name}: no {wanted!r} in it; there are {', '.join(whole) or 'none'}")
+        raise OptionNeeded(f"{name}: no {wanted!r} in it", "track", *whole)
     if not whole:
         raise UnusableRecording(f"{name}: it holds no positions X, Y, Z")
     if len(whole) > 1 and not wanted:
-        raise UnusableRecording(f"{name}: it holds {', '.join(whole)}; choose one with --track")
-    return whole[wanted or next(iter(whole))]
+        raise OptionNeeded(f"{name}: it holds {len(whole)} of them", "track", *whole)
+    return whole[wanted or next(iter(whole))], tuple(whole) if len(whole) > 1 else ()
 
 
 def _spread(names: Sequence[str]) -> list[str]:

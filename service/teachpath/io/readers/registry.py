@@ -10,6 +10,7 @@ from importlib.metadata import entry_points
 from teachpath.errors import UnusableInput, UnusableRecording
 from teachpath.io.import_settings import ImportSettings
 from teachpath.io.readers.arrays import MATRICES, NPY, NPZ, ROBOTTASKS, check_count
+from teachpath.io.readers.bags import ROSBAG
 from teachpath.io.readers.checks import checked
 from teachpath.io.readers.columns import parse_columns
 from teachpath.io.readers.contract import QUATERNION_ORDERS, TIME_UNITS, UNITS, FileMotions, Reader, ReadOptions
@@ -18,7 +19,7 @@ from teachpath.io.readers.tables import EUROC, TABLE, TUM
 
 GROUP = "teachpath.readers"
 LARGEST_FILE = 64 * 1024 * 1024  # bytes
-HOUSE = (MOTIVE, VICON, TRC, EUROC, TUM, MATRICES, NPZ, NPY, ROBOTTASKS, TABLE)
+HOUSE = (MOTIVE, VICON, TRC, EUROC, TUM, MATRICES, NPZ, NPY, ROBOTTASKS, ROSBAG, TABLE)
 
 
 @functools.cache

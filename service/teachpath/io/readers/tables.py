@@ -11,7 +11,7 @@ import numpy as np
 from teachpath.errors import UnusableRecording
 from teachpath.io.import_settings import ImportSettings
 from teachpath.io.readers.columns import POSITION, ROTATION, ColumnMap, map_columns, parse_columns
-from teachpath.io.readers.contract import UNITS, FileMotions, Integers, Reader, ReadOptions, Track
+from teachpath.io.readers.contract import UNITS, FileMotions, Integers, OptionNeeded, Reader, ReadOptions, Track
 from teachpath.io.readers.text import cells_of, delimiter_of, is_comment, is_number, numbered_lines, table
 from teachpath.io.readers.time_units import stamps_of, time_unit
 from teachpath.records import Array
@@ -21,6 +21,22 @@ Rows = list[tuple[int, list[str]]]
 
 def read_table(content: bytes, name: str, options: ReadOptions, limits: ImportSettings) -> FileMotions:
     """Read a table whose columns have names, or are named by the options."""
+    rows, header, delimiter = _split(content, name, limits)
+    return read_rows(rows, header, delimiter, name, options)
+
+
+def table_columns(content: bytes, name: str, limits: ImportSettings) -> tuple[str, ...]:
+    """Return what the columns of a table are called; those without a name by their numbers from 1.
+
+    Raises:
+        UnusableRecording: the file is no table.
+    """
+    _, header, _ = _split(content, name, limits)
+    return tuple(cell or str(number) for number, cell in enumerate(header, 1))
+
+
+def _split(content: bytes, name: str, limits: ImportSettings) -> tuple[Rows, list[str], str]:
+    """Return the rows of a table, its header, and what separates its cells."""
     lines = numbered_lines(content, name, limits)
     data = [(number, line) for number, line in lines if not is_comment(line)]
     if not data:
@@ -31,12 +47,12 @@ def read_table(content: bytes, name: str, options: ReadOptions, limits: ImportSe
         comments = [cells_of(line.lstrip("#%/ "), delimiter) for _, line in lines if is_comment(line)]
     except csv.Error as error:
         raise UnusableRecording(f"{name}: not a CSV text file: {error}") from None
-    header = _header(rows, comments, delimiter)
-    return read_rows(rows, header, delimiter, name, options)
+    header = _header(rows, comments, delimiter)  # which takes it off the rows
+    return rows, header, delimiter
 
 
 def _header(rows: Rows, comments: Sequence[list[str]], delimiter: str) -> list[str]:
-    """Take the header off the rows, or return that in a comment, or names that are empty."""
+    """Take the header off the rows and return it, or that in a comment, or names that are empty."""
     if not all(is_number(cell, delimiter) for cell in rows[0][1]):
         return rows.pop(0)[1]
     width = len(rows[0][1])
@@ -92,7 +108,7 @@ def _length_unit_of(columns: ColumnMap) -> str:
 
 def _whole_numbers(values: Array, name: str) -> Integers:
     if not np.all((values >= 0) & (values < 2**53)) or np.any(values % 1.0):
-        raise UnusableRecording(f"{name}: its numbers of readings are not all whole; name another column: --columns")
+        raise OptionNeeded(f"{name}: its numbers of readings are not all whole", "columns", "number=...")
     return values.astype(np.int64)
 
 
@@ -129,7 +145,7 @@ def _begins(content: bytes, *words: bytes) -> bool:
     return first.startswith(b"#") and all(word in first for word in words)
 
 
-TABLE = Reader("csv", "table with a header, or with --columns", read_table)
+TABLE = Reader("csv", "table with named columns", read_table)
 TUM = Reader(
     "tum",
     "TUM trajectory: t x y z qx qy qz qw",

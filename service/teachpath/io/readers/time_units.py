@@ -6,8 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from teachpath.errors import UnusableRecording
-from teachpath.io.readers.contract import TIME_UNITS, Integers
+from teachpath.io.readers.contract import TIME_UNITS, Integers, OptionNeeded
 from teachpath.io.readers.text import number
 from teachpath.records import Array
 
@@ -24,7 +23,7 @@ def time_unit(times: Array, *, said: str, stated: str, name: str) -> str:
         name: of the file, for errors.
 
     Raises:
-        UnusableRecording: nobody names the unit, and the readings are not those of seconds.
+        OptionNeeded: nobody names the unit, and the readings are not those of seconds.
     """
     if said or stated:
         return said or stated
@@ -39,13 +38,16 @@ def time_unit(times: Array, *, said: str, stated: str, name: str) -> str:
     if fitting == ["s"]:
         return "s"
     if len(fitting) == 1:
-        raise UnusableRecording(
-            f"{name}: t looks like {fitting[0]}: its steps of {step:g} would be {rates[fitting[0]]:.3g} Hz; if it is "
-            f"so, say it: --time {fitting[0]}"
+        raise OptionNeeded(
+            f"{name}: t looks like {fitting[0]}: its steps of {step:g} would be {rates[fitting[0]]:.3g} Hz",
+            "time",
+            fitting[0],
         )
-    raise UnusableRecording(
+    raise OptionNeeded(
         f"{name}: the unit of t is open: steps of {step:g} would be {rates['s']:.3g} Hz in s, {rates['ms']:.3g} in ms, "
-        f"{rates['us']:.3g} in us; say it with --time s, ms, us or ns"
+        f"{rates['us']:.3g} in us",
+        "time",
+        *TIME_UNITS,
     )
 
 
@@ -60,7 +62,7 @@ def stamps_of(cells: Sequence[str], times: Array, unit: str, delimiter: str, nam
     factor = TIME_UNITS[unit]
     farthest = float(np.abs(times).max())
     if not farthest < 2**62 / factor:
-        raise UnusableRecording(f"{name}: a time of {farthest:g} {unit} is no time; is the unit right (--time)?")
+        raise OptionNeeded(f"{name}: a time of {farthest:g} {unit} is no time", "time")
     stamps = [
         int(cell) * factor if cell.isdecimal() else round(number(cell, delimiter) * factor)
         for cell, time in zip(cells, times, strict=True)

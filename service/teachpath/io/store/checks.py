@@ -16,8 +16,9 @@ from teachpath.records import Demonstration
 class Checks:
     """Looks at all rows of a station, also where they are wrong."""
 
-    def __init__(self, engine: Engine) -> None:
+    def __init__(self, engine: Engine, station: str) -> None:
         self._engine = engine
+        self._own = DemonstrationRow.station.in_(("", station))  # the recordings of others are not here
 
     def contradictions(self) -> list[str]:
         """Say in which ways a SQLite database contradicts itself; of a database with a server, nothing."""
@@ -31,13 +32,13 @@ class Checks:
         ]
 
     def named_recordings(self) -> set[str]:
-        """Return the places of the recordings that rows name."""
+        """Return the places of the recordings that rows of this station name."""
         with Session(self._engine) as session:
-            return set(session.scalars(select(DemonstrationRow.document["recording"].as_string())))
+            return set(session.scalars(select(DemonstrationRow.document["recording"].as_string()).where(self._own)))
 
     def demonstrations(self) -> Iterator[tuple[str, Demonstration | str]]:
-        """Yield all demonstrations by their ids, those of a task in their order; why, where a row says nothing."""
-        question = select(DemonstrationRow).order_by(DemonstrationRow.task, DemonstrationRow.number)
+        """Yield the station's demonstrations by their ids, by task and number; why, where a row says nothing."""
+        question = select(DemonstrationRow).where(self._own).order_by(DemonstrationRow.task, DemonstrationRow.number)
         with Session(self._engine) as session:
             rows = [(row.id, row.document) for row in session.scalars(question)]
         for key, document in rows:

@@ -8,7 +8,7 @@ from contextlib import contextmanager
 from hashlib import sha256
 from typing import Any, Final
 
-from sqlalchemy import Connection, Engine, Table, func, insert, select, text
+from sqlalchemy import Connection, Engine, Table, func, insert, make_url, select, text
 
 from teachpath.errors import Conflict, StorageUnavailable
 from teachpath.io.store.engine import open_engine
@@ -41,6 +41,11 @@ def copy_rows(source: str, target: str) -> dict[str, int]:
                 writing.execute(insert(table), batch)
         _advance_sequences(writing)
         return {table.name: _compared(table, reading, writing) for table in TABLES}
+
+
+def without_password(place: str) -> str:
+    """Return a data folder, or the URL of a database without what may be a password in it."""
+    return make_url(place).set(query={}).render_as_string(hide_password=True) if "://" in place else place
 
 
 @contextmanager

@@ -3,22 +3,29 @@
 from __future__ import annotations
 
 import sqlite3
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import Any, Final
 
-from alembic import command
-from alembic.config import Config
-from alembic.script import ScriptDirectory
-from alembic.script.revision import ResolutionError
-from alembic.util import CommandError
-from sqlalchemy import Connection, Engine, create_engine, event, func, select
+from sqlalchemy import Connection, Engine, create_engine, event, func, inspect, make_url, select, text
 from sqlalchemy.engine import ExceptionContext
 from sqlalchemy.exc import ArgumentError, DBAPIError
 from sqlalchemy.orm import Session
 
-from teachpath.errors import StorageUnavailable, UnusableSettings
+from teachpath.errors import UnusableSettings
 from teachpath.io.store.faults import database_fault, refused_by_server
+from teachpath.io.store.tables import NEWEST
 
 BUSY_TIMEOUT: Final = 5.0  # [s] for which one who writes waits for another
+# How libpq finds out that a server has gone: without these, a cut line would hold a request for many minutes.
+LINE_TIMEOUTS: Final = {
+    "connect_timeout": 5,
+    "keepalives_idle": 5,
+    "keepalives_interval": 2,
+    "keepalives_count": 3,
+    "tcp_user_timeout": 10_000,  # [ms]
+}
+MIGRATING: Final = 0x7465616368  # key of the lock under which one of several services makes the tables
 
 
 def open_engine(url: str) -> Engine:
@@ -50,7 +57,13 @@ def open_engine(url: str) -> Engine:
 
 def _engine_of(url: str) -> Engine:
     try:
-        return create_engine(url)
+        known = make_url(url)
+        if known.get_backend_name() != "postgresql":
+            return create_engine(known)
+        # Tried before each use, a connection that a server has closed is replaced and no request fails by it; as many
+        # as there are threads, so that none waits for another's.
+        timeouts = {name: value for name, value in LINE_TIMEOUTS.items() if name not in known.query}
+        return create_engine(known, connect_args=timeouts, pool_pre_ping=True, max_overflow=-1)
     except ModuleNotFoundError as error:
         raise UnusableSettings(
             f"the setting store.database needs {error.name}, which is not installed; for PostgreSQL: pip install "
@@ -67,8 +80,13 @@ def lock_name(session: Session, kind: str, name: str) -> None:
 
     In SQLite, who writes is alone from the beginning of the transaction; a database with a server locks the name.
     """
-    if session.get_bind().dialect.name == "postgresql":
+    if is_served(session.get_bind().engine):
         session.execute(select(func.pg_advisory_xact_lock(func.hashtextextended(f"{kind} {name}", 0))))
+
+
+def is_served(engine: Engine) -> bool:
+    """Return whether the database has a server, on which several services can work."""
+    return engine.dialect.name == "postgresql"
 
 
 def _shown(engine: Engine) -> str:
@@ -98,15 +116,38 @@ def _begin_sqlite(connection: Connection) -> None:
 
 
 def _migrate(engine: Engine) -> None:
-    config = Config()
-    config.set_main_option("script_location", "teachpath.io.store:migrations")
-    with engine.begin() as connection:
-        config.attributes["connection"] = connection
+    with _without_foreign_keys(engine) as connection:
+        if is_served(engine):
+            connection.execute(select(func.pg_advisory_xact_lock(MIGRATING)))
+        if _version(connection) != NEWEST:
+            from teachpath.io.store.upgrade import upgrade  # here, because most starts have no use for Alembic
+
+            upgrade(connection, _shown(engine))
+
+
+def _version(connection: Connection) -> str | None:
+    """Return which migration made the tables; None where there are none."""
+    if not inspect(connection).has_table("alembic_version"):
+        return None
+    version: str | None = connection.execute(text("SELECT version_num FROM alembic_version")).scalar()
+    return version
+
+
+@contextmanager
+def _without_foreign_keys(engine: Engine) -> Iterator[Connection]:
+    """Open a transaction in which tables that others refer to may be made anew.
+
+    To change a column in SQLite, a migration copies its table and drops the old one. With foreign keys, that is
+    refused as soon as one row refers to the table; and they can be switched off outside of transactions only.
+    """
+    with engine.connect() as connection:
+        driver: Any = connection.connection.driver_connection
+        is_sqlite = engine.dialect.name == "sqlite"
+        if is_sqlite:
+            driver.execute("PRAGMA foreign_keys=OFF")
         try:
-            command.upgrade(config, "head")
-        except (CommandError, ResolutionError) as error:
-            newest = ScriptDirectory.from_config(config).get_current_head()
-            raise StorageUnavailable(
-                f"the database {_shown(engine)} was made by a newer teachpath than this one, which knows its tables up "
-                f"to {newest} ({error}); update teachpath, or name another folder with --data"
-            ) from None
+            with connection.begin():
+                yield connection
+        finally:
+            if is_sqlite:
+                driver.execute("PRAGMA foreign_keys=ON")

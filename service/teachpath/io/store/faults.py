@@ -16,7 +16,18 @@ FREE_SPACE: Final = "free space, then try again"
 RESTORE: Final = (
     "restore a backup (teachpath restore), or make the rows anew from the recordings: teachpath doctor --rebuild"
 )
-DISK_FULL: Final = "53100"  # SQLSTATE
+# By the SQLSTATE of a server, or by its class: what is the matter, and the way out.
+RACES: Final = ("40", "55P03")  # transactions that lost against others; nothing of them was stored
+DISK_FULL: Final = "53100"
+SERVER: Final = {
+    "25006": ("may only be read", "name the primary server in the setting store.database"),
+    "42501": ("may not be used so by this user", "let its owner grant that, or name another user in store.database"),
+    "42P01": ("lacks a table", "restart the service, which makes its tables"),
+    "53": ("has no room for this", "raise max_connections or the memory of its server"),
+    "57": ("does not answer now", "is its server being restarted?"),
+    "58": ("cannot be read or written", "look at the disk of its server: it reports an error of its own"),
+    "XX": ("is damaged", "look at the log of its server, and restore a backup of it"),
+}
 FULL: Final = frozenset({errno.ENOSPC, errno.EDQUOT, errno.EFBIG})
 REFUSED: Final = {
     errno.EROFS: "mount it for writing, or name another folder with --data",
@@ -70,8 +81,8 @@ def database_fault(error: BaseException, url: str) -> TeachpathError | None:
         return UnusableInput(f"the database cannot keep this: {_first_line(cause)}; leave out what is no text")
     if isinstance(cause, sqlite3.Error):
         return _sqlite_fault(cause, url)
-    if getattr(cause, "sqlstate", "") == DISK_FULL:
-        return StorageFull(f"{url}: the disk of the database is full; {FREE_SPACE}")
+    if (state := getattr(cause, "sqlstate", None)) and (fault := _server_fault(state, cause, url)) is not None:
+        return fault
     if isinstance(error, (OperationalError, InterfaceError)):
         return StorageUnavailable(f"the database {url} does not answer ({_first_line(cause)}); is its server running?")
     return None
@@ -83,6 +94,16 @@ def refused_by_server(error: BaseException, url: str) -> StorageUnavailable:
         f"cannot connect to the database {url}: {_first_line(error)}; is its server running, and the setting "
         "store.database right?"
     )
+
+
+def _server_fault(state: str, cause: BaseException | None, url: str) -> TeachpathError | None:
+    if state.startswith(RACES):
+        return Conflict(f"somebody else changed the same meanwhile ({_first_line(cause)}); try again")
+    if state == DISK_FULL:
+        return StorageFull(f"{url}: the disk of the database is full; {FREE_SPACE}")
+    if (told := SERVER.get(state) or SERVER.get(state[:2])) is not None:
+        return StorageUnavailable(f"the database {url} {told[0]} ({_first_line(cause)}); {told[1]}")
+    return None
 
 
 def _sqlite_fault(error: sqlite3.Error, url: str) -> StorageUnavailable | None:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any, Final, TypeVar
 
 from sqlalchemy import Engine, Select, func, select
-from sqlalchemy.orm import Session, defer
+from sqlalchemy.orm import Bundle, InstrumentedAttribute, Session, aliased, defer
 
 from teachpath.errors import NotFound
 from teachpath.io.documents import from_document
@@ -20,6 +20,7 @@ from teachpath.io.store.tables import (
     JournalRow,
     PathRow,
     PlanRow,
+    RevocationRow,
     RunTable,
     TaskRow,
 )
@@ -29,7 +30,9 @@ from teachpath.records import (
     ExecutorStatus,
     Job,
     JournalEntry,
+    PathSummary,
     Plan,
+    PlanSummary,
     RunSummary,
     Task,
     Version,
@@ -42,6 +45,7 @@ TASKS: Final = Listing("tasks", (TaskRow.created_ns, TaskRow.name))
 DEMONSTRATIONS: Final = Listing("demonstrations", (DemonstrationRow.number,))
 RUNS: Final = Listing("runs", (RunTable.created_ns, RunTable.id), newest_first=True)
 JOBS: Final = Listing("jobs", (JobRow.created_ns, JobRow.id), newest_first=True)
+PATHS: Final = Listing("paths", (PathRow.created_ns, PathRow.id), newest_first=True)
 PLANS: Final = Listing("plans", (PlanRow.created_ns, PlanRow.id), newest_first=True)
 VERSIONS: Final = Listing("versions", (PathRow.version,))
 EXECUTIONS: Final = Listing("executions", (ExecutionTable.created_ns, ExecutionTable.id), newest_first=True)
@@ -50,7 +54,14 @@ JOURNAL: Final = Listing("journal", (JournalRow.number,), newest_first=True)
 
 @dataclass(frozen=True, slots=True)
 class Execution:
-    """An execution as stored; `plan` is None when the arm followed a live hand."""
+    """An execution as stored; `plan` is None when the arm followed a live hand.
+
+    Attributes:
+        id: of the execution.
+        plan: id of the plan; None: the arm followed a live hand.
+        created_ns: when it was ordered [ns since the Unix epoch].
+        status: the newest of the executor.
+    """
 
     id: str
     plan: str | None
@@ -73,14 +84,48 @@ class Lists:
         question = select(DemonstrationRow).where(DemonstrationRow.task == task)
         return self._read(DEMONSTRATIONS, question, wanted, lambda row: from_document(Demonstration, row.document))
 
-    def runs(self, task: str, wanted: PageRequest = FIRST_PAGE) -> Page[RunSummary]:
-        """List the learning runs of a task, newest first, without what was learned."""
-        question = select(RunTable).where(RunTable.task == task).options(defer(RunTable.document))
-        return self._read(RUNS, question, wanted, _summary)
+    def runs(self, task: str | None, wanted: PageRequest = FIRST_PAGE) -> Page[RunSummary]:
+        """List the learning runs of a task, or all, newest first, without what was learned."""
+        question = select(RunTable).options(defer(RunTable.document))
+        return self._read(RUNS, _of_task(question, RunTable.task, task), wanted, _summary)
 
-    def jobs(self, task: str, wanted: PageRequest = FIRST_PAGE) -> Page[Job]:
-        """List the jobs of a task, newest first."""
-        return self._read(JOBS, select(JobRow).where(JobRow.task == task), wanted, job_of)
+    def jobs(self, task: str | None, wanted: PageRequest = FIRST_PAGE) -> Page[Job]:
+        """List the jobs of a task, or all, newest first."""
+        return self._read(JOBS, _of_task(select(JobRow), JobRow.task, task), wanted, job_of)
+
+    def path_summaries(self, task: str | None = None, wanted: PageRequest = FIRST_PAGE) -> Page[PathSummary]:
+        """List the learned paths of a task, or all, newest first."""
+        versions = aliased(PathRow)
+        count = select(func.count()).where(versions.id == PathRow.id).scalar_subquery().label("versions")
+        cluster = PathRow.document["cluster"].as_integer().label("cluster")
+        columns = (PathRow.id, RunTable.task, PathRow.run, cluster, count, PathRow.created_ns)
+        question: Select[Any] = select(Bundle("path", *columns)).join(RunTable, RunTable.id == PathRow.run)
+        question = _of_task(question.where(PathRow.parent.is_(None)), RunTable.task, task)
+        return self._read(PATHS, question, wanted, lambda row: PathSummary(**row._asdict()))
+
+    def plan_summaries(self, task: str | None = None, wanted: PageRequest = FIRST_PAGE) -> Page[PlanSummary]:
+        """List the plans of a task, or all, newest first, without what they hold."""
+        document = PlanRow.document
+        columns = (
+            PlanRow.id,
+            RunTable.task,
+            PlanRow.path,
+            document["path_version"].as_integer().label("path_version"),
+            document["scene"]["name"].as_string().label("scene"),
+            document["duration"].as_float().label("duration"),
+            document["certificate"]["clearance"]["value"].as_float().label("clearance"),
+            RevocationRow.plan.is_not(None).label("revoked"),
+            PlanRow.created_ns,
+        )
+        question: Select[Any] = (
+            select(Bundle("plan", *columns))
+            .join(PathRow, (PathRow.id == PlanRow.path) & PathRow.parent.is_(None))
+            .join(RunTable, RunTable.id == PathRow.run)
+            .outerjoin(RevocationRow, RevocationRow.plan == PlanRow.id)
+        )
+        return self._read(
+            PLANS, _of_task(question, RunTable.task, task), wanted, lambda row: PlanSummary(**row._asdict())
+        )
 
     def job_counts(self) -> dict[tuple[str, ...], float]:
         """Return how many jobs there are of each kind and state."""
@@ -122,6 +167,10 @@ class Lists:
 def execution_of(row: ExecutionTable) -> Execution:
     """Return the execution of a row."""
     return Execution(row.id, row.plan, row.created_ns, from_document(ExecutorStatus, row.document))
+
+
+def _of_task(question: Select[Any], column: InstrumentedAttribute[str], task: str | None) -> Select[Any]:
+    return question if task is None else question.where(column == task)
 
 
 def _summary(row: RunTable) -> RunSummary:

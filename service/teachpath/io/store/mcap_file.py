@@ -1,4 +1,4 @@
-"""A writer of MCAP files that makes one chunk of each batch of messages.
+"""A writer of MCAP files that makes one chunk of each batch of messages, from columns.
 
 The library's own writer takes messages one by one, at several times the cost of all else between the wire and the
 disk. This writer lays out the records itself (https://mcap.dev/spec); they are read with the library.
@@ -11,9 +11,11 @@ import io
 import struct
 import zlib
 from collections import Counter
-from collections.abc import Sequence
-from typing import Any, BinaryIO, NamedTuple, Self
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import Any, BinaryIO, Self
 
+import numpy as np
 import zstandard
 from mcap.data_stream import RecordBuilder
 from mcap.opcode import Opcode
@@ -34,6 +36,7 @@ from mcap.records import (
 )
 from mcap.stream_reader import StreamReader
 from mcap_protobuf.schema import build_file_descriptor_set
+from numpy.typing import NDArray
 
 from teachpath.errors import UnusableRecording
 
@@ -41,19 +44,39 @@ MAGIC = b"\x89MCAP0\r\n"
 DATA_END = struct.pack("<BQI", Opcode.DATA_END, 4, 0)
 FOOTER = struct.Struct("<BQQQI")  # opcode, length, start of the summary and of its offsets, check sum
 COMPRESSION, COMPRESSION_LEVEL = "zstd", 1
-_MESSAGE = struct.Struct("<BQHIQQ")  # opcode, length, channel, sequence, log time, publish time; then the data
-_MESSAGE_HEAD_SIZE = _MESSAGE.size - 9  # bytes of the above that its length counts
+_MESSAGE_HEAD = np.dtype(  # of a message; its data follow
+    [
+        ("opcode", "u1"),
+        ("length", "<u8"),
+        ("channel", "<u2"),
+        ("sequence", "<u4"),
+        ("log_time", "<u8"),
+        ("publish_time", "<u8"),
+    ]
+)
+_UNCOUNTED = 9  # bytes of opcode and length, which the length does not count
 _INDEX = struct.Struct("<BQHI")  # opcode, length, channel, bytes of the entries
 
+Integers = NDArray[np.uint64]
 
-class StampedMessage(NamedTuple):
-    """One message of a batch; times in nanoseconds since the Unix epoch."""
+
+@dataclass(frozen=True, eq=False)
+class MessageBatch:
+    """Messages of one channel; times in nanoseconds since the Unix epoch.
+
+    Attributes:
+        channel: as `McapFile.add_channel` returned it.
+        sequences: (n,), of which the file keeps the lower 32 bits.
+        log_times: (n,).
+        publish_times: (n,).
+        data: n messages.
+    """
 
     channel: int
-    sequence: int
-    log_time: int
-    publish_time: int
-    data: bytes
+    sequences: Integers
+    log_times: Integers
+    publish_times: Integers
+    data: Sequence[bytes]
 
 
 class McapFile:
@@ -122,21 +145,26 @@ class McapFile:
         self._metadata.append(MetadataIndex(offset=self._offset, length=len(record), name=name))
         self._write(record)
 
-    def add_messages(self, batch: Sequence[StampedMessage]) -> None:
-        """Write a batch as one chunk; an empty one writes nothing."""
-        if not batch:
+    def add_messages(self, batches: Iterable[MessageBatch]) -> None:
+        """Write batches as one chunk, one after the other; those without messages write nothing."""
+        batches = [batch for batch in batches if len(batch.data)]
+        if not batches:
             return
         pieces: list[bytes] = []
-        entries: dict[int, list[int]] = {}  # of a channel: log time and offset of each of its messages, in turn
+        entries: list[tuple[int, bytes]] = []  # of each batch: channel, and log time and offset of its messages
         offset = 0
-        for channel, sequence, log_time, publish_time, data in batch:
-            length = _MESSAGE_HEAD_SIZE + len(data)
-            pieces.append(_MESSAGE.pack(Opcode.MESSAGE, length, channel, sequence, log_time, publish_time))
-            pieces.append(data)
-            entries.setdefault(channel, []).extend((log_time, offset))
-            offset += 9 + length
-        self._write_chunk(b"".join(pieces), min(m.log_time for m in batch), max(m.log_time for m in batch), entries)
-        self._counts.update({channel: len(each) // 2 for channel, each in entries.items()})
+        for batch in batches:
+            sizes = _MESSAGE_HEAD.itemsize + np.fromiter(map(len, batch.data), np.uint64, len(batch.data))
+            ends = offset + np.cumsum(sizes)
+            index = np.stack([batch.log_times, ends - sizes], axis=1)
+            entries.append((batch.channel, index.astype("<u8").tobytes()))
+            pieces.extend(_message_pieces(batch, sizes))
+            offset = int(ends[-1])
+        first = min(int(batch.log_times.min()) for batch in batches)
+        last = max(int(batch.log_times.max()) for batch in batches)
+        self._write_chunk(b"".join(pieces), first, last, entries)
+        for batch in batches:
+            self._counts[batch.channel] += len(batch.data)
 
     def finish(self) -> None:
         """Write the summary, by which a reader finds everything without reading the whole file."""
@@ -192,7 +220,7 @@ class McapFile:
             self._chunks[-1].message_index_length += length
             self._counts[record.channel_id] += len(record.records)
 
-    def _write_chunk(self, plain: bytes, first: int, last: int, entries: dict[int, list[int]]) -> None:
+    def _write_chunk(self, plain: bytes, first: int, last: int, entries: list[tuple[int, bytes]]) -> None:
         packed = zstandard.ZstdCompressor(level=COMPRESSION_LEVEL).compress(plain)
         chunk = _serialize(
             Chunk(
@@ -205,10 +233,9 @@ class McapFile:
             )
         )
         start, offsets, indexes = self._offset, {}, b""
-        for channel, flat in entries.items():
+        for channel, index in entries:
             offsets[channel] = start + len(chunk) + len(indexes)
-            indexes += _INDEX.pack(Opcode.MESSAGE_INDEX, 6 + 8 * len(flat), channel, 8 * len(flat))
-            indexes += struct.pack(f"<{len(flat)}Q", *flat)
+            indexes += _INDEX.pack(Opcode.MESSAGE_INDEX, 6 + len(index), channel, len(index)) + index
         self._write(chunk + indexes)
         self._chunks.append(
             ChunkIndex(
@@ -236,6 +263,18 @@ class McapFile:
             metadata_count=len(self._metadata),
             schema_count=len(self._schemas),
         )
+
+
+def _message_pieces(batch: MessageBatch, sizes: Integers) -> Iterable[bytes]:
+    """Yield head and data of each message in turn; `sizes` (n,) are those of their records [bytes]."""
+    heads = np.empty(len(batch.data), _MESSAGE_HEAD)
+    heads["opcode"], heads["length"], heads["channel"] = Opcode.MESSAGE, sizes - _UNCOUNTED, batch.channel
+    heads["sequence"] = batch.sequences & 0xFFFFFFFF
+    heads["log_time"], heads["publish_time"] = batch.log_times, batch.publish_times
+    laid_out, size = heads.tobytes(), _MESSAGE_HEAD.itemsize
+    for i, data in enumerate(batch.data):
+        yield laid_out[size * i : size * (i + 1)]
+        yield data
 
 
 def _serialize(*records: McapRecord) -> bytes:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import struct
 import zlib
 from collections.abc import Iterator
 from typing import BinaryIO, Final
@@ -10,7 +11,8 @@ from typing import BinaryIO, Final
 import lz4.frame
 import zstandard
 from mcap.exceptions import EndOfFile
-from mcap.records import Chunk, Header, McapRecord
+from mcap.opcode import Opcode
+from mcap.records import Chunk, Header, McapRecord, Message
 from mcap.stream_reader import StreamReader
 
 from teachpath.errors import UnusableRecording
@@ -18,6 +20,9 @@ from teachpath.io.import_settings import ImportSettings
 
 MAX_RECORD_SIZE: Final = 16 * 1024 * 1024  # bytes of a record, and of what one chunk expands to
 MAX_RECORDS_PER_SAMPLE: Final = 10  # a sample has some messages for viewers beside it
+OPENING: Final = struct.Struct("<BQ")  # of a record: its kind, and the bytes that follow
+# Of the record of a message: its kind, the bytes that follow, channel, number, time of the log, time of publication.
+MESSAGE: Final = struct.Struct("<BQHIQQ")
 
 
 def read_records(stream: BinaryIO, limits: ImportSettings | None = None) -> Iterator[McapRecord]:
@@ -59,15 +64,36 @@ def _chunk_records(chunk: Chunk) -> Iterator[McapRecord]:
         raise UnusableRecording("the check sum of a chunk is wrong")
     stream = io.BytesIO(plain)
     records = StreamReader(stream, skip_magic=True, emit_chunks=True, record_size_limit=MAX_RECORD_SIZE).records
+    begin = 0
     try:
-        while stream.tell() < len(plain):
-            if plain[stream.tell()] == 0:
-                raise UnusableRecording(f"byte {stream.tell()} of a chunk begins no record")
+        while begin < len(plain):
+            if plain[begin] == 0:
+                raise UnusableRecording(f"byte {begin} of a chunk begins no record")
+            if (message := _message_at(plain, begin)) is not None:
+                yield message
+                begin += MESSAGE.size + len(message.data)
+                continue
+            stream.seek(begin)
             if not isinstance(record := next(records), Chunk):  # a chunk in a chunk is none
                 yield record
+            begin = stream.tell()
     except EndOfFile:
         if stream.tell() < len(plain):
             raise
+
+
+def _message_at(plain: bytes, begin: int) -> Message | None:
+    """Return the message whose record begins there, or None where that is another record, or none that is whole.
+
+    A recording has little else, and the library reads one in four times the time.
+    """
+    if plain[begin] != Opcode.MESSAGE or begin + MESSAGE.size > len(plain):
+        return None
+    _, length, channel, number, logged, published = MESSAGE.unpack_from(plain, begin)
+    end = begin + OPENING.size + length
+    if not begin + MESSAGE.size <= end <= len(plain):
+        return None
+    return Message(channel, logged, plain[begin + MESSAGE.size : end], published, number)
 
 
 def _decompressed(chunk: Chunk) -> bytes:

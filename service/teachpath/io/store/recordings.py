@@ -22,16 +22,17 @@ from teachpath.errors import NotFound, UnusableRecording
 from teachpath.io import documents
 from teachpath.io.import_settings import ImportSettings
 from teachpath.io.store.integrity import add_integrity
-from teachpath.io.store.mcap_file import McapFile, StampedMessage
+from teachpath.io.store.mcap_file import McapFile
 from teachpath.io.store.mcap_records import read_records
-from teachpath.io.store.viewer_messages import ViewerMessages
+from teachpath.io.store.sample_rows import SampleRows
+from teachpath.io.store.viewer_messages import ViewerMessages, message_batch
 from teachpath.io.wire import decode_sample, encode_sample, message_types
 from teachpath.records import Calibration, Demonstration, ObjectPose, RecordingDigest, Sample, Vector
 
 RECORDINGS = "recordings"  # their folder, in that of the data
 TOPIC = "samples"
 HEADER, FACTS = "teachpath", "facts"  # names of the metadata
-BATCH_SIZE = 400  # messages; small chunks, of about 64 KiB, lose less when a file is cut off
+BATCH_SIZE = 200  # samples; small chunks, of about 64 KiB, lose less when a file is cut off
 
 Opener = Callable[[Path], BinaryIO]
 
@@ -78,19 +79,15 @@ class RecordingFile:
         self._mcap.add_metadata(HEADER, {"header": documents.encode(header).decode()})
         self._channel = self._mcap.add_channel(TOPIC, message_types.HAND_SAMPLE)
         self._viewer_messages = ViewerMessages(self._mcap, header.calibration)
-        self._batch: list[StampedMessage] = []
+        self._samples = SampleRows()  # that wait to be written
+        self._payloads: list[bytes] = []
         self.flush()
 
     def write(self, sample: Sample, payload: bytes = b"") -> None:
         """Append one sample; `payload` is its message as it came, made anew when empty."""
-        data = payload or encode_sample(sample)
-        self._first = min(self._first, sample.sequence) if self._count else sample.sequence
-        self._last = max(self._last, sample.sequence)
-        self._count += 1
-        number = sample.sequence & 0xFFFFFFFF
-        self._batch.append(StampedMessage(self._channel, number, sample.receive_ns, sample.device_ns, data))
-        self._viewer_messages.append(sample, self._batch)
-        if len(self._batch) >= BATCH_SIZE:
+        self._payloads.append(payload or encode_sample(sample))
+        self._samples.append(sample)
+        if len(self._samples) >= BATCH_SIZE:
             self._write_batch()
 
     def flush(self) -> None:
@@ -111,8 +108,17 @@ class RecordingFile:
         return self._part.rename(self._part.with_suffix(""))
 
     def _write_batch(self) -> None:
-        batch, self._batch = self._batch, []
-        self._mcap.add_messages(batch)
+        samples, payloads = self._samples, self._payloads
+        if not samples:
+            return
+        self._samples, self._payloads = SampleRows(), []
+        columns = samples.columns()
+        lowest, highest = min(columns.sequence), max(columns.sequence)
+        self._first = min(self._first, lowest) if self._count else lowest
+        self._last = max(self._last, highest)
+        self._count += len(samples)
+        own = message_batch(self._channel, payloads, columns.receive_ns, columns.device_ns, columns.sequence)
+        self._mcap.add_messages([own, *self._viewer_messages.batches(columns)])
 
     def leave(self) -> None:
         """Stop writing and leave the unfinished file for `teachpath doctor`."""

@@ -18,7 +18,14 @@ from teachpath.records import Demonstration, Failure, Job, JobState, Learned, Ru
 
 @dataclass(frozen=True, eq=False)
 class Run:
-    """A learning run as stored."""
+    """A learning run as stored.
+
+    Attributes:
+        id: of the run.
+        task: name of the task.
+        created_ns: when it was made [ns since the Unix epoch].
+        learned: its result.
+    """
 
     id: str
     task: str
@@ -47,8 +54,8 @@ def ensured_task(session: Session, task: Task) -> TaskRow:
     return row
 
 
-def numbered_row(session: Session, demonstration: Demonstration) -> Demonstration:
-    """Add the row of a demonstration under the next number of its task, and return it with that number."""
+def numbered_row(session: Session, demonstration: Demonstration, station: str) -> Demonstration:
+    """Add the row of a demonstration of a station under the next number of its task; return it with that number."""
     lock_name(session, "task", demonstration.task)
     newest = session.scalar(
         select(func.max(DemonstrationRow.number)).where(DemonstrationRow.task == demonstration.task)
@@ -62,12 +69,15 @@ def numbered_row(session: Session, demonstration: Demonstration) -> Demonstratio
             created_ns=numbered.created_ns,
             verdict=numbered.verdict.value,
             document=to_document(numbered),
+            station=station,
         )
     )
     return numbered
 
 
-def imported_rows(session: Session, task: Task, made: Sequence[Demonstration], added: list[str]) -> list[int]:
+def imported_rows(
+    session: Session, task: Task, made: Sequence[Demonstration], added: list[str], station: str
+) -> list[int]:
     """Add the rows of demonstrations that are not there yet, and return the numbers of all.
 
     The places of the recordings whose rows are new are added to `added`.
@@ -79,7 +89,7 @@ def imported_rows(session: Session, task: Task, made: Sequence[Demonstration], a
         row = session.get(DemonstrationRow, demonstration.id)
         if row is None:
             added.append(demonstration.recording)
-        numbers.append(row.number if row else numbered_row(session, demonstration).number)
+        numbers.append(row.number if row else numbered_row(session, demonstration, station).number)
         session.flush()
     return numbers
 

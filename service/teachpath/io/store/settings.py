@@ -13,3 +13,5 @@ class StoreSettings:
     data_dir: str = "teachpath-data"
     # SQLAlchemy URL, e.g. postgresql+psycopg://user@host/teachpath; empty: SQLite in data_dir
     database: str = ""
+    # name of this station among those that share the database, each with a data_dir of its own
+    station: str = ""

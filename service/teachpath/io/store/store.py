@@ -4,24 +4,29 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager, suppress
 from dataclasses import replace
 from pathlib import Path
 from typing import Any, TypeVar
 
-from sqlalchemy import select, update
+from sqlalchemy import func, select
 from sqlalchemy.orm import Session
 
-from teachpath.errors import Conflict, NotFound
+from teachpath.errors import NotFound, StorageUnavailable, UnusableInput
 from teachpath.io.documents import from_document, to_document
+from teachpath.io.store.access_tokens import AccessTokens
+from teachpath.io.store.arms import Arms
 from teachpath.io.store.calibrations import MeasuredCalibrations
-from teachpath.io.store.changes import Changed, note, telling, unheard
+from teachpath.io.store.change_feed import ChangeFeed
+from teachpath.io.store.changes import Changed, changing, unheard
 from teachpath.io.store.checks import Checks
 from teachpath.io.store.database_files import database_file, database_url, make_data_folder
 from teachpath.io.store.engine import lock_name, open_engine
+from teachpath.io.store.job_claims import UNFINISHED, JobClaims
 from teachpath.io.store.journal import Journal
 from teachpath.io.store.lists import Execution, Lists, execution_of
 from teachpath.io.store.motions import Motions
+from teachpath.io.store.people import People
 from teachpath.io.store.recordings import RECORDINGS, Opener, Recordings, open_new
 from teachpath.io.store.rows import (
     Run,
@@ -33,28 +38,12 @@ from teachpath.io.store.rows import (
     success,
     task_of,
 )
+from teachpath.io.store.services import Services
 from teachpath.io.store.settings import StoreSettings
 from teachpath.io.store.storage_health import StorageHealth
-from teachpath.io.store.tables import (
-    Base,
-    DemonstrationRow,
-    ExecutionTable,
-    JobRow,
-    PlanRow,
-    RunTable,
-    TaskRow,
-)
+from teachpath.io.store.tables import Base, DemonstrationRow, ExecutionTable, JobRow, PlanRow, RunTable, TaskRow
 from teachpath.io.store.versions import Versions, learned_row
-from teachpath.records import (
-    Demonstration,
-    ExecutorStatus,
-    Job,
-    JobState,
-    Learned,
-    LearnedPath,
-    Plan,
-    Task,
-)
+from teachpath.records import Demonstration, ExecutorStatus, Job, Learned, LearnedPath, Plan, Task
 from teachpath_proto.control import ExecutorState
 
 Row = TypeVar("Row", bound=Base)
@@ -69,28 +58,31 @@ class Store:
         folder = make_data_folder(settings)
         self.recordings = Recordings(folder / RECORDINGS, opener)
         self.motions = Motions(folder / "executions", opener)
-        self._engine = open_engine(database_url(settings))
-        self._writing = self._engine.execution_options(writing=True)
+        engine = open_engine(database_url(settings))
+        self.services = Services(engine, settings.station, folder)
+        self._engine = engine.execution_options(service=self.services.id)
         self._changed = changed
+        self.arms = Arms(self._engine)
+        self.feed = ChangeFeed(engine, self.services.id, changed)
+        self.claims = JobClaims(self._engine, self.services, changed)
         self.calibrations = MeasuredCalibrations(self._engine)
         self.versions = Versions(self._engine, changed)
         self.journal = Journal(self._engine)
+        self.access_tokens = AccessTokens(self._engine)
+        self.people = People(self._engine)
         self.lists = Lists(self._engine)
-        self.checks = Checks(self._engine)
+        self.checks = Checks(self._engine, settings.station)
         self.health = StorageHealth(folder / RECORDINGS, self._engine, database_file(settings))
 
     def close(self) -> None:
         """Close every connection."""
+        self.feed.stop()
+        with suppress(StorageUnavailable):  # then others find out by themselves
+            self.services.end()
         self._engine.dispose()
 
-    @contextmanager
-    def _change(self) -> Iterator[Session]:
-        with (
-            Session(self._writing, expire_on_commit=False) as session,
-            telling(session, self._changed),
-            session.begin(),
-        ):
-            yield session
+    def _change(self) -> AbstractContextManager[Session]:
+        return changing(self._engine, self._changed)
 
     def _all(self, question: Any) -> list[Any]:
         with Session(self._engine) as session:
@@ -122,12 +114,26 @@ class Store:
     def add_demonstration(self, demonstration: Demonstration) -> Demonstration:
         """Store a demonstration under the next number of its task and return it with that number."""
         with self._change() as session:
-            return numbered_row(session, demonstration)
+            return numbered_row(session, demonstration, self.services.station)
 
     def demonstrations(self, task: str) -> list[Demonstration]:
         """List the demonstrations of a task in their order."""
         question = select(DemonstrationRow).where(DemonstrationRow.task == task).order_by(DemonstrationRow.number)
         return [from_document(Demonstration, row.document) for row in self._all(question)]
+
+    def require_recorded_here(self, task: str) -> None:
+        """Raise UnusableInput where a task has demonstrations whose recordings another station keeps."""
+        question = select(DemonstrationRow.station, func.count()).where(
+            DemonstrationRow.task == task, DemonstrationRow.station.not_in(("", self.services.station))
+        )
+        with Session(self._engine) as session:
+            others = session.execute(question.group_by(DemonstrationRow.station)).all()
+        if others:
+            counts = ", ".join(f"{count} at {station}" for station, count in sorted(others))
+            raise UnusableInput(
+                f"task {task} has demonstrations whose recordings other stations keep ({counts}); learn it where all "
+                "were recorded, or record and import them here"
+            )
 
     def demonstration(self, key: str) -> Demonstration:
         """Return one demonstration; raises NotFound."""
@@ -175,7 +181,7 @@ class Store:
             lock_name(session, "execution", key)
             row = session.get(ExecutionTable, key)
             if row is None:
-                row = ExecutionTable(id=key, plan=plan, created_ns=time.time_ns())
+                row = ExecutionTable(id=key, plan=plan, created_ns=time.time_ns(), station=self.services.station)
                 session.add(row)
             row.document = to_document(status)
 
@@ -184,9 +190,10 @@ class Store:
         return execution_of(self._one(ExecutionTable, key, "execution"))
 
     def unfinished_executions(self) -> list[Execution]:
-        """List the executions whose last stored status is not their end."""
+        """List the executions of this station whose last stored status is not their end."""
         resting = [state.value for state in ExecutorState if state.is_resting]
-        question = select(ExecutionTable).where(ExecutionTable.document["state"].as_string().not_in(resting))
+        state = ExecutionTable.document["state"].as_string()
+        question = select(ExecutionTable).where(state.not_in(resting), ExecutionTable.station == self.services.station)
         return [execution_of(row) for row in self._all(question)]
 
     # jobs
@@ -194,33 +201,34 @@ class Store:
     def add_job(self, job: Job) -> None:
         """Store a new job."""
         with self._change() as session:
-            session.add(JobRow(**{**to_document(job), "state": job.state.value}))
+            session.add(JobRow(**{**to_document(job), "state": job.state.value, "station": self.services.station}))
 
     def job(self, key: str) -> Job:
         """Return one job; raises NotFound."""
         return job_of(self._one(JobRow, key, "job"))
 
     def jobs(self, *, task: str | None = None, unfinished: bool = False) -> list[Job]:
-        """List jobs, oldest first: all, those of a task, or those that are not finished."""
+        """List jobs, oldest first: all, those of a task, or those of this station that are not finished."""
         question = select(JobRow).order_by(JobRow.created_ns)
         if task is not None:
             question = question.where(JobRow.task == task)
         if unfinished:
-            question = question.where(JobRow.state.in_([JobState.QUEUED.value, JobState.RUNNING.value]))
+            question = question.where(JobRow.state.in_(UNFINISHED), JobRow.station == self.services.station)
         return [job_of(row) for row in self._all(question)]
 
     def awaited_uploads(self) -> set[str]:
         """Return the names of the folders of uploads that jobs wait for."""
-        return {str(job.request.get("upload")) for job in self.jobs(unfinished=True)}
+        requested = (job.request.get("files") for job in self.jobs(unfinished=True))
+        return {str(file["upload"]) for files in requested if isinstance(files, list) for file in files}
 
     def set_job(self, key: str, **changes: Any) -> Job:
         """Change fields of an unfinished job and return it; a finished job stays as it is.
 
         Raises:
-            Conflict: the job is finished.
+            Conflict: the job is finished, or another service does it.
         """
         with self._change() as session:
-            self._claim(session, key, changes)
+            self.claims.change(session, key, changes)
         return self.job(key)
 
     def finish_learning(self, key: str, learned: Learned) -> str:
@@ -230,7 +238,7 @@ class Store:
         """
         run, now = f"run-{key.partition('-')[2]}", time.time_ns()
         with self._change() as session:
-            self._claim(session, key, success(run, now))
+            self.claims.change(session, key, success(run, now))
             job = session.get_one(JobRow, key)
             paths = tuple(replace(p, id=f"{run}-{p.cluster}", run=run) for p in learned.paths)
             named = replace(learned, paths=paths)
@@ -241,7 +249,7 @@ class Store:
             session.add_all(learned_row(path, now) for path in paths)
         return run
 
-    def finish_import(self, key: str, task: Task, made: Sequence[Demonstration], recordings: Path) -> str:
+    def finish_import(self, key: str, task: Task, batch: Batch) -> str:
         """Take over imported demonstrations with their recordings and mark the job succeeded, all or nothing.
 
         Those that are stored already stay: after a crash before their rows, the doctor made the rows.
@@ -249,15 +257,14 @@ class Store:
         Args:
             key: of the job.
             task: of the demonstrations; made when it does not exist.
-            made: in their order, one at least.
-            recordings: folder in which their recordings are, at the places that they say.
+            batch: in their order, one at least; each folder has their recordings at the places that they say.
 
         Returns:
             The numbers that the first and the last one have now, e.g. `3-5`.
         """
-        with self._taking_over(task, [(made, recordings)]) as (session, numbers):
+        with self._taking_over(task, batch) as (session, numbers):
             outcome = f"{min(numbers)}-{max(numbers)}"
-            self._claim(session, key, success(outcome, time.time_ns()))
+            self.claims.change(session, key, success(outcome, time.time_ns()))
         return outcome
 
     def take_over(self, task: Task, batch: Batch) -> list[int]:
@@ -267,10 +274,11 @@ class Store:
 
     @contextmanager
     def _taking_over(self, task: Task, batch: Batch) -> Iterator[tuple[Session, list[int]]]:
+        station = self.services.station
         added: dict[Path, list[str]] = {recordings: [] for _, recordings in batch}  # places whose rows are new
         try:
             with self._change() as session:
-                yield session, [n for made, of in batch for n in imported_rows(session, task, made, added[of])]
+                yield session, [n for made, of in batch for n in imported_rows(session, task, made, added[of], station)]
                 session.flush()
                 for recordings, places in added.items():
                     for place in places:
@@ -283,16 +291,6 @@ class Store:
         """Store a plan and mark the job succeeded, all or nothing; return the plan's id."""
         now = time.time_ns()
         with self._change() as session:
-            self._claim(session, key, success(plan.id, now))
+            self.claims.change(session, key, success(plan.id, now))
             session.add(PlanRow(id=plan.id, path=plan.path, created_ns=now, document=to_document(plan)))
         return plan.id
-
-    def _claim(self, session: Session, key: str, changes: dict[str, Any]) -> None:
-        unfinished = [JobState.QUEUED.value, JobState.RUNNING.value]
-        changed = session.execute(update(JobRow).where(JobRow.id == key, JobRow.state.in_(unfinished)).values(changes))
-        if changed.rowcount == 0:  # type: ignore[attr-defined]
-            row = session.get(JobRow, key)
-            if row is None:
-                raise NotFound(f"there is no job {key!r}")
-            raise Conflict(f"job {key} has already {row.state}")
-        note(session, JobRow.__tablename__, key)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, Final
 
 from sqlalchemy import (
     JSON,
@@ -19,10 +19,22 @@ from sqlalchemy import (
 from sqlalchemy.orm import DeclarativeBase, Mapped, mapped_column
 
 ID = String(64)
+NEWEST: Final = "0015"  # of the migrations
 
 
 class Base(DeclarativeBase):
     """Base of the tables."""
+
+
+class ServiceRow(Base):
+    """A process that works for a station, with the time of its last sign of life."""
+
+    __tablename__ = "services"
+    id: Mapped[str] = mapped_column(ID, primary_key=True)
+    station: Mapped[str] = mapped_column(ID)
+    role: Mapped[str] = mapped_column(String(16))
+    place: Mapped[str] = mapped_column(Text)
+    alive_ns: Mapped[int] = mapped_column(BigInteger)
 
 
 class TaskRow(Base):
@@ -47,6 +59,7 @@ class DemonstrationRow(Base):
     created_ns: Mapped[int] = mapped_column(BigInteger)
     verdict: Mapped[str] = mapped_column(String(16))
     document: Mapped[dict[str, Any]] = mapped_column(JSON)
+    station: Mapped[str] = mapped_column(ID)
 
 
 class CalibrationRow(Base):
@@ -55,6 +68,17 @@ class CalibrationRow(Base):
     __tablename__ = "calibrations"
     name: Mapped[str] = mapped_column(ID, primary_key=True)
     version: Mapped[int] = mapped_column(Integer, primary_key=True)
+    created_ns: Mapped[int] = mapped_column(BigInteger)
+    document: Mapped[dict[str, Any]] = mapped_column(JSON)
+
+
+class ArmRow(Base):
+    """One version of an arm that a user brought."""
+
+    __tablename__ = "arms"
+    name: Mapped[str] = mapped_column(ID, primary_key=True)
+    version: Mapped[int] = mapped_column(Integer, primary_key=True)
+    hash: Mapped[str] = mapped_column(ID)
     created_ns: Mapped[int] = mapped_column(BigInteger)
     document: Mapped[dict[str, Any]] = mapped_column(JSON)
 
@@ -116,6 +140,10 @@ class JobRow(Base):
     finished_ns: Mapped[int] = mapped_column(BigInteger)
     failure: Mapped[dict[str, Any] | None] = mapped_column(JSON(none_as_null=True))
     demonstration: Mapped[str] = mapped_column(ID)
+    who: Mapped[str] = mapped_column(ID)
+    station: Mapped[str] = mapped_column(ID)
+    service: Mapped[str] = mapped_column(ID, default="")  # which does it; empty: none yet
+    cancel: Mapped[bool] = mapped_column(Boolean, default=False)  # that service is to break it off
 
 
 class ExecutionTable(Base):
@@ -127,6 +155,7 @@ class ExecutionTable(Base):
     plan: Mapped[str | None] = mapped_column(ForeignKey("plans.id"), index=True)
     created_ns: Mapped[int] = mapped_column(BigInteger)
     document: Mapped[dict[str, Any]] = mapped_column(JSON)
+    station: Mapped[str] = mapped_column(ID)
 
 
 class RevocationRow(Base):
@@ -137,6 +166,40 @@ class RevocationRow(Base):
     at_ns: Mapped[int] = mapped_column(BigInteger)
     who: Mapped[str] = mapped_column(ID)
     reason: Mapped[str] = mapped_column(Text)
+
+
+class AccessTokenRow(Base):
+    """A token by which a program says who it is: its hash."""
+
+    __tablename__ = "access_tokens"
+    digest: Mapped[str] = mapped_column(ID, primary_key=True)
+    name: Mapped[str] = mapped_column(ID, index=True)
+    roles: Mapped[list[str]] = mapped_column(JSON)
+    created_ns: Mapped[int] = mapped_column(BigInteger)
+    expires_ns: Mapped[int] = mapped_column(BigInteger)
+    used_ns: Mapped[int] = mapped_column(BigInteger)
+    revoked_ns: Mapped[int] = mapped_column(BigInteger)
+
+
+class PersonRow(Base):
+    """Somebody who signs in with a password: its hash."""
+
+    __tablename__ = "people"
+    name: Mapped[str] = mapped_column(ID, primary_key=True)
+    roles: Mapped[list[str]] = mapped_column(JSON)
+    password_hash: Mapped[str] = mapped_column(Text)
+    created_ns: Mapped[int] = mapped_column(BigInteger)
+    changed_ns: Mapped[int] = mapped_column(BigInteger)
+
+
+class SessionRow(Base):
+    """A person who has signed in: the hash of the session's secret."""
+
+    __tablename__ = "sessions"
+    digest: Mapped[str] = mapped_column(ID, primary_key=True)
+    person: Mapped[str] = mapped_column(ForeignKey("people.name"), index=True)
+    created_ns: Mapped[int] = mapped_column(BigInteger)
+    used_ns: Mapped[int] = mapped_column(BigInteger)
 
 
 class JournalRow(Base):

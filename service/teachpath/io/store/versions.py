@@ -12,7 +12,7 @@ from sqlalchemy.orm import Session
 
 from teachpath.errors import NotFound, Outdated, UnusableInput
 from teachpath.io.documents import from_document, to_document
-from teachpath.io.store.changes import Changed, telling, unheard
+from teachpath.io.store.changes import Changed, changing, unheard
 from teachpath.io.store.engine import lock_name
 from teachpath.io.store.tables import PathRow
 from teachpath.nurbs import Curve
@@ -41,8 +41,7 @@ class Versions:
     """The versions of every learned path."""
 
     def __init__(self, engine: Engine, changed: Changed = unheard) -> None:
-        self._engine, self._writing = engine, engine.execution_options(writing=True)
-        self._changed = changed
+        self._engine, self._changed = engine, changed
 
     def newest(self, path: str, branch: str = MAIN_BRANCH) -> LearnedPath:
         """Return the newest version of a branch; raises NotFound."""
@@ -83,11 +82,7 @@ class Versions:
             Outdated: the branch has a newer version than the base; nothing was saved.
             UnusableInput: the curve is that of the base.
         """
-        with (
-            Session(self._writing, expire_on_commit=False) as session,
-            telling(session, self._changed),
-            session.begin(),
-        ):
+        with changing(self._engine, self._changed) as session:
             lock_name(session, "path", path)
             base = _row(session, path, edit.base)
             branch = edit.branch or base.branch
@@ -99,9 +94,7 @@ class Versions:
             turned = orientation is not None and orientation is not learned.orientation
             if head is not None and _same(learned.curve, curve) and not turned:
                 raise UnusableInput(f"this is the curve of version {base.version}; edit it, or name another branch")
-            number = 1 + (session.scalar(select(func.max(PathRow.version)).where(PathRow.id == path)) or 0)
-            if number > MAX_VERSIONS:
-                raise UnusableInput(f"path {path} has {MAX_VERSIONS} versions, which is the limit; learn the task anew")
+            number = _next_number(session, path)
             kept = learned.orientation if orientation is None else orientation
             taken = object_pose or learned.object_pose
             edited = replace(
@@ -121,6 +114,13 @@ class Versions:
             )
             session.add(row)
         return version_of(row)
+
+
+def _next_number(session: Session, path: str) -> int:
+    number = 1 + (session.scalar(select(func.max(PathRow.version)).where(PathRow.id == path)) or 0)
+    if number > MAX_VERSIONS:
+        raise UnusableInput(f"path {path} has {MAX_VERSIONS} versions, which is the limit; learn the task anew")
+    return number
 
 
 def learned_row(path: LearnedPath, created_ns: int) -> PathRow:

@@ -5,53 +5,115 @@ Foxglove and Rerun know these messages; nothing here is read back.
 
 from __future__ import annotations
 
+import struct
+from collections.abc import Sequence
+from itertools import compress
+from typing import Final
+
+import numpy as np
 from foxglove_schemas_protobuf.FrameTransforms_pb2 import FrameTransforms
 from foxglove_schemas_protobuf.PoseInFrame_pb2 import PoseInFrame
+from numpy.typing import NDArray
 
-from teachpath.io.store.mcap_file import McapFile, StampedMessage
-from teachpath.records import Calibration, Sample
+from teachpath.io.store.mcap_file import McapFile, MessageBatch
+from teachpath.io.store.sample_rows import SampleColumns
+from teachpath.records import Array, Calibration
 
 POSE_TOPIC, FRAMES_TOPIC = "hand_pose", "frames"
 WORLD, TRACKER = "world", "tracker"  # names of the frames
 NS_PER_S = 1_000_000_000
+VARINT_SIZE: Final = 5  # bytes of a number from 2**28 to 2**35 - 1; a shorter one can be written in as many
+VARINT_SHIFTS: Final = 7 * np.arange(VARINT_SIZE)
+SECONDS_MARK, NANOS_MARK = 2**34 + 1, 2**30 + 1  # numbers of that size, for which others are put in
+NOT_TURNED: Final = (1.0, 0.0, 0.0, 0.0)
+
+Bytes = NDArray[np.uint8]
 
 
 class ViewerMessages:
-    """Adds the messages for viewers to the batches of one recording."""
+    """Makes the messages for viewers of one recording."""
 
     def __init__(self, file: McapFile, calibration: Calibration) -> None:
         self._poses = file.add_channel(POSE_TOPIC, PoseInFrame)
         self._frames = file.add_channel(FRAMES_TOPIC, FrameTransforms)
         self._calibration = calibration
         self._has_frame = False
-        # The fields of one message are set for every sample, at a third of the cost of a new message.
-        self._message = PoseInFrame(frame_id=TRACKER)
-        pose = self._message.pose
-        self._stamp, self._position, self._orientation = self._message.timestamp, pose.position, pose.orientation
 
-    def append(self, sample: Sample, batch: list[StampedMessage]) -> None:
-        """Append the messages of one sample to a batch; an untracked sample has no pose to draw."""
+    def batches(self, samples: SampleColumns) -> list[MessageBatch]:
+        """Return the messages of the next samples; an untracked sample has no pose to draw."""
+        batches = []
         if not self._has_frame:
             self._has_frame = True
-            batch.append(_stamped(self._frames, sample, self._frame_message(sample)))
-        if not sample.tracked:
-            return
-        self._stamp.seconds, self._stamp.nanos = divmod(sample.receive_ns, NS_PER_S)
+            frame = self._frame_message(samples.receive_ns[0])
+            batches.append(message_batch(self._frames, [frame], samples.receive_ns[:1], samples.device_ns[:1]))
+        receive_ns, device_ns = (tuple(compress(of, samples.tracked)) for of in (samples.receive_ns, samples.device_ns))
+        positions = np.array(list(compress(samples.position, samples.tracked))).reshape(-1, 3)
+        turns = np.array([turn or NOT_TURNED for turn in compress(samples.orientation, samples.tracked)])
         # A rigid transform has no scale; the pose carries it.
-        scale, (x, y, z), p, q = self._calibration.scale, sample.position, self._position, self._orientation
-        p.x, p.y, p.z = scale * x, scale * y, scale * z
-        q.w, q.x, q.y, q.z = sample.orientation or (1.0, 0.0, 0.0, 0.0)
-        batch.append(_stamped(self._poses, sample, self._message.SerializeToString()))
+        poses = LAYOUT.messages(
+            np.array(receive_ns, np.int64), self._calibration.scale * positions, turns.reshape(-1, 4)
+        )
+        return [*batches, message_batch(self._poses, poses, receive_ns, device_ns)]
 
-    def _frame_message(self, sample: Sample) -> bytes:
+    def _frame_message(self, receive_ns: int) -> bytes:
         message = FrameTransforms()
         frame = message.transforms.add(parent_frame_id=WORLD, child_frame_id=TRACKER)
-        frame.timestamp.seconds, frame.timestamp.nanos = divmod(sample.receive_ns, NS_PER_S)
+        frame.timestamp.seconds, frame.timestamp.nanos = divmod(receive_ns, NS_PER_S)
         frame.translation.x, frame.translation.y, frame.translation.z = self._calibration.offset
         q = frame.rotation
         q.w, q.x, q.y, q.z = self._calibration.rotation
         return message.SerializeToString()
 
 
-def _stamped(channel: int, sample: Sample, data: bytes) -> StampedMessage:
-    return StampedMessage(channel, 0, sample.receive_ns, sample.device_ns, data)
+def message_batch(
+    channel: int,
+    data: Sequence[bytes],
+    receive_ns: Sequence[int],
+    device_ns: Sequence[int],
+    sequences: Sequence[int] | None = None,
+) -> MessageBatch:
+    """Return n messages with the times of their samples; without `sequences` they have none."""
+    numbers = np.zeros(len(data), np.uint64) if sequences is None else np.array(sequences, np.uint64)
+    return MessageBatch(channel, numbers, np.array(receive_ns, np.uint64), np.array(device_ns, np.uint64), data)
+
+
+class _PoseLayout:
+    """Where the numbers of a pose lie in its message, so that many are laid out at once, at a tenth of the cost."""
+
+    def __init__(self) -> None:
+        message, marks = PoseInFrame(frame_id=TRACKER), [1.0 + i for i in range(7)]
+        message.timestamp.seconds, message.timestamp.nanos = SECONDS_MARK, NANOS_MARK
+        p, q = message.pose.position, message.pose.orientation
+        p.x, p.y, p.z, q.w, q.x, q.y, q.z = marks
+        content = message.SerializeToString()
+        self._template = np.frombuffer(content, np.uint8)
+        starts = [content.index(struct.pack("<d", mark)) for mark in marks]
+        sizes = [8] * len(marks) + [VARINT_SIZE] * 2
+        starts += [content.index(_varints(np.array([mark])).tobytes()) for mark in (SECONDS_MARK, NANOS_MARK)]
+        self._places = np.concatenate([start + np.arange(size) for start, size in zip(starts, sizes, strict=True)])
+
+    def messages(self, stamps_ns: NDArray[np.int64], positions: Array, turns: Array) -> list[bytes]:
+        """Return n messages.
+
+        Args:
+            stamps_ns: (n,) since the Unix epoch.
+            positions: (n, 3) [m].
+            turns: (n, 4) w, x, y, z.
+        """
+        rows = np.tile(self._template, (len(stamps_ns), 1))
+        stamps = np.stack(np.divmod(stamps_ns, NS_PER_S), axis=1)
+        doubles = np.concatenate([positions, turns], axis=1).astype("<f8").view(np.uint8)
+        varints = _varints(stamps).reshape(len(rows), stamps.shape[1] * VARINT_SIZE)  # -1 has no meaning for no rows
+        rows[:, self._places] = np.concatenate([doubles, varints], axis=1)
+        laid_out, size = rows.tobytes(), rows.shape[1]
+        return [laid_out[size * i : size * (i + 1)] for i in range(len(rows))]
+
+
+def _varints(numbers: NDArray[np.int64]) -> Bytes:
+    """Return (..., VARINT_SIZE) bytes: protobuf's encoding of each number, seven bits a byte, the lowest first."""
+    parts = ((numbers[..., None] >> VARINT_SHIFTS) & 0x7F).astype(np.uint8)
+    parts[..., :-1] |= 0x80  # another byte follows
+    return parts
+
+
+LAYOUT: Final = _PoseLayout()

@@ -13,6 +13,7 @@ from teachpath.records import Array, ExecutorStatus, JointState, Setpoint
 from teachpath_proto import motion_pb2
 from teachpath_proto.control import ExecutorState
 
+_WAY_FIELDS: Final = ("way_to_rest", "way_to_rest_velocity", "way_to_rest_acceleration")
 MAX_STATE_SIZE: Final = 16_384  # bytes
 MAX_FAULT_LENGTH: Final = 300  # characters of a fault, which everybody is shown
 
@@ -29,7 +30,8 @@ def encode_setpoint(setpoint: Setpoint) -> bytes:
         gripper_closed=setpoint.gripper_closed,
         execution=setpoint.execution,
         on_path=setpoint.on_path,
-        way_to_rest=np.ascontiguousarray(setpoint.way_to_rest, dtype="<f8").tobytes(),
+        from_rest=setpoint.from_rest,
+        **dict(zip(_WAY_FIELDS, (_packed(rows) for rows in np.moveaxis(setpoint.way_to_rest, 1, 0)), strict=True)),
     ).SerializeToString()
 
 
@@ -47,18 +49,20 @@ def decode_setpoint(payload: bytes) -> Setpoint:
         gripper_closed=m.gripper_closed,
         execution=m.execution,
         on_path=m.on_path,
-        way_to_rest=_way(m.way_to_rest, where),
+        way_to_rest=_way(m, where),
+        from_rest=m.from_rest,
     )
 
 
 def without_way_to_rest(payload: bytes) -> bytes:
-    """Return a setpoint's message as it is kept: without its way to rest, which is forty times its size.
+    """Return a setpoint's message as it is kept: without its way to rest, which is a hundred times its size.
 
     Raises:
         UnusableInput: it is malformed.
     """
     message = parse(motion_pb2.Setpoint, payload)
-    message.ClearField("way_to_rest")
+    for name in _WAY_FIELDS:
+        message.ClearField(name)
     return message.SerializeToString()
 
 
@@ -126,10 +130,19 @@ def _joints(values: Iterable[float], where: str) -> Array:
     return joints
 
 
-def _way(content: bytes, where: str) -> Array:
-    if len(content) % 48:
-        raise UnusableInput(f"{where}: its way to rest has {len(content)} bytes, no multiple of 48 (six 64-bit floats)")
-    way = np.frombuffer(content, dtype="<f8").reshape(-1, 6)
+def _packed(rows: Array) -> bytes:
+    return np.ascontiguousarray(rows, dtype="<f8").tobytes()
+
+
+def _way(message: motion_pb2.Setpoint, where: str) -> Array:
+    contents = [getattr(message, name) for name in _WAY_FIELDS]
+    sizes = [len(content) for content in contents]
+    if sizes[0] % 48 or len(set(sizes)) > 1:
+        raise UnusableInput(
+            f"{where}: positions, velocities and accelerations of its way to rest have {sizes} bytes; each needs 48 "
+            "(six 64-bit floats) a row, and all as many rows"
+        )
+    way = np.stack([np.frombuffer(content, dtype="<f8").reshape(-1, 6) for content in contents], axis=1)
     if not np.all(np.isfinite(way)):
         raise UnusableInput(f"{where}: its way to rest is not finite")
     return way

@@ -79,7 +79,7 @@ def adapt(
             none was learned.
         LearningFailed: the orientations cannot be followed within `turn_bound`.
     """
-    model, alike, courses = course_model(path, learned, members, others, settings)
+    model, alike, places = course_model(path, learned, members, others, settings)
     u = even_parameters(path.curve, STATIONS)
     found = model.predict(target.start, target.goal)
     _check_length(found, target)
@@ -90,8 +90,6 @@ def adapt(
         curve, missed = displaced(path.curve, u, displacements, bound, settings.most_control_points)
         closeness = model.closeness(target.start, target.goal)
         orientation = adapted_orientation(path, alike, closeness, target, settings)
-    length = float(arc_lengths(model.version)[-1])
-    places = int(end_groups(courses, min_separation=settings.min_separation, length=length).max())
     note = _note(found, len(alike), places)
     if missed > bound:
         note += f"; {len(curve.control_points)} control points follow it within {describe_length(missed, up=True)} only"
@@ -104,14 +102,16 @@ def course_model(
     members: Sequence[Trajectory],
     others: Sequence[Trajectory],
     settings: LearningSettings,
-) -> tuple[CourseModel, list[Trajectory], Array]:
-    """Return what predicts the course of a version, the demonstrations that it rests on, and their courses.
+) -> tuple[CourseModel, list[Trajectory], int]:
+    """Return what predicts the course of a version, the demonstrations that it rests on, and at how many places.
 
-    The arguments are those of `adapt`; the courses are (m, 100, 3) [m].
+    The arguments are those of `adapt`.
     """
     alike, courses = _same_way(learned, members, others, settings)
     version = path.curve(even_parameters(path.curve, STATIONS))
-    return CourseModel(KrigedShapes(courses), learned(even_parameters(learned, STATIONS)), version), alike, courses
+    model = CourseModel(KrigedShapes(courses), learned(even_parameters(learned, STATIONS)), version)
+    places = end_groups(courses, min_separation=settings.min_separation, length=float(arc_lengths(version)[-1]))
+    return model, alike, int(places.max())
 
 
 def _is_own(path: LearnedPath, target: Target) -> bool:

@@ -26,8 +26,9 @@ class AdaptationModel:
     Attributes:
         turns: False for closed or vertical paths, whose shapes s_i are added as they are, without D and R.
         shapes: of each demonstration (n, 3), in the axes of the world.
-        distances: of each demonstration D [m].
-        yaws: of each demonstration y [rad].
+        chords: of each demonstration (3,) [m], with its D and y.
+        length: of a typical demonstration [m].
+        places: at how many different starts or goals they were shown.
         inverse: of the kriging system.
         variance: (n,) per unit of scale and of kriging variance; None after one demonstration.
         learned: (n, 3) [m] the path as it was learned.
@@ -38,8 +39,9 @@ class AdaptationModel:
 
     turns: bool
     shapes: tuple[Matrix, ...]
-    distances: tuple[float, ...]
-    yaws: tuple[float, ...]
+    chords: Matrix
+    length: float
+    places: int
     inverse: Matrix
     variance: Array | None
     learned: Matrix
@@ -83,14 +85,15 @@ class CourseModel:
         """What the version has beside the adapted learned path: (n, 3) [m]."""
         return self.version - self._without_edits(self.version[0], self.version[-1]).path
 
-    def export(self) -> AdaptationModel:
-        """Return the numbers that a prediction needs."""
+    def export(self, places: int) -> AdaptationModel:
+        """Return the numbers that a prediction needs, learned at so many different starts or goals."""
         shapes = self.shapes
         return AdaptationModel(
             shapes.turns,
             tuple(shapes.in_world),
-            tuple(map(float, shapes.distances)),
-            tuple(map(float, shapes.yaws)),
+            np.asarray(shapes.chords, dtype=np.float64).reshape(-1, 3),
+            shapes.length,
+            places,
             np.asarray(shapes.inverse, dtype=np.float64).reshape(len(shapes.inverse), -1),
             shapes.variance,
             self.learned,

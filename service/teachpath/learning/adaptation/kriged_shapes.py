@@ -47,6 +47,8 @@ class KrigedShapes:
         paths: (m, n, 3) [m] at equal shares of the arc length.
 
     Attributes:
+        chords: (m, 3) [m] from the starts to the goals.
+        length: of a typical path [m].
         turns: whether shapes turn and grow with the chord from start to goal; not on closed or vertical paths.
         distances: (m,) [m] horizontal length of the chords.
         yaws: (m,) [rad] direction of the chords.
@@ -57,12 +59,12 @@ class KrigedShapes:
 
     def __init__(self, paths: Array) -> None:
         starts, chords = paths[:, 0], paths[:, -1] - paths[:, 0]
-        self._starts, self._chords = starts, chords
+        self._starts, self.chords = starts, chords
         self._share = np.linspace(0.0, 1.0, paths.shape[1])
         self.distances = np.linalg.norm(chords[:, :2], axis=1)
         self.yaws = np.arctan2(chords[:, 1], chords[:, 0])
         lengths = np.linalg.norm(np.diff(paths, axis=1), axis=2).sum(axis=1)
-        self._length = float(np.median(lengths))
+        self.length = float(np.median(lengths))
         self.turns = bool(np.all(self.distances > MIN_DISTANCE_SHARE * lengths))
         residuals = paths - starts[:, None] - self._share[:, None] * chords[:, None]
         scaled = residuals / self._scale(self.distances)[:, None, None]
@@ -103,11 +105,11 @@ class KrigedShapes:
             other: number of the demonstration whose ends it is brought to.
         """
         along = share[:, None]
-        residuals = positions - self._starts[number] - along * self._chords[number]
+        residuals = positions - self._starts[number] - along * self.chords[number]
         if self.turns:
             turn = _rotations(np.array([self.yaws[other] - self.yaws[number]]))[0]
             residuals = residuals @ turn.T * (self.distances[other] / self.distances[number]) ** DISTANCE_POWER
-        return np.asarray(self._starts[other] + along * self._chords[other] + residuals)
+        return np.asarray(self._starts[other] + along * self.chords[other] + residuals)
 
     def _world_shapes(self, yaw: float) -> Array:
         """Return the mean of turned and unturned shapes for a direction (m, n, 3)."""
@@ -144,8 +146,8 @@ class KrigedShapes:
 
     def _beyond(self, chord: Array) -> str:
         if not self.turns:
-            apart = float(np.linalg.norm(self._chords - chord, axis=1).min())
-            if apart <= MIN_DISTANCE_SHARE * self._length:
+            apart = float(np.linalg.norm(self.chords - chord, axis=1).min())
+            if apart <= MIN_DISTANCE_SHARE * self.length:
                 return ""
             return f"from start to goal it is {describe_length(apart)} otherwise than shown"
         distance, yaw = _chord(chord)
@@ -153,7 +155,7 @@ class KrigedShapes:
         if not nearest / MAX_DISTANCE_RATIO <= distance <= farthest * MAX_DISTANCE_RATIO:
             shown = _span(nearest, farthest)
             return f"start and goal are {describe_length(distance)} apart on the level, shown were {shown}"
-        rises, allowed = self._chords[:, 2], MAX_RISE_SHARE * farthest
+        rises, allowed = self.chords[:, 2], MAX_RISE_SHARE * farthest
         if not rises.min() - allowed <= chord[2] <= rises.max() + allowed:
             least, most = _rise(float(rises.min())), _rise(float(rises.max()))
             shown = least if least == most else f"{least} to {most}"

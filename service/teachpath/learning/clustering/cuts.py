@@ -20,7 +20,8 @@ class Cut:
 
     Attributes:
         clusters: their number.
-        lowest, highest: heights [m] between which a cut leaves that many; None = no upper end.
+        lowest: least height of a cut that leaves that many [m].
+        highest: greatest height of a cut that leaves that many [m]; None: no upper end.
         height: halfway between them [m].
         leaf_ranges: for each cluster, in the order of its number, the begin and end of its members in the dendrogram's
             `leaves`; the end is excluded.

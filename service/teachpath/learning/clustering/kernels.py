@@ -9,7 +9,7 @@ import numba
 import numpy as np
 from numpy.typing import NDArray
 
-from teachpath.learning.compiled import compiled
+from teachpath.compiled import compiled
 from teachpath.records import Array
 
 Labels = NDArray[np.int64]

@@ -16,7 +16,9 @@ from teachpath.records import Array
 USUAL_SCATTER = 0.03  # mean distance of two demonstrations of one cluster, as share of the path length
 USUAL_SCATTER_PAIRS = 4  # measured distances for which the usual scatter counts
 SMALL_CLUSTER_MARGIN = 0.5  # added to the least separation of a cluster of one member, half of it for two, and so on
-AMBIGUITY_RATIO = 1.25  # a separation within this ratio of the least one is ambiguous
+# A separation within this ratio of the least one is ambiguous. A ratio of 1.25 told of no further wrong cut
+# (`python -m tests.experiments.clustering`), but called one of five right ways of an untidy hand ambiguous.
+AMBIGUITY_RATIO = 1.1
 AMBIGUOUS_HEIGHT_RATIO = 1.1  # of the height of a merge to that of a given cut
 
 
@@ -150,7 +152,9 @@ def separated_clusters(ratios: Array) -> int:
     return len(ratios) + 1 - int(separated[0]) if len(separated) else 1
 
 
-def separations(tree: Array, length: float, usual_scatter: float = USUAL_SCATTER) -> Array:
+def separations(
+    tree: Array, length: float, usual_scatter: float = USUAL_SCATTER, usual_pairs: int = USUAL_SCATTER_PAIRS
+) -> Array:
     """Return for every merge the distance of its two clusters in units of the scatter within clusters: (m - 1,).
 
     The ratio of a merge with a small cluster is lowered by the margin that such a cluster needs.
@@ -159,6 +163,7 @@ def separations(tree: Array, length: float, usual_scatter: float = USUAL_SCATTER
         tree: (m - 1, 4) merges as scipy writes them.
         length: of a typical path [m].
         usual_scatter: mean distance of two demonstrations of one cluster, as share of the length.
+        usual_pairs: measured distances for which it counts.
     """
     count = len(tree) + 1
     sizes = np.concatenate([np.ones(count), tree[:, 3]])
@@ -166,8 +171,7 @@ def separations(tree: Array, length: float, usual_scatter: float = USUAL_SCATTER
     pairs = merged.prod(axis=1)  # whose mean distance is the height of the merge
     within = np.cumsum(pairs) - pairs
     distances = np.cumsum(pairs * tree[:, 2]) - pairs * tree[:, 2]
-    usual = USUAL_SCATTER_PAIRS * usual_scatter * length
-    scatter = (usual + distances) / (USUAL_SCATTER_PAIRS + within)
+    scatter = (usual_pairs * usual_scatter * length + distances) / (usual_pairs + within)
     return np.asarray(tree[:, 2] / scatter - SMALL_CLUSTER_MARGIN / merged.min(axis=1))
 
 

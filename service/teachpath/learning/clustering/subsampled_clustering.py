@@ -14,7 +14,7 @@ import numpy as np
 from teachpath.learning.clustering.average_linkage import average_linkage
 from teachpath.learning.clustering.dendrogram import Labels, extended_linkage, labels_at_height
 from teachpath.learning.clustering.distances import nearest_paths, pairwise_distances
-from teachpath.learning.clustering.ends import end_groups, grouped_linkage
+from teachpath.learning.clustering.ends import OF_TASKS, end_groups, grouped_linkage
 from teachpath.learning.clustering.incomplete import Stop, find_incomplete
 from teachpath.learning.clustering.partial_splits import partial_splits, split_linkage
 from teachpath.learning.clustering.partition import Partition, cut_as_set, cut_by_separation, doubting_splits
@@ -69,7 +69,9 @@ def _cluster_by_all_pairs(
         tree = average_linkage(condensed, len(paths), Subprogress(progress, 0.7, 1.0))
         return cut_as_set(tree, settings, length=length)
     comparing = Subprogress(progress, 0.0, 0.2)
-    groups = end_groups(paths, min_separation=settings.min_separation, length=length, progress=comparing)
+    groups = end_groups(
+        paths, min_separation=settings.min_separation, length=length, scatter=OF_TASKS, progress=comparing
+    )
     incomplete = find_incomplete(paths, groups, length)
     complete = np.setdiff1d(np.arange(len(paths)), list(incomplete))
     groups = np.unique(groups[complete], return_inverse=True)[1] + 1

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from teachpath.learning.compiled import compiled
+from teachpath.compiled import compiled
 from teachpath.records import Array
 
 

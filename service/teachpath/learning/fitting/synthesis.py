@@ -29,6 +29,7 @@ MIN_BOUND_TO_NOISE = 4.5  # a bound below so many standard deviations of the noi
 MIN_LENGTH_SHARE = 0.05  # of the mean path, of the longest demonstration
 QUINTIC_ALLOWANCE = 3  # control points that degree 5 may need more than degree 3, less one
 PAPER_DEGREE = 3
+MEASURED_TOGETHER = 32  # demonstrations whose distances are measured at once; alone, calls would take most of the time
 MAX_RETREAT_SHARE = 0.05  # of the path that may lead back towards the start without a note
 
 
@@ -67,7 +68,7 @@ def fit_mean_path(
         )
     size = extent(course)
     bound, note = settings.bound_for(size), ""
-    best = best_fit(course, settings, bound)
+    fitted, best = course, best_fit(course, settings, bound)
     if best.largest > bound:
         least = MIN_BOUND_TO_NOISE * residual_noise(selected)
         if bound < min(least, settings.error_bound):
@@ -76,20 +77,20 @@ def fit_mean_path(
                 f"followed within {_in_both(bound, size)}, not {100 * settings.relative_bound:.3g}%, because of the "
                 "noise in its demonstrations"
             )
-            best = best_fit(course, settings, bound)
+            best = best_fit(fitted, settings, bound)
         if best.largest > bound:
             _check_noise(cluster, bound, least)
-            course = mean_path(paths, REFINEMENT_FACTOR * MEAN_PATH_POINTS)
-            best = best_fit(course, settings, bound)
+            fitted = mean_path(paths, REFINEMENT_FACTOR * MEAN_PATH_POINTS)
+            best = best_fit(fitted, settings, bound)
     # The fit measures at its own parameters; the nearest distances are what matters to the operator.
-    if best.largest > bound and (nearest := float(distances_to_curve(best.curve, course).max())) > bound:
+    if best.largest > bound and (nearest := float(distances_to_curve(best.curve, fitted).max())) > bound:
         reached, asked = describe_lengths(nearest, bound)
         note = (
             f"the demonstrations wiggle: their mean is followed within {reached} only, not {asked} "
             f"({100 * bound / size:.2g}% of its size), by {settings.most_control_points} control points; show it more "
             "smoothly, or raise learning.error_bound, learning.relative_bound or learning.most_control_points"
         )
-    return _path(cluster, best.curve, course, selected, settings, bound, note, on_step)
+    return _path(cluster, best.curve, fitted, course, selected, settings, bound, note, on_step)
 
 
 def _in_both(bound: float, size: float) -> str:
@@ -113,9 +114,10 @@ def fit_pooled_points(
 ) -> LearnedPath:
     """Pool the points of the selected, sort them by distance to the start and approximate (Aleotti & Caselli, III-C).
 
-    The approximation is that of the publication's library, from the polygon of the points. Where such a list zigzags by
-    more than the bound, it takes more control points than there are points; the bound is widened until
-    `most_control_points` are enough, and the note says so.
+    The publication's order is that of Euclidean distances, not of arc lengths, so that the points of two demonstrations
+    alternate. The approximation is that of its library, from the polygon of the points as they are ordered. Where such
+    a list zigzags by more than the bound, it takes more control points than there are points; the bound is widened
+    until `most_control_points` are enough, and the note says so.
     """
     from teachpath.learning.fitting.global_approximation import approximate_from_polygon  # here, as it loads numba
 
@@ -138,7 +140,8 @@ def fit_pooled_points(
             f"{share:.0%} of the motion leads back towards the start: sorting by distance to it scrambles the path, "
             "use mode default"
         )
-    return _path(cluster, fit.curve, points, selected, settings, fit.bound, "; ".join(notes), on_step)
+    course = mean_path([smoothed(trajectory) for trajectory in selected])
+    return _path(cluster, fit.curve, points, course, selected, settings, fit.bound, "; ".join(notes), on_step)
 
 
 def residual_noise(selected: Sequence[Trajectory]) -> float:
@@ -198,6 +201,7 @@ def _path(
     cluster: int,
     curve: Curve,
     fitted: Array,
+    course: Array,
     selected: Sequence[Trajectory],
     settings: LearningSettings,
     bound: float,
@@ -206,11 +210,12 @@ def _path(
 ) -> LearnedPath:
     distances = CurveDistance(curve)
     apart = distances(fitted)
-    course = mean_path([smoothed(trajectory) for trajectory in selected])
     tube = 0.0
-    for trajectory in selected:
-        tube = max(tube, float(distances(trajectory.positions).max()))
-        on_step()
+    for begin in range(0, len(selected), MEASURED_TOGETHER):
+        together = selected[begin : begin + MEASURED_TOGETHER]
+        tube = max(tube, float(distances(np.concatenate([each.positions for each in together])).max()))
+        for _ in together:
+            on_step()
     orientation, turn = None, None
     if all(trajectory.orientations is not None for trajectory in selected) and _length(course) > 0:
         orientation, turn = fit_orientations(cluster, partial(_turns, selected), curve.degree, settings)

@@ -68,6 +68,7 @@ MEDIAN_VARIANCE = 1.57  # of the median of so many values, of their variance
 MAX_WITHOUT_OWN = 30  # members up to which each is compared with the others alone; in more its own value is lost
 BANDS = {Part.WIGGLE: (13, 24), Part.TREMOR: (24, 42), Part.NOISE: (42, 80)}  # degrees, first to one behind the last
 QUICK = slice(13, 80)  # the degrees of all of them
+QUICK_POLYNOMIALS: Array = np.ascontiguousarray(POLYNOMIALS[:, QUICK])
 # A hand that goes its way has next to nothing in these degrees, and half a second's turn aside and back has; in lower
 # ones it differs from hand to hand, and the degrees above are those of a wiggle.
 DETOUR_BAND = (11.5, 14)
@@ -87,6 +88,7 @@ class Measures:
 
     Attributes:
         amplitudes: for each of the three bands (3 clocks, m) logarithms of amplitudes.
+        shaking: (m, 240) see `shaking_profile`.
         shakes: (m,) whether a member departs from its smooth course by more than the bound.
         dwell: (24, m) logarithms of durations beside those of the neighbouring parts of the path.
         jump_sizes, leap_sizes: (m,) logarithms.
@@ -98,6 +100,7 @@ class Measures:
     """
 
     amplitudes: dict[Part, Array]
+    shaking: Array
     shakes: NDArray[np.bool_]
     dwell: Array
     jump_sizes: Array
@@ -124,7 +127,7 @@ class Measures:
 
     def _band(self, part: Part, at: NDArray[np.int64], usual: Array) -> Array:
         """Score a band on the clock on which the member is least suspicious: its pace alone says nothing."""
-        z = np.min([robust_z(values, usual) for values in self.amplitudes[part][:, at]], axis=0)
+        z = robust_z(self.amplitudes[part][:, at], usual).min(axis=0)
         return np.asarray(np.where(self.shakes[at], z, np.minimum(z, 0.0)))
 
     def _bend(self, at: NDArray[np.int64], usual: Array) -> Array:
@@ -145,13 +148,13 @@ class Measures:
         warps = np.square(self.bending.warps[at])
         of_pace = np.hypot(DETOUR_PACE_SPREAD * self.paces[at], USUAL_SPREADS[Part.DETOUR])
         of_warp = DETOUR_WARP_SPREAD * np.sqrt((warps.sum() - warps) / (m - 1))
-        z = np.min([robust_z(values, np.hypot(of_pace, of_warp)) for values in self.detours[:, at]], axis=0)
+        z = robust_z(self.detours[:, at], np.hypot(of_pace, of_warp)).min(axis=0)
         return np.asarray(np.where(self.differences[at] > NEGLIGIBLE_BEND, z, np.minimum(z, 0.0)))
 
     def _pauses(self, at: NDArray[np.int64]) -> Array:
         """Return for each member by how much it dwells longer than the others where it does so most: (m,)."""
         dwell = self.dwell[:, at]
-        return np.asarray((dwell - np.stack([others_median(row)[0] for row in dwell])).max(axis=0))
+        return np.asarray((dwell - others_median(dwell)[0]).max(axis=0))
 
 
 def measure(features: Sequence[MotionFeatures], courses: Array, size: float, bound: float) -> Measures:
@@ -179,6 +182,7 @@ def measure(features: Sequence[MotionFeatures], courses: Array, size: float, bou
     spread = np.log(np.stack([np.diff(of.passing) / of.duration for of in features]).T * PATH_PARTS + NEGLIGIBLE_PAUSE)
     return Measures(
         amplitudes={part: np.stack([_amplitudes(*clock, *band) for clock in clocks]) for part, band in BANDS.items()},
+        shaking=shaking,
         shakes=shaking_amplitude(excess) > bound,
         dwell=_beside_neighbours(spread),
         jump_sizes=np.log(np.array([of.jump for of in features]) / size + NEGLIGIBLE_JUMP),
@@ -198,7 +202,7 @@ def measure(features: Sequence[MotionFeatures], courses: Array, size: float, bou
 
 def shaking_profile(features: MotionFeatures) -> Array:
     """Return the mean square of what is quicker than the intended motion, over a short window: (240,) [m^2]."""
-    quick = np.einsum("nd,dk->nk", POLYNOMIALS[:, QUICK], features.timed[QUICK])
+    quick = np.einsum("nd,kd->nk", QUICK_POLYNOMIALS, np.ascontiguousarray(features.timed[QUICK].T))
     return np.asarray(uniform_filter1d(np.square(quick).sum(axis=1), SHAKING_WINDOW, mode="nearest"))
 
 
@@ -208,27 +212,36 @@ def shaking_amplitude(excess: Array) -> Array:
 
 
 def robust_z(values: Array, usual: Array) -> Array:
-    """Return by how many spreads each value (m,) lies above the median of the others.
+    """Return by how many spreads each value (..., m) lies above the median of the others.
 
     The spread is the usual one (m,), or the median absolute deviation where that is larger: that of few values is
     unreliable, so the usual spread counts for some members.
     """
     median, measured = others_median(values)
-    others = len(values) - 1
+    others = values.shape[-1] - 1
     mixed = (USUAL_WEIGHT * np.square(usual) + others * np.square(measured)) / (USUAL_WEIGHT + others)
     spread = np.sqrt(np.maximum(mixed, np.square(usual)) * (1 + MEDIAN_VARIANCE / others))
     return np.asarray((values - median) / spread)
 
 
 def others_median(values: Array) -> tuple[Array, Array]:
-    """Return for each of m values median and spread (from the median absolute deviation) of the others: (m,) each."""
-    m = len(values)
+    """Return for each value (..., m) median and spread (from the median absolute deviation) of the others."""
+    m = values.shape[-1]
     if m > MAX_WITHOUT_OWN:
-        median = np.full(m, np.median(values))
-        return median, np.full(m, 1.4826 * np.median(np.abs(values - median)))
-    others = np.broadcast_to(values, (m, m))[~np.eye(m, dtype=bool)].reshape(m, m - 1)
-    medians = np.median(others, axis=1)
-    return medians, 1.4826 * np.median(np.abs(others - medians[:, None]), axis=1)
+        median = np.broadcast_to(_median(values)[..., None], values.shape)
+        spread = 1.4826 * _median(np.abs(values - median))
+        return median, np.broadcast_to(spread[..., None], values.shape)
+    others = values[..., np.nonzero(~np.eye(m, dtype=bool))[1].reshape(m, m - 1)]  # (..., m, m - 1)
+    medians = _median(others)
+    return medians, 1.4826 * _median(np.abs(others - medians[..., None]))
+
+
+def _median(values: Array) -> Array:
+    """Return the medians over the last axis as numpy does, which takes ten times as long for a few values."""
+    ordered, middle = np.sort(values, axis=-1), values.shape[-1] // 2
+    if values.shape[-1] % 2:
+        return np.asarray(ordered[..., middle])
+    return np.asarray((ordered[..., middle - 1] + ordered[..., middle]) / 2)
 
 
 def _cumulative(coefficients: Array) -> Array:

@@ -10,20 +10,19 @@ from numpy.typing import NDArray
 
 from teachpath.learning.resampling import at_equal_arc_length, at_equal_times, extent
 from teachpath.learning.selection.consistency import FAULTY, Measures, Part, measure, others_median
-from teachpath.learning.selection.deviations import describe_deviation, describe_pace
+from teachpath.learning.selection.deviations import PATH_POINTS, ComparedMembers, describe_deviation, describe_pace
 from teachpath.learning.selection.features import MotionFeatures, extract_features, positions_and_velocities
 from teachpath.learning.selection.likelihoods import convergence, fold_count, score_likelihoods
 from teachpath.learning.selection.paper_mode import unscored
 from teachpath.learning.settings import LearningSettings, StepCallback
 from teachpath.lengths import describe_length
-from teachpath.records import Array, Cluster, Deviation, Score, Trajectory
+from teachpath.records import Array, Cluster, Score, Trajectory
 
 MIN_RELIABLE_MEMBERS = 4  # below which the ranking is unreliable
 SMALL_CLUSTER_FACTOR = 1.5  # on the limit of z for so few members
 BENDING_POINTS = 100  # equal times at which a course is sampled for its bending
-COST_POINTS = 100  # of the paths whose means tell what leaving one out costs
+MAX_COMPARED_MEMBERS = 50  # with which one is compared in words
 REPORTED_SHARE = 2 / 3  # of the limit, from which on the deviation of a selected member is reported
-MAX_COMPARED_MEMBERS = 50  # with which the words about a deviation compare
 HOLDOUT_SHARE = 0.2  # of the members that a repetition leaves out, at least one
 
 
@@ -48,11 +47,11 @@ def select(
         return unscored(index, names, "one demonstration only: nothing to compare it with")
     trajectories = [members[name] for name in names]
     features, measures = measure_members(trajectories, settings, on_step)
-    sequences = positions_and_velocities(trajectories)
+    sequences = positions_and_velocities(trajectories, [of.path for of in features])
     likelihoods = score_likelihoods(sequences, on_step=on_step)
     selection = _judge(measures, np.arange(len(names)), settings)
     stabilities = _stabilities(measures, len(names), settings)
-    found = _described(names, trajectories, features, selection)
+    found = _described(names, trajectories, features, measures.shaking, selection)
     scores = []
     for rank, i in enumerate(selection.order):
         scores.append(_score(found, int(i), rank, float(likelihoods[i]), stabilities[i]))
@@ -109,6 +108,7 @@ class _Members:
     features: Sequence[MotionFeatures]
     selection: Selection
     durations: Array  # (m,) [s] median of the others
+    measured: ComparedMembers
     mean: Array  # (100, 3) [m] of the paths of the selected
 
 
@@ -116,11 +116,15 @@ def _described(
     names: Sequence[str],
     trajectories: Sequence[Trajectory],
     features: Sequence[MotionFeatures],
+    shaking: Array,
     selection: Selection,
 ) -> _Members:
-    paths = [at_equal_arc_length(features[i].path, COST_POINTS) for i in np.flatnonzero(selection.selected).tolist()]
-    durations = others_median(np.array([of.duration for of in features]))[0]
-    return _Members(names, trajectories, features, selection, durations, np.mean(paths, axis=0))
+    courses = np.stack([at_equal_arc_length(of.path, PATH_POINTS) for of in features])
+    durations = np.array([of.duration for of in features])
+    passing = np.stack([of.passing for of in features])
+    measured = ComparedMembers(np.diff(passing, axis=1) / durations[:, None], courses, shaking)
+    mean = courses[selection.selected].mean(axis=0)
+    return _Members(names, trajectories, features, selection, others_median(durations)[0], measured, mean)
 
 
 def _judge(measures: Measures, at: NDArray[np.int64], settings: LearningSettings) -> Selection:
@@ -162,7 +166,7 @@ def _score(cluster: _Members, i: int, rank: int, likelihood: float, stability: f
     deviation, note = None, ""
     if selection.worst[i] > REPORTED_SHARE * limit:
         part = _worst_part(selection, i)
-        deviation = _deviation(cluster, i, part)
+        deviation = describe_deviation(cluster.trajectories[i], cluster.features[i], _others(cluster.measured, i), part)
         if not selection.selected[i]:
             note = f"inconsistent in its {FAULTY[part]} (z {measure[i]:.1f}): {deviation.sentence}; {_cost(cluster, i)}"
     else:
@@ -193,19 +197,14 @@ def _worst_part(selection: Selection, i: int) -> Part:
     return Part.PAUSE if bends and z[Part.PAUSE] > selection.limit else worst
 
 
-def _deviation(cluster: _Members, i: int, part: Part) -> Deviation:
-    others = [k for k in range(len(cluster.names)) if k != i][:MAX_COMPARED_MEMBERS]
-    return describe_deviation(
-        cluster.trajectories[i],
-        cluster.features[i],
-        [cluster.trajectories[k] for k in others],
-        [cluster.features[k] for k in others],
-        part,
-    )
+def _others(measured: ComparedMembers, i: int) -> ComparedMembers:
+    """Return those that member i is compared with in words."""
+    others = [k for k in range(len(measured.courses)) if k != i][:MAX_COMPARED_MEMBERS]
+    return ComparedMembers(measured.durations[others], measured.courses[others], measured.shaking[others])
 
 
 def _cost(cluster: _Members, i: int) -> str:
     """Say how far the mean of the selected members moves without one that is left out."""
-    apart = np.linalg.norm(at_equal_arc_length(cluster.features[i].path, COST_POINTS) - cluster.mean, axis=1)
+    apart = np.linalg.norm(cluster.measured.courses[i] - cluster.mean, axis=1)
     moved = float(apart.max()) / (int(cluster.selection.selected.sum()) + 1)
     return f"without it the path moves by up to {describe_length(moved)}"

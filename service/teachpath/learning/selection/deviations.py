@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from scipy.ndimage import binary_closing
@@ -27,20 +27,30 @@ UNUSUAL_PACE = 1.5  # of the median duration, from which on a pace is told
 Seconds = tuple[float, float]
 
 
+@dataclass(frozen=True, eq=False)
+class ComparedMembers:
+    """What k members of a cluster do, with which another one is compared.
+
+    Attributes:
+        durations: (k, 24) of the equal parts of the path, in shares of the whole.
+        courses: (k, 100, 3) [m] their paths at equal arc lengths.
+        shaking: (k, 240) [m^2] see `shaking_profile`.
+    """
+
+    durations: Array
+    courses: Array
+    shaking: Array
+
+
 def describe_deviation(
-    trajectory: Trajectory,
-    features: MotionFeatures,
-    others: Sequence[Trajectory],
-    their_features: Sequence[MotionFeatures],
-    part: Part,
+    trajectory: Trajectory, features: MotionFeatures, others: ComparedMembers, part: Part
 ) -> Deviation:
     """Find where a demonstration deviates most in one part of the measure, and describe how.
 
     Args:
         trajectory: of the demonstration.
         features: of the demonstration.
-        others: other members of its cluster.
-        their_features: of these.
+        others: members of its cluster.
         part: in which it is worst.
     """
     since = trajectory.times - trajectory.times[0]
@@ -52,11 +62,11 @@ def describe_deviation(
             seconds = _around(since, features.jump_at)
             what = f"jumps by {describe_length(features.jump)}"
         case Part.PAUSE:
-            seconds, what = _pause(trajectory, features, their_features)
+            seconds, what = _pause(trajectory, features, others.durations)
         case Part.BEND | Part.DETOUR:
-            seconds, what = _bend(since, features, their_features)
+            seconds, what = _bend(since, features, others.courses)
         case _:
-            seconds, what = _shaking(trajectory, features, their_features)
+            seconds, what = _shaking(trajectory, features, others.shaking)
     s = arc_lengths(features.path)
     share = tuple(float(np.interp(at, since, s) / s[-1]) if s[-1] > 0 else 0.0 for at in seconds)
     where = f"{seconds[0]:.1f} to {seconds[1]:.1f} s after the grasp, at {share[0]:.0%} to {share[1]:.0%} of its way"
@@ -77,10 +87,10 @@ def _around(since: Array, at: int) -> Seconds:
     return float(since[max(at - 1, 0)]), float(since[min(at + 1, len(since) - 1)])
 
 
-def _pause(trajectory: Trajectory, features: MotionFeatures, theirs: Sequence[MotionFeatures]) -> tuple[Seconds, str]:
+def _pause(trajectory: Trajectory, features: MotionFeatures, theirs: Array) -> tuple[Seconds, str]:
     """Tell the part of the path on which the hand dwells longest beside the others, and for how long it rests there."""
     own = np.diff(features.passing)
-    usual = np.median([np.diff(of.passing) * features.duration / of.duration for of in theirs], axis=0)
+    usual = np.median(theirs * features.duration, axis=0)
     worst = 1 + int(np.argmax((own / np.maximum(usual, 1e-9))[1:-1]))
     seconds = float(features.passing[worst]), float(features.passing[worst + 1])
     since = trajectory.times - trajectory.times[0]
@@ -96,8 +106,7 @@ def _pause(trajectory: Trajectory, features: MotionFeatures, theirs: Sequence[Mo
     return seconds, f"takes {own[worst]:.{digits}g} s where the others take {usual[worst]:.{digits}g} s"
 
 
-def _bend(since: Array, features: MotionFeatures, theirs: Sequence[MotionFeatures]) -> tuple[Seconds, str]:
-    courses = np.stack([at_equal_arc_length(of.path, PATH_POINTS) for of in theirs])
+def _bend(since: Array, features: MotionFeatures, courses: Array) -> tuple[Seconds, str]:
     mean = courses.mean(axis=0)
     away = np.linalg.norm(at_equal_arc_length(features.path, PATH_POINTS) - mean, axis=1)
     within = np.linalg.norm(courses - mean, axis=2).max(axis=0)
@@ -114,11 +123,11 @@ def _bend(since: Array, features: MotionFeatures, theirs: Sequence[MotionFeature
     return (seconds[0], seconds[1]), what
 
 
-def _shaking(trajectory: Trajectory, features: MotionFeatures, theirs: Sequence[MotionFeatures]) -> tuple[Seconds, str]:
+def _shaking(trajectory: Trajectory, features: MotionFeatures, theirs: Array) -> tuple[Seconds, str]:
     """Tell where a motion is quicker than the intended motion, by what amplitude and how often."""
     from scipy.signal import savgol_filter  # here, because it loads scipy.stats, which takes longer than learning
 
-    excess = shaking_profile(features) - np.median([shaking_profile(of) for of in theirs], axis=0)
+    excess = shaking_profile(features) - np.median(theirs, axis=0)
     begin, end = _span(excess)
     seconds = begin / CLOCK_POINTS * features.duration, (end + 1) / CLOCK_POINTS * features.duration
     since = trajectory.times - trajectory.times[0]

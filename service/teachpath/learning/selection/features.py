@@ -28,6 +28,7 @@ _EDGES = np.linspace(-1.0, 1.0, CLOCK_POINTS + 1)
 POLYNOMIALS: Array = np.linalg.qr(np.polynomial.legendre.legvander((_EDGES[1:] + _EDGES[:-1]) / 2, DEGREES - 1))[
     0
 ] * np.sqrt(CLOCK_POINTS)
+POLYNOMIALS_BY_DEGREE: Array = np.ascontiguousarray(POLYNOMIALS.T)
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,15 +89,20 @@ def extract_features(trajectory: Trajectory) -> MotionFeatures:
     )
 
 
-def positions_and_velocities(trajectories: Sequence[Trajectory]) -> list[Array]:
+def positions_and_velocities(trajectories: Sequence[Trajectory], paths: Sequence[Array] | None = None) -> list[Array]:
     """Sample smoothed positions and weighted velocities at equal shares of each trajectory's duration.
 
     The axes are the principal axes of all positions, so the features do not depend on the frame.
 
+    Args:
+        trajectories: of the members.
+        paths: their smoothed positions, where they are known already.
+
     Returns:
         for each trajectory (40, 6) [m].
     """
-    courses = [at_equal_times(trajectory, COURSE_POINTS, smoothed(trajectory)) for trajectory in trajectories]
+    known = map(smoothed, trajectories) if paths is None else paths
+    courses = [at_equal_times(each, COURSE_POINTS, path) for each, path in zip(trajectories, known, strict=True)]
     pooled = np.concatenate(courses)
     centre = pooled.mean(axis=0)
     axes = np.linalg.eigh(np.cov((pooled - centre).T))[1]
@@ -123,8 +129,8 @@ def _coefficients(since: Array, positions: Array, edges: Array) -> Array:
     averages = np.where(
         instant, (positions[k] + slopes * after)[:-1], np.diff(at_edges, axis=0) / np.where(instant, 1.0, widths)
     )
-    # A matrix product would round differently with another number of threads.
-    return np.asarray(np.einsum("nd,nk->dk", POLYNOMIALS, averages) / CLOCK_POINTS)
+    # A matrix product would round differently with another number of threads. Sums along rows are the quickest.
+    return np.asarray(np.einsum("dn,kn->dk", POLYNOMIALS_BY_DEGREE, np.ascontiguousarray(averages.T)) / CLOCK_POINTS)
 
 
 def _largest_leap(positions: Array) -> tuple[float, tuple[int, int]]:

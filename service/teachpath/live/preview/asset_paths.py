@@ -39,3 +39,13 @@ def web_files() -> Path:
         if (folder / "index.html").is_file():
             return folder
     raise NotFound("the files of the operator's page are missing; reinstall teachpath")
+
+
+def help_files() -> Path:
+    """Return the folder of the built documents; there is none where nobody built them."""
+    return Path(__file__).resolve().parents[2] / "help"
+
+
+def has_documents() -> bool:
+    """Tell whether the documents are built; they may be at any time."""
+    return (help_files() / "index.html").is_file()

@@ -6,6 +6,7 @@ import time
 from collections import deque
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 from types import TracebackType
 
 import numpy as np
@@ -158,10 +159,10 @@ class Preview:
             self._place("/object", commands.pose_of(state.object_position, state.object_orientation))
 
     def _put_part(self, part: LinkSolid) -> None:
-        path = f"/robot/link{part.link}/{part.name.replace(' ', '-')}"
+        path = f"/robot/link{part.link}/{part.name.replace(' ', '-').replace('/', '-')}"
         pose = commands.pose_of(part.position, part.orientation)
-        body = commands.solid(path, part.kind, part.size, pose=pose, color=part.color, outline=part.outline)
-        self._tree.set_object(path, body)
+        look = partial(commands.solid, pose=pose, color=part.color, outline=part.outline, vertices=part.vertices)
+        self._tree.set_object(path, look(path, part.kind, part.size))
         if any(part.opening_offset):
             self._fingers.append((path, commands.pose_of(part.opening_offset)))
 

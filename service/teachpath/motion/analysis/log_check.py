@@ -12,11 +12,13 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
+from scipy.spatial.transform import Rotation
 
 from teachpath.motion.arm.limits import JointLimits
 from teachpath.motion.arm.model import Arm
 from teachpath.motion.arm.puma560 import Array
 from teachpath.nurbs import Curve
+from teachpath.records import SerialArm, Vector
 
 PATH_TOLERANCE: Final = 1e-4  # m, of the tool to the path
 LIMIT_TOLERANCE: Final = 1e-6  # of a limit, for the rounding of differences
@@ -36,12 +38,14 @@ class SetpointLog:
         positions: (n, 6) of the joints [rad].
         on_path: (n,) whether the log has the tool on the path; None when it does not say.
         missing: number of setpoints that the numbering of the log skips.
+        restarts: rows before which the arm came to rest by itself, on a way to rest that the log does not hold.
     """
 
     times: Array
     positions: Array
     on_path: NDArray[np.bool_] | None = None
     missing: int = 0
+    restarts: tuple[int, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -70,6 +74,12 @@ def check_log(log: SetpointLog, path: Curve | None, arm: Arm) -> LogCheck:
     measured.append(f"{len(log.times)} setpoints over {log.times[-1] - log.times[0]:.2f} s at {1 / period:.0f} Hz")
     if log.missing:
         faults.append(f"{log.missing} setpoints are missing, so it cannot be judged whole")
+    if log.restarts:
+        when = log.times[log.restarts[0] - 1] - log.times[0]
+        measured.append(
+            f"{len(log.restarts)} times setpoints were late and the arm came to rest by itself, first after {when:.3f} "
+            "s; how it did so is not in the log"
+        )
     limits = arm.limits
     on_path = _path(log, path, arm) if path is not None else []
     speed = _tool_speed(log, period, arm)
@@ -95,7 +105,8 @@ def _differences(log: SetpointLog, period: float, limits: JointLimits) -> list[t
     """Check speed, acceleration and jerk; the arm is taken to rest before the log and wherever nothing was sent."""
     steps, moves = np.diff(log.times), np.any(np.diff(log.positions, axis=0) != 0.0, axis=1)
     uneven = np.abs(steps - period) > PERIOD_TOLERANCE * period
-    rested = np.concatenate([[True], ~moves[:-1]])  # before each step
+    restarted = np.isin(np.arange(1, len(log.times)), log.restarts)  # with each step
+    rested = np.concatenate([[True], ~moves[:-1]]) | restarted  # before each step
     broken = np.flatnonzero(uneven & ~(rested & (steps > period)))
     found = []
     if len(broken):
@@ -103,7 +114,7 @@ def _differences(log: SetpointLog, period: float, limits: JointLimits) -> list[t
         when, gap = log.times[first] - log.times[0], 1e3 * steps[first]
         sentence = f"{len(broken)} setpoints of a moving arm are not one period apart, the first at {when:.3f} s"
         found.append((False, f"{sentence} ({gap:.1f} ms)"))
-    runs = np.split(np.arange(len(log.times)), np.flatnonzero(uneven & rested & (steps > period)) + 1)
+    runs = np.split(np.arange(len(log.times)), np.flatnonzero(uneven & rested & (steps > period) | restarted) + 1)
     each = (limits.speed, limits.acceleration, limits.jerk)
     for order, (name, limit) in enumerate(zip(QUANTITIES, each, strict=True), 1):
         uses = np.concatenate([_use(log.positions[run], order) / period**order / limit for run in runs])
@@ -116,14 +127,25 @@ def _differences(log: SetpointLog, period: float, limits: JointLimits) -> list[t
 
 def _tool_speed(log: SetpointLog, period: float, arm: Arm) -> tuple[bool, str]:
     """Check the speed of elbow, wrist and tool; a setpoint that was sent late does not make the arm slower."""
-    points = ((2, 0.0), (2, UPPER_ARM_WIDTH), (4, 0.0), (6, arm.tool_length))
+    names, points = _points(arm)
     speeds = np.array([np.linalg.norm(np.diff(_point(log.positions, arm, *p), axis=0), axis=1) for p in points])
+    speeds[:, np.array(log.restarts, dtype=int) - 1] = 0.0
     point, row = np.unravel_index(int(np.argmax(speeds)), speeds.shape)
-    largest, name = float(speeds[point, row]) / period, POINT_NAMES[point]
+    largest, name = float(speeds[point, row]) / period, names[point]
     limit = np.inf if arm.tool_speed is None else arm.tool_speed
     allowed = "no limit is set" if arm.tool_speed is None else f"allowed {limit:g} m/s (motion.tool_speed)"
     when = log.times[row] - log.times[0]
     return largest <= limit * (1.0 + LIMIT_TOLERANCE), f"{name} at up to {largest:.4f} m/s at {when:.3f} s, {allowed}"
+
+
+def _points(arm: Arm) -> tuple[tuple[str, ...], list[tuple[int, Vector]]]:
+    """Return the points whose speed is limited: their names, and of each the link and its place in the link's frame."""
+    tool = (len(arm.limits.lower), _tool_in_flange(arm))
+    if arm.model is not None:
+        joints = list(enumerate(arm.model.joints, start=1))[1:]
+        on_axes = [(number, joint.anchor) for number, joint in joints]
+        return (*(joint.name for _, joint in joints), POINT_NAMES[-1]), [*on_axes, tool]
+    return POINT_NAMES, [(2, (0.0, 0.0, 0.0)), (2, (0.0, 0.0, UPPER_ARM_WIDTH)), (4, (0.0, 0.0, 0.0)), tool]
 
 
 def _use(positions: Array, order: int) -> Array:
@@ -179,12 +201,20 @@ def _distance(places: Array, points: Array) -> Array:
 
 def _tool(q: Array, arm: Arm) -> Array:
     """Return the grasp point (n, 3) [m, world] at configurations (n, 6)."""
-    return _point(q, arm, 6, arm.tool_length)
+    return _point(q, arm, len(arm.limits.lower), _tool_in_flange(arm))
 
 
-def _point(q: Array, arm: Arm, number: int, along: float) -> Array:
-    """Return a point (n, 3) [m, world] on z of a link's frame at configurations (n, 6), link by link to the base."""
-    point = np.tile([0.0, 0.0, along], (len(q), 1))
+def _tool_in_flange(arm: Arm) -> Vector:
+    if arm.model is not None:
+        return arm.model.tool[0]
+    return (0.0, 0.0, arm.tool_length) if arm.tool is None else arm.tool.position
+
+
+def _point(q: Array, arm: Arm, number: int, place: Vector) -> Array:
+    """Return a point (n, 3) [m, world] of a link's frame at configurations (n, 6), link by link to the base."""
+    point = np.tile(place, (len(q), 1))
+    if arm.model is not None:
+        return _model_point(q, arm.model, number, point)
     for joint in reversed(range(number)):
         link = arm.links[joint]
         x, y, z = point.T
@@ -193,3 +223,12 @@ def _point(q: Array, arm: Arm, number: int, along: float) -> Array:
         c, s = np.cos(q[:, joint]), np.sin(q[:, joint])
         point = np.column_stack([c * x - s * y, s * x + c * y, z])
     return point
+
+
+def _model_point(q: Array, model: SerialArm, number: int, point: Array) -> Array:
+    """Return points (n, 3) [m, world] of a link's frame of a user's model, link by link to the base."""
+    for link, angle in reversed(list(zip(model.links[:number], q.T, strict=False))):
+        axis, anchor = np.array(link.joint.axis), np.array(link.joint.anchor)
+        point = anchor + Rotation.from_rotvec(angle[:, None] * axis).apply(point - anchor)
+        point = Rotation.from_quat(link.pose[1], scalar_first=True).apply(point) + link.pose[0]
+    return np.asarray(Rotation.from_quat(model.base[1], scalar_first=True).apply(point) + model.base[0])

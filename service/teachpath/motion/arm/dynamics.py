@@ -9,10 +9,11 @@ import mujoco
 import numpy as np
 from scipy.spatial import ConvexHull
 
-from teachpath.motion.arm.kinematics import jacobian, tool_pose
+from teachpath.motion.arm.kinematics import jacobian, link_frames, tool_pose
 from teachpath.motion.arm.mjcf import OBJECT_DENSITY, write_mjcf
 from teachpath.motion.arm.model import Arm
 from teachpath.motion.arm.puma560 import Array
+from teachpath.motion.arm.torque_variation import MovingMass, TorqueVariation
 from teachpath.records import Scene, Shape
 
 GRAVITY: Final = np.array([0.0, 0.0, -9.81])  # m/s^2
@@ -27,10 +28,15 @@ class Dynamics:
         self._model = mujoco.MjModel.from_xml_string(write_mjcf(Scene("nothing"), arm))
         self._model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_CONTACT  # of the floor, which would only cost time
         self._data = mujoco.MjData(self._model)
-        # Coulomb friction at the joint is the mean of both directions, as the simulated arm has it.
-        self._coulomb = np.array([abs(link.gear) * sum(link.coulomb) / 2 for link in arm.links])
-        self._viscous = np.array([link.viscous * link.gear**2 for link in arm.links])
+        if arm.model is None:
+            # Coulomb friction at the joint is the mean of both directions, as the simulated arm has it.
+            self._coulomb = np.array([abs(link.gear) * sum(link.coulomb) / 2 for link in arm.links])
+            self._viscous = np.array([link.viscous * link.gear**2 for link in arm.links])
+        else:
+            self._coulomb = np.array([joint.friction for joint in arm.model.joints])
+            self._viscous = np.array([joint.damping for joint in arm.model.joints])
         self._mass = 0.0 if carried is None else OBJECT_DENSITY * _volume(carried)
+        self._variation = TorqueVariation(self._moving_masses(), arm)
 
     def torques(self, q: Array, velocity: Array, acceleration: Array) -> Array:
         """Return the torques (n, 6) [N m] at configurations, velocities and accelerations (n, 6).
@@ -54,6 +60,25 @@ class Dynamics:
         steady = np.maximum(np.abs(gravity), np.abs(gravity + coriolis))
         return np.asarray(np.abs(inertia) @ acceleration + steady + np.abs(self._viscous * velocity) + self._coulomb)
 
+    def motion_bounds(self, states: Array, turns: Array, period: float) -> Array:
+        """Return upper bounds (n, 6) [N m] of the torques at any moment of the n periods of a motion.
+
+        Args:
+            states: (n + 1, 3, 6) position, velocity and acceleration of the joints at the ends of the periods, in each
+                of which the acceleration is linear in time.
+            turns: (n, 6) bounds of how far each joint turns in a period [rad].
+            period: [s].
+        """
+        q, velocity, acceleration = states[:-1, 0], states[:, 1], states[:, 2]
+        inertia, gravity, coriolis = self._terms(q, velocity[:-1])
+        ends = np.stack([acceleration[:-1], acceleration[1:]])  # what is linear in time is largest at one of both
+        largest = np.abs(np.einsum("nij,knj->kni", inertia, ends) + gravity + coriolis).max(axis=0)
+        speeds, accelerations = np.abs(velocity).max(axis=0), np.abs(acceleration).max(axis=0)
+        changes = period * accelerations
+        variation = self._variation.bound(turns.max(axis=0), speeds, changes, accelerations)
+        friction = self._viscous * (speeds + changes) + self._coulomb
+        return np.asarray(largest + variation + friction, dtype=np.float64)
+
     def acceleration_share(self, q: Array, velocity: Array, acceleration: Array) -> float:
         """Return the largest share of the acceleration limits (6,) at which `torque_bounds` keep the torque limits.
 
@@ -62,6 +87,21 @@ class Dynamics:
         steady = self.torque_bounds(q, velocity, 0.0 * acceleration)
         moving = self.torque_bounds(q, velocity, acceleration) - steady
         return float(np.min((self._arm.limits.torque - steady) / moving))
+
+    def _moving_masses(self) -> list[MovingMass]:
+        model, data = self._model, self._data
+        mujoco.mj_kinematics(model, data)
+        mujoco.mj_comPos(model, data)
+        origins, found = link_frames(np.zeros(6), self._arm)[:, :3, 3], []
+        for body in range(1, model.nbody):
+            link = _link_of(model, body)
+            if link:
+                radius = float(np.linalg.norm(data.xipos[body] - origins[link]))
+                found.append(MovingMass(link, radius, model.body_mass[body], model.body_inertia[body].max()))
+        if self._mass:
+            radius = float(np.linalg.norm(self._arm.tool_matrix[:3, 3]))
+            found.append(MovingMass(len(self._arm.limits.lower), radius, self._mass, 0.0))
+        return found
 
     def _terms(self, q: Array, velocity: Array) -> tuple[Array, Array, Array]:
         """Return inertia matrices (n, 6, 6), and torques (n, 6) of gravity and of centrifugal and Coriolis forces."""
@@ -84,6 +124,13 @@ class Dynamics:
             gravity -= self._mass * translation.transpose(0, 2, 1) @ GRAVITY
             coriolis += self._mass * np.einsum("nki,nk->ni", translation, turning)
         return inertia, gravity, coriolis
+
+
+def _link_of(model: mujoco.MjModel, body: int) -> int:
+    """Return the link, counted from 1, to which a body of the arm belongs; 0 for what stands still."""
+    while body and not model.body_jntnum[body]:
+        body = model.body_parentid[body]
+    return int(model.body_jntadr[body]) + 1 if body else 0
 
 
 def _centripetal(q: Array, velocity: Array, arm: Arm, step: float = 1e-4) -> Array:

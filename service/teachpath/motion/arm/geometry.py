@@ -6,14 +6,16 @@ column, a thinner forearm on the inner side of the elbow, and a slender wrist.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from math import atan2, cos, pi, radians, sin, sqrt
+from dataclasses import dataclass, replace
+from math import atan2, cos, hypot, pi, radians, sin, sqrt
 from typing import Final
 
-from teachpath.motion.arm.puma560 import FINGER_TRAVEL
+import numpy as np
 
-Vector = tuple[float, float, float]
-Quaternion = tuple[float, float, float, float]
+from teachpath.motion.arm.model import Arm
+from teachpath.motion.arm.poses import pose_matrix, turned
+from teachpath.motion.arm.puma560 import FINGER_TRAVEL, Array
+from teachpath.records import Quaternion, SerialArm, Vector
 
 SHELL_COLOR: Final = 0xF7F2E6  # the shell
 JOINT_COLOR: Final = 0x2F343B  # joints, foot and gripper
@@ -22,6 +24,11 @@ PLATE_COLOR: Final = 0x1F4E87
 
 FINGER_END: Final = 0.135  # [m] from the flange
 ROD_RADIUS: Final = 0.011  # [m]
+ADAPTER_RADIUS: Final = 0.02  # [m] of what holds a gripper that does not sit on the flange
+MIN_ADAPTER: Final = 0.001  # [m] between flange and gripper, below which there is none
+
+# Pairs of links that are neighbours, or between which the joints' limits keep a nearly constant distance.
+_IGNORED_LINK_PAIRS: Final = {(0, 1), (0, 2), (1, 2), (2, 3), (3, 4), (3, 5), (4, 5), (4, 6), (5, 6)}
 
 IDENTITY_ROTATION: Final[Quaternion] = (1.0, 0.0, 0.0, 0.0)
 Z_TO_Y_ROTATION: Final[Quaternion] = (
@@ -39,8 +46,9 @@ class LinkSolid:
     Attributes:
         name: unique, e.g. "upper arm".
         link: 0 for the fixed base (frame `world`), i for the Denavit-Hartenberg frame behind joint i.
-        kind: `box` (size = full edges x, y, z), `cylinder` (radius, height; axis along its z), `sphere` (radius) or
-            `prism` (thickness along its z, convex `outline` in its xy plane, counter-clockwise).
+        kind: `box` (size = full edges x, y, z), `cylinder` (radius, height; axis along its z), `sphere` (radius),
+            `prism` (thickness along its z, convex `outline` in its xy plane, counter-clockwise) or `mesh` (factor from
+            the units of its `vertices`, three a triangle, to metres).
         position: of the solid's centre in the link's frame [m].
         orientation: of the solid in the link's frame.
         opening_offset: displacement in the link's frame while the gripper is open [m].
@@ -58,29 +66,93 @@ class LinkSolid:
     outline: tuple[tuple[float, float], ...] = ()
     opening_offset: Vector = (0.0, 0.0, 0.0)
     visual_only: bool = False
+    vertices: tuple[Vector, ...] = ()
 
 
-def collision_solids(tool_length: float = 0.0) -> tuple[LinkSolid, ...]:
-    """Return the solids that are simulated and checked for collisions.
+def collision_solids(arm: Arm | None = None) -> tuple[LinkSolid, ...]:
+    """Return the solids that are simulated and checked for collisions; see `visual_solids`."""
+    return tuple(solid for solid in visual_solids(arm) if not solid.visual_only)
+
+
+def visual_solids(arm: Arm | None = None) -> tuple[LinkSolid, ...]:
+    """Return all solids of an arm and its gripper; of a user's model, what may collide.
+
+    The proportions of the Puma 560 are our own, after photographs of the arm. What holds a tool centre point beyond the
+    fingers is taken as a rod as thick as a finger, and what holds a gripper that does not sit on the flange as a
+    straight adapter.
 
     Args:
-        tool_length: from the flange to the tool centre point [m].
+        arm: whose solids they are; None for the Puma 560 with its gripper on the flange.
     """
-    return tuple(solid for solid in visual_solids(tool_length) if not solid.visual_only)
+    if arm is not None and arm.model is not None:
+        return _model_solids(arm.model) + gripper_solids(arm)
+    gripper = _GRIPPER if arm is None else _gripper(arm.tool_length)
+    if arm is None or arm.tool is None or arm.gripper_mount is None:
+        return _ARM + gripper
+    mount, turn = arm.gripper_mount, arm.tool.orientation
+    return _ARM + _adapter(mount[:3, 3]) + tuple(_mounted(solid, mount, turn) for solid in gripper)
 
 
-def visual_solids(tool_length: float = 0.0) -> tuple[LinkSolid, ...]:
-    """Return all solids of the Puma 560 and its gripper; the proportions are our own, after photographs of the arm.
+def gripper_solids(arm: Arm) -> tuple[LinkSolid, ...]:
+    """Return the solids of the gripper on the last link of a user's model; none where it has no gripper."""
+    if arm.model is None or arm.gripper_mount is None:
+        return ()
+    mounted = (_mounted(solid, arm.gripper_mount, arm.model.tool[1]) for solid in _gripper(arm.tool_length))
+    return tuple(replace(solid, link=len(arm.model.links)) for solid in mounted)
 
-    Args:
-        tool_length: from the flange to the tool centre point [m]. What holds one that lies beyond the fingers is taken
-            as a rod as thick as a finger.
-    """
-    beyond = tool_length - FINGER_END
-    if beyond <= 0.0:
-        return _SOLIDS
-    rod = LinkSolid("tool", 6, "cylinder", (ROD_RADIUS, beyond), (0.0, 0.0, FINGER_END + beyond / 2), color=STEEL_COLOR)
-    return (*_SOLIDS, rod)
+
+def may_meet(a: LinkSolid, b: LinkSolid, arm: Arm) -> bool:
+    """Tell whether two solids of an arm may come together; a gripper mounted off the flange may even meet link 4."""
+    low, high = sorted((a.link, b.link))
+    at_wrist = arm.tool is not None and (low, high) == (4, 6) and "flange" not in (a.name, b.name)
+    return at_wrist or (low != high and (low, high) not in _IGNORED_LINK_PAIRS)
+
+
+def _gripper(tool_length: float) -> tuple[LinkSolid, ...]:
+    """Return the gripper as it sits on the flange, with what reaches beyond its fingers."""
+    if (beyond := tool_length - FINGER_END) <= 0.0:
+        return _GRIPPER
+    place = (0.0, 0.0, FINGER_END + beyond / 2)
+    return (*_GRIPPER, LinkSolid("tool", 6, "cylinder", (ROD_RADIUS, beyond), place, color=STEEL_COLOR))
+
+
+def _model_solids(model: SerialArm) -> tuple[LinkSolid, ...]:
+    """Return the solids of a user's model, those that do not move in the world."""
+    base = pose_matrix(model.base)
+    shapes = [(number, shape) for number, link in enumerate(model.links, start=1) for shape in link.solids]
+    for shape in model.base_solids:
+        place = _vector(base[:3, :3] @ shape.position + base[:3, 3])
+        shapes.append((0, replace(shape, position=place, orientation=turned(model.base[1], shape.orientation))))
+    return tuple(
+        LinkSolid(s.name, link, s.kind, s.size, s.position, s.orientation, s.color, vertices=s.vertices)
+        for link, s in shapes
+    )
+
+
+def _mounted(solid: LinkSolid, mount: Array, orientation: Quaternion) -> LinkSolid:
+    """Return a solid of the gripper, none of which is turned in it, where a mount (4, 4) holds it."""
+    position = _vector(mount[:3, :3] @ solid.position + mount[:3, 3])
+    opening = _vector(mount[:3, :3] @ solid.opening_offset) if any(solid.opening_offset) else solid.opening_offset
+    return replace(solid, position=position, orientation=orientation, opening_offset=opening)
+
+
+def _adapter(place: Array) -> tuple[LinkSolid, ...]:
+    """Return the adapter between the flange, on which it lies, and a gripper at a place (3,) [m]."""
+    begin = np.array([0.0, 0.0, ADAPTER_RADIUS])
+    far = float(np.linalg.norm(place - begin))
+    if min(far, float(np.linalg.norm(place))) < MIN_ADAPTER:
+        return ()
+    x, y, z = (float(v) for v in (place - begin) / far)
+    lean = hypot(1.0 + z, y, x)  # the shortest turn of z towards the gripper
+    turn = ((1.0 + z) / lean, -y / lean, x / lean, 0.0) if lean > 1e-9 else (0.0, 1.0, 0.0, 0.0)
+    return (
+        LinkSolid("adapter", 6, "cylinder", (ADAPTER_RADIUS, far), _vector((begin + place) / 2), turn, STEEL_COLOR),
+    )
+
+
+def _vector(values: Array) -> Vector:
+    x, y, z = (float(v) for v in values)
+    return x, y, z
 
 
 def _tapered(x0: float, r0: float, x1: float, r1: float, corners: int = 12) -> tuple[tuple[float, float], ...]:
@@ -92,7 +164,7 @@ def _tapered(x0: float, r0: float, x1: float, r1: float, corners: int = 12) -> t
     return tuple([(x1 + r1 * cos(t), r1 * sin(t)) for t in right] + [(x0 + r0 * cos(t), r0 * sin(t)) for t in left])
 
 
-_SOLIDS: Final = (
+_ARM: Final = (
     LinkSolid("foot", 0, "cylinder", (0.16, 0.03), (0.0, 0.0, 0.015), color=JOINT_COLOR),
     LinkSolid("pedestal", 0, "cylinder", (0.085, 0.47), (0.0, 0.0, 0.265)),
     LinkSolid("collar", 0, "cylinder", (0.088, 0.016), (0.0, 0.0, 0.494), color=JOINT_COLOR, visual_only=True),
@@ -112,6 +184,8 @@ _SOLIDS: Final = (
     LinkSolid("wrist yoke", 4, "cylinder", (0.034, 0.09), (0.0, 0.0, 0.0)),
     LinkSolid("wrist", 5, "sphere", (0.037,), (0.0, 0.0, 0.0), color=JOINT_COLOR),
     LinkSolid("flange", 6, "cylinder", (0.028, 0.025), (0.0, 0.0, -0.0125), color=STEEL_COLOR),
+)  # fmt: skip
+_GRIPPER: Final = (
     LinkSolid("palm", 6, "box", (0.044, 0.11, 0.035), (0.0, 0.0, 0.0175), color=JOINT_COLOR),
     LinkSolid("left finger", 6, "box", (0.022, 0.012, 0.1), (0.0, 0.026, 0.085), color=STEEL_COLOR,
          opening_offset=(0.0, FINGER_TRAVEL, 0.0)),

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from teachpath.motion.arm.model import Arm
+from teachpath.motion.arm.serial_kinematics import serial_jacobian, serial_link_frames, serial_tool_pose
 
 Array = NDArray[np.float64]
 
@@ -33,14 +34,18 @@ class LinkLengths:
     shoulder_offset: float  # from the axis of joint 1 to the plane of the arm
     forearm: float  # from elbow to wrist
     forearm_angle: float
-    wrist_to_grasp: float
+    wrist_in_tool: tuple[float, float, float]  # wrist centre in the tool's frame
 
     @classmethod
     def of_arm(cls, arm: Arm) -> LinkLengths:
         """Return the lengths of an arm."""
         rows = arm.links
         forearm, bend = hypot(rows[2].a, rows[3].d), atan2(rows[3].d, rows[2].a)
-        return cls(rows[0].d, rows[1].a, rows[2].d, forearm, bend, rows[5].d + arm.tool_length)
+        wrist = (0.0, 0.0, -(rows[5].d + arm.tool_length))
+        if arm.tool is not None:
+            x, y, z = (float(v) for v in (np.linalg.inv(arm.tool_matrix) @ (0.0, 0.0, -rows[5].d, 1.0))[:3])
+            wrist = (x, y, z)
+        return cls(rows[0].d, rows[1].a, rows[2].d, forearm, bend, wrist)
 
 
 def link_frames(q: Array, arm: Arm) -> Array:
@@ -54,6 +59,9 @@ def link_frames(q: Array, arm: Arm) -> Array:
         (..., 7, 4, 4) poses to world from link 0 (the world itself) to link 6 (the flange).
     """
     q = np.asarray(q, dtype=np.float64)
+    if arm.model is not None:
+        world = np.broadcast_to(np.eye(4), (*q.shape[:-1], 1, 4, 4))
+        return np.concatenate([world, serial_link_frames(q, arm.model)], axis=-3)
     frames = np.zeros((*q.shape[:-1], 7, 4, 4))
     frames[..., 0, :, :] = np.eye(4)
     for i, link in enumerate(arm.links):
@@ -62,14 +70,21 @@ def link_frames(q: Array, arm: Arm) -> Array:
 
 
 def tool_pose(q: Array, arm: Arm) -> Array:
-    """Compute the pose (..., 4, 4) to world from the tool (origin: grasp point, z: out of the gripper)."""
-    pose = link_frames(q, arm)[..., 6, :, :].copy()
+    """Compute the pose (..., 4, 4) to world from the tool (origin: tool centre point, z: out of the gripper)."""
+    if arm.model is not None:
+        return serial_tool_pose(q, arm.model)
+    pose = gripper_frame(link_frames(q, arm)[..., 6, :, :], arm).copy()
     pose[..., :3, 3] += arm.tool_length * pose[..., :3, 2]
     return pose
 
 
+def gripper_frame(flange: Array, arm: Arm) -> Array:
+    """Return the poses (..., 4, 4) of the gripper where those of the flange are known."""
+    return flange if arm.gripper_mount is None else np.asarray(flange @ arm.gripper_mount)
+
+
 def jacobian(q: Array, arm: Arm) -> Array:
-    """Compute the geometric Jacobian of the grasp point in world axes.
+    """Compute the geometric Jacobian of the tool centre point in world axes.
 
     Args:
         q: (..., 6) configurations [rad].
@@ -77,8 +92,11 @@ def jacobian(q: Array, arm: Arm) -> Array:
     Returns:
         (..., 6, 6): rows velocity x y z [m/rad], then angular velocity x y z [1].
     """
+    if arm.model is not None:
+        return serial_jacobian(q, arm.model)
     frames = link_frames(q, arm)
-    tool = frames[..., 6, :3, 3] + arm.tool_length * frames[..., 6, :3, 2]
+    gripper = gripper_frame(frames[..., 6, :, :], arm)
+    tool = gripper[..., :3, 3] + arm.tool_length * gripper[..., :3, 2]
     axes = frames[..., :6, :3, 2]  # (..., 6 joints, 3)
     lever_arms = tool[..., None, :] - frames[..., :6, :3, 3]
     return np.concatenate([np.swapaxes(np.cross(axes, lever_arms), -1, -2), np.swapaxes(axes, -1, -2)], axis=-2)
@@ -121,12 +139,13 @@ class IkSolutions:
 def inverse_kinematics(poses: Array, arm: Arm, *, previous_q4: float = 0.0) -> IkSolutions:
     """Solve the inverse kinematics in closed form, all 8 branches (after Paul 1981, ch. 3, and Lee & Ziegler 1984).
 
-    At a singular wrist (joint 5 zero) joint 4 keeps the value of the pose before it.
+    The tool's pose to the flange is removed first. At a singular wrist (joint 5 zero), joint 4 keeps the value of the
+    pose before it.
 
     Args:
         poses: (n, 4, 4) to world from the tool.
         arm: that is to bring its tool there.
-        q4_before: joint 4 before the first pose [rad], for a path that begins at a singular wrist.
+        previous_q4: joint 4 before the first pose [rad], for a path that begins at a singular wrist.
     """
     lengths = LinkLengths.of_arm(arm)
     joints = np.zeros((len(poses), 8, 6))
@@ -157,7 +176,8 @@ def wrist_joints(arm_joints: Array, orientations: Array, arm: Arm, *, flip: bool
     frame = np.broadcast_to(np.eye(4), (len(arm_joints), 4, 4))
     for i, link in enumerate(arm.links[:3]):
         frame = frame @ _link_matrix(arm_joints[:, i], link.d, link.a, link.alpha)
-    turn = np.swapaxes(frame[:, :3, :3], 1, 2) @ orientations  # R of joints 4, 5, 6: Rz(q4) Ry(-q5) Rz(q6)
+    flange = orientations if arm.tool is None else orientations @ arm.tool_matrix[:3, :3].T
+    turn = np.swapaxes(frame[:, :3, :3], 1, 2) @ flange  # R of joints 4, 5, 6: Rz(q4) Ry(-q5) Rz(q6)
     sign = -1.0 if flip else 1.0
     sine = np.hypot(turn[:, 0, 2], turn[:, 1, 2])
     q5 = np.arctan2(sign * sine, turn[:, 2, 2])
@@ -188,17 +208,6 @@ def describe_reach(excess: float, beyond: bool, s: float) -> str:
     return f"wrist centre {100 * excess:.1f} cm {where} at s = {s:.3f} m"
 
 
-def rotation_matrices(quaternions: Array) -> Array:
-    """Return the rotation matrices (m, 3, 3) of unit quaternions (m, 4), w first."""
-    w, x, y, z = quaternions.T
-    rows = [
-        [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
-        [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
-        [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
-    ]
-    return np.moveaxis(np.array(rows), 2, 0)
-
-
 @dataclass(frozen=True, eq=False)
 class _Reach:
     """Positions of n wrist centres relative to the shoulder [m]."""
@@ -211,7 +220,9 @@ class _Reach:
 
     @classmethod
     def of(cls, poses: Array, lengths: LinkLengths) -> _Reach:
-        wrist = poses[:, :3, 3] - lengths.wrist_to_grasp * poses[:, :3, 2]
+        wrist = poses[:, :3, 3].copy()
+        for axis, distance in enumerate(lengths.wrist_in_tool):
+            wrist += distance * poses[:, :3, axis]
         along = np.sqrt(np.maximum(wrist[:, 0] ** 2 + wrist[:, 1] ** 2 - lengths.shoulder_offset**2, 0.0))
         height = wrist[:, 2] - lengths.shoulder_height
         return cls(lengths, wrist, along, height, np.hypot(along, height))

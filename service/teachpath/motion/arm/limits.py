@@ -10,6 +10,7 @@ from typing import Final
 import numpy as np
 
 from teachpath.motion.arm.puma560 import Array, Link
+from teachpath.records import SerialArm
 
 # Nobody publishes a jerk limit: by our convention the full acceleration is built up in a tenth of a second.
 JERK_PER_ACCELERATION: Final = 10.0  # 1/s
@@ -72,6 +73,25 @@ class JointLimits:
             speed=column("speed"),
             acceleration=column("acceleration"),
             jerk=column("acceleration", JERK_PER_ACCELERATION),
+            torque=column("torque"),
+            tool_speed=inf if tool_speed is None else tool_speed,
+        )
+
+    @classmethod
+    def of_model(cls, model: SerialArm, tool_speed: float | None = None) -> JointLimits:
+        """Read the limits of the joints from a user's model."""
+
+        def column(name: str) -> Array:
+            values = np.array([getattr(joint, name).value for joint in model.joints])
+            values.flags.writeable = False
+            return values
+
+        return cls(
+            lower=column("lower"),
+            upper=column("upper"),
+            speed=column("speed"),
+            acceleration=column("acceleration"),
+            jerk=column("jerk"),
             torque=column("torque"),
             tool_speed=inf if tool_speed is None else tool_speed,
         )

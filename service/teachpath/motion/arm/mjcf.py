@@ -8,11 +8,12 @@ from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
-from teachpath.errors import UnusableInput
-from teachpath.motion.arm.geometry import LinkSolid, collision_solids
+from teachpath.motion.arm.geometry import LinkSolid, collision_solids, gripper_solids
 from teachpath.motion.arm.kinematics import link_frames
+from teachpath.motion.arm.mjcf_shapes import color_text, mesh_asset, numbers, shape_attributes
 from teachpath.motion.arm.model import Arm, Payload
 from teachpath.motion.arm.puma560 import GRIPPER_COM, GRIPPER_INERTIA, GRIPPER_MASS, Array, Link
+from teachpath.motion.arm.serial_mjcf import serial_bodies, serial_meshes, serial_motors
 from teachpath.records import Scene, Shape
 
 CARRIED_BODY: Final = "carried"  # body and geom of the carried object
@@ -21,7 +22,7 @@ OBJECT_DENSITY: Final = 300.0  # kg/m^3, of the carried object: a light wooden b
 
 # The arm has contacts with obstacles, but not with itself or its object: the certificate keeps it clear of itself.
 _OBSTACLE_CONTACTS: Final = 'contype="1" conaffinity="1"'
-_ARM_CONTACTS: Final = 'contype="0" conaffinity="1"'
+ARM_CONTACTS: Final = 'contype="0" conaffinity="1"'
 _OBJECT_CONTACTS: Final = 'contype="2" conaffinity="1"'
 _ZONE_CONTACTS: Final = 'contype="0" conaffinity="0"'  # a zone is a rule: nothing stands there
 
@@ -48,11 +49,11 @@ def write_mjcf(scene: Scene, arm: Arm, *, timestep: float = 0.001) -> str:
             '<compiler angle="radian" autolimits="true"/>',
             f'<option timestep="{timestep}" gravity="0 0 -9.81" integrator="implicitfast"/>',
             "<asset>",
-            *[_mesh(part) for part in collision_solids(arm.tool_length) if part.kind == "prism"],
-            *[_hull(shape, name) for name, shape in _bodies(scene) if shape.kind == "mesh"],
+            *_meshes(arm),
+            *[mesh_asset(shape, name) for name, shape in _bodies(scene) if shape.kind == "mesh"],
             "</asset>",
             "<worldbody>",
-            *_solids_of(0, arm),
+            *(_solids_of(0, arm) if arm.model is None else []),
             f'<geom name="floor" type="plane" size="0 0 1" pos="0 0 {float(scene.floor)!r}" {_OBSTACLE_CONTACTS}/>',
             *[_fixed(f"obstacle:{shape.name}", shape, _OBSTACLE_CONTACTS) for shape in scene.obstacles],
             *[_fixed(f"zone:{shape.name}", shape, _ZONE_CONTACTS) for shape in scene.keep_out],
@@ -61,7 +62,7 @@ def write_mjcf(scene: Scene, arm: Arm, *, timestep: float = 0.001) -> str:
             "</worldbody>",
             *([_grasp()] if scene.carried else []),
             "<actuator>",
-            *[_motor(i + 1, link) for i, link in enumerate(arm.links)],
+            *_motors(arm),
             "</actuator>",
             "</mujoco>",
         ]
@@ -82,29 +83,53 @@ def physical_inertia(link: Link) -> Array:
     return moments
 
 
+def _meshes(arm: Arm) -> list[str]:
+    if arm.model is not None:
+        return list(serial_meshes(arm.model))
+    return [_mesh(part) for part in collision_solids(arm) if part.kind == "prism"]
+
+
+def _motors(arm: Arm) -> list[str]:
+    if arm.model is not None:
+        return list(serial_motors(arm.model))
+    return [_motor(i + 1, link) for i, link in enumerate(arm.links)]
+
+
 def _arm(arm: Arm) -> list[str]:
+    if arm.model is not None:
+        solids = [_link_solid(solid) for solid in gripper_solids(arm)]
+        return list(serial_bodies(arm.model, [*solids, *_gripper(arm)] if arm.has_gripper else []))
     zero = link_frames(np.zeros(6), arm)
     lines: list[str] = []
     for i, link in enumerate(arm.links, start=1):
         relative = np.linalg.inv(zero[i - 1]) @ zero[i]
         anchor = -relative[:3, :3].T @ relative[:3, 3]  # origin and z of the frame before, seen from this one
         lines += [
-            f'<body name="link{i}" pos="{_text(relative[:3, 3])}" xyaxes="{_text(relative[:3, :2].T.ravel())}">',
-            f'<joint name="joint{i}" pos="{_text(anchor)}" axis="{_text(relative[2, :3])}" '
+            f'<body name="link{i}" pos="{numbers(relative[:3, 3])}" xyaxes="{numbers(relative[:3, :2].T.ravel())}">',
+            f'<joint name="joint{i}" pos="{numbers(anchor)}" axis="{numbers(relative[2, :3])}" '
             f'range="{link.lower!r} {link.upper!r}" armature="{link.motor_inertia * link.gear**2!r}" '
             f'damping="{link.viscous * link.gear**2!r}" '
             f'frictionloss="{abs(link.gear) * sum(link.coulomb) / 2!r}"/>',
-            f'<inertial pos="{_text(link.com)}" mass="{max(link.mass, 1e-3)!r}" '
-            f'diaginertia="{_text(physical_inertia(link))}"/>',
+            f'<inertial pos="{numbers(link.com)}" mass="{max(link.mass, 1e-3)!r}" '
+            f'diaginertia="{numbers(physical_inertia(link))}"/>',
             *_solids_of(i, arm),
         ]
-    lines += [
-        '<body name="gripper">',
-        f'<inertial pos="{_text(GRIPPER_COM)}" mass="{GRIPPER_MASS}" diaginertia="{_text(GRIPPER_INERTIA)}"/>',
-        "</body>",
-        *_payload(arm.payload),
-    ]
+    lines += [*_gripper(arm), *_payload(arm.payload)]
     return lines + ["</body>"] * len(arm.links)
+
+
+def _gripper(arm: Arm) -> list[str]:
+    return [
+        f'<body name="gripper"{_mount(arm)}>',
+        f'<inertial pos="{numbers(GRIPPER_COM)}" mass="{GRIPPER_MASS}" diaginertia="{numbers(GRIPPER_INERTIA)}"/>',
+        "</body>",
+    ]
+
+
+def _mount(arm: Arm) -> str:
+    """Return where the gripper sits, as attributes of its body; none where it sits on the flange."""
+    mount = arm.gripper_mount
+    return "" if mount is None else f' pos="{numbers(mount[:3, 3])}" xyaxes="{numbers(mount[:3, :2].T.ravel())}"'
 
 
 def _payload(payload: Payload) -> list[str]:
@@ -113,31 +138,31 @@ def _payload(payload: Payload) -> list[str]:
         return []
     radius = (3.0 * payload.mass / (4.0 * pi * OBJECT_DENSITY)) ** (1 / 3)
     moments = np.full(3, 0.4 * payload.mass * radius**2)
-    inertial = f'pos="{_text(payload.center)}" mass="{payload.mass!r}" diaginertia="{_text(moments)}"'
+    inertial = f'pos="{numbers(payload.center)}" mass="{payload.mass!r}" diaginertia="{numbers(moments)}"'
     return [f'<body name="payload"><inertial {inertial}/></body>']
 
 
 def _solids_of(link: int, arm: Arm) -> list[str]:
-    return [_link_solid(part) for part in collision_solids(arm.tool_length) if part.link == link]
+    return [_link_solid(part) for part in collision_solids(arm) if part.link == link]
 
 
 def _link_solid(solid: LinkSolid) -> str:
     sizes = {
-        "box": f'type="box" size="{_text(np.array(solid.size) / 2)}"',
-        "sphere": f'type="sphere" size="{_text(solid.size)}"',
+        "box": f'type="box" size="{numbers(np.array(solid.size) / 2)}"',
+        "sphere": f'type="sphere" size="{numbers(solid.size)}"',
         "prism": f'type="mesh" mesh={quoteattr(solid.name)}',
     }
     size = sizes.get(solid.kind) or f'type="cylinder" size="{solid.size[0]!r} {solid.size[1] / 2!r}"'
     return (
-        f'<geom name={quoteattr(solid.name)} {size} pos="{_text(solid.position)}" quat="{_text(solid.orientation)}" '
-        f'rgba="{_color(solid.color)}" mass="0" {_ARM_CONTACTS}/>'
+        f'<geom name={quoteattr(solid.name)} {size} pos="{numbers(solid.position)}" '
+        f'quat="{numbers(solid.orientation)}" rgba="{color_text(solid.color)}" mass="0" {ARM_CONTACTS}/>'
     )
 
 
 def _mesh(solid: LinkSolid) -> str:
     half = solid.size[0] / 2
     corners = [[x, y, z] for x, y in solid.outline for z in (-half, half)]
-    return f'<mesh name={quoteattr(solid.name)} vertex="{_text(np.ravel(corners))}"/>'
+    return f'<mesh name={quoteattr(solid.name)} vertex="{numbers(np.ravel(corners))}"/>'
 
 
 def _bodies(scene: Scene) -> list[tuple[str, Shape]]:
@@ -146,22 +171,18 @@ def _bodies(scene: Scene) -> list[tuple[str, Shape]]:
     return [(f"obstacle:{shape.name}", shape) for shape in scene.obstacles] + zones + carried
 
 
-def _hull(shape: Shape, name: str) -> str:
-    return f'<mesh name={quoteattr(name)} vertex="{_text(shape.size[0] * np.ravel(shape.vertices))}"/>'
-
-
 def _fixed(name: str, shape: Shape, contacts: str) -> str:
     return (
-        f'<geom name={quoteattr(name)} {_solid(shape, name)} pos="{_text(shape.position)}" '
-        f'quat="{_text(shape.orientation)}" rgba="{_color(shape.color)}" {contacts}/>'
+        f'<geom name={quoteattr(name)} {shape_attributes(shape, name)} pos="{numbers(shape.position)}" '
+        f'quat="{numbers(shape.orientation)}" rgba="{color_text(shape.color)}" {contacts}/>'
     )
 
 
 def _carried(shape: Shape) -> str:
     return (
-        f'<body name="{CARRIED_BODY}" pos="{_text(shape.position)}" quat="{_text(shape.orientation)}">'
-        f'<freejoint name="{CARRIED_BODY}"/><geom name="{CARRIED_BODY}" {_solid(shape, CARRIED_BODY)} '
-        f'density="{OBJECT_DENSITY}" rgba="{_color(shape.color)}" {_OBJECT_CONTACTS}/></body>'
+        f'<body name="{CARRIED_BODY}" pos="{numbers(shape.position)}" quat="{numbers(shape.orientation)}">'
+        f'<freejoint name="{CARRIED_BODY}"/><geom name="{CARRIED_BODY}" {shape_attributes(shape, CARRIED_BODY)} '
+        f'density="{OBJECT_DENSITY}" rgba="{color_text(shape.color)}" {_OBJECT_CONTACTS}/></body>'
     )
 
 
@@ -171,26 +192,3 @@ def _grasp() -> str:
 
 def _motor(number: int, link: Link) -> str:
     return f'<motor name="motor{number}" joint="joint{number}" ctrlrange="{-link.torque} {link.torque}"/>'
-
-
-def _solid(shape: Shape, name: str) -> str:
-    if shape.kind == "box" and len(shape.size) == 3:
-        return f'type="box" size="{_text(np.array(shape.size) / 2)}"'
-    if shape.kind == "cylinder" and len(shape.size) == 2:
-        return f'type="cylinder" size="{shape.size[0]!r} {shape.size[1] / 2!r}"'
-    if shape.kind == "sphere" and len(shape.size) == 1:
-        return f'type="sphere" size="{shape.size[0]!r}"'
-    if shape.kind == "mesh" and len(shape.size) == 1 and len(shape.vertices) > 3:
-        return f'type="mesh" mesh={quoteattr(name)}'
-    raise UnusableInput(
-        f"{shape.name!r} is a {shape.kind} of {len(shape.size)} sizes and {len(shape.vertices)} vertices; a scene has "
-        "boxes of 3, cylinders of 2, spheres of 1 and meshes of 1 and 4 vertices at least"
-    )
-
-
-def _color(color: int) -> str:
-    return f"{(color >> 16 & 255) / 255:.4f} {(color >> 8 & 255) / 255:.4f} {(color & 255) / 255:.4f} 1"
-
-
-def _text(values: object) -> str:
-    return " ".join(repr(float(v)) for v in np.ravel(np.asarray(values, dtype=np.float64)))

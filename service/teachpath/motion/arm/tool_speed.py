@@ -10,15 +10,26 @@ from typing import Final
 
 import numpy as np
 
-from teachpath.motion.arm.kinematics import link_frames
+from teachpath.motion.arm.kinematics import gripper_frame, link_frames
 from teachpath.motion.arm.model import Arm
 from teachpath.motion.arm.puma560 import Array
+from teachpath.motion.arm.serial_kinematics import chain_length, joint_axes
 
-# The points, each on z of the frame of a link: both ends of the elbow's axis, the wrist's centre, the tool's.
+# The points, each on z of a link or of the gripper: both ends of the elbow's axis, the wrist's centre, the tool's.
 POINT_NAMES: Final = ("the elbow", "the elbow's outside", "the wrist", "the tool")
 _LINKS: Final = (2, 2, 4, 6)
 ELBOW_WIDTH: Final = 0.295  # m, along the elbow's axis from the shoulder's plane to the outer face of the upper arm
 LINE_STEP: Final = 0.004  # rad, of the fastest joint between two samples of a straight line
+
+
+def point_names(arm: Arm) -> tuple[str, ...]:
+    """Return the names of the points; of a user's model, they are those on the axes of joints 2 and on, and the tool's.
+
+    Link and link are then joined by segments between these points, as forearm and hand of the Puma 560 are.
+    """
+    if arm.model is None:
+        return POINT_NAMES
+    return (*(joint.name for joint in arm.model.joints[1:]), POINT_NAMES[-1])
 
 
 def monitored_points(q: Array, arm: Arm) -> Array:
@@ -29,11 +40,15 @@ def monitored_points(q: Array, arm: Arm) -> Array:
 def point_speeds(q: Array, velocity: Array, arm: Arm) -> Array:
     """Return the speeds (n, 4) [m/s] of the points at configurations and joint velocities (n, 6)."""
     frames = link_frames(q, arm)
-    turning = velocity[:, :, None] * frames[:, :6, :3, 2]
+    if arm.model is None:
+        axes, anchors, last = frames[:, :6, :3, 2], frames[:, :6, :3, 3], np.array(_LINKS) - 1
+    else:
+        axes, anchors = joint_axes(frames[:, 1:], arm.model)
+        last = np.arange(len(arm.model.links))
+    turning = velocity[:, :, None] * axes
     # The velocity of a point p on link k is the sum over its joints of w x (p - o).
     angular = np.cumsum(turning, axis=1)
-    moment = np.cumsum(np.cross(turning, frames[:, :6, :3, 3]), axis=1)
-    last = np.array(_LINKS) - 1
+    moment = np.cumsum(np.cross(turning, anchors), axis=1)
     return np.asarray(np.linalg.norm(np.cross(angular[:, last], _points(frames, arm)) - moment[:, last], axis=2))
 
 
@@ -48,8 +63,21 @@ def speed_bounds(motion: Array, step: float, arm: Arm) -> Array:
         step: between two samples.
     """
     rate, second, third = (np.abs(motion[:, order]).sum(axis=1) for order in (1, 2, 3))
-    bend = _reach(arm) * float(np.max(rate**3 + 3.0 * rate * second + third))
-    return point_speeds(motion[:, 0], motion[:, 1], arm) + step**2 / 8.0 * bend
+    return point_speeds(motion[:, 0], motion[:, 1], arm) + step**2 / 8.0 * _bend(rate, second, third, arm)
+
+
+def cubic_speed_bound(states: Array, jerks: Array, step: float, arm: Arm) -> float:
+    """Return an upper bound [m/s] of the points' speeds on a motion whose jerk is constant in every step.
+
+    Args:
+        states: (n + 1, 3, 6) joints, velocities and accelerations at the ends of the steps.
+        jerks: (n, 6) sizes of the jerks in the steps [rad/s^3].
+        step: [s].
+    """
+    third, second = jerks.sum(axis=1).max(), np.abs(states[:, 2]).sum(axis=1).max()
+    rate = np.abs(states[:, 1]).sum(axis=1).max() + step / 2.0 * second  # no instant is farther from an end than that
+    bend = _bend(rate, second, third, arm)
+    return float(point_speeds(states[:, 0], states[:, 1], arm).max()) + step**2 / 8.0 * bend
 
 
 def line_speed_bound(start: Array, direction: Array, turn: float, arm: Arm) -> float:
@@ -86,12 +114,24 @@ def difference_speeds(setpoints: Array, rate: float, arm: Arm) -> Array:
 
 
 def _points(frames: Array, arm: Arm) -> Array:
+    if arm.model is not None:
+        tool = frames[..., -1, :, :] @ arm.tool_matrix
+        anchors = joint_axes(frames[..., 1:, :, :], arm.model)[1]
+        return np.concatenate([anchors[..., 1:, :], tool[..., None, :3, 3]], axis=-2)
     offsets = np.array([0.0, ELBOW_WIDTH, 0.0, arm.tool_length])[:, None]
     on_links = frames[..., list(_LINKS), :, :]
+    on_links[..., 3, :, :] = gripper_frame(on_links[..., 3, :, :], arm)
     return np.asarray(on_links[..., :3, 3] + offsets * on_links[..., :3, 2])
+
+
+def _bend(rate: Array, second: Array, third: Array, arm: Arm) -> float:
+    """Bound the second derivative of a point's velocity by sums of the joints' derivatives."""
+    return _reach(arm) * float(np.max(rate**3 + 3.0 * rate * second + third))
 
 
 def _reach(arm: Arm) -> float:
     """Return a length [m] that no point is farther away from any joint's axis than; joint 1 turns about the column."""
+    if arm.model is not None:
+        return chain_length(arm.model)
     links = sum(float(np.hypot(link.a, link.d)) for link in arm.links[1:])
-    return links + max(arm.tool_length, ELBOW_WIDTH)
+    return links + max(arm.tool_reach, ELBOW_WIDTH)

@@ -8,8 +8,8 @@ from typing import Final
 
 import numpy as np
 
-from teachpath.motion.arm.kinematics import rotation_matrices
 from teachpath.motion.arm.puma560 import Array
+from teachpath.motion.arm.rotations import rotation_matrices
 from teachpath.records import Scene, Shape
 
 FLOOR: Final = "the floor"

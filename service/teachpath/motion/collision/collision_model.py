@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from itertools import combinations, product
+from itertools import product
 from typing import Final
 
 import mujoco
@@ -12,17 +12,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from teachpath.errors import UnusableInput
-from teachpath.motion.arm.geometry import LinkSolid, collision_solids
-from teachpath.motion.arm.kinematics import link_frames, rotation_matrices, tool_pose
+from teachpath.lengths import describe_lengths
+from teachpath.motion.arm.geometry import collision_solids
+from teachpath.motion.arm.kinematics import link_frames, tool_pose
 from teachpath.motion.arm.mjcf import CARRIED_BODY, write_mjcf
 from teachpath.motion.arm.model import Arm
 from teachpath.motion.arm.puma560 import Array
+from teachpath.motion.arm.rotations import rotation_matrices
+from teachpath.motion.arm.serial_kinematics import lever_arms as serial_lever_arms
 from teachpath.motion.collision.boundaries import Boundary, Extent, boundary_distances, scene_boundaries
+from teachpath.motion.collision.self_collision import checked_solid_pairs
 from teachpath.records import Scene, Shape, Vector
 
 MAX_DISTANCE: Final = 0.3  # m, larger distances are not measured
-# Pairs of links that are neighbours, or between which the joints' limits keep a nearly constant distance.
-_IGNORED_LINK_PAIRS: Final = {(0, 1), (0, 2), (1, 2), (2, 3), (3, 4), (3, 5), (4, 5), (4, 6), (5, 6)}
 _ROTATING_COLUMN: Final = "trunk"
 
 
@@ -39,13 +41,13 @@ class Clearance:
 
     def describe_violation(self, distance: float, required: float) -> str:
         """Describe a distance [m] below the required one; a negative required distance is an allowed overlap."""
+        measured, limit = describe_lengths(abs(distance), abs(required))
         if distance >= 0.0:
-            near = f"{self.body} comes within {1000 * distance:.1f} mm of {self.other_body}"
-            return f"{near}, least allowed {1000 * required:.1f} mm"
-        deep = f"{self.body} goes {-1000 * distance:.1f} mm into {self.other_body}"
+            return f"{self.body} comes within {measured} of {self.other_body}, least allowed {limit}"
+        deep = f"{self.body} goes {measured} into {self.other_body}"
         if required < 0.0:
-            return f"{deep}, at most {-1000 * required:.1f} mm are allowed"
-        return f"{deep}, has to stay {1000 * required:.1f} mm away"
+            return f"{deep}, at most {limit} are allowed"
+        return f"{deep}, has to stay {limit} away"
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,7 +84,8 @@ class CollisionModel:
         except ValueError as error:
             raise UnusableInput(f"scene {scene.name!r} cannot be built: {error}") from None
         self._data = mujoco.MjData(self._model)
-        self._solids = {self._id(part.name): part for part in collision_solids(arm.tool_length)}
+        self._solids = {self._id(part.name): part for part in collision_solids(arm)}
+        self._self_pairs = checked_solid_pairs(self._solids, arm)
         self._names = {geom: part.name for geom, part in self._solids.items()}
         self._obstacles = []
         for shape in scene.obstacles:
@@ -94,9 +97,8 @@ class CollisionModel:
         self._object = self._id(CARRIED_BODY) if scene.carried else -1
         if scene.carried:
             self._names[self._object] = scene.carried.name
-        self._extents = {
-            geom: self._extent(geom) for geom in (*self._solids, *([self._object] if scene.carried else []))
-        }
+        moving = [*self._solids, *([self._object] if scene.carried else [])]
+        self._extents = {geom: self._extent(geom) for geom in moving}
         self._closed = self._model.geom_pos.copy()
 
     def clearances(self, q: Array, *, load: Load | None = None, gripper_open: bool = False) -> list[Clearance]:
@@ -118,7 +120,7 @@ class CollisionModel:
 
     def finger_distances(self, q: Array, load: Load) -> list[Clearance]:
         """Measure the distance (n rows) of the open fingers to the object that stands between them."""
-        fingers = [geom for geom, part in self._solids.items() if part.opening_offset[1]]
+        fingers = [geom for geom, part in self._solids.items() if any(part.opening_offset)]
         return self._clearances(q, _Pairs([(finger, self._object) for finger in fingers]), load, True)
 
     def lever_arms(self, load: Load | None = None) -> Array:
@@ -130,8 +132,10 @@ class CollisionModel:
             off = np.linalg.norm(self._data.geom_xpos[geom] - origins[part.link]) + np.linalg.norm(part.opening_offset)
             radius[part.link] = max(radius[part.link], off + self._model.geom_rbound[geom])
         if load is not None and load.grasp_pose is not None:
-            off = np.linalg.norm(load.grasp_pose[:3, 3] + np.array([0.0, 0.0, self.arm.tool_length]))
+            off = np.linalg.norm((self.arm.tool_matrix @ load.grasp_pose)[:3, 3])
             radius[6] = max(radius[6], off + self._model.geom_rbound[self._object])
+        if self.arm.model is not None:
+            return serial_lever_arms(radius[1:], self.arm.model)
         lever_arms, far = np.zeros(6), 0.0  # far: from the frame behind a joint to any point that it moves
         for joint in range(5, -1, -1):
             far = max(far, radius[joint + 1])
@@ -159,14 +163,15 @@ class CollisionModel:
         if load is not None and load.grasp_pose is not None:
             around = [(self._object, other) for other in self._obstacles + self._zones]
             pairs.bodies.extend(pair for pair in around if pair not in supports.bodies)
-            pairs.bodies.extend((self._object, geom) for geom, part in self._solids.items() if part.link <= 4)
+            near = 4 if self.arm.model is None else 5  # the last link that is far from all that the fingers can hold
+            pairs.bodies.extend((self._object, geom) for geom, part in self._solids.items() if part.link <= near)
             sides = [(self._object, boundary) for boundary in self._boundaries]
             pairs.boundaries.extend(pair for pair in sides if pair not in supports.boundaries)
         elif load is not None:
             pairs.bodies.extend(
                 (geom, self._object)
                 for geom, part in self._solids.items()
-                if part.link >= 2 and not part.opening_offset[1]
+                if part.link >= 2 and not any(part.opening_offset)
             )
         return pairs
 
@@ -174,9 +179,7 @@ class CollisionModel:
         # The foot stands on the floor, and the column turns about its own axis: where they are, they always are.
         moving = [geom for geom, part in self._solids.items() if part.link >= 1 and part.name != _ROTATING_COLUMN]
         pairs = [(geom, other) for geom in moving for other in self._obstacles + self._zones]
-        solids = combinations(self._solids.items(), 2)
-        pairs += [(one, two) for (one, a), (two, b) in solids if _may_meet(a, b)]
-        return _Pairs(pairs, [(geom, boundary) for geom in moving for boundary in self._boundaries])
+        return _Pairs(pairs + self._self_pairs, [(geom, boundary) for geom in moving for boundary in self._boundaries])
 
     def _supports(self, touching: float = 0.003) -> _Pairs:
         """Return what the object stands on at its start: obstacles, or the floor."""
@@ -293,8 +296,3 @@ def shape_pose(shape: Shape) -> Array:
     pose[:3, :3] = rotation_matrices(np.array([shape.orientation]))[0]
     pose[:3, 3] = shape.position
     return pose
-
-
-def _may_meet(a: LinkSolid, b: LinkSolid) -> bool:
-    low, high = sorted((a.link, b.link))
-    return low != high and (low, high) not in _IGNORED_LINK_PAIRS

@@ -1,7 +1,7 @@
 """Decides whether the gripper takes an object: the rule of planning, and the one by which the simulated gripper holds.
 
 The object is measured by its extents along the fingers' axes: across their width (x), where they close (y) and along
-their length (z), in the frame of the flange. It must fit between the open fingers, and the fingers must overlap it
+their length (z), in the frame of the gripper. It must fit between the open fingers, and the fingers must overlap it
 along z and x by `Arm.grasp_depth`, or all of it where it is smaller. A round object touches each finger along a line or
 at a point, which must lie on the finger.
 """
@@ -13,6 +13,7 @@ from typing import Final
 
 import numpy as np
 
+from teachpath.lengths import describe_length, describe_lengths
 from teachpath.motion.arm.geometry import collision_solids
 from teachpath.motion.arm.model import Arm
 from teachpath.motion.arm.puma560 import Array
@@ -33,7 +34,7 @@ def grasp_fault(shape: Shape, pose: Array, arm: Arm, *, margin: float = 0.0) -> 
 
     Args:
         shape: of the object.
-        pose: (4, 4) to the flange's frame from the object.
+        pose: (4, 4) to the gripper's frame from the object.
         arm: whose gripper closes.
         margin: by which the rule must be exceeded [m].
     """
@@ -41,26 +42,27 @@ def grasp_fault(shape: Shape, pose: Array, arm: Arm, *, margin: float = 0.0) -> 
     low, high = _bounds(shape, pose)
     room = HALF_OPENING - margin
     if high[1] - low[1] > 2 * room:
-        return f"{shape.name} is {1000 * (high[1] - low[1]):.0f} mm wide there, the fingers open {2000 * room:.0f} mm"
+        width, opening = describe_lengths(high[1] - low[1], 2 * room)
+        return f"{shape.name} is {width} wide there, the fingers open {opening}"
     if (out := max(high[1], -low[1]) - room) > 0:
-        return f"{shape.name} sticks out from between the open fingers by {1000 * out:.1f} mm"
+        return f"{shape.name} sticks out from between the open fingers by {describe_length(out)}"
     for axis, where in ((2, "along their length"), (0, "across their width")):
         overlap = min(high[axis], _HIGH[axis]) - max(low[axis], _LOW[axis])
         if overlap < 0:
-            return f"the fingers miss {shape.name} by {-1000 * overlap:.1f} mm {where}"
+            return f"the fingers miss {shape.name} by {describe_length(-overlap)} {where}"
         needed = min(arm.grasp_depth + margin, high[axis] - low[axis], _HIGH[axis] - _LOW[axis])
         if overlap < needed - 1e-9:
-            least = f"at least {1000 * needed:.1f} mm are needed (motion.grasp_depth)"
-            return f"the fingers overlap {shape.name} by {1000 * overlap:.1f} mm {where}, {least}"
+            depth, least = describe_lengths(overlap, needed)
+            return f"the fingers overlap {shape.name} by {depth} {where}, less than {least} (motion.grasp_depth)"
         if _is_round(shape, pose, axis):
             beyond = max(_LOW[axis] - centre[axis], centre[axis] - _HIGH[axis]) + margin
             if beyond > 0:
-                return f"the fingers end {1000 * beyond:.1f} mm before the middle of {shape.name} {where}"
+                return f"the fingers end {describe_length(beyond)} before the middle of {shape.name} {where}"
     return ""
 
 
 def grasp_width(shape: Shape, pose: Array) -> float:
-    """Return how far an object keeps the fingers apart [m]; `pose` (4, 4) is to the flange's frame from the object."""
+    """Return how far an object keeps the fingers apart [m]; `pose` (4, 4) is to the gripper's frame from the object."""
     low, high = _bounds(shape, pose)
     return float(high[1] - low[1])
 

@@ -19,6 +19,7 @@ from teachpath.motion.arm.puma560 import Array
 from teachpath.motion.timing import kernels, ramp_checks, ramp_following
 from teachpath.motion.timing.joint_moves import straight_move
 from teachpath.motion.timing.limit_margins import SYMMETRIC_MARGINS
+from teachpath.motion.timing.ramp_checks import MAX_RAMP_PERIODS, PHASES
 from teachpath.motion.timing.ramp_search import MIN_TIME_SAVED, find_ramp, shorten_ramp
 from teachpath.motion.timing.ruckig_check import RuckigCheck
 from teachpath.motion.timing.stop_search import find_stop
@@ -26,12 +27,13 @@ from teachpath.motion.timing.timed_trajectory import TimedTrajectory
 
 MIN_OVERRIDE: Final = 0.01  # a smaller override holds
 MAX_RAMPS_PER_PERIOD: Final = 20  # ramps to another rate that are judged in one control period at most
-MAX_SHORTER_RAMPS: Final = 8  # the same to the rate that the present ramp leads to
+MAX_RAMPS_AMID_RAMP: Final = 8  # the same where the next period begins from another rate anyway
+MAX_SHORTER_RAMPS: Final = 4  # the same to the rate that the present ramp leads to
 MAX_REVERSE_RATE: Final = 0.96  # of the way back: a plan has its margins on the other side (see `limit_margins`)
 MAX_STOPS: Final = 3  # stops that are judged in one period at most
+STOP_SEARCH_INTERVAL: Final = 2  # periods from one search for a shorter stop to the next, while one is followed
 MAX_STOP_PERIODS: Final = 500  # of a stop; with none so short the present motion goes on for a while
-STOP_LEADS: Final = (1, 4, 16, 64)  # periods for which it goes on
-MAX_PERIODS: Final = 5000  # of a ramp, and of a way to rest where nothing but the end of the trajectory is one
+STOP_LEADS: Final = (2, 8, 32)  # periods for which it goes on
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,11 +51,11 @@ class WayToRest:
     """How the arm comes to rest from the newest setpoint without another one.
 
     Attributes:
-        positions: (n, 6) one control period apart, the first one period ahead [rad]; empty at rest.
+        states: (n, 3, 6) joints, velocity, acceleration a control period apart, the first one ahead; empty at rest.
         tau: plan time at which it rests [s].
     """
 
-    positions: Array
+    states: Array
     tau: float
 
 
@@ -79,7 +81,7 @@ class Governor:
         self._reversing = False
         self._waiting = False
         self._state = np.zeros(3)  # tau, its rate, the rate's derivative
-        self._ramp = np.zeros((MAX_PERIODS, 3))  # its states at the ends of the periods; the last one goes on
+        self._ramp = np.zeros((MAX_RAMP_PERIODS, 3))  # its states at the ends of the periods; the last one goes on
         self._ramp_periods, self._ramp_end, self._done = 1, 0.0, 1
         self._trial = np.zeros(8)
         self._stop = np.zeros((MAX_STOP_PERIODS, 3))  # states of a stop
@@ -87,8 +89,8 @@ class Governor:
         self._stop_periods: int | None = None  # of the one from the present state, once that was searched for
         self._motion = np.zeros((3, 7))
         kernels.evaluate_motion(self._table, self._step, self._state, self._motion)
-        self._sent = np.zeros((6, 6))  # newest setpoint and differences (see `ramp_checks.advance`)
-        self._sent[0] = self._sent[3] = self._motion[0, :6]
+        self._sent = np.zeros((PHASES, 3, 6))  # newest setpoint and differences (see `ramp_checks.advance`)
+        self._sent[:, 0] = self._motion[0, :6]
         self._ruckig = RuckigCheck()
 
     @property
@@ -113,7 +115,7 @@ class Governor:
 
     @property
     def sent(self) -> Array:
-        """The newest setpoint and its differences (6, 6), as `ramp_checks.advance` keeps them."""
+        """The newest setpoint and its differences (PHASES, 3, 6), as `ramp_checks.advance` keeps them."""
         return self._sent.copy()
 
     @property
@@ -148,7 +150,7 @@ class Governor:
         self._rest(min(max(tau, 0.0), self._end))
         kernels.evaluate_motion(self._table, self._step, self._state, self._motion)
         self._sent[:] = 0.0
-        self._sent[0] = self._sent[3] = self._motion[0, :6]
+        self._sent[:, 0] = self._motion[0, :6]
         self._held, self._reversing = True, False
 
     def restart_at(self, tau: float, *, held: bool) -> None:
@@ -201,30 +203,30 @@ class Governor:
         trajectory, where the motion rests.
         """
         if self.progress.at_rest:
-            return WayToRest(np.empty((0, 6)), self.tau)
+            return WayToRest(np.empty((0, 3, 6)), self.tau)
         if self._ramp_end == 0.0:
             return self._sampled(self._ramp_periods - self._done, 0)
         if periods := self._present_stop():
             return self._sampled(0, periods)
         for lead in STOP_LEADS:
             sent, state = self._sent.copy(), self._state.copy()
-            self._follow(lead, sent, state, np.empty((lead, 6)))
+            self._follow(lead, sent, state, np.empty((lead, 3, 7)))
             if state[1] == 0.0 or (periods := self._find_stop(state, sent)):
                 return self._sampled(lead, periods)
-        return self._sampled(MAX_PERIODS, 0)
+        return self._sampled(MAX_RAMP_PERIODS, 0)  # nothing but the end of the trajectory is one
 
     def _sampled(self, lead: int, periods: int) -> WayToRest:
         """Return the way to rest along the ramp for some periods, and then along `_stop` for some."""
-        sent, state, joints = self._sent.copy(), self._state.copy(), np.empty((lead + periods, 6))
-        count = self._follow(lead, sent, state, joints[:lead])
+        sent, state, motions = self._sent.copy(), self._state.copy(), np.empty((lead + periods, 3, 7))
+        count = self._follow(lead, sent, state, motions[:lead])
         if periods:
             stop = (self._stop, periods, 0, self._dt)
-            count += ramp_following.follow(self._table, self._step, *stop, sent, state, joints[lead:])
-        return WayToRest(joints[:count], min(max(float(state[0]), 0.0), self._end))
+            count += ramp_following.follow(self._table, self._step, *stop, sent, state, motions[lead:])
+        return WayToRest(motions[:count, :, :6], min(max(float(state[0]), 0.0), self._end))
 
-    def _follow(self, lead: int, sent: Array, state: Array, joints: Array) -> int:
+    def _follow(self, lead: int, sent: Array, state: Array, motions: Array) -> int:
         ramp = (self._ramp, self._ramp_periods, self._done, self._dt)
-        return ramp_following.follow(self._table, self._step, *ramp, sent, state, joints[:lead])
+        return ramp_following.follow(self._table, self._step, *ramp, sent, state, motions[:lead])
 
     def _present_stop(self) -> int:
         """Find a stop from the present state once; return its periods, or 0."""
@@ -252,6 +254,8 @@ class Governor:
             if kept[0] == ramp_checks.KEPT:
                 self._follow_trial()
         elif target == 0.0:
+            if within < np.inf and self._done % STOP_SEARCH_INTERVAL:
+                return
             periods = self._present_stop()
             if periods and periods * self._dt < within - MIN_TIME_SAVED:
                 self._ramp[:periods] = self._stop[:periods]
@@ -264,7 +268,9 @@ class Governor:
         given = (self._table, self._step, state, target, sent, self._limits, self._dt)
         peak = -1.0
         if within == np.inf:
-            peak = find_ramp(*given, within, MAX_RAMPS_PER_PERIOD, self._max_rate, self._trial)
+            longest = MAX_STOP_PERIODS * self._dt if target == 0.0 else within
+            tries = MAX_RAMPS_AMID_RAMP if state[2] else MAX_RAMPS_PER_PERIOD
+            peak = find_ramp(*given, longest, tries, self._max_rate, self._trial)
             if peak < 0.0:
                 return False
             within = float(self._trial[3:6].sum())

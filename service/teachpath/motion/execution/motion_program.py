@@ -75,7 +75,10 @@ class MotionProgram(Protocol):
         """The motion of the newest setpoint."""
 
     def way_to_rest(self) -> tuple[Array, RestPoint]:
-        """Return the positions (n, 6) of the way to rest from the newest setpoint [rad], and where it ends."""
+        """Return the states (n, 3, 6) of the way to rest from the newest setpoint, and where it ends.
+
+        They are position [rad], velocity and acceleration one control period apart, the first one period ahead.
+        """
 
     def restart(self, point: RestPoint) -> None:
         """Go on from where the arm rests at the end of a way to rest."""

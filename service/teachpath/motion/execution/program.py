@@ -98,7 +98,8 @@ class PlanProgram:
         """Why the arm is held without a call of `hold`, in words."""
         if self._override < MIN_OVERRIDE:
             return f"the override is {self._override:g}"
-        return "" if self._held else f"back at the beginning {self.location}; resume to go on"
+        # Told to go back, it is said to be held until its next step.
+        return f"back at the beginning {self.location}; resume to go on" if self.held and not self._held else ""
 
     @property
     def hold_requested(self) -> bool:
@@ -240,12 +241,12 @@ class PlanProgram:
         """Do nothing: a plan holds nothing that must be freed."""
 
     def way_to_rest(self) -> tuple[Array, RestPoint]:
-        """Return the positions (n, 6) of the way to rest from the newest setpoint, and where it ends."""
+        """Return the states (n, 3, 6) of the way to rest from the newest setpoint, and where it ends."""
         active = self._active_governor
-        way = active.way_to_rest() if active is not None else WayToRest(np.empty((0, 6)), 0.0)
-        end = way.positions[-1] if len(way.positions) else self.state.position
+        way = active.way_to_rest() if active is not None else WayToRest(np.empty((0, 3, 6)), 0.0)
+        end = way.states[-1, 0] if len(way.states) else self.state.position
         taus = tuple((governor, way.tau if governor is active else governor.tau) for governor in self._governors())
-        return way.positions, RestPoint(end, self._next - 1, self._detour, taus, self._elapsed, self.state.on_path)
+        return way.states, RestPoint(end, self._next - 1, self._detour, taus, self._elapsed, self.state.on_path)
 
     def restart(self, point: RestPoint) -> None:
         """Go on from where the arm rests, as the program was at that setpoint, whatever it has done since."""

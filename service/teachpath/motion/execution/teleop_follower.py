@@ -19,28 +19,24 @@ from teachpath.errors import PathRefused
 from teachpath.motion.arm.kinematics import tool_pose
 from teachpath.motion.arm.puma560 import Array
 from teachpath.motion.collision.collision_model import CollisionModel, Load
-from teachpath.motion.execution.teleop_checks import PayloadCheck, limit_passed, obstruction, samples_to_check
+from teachpath.motion.execution.teleop_checks import PayloadCheck, SweptCheck, limit_passed
 from teachpath.motion.execution.teleop_goal import (
     MIN_TURN,
-    STAYS_SHORT,
-    TURNS_LESS,
     ReachableGoal,
     branch_at,
     nearest_reachable,
 )
 from teachpath.motion.execution.teleop_pace import Pace
 from teachpath.motion.execution.tool_motion import ToolMotion, ToolState, plan_tool_motion
+from teachpath.motion.execution.tried_shares import TriedShares
 from teachpath.motion.settings import MotionSettings
 
 LEAD_PERIODS: Final = 5  # control periods from the beginning of planning to the beginning of the motion
-CHECKS_PER_SLICE: Final = 5  # configurations that are checked in one slice of planning
-MIN_SHARE: Final = 0.02  # of the way to the target that is tried at least
-BACKOFF_FACTOR: Final = 0.5  # on the share of the way that is tried, after something was too near
-GROWTH_FACTOR: Final = 1.5  # on what was reduced, after a motion that passed its checks
-MIN_TURN_SHARE: Final = 0.1  # of the hand's turn; below it none is tried
+CHECKS_PER_SLICE: Final = 10  # configurations that are checked in one slice of planning
 MAX_TOOL_LEAD: Final = 0.2  # [m] of one motion
 MAX_TURN_LEAD: Final = 0.3  # [rad] of the tool in one motion
 TRIALS_PER_PLAN: Final = 3  # of a motion, each slower than the one before
+STEPS_ARE_CHECKED: Final = "every step is checked first and the tool is slow"
 MIN_MOVE: Final = 1e-4  # [rad] below which there is nothing to move
 REST_SPEED: Final = 1e-9  # [rad/s]
 
@@ -98,7 +94,7 @@ class TeleopFollower:
         self._period = period
         limits = model.arm.limits.motion.scaled(share, share, share)
         self._pace = Pace(limits, model.arm, period)
-        self._payload_check = PayloadCheck(model.arm, limits.acceleration)
+        self._payload_check = PayloadCheck(model.arm)
         pose = tool_pose(start_q, model.arm)
         self._branch = branch_at(start_q, pose, model.arm)
         self._orientation = pose[:3, :3]  # (3, 3) of the tool where it rests, or where the present motion ends
@@ -112,8 +108,7 @@ class TeleopFollower:
         self._hand_orientation: Array | None = None  # (3, 3) when its turns began to be followed
         self._target: _Pose | None = None  # where the tool should be
         self._target_stamp = 0
-        self._share = 1.0  # of the way to the target that is tried
-        self._turn_share = 1.0  # of the hand's turn that is tried
+        self._shares = TriedShares()
         self.load: Load | None = None
         self.reason = ""
         self.answered_stamp = 0
@@ -143,7 +138,12 @@ class TeleopFollower:
 
     def disengage(self) -> None:
         """Cease to follow: the arm finishes its present motion, and rests."""
-        self._anchor = self._target = self._planning = self._planned = None
+        self._anchor = None
+        self.pause()
+
+    def pause(self) -> None:
+        """Finish the present motion and rest, until the hand is set again: the tool then goes on as it followed."""
+        self._target = self._planning = self._planned = None
         self.reason = ""
 
     def set_hand(self, hand: Array, stamp: int, orientation: Array | None = None) -> None:
@@ -177,14 +177,15 @@ class TeleopFollower:
         if self._motion is not None:
             self._sample += 1
             run, k = self._motion, self._sample
-            self._state = (run.positions[k], run.velocities[k], run.accelerations[k])
+            position, velocity, acceleration = run.states[k]
+            self._state = (position, velocity, acceleration)
             if k == len(run) - 1:
                 self._motion = None
         return self._state
 
     def way_to_rest(self) -> Array:
-        """Return the positions (n, 6) that are left of the motion that is followed; it ends at rest [rad]."""
-        return self._motion.positions[self._sample + 1 :] if self._motion else np.empty((0, 6))
+        """Return the states (n, 3, 6) that are left of the motion that is followed; it ends at rest."""
+        return self._motion.states[self._sample + 1 :] if self._motion else np.empty((0, 3, 6))
 
     def rest_at(self, position: Array) -> None:
         """Stand at a configuration (6,) at once; only for an arm that rests there already."""
@@ -203,87 +204,74 @@ class TeleopFollower:
 
     def _plan(self, target: _Pose, stamp: int) -> Iterator[None]:
         begins, begin = self._cycle + LEAD_PERIODS, self._state_after(LEAD_PERIODS - 1)
-        sent = np.array([self._position_after(LEAD_PERIODS - k) for k in (3, 2, 1)])
-        arm, here = self._model.arm, sent[-1]
+        arm, here = self._model.arm, begin.joints[0]
         pose = tool_pose(here, arm)
         pose[:3, :3] = begin.orientation
         wanted = _turn(begin.orientation, target.orientation)
         goal = nearest_reachable(
             here,
             pose,
-            self._share * _capped(target.position - pose[:3, 3], MAX_TOOL_LEAD),
-            self._turn_share * _capped(wanted, MAX_TURN_LEAD),
+            self._shares.way * _capped(target.position - pose[:3, 3], MAX_TOOL_LEAD),
+            self._shares.turn * _capped(wanted, MAX_TURN_LEAD),
             arm,
             self._branch,
             self._settings.least_singular,
         )
         yield
         if not goal.moves:
-            self._share = max(BACKOFF_FACTOR * self._share, MIN_SHARE)
+            self._shares.shorten("")
         if self.at_rest and np.abs(goal.joints - here).max() < MIN_MOVE:
-            self.reason = goal.reason
+            self.reason = goal.reason or self._shares.reason
+            self._shares.grow()  # what is too small to move may be a small share of what is not
             return
         for _ in range(TRIALS_PER_PLAN):
             motion = self._motion_to(begin, goal)
             if motion is None:
                 return
-            if self._pace.keeps(sent, motion):
+            if self._pace.keeps(motion):
                 break
             yield
         else:
             return
-        samples = samples_to_check(motion.positions)
-        for first in range(0, len(samples), CHECKS_PER_SLICE):
-            some = samples[first : first + CHECKS_PER_SLICE]
-            near = limit_passed(motion.positions, arm) or self._payload_check(some)
-            near = near or obstruction(self._model, some, self.load, self._settings)
-            if near:
-                self._back_off(near, turns=bool(np.any(goal.turn)))
-                return
+        check = SweptCheck(motion.joints, self._model, self.load, self._settings)
+        near = limit_passed(motion.joints.hull(), arm) or self._payload_check(motion.joints)
+        while not (near or check.is_done) and self._cycle < begins - 1:
             yield
-        if self._cycle < begins and self._anchor is not None:
+            near = check.advance(CHECKS_PER_SLICE)
+        if near:
+            self._shares.back_off(near, turns=bool(np.any(goal.turn)))
+            self.reason = self._shares.reason
+        elif not check.is_done:  # near to something much has to be measured: a shorter motion takes less
+            self._shares.shorten(", so ".join(filter(None, (check.nearest, STEPS_ARE_CHECKED))))
+            self.reason = self._shares.reason
+        elif self._anchor is not None:
             self._take_up(_PlannedMotion(begins, motion, stamp), self._hindrance(goal, wanted))
 
     def _motion_to(self, begin: ToolState, goal: ReachableGoal) -> ToolMotion | None:
         flip = self._branch % 2 == 1
         limits, reach, arm = self._pace.limits, self._pace.reach, self._model.arm
-        joints = begin.joints[0] + reach * (goal.joints[:3] - begin.joints[0])
+        here = begin.joints[0, :3]
+        joints = here + reach * (goal.joints[:3] - here)
         return plan_tool_motion(begin, joints, reach * goal.turn, limits, arm, flip=flip, period=self._period)
 
     def _hindrance(self, goal: ReachableGoal, wanted: Array) -> str:
         """Say why the tool will not be where the hand is although a motion passed its checks; else nothing."""
         if goal.reason:
             return goal.reason
-        if self._turn_share < 1.0 and np.linalg.norm(wanted) > MIN_TURN:
-            return self.reason  # of the turn that was too near to something
+        if self._shares.reason and (self._shares.way < 1.0 or np.linalg.norm(wanted) > MIN_TURN):
+            return self._shares.reason
         return self._pace.reason
 
     def _take_up(self, planned: _PlannedMotion, reason: str) -> None:
         self._planned, self.reason = planned, reason
-        self._share = min(GROWTH_FACTOR * self._share, 1.0)
-        self._turn_share = min(max(GROWTH_FACTOR * self._turn_share, MIN_TURN_SHARE), 1.0)
+        self._shares.grow()
         self._pace.recover()
-
-    def _back_off(self, near: str, *, turns: bool) -> None:
-        """Try less next time: less of the hand's turn first, and less of its way only when there is no turn."""
-        if turns:
-            share = BACKOFF_FACTOR * self._turn_share
-            self._turn_share = share if share >= MIN_TURN_SHARE else 0.0
-        else:
-            self._share = max(BACKOFF_FACTOR * self._share, MIN_SHARE)
-        self.reason = f"{near}, {TURNS_LESS if turns else STAYS_SHORT}"
 
     def _state_after(self, cycles: int) -> ToolState:
         """Return the state `cycles` control periods ahead."""
         if self._motion is None:
             return ToolState.resting(self._state[0], self._orientation)
         return self._motion.tool_state(self._sample + cycles)
-
-    def _position_after(self, cycles: int) -> Array:
-        if self._motion is None:
-            return self._state[0]
-        row: Array = self._motion.positions[min(self._sample + cycles, len(self._motion) - 1)]
-        return row
 
 
 def _turn(orientation: Array, target: Array) -> Array:

@@ -1,4 +1,4 @@
-"""Slows a live hand's motions down until the wrist keeps its limits, and the arm the limit of its speed in space."""
+"""Slows a live hand's motions down until the joints keep their limits, and the arm the limit of its speed in space."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ import numpy as np
 from teachpath.motion.arm.limits import MotionLimits
 from teachpath.motion.arm.model import Arm
 from teachpath.motion.arm.puma560 import Array
-from teachpath.motion.arm.tool_speed import difference_speeds
 from teachpath.motion.execution.tool_motion import ToolMotion
 
 MIN_SHARE: Final = 0.05  # of the limits that is tried at least
 MIN_SPEED: Final = 1e-3  # [rad/s] that is tried at least
 MARGIN: Final = 0.97  # on what would just keep the limits
+LEADING_SHARE: Final = 0.995  # of the limits that Ruckig may use, whose jerk changes within a period, too
 TOOL_SPEED_SHARE: Final = 0.99  # of the limit of the speed in space that a motion may use
 MAX_DURATION: Final = 0.5  # [s] of a motion: the arm finishes it when the clutch is let go
 USUAL_DURATION: Final = 0.45  # [s] of the next trial after one that lasts longer
@@ -40,7 +40,7 @@ class Pace:
         self._arm = arm
         self._period = period
         # The tool turns within the limits of the slowest joint of the wrist.
-        self._widest = np.array(
+        self._widest = LEADING_SHARE * np.array(
             [[*row[:3], *[row[3:].min()] * 3] for row in (limits.speed, limits.acceleration, limits.jerk)]
         )
         self._speeds = self._widest[0]
@@ -60,20 +60,13 @@ class Pace:
         """That the wrist slows the tool down, in words, while it slows it much; else empty."""
         return f"joint {self._joint} turns as fast as it may, so the tool is slow" if self._share < SLOW_SHARE else ""
 
-    def keeps(self, sent: Array, motion: ToolMotion) -> bool:
-        """Tell whether a motion keeps all limits, by differences of its setpoints, and is soon over; else adapt.
-
-        Args:
-            sent: (3, 6) the positions before the motion, one period apart [rad].
-        """
-        positions = np.concatenate([sent, motion.positions, np.tile(motion.positions[-1], (3, 1))])
-        uses, speeding, duration = (
-            self._wrist_uses(positions),
-            self._speeding(positions[2:]),
-            len(motion) * self._period,
-        )
+    def keeps(self, motion: ToolMotion) -> bool:
+        """Tell whether a motion keeps all limits at every moment, and is soon over; else adapt."""
+        uses = motion.joints.limit_uses(self._limits)
+        speeding = motion.joints.tool_speed_bound(self._arm) / (TOOL_SPEED_SHARE * self._limits.tool_speed)
+        duration = len(motion) * self._period
         if uses.max() > 1.0:
-            self._joint = 4 + int(np.argmax(uses))
+            self._joint = 1 + int(np.argmax(uses))
             self._share = max(MARGIN * self._share / float(uses.max()), MIN_SHARE)
         if speeding > 1.0:
             self._speeds = np.maximum(motion.leading_speeds * MARGIN / speeding, MIN_SPEED)
@@ -86,19 +79,3 @@ class Pace:
         self._share = min(RECOVERY * self._share, 1.0)
         self._speeds = np.minimum(RECOVERY * self._speeds, self._widest[0])
         self.reach = min(REACH_RECOVERY * self.reach, 1.0)
-
-    def _wrist_uses(self, positions: Array) -> Array:
-        """Return the largest use (3,) that joints 4 to 6 make of a limit in positions (n, 6), by differences."""
-        every = []
-        for k, limit in enumerate((self._limits.speed, self._limits.acceleration, self._limits.jerk)):
-            every.append(
-                np.abs(np.diff(positions[:, 3:], k + 1, axis=0)).max(axis=0) / self._period ** (k + 1) / limit[3:]
-            )
-        return np.asarray(np.max(every, axis=0), dtype=np.float64)
-
-    def _speeding(self, positions: Array) -> float:
-        """Return by what factor the arm exceeds its speed in space in positions (n, 6)."""
-        limit = TOOL_SPEED_SHARE * self._limits.tool_speed
-        if np.isinf(limit):
-            return 0.0
-        return float(difference_speeds(positions, 1.0 / self._period, self._arm).max()) / limit

@@ -1,7 +1,8 @@
 """Motions to rest on which the tool turns only as it is told to: the wrist makes up for what joints 1 to 3 turn.
 
 Ruckig leads joints 1 to 3 and the rotation vector of the tool; joints 4 to 6 follow from both. So the tool keeps its
-orientation on the whole way, and not at its ends alone, where no turn is asked for.
+orientation on the whole way, and not at its ends alone, where no turn is asked for. What is sent is the motion nearest
+to that whose jerk is constant in every control period (`constant_jerk.py`).
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ from scipy.spatial.transform import Rotation
 from teachpath.motion.arm.kinematics import wrist_joints
 from teachpath.motion.arm.model import Arm
 from teachpath.motion.arm.puma560 import Array
+from teachpath.motion.timing.constant_jerk import MIN_PERIODS, ConstantJerkMotion
 
 DIFFERENCE_STEP: Final = 1e-4  # [s] of the differences that give velocity and acceleration of the wrist
 STILL: Final = np.zeros(3)
@@ -23,24 +25,22 @@ STILL: Final = np.zeros(3)
 
 @dataclass(frozen=True, eq=False)
 class ToolState:
-    """Where joints 1 to 3 and the tool's orientation are at one instant, and how they move.
+    """Where the joints and the tool's orientation are at one instant, and how they move.
 
     Attributes:
-        joints: (3, 3) position [rad], velocity and acceleration of joints 1 to 3, one a row.
+        joints: (3, 6) position [rad], velocity and acceleration of the joints, one a row.
         orientation: (3, 3) to world from the tool.
         turning: (2, 3) angular velocity [rad/s] and acceleration of the tool, in axes of the world.
-        wrist: (3,) joints 4 to 6 [rad].
     """
 
     joints: Array
     orientation: Array
     turning: Array
-    wrist: Array
 
     @classmethod
     def resting(cls, q: Array, orientation: Array) -> ToolState:
         """Return the state of an arm that rests at a configuration (6,)."""
-        return cls(np.array([q[:3], STILL, STILL]), orientation, np.zeros((2, 3)), np.array(q[3:]))
+        return cls(np.array([q, *np.zeros((2, 6))]), orientation, np.zeros((2, 3)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,17 +48,25 @@ class ToolMotion:
     """A motion to rest, in samples one control period apart; the first is one period after its beginning.
 
     Attributes:
-        positions: (n, 6) [rad]; velocities, accelerations: likewise.
+        joints: what they do.
     """
 
-    positions: Array
-    velocities: Array
-    accelerations: Array
+    joints: ConstantJerkMotion
     _turns: Array  # (n, 3, 3) rotation vector of the tool from `_reference`, its rate and second derivative
     _reference: Array  # (3, 3)
 
     def __len__(self) -> int:
-        return len(self.positions)
+        return len(self.joints)
+
+    @property
+    def states(self) -> Array:
+        """Position [rad], velocity and acceleration (n, 3, 6) at the samples."""
+        return self.joints.states[1:]
+
+    @property
+    def positions(self) -> Array:
+        """Configurations (n, 6) at the samples [rad]."""
+        return self.states[:, 0]
 
     def tool_state(self, sample: int) -> ToolState:
         """Return the state at a sample, counted from 0; beyond the last one the arm rests."""
@@ -67,13 +75,12 @@ class ToolMotion:
         before, now, after = _orientations(self._turns[sample : sample + 1], self._reference)[0]
         ahead, behind = (Rotation.from_matrix(m).as_rotvec() for m in (after @ now.T, now @ before.T))
         turning = np.array([(ahead + behind) / 2, (ahead - behind) / DIFFERENCE_STEP]) / DIFFERENCE_STEP
-        rows = np.array([every[sample] for every in (self.positions, self.velocities, self.accelerations)])
-        return ToolState(rows[:, :3], now, turning, rows[0, 3:])
+        return ToolState(self.states[sample], now, turning)
 
     @property
     def leading_speeds(self) -> Array:
         """Largest speeds (6,) of joints 1 to 3 and of the tool's turn [rad/s]."""
-        rates = np.hstack([self.velocities[:, :3], self._turns[:, 1]])
+        rates = np.hstack([self.states[:, 1, :3], self._turns[:, 1]])
         return np.asarray(np.abs(rates).max(axis=0), dtype=np.float64)
 
     @property
@@ -100,33 +107,30 @@ def plan_tool_motion(
     run = _state_to_rest(begin, goal, turn, limits)
     if run is None:
         return None
-    count = max(1, int(np.ceil(run.duration / period)))
-    instants = [min((k + 1) * period, run.duration) for k in range(count)]
-    rows = np.array([run.at_time(t)[:3] for t in instants])  # (n, 3 derivatives, 6)
-    rows[-1, 1:] = 0.0
-    arm_joints = _neighbours(rows[:, :, :3])  # (n, 3 instants, 3)
+    count = max(MIN_PERIODS, int(np.ceil(run.duration / period)))
+    instants = [min(k * period, run.duration) for k in range(count + 1)]
+    rows = np.array([run.at_time(t)[:3] for t in instants])  # (n + 1, 3 derivatives, 6)
+    rows[np.array(instants) == run.duration, 1:] = 0.0
+    arm_joints = _neighbours(rows[:, :, :3])  # (n + 1, 3 instants, 3)
     orientations = _orientations(rows[:, :, 3:], begin.orientation)
     solved = wrist_joints(
-        arm_joints.reshape(-1, 3), orientations.reshape(-1, 3, 3), arm, flip=flip, previous_q4=float(begin.wrist[0])
+        arm_joints.reshape(-1, 3), orientations.reshape(-1, 3, 3), arm, flip=flip, previous_q4=float(begin.joints[0, 3])
     )
-    wrist = np.unwrap(np.concatenate([begin.wrist[None], solved]), axis=0)[1:].reshape(count, 3, 3)
+    wrist = np.unwrap(np.concatenate([begin.joints[None, 0, 3:], solved]), axis=0)[1:].reshape(-1, 3, 3)
     before, now, after = wrist[:, 0], wrist[:, 1], wrist[:, 2]
-    speed, acceleration = (after - before) / (2 * DIFFERENCE_STEP), (after - 2 * now + before) / DIFFERENCE_STEP**2
-    speed[-1] = acceleration[-1] = 0.0
-    return ToolMotion(
-        np.hstack([rows[:, 0, :3], now]),
-        np.hstack([rows[:, 1, :3], speed]),
-        np.hstack([rows[:, 2, :3], acceleration]),
-        rows[:, :, 3:],
-        begin.orientation,
-    )
+    bends = (after - 2 * now + before) / DIFFERENCE_STEP**2
+    bends[rows[:, 1:].any(axis=(1, 2)) == 0] = 0.0
+    accelerations = np.hstack([rows[:, 2, :3], bends])
+    rest = np.hstack([rows[-1, 0, :3], now[-1]])
+    joints = ConstantJerkMotion.near(begin.joints, accelerations, rest, period)
+    return ToolMotion(joints, rows[1:, :, 3:], begin.orientation)
 
 
 def _state_to_rest(begin: ToolState, goal: Array, turn: Array, limits: Array) -> Trajectory | None:
     inputs = InputParameter(6)
-    inputs.current_position = [*begin.joints[0], 0.0, 0.0, 0.0]
-    inputs.current_velocity = [*begin.joints[1], *begin.turning[0]]
-    inputs.current_acceleration = [*begin.joints[2], *begin.turning[1]]
+    inputs.current_position = [*begin.joints[0, :3], *STILL]
+    inputs.current_velocity = [*begin.joints[1, :3], *begin.turning[0]]
+    inputs.current_acceleration = [*begin.joints[2, :3], *begin.turning[1]]
     inputs.target_position = [*goal, *turn]
     inputs.max_velocity, inputs.max_acceleration, inputs.max_jerk = limits.tolist()
     run = Trajectory(6)

@@ -12,24 +12,28 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import BSpline
 
+from teachpath.lengths import describe_length
 from teachpath.motion.arm.kinematics import BRANCH_NAMES, describe_reach, inverse_kinematics, min_singular_value
 from teachpath.motion.arm.limits import JointLimits
 from teachpath.motion.arm.model import Arm
 from teachpath.motion.arm.puma560 import Array
+from teachpath.motion.paths.numeric_branches import follow_near, track_solutions
 from teachpath.motion.paths.tool_path import ToolPath
 from teachpath.motion.settings import MotionSettings
+from teachpath.records import SerialArm
 
 MAX_JOINT_STEP: Final = 0.35  # rad between two nodes; a larger one is a jump, at which the branch ends
 
 
 @dataclass(frozen=True, eq=False)
 class IkBranch:
-    """One branch of inverse kinematics along a tool path, before any roll of the tool.
+    """One branch of inverse kinematics along a tool path.
 
     Attributes:
         arm: whose branch it is.
-        index: of shoulder, elbow and wrist in `BRANCH_NAMES`.
-        unrolled_joints: (n, 6) configurations [rad]; out of reach, the arm is stretched or folded towards the pose.
+        index: of shoulder, elbow and wrist in `BRANCH_NAMES`; of a user's model, of the solution at the path's start.
+        joints: (n, 6) configurations [rad], before any roll of the tool where joint 6 alone rolls it (`rolled_poses`);
+            out of reach, the arm is stretched or folded towards the pose.
         reach_excess: (n,) how far the wrist centre is out of reach [m]; at most 0 within reach.
         beyond_outer_reach: (n,) True where it is too far away, False where it is too near to the arm's axis.
         jumps: (n,) True where a joint jumps between a node and the next.
@@ -37,15 +41,22 @@ class IkBranch:
 
     arm: Arm
     index: int
-    unrolled_joints: Array
+    joints: Array
     reach_excess: Array
     beyond_outer_reach: NDArray[np.bool_]
     jumps: NDArray[np.bool_]
 
+    @property
+    def name(self) -> str:
+        """Shoulder, elbow and wrist in words; of a user's model, the number of the solution and the model."""
+        if self.arm.model is None:
+            return BRANCH_NAMES[self.index]
+        return f"{self.arm.identity} solution {self.index + 1}"
+
     @cached_property
     def singular_values(self) -> Array:
-        """Least singular value of the Jacobian (n,); joint 6 does not change it."""
-        return min_singular_value(self.unrolled_joints, self.arm)
+        """Least singular value of the Jacobian (n,); a roll by joint 6 alone does not change it."""
+        return min_singular_value(self.joints, self.arm)
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,7 +87,7 @@ class Candidate:
 
     Attributes:
         description: shoulder, elbow, wrist and tool roll in words.
-        branch: of inverse kinematics, which does not depend on the roll.
+        branch: of inverse kinematics.
         roll: of the tool about its own axis.
         joints: (n, 6) continuous configurations [rad].
         limit_excess: (n, 6) by how much each joint is beyond its limit [rad]; negative within.
@@ -107,38 +118,89 @@ class Candidate:
 
 def enumerate_candidates(path: ToolPath, arm: Arm, settings: MotionSettings) -> list[Candidate]:
     """Return a candidate for every branch of `arm` and every constant roll of the settings, along a tool path."""
-    solutions = inverse_kinematics(path.poses(path.parameters), arm)
-    outside = solutions.reach_excess[:, 0]
-    found = []
-    for index, name in enumerate(BRANCH_NAMES):
-        unrolled = np.unwrap(solutions.joints[:, index], axis=0)
-        jumps = np.append(np.abs(np.diff(unrolled, axis=0)).max(axis=1) > MAX_JOINT_STEP, False)
-        branch = IkBranch(arm, index, unrolled, outside, solutions.beyond_outer_reach, jumps)
-        found += [rolled_candidate(path, name, branch, ToolRoll(angle)) for angle in settings.rolls]
-    return found
+    rolls = [ToolRoll(angle) for angle in settings.rolls]
+    if arm.rolls_by_joint_6:
+        return [_candidate(path, branch, roll) for branch in _branches(path, arm, ToolRoll()) for roll in rolls]
+    if arm.model is not None:
+        return _numeric_candidates(path, arm, arm.model, rolls)
+    each = zip(*[_branches(path, arm, roll) for roll in rolls], strict=True)
+    return [_candidate(path, branch, roll) for same in each for branch, roll in zip(same, rolls, strict=True)]
 
 
-def rolled_candidate(path: ToolPath, name: str, branch: IkBranch, roll: ToolRoll) -> Candidate:
-    """Return the candidate of a branch with a roll of the tool; `name` is that of the branch."""
-    limits = branch.arm.limits
-    joints = shift_within_limits(roll_tool(branch.unrolled_joints, roll(path.parameters)), limits)
-    excess = np.maximum(joints - limits.upper, limits.lower - joints)
-    return Candidate(f"{name}, {roll}", branch, roll, joints, excess)
+def rolled_candidate(path: ToolPath, branch: IkBranch, roll: ToolRoll) -> Candidate:
+    """Return the candidate of a branch with another roll of the tool."""
+    if not branch.arm.rolls_by_joint_6:
+        branch = _branches(path, branch.arm, roll)[branch.index]
+    return _candidate(path, branch, roll)
 
 
 def configurations(path: ToolPath, candidate: Candidate, u: Array) -> Array:
     """Return the configurations (m, 6) of a candidate at parameters (m,) that increase from the start of its curve."""
-    unrolled = np.unwrap(
-        inverse_kinematics(path.poses(u), candidate.branch.arm).joints[:, candidate.branch.index], axis=0
-    )
-    return shift_near(roll_tool(unrolled, candidate.roll(u)), candidate.joints[0])
+    arm, roll = candidate.branch.arm, candidate.roll(u)
+    if arm.model is not None:
+        seeds = np.stack([np.interp(u, path.parameters, joint) for joint in candidate.joints.T], axis=1)
+        return follow_near(rolled_poses(path.poses(u), roll, arm), seeds, arm.model)
+    solutions = inverse_kinematics(rolled_poses(path.poses(u), roll, arm), arm)
+    continuous = np.unwrap(solutions.joints[:, candidate.branch.index], axis=0)
+    return shift_near(roll_tool(continuous, roll, arm), candidate.joints[0])
 
 
-def roll_tool(joints: Array, roll: Array) -> Array:
-    """Roll the tool about its own axis by `roll` (...,) [rad]: joint 6 turns by the opposite angle."""
-    turned = joints.copy()
-    turned[..., 5] -= roll
+def rolled_poses(poses: Array, roll: Array, arm: Arm) -> Array:
+    """Return the poses (..., 4, 4) that inverse kinematics solves for, with the tool rolled by `roll` (...,) [rad].
+
+    Where joint 6 alone rolls the tool, they are the poses themselves, and `roll_tool` turns joint 6 afterwards.
+    """
+    if arm.rolls_by_joint_6:
+        return poses
+    turned = poses.copy()
+    c, s = np.cos(roll)[..., None], np.sin(roll)[..., None]
+    turned[..., :3, 0] = c * poses[..., :3, 0] - s * poses[..., :3, 1]
+    turned[..., :3, 1] = s * poses[..., :3, 0] + c * poses[..., :3, 1]
     return turned
+
+
+def roll_tool(joints: Array, roll: Array, arm: Arm) -> Array:
+    """Roll the tool about its own axis by `roll` (...,) [rad], where joint 6 does it: by the opposite angle.
+
+    Args:
+        joints: (..., 6) that solve `rolled_poses` [rad].
+    """
+    turned = joints.copy()
+    if arm.rolls_by_joint_6:
+        turned[..., 5] -= roll
+    return turned
+
+
+def _branches(path: ToolPath, arm: Arm, roll: ToolRoll) -> list[IkBranch]:
+    """Return every branch of an arm along a path, with the tool rolled where joint 6 alone does not roll it."""
+    poses = rolled_poses(path.poses(path.parameters), roll(path.parameters), arm)
+    solutions = inverse_kinematics(poses, arm)
+    outside, found = solutions.reach_excess[:, 0], []
+    for index in range(len(BRANCH_NAMES)):
+        joints = np.unwrap(solutions.joints[:, index], axis=0)
+        found.append(IkBranch(arm, index, joints, outside, solutions.beyond_outer_reach, _jumps(joints)))
+    return found
+
+
+def _numeric_candidates(path: ToolPath, arm: Arm, model: SerialArm, rolls: Sequence[ToolRoll]) -> list[Candidate]:
+    poses = path.poses(path.parameters)
+    ways = [rolled_poses(poses, roll(path.parameters), arm) for roll in rolls]
+    found, nearer = list[Candidate](), np.zeros(len(poses), dtype=np.bool_)
+    for number, each in enumerate(track_solutions(ways, model)):
+        branch = IkBranch(arm, number, each.joints, each.excess, nearer, _jumps(each.joints))
+        found.append(_candidate(path, branch, rolls[each.way]))
+    return found
+
+
+def _jumps(joints: Array) -> NDArray[np.bool_]:
+    return np.append(np.abs(np.diff(joints, axis=0)).max(axis=1) > MAX_JOINT_STEP, False)
+
+
+def _candidate(path: ToolPath, branch: IkBranch, roll: ToolRoll) -> Candidate:
+    limits = branch.arm.limits
+    joints = shift_within_limits(roll_tool(branch.joints, roll(path.parameters), branch.arm), limits)
+    excess = np.maximum(joints - limits.upper, limits.lower - joints)
+    return Candidate(f"{branch.name}, {roll}", branch, roll, joints, excess)
 
 
 def shift_near(joints: Array, first: Array) -> Array:
@@ -191,7 +253,10 @@ def describe_fault(candidate: Candidate, path: ToolPath, node: int, fault: str, 
     """Describe the fault at a node, and where it is."""
     where = path.describe_node(node)
     if fault == "reach":
-        s = float(path.lengths[node])
+        s, arm = float(path.lengths[node]), candidate.branch.arm
+        if arm.model is not None:
+            off = describe_length(float(candidate.branch.reach_excess[node]))
+            return f"no configuration of {arm.name} was found that brings the tool nearer than {off} at s = {s:.3f} m"
         return describe_reach(
             float(candidate.branch.reach_excess[node]), bool(candidate.branch.beyond_outer_reach[node]), s
         )

@@ -11,8 +11,10 @@ from numpy.polynomial.legendre import leggauss
 from scipy.interpolate import BSpline, CubicHermiteSpline, make_interp_spline
 
 from teachpath.errors import PathRefused
-from teachpath.motion.arm.kinematics import downward_poses, rotation_matrices
+from teachpath.lengths import describe_lengths
+from teachpath.motion.arm.kinematics import downward_poses
 from teachpath.motion.arm.puma560 import Array
+from teachpath.motion.arm.rotations import rotation_matrices
 from teachpath.motion.settings import MotionSettings
 from teachpath.nurbs import Curve, unit_quaternions
 
@@ -149,9 +151,8 @@ def arc_length(curve: Curve) -> ArcLength:
         raise PathRefused(f"a path in the world has 3 dimensions, this one has {curve.control_points.shape[1]}")
     arc = ArcLength(curve)
     if arc.total < MIN_PATH_LENGTH:
-        raise PathRefused(
-            f"the path is {1000 * arc.total:.1f} mm long, the shortest followed is {1000 * MIN_PATH_LENGTH:.0f} mm"
-        )
+        length, shortest = describe_lengths(arc.total, MIN_PATH_LENGTH)
+        raise PathRefused(f"the path is {length} long, the shortest followed is {shortest}")
     still = arc.cusp()
     if still is not None:
         raise PathRefused(

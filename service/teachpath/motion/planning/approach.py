@@ -11,6 +11,7 @@ from teachpath.errors import PathRefused
 from teachpath.motion.arm.kinematics import inverse_kinematics, tool_pose
 from teachpath.motion.arm.model import Arm
 from teachpath.motion.arm.puma560 import Array
+from teachpath.motion.arm.serial_ik import CLOSED, solve_near
 from teachpath.motion.collision.collision_model import CollisionModel, Load
 from teachpath.motion.refusals import first_accepted
 from teachpath.motion.settings import MotionSettings
@@ -35,14 +36,23 @@ def approach_configurations(q: Array, arm: Arm, settings: MotionSettings) -> lis
     directions = LIFT_DIRECTIONS / np.linalg.norm(LIFT_DIRECTIONS, axis=1)[:, None] @ axes
     poses = np.repeat(pose[None], len(directions) * len(LIFT_SHARES), axis=0)
     poses[:, :3, 3] += (np.array(LIFT_SHARES)[None, :, None] * settings.lift * directions[:, None]).reshape(-1, 3)
+    found = _nearest_solutions(poses, q, arm)
+    within = [each for each in found if np.all(each >= arm.limits.lower) and np.all(each <= arm.limits.upper)]
+    return [*within, q.copy()]
+
+
+def _nearest_solutions(poses: Array, q: Array, arm: Arm) -> list[Array]:
+    """Return the configurations (6,) nearest to `q` (6,) at those of poses (m, 4, 4) that the arm reaches."""
+    if arm.model is not None:
+        joints, off = solve_near(poses, np.repeat(q[None], len(poses), axis=0), arm.model)
+        return list(joints[off <= CLOSED])
     solutions = inverse_kinematics(poses, arm, previous_q4=float(q[3]))
     found = []
-    for joints, excess in zip(solutions.joints, solutions.reach_excess[:, 0], strict=True):
-        turned = joints + 2 * np.pi * np.round((q - joints) / (2 * np.pi))
-        nearest = turned[int(np.argmin(np.abs(turned - q).max(axis=1)))]
-        if excess <= 0 and np.all(nearest >= arm.limits.lower) and np.all(nearest <= arm.limits.upper):
-            found.append(nearest)
-    return [*found, q.copy()]
+    for branches, excess in zip(solutions.joints, solutions.reach_excess[:, 0], strict=True):
+        turned = branches + 2 * np.pi * np.round((q - branches) / (2 * np.pi))
+        if excess <= 0:
+            found.append(turned[int(np.argmin(np.abs(turned - q).max(axis=1)))])
+    return found
 
 
 def find_approach(model: CollisionModel, start: Array, settings: MotionSettings) -> Array:
@@ -54,8 +64,12 @@ def find_approach(model: CollisionModel, start: Array, settings: MotionSettings)
     carried = model.scene.carried
     load, home = Load(position=carried.position) if carried else None, np.array(settings.home)
 
+    # The home of the Puma 560 is above the table; where a user's model has its own, only the user knows.
+    from_home = "" if model.arm.model is None else " from its home (say a free one as home of the settings)"
+    to_start = f"on the way{from_home} to the path's start"
+
     def checked(stop: Array) -> Array:
-        for a, b, what in ((home, stop, "on the way to the path's start"), (stop, start, "above the start")):
+        for a, b, what in ((home, stop, to_start), (stop, start, "above the start")):
             prove_move_clear(
                 model, np.stack([a, b]), settings, load=load, gripper_open=carried is not None, move_name=what
             )

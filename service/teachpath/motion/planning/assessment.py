@@ -8,6 +8,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from teachpath.lengths import describe_length
 from teachpath.motion.arm.model import Arm
 from teachpath.motion.collision.collision_model import Clearance, CollisionModel, grasped_load
 from teachpath.motion.paths.ik_branches import Candidate, enumerate_candidates, nearest_to_usable, node_faults
@@ -18,6 +19,7 @@ from teachpath.motion.planning.failure import (
     kinematic_failure,
     support_failure,
 )
+from teachpath.motion.planning.model_arms import check_plannable, with_home
 from teachpath.motion.planning.start_grasp import grasping_candidates, start_failure
 from teachpath.motion.refusals import describe
 from teachpath.motion.settings import MotionSettings
@@ -62,9 +64,12 @@ def assess(
 
     Raises:
         PathRefused: there is nothing to sample: the curve is no longer than a point, or stands still.
+        UnusableInput: the arm is a user's model without a gripper, and the scene has an object to carry.
     """
     settings = settings or MotionSettings()
     arm = arm or Arm.of_settings(settings)
+    check_plannable(arm, scene)
+    settings = with_home(settings, arm)
     tool_path = sample_tool_path(curve, settings, orientation=orientation)
     inspection = _inspect(tool_path, CollisionModel(scene, arm), settings)
     nodes, candidate, failure = inspection.nodes, inspection.candidate, inspection.failure
@@ -128,6 +133,6 @@ def _sample_faults(inspection: _Inspection) -> tuple[str, ...]:
 
 def _describe_success(candidate: Candidate, clearances: list[Clearance], duration: float | None) -> str:
     least = min(clearances, key=lambda clearance: clearance.distance)
-    gap = f", {1000 * least.distance:.0f} mm from {least.body} to {least.other_body}" if least.body else ""
+    gap = f", {describe_length(least.distance)} from {least.body} to {least.other_body}" if least.body else ""
     about = f"in about {duration:.1f} s ({candidate.description}{gap})"
     return f"the arm can probably follow it, {about}; plan it to be sure"

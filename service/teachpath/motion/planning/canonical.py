@@ -8,12 +8,15 @@ from dataclasses import fields, is_dataclass
 
 import numpy as np
 
+from teachpath.records.later_fields import enters_digest
+
 
 def canonical(value: object) -> bytes:
     """Encode a value so that different values never have the same bytes.
 
     Every part states its kind and its length. A tuple and a list are the same, so are a number and the same number as
-    a float: a record that was sent as JSON has the bytes it had before.
+    a float: a record that was sent as JSON has the bytes it had before. A field that a record was given later is left
+    out at its default (`later_fields`).
 
     Args:
         value: a frozen record, array, mapping, sequence, text, number, truth value or None.
@@ -37,7 +40,11 @@ def canonical(value: object) -> bytes:
     elif isinstance(value, list | tuple):
         items = [canonical(item) for item in value]
     elif is_dataclass(value):
-        items = [canonical(field.name) + canonical(getattr(value, field.name)) for field in fields(value)]
+        items = [
+            canonical(field.name) + canonical(entry)
+            for field in fields(value)
+            if enters_digest(field, entry := getattr(value, field.name))
+        ]
     else:
         raise TypeError(f"{type(value).__name__} has no canonical encoding")
     kind = b"l" if isinstance(value, list | tuple) else b"d"

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Final
+
 import numpy as np
 
 from teachpath.errors import PathRefused
@@ -9,14 +11,16 @@ from teachpath.motion.arm.joint_path import JointPath
 from teachpath.motion.arm.limits import JointLimits, MotionLimits
 from teachpath.motion.arm.model import Arm
 from teachpath.motion.arm.puma560 import Array
-from teachpath.motion.arm.tool_speed import POINT_NAMES
+from teachpath.motion.arm.tool_speed import point_names
 from teachpath.motion.paths.ik_branches import Candidate
 from teachpath.motion.paths.tool_path import ToolPath
 from teachpath.motion.planning.torque_limited import TimedPath
 from teachpath.motion.settings import MotionSettings
 from teachpath.motion.timing.limit_margins import largest_use, limit_uses
 from teachpath.motion.timing.timed_trajectory import SPEED_STRIDE, TimedTrajectory, time_joint_path
-from teachpath.records import Certificate, Extreme, Plan
+from teachpath.records import Certificate, Extreme, LimitSource, Plan
+
+LIMIT_KINDS: Final = ("lower", "upper", "speed", "acceleration", "jerk", "torque")
 
 
 def plan_trajectory(plan: Plan) -> TimedTrajectory:
@@ -61,7 +65,7 @@ def certify(
     singular_s = float(tool_path.lengths[int(np.argmin(candidate.singular_values))])
     return Certificate(
         digest="",
-        branch=candidate.description,
+        branch=candidate.description + _limit_sources(arm),
         position_use=position,
         velocity_use=velocity,
         acceleration_use=acceleration,
@@ -78,7 +82,7 @@ def largest_speed(trajectory: TimedTrajectory, arm: Arm) -> Extreme:
     bounds = trajectory.speed_bounds(arm)
     row, point = np.unravel_index(int(np.argmax(bounds)), bounds.shape)
     s = float(trajectory.table[min(int(row) * SPEED_STRIDE, len(trajectory.table) - 1), 0, 6])
-    return Extreme(float(bounds[row, point]), f"{POINT_NAMES[point]} at s = {s:.3f} m", s)
+    return Extreme(float(bounds[row, point]), f"{point_names(arm)[point]} at s = {s:.3f} m", s)
 
 
 def largest_limit_uses(setpoints: Array, rate: float, limits: JointLimits) -> tuple[Extreme, Extreme, Extreme, Extreme]:
@@ -93,3 +97,17 @@ def largest_limit_uses(setpoints: Array, rate: float, limits: JointLimits) -> tu
     shares = [np.abs(setpoints[:, :6] - middle) / half, *limit_uses(setpoints, limits.motion, rate)]
     position, velocity, acceleration, jerk = (largest_use(share, setpoints[:, 6]) for share in shares)
     return position, velocity, acceleration, jerk
+
+
+def _limit_sources(arm: Arm) -> str:
+    """Say for a certificate which limits of a user's model the operator gave, and which nobody did; else nothing."""
+    if arm.model is None:
+        return ""
+    said = {LimitSource.OPERATOR: "by the operator", LimitSource.DEFAULT: "by default"}
+    parts = []
+    for source, words in said.items():
+        kinds = [
+            kind for kind in LIMIT_KINDS if any(getattr(joint, kind).source is source for joint in arm.model.joints)
+        ]
+        parts += [f"; limits {words}: {', '.join(kinds)}"] if kinds else []
+    return "".join(parts)

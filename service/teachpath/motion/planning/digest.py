@@ -28,7 +28,7 @@ def verify(plan: Plan, arm: Arm) -> None:
     """
     if digest(plan, arm) != plan.certificate.digest:
         raise PathRefused(
-            f"plan {plan.id} has changed since it was certified, or is for another arm than the {arm.name} "
-            "with this tool, payload and limit of speed (motion.variant, tool_length, payload_mass, payload_center, "
-            "tool_speed); plan the path again"
+            f"plan {plan.id} has changed since it was certified, or is for another arm than the {arm.identity} "
+            "with this tool, payload and limit of speed (motion.arm, variant, tool_length, tool_position, "
+            "tool_orientation, payload_mass, payload_center, tool_speed); plan the path again"
         )

@@ -6,9 +6,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from teachpath.errors import UnusableSettings
 from teachpath.motion.arm.dynamics import Dynamics
 from teachpath.motion.arm.model import Arm
+from teachpath.motion.arm.mounting import check_mounting
 from teachpath.motion.collision.collision_model import CollisionModel
 from teachpath.motion.paths.ik_branches import Candidate, enumerate_candidates
 from teachpath.motion.paths.tool_path import ToolPath, sample_tool_path
@@ -18,6 +18,7 @@ from teachpath.motion.planning.certificate import certify
 from teachpath.motion.planning.clearance import path_clearance
 from teachpath.motion.planning.digest import digest
 from teachpath.motion.planning.failure import no_candidate
+from teachpath.motion.planning.model_arms import check_home, check_plannable, with_home
 from teachpath.motion.planning.start_grasp import check_start, grasping_candidates
 from teachpath.motion.planning.torque_limited import time_within_torques
 from teachpath.motion.refusals import first_accepted
@@ -50,11 +51,15 @@ def plan(
 
     Raises:
         PathRefused: the arm cannot follow it; the sentence says why, where, and which control point to move.
-        UnusableSettings: the arm's home is outside the joint limits.
+        UnusableSettings: the arm's home is outside the joint limits, or the gripper would stand in the wrist.
+        UnusableInput: the arm is a user's model, which has no gripper, and the scene an object to carry.
     """
     settings = settings or MotionSettings()
     arm = arm or Arm.of_settings(settings)
-    _check_home(settings, arm)
+    check_plannable(arm, scene)
+    settings = with_home(settings, arm)
+    check_home(settings, arm)
+    check_mounting(arm)
     tool_path = sample_tool_path(path.curve, settings, orientation=path.orientation)
     check_start(tool_path, scene, arm, settings)
     model = CollisionModel(scene, arm)
@@ -65,14 +70,6 @@ def plan(
         raise no_candidate(tool_path, usable or candidates, model, settings)
     certified = first_accepted(clear, lambda candidate: _certified_plan(path, tool_path, candidate, model, settings))
     return replace(certified, id=plan_id)
-
-
-def _check_home(settings: MotionSettings, arm: Arm) -> None:
-    lower, upper = arm.limits.lower, arm.limits.upper
-    for joint, angle in enumerate(settings.home):
-        if not lower[joint] <= angle <= upper[joint]:
-            limits = f"{lower[joint]:.3f} to {upper[joint]:.3f}"
-            raise UnusableSettings(f"motion.home puts joint {joint + 1} to {angle:.3f} rad, limits {limits}")
 
 
 def _certified_plan(

@@ -9,6 +9,7 @@ from typing import Any, Final
 
 from teachpath.errors import PathRefused, UnusableInput
 from teachpath.motion.arm.model import Arm
+from teachpath.motion.arm.tool import describe_tool
 from teachpath.motion.planning.canonical import canonical
 from teachpath.motion.planning.digest import verify
 from teachpath.motion.settings import MotionSettings
@@ -67,7 +68,7 @@ def sign_plan(
     """
     verify(plan, arm)
     signature = Signature(
-        arm=arm.name,
+        arm=arm.identity,
         tool_length=arm.tool_length,
         settings=certified_settings(settings),
         calibrations=calibrations.recorded,
@@ -75,6 +76,7 @@ def sign_plan(
         issued_ns=issued_ns,
         expires_ns=issued_ns + round(settings.certificate_validity * DAY_NS),
         mac="",
+        tool=arm.tool,
     )
     unsigned = _with_signature(plan, signature)
     return _with_signature(plan, replace(signature, mac=_mac(unsigned, arm, key)))
@@ -105,11 +107,22 @@ def verify_signature(plan: Plan, arm: Arm, settings: MotionSettings, key: Signin
     check_validity(plan, now_ns)
 
 
-def certified_arm(plan: Plan) -> Arm | None:
-    """Return the arm that the signature of a plan says it is for; None where the plan is not signed."""
+def certified_arm(plan: Plan, present: Arm | None = None) -> Arm | None:
+    """Return the arm that the signature of a plan says it is for; the present one where the plan is not signed.
+
+    Raises:
+        PathRefused: it is an arm that was added, and the present one is another.
+    """
     signature = plan.certificate.signature
     if signature is None:
-        return None
+        return present
+    if signature.settings.get("arm") is not None:
+        if present is None or present.identity != signature.arm:
+            here = "none is given" if present is None else f"the arm here is {present.identity}"
+            raise PathRefused(
+                f"plan {plan.id} is for {signature.arm}, and {here}; set motion.arm to the arm of the plan"
+            )
+        return present
     known = {field.name for field in fields(MotionSettings)}
     return Arm.of_settings(
         MotionSettings(**{name: signature.settings[name] for name in known & set(signature.settings)})
@@ -141,11 +154,12 @@ def certified_settings(settings: MotionSettings) -> dict[str, Any]:
 
 
 def _check_arm(plan: str, signature: Signature, arm: Arm) -> None:
-    if (signature.arm, signature.tool_length) != (arm.name, arm.tool_length):
+    if (signature.arm, signature.tool_length, signature.tool) != (arm.identity, arm.tool_length, arm.tool):
         raise PathRefused(
-            f"the certificate of plan {plan} holds for the {signature.arm} with a tool of "
-            f"{1e3 * signature.tool_length:g} mm, and this arm is the {arm.name} with one of "
-            f"{1e3 * arm.tool_length:g} mm (motion.variant, motion.tool_length); plan the path again for this arm"
+            f"the certificate of plan {plan} holds for the {signature.arm} with "
+            f"{describe_tool(signature.tool, signature.tool_length)}, and this arm is the {arm.identity} with "
+            f"{describe_tool(arm.tool, arm.tool_length)} (motion.arm, variant, tool_length, tool_position, "
+            "tool_orientation); plan the path again for this arm"
         )
 
 

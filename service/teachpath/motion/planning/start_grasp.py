@@ -50,8 +50,8 @@ def start_grasp_fault(tool_path: ToolPath, carried: Shape, roll: float, arm: Arm
     turned, cosine, sine = np.eye(4), np.cos(roll), np.sin(roll)
     turned[:2, :2] = [[cosine, sine], [-sine, cosine]]  # joint 6 turns by the opposite angle (`ik_branches.roll_tool`)
     turned[2, 3] = -arm.tool_length
-    flange = tool_path.poses(tool_path.parameters[:1])[0] @ turned
-    return grasp_fault(carried, np.linalg.inv(flange) @ shape_pose(carried), arm, margin=PLANNED_MARGIN)
+    gripper = tool_path.poses(tool_path.parameters[:1])[0] @ turned
+    return grasp_fault(carried, np.linalg.inv(gripper) @ shape_pose(carried), arm, margin=PLANNED_MARGIN)
 
 
 def start_failure(tool_path: ToolPath, scene: Scene, arm: Arm, settings: MotionSettings) -> Failure | None:

@@ -10,7 +10,8 @@ import numpy as np
 
 from teachpath.motion.arm.kinematics import inverse_kinematics, min_singular_value
 from teachpath.motion.arm.puma560 import Array
-from teachpath.motion.paths.ik_branches import Candidate, roll_tool
+from teachpath.motion.arm.serial_ik import CLOSED, solve_near
+from teachpath.motion.paths.ik_branches import Candidate, roll_tool, rolled_poses
 from teachpath.motion.paths.tool_path import ToolPath, control_point_weights
 from teachpath.motion.refusals import describe_direction
 from teachpath.motion.settings import MotionSettings
@@ -34,7 +35,7 @@ def fault_margin(fault: str, candidate: Candidate, node: int) -> FaultMargin:
         joint = int(np.argmax(candidate.limit_excess[node]))
         limits = arm.limits
         return lambda q, outside: np.minimum(limits.upper - q, q - limits.lower)[:, joint]
-    if fault == "turn":
+    if fault == "turn" and arm.model is None:
         return lambda q, outside: np.abs(np.sin(q[:, 4]))
     return lambda q, outside: min_singular_value(q, arm)
 
@@ -90,10 +91,14 @@ class _MarginNearNode:
             self.tool_path.poses(self.tool_path.parameters[self.node : self.node + 1]), len(moves), axis=0
         )
         poses[:, :3, 3] += moves
-        here = self.candidate.joints[self.node]
-        solutions = inverse_kinematics(poses, self.candidate.branch.arm, previous_q4=float(here[3]))
+        here, arm = self.candidate.joints[self.node], self.candidate.branch.arm
         roll = self.candidate.roll(self.tool_path.parameters[self.node : self.node + 1])
-        q = roll_tool(solutions.joints[:, self.candidate.branch.index], roll)
+        wanted = rolled_poses(poses, roll, arm)
+        if arm.model is not None:
+            near, off = solve_near(wanted, np.repeat(here[None], len(wanted), axis=0), arm.model)
+            return self.margin(near, np.where(off <= CLOSED, 0.0, off))
+        solutions = inverse_kinematics(wanted, arm, previous_q4=float(here[3]))
+        q = roll_tool(solutions.joints[:, self.candidate.branch.index], roll, arm)
         return self.margin(q + 2 * np.pi * np.round((here - q) / (2 * np.pi)), solutions.reach_excess[:, 0])
 
     def slope(self) -> Array:

@@ -1,7 +1,8 @@
 """Searches for a roll of the tool that changes along the path, where no constant roll keeps clear of everything.
 
-Rolling moves joint 6 alone, so the roll can be chosen last. Nodes of the path and roll angles form a grid; dynamic
-programming finds the sequence of angles that keeps clear and turns least, and a spline smooths it.
+Nodes of the path and roll angles form a grid; dynamic programming finds the sequence of angles that keeps clear and
+turns least, and a spline smooths it. A tool on the axis of joint 6 is rolled by this joint alone, any other by the
+whole arm.
 """
 
 from __future__ import annotations
@@ -13,11 +14,11 @@ from numpy.typing import NDArray
 from scipy.interpolate import BSpline
 from scipy.ndimage import gaussian_filter1d
 
-from teachpath.motion.arm.kinematics import BRANCH_NAMES
+from teachpath.motion.arm.kinematics import inverse_kinematics, min_singular_value
 from teachpath.motion.arm.model import Arm
 from teachpath.motion.arm.puma560 import Array
 from teachpath.motion.collision.collision_model import CollisionModel, grasped_load
-from teachpath.motion.paths.ik_branches import Candidate, ToolRoll, rolled_candidate
+from teachpath.motion.paths.ik_branches import Candidate, ToolRoll, is_usable, rolled_candidate, rolled_poses
 from teachpath.motion.paths.tool_path import ToolPath
 from teachpath.motion.planning.clearance import SUFFICIENT_CLEARANCE
 from teachpath.motion.settings import MotionSettings
@@ -44,6 +45,8 @@ def rolling_candidates(
         model: of arm and scene.
         settings: clearance to keep.
     """
+    if model.arm.model is not None:
+        return []  # its branches are followed with constant rolls only
     found, carries = [], model.scene.carried is not None
     first = {
         (candidate.branch.index, str(candidate.roll) if carries else ""): candidate for candidate in reversed(usable)
@@ -51,8 +54,8 @@ def rolling_candidates(
     for candidate in first.values():
         if angles := _search_rolls(tool_path, candidate, model, settings):
             roll = ToolRoll(spline=_smoothed(*angles))
-            found.append(rolled_candidate(tool_path, BRANCH_NAMES[candidate.branch.index], candidate.branch, roll))
-    return [candidate for candidate in found if candidate.feasible]
+            found.append(rolled_candidate(tool_path, candidate.branch, roll))
+    return [candidate for candidate in found if is_usable(candidate, settings)]
 
 
 def _search_rolls(
@@ -64,13 +67,16 @@ def _search_rolls(
     """
     nodes = np.unique(np.linspace(0, len(tool_path.lengths) - 1, SEARCH_NODES).round().astype(np.int64))
     steps = _roll_steps(candidate.joints[nodes], model.arm)
-    coarse = _roll_costs(model, candidate, nodes[::COARSE_STRIDE], steps, settings)
+    coarse = _roll_costs(tool_path, candidate, nodes[::COARSE_STRIDE], steps, model, settings)
     # A sequence through all nodes is one through some of them too; mostly these suffice to see that there is none.
     if _cheapest_sequence(coarse, COARSE_STRIDE * MAX_ROLL_STEPS) is None:
         return None
     costs = np.empty((len(nodes), len(steps)))
     rest = np.arange(len(nodes)) % COARSE_STRIDE != 0
-    costs[~rest], costs[rest] = coarse, _roll_costs(model, candidate, nodes[rest], steps, settings)
+    costs[~rest], costs[rest] = (
+        coarse,
+        _roll_costs(tool_path, candidate, nodes[rest], steps, model, settings),
+    )
     sequence = _cheapest_sequence(costs, MAX_ROLL_STEPS)
     if sequence is None:
         return None
@@ -80,34 +86,57 @@ def _search_rolls(
 
 def _roll_steps(joints: Array, arm: Arm) -> NDArray[np.int64]:
     """Return the roll steps (m,) by which the tool can be rolled further at any of the configurations (k, 6)."""
+    if not arm.rolls_by_joint_6:
+        return np.arange(-ROLL_COUNT, ROLL_COUNT + 1)
     first = int(np.floor((joints[:, 5].min() - arm.limits.upper[5]) / ROLL_STEP))
     last = int(np.ceil((joints[:, 5].max() - arm.limits.lower[5]) / ROLL_STEP))
     return np.arange(first, last + 1)
 
 
 def _roll_costs(
-    model: CollisionModel, candidate: Candidate, nodes: NDArray[np.int64], steps: NDArray[np.int64],
-    settings: MotionSettings,
+    tool_path: ToolPath, candidate: Candidate, nodes: NDArray[np.int64], steps: NDArray[np.int64],
+    model: CollisionModel, settings: MotionSettings,
 ) -> Array:  # fmt: skip
     """Return the costs (k, m) of roll steps (m,) at nodes (k,); infinite where the tool cannot be rolled so."""
-    joints = candidate.joints[nodes]
-    clear = _clearances(model, candidate, joints)[:, steps % ROLL_COUNT]
-    rolled = joints[:, 5, None] - ROLL_STEP * steps
-    lower, upper = model.arm.limits.lower[5], model.arm.limits.upper[5]
-    free = (rolled >= lower) & (rolled <= upper) & (clear >= settings.clearance_min + SMOOTHING_CLEARANCE)
+    arm = model.arm
+    rolled, reached = _rolled_joints(tool_path, candidate, nodes, steps)
+    clear = _clearances(tool_path, candidate, nodes, model)[:, steps % ROLL_COUNT]
+    free = reached & np.all((rolled >= arm.limits.lower) & (rolled <= arm.limits.upper), axis=2)
+    free &= clear >= settings.clearance_min + SMOOTHING_CLEARANCE
+    if not arm.rolls_by_joint_6:  # which would not change the singular values
+        free &= min_singular_value(rolled, arm) >= settings.least_singular
     costs = np.where(free, CLEARANCE_WEIGHT * np.maximum(SUFFICIENT_CLEARANCE - clear, 0.0), np.inf)
     if model.scene.carried is not None:
         costs[np.ix_(nodes == 0, steps != 0)] = np.inf  # the object is grasped with the candidate's own roll
     return costs
 
 
-def _clearances(model: CollisionModel, candidate: Candidate, joints: Array) -> Array:
-    """Measure the clearances (k, ROLL_COUNT) [m] at configurations (k, 6) with the tool rolled by every roll step."""
-    load = grasped_load(model, candidate.joints[0])
-    every = np.repeat(joints[:, None], ROLL_COUNT, axis=1)
-    every[:, :, 5] -= ROLL_STEP * np.arange(ROLL_COUNT)
-    rows = model.clearances(every.reshape(-1, 6), load=load)
-    return np.array([row.distance for row in rows]).reshape(len(joints), ROLL_COUNT)
+def _rolled_joints(
+    tool_path: ToolPath, candidate: Candidate, nodes: NDArray[np.int64], steps: NDArray[np.int64]
+) -> tuple[Array, NDArray[np.bool_]]:
+    """Return configurations (k, m, 6) at nodes (k,) after roll steps (m,), and whether the arm reaches each (k, m)."""
+    arm, branch = candidate.branch.arm, candidate.branch.index
+    joints = np.repeat(candidate.joints[nodes][:, None], len(steps), axis=1)
+    if arm.rolls_by_joint_6:
+        joints[..., 5] -= ROLL_STEP * steps
+        return joints, np.ones(joints.shape[:2], dtype=np.bool_)
+    u = tool_path.parameters[nodes]
+    poses = np.repeat(tool_path.poses(u)[:, None], len(steps), axis=1)
+    rolls = candidate.roll(u)[:, None] + ROLL_STEP * steps
+    solutions = inverse_kinematics(rolled_poses(poses, rolls, arm).reshape(-1, 4, 4), arm)
+    solved = solutions.joints[:, branch].reshape(joints.shape)
+    # From the candidate's own roll on, to both sides, without a leap by a whole turn.
+    own = int(np.flatnonzero(steps == 0)[0])
+    for side in (np.arange(own + 1, len(steps)), np.arange(own - 1, -1, -1)):
+        joints[:, side] = np.unwrap(np.concatenate([joints[:, own : own + 1], solved[:, side]], axis=1), axis=1)[:, 1:]
+    return joints, solutions.reach_excess[:, branch].reshape(joints.shape[:2]) <= 0
+
+
+def _clearances(tool_path: ToolPath, candidate: Candidate, nodes: NDArray[np.int64], model: CollisionModel) -> Array:
+    """Measure the clearances (k, ROLL_COUNT) [m] at nodes (k,) with the tool rolled by every roll step."""
+    every, _ = _rolled_joints(tool_path, candidate, nodes, np.arange(ROLL_COUNT))
+    rows = model.clearances(every.reshape(-1, 6), load=grasped_load(model, candidate.joints[0]))
+    return np.array([row.distance for row in rows]).reshape(len(nodes), ROLL_COUNT)
 
 
 def _cheapest_sequence(costs: Array, max_change: int) -> NDArray[np.int64] | None:

@@ -7,39 +7,34 @@ durations of its phases, the third derivative in the first phase, and r at its e
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from math import sqrt
-from typing import Any, TypeVar, cast
 
-import numba
-
+from teachpath.compiled import compiled
 from teachpath.motion.arm.puma560 import Array
 
-F = TypeVar("F", bound=Callable[..., Any])
+kernel = compiled(error_model="numpy")  # which lets a division by zero give what it gives in numpy
 
 
-def compiled(function: F) -> F:
-    """Compile a function at its first call, and keep the result on disk where that can be written."""
-    try:
-        return cast(F, numba.njit(cache=True, error_model="numpy")(function))
-    except RuntimeError:  # no directory that numba could write to
-        return cast(F, numba.njit(function, error_model="numpy"))
+@kernel
+def place_in_table(table: Array, step: float, tau: float) -> tuple[int, float]:
+    """Return the row nearest to plan time `tau`, and how far ahead of it that is [s]; outside the plan, of its ends."""
+    last = table.shape[0] - 1
+    tau = min(tau, last * step) if tau > 0.0 else 0.0  # what is no number must not become a row
+    row = min(int(tau / step + 0.5), last)
+    return row, tau - row * step
 
 
-@compiled
+@kernel
 def evaluate_table(table: Array, step: float, tau: float, out: Array) -> None:
     """Write joints and arc length (7,) at plan time `tau` to `out`; outside the plan, those of its ends."""
-    last = table.shape[0] - 1
-    tau = min(max(tau, 0.0), last * step)
-    row = min(int(tau / step + 0.5), last)
-    ahead = tau - row * step
+    row, ahead = place_in_table(table, step, tau)
     for i in range(7):
         out[i] = table[row, 0, i] + ahead * (
             table[row, 1, i] + ahead / 2.0 * (table[row, 2, i] + ahead / 3.0 * table[row, 3, i])
         )
 
 
-@compiled
+@kernel
 def evaluate_ramp(ramp: Array, t: float) -> tuple[float, float, float]:
     """Return tau, r and r' at time `t` after the beginning of a ramp."""
     tau, r, a, jerk = ramp[0], ramp[1], ramp[2], ramp[6]
@@ -55,7 +50,7 @@ def evaluate_ramp(ramp: Array, t: float) -> tuple[float, float, float]:
     return tau + t * ramp[7], ramp[7], 0.0
 
 
-@compiled
+@kernel
 def shortest_ramp(ramp: Array, state: Array, target: float, steepest: float, hardest: float) -> float:
     """Write the shortest ramp from a state (tau, r, r') to a constant rate; return its peak |r'|, or -1 without one.
 
@@ -80,13 +75,11 @@ def shortest_ramp(ramp: Array, state: Array, target: float, steepest: float, har
     return peak
 
 
-@compiled
+@kernel
 def evaluate_motion(table: Array, step: float, state: Array, out: Array) -> None:
     """Write value, velocity and acceleration (3, 7) of joints and arc length at a state (tau, r, r') to `out`."""
     evaluate_table(table, step, state[0], out[0])
-    last = table.shape[0] - 1
-    row = min(max(int(state[0] / step + 0.5), 0), last)
-    ahead = min(max(state[0], 0.0), last * step) - row * step
+    row, ahead = place_in_table(table, step, state[0])
     for i in range(7):
         first = table[row, 1, i] + ahead * (table[row, 2, i] + ahead / 2.0 * table[row, 3, i])
         second = table[row, 2, i] + ahead * table[row, 3, i]

@@ -1,17 +1,23 @@
-"""Checks whether the setpoints of a ramp, joined to those already sent, keep all limits (compiled; see `kernels`)."""
+"""Checks whether the setpoints of a ramp, joined to those already sent, keep all limits (compiled; see `kernels`).
+
+An arm plays the motion between setpoints, too, by the quintic that meets both, and begins its own clock at any moment.
+So what is checked are differences over control periods that begin at `PHASES` moments of a period.
+"""
 
 from __future__ import annotations
 
-from math import ceil
+from math import ceil, inf, isfinite
 from typing import Final
 
 import numpy as np
 
 from teachpath.motion.arm.puma560 import Array
-from teachpath.motion.timing.kernels import compiled, evaluate_ramp, evaluate_table
+from teachpath.motion.timing.kernels import evaluate_motion, evaluate_ramp, kernel
 
 ACCEPTED_LIMIT_USE: Final = 0.997  # share of acceleration and jerk limits up to which a ramp is accepted
 TRAILING_SETPOINTS: Final = 4  # after the end of a ramp, whose differences still depend on it
+PHASES: Final = 8  # moments of a control period, in which the limits are checked
+MAX_RAMP_PERIODS: Final = 5000  # of a ramp
 
 # What `check_ramp` answers.
 KEPT: Final = 0
@@ -20,24 +26,29 @@ ACCELERATION_BROKEN: Final = 2
 JERK_BROKEN: Final = 3
 
 
-@compiled
+@kernel
 def check_ramp(table: Array, step: float, ramp: Array, sent: Array, limits: Array, dt: float) -> tuple[int, float]:
     """Check the setpoints of a ramp, joined to those already sent, against the limits.
 
     Args:
-        sent: (6, 6) see `advance`.
+        sent: (PHASES, 3, 6) see `advance`.
         limits: (3, 6) of first, second and third difference of setpoints [rad].
         dt: control period [s].
 
     Returns:
         Which limit is broken first, or KEPT, and how long after the beginning [s].
     """
-    window, q, scale = sent.copy(), np.empty((2, 7)), 1.0 / limits
-    count = ceil((ramp[3] + ramp[4] + ramp[5]) / dt) + TRAILING_SETPOINTS
+    window, before, motion, state, scale = sent.copy(), np.empty((3, 7)), np.empty((3, 7)), np.empty(3), 1.0 / limits
+    duration = ramp[3] + ramp[4] + ramp[5]
+    if not 0.0 <= duration <= MAX_RAMP_PERIODS * dt:  # nor may it be no number
+        return ACCELERATION_BROKEN, 0.0
+    count = ceil(duration / dt) + TRAILING_SETPOINTS
+    evaluate_motion(table, step, ramp[:3], motion)
     for k in range(1, count + 1):
-        evaluate_table(table, step, evaluate_ramp(ramp, (k - 0.5) * dt)[0], q[0])
-        evaluate_table(table, step, evaluate_ramp(ramp, k * dt)[0], q[1])
-        speed, acceleration, jerk = advance(window, q, scale)
+        before, motion = motion, before
+        state[0], state[1], state[2] = evaluate_ramp(ramp, k * dt)
+        evaluate_motion(table, step, state, motion)
+        speed, acceleration, jerk = advance(window, before, motion, dt, scale)
         if speed > 1.0:
             return SPEED_BROKEN, k * dt
         if acceleration > ACCEPTED_LIMIT_USE:
@@ -47,7 +58,7 @@ def check_ramp(table: Array, step: float, ramp: Array, sent: Array, limits: Arra
     return KEPT, 0.0
 
 
-@compiled
+@kernel
 def check_states(
     table: Array, step: float, begin: Array, states: Array, count: int, sent: Array, limits: Array, dt: float,
     uses: Array,
@@ -57,56 +68,54 @@ def check_states(
     Args:
         begin: (3,) tau, r and r' at the beginning.
         states: (n, 3) the same one period apart; the last of `count` rests.
-        sent: (6, 6) see `advance`.
+        sent: (PHASES, 3, 6) see `advance`.
         limits: (3, 6) of first, second and third difference of setpoints [rad].
         dt: control period [s].
         uses: (n,) where the share is written that each setpoint uses of what is accepted, at most.
     """
-    window, q, scale = sent.copy(), np.empty((2, 7)), 1.0 / limits
+    window, before, motion, scale = sent.copy(), np.empty((3, 7)), np.empty((3, 7)), 1.0 / limits
     most = 0.0
     uses[:count] = 0.0
-    before = begin
+    evaluate_motion(table, step, begin, motion)
     for k in range(count + TRAILING_SETPOINTS):
+        before, motion = motion, before
         row = min(k, count - 1)
-        evaluate_table(table, step, midway(before, states[row], dt), q[0])
-        evaluate_table(table, step, states[row, 0], q[1])
-        before = states[row]
-        speed, acceleration, jerk = advance(window, q, scale)
+        evaluate_motion(table, step, states[row], motion)
+        speed, acceleration, jerk = advance(window, before, motion, dt, scale)
         uses[row] = max(uses[row], speed, acceleration / ACCEPTED_LIMIT_USE, jerk / ACCEPTED_LIMIT_USE)
         most = max(most, uses[row])
     return most <= 1.0
 
 
-@compiled
-def midway(begin: Array, end: Array, dt: float) -> float:
-    """Return tau in the middle of a period between two states."""
-    return float(0.5 * (begin[0] + end[0]) + 0.125 * dt * (begin[1] - end[1]))
-
-
-@compiled
-def advance(window: Array, q: Array, scale: Array) -> tuple[float, float, float]:
+@kernel
+def advance(window: Array, begin: Array, end: Array, dt: float, scale: Array) -> tuple[float, float, float]:
     """Take a setpoint into the differences of those sent, and return its use of speed, acceleration and jerk limits.
 
-    An arm plays the motion between setpoints, too, and begins its own clock at any moment: so the third difference is
-    limited for the places in the middle between setpoints as well.
+    Joints that are no numbers use infinitely much.
 
     Args:
-        window: (6, 6) newest setpoint, its first and second difference; the joints half a period before it, and their
-            first and second difference.
-        q: (2, n) joints half a period before the setpoint and at it [rad].
+        window: (PHASES, 3, 6) joints at moments of the last period, the setpoint last, and their first and second
+            differences over a period.
+        begin: (3, 7) motion at the last setpoint (see `evaluate_motion`).
+        end: (3, 7) motion at this one.
+        dt: control period [s].
         scale: (3, 6) inverse limits of first, second and third difference [1/rad].
     """
-    speed = acceleration = jerk = 0.0
+    speed = acceleration = jerk = total = 0.0
     for i in range(6):
-        first = q[1, i] - window[0, i]
-        second = first - window[1, i]
-        third = second - window[2, i]
-        midway_first = q[0, i] - window[3, i]
-        midway_second = midway_first - window[4, i]
-        midway = midway_second - window[5, i]
-        speed = max(speed, abs(first) * scale[0, i])
-        acceleration = max(acceleration, abs(second) * scale[1, i])
-        jerk = max(jerk, max(abs(third), abs(midway)) * scale[2, i])
-        window[2, i], window[1, i], window[0, i] = second, first, q[1, i]
-        window[5, i], window[4, i], window[3, i] = midway_second, midway_first, q[0, i]
+        p, v, a = begin[0, i], dt * begin[1, i], dt * dt * begin[2, i] / 2.0
+        d, e, f = end[0, i] - p - v - a, dt * end[1, i] - v - 2.0 * a, dt * dt * end[2, i] / 2.0 - a
+        third, fourth, fifth = 10.0 * d - 4.0 * e + f, -15.0 * d + 7.0 * e - 2.0 * f, 6.0 * d - 3.0 * e + f
+        total += d + e + f
+        for k in range(PHASES):
+            x = (k + 1.0) / PHASES
+            q = end[0, i] if k == PHASES - 1 else p + x * (v + x * (a + x * (third + x * (fourth + x * fifth))))
+            one = q - window[k, 0, i]
+            two = one - window[k, 1, i]
+            speed = max(speed, abs(one) * scale[0, i])
+            acceleration = max(acceleration, abs(two) * scale[1, i])
+            jerk = max(jerk, abs(two - window[k, 2, i]) * scale[2, i])
+            window[k, 0, i], window[k, 1, i], window[k, 2, i] = q, one, two
+    if not isfinite(total):  # which no comparison above has seen
+        return inf, inf, inf
     return speed, acceleration, jerk

@@ -11,11 +11,11 @@ from math import ceil
 import numpy as np
 
 from teachpath.motion.arm.puma560 import Array
-from teachpath.motion.timing.kernels import compiled, evaluate_motion, evaluate_ramp, evaluate_table
-from teachpath.motion.timing.ramp_checks import advance, midway
+from teachpath.motion.timing.kernels import evaluate_motion, evaluate_ramp, kernel
+from teachpath.motion.timing.ramp_checks import advance
 
 
-@compiled
+@kernel
 def sample_ramp(ramp: Array, dt: float, out: Array) -> int:
     """Write the states (n, 3) of a ramp at the end of each period, up to its constant rate; return n, or 0 if too many.
 
@@ -30,7 +30,7 @@ def sample_ramp(ramp: Array, dt: float, out: Array) -> int:
     return int(count)
 
 
-@compiled
+@kernel
 def state_after(states: Array, count: int, periods: int, dt: float) -> tuple[float, float, float]:
     """Return tau, r and r' after some periods of states (n, 3), of which the last of `count` goes on at its rate."""
     row = min(periods, count) - 1
@@ -38,7 +38,7 @@ def state_after(states: Array, count: int, periods: int, dt: float) -> tuple[flo
     return states[row, 0] + beyond * states[row, 1], states[row, 1], states[row, 2]
 
 
-@compiled
+@kernel
 def follow(
     table: Array, step: float, states: Array, count: int, begin: int, dt: float, sent: Array, state: Array, out: Array
 ) -> int:
@@ -46,21 +46,21 @@ def follow(
 
     Args:
         states: (n, 3) see `state_after`; `begin` of them are done.
-        sent: (6, 6) where the setpoints are taken in (see `advance`).
+        sent: (PHASES, 3, 6) where the setpoints are taken in (see `advance`).
         state: (3,) the last state, which is overwritten.
-        out: (m, 6) where the joints are written, one row a period.
+        out: (m, 3, 7) where the motion is written, one a period (see `evaluate_motion`).
     """
-    q, scale = np.empty((2, 7)), np.ones((3, 6))
+    motion = np.empty((3, 7))
+    evaluate_motion(table, step, state, motion)
     for k in range(out.shape[0]):
-        ended = _next_state(table, step, states, count, begin + k + 1, dt, state, q)
-        advance(sent, q, scale)
-        out[k] = q[1, :6]
+        ended = advance_along(table, step, states, count, begin + k + 1, dt, state, motion, sent)
+        out[k] = motion
         if ended:
             return k + 1
     return len(out)
 
 
-@compiled
+@kernel
 def advance_along(
     table: Array, step: float, states: Array, count: int, done: int, dt: float, state: Array, motion: Array,
     sent: Array,
@@ -69,26 +69,14 @@ def advance_along(
 
     Args:
         states: (n, 3) see `state_after`.
-        sent: (6, 6) where the setpoint is taken in (see `advance`).
+        motion: (3, 7) that of the period before, which is overwritten.
+        sent: (PHASES, 3, 6) where the setpoint is taken in (see `advance`).
     """
-    q, scale = np.empty((2, 7)), np.ones((3, 6))
-    ended = _next_state(table, step, states, count, done, dt, state, q)
-    advance(sent, q, scale)
-    evaluate_motion(table, step, state, motion)
-    return ended
-
-
-@compiled
-def _next_state(
-    table: Array, step: float, states: Array, count: int, done: int, dt: float, state: Array, q: Array
-) -> bool:
-    """Write the state after `done` periods, and the joints (2, 7) half a period before and at it; tell if it ends."""
-    end = (table.shape[0] - 1) * step
-    before = state.copy()
+    before, end = motion.copy(), (table.shape[0] - 1) * step
     state[0], state[1], state[2] = state_after(states, count, done, dt)
-    evaluate_table(table, step, midway(before, state, dt), q[0])
     ended = (state[0] >= end and state[1] >= 0.0) or (state[0] <= 0.0 and state[1] <= 0.0)
     if ended:
         state[0], state[1], state[2] = min(max(state[0], 0.0), end), 0.0, 0.0
-    evaluate_table(table, step, state[0], q[1])
+    evaluate_motion(table, step, state, motion)
+    advance(sent, before, motion, dt, np.ones((3, 6)))
     return bool(ended)

@@ -8,7 +8,7 @@ from typing import Final
 import numpy as np
 
 from teachpath.motion.arm.puma560 import Array
-from teachpath.motion.timing.kernels import compiled, shortest_ramp
+from teachpath.motion.timing.kernels import kernel, shortest_ramp
 from teachpath.motion.timing.ramp_checks import JERK_BROKEN, KEPT, SPEED_BROKEN, check_ramp
 
 JERK_REDUCTION: Final = 0.6  # factor for the next trial after a broken jerk limit
@@ -22,7 +22,7 @@ MAX_RATE_ACCELERATION: Final = 1e4  # 1/s^2, of a ramp
 MAX_RATE_JERK: Final = 1e6  # 1/s^3
 
 
-@compiled
+@kernel
 def find_ramp(
     table: Array, step: float, state: Array, target: float, sent: Array, limits: Array, dt: float, within: float,
     tries: int, max_rate: float, ramp: Array,
@@ -33,7 +33,7 @@ def find_ramp(
     last phase, otherwise |r'|. After a ramp was found, the remaining trials lie halfway to those that broke a limit.
 
     Args:
-        sent: (6, 6) see `ramp_checks.advance`.
+        sent: (PHASES, 3, 6) see `ramp_checks.advance`.
         within: duration of the present ramp [s]; a new one must be shorter by `MIN_TIME_SAVED`.
         tries: ramps that are checked at most.
         max_rate: largest |r| that the limit of the tool's speed allows.
@@ -68,7 +68,7 @@ def find_ramp(
     return best
 
 
-@compiled
+@kernel
 def shorten_ramp(
     table: Array, step: float, state: Array, target: float, sent: Array, limits: Array, dt: float, within: float,
     tries: int, max_rate: float, ramp: Array,
@@ -79,7 +79,7 @@ def shorten_ramp(
     a reduction with which every shape does for a smaller one.
 
     Args:
-        sent: (6, 6) see `ramp_checks.advance`.
+        sent: (PHASES, 3, 6) see `ramp_checks.advance`.
         within: duration of the present ramp [s]; a new one must be shorter by `MIN_TIME_SAVED`.
         tries: ramps that are checked at most.
         max_rate: largest |r| that the limit of the tool's speed allows.
@@ -107,7 +107,7 @@ def shorten_ramp(
     return best
 
 
-@compiled
+@kernel
 def _shaped_ramp(ramp: Array, state: Array, target: float, duration: float, shape: float) -> float:
     """Write a ramp of about a duration [s]; return its peak |r'|, or -1 without one.
 
@@ -126,7 +126,7 @@ def _shaped_ramp(ramp: Array, state: Array, target: float, duration: float, shap
     return float(shortest_ramp(ramp, state, target, peak, hardest))
 
 
-@compiled
+@kernel
 def _largest_rate(ramp: Array) -> float:
     """Return the largest |r| of a ramp; where r' first has to change its sign, that is before the ramp's end."""
     turning: float = ramp[1]
@@ -135,7 +135,7 @@ def _largest_rate(ramp: Array) -> float:
     return float(max(abs(ramp[1]), abs(turning), abs(ramp[7])))
 
 
-@compiled
+@kernel
 def _search_bounds(table: Array, step: float, state: Array, limits: Array, dt: float) -> tuple[float, float]:
     """Return the largest |r'| and |r''| worth a trial: those that alone would use up the joints' limits."""
     last = table.shape[0] - 1

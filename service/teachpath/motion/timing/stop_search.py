@@ -14,13 +14,12 @@ from typing import Final
 import numpy as np
 
 from teachpath.motion.arm.puma560 import Array
-from teachpath.motion.timing.kernels import compiled
+from teachpath.motion.timing.kernels import kernel, place_in_table
 from teachpath.motion.timing.ramp_checks import check_states
 
 INITIAL_SHARE: Final = 0.995  # of the joints' limits that the first trial uses
 TARGET_USE: Final = 0.99  # of a limit, to which the periods around a setpoint that breaks it are reduced
-FAILURE_REDUCTION: Final = 0.96  # factor on all shares after a trial that found no stop
-MAX_REPAIRS: Final = 30  # places in one trial before which the arm is let brake less
+MAX_REPAIRS: Final = 12  # places in one trial before which the arm is let brake less
 RECOVERY_SHARE: Final = 0.9  # of the largest third derivative, with which less braking is prepared
 SLOPE_STEP: Final = 0.2  # 1/s^2, of the difference that tells how much less it must be
 RELEASE_EXCESS: Final = 3.0  # times the largest third derivative, from which a release is hopeless
@@ -29,7 +28,7 @@ SPLITS: Final = 2  # halvings of the period in which the brake is released
 UNBOUNDED: Final = 1e7  # 1/s^3
 
 
-@compiled
+@kernel
 def find_stop(
     table: Array, step: float, state: Array, sent: Array, limits: Array, dt: float, max_rate: float,
     tries: int, out: Array,
@@ -38,7 +37,7 @@ def find_stop(
 
     Args:
         state: (3,) tau, r and r' where it begins.
-        sent: (6, 6) see `ramp_checks.advance`.
+        sent: (PHASES, 3, 6) see `ramp_checks.advance`.
         max_rate: largest |r| that the limit of the tool's speed allows.
         tries: stops that are checked at most.
         out: (m, 3) tau, r and r' at the end of each period; m bounds the stop's duration.
@@ -56,8 +55,7 @@ def find_stop(
         count = _brake(table, step, direction, bounds, dt, shares, states, bends, jerks, floor)
         count = _latest_release(table, step, direction, bounds, dt, shares, count, states, bends, jerks, trial)
         if count == 0:
-            shares *= FAILURE_REDUCTION
-            continue
+            return 0
         fastest = 0.0
         for k in range(count):
             fastest = max(fastest, trial[k + 1, 1])
@@ -70,7 +68,7 @@ def find_stop(
     return 0
 
 
-@compiled
+@kernel
 def _reduce_around_excess(uses: Array, count: int, shares: Array) -> None:
     """Reduce the shares of the periods on which the third difference of a setpoint that breaks a limit depends."""
     reduced = np.ones(count)
@@ -82,7 +80,7 @@ def _reduce_around_excess(uses: Array, count: int, shares: Array) -> None:
         shares[k] *= reduced[k]
 
 
-@compiled
+@kernel
 def _brake(
     table: Array, step: float, direction: float, bounds: Array, dt: float, shares: Array, states: Array, bends: Array,
     jerks: Array, floor: Array,
@@ -120,6 +118,8 @@ def _brake(
                 if begin >= 0:
                     k = begin
                     continue
+            if low > high:
+                return k + 1
         if a < 0.0 and a * a > 2.0 * r * RELEASE_EXCESS * max(high, 0.0):
             return k + 1
         tau, r, a = _advanced(direction, dt, tau, r, a, jerk)
@@ -132,7 +132,7 @@ def _brake(
     return k + 1
 
 
-@compiled
+@kernel
 def _less_braking(
     table: Array, step: float, direction: float, bounds: Array, dt: float, share: float, tau: float, r: float, a: float,
     bend: Array, gain: Array, gap: float,
@@ -145,7 +145,7 @@ def _less_braking(
     return a + (1.1 * gap / closing + 0.01 if closing > 1e-3 else 0.05 * abs(a))
 
 
-@compiled
+@kernel
 def _raise_floor(floor: Array, states: Array, jerks: Array, k: int, slope: float, dt: float) -> int:
     """Raise the floor so that state `k` can have at least this slope; return where to begin anew, or -1."""
     while k > 0 and slope > states[k, 2]:
@@ -155,7 +155,7 @@ def _raise_floor(floor: Array, states: Array, jerks: Array, k: int, slope: float
     return k if k > 0 or slope <= states[0, 2] else -1
 
 
-@compiled
+@kernel
 def _latest_release(
     table: Array, step: float, direction: float, bounds: Array, dt: float, shares: Array, count: int, states: Array,
     bends: Array, jerks: Array, out: Array,
@@ -203,7 +203,7 @@ def _latest_release(
     return found
 
 
-@compiled
+@kernel
 def _release(
     table: Array, step: float, direction: float, bounds: Array, dt: float, shares: Array, k: int, braking: float,
     states: Array, bends: Array, out: Array,
@@ -241,24 +241,23 @@ def _release(
     return 0
 
 
-@compiled
+@kernel
 def _advanced(direction: float, t: float, tau: float, r: float, a: float, jerk: float) -> tuple[float, float, float]:
     """Return tau, rate and slope after `t` [s]; the rate and its derivatives are in the direction of motion."""
     return tau + direction * t * (r + t * (a / 2.0 + t * jerk / 6.0)), r + t * (a + t * jerk / 2.0), a + t * jerk
 
 
-@compiled
+@kernel
 def _bend(table: Array, step: float, direction: float, state: Array, out: Array) -> None:
     """Write the joints' accelerations (6,) [rad/s^2] in a state."""
-    row = min(max(int(state[0] / step + 0.5), 0), table.shape[0] - 1)
-    ahead = state[0] - row * step
+    row, ahead = place_in_table(table, step, state[0])
     for i in range(6):
         second = table[row, 2, i] + ahead * table[row, 3, i]
         first = table[row, 1, i] + ahead * (table[row, 2, i] + ahead / 2.0 * table[row, 3, i])
         out[i] = direction * first * state[2] + second * state[1] ** 2
 
 
-@compiled
+@kernel
 def _jerk_range(
     table: Array, step: float, direction: float, bounds: Array, dt: float, share: float, tau: float, r: float,
     a: float, bend: Array, base: Array, gain: Array,
@@ -275,11 +274,8 @@ def _jerk_range(
         base: (6,) where the bases are written.
         gain: (6,) where the gains are written.
     """
-    last = table.shape[0] - 1
     rate = r + a * dt
-    at = min(max(tau + direction * dt * (r + dt * a / 2.0), 0.0), last * step)
-    row = min(int(at / step + 0.5), last)
-    ahead = at - row * step
+    row, ahead = place_in_table(table, step, tau + direction * dt * (r + dt * a / 2.0))
     lowest, highest = -UNBOUNDED, UNBOUNDED
     for i in range(6):
         two = table[row, 2, i] + ahead * table[row, 3, i]

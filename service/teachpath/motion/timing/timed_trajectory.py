@@ -47,11 +47,20 @@ class TimedTrajectory:
 
     def __call__(self, times: Array) -> Array:
         """Return the joints and the arc length (m, 7) at plan times (m,) [s]; outside the plan, those of its ends."""
+        ahead, value, first, second, third = self._rows_near(times)
+        return np.asarray(value + ahead * (first + ahead / 2 * (second + ahead / 3 * third)), dtype=np.float64)
+
+    def derivatives(self, times: Array) -> Array:
+        """Return joints and arc length (m, 3, 7) at plan times (m,) [s]: value and first two time derivatives."""
+        ahead, _, first, second, third = self._rows_near(times)
+        return np.stack([self(times), first + ahead * (second + ahead / 2 * third), second + ahead * third], axis=1)
+
+    def _rows_near(self, times: Array) -> tuple[Array, Array, Array, Array, Array]:
+        """Return how far (m, 1) [s] times lie from the nearest rows, and value and derivatives (m, 7) of these rows."""
         at = np.clip(times, 0.0, self.duration)
         row = np.rint(at / self.step).astype(np.int64)
-        ahead = (at - row * self.step)[:, None]
         value, first, second, third = (self.table[row, k] for k in range(4))
-        return np.asarray(value + ahead * (first + ahead / 2 * (second + ahead / 3 * third)), dtype=np.float64)
+        return (at - row * self.step)[:, None], value, first, second, third
 
     def setpoints(self, rate: float, *, phase: float = 0.0, override: float = 1.0) -> Array:
         """Return the setpoints (n, 7) at a constant override, with some of the standstill before and after.

@@ -127,7 +127,7 @@ def _plan(store: Store, path: LearnedPath) -> Plan | None:
 
 def _drawn(arm: Arm, scene: Scene, motion: MotionSettings) -> bytes:
     home = np.array(motion.home)
-    preview = Preview(MemoryBus(), Keys(), visual_solids(arm.tool_length), arm=arm, robot="", home=home, statuses=list)
+    preview = Preview(MemoryBus(), Keys(), visual_solids(arm), arm=arm, robot="", home=home, statuses=list)
     preview.show_object(scene.carried)
     return preview.connect(lambda: None).pop() or b""
 

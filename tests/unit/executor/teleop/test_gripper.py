@@ -63,7 +63,7 @@ def test_the_block_is_taken_carried_through_the_clutch_and_put_down() -> None:
     def see(name: str) -> None:
         bench.when(lambda: True, lambda: seen.update({name: bench.block.copy()}))
 
-    bench.teleoperate(TeleopRequest("glove", Calibration("identity"), SCENE))
+    bench.teleoperate(TeleopRequest("glove", Calibration("identity"), SCENE.name))
     bench.when(lambda: bench.state == "following", lambda: None)
     bench.go(0.0, 0.0, -0.06)
     bench.go(0.0, 0.0, 0.0, buttons=CLUTCH | 1, seconds=0.3)

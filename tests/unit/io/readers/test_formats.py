@@ -1,6 +1,7 @@
 """Formats that other programs write, as small files of each; and tables that leave something open."""
 
 import io
+import pickle
 import tomllib
 from importlib.metadata import EntryPoint
 from pathlib import Path
@@ -11,7 +12,7 @@ from scipy.spatial.transform import Rotation
 
 from teachpath.errors import UnusableRecording
 from teachpath.io.import_settings import ImportSettings
-from teachpath.io.readers.contract import FileMotions, Reader, ReadOptions
+from teachpath.io.readers.contract import FileMotions, OptionNeeded, Reader, ReadOptions
 from teachpath.io.readers.registry import GROUP, HOUSE, read_motions, readers, recognized
 from teachpath.records import Array
 
@@ -150,9 +151,9 @@ def test_tables_of_every_kind_give_the_same_motion(what: str) -> None:
         (text(PLAIN * [1e3, 1, 1, 1], "t,x,y,z"), "t looks like ms: .* --time ms"),
         (text(PLAIN * [1e6, 1, 1, 1], "t,x,y,z"), "t looks like us: .* --time us"),
         (text(PLAIN * [1e9, 1, 1, 1], "t,x,y,z"), "t looks like ns: .* --time ns"),
-        (text(PLAIN * [1, 1e3, 1e3, 1e3], "t,x,y,z"), r"spans 390 m, limit 10; --units .*mm \(0\.39 m\)"),
+        (text(PLAIN * [1, 1e3, 1e3, 1e3], "t,x,y,z"), r"spans 390 m, limit 10; .*--units .*mm \(0\.39 m\)"),
         (text(PLAIN), "no column for t, x, y, z; .*--columns t=1"),
-        (text(np.column_stack([PLAIN, TIMES]), "t,x,y,z,time"), "t and time could all be t; say which"),
+        (text(np.column_stack([PLAIN, TIMES]), "t,x,y,z,time"), "t and time could all be t; .*--columns t=..."),
         (text(np.column_stack([PLAIN, XYZW[:, :2]]), "t,x,y,z,qx,qy"), "no column for qw, qz"),
         (text(np.column_stack([TIMES, POSITIONS, POSITIONS, K]), "t,x,y,z,qx,qy,qz,qw"), "has length"),
         (motive().replace(b"hand,hand,hand,hand,hand,hand,hand,hand:1", b"a,a,a,a,a,a,a,b"), None),
@@ -166,13 +167,23 @@ def test_what_a_file_leaves_open_is_said_with_the_way_out(content: bytes, senten
         read(content)
 
 
+def test_a_question_comes_back_whole_from_the_process_that_reads() -> None:
+    error = OptionNeeded("t looks like ms or us", "time", "ms", "us")
+    again = pickle.loads(pickle.dumps(error))
+    assert str(again) == str(error) == "t looks like ms or us; say its unit with --time ms or us"
+    assert again.question == error.question
+
+
 def test_one_of_several_is_chosen_by_its_name() -> None:
     two = trc().replace(b"hand\t\t\n", b"hand\t\t\telbow\t\t\n").replace(b"X1\tY1\tZ1", b"X1\tY1\tZ1\tX2\tY2\tZ2")
     head, _, rows = two.partition(b"Z2\n\n")
     two = head + b"Z2\n\n" + b"".join(line + b"\t1\t2\t3\n" for line in rows.splitlines())
-    with pytest.raises(UnusableRecording, match=r"holds hand, elbow; choose one with --track"):
+    with pytest.raises(UnusableRecording, match=r"holds 2 of them; choose one with --track hand or elbow"):
         read(two, "f.trc")
-    assert np.allclose(read(two, "f.trc", track="hand").tracks[0].positions, POSITIONS, atol=1e-6)
+    chosen = read(two, "f.trc", track="hand")
+    assert np.allclose(chosen.tracks[0].positions, POSITIONS, atol=1e-6)
+    assert chosen.choices == ("hand", "elbow")
+    assert read(trc(), "f.trc").choices == ()
 
 
 def test_what_was_understood_is_told() -> None:

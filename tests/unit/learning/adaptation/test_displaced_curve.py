@@ -40,6 +40,16 @@ def test_it_follows_within_the_bound_and_ends_exactly(bound: float) -> None:
     assert off[[0, -1]].max() < 1e-9
 
 
+def test_it_swings_nowhere_between_the_points() -> None:
+    u, fine = np.sqrt(U), np.linspace(0.0, 1.0, 2001)  # few of them near the start
+    for seed in range(4):
+        hand = np.random.default_rng(seed).normal(0, 0.004, (100, 3))  # no curve follows it closely
+        rough = 0.1 * np.sin(3 * u)[:, None] * np.ones(3) + hand
+        between = np.column_stack([np.interp(fine, u, axis) for axis in rough.T])
+        moved, missed = displaced(CURVE, u, rough, 1e-4, 60)
+        assert np.linalg.norm(moved(fine) - CURVE(fine) - between, axis=1).max() < 3 * missed
+
+
 def test_it_stops_at_the_most_control_points_and_says_how_far_it_is() -> None:
     displacements = 0.1 * np.sin(60 * U)[:, None] * np.ones(3)
     moved, missed = displaced(CURVE, U, displacements, 1e-4, 12)

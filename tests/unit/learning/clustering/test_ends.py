@@ -10,7 +10,7 @@ from teachpath.learning.clustering.average_linkage import average_linkage
 from teachpath.learning.clustering.cuts import recut_members
 from teachpath.learning.clustering.dendrogram import labels_for_count
 from teachpath.learning.clustering.distances import pairwise_distances
-from teachpath.learning.clustering.ends import end_groups, grouped_linkage
+from teachpath.learning.clustering.ends import OF_TASKS, end_groups, grouped_linkage
 from teachpath.learning.learn import learn
 from teachpath.learning.relearn import relearn
 from teachpath.learning.settings import LearningSettings
@@ -49,9 +49,25 @@ def test_an_only_demonstration_to_another_goal_is_a_cluster() -> None:
 
 
 @pytest.mark.parametrize("seed", range(6))
+def test_two_demonstrations_have_one_end_or_two(seed: int) -> None:
+    for groups, apart in ((1, 0.0), (2, 0.06)):
+        assert end_groups(ends_of(to_goals(seed, 0, apart)), min_separation=2.0, length=0.9).max() == groups
+
+
+@pytest.mark.parametrize("seed", range(6))
 def test_ends_that_scatter_are_one_group(seed: int) -> None:
     groups = end_groups(ends_of(to_goals(seed, *[0.0] * 7)), min_separation=2.0, length=0.9)
     assert set(groups) == {1}
+
+
+def test_starts_that_scatter_widely_about_one_place_are_seldom_parted() -> None:
+    rng = np.random.default_rng(1)
+    parted = 0
+    for _ in range(100):
+        ends = np.zeros((12, 2, 3))
+        ends[:, 0, :2] = rng.normal(0.0, 0.03, (12, 2))  # m, of paths that are 1 m long, as written letters scatter
+        parted += end_groups(ends, min_separation=2.0, length=1.0, scatter=OF_TASKS).max() > 1
+    assert parted <= 10
 
 
 def test_turned_round_the_starts_count_as_the_goals_did() -> None:

@@ -64,6 +64,20 @@ def test_a_gap_at_rest_is_no_fault_and_one_in_motion_is(planned: Plan) -> None:
     assert any("not one period apart" in fault for fault in check_log(SetpointLog(times, positions), None, ARM).faults)
 
 
+def test_where_the_arm_came_to_rest_by_itself_the_log_begins_anew_from_rest(planned: Plan) -> None:
+    whole = streamed(planned)
+    middle = len(whole.times) // 2
+    times = np.concatenate([whole.times[:middle], whole.times[middle - 1] + 0.3 + whole.times])
+
+    def faults(after: np.ndarray, *restarts: int) -> tuple[str, ...]:
+        positions = np.concatenate([whole.positions[:middle], after])
+        return check_log(SetpointLog(times[: len(positions)], positions, restarts=restarts), None, ARM).faults
+
+    assert len(faults(whole.positions)) == 4  # the gap, and every limit
+    assert faults(whole.positions, middle) == ()
+    assert any("jerk limit" in fault for fault in faults(whole.positions[middle:], middle)), "it does not begin at rest"
+
+
 def test_another_path_or_other_limits_are_broken(planned: Plan) -> None:
     assert any("off the path" in f for f in check_log(streamed(planned), way(MIDDLE, height=0.61).curve, ARM).faults)
     faster = streamed(planned)

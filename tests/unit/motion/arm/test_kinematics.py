@@ -110,7 +110,7 @@ def test_jacobian_is_the_derivative_of_the_tool_pose(configurations: np.ndarray)
 
 def test_a_pose_out_of_reach_says_by_how_much() -> None:
     too_far = 0.03
-    height = LENGTHS.shoulder_height - LENGTHS.wrist_to_grasp
+    height = LENGTHS.shoulder_height + LENGTHS.wrist_in_tool[2]
     at = np.hypot(LENGTHS.upper_arm + LENGTHS.forearm + too_far, LENGTHS.shoulder_offset)
     solutions = inverse_kinematics(downward_poses(np.array([[at, 0.0, height]]), 0.0), ARM)
     np.testing.assert_allclose(solutions.reach_excess, too_far, atol=1e-12)

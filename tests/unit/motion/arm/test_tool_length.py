@@ -37,6 +37,10 @@ def test_a_point_beyond_the_fingers_grasps_nothing() -> None:
     ("setting", "value", "limit"),
     [
         ("tool_length", 0.6, "less than or equal to 0.5"),
+        ("tool_position", [0.0, 5.0, 0.1], "less than or equal to 0.5"),
+        ("tool_position", [0.0, float("nan"), 0.1], "finite|greater than"),
+        ("tool_position", [0.0, 0.1], "at least 3 items"),
+        ("tool_orientation", [1.0, 2.0, 0.0, 0.0], "less than or equal to 1"),
         ("payload_mass", -1.0, "greater than or equal to 0"),
         ("payload_mass", 12.0, "less than or equal to 10"),
         ("payload_center", [0.0, 0.0, 0.9], "less than or equal to 0.5"),
@@ -47,3 +51,18 @@ def test_a_point_beyond_the_fingers_grasps_nothing() -> None:
 def test_bad_values_are_refused_with_the_limit(setting: str, value: object, limit: str) -> None:
     with pytest.raises(UnusableSettings, match=rf"setting motion\.{setting}.* {limit}"):
         load(document={"motion": {setting: value}})
+
+
+def test_an_orientation_that_is_no_rotation_is_refused_with_the_way_out() -> None:
+    for load_or_make in (
+        lambda: load(document={"motion": {"tool_orientation": [1.0, 1.0, 0.0, 0.0]}}),
+        lambda: Arm.of_settings(MotionSettings(tool_orientation=(1.0, 1.0, 0.0, 0.0))),
+    ):
+        with pytest.raises(UnusableSettings, match=r"motion\.tool_orientation.* has length 1\.414: divide it"):
+            load_or_make()
+
+
+@pytest.mark.parametrize("value", [5.0, float("inf"), float("nan")])
+def test_a_tool_too_far_away_is_refused_whoever_makes_the_arm(value: float) -> None:
+    with pytest.raises(UnusableSettings, match=r"motion\.tool_position is .* at most 0\.5 m"):
+        Arm.of_settings(MotionSettings(tool_position=(0.0, 0.0, value)))

@@ -17,10 +17,10 @@ SIGNS = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)],
 class Surface:
     """Corners of boxes and meshes, rims of cylinders, poles of spheres: of the arm's moving parts."""
 
-    def __init__(self) -> None:
-        self._model = mujoco.MjModel.from_xml_string(write_mjcf(empty_scene(), ARM))
+    def __init__(self, arm: Arm = ARM) -> None:
+        self._model = mujoco.MjModel.from_xml_string(write_mjcf(empty_scene(), arm))
         self._data = mujoco.MjData(self._model)
-        self._geoms = [self._model.geom(part.name).id for part in collision_solids() if part.link >= 1]
+        self._geoms = [self._model.geom(part.name).id for part in collision_solids(arm) if part.link >= 1]
         self._local = [self._points(geom) for geom in self._geoms]
 
     def __call__(self, q: np.ndarray) -> np.ndarray:

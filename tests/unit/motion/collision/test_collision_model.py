@@ -10,7 +10,7 @@ from teachpath.motion.collision.builtin_scenes import paper_scene
 from teachpath.motion.collision.collision_model import MAX_DISTANCE, Clearance, CollisionModel, Load
 from teachpath.motion.settings import MotionSettings
 from teachpath.motion.timing.joint_moves import placed_load
-from teachpath.records import Scene, Shape
+from teachpath.records import Scene, Shape, ToolPose
 from tests.unit.motion.collision.solids import Surface
 
 ARM = Arm.of_variant()
@@ -95,8 +95,10 @@ def test_the_block_may_touch_the_table_it_stands_on_but_not_what_is_beside_it() 
     assert (beside.body, beside.other_body) == ("block", "box")
 
 
-def test_no_moving_point_is_farther_from_an_axis_than_its_lever() -> None:
-    surface, levers = Surface(), CollisionModel(paper_scene(), ARM).lever_arms()
+@pytest.mark.parametrize("tool", [None, ToolPose((0.1, -0.2, -0.1), (0.5, 0.5, -0.5, 0.5))])
+def test_no_moving_point_is_farther_from_an_axis_than_its_lever(tool: ToolPose | None) -> None:
+    arm = replace(ARM, tool=tool)
+    surface, levers = Surface(arm), CollisionModel(paper_scene(), arm).lever_arms()
     q = np.random.default_rng(5).uniform(ARM.limits.lower, ARM.limits.upper, (60, 6))
     longest = np.zeros(6)
     for joint in range(6):
@@ -152,9 +154,9 @@ def test_nothing_near_is_far() -> None:
 @pytest.mark.parametrize(
     ("distance", "least", "sentence"),
     [
-        (0.002, 0.005, "block comes within 2.0 mm of box, least allowed 5.0 mm"),
-        (-0.012, 0.005, "block goes 12.0 mm into box, has to stay 5.0 mm away"),
-        (-0.012, -0.003, "block goes 12.0 mm into box, at most 3.0 mm are allowed"),
+        (0.002, 0.005, "block comes within 2 mm of box, least allowed 5 mm"),
+        (-0.012, 0.005, "block goes 1.2 cm into box, has to stay 5 mm away"),
+        (-0.012, -0.003, "block goes 1.2 cm into box, at most 3 mm are allowed"),
     ],
 )
 def test_what_is_too_near_is_said_without_a_negative_number(distance: float, least: float, sentence: str) -> None:

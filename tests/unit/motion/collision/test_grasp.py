@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from teachpath.errors import PathRefused
-from teachpath.motion.arm.kinematics import rotation_matrices
 from teachpath.motion.arm.model import Arm
+from teachpath.motion.arm.rotations import rotation_matrices
 from teachpath.motion.collision.builtin_scenes import paper_scene
 from teachpath.motion.collision.grasp import grasp_fault
 from teachpath.motion.planning.assessment import assess
@@ -47,10 +47,10 @@ def begun(x: float, y: float, z: float) -> tuple[LearnedPath, Scene]:
     [
         ((0.0, 0.0, 0.0), ""),
         ((0.0, 0.0, 0.014), ""),
-        ((0.0, 0.0, 0.029), "the fingers miss block by 4.0 mm along their length"),
-        ((0.0, 0.0, 0.018), r"the fingers overlap block by 7.0 mm along their length, at least 10.0 mm are needed"),
-        ((0.029, 0.0, 0.0), "the fingers overlap block by 2.0 mm across their width, at least 10.0 mm are needed"),
-        ((0.0, 0.029, 0.0), "block sticks out from between the open fingers by 14.0 mm"),
+        ((0.0, 0.0, 0.029), "the fingers miss block by 4 mm along their length"),
+        ((0.0, 0.0, 0.018), r"the fingers overlap block by 7 mm along their length, less than 1 cm"),
+        ((0.029, 0.0, 0.0), "the fingers overlap block by 2 mm across their width, less than 1 cm"),
+        ((0.0, 0.029, 0.0), "block sticks out from between the open fingers by 1.4 cm"),
     ],
 )
 def test_a_block_is_taken_where_the_fingers_overlap_it_and_nowhere_else(off: tuple[float, ...], fault: str) -> None:
@@ -62,11 +62,11 @@ def test_a_block_is_taken_where_the_fingers_overlap_it_and_nowhere_else(off: tup
 @pytest.mark.parametrize(
     ("shape", "fault"),
     [
-        (Shape("bar", "box", (0.02, 0.09, 0.02), (0, 0, 0)), "bar is 90 mm wide there, the fingers open 70 mm"),
+        (Shape("bar", "box", (0.02, 0.09, 0.02), (0, 0, 0)), "bar is 9 cm wide there, the fingers open 7 cm"),
         (Shape("coin", "cylinder", (0.02, 0.004), (0, 0, 0)), ""),
         (Shape("pole", "cylinder", (0.02, 0.3), (0, 0, 0)), ""),
         (Shape("ball", "sphere", (0.03,), (0, 0, 0)), ""),
-        (Shape("drum", "cylinder", (0.04, 0.05), (0, 0, 0)), "drum is 80 mm wide there"),
+        (Shape("drum", "cylinder", (0.04, 0.05), (0, 0, 0)), "drum is 8 cm wide there"),
     ],
 )
 def test_what_is_wider_than_the_gripper_opens_is_refused_and_what_is_flat_is_not(shape: Shape, fault: str) -> None:

@@ -118,17 +118,17 @@ def test_every_setpoint_has_a_way_to_rest_on_the_track_within_all_limits(
                 command(log.governor, rng)
             log.step()
             way = log.governor.way_to_rest()
-            if not len(way.positions):
+            if not len(way.states):
                 assert log.governor.progress.at_rest
                 continue
-            np.testing.assert_allclose(way.positions[-1], tracks[name](np.array([way.tau]))[0, :6], atol=1e-9)
+            np.testing.assert_allclose(way.states[-1, 0], tracks[name](np.array([way.tau]))[0, :6], atol=1e-9)
             sent = np.array(log.sent[-3:])[:, :6]
-            rows = np.vstack([sent, way.positions, np.repeat(way.positions[-1:], 3, axis=0)])
+            rows = np.vstack([sent, way.states[:, 0], np.repeat(way.states[-1:, 0], 3, axis=0)])
             uses = [np.abs(np.diff(rows, k, axis=0)) / DT**k for k in (1, 2, 3)]
             for use, limit in zip(uses, (ARM.limits.speed, ARM.limits.acceleration, ARM.limits.jerk), strict=True):
                 assert np.all(use <= limit * LIMIT)
             if cycle % 60 == 0:
-                off = np.abs(way.positions[:, None] - fine).max(axis=2).min(axis=1)
+                off = np.abs(way.states[:, 0, None] - fine).max(axis=2).min(axis=1)
                 assert off.max() <= np.abs(np.diff(fine, axis=0)).max()
 
 
@@ -141,7 +141,7 @@ def test_it_goes_on_from_the_end_of_a_way_to_rest_in_its_direction(tracks: dict[
             log.until(lambda log=log: log.governor.state[1] < -0.3, within=2000)
         way = log.governor.way_to_rest()
         log.governor.restart_at(way.tau, held=False)
-        np.testing.assert_allclose(log.governor.motion[0, :6], way.positions[-1], atol=1e-12)
+        np.testing.assert_allclose(log.governor.motion[0, :6], way.states[-1, 0], atol=1e-12)
         assert log.governor.reversing is reverse
         log.until(lambda log=log: log.governor.progress.at_rest, within=10)  # it begins from rest
         for _ in range(50):

@@ -55,6 +55,7 @@ def test_a_motion_that_rests_on_its_way_back_is_back_at_the_beginning_only_there
         program.step()
     program.set_waiting(False)
     assert not program.held
+    assert program.hold_reason == ""  # it is asked for before the next step, too, where the arm was held
     while not program.held:
         program.step()
     assert program.progress == 0.0

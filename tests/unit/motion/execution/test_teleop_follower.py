@@ -10,10 +10,11 @@ from teachpath.motion.arm.kinematics import min_singular_value, tool_pose
 from teachpath.motion.arm.model import Arm, Payload
 from teachpath.motion.arm.tool_speed import difference_speeds
 from teachpath.motion.collision.builtin_scenes import empty_scene, paper_scene
-from teachpath.motion.collision.collision_model import CollisionModel
+from teachpath.motion.collision.collision_model import CollisionModel, grasped_load
 from teachpath.motion.execution.teleop_follower import TeleopFollower
 from teachpath.motion.settings import MotionSettings
-from teachpath.records import Scene
+from teachpath.records import Scene, Shape, ToolPose
+from tests.unit.motion.collision.test_boundaries import over
 
 ARM = Arm.of_variant()
 
@@ -30,7 +31,8 @@ class Session:
     def __init__(self, scene: Scene | None = None, begin: np.ndarray = HOME, *, arm: Arm = ARM, **given: float) -> None:
         self.model = CollisionModel(scene or empty_scene(), arm)
         self.follower = TeleopFollower(self.model, begin, SETTINGS, share=SHARE, **given)
-        self.sent = [begin] * 3
+        self.sent = [begin]
+        self.states = [np.array([begin, *np.zeros((2, 6))])]  # (3, 6) position, velocity and acceleration of setpoints
         self.reasons: set[str] = set()
 
     def run(self, periods: int, hand: np.ndarray | None = None, turn: np.ndarray | None = None) -> np.ndarray:
@@ -39,24 +41,42 @@ class Session:
         for k in range(periods):
             if hand is not None and k % EVERY == 0:
                 self.follower.set_hand(hand, len(self.sent), orientation)
-            self.sent.append(self.follower.step()[0])
+            self.states.append(np.array(self.follower.step()))
+            self.sent.append(self.states[-1][0])
             self.follower.advance_planning()
             self.reasons.add(self.follower.reason)
         return self.tool()
 
     def turned(self) -> np.ndarray:
         """Return the rotation vectors (n, 3) [rad] of the tool from where it began, at all setpoints."""
-        turns = tool_pose(np.array(self.sent), ARM)[:, :3, :3]
+        turns = tool_pose(np.array(self.sent), self.model.arm)[:, :3, :3]
         return np.asarray(Rotation.from_matrix(turns @ turns[0].T).as_rotvec())
 
     def tool(self) -> np.ndarray:
-        return tool_pose(self.sent[-1], ARM)[:3, 3]
+        return np.asarray(tool_pose(self.sent[-1], self.model.arm)[:3, 3])
+
+    def between(self, count: int) -> np.ndarray:
+        """Return positions, velocities and accelerations (3, n, 6) at moments between the setpoints, too.
+
+        A player joins two setpoints by the one polynomial that meets both; here that is a cubic.
+        """
+        p, v, a = np.moveaxis(np.array(self.states), 1, 0)
+        t, jerk = DT * np.linspace(0.0, 1.0, count, endpoint=False)[:, None], np.diff(a, axis=0)[:, None] / DT
+        p, v, a = (rows[:, None] for rows in (p, v, a))
+        np.testing.assert_allclose((p + v * DT + a * DT**2 / 2)[:-1] + jerk * DT**3 / 6, p[1:], rtol=0, atol=1e-12)
+        np.testing.assert_allclose((v + a * DT)[:-1] + jerk * DT**2 / 2, v[1:], rtol=0, atol=1e-9)
+        p, v, a = p[:-1], v[:-1], a[:-1]
+        rows = (p + v * t + a * t**2 / 2 + jerk * t**3 / 6, v + a * t + jerk * t**2 / 2, a + jerk * t)
+        return np.array([row.reshape(-1, 6) for row in rows])
 
     def within_limits(self) -> bool:
-        q = np.array(self.sent)
-        return bool(np.all(q >= ARM.limits.lower) and np.all(q <= ARM.limits.upper)) and all(
-            bool(np.all(np.abs(np.diff(q, k, axis=0)) / DT**k <= SHARE * limit * (1 + 1e-6)))
-            for k, limit in ((1, ARM.limits.speed), (2, ARM.limits.acceleration), (3, ARM.limits.jerk))
+        """Tell whether ranges, speeds, accelerations and jerks are kept at every moment."""
+        q, speed, acceleration = self.between(8)
+        jerk = np.diff(np.array(self.states)[:, 2], axis=0) / DT
+        limits = ARM.limits
+        uses = zip((speed, acceleration, jerk), (limits.speed, limits.acceleration, limits.jerk), strict=True)
+        return bool(np.all(q >= limits.lower - 1e-9) and np.all(q <= limits.upper + 1e-9)) and all(
+            bool(np.all(np.abs(rows) <= SHARE * limit * (1 + 1e-6))) for rows, limit in uses
         )
 
 
@@ -70,6 +90,17 @@ def test_the_tool_goes_where_the_hand_went_scaled_and_keeps_its_orientation(scal
     np.testing.assert_allclose(end - begin, scale * way, atol=1e-6)
     np.testing.assert_allclose(tool_pose(session.sent[-1], ARM)[:3, :3], tool_pose(HOME, ARM)[:3, :3], atol=1e-6)
     assert session.follower.at_rest
+    assert session.within_limits()
+    assert session.reasons == {""}
+
+
+def test_a_tool_off_the_axis_of_joint_6_keeps_its_orientation_on_the_way_too() -> None:
+    tool = ToolPose((0.05, -0.04, 0.16), (np.cos(0.2), 0.6 * np.sin(0.2), 0.8 * np.sin(0.2), 0.0))
+    session = Session(arm=replace(ARM, tool=tool))
+    begin, way = session.tool(), np.array([0.05, 0.08, 0.04])
+    session.follower.engage(np.zeros(3))
+    np.testing.assert_allclose(session.run(600, way) - begin, way, atol=1e-6)
+    assert np.linalg.norm(session.turned(), axis=1).max() < np.radians(1.0)
     assert session.within_limits()
     assert session.reasons == {""}
 
@@ -132,6 +163,29 @@ def test_what_cannot_be_reached_is_said_and_the_arm_stays_as_near_as_it_safely_m
     assert session.within_limits()
     back = session.run(900, np.zeros(3))
     np.testing.assert_allclose(back, begin, atol=2e-3)
+    assert session.follower.reason == ""
+
+
+def test_what_stood_in_the_way_once_shortens_no_later_move() -> None:
+    session = Session(paper_scene())
+    session.follower.engage(np.zeros(3))
+    session.run(600, np.array([0.0, 0.0, -0.6]))  # pressed against something until next to nothing is tried
+    session.follower.disengage()
+    session.run(125)
+    begin, small = session.tool(), np.array([0.0, 0.0, 0.002])
+    session.follower.engage(np.zeros(3))
+    np.testing.assert_allclose(session.run(150, small) - begin, small, atol=1e-6)
+    assert session.follower.reason == ""
+
+
+def test_a_tool_that_is_slow_since_its_steps_are_checked_says_so_while_it_is() -> None:
+    tall = Shape("block", "box", (0.06, 0.06, 0.1), (0.5, 0.1, 0.05))
+    session = Session(Scene("s", carried=tall), over(*tall.position)[0])
+    session.follower.load = grasped_load(session.model, session.sent[-1])
+    session.follower.engage(np.zeros(3))
+    session.run(300, np.array([0.1, 0.1, 0.0]))  # along the floor, on which it stood
+    assert any("near to what it stood on, so every step is checked first" in reason for reason in session.reasons)
+    session.run(600, np.array([0.0, 0.0, 0.1]))
     assert session.follower.reason == ""
 
 
@@ -227,6 +281,6 @@ def test_a_limit_of_the_tools_speed_holds_however_the_hand_moves_and_the_tool_st
         session.run(int(rng.integers(5, 60)), hand + rng.uniform(-0.12, 0.12, 3))
     way = np.array([0.04, 0.05, 0.03])
     np.testing.assert_allclose(session.run(1200, hand + way) - begin, way, atol=1e-6)
-    speeds = difference_speeds(np.array(session.sent), 1 / DT, SLOW_ARM)
+    speeds = difference_speeds(session.between(4)[0], 4 / DT, SLOW_ARM)
     assert 0.09 < speeds.max() <= 0.1 * (1 + 1e-6)
     assert session.within_limits()

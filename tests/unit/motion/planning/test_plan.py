@@ -19,6 +19,10 @@ from teachpath.records import Plan, Shape
 from tests.unit.motion.ways import FAR, MIDDLE, NEAR, clamped, learned, way
 
 ARM = Arm.of_variant()
+TILTED_TOOL = MotionSettings(
+    tool_position=(0.05, -0.04, 0.16),
+    tool_orientation=(np.cos(0.2), 0.6 * np.sin(0.2), 0.8 * np.sin(0.2), 0.0),  # joint 6 alone does not roll it
+)
 
 
 @pytest.fixture(scope="module")
@@ -120,7 +124,7 @@ def test_a_path_that_stands_still_or_has_no_length_is_refused() -> None:
     points = way(MIDDLE).curve.control_points
     with pytest.raises(PathRefused, match="control points coincide"):
         plan(learned(clamped(np.repeat(points[[0, 4, 8]], 4, axis=0))), empty_scene())
-    with pytest.raises(PathRefused, match=r"0\.0 mm long"):
+    with pytest.raises(PathRefused, match="is 0 mm long, the shortest followed is 1 cm"):
         plan(learned(clamped(np.repeat(points[:1], 5, axis=0))), empty_scene())
 
 
@@ -162,7 +166,8 @@ def test_the_other_end_of_the_path_is_left_as_it_is() -> None:
     np.testing.assert_allclose(under_a_lid(0.76, at_goal=False)[1], [0.0, 0.0, MotionSettings().lift], atol=1e-9)
 
 
-def test_the_tool_rolls_along_the_path_where_no_one_roll_leads_through() -> None:
+@pytest.mark.parametrize("settings", [MotionSettings(), TILTED_TOOL], ids=["on the axis", "tilted"])
+def test_the_tool_rolls_along_the_path_where_no_one_roll_leads_through(settings: MotionSettings) -> None:
     corner = [
         [0.42, -0.2],
         [0.5, -0.2],
@@ -180,12 +185,14 @@ def test_the_tool_rolls_along_the_path_where_no_one_roll_leads_through() -> None
     scene = empty_scene()
     one, other = (replace(scene, obstacles=(*scene.obstacles, *some)) for some in (posts[:2], posts[2:]))
     both = replace(scene, obstacles=(*scene.obstacles, *posts))
-    assert {"rolling" in plan(learned(curve), single).certificate.branch for single in (one, other)} == {False}
-    made = plan(learned(curve), both)
+    assert {"rolling" in plan(learned(curve), single, settings).certificate.branch for single in (one, other)} == {
+        False
+    }
+    made = plan(learned(curve), both, settings)
     assert "rolling" in made.certificate.branch
     assert made.certificate.clearance.value >= MotionSettings().clearance_min
     setpoints = plan_trajectory(made).setpoints(250.0)
-    poses = tool_pose(setpoints[:, :6], ARM)
+    poses = tool_pose(setpoints[:, :6], Arm.of_settings(settings))
     wanted = curve(ArcLength(curve).parameters(setpoints[:, 6]))
     assert np.linalg.norm(poses[:, :3, 3] - wanted, axis=1).max() < 1e-4
     assert np.degrees(np.arccos(np.clip(poses[:, :3, 0] @ poses[0, :3, 0], -1, 1))).max() > 45.0

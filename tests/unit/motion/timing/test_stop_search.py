@@ -4,15 +4,18 @@ import pytest
 from teachpath.motion.arm.model import Arm
 from teachpath.motion.execution.governor import Governor
 from teachpath.motion.timing.joint_moves import straight_move
+from teachpath.motion.timing.kernels import evaluate_table
 from teachpath.motion.timing.limit_margins import limit_uses
+from teachpath.motion.timing.ramp_checks import KEPT, PHASES, check_ramp, check_states
 from teachpath.motion.timing.stop_search import find_stop
 from teachpath.motion.timing.timed_trajectory import TimedTrajectory
 
 ARM = Arm.of_variant()
 LIMITS = ARM.limits.motion
 DT = 0.004
+WINDOW = np.stack([LIMITS.speed * DT, LIMITS.acceleration * DT**2, LIMITS.jerk * DT**3])  # of differences
 TRIES = 4
-SUBDIVISIONS = 4  # of a period, at which its motion is read
+SUBDIVISIONS = 16  # of a period, at which its motion is read
 
 
 @pytest.fixture(scope="module")
@@ -22,15 +25,18 @@ def line() -> TimedTrajectory:
 
 def search(track: TimedTrajectory, tau: float, rate: float) -> np.ndarray:
     """Search for a stop from a constant rate; returns its states (n, 3)."""
-    limits = np.stack([LIMITS.speed * DT, LIMITS.acceleration * DT**2, LIMITS.jerk * DT**3])
-    sent, scale = np.zeros((6, 6)), DT * rate
-    before = track(tau - scale * np.arange(3))[:, :6]
-    midway = track(tau - scale * (np.arange(3) + 0.5))[:, :6]
-    sent[0], sent[1], sent[2] = before[0], before[0] - before[1], before[0] - 2 * before[1] + before[2]
-    sent[3], sent[4], sent[5] = midway[0], midway[0] - midway[1], midway[0] - 2 * midway[1] + midway[2]
-    out = np.empty((500, 3))
-    count = find_stop(track.table, track.step, np.array([tau, rate, 0.0]), sent, limits, DT, np.inf, TRIES, out)
+    out, sent = np.empty((500, 3)), sent_at(track, tau, rate)
+    count = find_stop(track.table, track.step, np.array([tau, rate, 0.0]), sent, WINDOW, DT, np.inf, TRIES, out)
     return out[:count]
+
+
+def sent_at(track: TimedTrajectory, tau: float, rate: float) -> np.ndarray:
+    """What was sent by an executor that came along at a constant rate (see `ramp_checks.advance`)."""
+    sent = np.zeros((PHASES, 3, 6))
+    for phase in range(PHASES):
+        newest, one, two = track(tau - DT * rate * (np.arange(3) + 1.0 - (phase + 1) / PHASES))[:, :6]
+        sent[phase] = newest, newest - one, newest - 2 * one + two
+    return sent
 
 
 def read(track: TimedTrajectory, tau: float, rate: float, states: np.ndarray) -> np.ndarray:
@@ -66,6 +72,40 @@ def test_a_stop_keeps_the_limits_at_whatever_moment_it_is_read(
             assert use.max() <= 1.0
 
 
+@pytest.mark.parametrize("broken", [np.nan, np.inf, -np.inf])
+def test_states_that_are_no_numbers_are_refused(line: TimedTrajectory, broken: float) -> None:
+    tau = 0.5 * line.duration
+    states, sent = search(line, tau, 1.0), sent_at(line, tau, 1.0)
+
+    def keeps(states: np.ndarray) -> bool:
+        given = (line.table, line.step, np.array([tau, 1.0, 0.0]), states, len(states), sent, WINDOW, DT)
+        return bool(check_states(*given, np.empty(len(states))))
+
+    assert keeps(states)
+    for row in range(len(states)):
+        bad = states.copy()
+        bad[row, 0] = broken
+        assert not keeps(bad)
+    sound = np.array([tau, 1.0, 0.0, 0.2, 0.1, 0.2, -0.2, 0.988])
+    assert check_ramp(line.table, line.step, sound, sent, WINDOW, DT)[0] == KEPT
+    for place in range(8):
+        ramp = sound.copy()
+        ramp[place] = broken
+        assert check_ramp(line.table, line.step, ramp, sent, WINDOW, DT)[0] != KEPT
+    for column in range(3):
+        state = np.array([tau, 1.0, 0.0])
+        state[column] = broken
+        out = np.empty((500, 3))
+        assert find_stop(line.table, line.step, state, sent, WINDOW, DT, np.inf, TRIES, out) == 0
+
+
+def test_a_table_is_read_within_its_rows_whatever_the_plan_time(line: TimedTrajectory) -> None:
+    for tau, end in ((np.nan, 0), (-np.inf, 0), (-1e300, 0), (np.inf, -1), (1e300, -1)):
+        joints = np.empty(7)
+        evaluate_table(line.table, line.step, tau, joints)
+        np.testing.assert_allclose(joints, line.table[end, 0], atol=1e-9)
+
+
 @pytest.mark.parametrize("rate", [1.0, -0.9, 0.6])
 def test_on_a_line_a_stop_takes_hardly_longer_than_its_closed_form(line: TimedTrajectory, rate: float) -> None:
     tau = 0.5 * line.duration
@@ -94,7 +134,7 @@ def test_a_hold_takes_no_longer_than_the_way_to_rest_that_was_told(line: TimedTr
     way = governor.way_to_rest()
     governor.hold()
     governor.step()
-    np.testing.assert_allclose(governor.motion[0, :6], way.positions[0], atol=1e-12)
-    for _ in way.positions[1:]:
+    np.testing.assert_allclose(governor.motion[0, :6], way.states[0, 0], atol=1e-12)
+    for _ in way.states[1:]:
         governor.step()
     assert governor.progress.at_rest

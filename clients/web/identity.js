@@ -1,0 +1,130 @@
+// Who uses this page: signs people in and out, and says in every tab what they may not do in it.
+import { get, post, remove } from "./api.js";
+import { element, hint } from "./elements.js";
+
+const CHECK_INTERVAL = 1000; // [ms] between two looks at who it is, while the connection is lost
+
+export class IdentityControl {
+  #checked = 0;
+  #begin = () => {};
+
+  /**
+   * @param {Context} context
+   * @param {{who: HTMLElement, signIn: HTMLElement}} parts the name in the header; where to sign in
+   */
+  constructor({ store, messages }, { who, signIn }) {
+    this.store = store;
+    this.messages = messages;
+    this.who = who;
+    this.place = signIn;
+    this.name = element("input", { type: "text", id: "sign-in-name", required: "", autocomplete: "username" });
+    const kind = { type: "password", id: "sign-in-password", required: "", autocomplete: "current-password" };
+    this.password = element("input", kind);
+    this.refusal = element("p", { class: "error", role: "alert" });
+    this.form = element(
+      "form",
+      {},
+      element("h2", {}, "Sign in"),
+      hint("This station asks who uses it. The arm is stopped by everybody, signed in or not."),
+      element("p", { class: "field" }, element("label", { for: "sign-in-name" }, "Name"), this.name),
+      element("p", { class: "field" }, element("label", { for: "sign-in-password" }, "Password"), this.password),
+      element("p", { class: "buttons" }, element("button", { type: "submit", class: "primary" }, "Sign in")),
+      this.refusal,
+    );
+    this.form.addEventListener("submit", (event) => {
+      event.preventDefault();
+      this.#signIn();
+    });
+    this.who.addEventListener("click", (event) => {
+      if (event.target instanceof HTMLButtonElement) messages.attempt(() => this.#signOut());
+    });
+  }
+
+  get mayLook() {
+    return this.store.state.identity.capabilities.includes("view");
+  }
+
+  /**
+   * Ask who this is, and call `begin` once, as soon as somebody may look.
+   * @param {() => void} begin
+   */
+  async whenSeeing(begin) {
+    this.#begin = begin;
+    await this.read();
+    if (this.mayLook) this.#beginOnce();
+  }
+
+  #beginOnce() {
+    const begin = this.#begin;
+    this.#begin = () => {};
+    begin();
+  }
+
+  // Ask who this is; without an answer it stays who it was.
+  async read() {
+    const identity = await get("identity").catch(() => null);
+    if (identity) this.#show(identity);
+  }
+
+  // The same, where the connection is lost and perhaps the session with it; not too often.
+  check() {
+    if (Date.now() - this.#checked < CHECK_INTERVAL) return;
+    this.#checked = Date.now();
+    this.read();
+  }
+
+  async #signIn() {
+    this.refusal.textContent = "";
+    try {
+      const identity = await post("session", { name: this.name.value.trim(), password: this.password.value });
+      this.messages.clear();
+      this.#show(identity);
+    } catch (error) {
+      this.refusal.textContent = error instanceof Error ? error.message : String(error);
+      this.password.select();
+    }
+  }
+
+  async #signOut() {
+    await remove("session");
+    await this.read();
+  }
+
+  /** @param {Identity} identity who it is, perhaps as before: what is being typed stays */
+  #show(identity) {
+    this.store.set({ identity });
+    const isMissing = !this.mayLook;
+    document.documentElement.dataset.signedIn = String(!isMissing);
+    this.place.hidden = !isMissing;
+    this.who.hidden = identity.mode === "none" || isMissing;
+    this.who.replaceChildren(identity.name, element("button", { type: "button" }, "Sign out"));
+    if (isMissing && !this.form.isConnected) {
+      this.place.append(this.form);
+      this.name.focus();
+    } else if (!isMissing) {
+      this.form.remove();
+      this.password.value = "";
+      this.#beginOnce();
+    }
+  }
+}
+
+/** @type {Record<string, string>} */
+const WORK = {
+  demonstrate: "show demonstrations",
+  teach: "learn, edit and plan",
+  operate: "move the arm",
+};
+
+/**
+ * What somebody may not do that a tab is for, as a sentence; empty when all of it is possible.
+ * @param {Identity} identity
+ * @param {Identity["capabilities"]} needed
+ */
+export function missingSentence({ name, capabilities }, needed) {
+  const missing = needed.filter((one) => !capabilities.includes(one));
+  if (!missing.length) return "";
+  const work = missing.map((one) => WORK[one]).join(", or ");
+  const roles = missing.map((one) => `“${one}”`).join(" and ");
+  return `${name} may look at this, but not ${work}: that needs the role ${roles}. Whoever administers the station gives it.`;
+}

@@ -1,0 +1,144 @@
+"""People who have signed in: their sessions, which end when nothing was asked for a while, and at last anyway."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Final, Protocol
+
+from teachpath.access.attempts import Attempts
+from teachpath.access.passwords import is_password
+from teachpath.access.settings import AuthSettings
+from teachpath.access.tokens import MAX_LENGTH, digest_of, new_secret
+from teachpath.errors import NotSignedIn
+from teachpath.records import Person, Session, Subject, capabilities_of
+
+NS: Final = 10**9
+USE_INTERVAL_NS: Final = 10 * NS  # between two notes of the use of one session
+UNKNOWN: Final = "no one of this name and password is known here; try again, or ask whoever administers the station"
+ENDED: Final = "your session has ended; sign in again"
+
+
+class PeopleTable(Protocol):
+    """Where people and sessions are kept."""
+
+    def all(self) -> list[Person]:
+        """Return every person."""
+
+    def sessions(self) -> list[Session]:
+        """Return every session, ended ones too."""
+
+    def begin_session(self, session: Session) -> None:
+        """Keep a session."""
+
+    def note_use(self, used: dict[str, int]) -> None:
+        """Note when sessions were used, by their digests."""
+
+    def end_sessions(self, digests: list[str]) -> None:
+        """Forget sessions."""
+
+
+class Sessions:
+    """Signs people in and out, and tells who they are; safe to use from several threads.
+
+    Args:
+        settings: how long a session lasts.
+        table: of people and sessions.
+        now_ns: the time.
+    """
+
+    def __init__(self, settings: AuthSettings, table: PeopleTable, now_ns: Callable[[], int] = time.time_ns) -> None:
+        self._settings, self._table, self._now_ns = settings, table, now_ns
+        self._attempts = Attempts(lambda: now_ns() / NS)
+        self._people: dict[str, Person] = {}
+        self._sessions: dict[str, Session] = {}
+        self._lock = threading.Lock()
+
+    @property
+    def has_people(self) -> bool:
+        """Whether anybody could sign in."""
+        return bool(self._people)
+
+    def refresh(self) -> None:
+        """Read people and sessions, note which were used, and forget those that have ended."""
+        begin = self._now_ns()
+        with self._lock:
+            used = {digest: s.used_ns for digest, s in self._sessions.items()}
+        stored = {session.digest: session for session in self._table.sessions()}
+        newer = {d: used_ns for d, used_ns in used.items() if d in stored and used_ns > stored[d].used_ns}
+        if newer:
+            self._table.note_use(newer)
+        people = {person.name: person for person in self._table.all()}
+        with self._lock:
+            self._people = people
+            gone = [d for d, s in self._sessions.items() if d not in stored and s.created_ns < begin]
+            for digest in gone:
+                del self._sessions[digest]
+            for digest, session in stored.items():
+                known = self._sessions.get(digest, session)
+                self._sessions[digest] = replace(session, used_ns=max(session.used_ns, known.used_ns))
+            ended = [digest for digest in self._sessions if not self._holds(digest)]
+            for digest in ended:
+                del self._sessions[digest]
+        if ended:
+            self._table.end_sessions(ended)
+
+    def sign_in(self, name: str, password: str, address: str) -> tuple[str, Subject]:
+        """Begin a session, and return its secret with who it is.
+
+        Raises:
+            NotSignedIn: name or password is wrong.
+            TooManyAttempts: too many have failed.
+        """
+        self._attempts.begin(name, address)
+        person = self._people.get(name)
+        if not is_password(password, person.password_hash if person else None) or person is None:
+            raise NotSignedIn(UNKNOWN)
+        self._attempts.succeed(name, address)
+        secret, now = new_secret(), self._now_ns()
+        session = Session(digest_of(secret), name, now, now)
+        self._table.begin_session(session)
+        with self._lock:
+            self._sessions[session.digest] = session
+        return secret, self._subject(person, session)
+
+    def sign_out(self, secret: str) -> None:
+        """End a session; nothing where there is none."""
+        digest = digest_of(secret)
+        self._table.end_sessions([digest])
+        with self._lock:
+            self._sessions.pop(digest, None)
+
+    def subject(self, secret: str) -> Subject:
+        """Return who has a session; raises NotSignedIn."""
+        if len(secret) > MAX_LENGTH:
+            raise NotSignedIn(ENDED)
+        digest, now = digest_of(secret), self._now_ns()
+        with self._lock:
+            session = self._sessions.get(digest)
+            if session is None or not self._holds(digest):
+                raise NotSignedIn(ENDED)
+            if now - session.used_ns > USE_INTERVAL_NS:
+                self._sessions[digest] = session = replace(session, used_ns=now)
+            return self._subject(self._people[session.person], session)
+
+    def holds(self, digest: str) -> bool:
+        """Tell whether a session has not ended."""
+        with self._lock:
+            return self._holds(digest)
+
+    def _holds(self, digest: str) -> bool:
+        session, now = self._sessions.get(digest), self._now_ns()
+        return (
+            session is not None
+            and (person := self._people.get(session.person)) is not None
+            and person.changed_ns <= session.created_ns
+            and now - session.used_ns < self._settings.session_idle * NS
+            and now - session.created_ns < self._settings.session_length * NS
+        )
+
+    @staticmethod
+    def _subject(person: Person, session: Session) -> Subject:
+        return Subject(person.name, capabilities_of(person.roles), session.digest)

@@ -1,0 +1,38 @@
+"""Settings of who may do what."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Annotated, Literal
+
+from annotated_types import Ge, Gt, Le
+
+
+@dataclass(frozen=True)
+class AuthSettings:
+    """How the station tells who asks."""
+
+    # none: asks nobody, answers this machine alone; token: programs show tokens, people sign in; proxy: web.proxies ask
+    mode: Literal["none", "token", "proxy"] = "none"
+    # [s] after which a session ends in which nothing was asked
+    session_idle: Annotated[float, Ge(60), Le(604_800)] = 3600.0
+    # [s] after which a session ends, whatever is asked
+    session_length: Annotated[float, Ge(60), Le(2_592_000)] = 43_200.0
+
+
+@dataclass(frozen=True)
+class LimitSettings:
+    """What one token, person or address may ask for at a time, but for stops; they hold where auth.mode is not none."""
+
+    # [1/s] requests and new WebSockets, after a burst
+    request_rate: Annotated[float, Gt(0), Le(1_000_000)] = 200.0
+    # requests that may come at once before that rate counts
+    request_burst: Annotated[int, Ge(1), Le(1_000_000)] = 3000
+    # requests that may be under way at a time
+    max_requests: Annotated[int, Ge(1), Le(100_000)] = 100
+    # files that may be sent at a time
+    max_uploads: Annotated[int, Ge(1), Le(100_000)] = 10
+    # WebSockets that may be open at a time; a tab of the page has three, and one for its hand
+    max_websockets: Annotated[int, Ge(1), Le(100_000)] = 400
+    # bytes of the files that wait to be imported, whatever auth.mode is
+    waiting_size: Annotated[int, Ge(1024)] = 8_589_934_592

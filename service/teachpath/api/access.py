@@ -1,0 +1,150 @@
+"""What every route declares: the capability that it needs. A request without it is refused before anything is done."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Annotated, Final
+
+from fastapi import Depends, Header, Security, params
+from fastapi.openapi.models import HTTPBearer as BearerModel
+from fastapi.security import SecurityScopes
+from fastapi.security.base import SecurityBase
+from starlette.requests import HTTPConnection, Request
+
+from teachpath.access.access import STRANGER, Access
+from teachpath.api.middleware import SAFE_METHODS
+from teachpath.api.session_cookie import read_cookie
+from teachpath.errors import NotAllowed, NotSignedIn
+from teachpath.records import Capability, Subject
+
+SUBJECT: Final = "teachpath.subject"  # where the scope of a connection has who sends it
+FORWARDED_USER: Final = "x-forwarded-user"  # who somebody is, where auth.mode is proxy
+MAX_HEADER_LENGTH: Final = 64  # characters of a name or a token of control
+MAX_WHO_LENGTH: Final = 64  # characters of a name in the journal
+Declaration = Sequence[params.Depends]
+
+
+class _Bearer(SecurityBase):
+    """Who sends a request or opens a WebSocket, by the header Authorization; described as a security scheme."""
+
+    model = BearerModel(
+        scheme="bearer", description="A token of `teachpath token create`; not asked for where auth.mode is none."
+    )
+    scheme_name = "token"
+
+    async def __call__(self, connection: HTTPConnection) -> list[str]:
+        return connection.headers.getlist("authorization")
+
+
+_bearer: Final = _Bearer()
+
+
+async def authorize(
+    connection: HTTPConnection, needed: SecurityScopes, authorization: Annotated[list[str], Security(_bearer)]
+) -> None:
+    """Let a connection pass whose subject has a capability.
+
+    Raises:
+        NotSignedIn: nobody knows who it is.
+        NotAllowed: the subject lacks the capability.
+    """
+    access: Access = connection.app.state.access
+    forwarded = connection.headers.get(FORWARDED_USER, "")
+    session = _session(connection, access)
+    subject = connection.scope[SUBJECT] = access.subject(authorization, session, forwarded)
+    if session:
+        _require_origin(connection)
+    lacking = [name for name in needed.scopes if Capability(name) not in subject.capabilities]
+    if lacking:
+        may = ", ".join(sorted(subject.capabilities)) or "do nothing"
+        raise NotAllowed(
+            f"{subject.name} may {may}, and this needs {' and '.join(lacking)}; whoever administers the station makes "
+            f"a token for it: teachpath token create --role {lacking[0]}"
+        )
+
+
+async def require_access(request: Request) -> None:
+    """Check what the route of a request needs, where that has not come to it yet: a stranger learns nothing of faults.
+
+    Raises:
+        NotSignedIn: nobody knows who it is.
+        NotAllowed: the subject lacks the capability.
+    """
+    for declared in getattr(request.scope.get("route"), "dependencies", ()):
+        if isinstance(declared, params.Security) and declared.dependency is authorize:
+            await authorize(request, SecurityScopes(list(declared.scopes or ())), await _bearer(request))
+
+
+async def let_pass(connection: HTTPConnection) -> None:
+    """Let everybody pass; whoever shows something that is known has a name all the same."""
+    connection.scope[SUBJECT] = identify(connection, connection.app.state.access)
+
+
+def identify(connection: HTTPConnection, access: Access) -> Subject:
+    """Return who sends a request or opens a WebSocket, whatever it may do; a stranger where nobody knows."""
+    try:
+        authorization = connection.headers.getlist("authorization")
+        session = _session(connection, access)
+        return access.subject(authorization, session, connection.headers.get(FORWARDED_USER, ""))
+    except NotSignedIn:
+        return STRANGER
+
+
+def _session(connection: HTTPConnection, access: Access) -> str:
+    """Return the secret of the session of a request; empty where it has none, or shows a token."""
+    if access.mode != "token" or "authorization" in connection.headers:
+        return ""
+    return read_cookie(connection)
+
+
+def _require_origin(connection: HTTPConnection) -> None:
+    """Refuse what a cookie came with by itself: browsers name the page that sends an order or opens a WebSocket."""
+    method = connection.scope.get("method")  # a WebSocket has none
+    if method not in SAFE_METHODS and "origin" not in connection.headers:
+        raise NotAllowed("an order in a session comes from this station's page; programs send a token instead")
+
+
+def _needs(capability: Capability) -> Declaration:
+    return [Security(authorize, scopes=[capability.value])]
+
+
+# What a route says in its decorator: dependencies=VIEW.
+VIEW: Final = _needs(Capability.VIEW)
+DEMONSTRATE: Final = _needs(Capability.DEMONSTRATE)
+TEACH: Final = _needs(Capability.TEACH)
+OPERATE: Final = _needs(Capability.OPERATE)
+ADMINISTER: Final = _needs(Capability.ADMINISTER)
+OPEN: Final[Declaration] = [Depends(let_pass)]
+
+
+async def subject_of(connection: HTTPConnection) -> Subject:
+    """Return who sends a request."""
+    subject: Subject = connection.scope[SUBJECT]
+    return subject
+
+
+async def operator_of(
+    sender: Sender,
+    label: Annotated[
+        str,
+        Header(
+            alias="Teachpath-Operator",
+            max_length=MAX_HEADER_LENGTH,
+            description="your name, for the journal; beside that of your token, where the station asks for one",
+        ),
+    ] = "",
+) -> str:
+    """Return who orders something, as the journal says it."""
+    return signed(sender, label)
+
+
+Sender = Annotated[Subject, Depends(subject_of)]
+Who = Annotated[str, Depends(operator_of)]
+
+
+def signed(subject: Subject, label: str, length: int = MAX_WHO_LENGTH) -> str:
+    """Return the authenticated name of a subject, and beside it what it calls itself; that alone where nobody asks."""
+    label = label.strip()
+    if not subject.name:
+        return label
+    return (f"{subject.name} ({label})" if label and label != subject.name else subject.name)[:length]

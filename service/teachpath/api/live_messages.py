@@ -1,0 +1,233 @@
+"""The messages of the WebSockets, as JSON: what a station sends, and what it takes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Final, Literal
+
+from teachpath.api.recording import RecordingReport
+from teachpath.records import ExecutorStatus
+
+Resource = Literal[
+    "arms",
+    "calibrations",
+    "demonstrations",
+    "executions",
+    "jobs",
+    "journal",
+    "paths",
+    "plans",
+    "revocations",
+    "runs",
+    "services",
+    "tasks",
+]
+
+
+@dataclass(frozen=True, slots=True)
+class ChangeEvent:
+    """A resource of the REST API has changed; read it anew.
+
+    Attributes:
+        sequence: counts up by one for each change at the station; one that is left out was overtaken.
+        topic: what it is one of; most are named as in the REST API.
+        id: of what has changed; of a task its name.
+    """
+
+    sequence: int
+    topic: Resource
+    id: str
+
+
+@dataclass(frozen=True, slots=True)
+class ResyncEvent:
+    """Anything may have changed: read everything anew. It comes first, and when a subscriber has fallen behind.
+
+    Attributes:
+        sequence: number of the newest change that it stands for.
+        topic: all.
+        id: empty.
+        reason: why it was sent, in words.
+    """
+
+    sequence: int
+    topic: Literal["all"]
+    id: str
+    reason: str
+
+
+@dataclass(frozen=True, slots=True)
+class StationState:
+    """The station as a whole.
+
+    Attributes:
+        version: of the service.
+        notes: what needs somebody, in words.
+        authority: whether devices can get the certificate of the station's own authority, at /authority.
+        documents: whether the documents were built here, and are at /help.
+    """
+
+    version: str
+    notes: list[str]
+    authority: bool
+    documents: bool
+
+
+@dataclass(frozen=True, slots=True)
+class TrackerState:
+    """A tracker that is there.
+
+    Attributes:
+        announced: whether by a liveliness token; a tracker without one only sends.
+        silent: whether it has sent and does not any more.
+    """
+
+    announced: bool
+    silent: bool
+
+
+@dataclass(frozen=True, slots=True)
+class GuidanceState:
+    """What the operator of a task should do next.
+
+    Attributes:
+        sentence: in words.
+    """
+
+    sentence: str
+
+
+# What `now` holds, by the topic of an event that carries a state.
+STATES: Final[dict[str, Any]] = {
+    "station": StationState,
+    "executor": ExecutorStatus,
+    "trackers": TrackerState,
+    "recordings": RecordingReport,
+    "guidance": GuidanceState,
+}
+
+
+@dataclass(frozen=True, slots=True)
+class JointMessage:
+    """What the arm does, and where its execution stands.
+
+    Attributes:
+        stamp_ns: when the arm was so [ns since the Unix epoch].
+        execution: id of the one whose setpoints it plays; empty: none.
+        position: (6,) of the joints [rad].
+        velocity: (6,) of the joints [rad/s].
+        speed: (6,) largest speed of each joint since the message before, signed [rad/s].
+        torque: (6,) of the joints [N m]; zeros where the arm does not measure it.
+        tracking_error: largest over the joints since the message before [rad].
+        lateness: of setpoints, the largest since the message before [s]; null: none was sent.
+        missed: setpoints that never came since the execution began.
+        holding: whether the arm follows a way to rest, or has followed it.
+        gripper_closed: whether the gripper is told to be closed.
+        gripper_opening: measured between the fingers [m]; null where the arm does not measure it.
+        enabled: whether the drives are on.
+        protective_stop: whether the arm's own controller has stopped it.
+        fault: what is wrong with the arm, in words; empty: nothing.
+        status: of the executor; null until it has said something.
+    """
+
+    stamp_ns: int
+    execution: str
+    position: list[float]
+    velocity: list[float]
+    speed: list[float]
+    torque: list[float]
+    tracking_error: float
+    lateness: float | None
+    missed: int
+    holding: bool
+    gripper_closed: bool
+    gripper_opening: float | None
+    enabled: bool
+    protective_stop: bool
+    fault: str
+    status: ExecutorStatus | None
+
+
+@dataclass(frozen=True, slots=True)
+class SampleMessage:
+    """One sample of a hand, where protobuf is not at hand.
+
+    Attributes:
+        sample: a `HandSample` by the names of its fields (proto/teachpath_proto/tracker.proto) [m, s, ns].
+    """
+
+    sample: dict[str, Any]
+
+
+@dataclass(frozen=True, slots=True)
+class PingMessage:
+    """A question whether the station is there.
+
+    Attributes:
+        ping: any number; the answer has it again.
+    """
+
+    ping: float
+
+
+@dataclass(frozen=True, slots=True)
+class EndMessage:
+    """The end of the recording.
+
+    Attributes:
+        end: number of the last sample that was sent.
+        discard: whether the demonstration that is still open is thrown away.
+    """
+
+    end: int
+    discard: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class SampleCounts:
+    """What became of the samples of a connection.
+
+    Attributes:
+        passed: how many were passed on.
+        refused: how many could not be used.
+    """
+
+    passed: int
+    refused: int
+
+
+@dataclass(frozen=True, slots=True)
+class PongMessage:
+    """The answer to a ping.
+
+    Attributes:
+        pong: the number of the ping.
+        service_ns: the station's clock [ns since the Unix epoch].
+        samples: what became of those sent so far.
+    """
+
+    pong: float
+    service_ns: int
+    samples: SampleCounts
+
+
+@dataclass(frozen=True, slots=True)
+class ReportMessage:
+    """The answer to an end.
+
+    Attributes:
+        report: the account of the recording.
+    """
+
+    report: RecordingReport
+
+
+@dataclass(frozen=True, slots=True)
+class RefusedMessage:
+    """Why a message could not be used.
+
+    Attributes:
+        refused: a sentence for the operator.
+    """
+
+    refused: str

@@ -1,0 +1,107 @@
+"""People who sign in with a password, and their sessions."""
+
+from __future__ import annotations
+
+from sqlalchemy import Engine, delete, select, update
+from sqlalchemy.orm import Session as Transaction
+
+from teachpath.errors import Conflict, NotFound
+from teachpath.io.store.engine import lock_name
+from teachpath.io.store.tables import AccessTokenRow, PersonRow, SessionRow
+from teachpath.records import Capability, Person, Session
+
+NAMES = "name of access"  # of people and tokens: none is used twice
+
+
+class People:
+    """The people of a station; safe to use from several threads."""
+
+    def __init__(self, engine: Engine) -> None:
+        self._engine, self._writing = engine, engine.execution_options(writing=True)
+
+    def all(self) -> list[Person]:
+        """Return every person, by name."""
+        with Transaction(self._engine) as transaction:
+            return [_person_of(row) for row in transaction.scalars(select(PersonRow).order_by(PersonRow.name))]
+
+    def add(self, person: Person) -> None:
+        """Keep a person; raises Conflict when somebody or a token that holds has the name."""
+        with Transaction(self._writing) as transaction, transaction.begin():
+            lock_name(transaction, NAMES, person.name)
+            tokens = select(AccessTokenRow).where(
+                AccessTokenRow.name == person.name,
+                AccessTokenRow.revoked_ns == 0,
+                AccessTokenRow.expires_ns > person.created_ns,
+            )
+            if transaction.get(PersonRow, person.name) or transaction.scalars(tokens).first():
+                raise Conflict(f"the name {person.name!r} is taken by a person or a token; take another")
+            transaction.add(
+                PersonRow(
+                    name=person.name,
+                    roles=list(person.roles),
+                    password_hash=person.password_hash,
+                    created_ns=person.created_ns,
+                    changed_ns=person.changed_ns,
+                )
+            )
+
+    def change_password(self, name: str, password_hash: str, now_ns: int) -> None:
+        """Give a person another password, and end the sessions that were begun with the former; raises NotFound."""
+        with Transaction(self._writing) as transaction, transaction.begin():
+            row = transaction.get(PersonRow, name)
+            if row is None:
+                raise _missing(name, self.all())
+            row.password_hash, row.changed_ns = password_hash, now_ns
+            transaction.execute(delete(SessionRow).where(SessionRow.person == name))
+
+    def remove(self, name: str) -> None:
+        """Remove a person and end all sessions of that person; raises NotFound."""
+        with Transaction(self._writing) as transaction, transaction.begin():
+            row = transaction.get(PersonRow, name)
+            if row is None:
+                raise _missing(name, self.all())
+            transaction.execute(delete(SessionRow).where(SessionRow.person == name))
+            transaction.delete(row)
+
+    def sessions(self) -> list[Session]:
+        """Return every session, ended ones too."""
+        with Transaction(self._engine) as transaction:
+            return [
+                Session(row.digest, row.person, row.created_ns, row.used_ns)
+                for row in transaction.scalars(select(SessionRow))
+            ]
+
+    def begin_session(self, session: Session) -> None:
+        """Keep a session; raises NotFound when the person was removed meanwhile."""
+        with Transaction(self._writing) as transaction, transaction.begin():
+            if transaction.get(PersonRow, session.person) is None:
+                raise _missing(session.person, [])
+            transaction.add(
+                SessionRow(
+                    digest=session.digest,
+                    person=session.person,
+                    created_ns=session.created_ns,
+                    used_ns=session.used_ns,
+                )
+            )
+
+    def note_use(self, used: dict[str, int]) -> None:
+        """Note when sessions were used, by their digests [ns]."""
+        with Transaction(self._writing) as transaction, transaction.begin():
+            for digest, used_ns in used.items():
+                transaction.execute(update(SessionRow).where(SessionRow.digest == digest).values(used_ns=used_ns))
+
+    def end_sessions(self, digests: list[str]) -> None:
+        """Forget sessions."""
+        with Transaction(self._writing) as transaction, transaction.begin():
+            transaction.execute(delete(SessionRow).where(SessionRow.digest.in_(digests)))
+
+
+def _person_of(row: PersonRow) -> Person:
+    roles = tuple(Capability(role) for role in row.roles)
+    return Person(row.name, roles, row.password_hash, row.created_ns, row.changed_ns)
+
+
+def _missing(name: str, people: list[Person]) -> NotFound:
+    known = ", ".join(person.name for person in people) or "none"
+    return NotFound(f"there is no person {name!r}; known: {known}")

@@ -1,0 +1,102 @@
+"""The services that run on a database: each says again and again that it is alive, and its work is taken up if not."""
+
+from __future__ import annotations
+
+import socket
+import uuid
+from pathlib import Path
+from typing import Final
+
+from sqlalchemy import BigInteger, ColumnElement, Engine, cast, delete, exists, func, select, true, update
+from sqlalchemy.orm import Session
+
+from teachpath.errors import Conflict
+from teachpath.io.store.engine import is_served, lock_name
+from teachpath.io.store.tables import DemonstrationRow, ExecutionTable, JobRow, ServiceRow
+
+DEAD_AFTER: Final = 20.0  # [s] without one; longer than a line may be cut without harm
+SERVICE, WORKER = "service", "worker"
+
+
+class Services:
+    """This service among those of its station; on SQLite there is none beside it.
+
+    Attributes:
+        id: of this service, another one after each start.
+        station: name of the station that it works for.
+        is_shared: whether other services can work on this database.
+    """
+
+    def __init__(self, engine: Engine, station: str, folder: Path) -> None:
+        self.id, self.station = uuid.uuid4().hex[:12], station
+        self._engine, self._writing = engine, engine.execution_options(writing=True)
+        self._place = f"{socket.gethostname()}:{folder.absolute()}"
+        self._role = ""
+        self.is_shared = is_served(engine)
+
+    def begin(self, role: str = SERVICE) -> None:
+        """Say that this service runs, in a role; of `SERVICE` there is one a station.
+
+        Whoever begins has locked the data folder, so that an earlier service there has ended.
+
+        Raises:
+            Conflict: another one runs under the name of this station.
+        """
+        with Session(self._writing) as session, session.begin():
+            if self.is_shared:
+                lock_name(session, "services", "")
+                if role == SERVICE:
+                    self._require_own_name(session)
+                session.execute(delete(ServiceRow).where(~_is_alive()))
+                session.add(self._row(role))
+                self._role = role
+            if self.station and role == SERVICE:  # rows of before it had a name are its own
+                for table in (DemonstrationRow, JobRow, ExecutionTable):
+                    session.execute(update(table).where(table.station == "").values(station=self.station))
+
+    def _require_own_name(self, session: Session) -> None:
+        former = (ServiceRow.role == SERVICE, ServiceRow.place == self._place)
+        session.execute(delete(ServiceRow).where(*former))
+        for other in session.scalars(select(ServiceRow).where(ServiceRow.role == SERVICE, _is_alive())):
+            if other.station in ("", self.station) or not self.station:
+                raise Conflict(
+                    f"a service works on this database as station {other.station!r} ({other.place}), this one as "
+                    f"{self.station!r}; give each station a name of its own (store.station), or end that service"
+                )
+
+    def note_alive(self) -> None:
+        """Say that this service is alive."""
+        if not self._role:
+            return
+        with Session(self._writing) as session, session.begin():
+            row = session.get(ServiceRow, self.id)
+            if row is None:  # the line was cut for so long that others count it as dead
+                session.add(self._row(self._role))
+            else:
+                session.execute(update(ServiceRow).where(ServiceRow.id == self.id).values(alive_ns=_now_ns()))
+
+    def end(self) -> None:
+        """Say that this service has ended."""
+        if not self._role:
+            return
+        with Session(self._writing) as session, session.begin():
+            session.execute(delete(ServiceRow).where(ServiceRow.id == self.id))
+        self._role = ""
+
+    def is_left(self) -> ColumnElement[bool]:
+        """Return the condition that nobody does a job any more: its service is this one, or has ended."""
+        if not self.is_shared:
+            return true()
+        return ~exists().where(ServiceRow.id == JobRow.service, ServiceRow.id != self.id, _is_alive())
+
+    def _row(self, role: str) -> ServiceRow:
+        return ServiceRow(id=self.id, station=self.station, role=role, place=self._place, alive_ns=_now_ns())
+
+
+def _now_ns() -> ColumnElement[int]:
+    """Return the clock of the server, which is the same for all its services."""
+    return cast(func.date_part("epoch", func.clock_timestamp()) * 1e9, BigInteger)
+
+
+def _is_alive() -> ColumnElement[bool]:
+    return ServiceRow.alive_ns > _now_ns() - round(1e9 * DEAD_AFTER)

@@ -1,0 +1,107 @@
+"""Inverse kinematics of any arm by Newton's method from many seeds; every solution is closed by forward kinematics.
+
+This is the last resort where no closed form is known: it finds what its seeds lead to, and cannot say that there is
+nothing else.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
+
+from teachpath.motion.arm.poses import pose_matrix
+from teachpath.motion.arm.serial_kinematics import serial_jacobian, serial_link_frames
+from teachpath.records import Array, SerialArm
+
+CLOSED: Final = 1e-9  # m and rad, within which a solution meets its pose
+SEEDS: Final = 200  # of one pose
+ITERATIONS: Final = 60  # from a random seed
+MAX_STEP: Final = 0.5  # rad, of a joint in one iteration
+DAMPING: Final = 0.05  # of the squared error, by which steps near singular configurations stay small
+SAME: Final = 1e-4  # rad, within which two solutions are one
+
+
+def solve_near(poses: Array, seeds: Array, arm: SerialArm, iterations: int = ITERATIONS) -> tuple[Array, Array]:
+    """Bring the tool to poses from seeds, by damped steps of Newton's method.
+
+    Args:
+        poses: (n, 4, 4) to world from the tool.
+        seeds: (n, joints) configurations to begin at [rad].
+        arm: whose tool it is.
+        iterations: at most.
+
+    Returns:
+        (n, joints) configurations, and (n,) how far each leaves the tool from its pose: the larger of [m] and [rad].
+    """
+    q = seeds.copy()
+    offs = np.full(len(q), np.inf)
+    best = q.copy()
+    active = np.arange(len(q))
+    for _ in range(iterations + 1):
+        error = pose_errors(poses[active], q[active], arm)
+        off = np.maximum(np.linalg.norm(error[:, :3], axis=1), np.linalg.norm(error[:, 3:], axis=1))
+        better = off < offs[active]
+        best[active[better]], offs[active[better]] = q[active[better]], off[better]
+        # Rounding leaves some 1e-15; a solution is refined beyond what it has to keep.
+        going = off > 1e-3 * CLOSED
+        active, error = active[going], error[going]
+        if not len(active):
+            break
+        q[active] += _steps(error, serial_jacobian(q[active], arm))
+    return best, offs
+
+
+def pose_errors(poses: Array, q: Array, arm: SerialArm) -> Array:
+    """Return what turns and moves the tool from configurations (n, joints) to poses (n, 4, 4): (n, 6) [m], [rad]."""
+    tool = serial_link_frames(q, arm)[:, -1] @ pose_matrix(arm.tool)
+    turn = Rotation.from_matrix(poses[:, :3, :3] @ np.swapaxes(tool[:, :3, :3], 1, 2)).as_rotvec()
+    return np.concatenate([poses[:, :3, 3] - tool[:, :3, 3], turn], axis=1)
+
+
+def all_solutions(pose: Array, arm: SerialArm, seeds: int = SEEDS) -> Array:
+    """Return the configurations (k, joints) within the joints' limits that were found for a pose (4, 4).
+
+    Each closes within `CLOSED`. An arm with seven joints has infinitely many: one is returned for each seed that leads
+    to one. The same seeds are tried each time. Whole turns of a joint are no solutions of their own: each angle is the
+    one nearest to the middle of the joint's range.
+    """
+    lower, upper = limits_of(arm)
+    begin = np.random.default_rng(0).uniform(np.maximum(lower, -np.pi), np.minimum(upper, np.pi), (seeds, len(lower)))
+    q, off = solve_near(np.repeat(pose[None], seeds, axis=0), begin, arm)
+    q = nearest_turn(q[off <= CLOSED], (lower + upper) / 2)
+    q = q[np.all((q >= lower) & (q <= upper), axis=1)]
+    return _distinct(q)
+
+
+def nearest_turn(q: Array, to: Array) -> Array:
+    """Shift joints (..., joints) by whole turns to be nearest to configurations `to`."""
+    return np.asarray(q + 2 * np.pi * np.round((to - q) / (2 * np.pi)))
+
+
+def limits_of(arm: SerialArm) -> tuple[Array, Array]:
+    """Return the least and largest angles (joints,) of the joints."""
+    return (
+        np.array([joint.lower.value for joint in arm.joints]),
+        np.array([joint.upper.value for joint in arm.joints]),
+    )
+
+
+def _steps(error: Array, jacobian: Array) -> Array:
+    """Return steps (n, joints): damped least squares (Siciliano et al., Robotics, Springer 2009, eq. 3.59)."""
+    transposed = np.swapaxes(jacobian, 1, 2)
+    damping = DAMPING * np.sum(error**2, axis=1)[:, None, None] * np.eye(6) + 1e-15 * np.eye(6)
+    steps = (transposed @ np.linalg.solve(jacobian @ transposed + damping, error[:, :, None]))[:, :, 0]
+    largest = np.abs(steps).max(axis=1, keepdims=True)
+    return np.asarray(steps * np.minimum(1.0, MAX_STEP / np.maximum(largest, 1e-12)))
+
+
+def _distinct(q: Array) -> Array:
+    """Return configurations (k, joints) without those that differ from an earlier one by whole turns alone."""
+    kept: list[NDArray[np.float64]] = []
+    for row in q:
+        if all(np.abs(np.sin((row - other) / 2)).max() > SAME / 2 for other in kept):
+            kept.append(row)
+    return np.array(kept).reshape(len(kept), q.shape[1])

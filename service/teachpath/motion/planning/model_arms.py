@@ -1,0 +1,52 @@
+"""What is planned for an arm that a user's model describes, and what is not."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from teachpath.errors import UnusableInput, UnusableSettings
+from teachpath.motion.arm.model import Arm
+from teachpath.motion.settings import MotionSettings
+from teachpath.records import Scene
+
+
+def check_plannable(arm: Arm, scene: Scene) -> None:
+    """Check that plans are made for an arm in a scene.
+
+    Raises:
+        UnusableInput: a user's model has seven joints; or there is an object to carry, and no gripper to take it.
+    """
+    if arm.model is None:
+        return
+    check_joints(arm)
+    if scene.carried is not None and not arm.has_gripper:
+        raise UnusableInput(
+            f"{arm.name} has no gripper that is known here, and scene {scene.name} has {scene.carried.name} to carry; "
+            "plan in a scene without an object, where its tool follows the path, or mount teachpath's own gripper "
+            "(teachpath arm add --gripper)"
+        )
+
+
+def check_joints(arm: Arm) -> None:
+    """Check that an arm has as many joints as plans are made for; raises UnusableInput."""
+    if arm.model is not None and len(arm.model.links) != 6:
+        raise UnusableInput(
+            f"{arm.name} has {len(arm.model.links)} joints; plans are made for arms of six: fix one in the model"
+        )
+
+
+def check_home(settings: MotionSettings, arm: Arm) -> None:
+    """Check that the joints reach the arm's home; raises UnusableSettings."""
+    lower, upper = arm.limits.lower, arm.limits.upper
+    for joint, angle in enumerate(settings.home):
+        if not lower[joint] <= angle <= upper[joint]:
+            limits = f"{lower[joint]:.3f} to {upper[joint]:.3f}"
+            raise UnusableSettings(f"motion.home puts joint {joint + 1} to {angle:.3f} rad, limits {limits}")
+
+
+def with_home(settings: MotionSettings, arm: Arm) -> MotionSettings:
+    """Return the settings with the home of a user's model in the middle of its joints' ranges, where none was said."""
+    if arm.model is None or settings.home != MotionSettings().home:
+        return settings
+    middle = (arm.limits.lower + arm.limits.upper) / 2
+    return replace(settings, home=tuple(float(angle) for angle in middle))

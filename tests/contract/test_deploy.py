@@ -1,0 +1,76 @@
+"""The samples in deploy/ are what they say, as far as it can be told without a cluster."""
+
+import re
+import shlex
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+import typer.main
+
+from teachpath.__main__ import app
+from tests.waiting import HANG
+
+ROOT = Path(__file__).parents[2]
+DEPLOY = ROOT / "deploy"
+
+
+def unit() -> dict[str, str]:
+    """Directives of the systemd unit."""
+    lines = (DEPLOY / "teachpath.service").read_text().splitlines()
+    return dict(line.split("=", 1) for line in lines if re.match(r"\w+=", line))
+
+
+def dockerfile() -> list[str]:
+    """Instructions of the Dockerfile, each on one line."""
+    text = (DEPLOY / "Dockerfile").read_text().replace("\\\n", " ")
+    return [line for line in text.splitlines() if line and not line.startswith("#")]
+
+
+def test_systemd_takes_the_unit() -> None:
+    program = shutil.which("systemd-analyze")
+    if program is None:
+        pytest.skip("no systemd-analyze; get it with: sudo apt-get install systemd")
+    command = [program, "verify", str(DEPLOY / "teachpath.service")]
+    said = subprocess.run(command, capture_output=True, text=True, timeout=HANG).stderr
+    faults = [line for line in said.splitlines() if "is not executable" not in line]  # it is not installed here
+    assert [line for line in faults if "teachpath.service" in line] == []
+
+
+def test_the_unit_gives_the_service_no_more_than_it_needs() -> None:
+    given = unit()
+    assert given["DynamicUser"] == "yes"
+    assert given["UMask"] == "0077"
+    assert given["StateDirectoryMode"] == "0700"
+    assert given["ProtectSystem"] == "strict"
+    assert given["NoNewPrivileges"] == "yes"
+    assert given["CapabilityBoundingSet"] == ""
+    assert "AF_PACKET" not in given["RestrictAddressFamilies"]
+    assert {"LimitRTPRIO", "MemoryMax"} <= given.keys()
+
+
+@pytest.mark.parametrize("words", [unit()["ExecStart"], dockerfile()[-1].removeprefix("CMD ")])
+def test_the_command_exists_with_its_options(words: str) -> None:
+    _, *options = [word for word in shlex.split(words.strip("[]").replace(",", " ")) if not word.endswith("teachpath")]
+    known = {option for one in typer.main.get_command(app).commands["serve"].params for option in one.opts}  # type: ignore[attr-defined]
+    assert {word for word in options if word.startswith("--")} <= known
+
+
+def test_the_container_runs_as_nobody_in_particular_and_installs_by_hash() -> None:
+    said = dockerfile()
+    users = [line.split()[1] for line in said if line.startswith("USER ")]
+    assert users
+    assert all(user.isdigit() and int(user) >= 10_000 for user in users)
+    installs = [line for line in said if "pip install" in line]
+    assert all("--require-hashes -r requirements/service.txt" in line for line in installs)
+    for line in said:
+        if line.startswith("COPY ") and "--from" not in line:
+            assert (ROOT / line.split()[1]).exists()
+
+
+@pytest.mark.parametrize("name", ["nginx.conf", "Caddyfile"])
+def test_a_proxy_tells_the_address_that_it_sees_and_not_what_it_was_told(name: str) -> None:
+    said = (DEPLOY / name).read_text()
+    assert re.search(r"X-Forwarded-For (\$remote_addr;|\{remote_host\})", said)
+    assert "127.0.0.1:8765" in said

@@ -1,0 +1,100 @@
+"""A person signs in on the page in headless Chromium, sees what one may not do, and signs out."""
+
+import time
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+
+from teachpath.access.passwords import hash_password
+from teachpath.io.store.settings import StoreSettings
+from teachpath.io.store.store import Store
+from teachpath.records import Capability, Person
+from tests.system.processes import Service
+from tests.waiting import HANG
+
+pytestmark = pytest.mark.system
+
+PASSWORD = "four words put together"
+
+
+@pytest.fixture(scope="module")
+def service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Service]:
+    data, now = tmp_path_factory.mktemp("station") / "data", time.time_ns()
+    store = Store(StoreSettings(data_dir=str(data)))
+    for name, role in (("anna", Capability.TEACH), ("olga", Capability.ADMINISTER)):
+        store.people.add(Person(name, (role,), hash_password(PASSWORD, name), now, now))
+    store.close()
+    with Service(data, TEACHPATH_AUTH__MODE="token") as service:
+        yield service
+
+
+def test_a_person_signs_in_sees_what_is_missing_and_signs_out(browser: Any, service: Service) -> None:
+    page = browser.new_page()
+    page.set_default_timeout(1000 * HANG)
+    page.goto(service.url)
+    page.wait_for_selector("#sign-in form")
+    assert page.is_visible("#stop")
+    assert not page.is_visible("main")
+    assert not page.is_visible("#access-button")
+    page.fill("#sign-in-name", "anna")
+    page.fill("#sign-in-password", "wrong")
+    page.click("#sign-in button")
+    page.wait_for_function(
+        "() => document.querySelector('#sign-in .error').textContent.includes('no one of this name')"
+    )
+    page.fill("#sign-in-password", PASSWORD)
+    page.click("#sign-in button")
+    page.wait_for_function("() => teachpath.state().connection === 'live'")
+    assert page.inner_text("#identity").startswith("anna")
+    assert not page.is_visible("#access-button")
+    page.click("#tab-run")
+    page.wait_for_selector("#panel-run .missing")
+    assert "that needs the role “operate”" in page.inner_text("#panel-run .missing")
+    page.click("#tab-edit")
+    assert not page.is_visible("#panel-edit .missing")
+    (cookie,) = page.context.cookies()
+    assert (cookie["httpOnly"], cookie["sameSite"]) == (True, "Strict")
+    assert page.evaluate("document.cookie") == ""
+    page.reload()
+    page.wait_for_function("() => teachpath.state().connection === 'live'")
+    page.click("#identity button")
+    page.wait_for_selector("#sign-in form")
+    assert page.context.cookies() == []
+    page.close()
+
+
+def test_whoever_administers_makes_and_takes_back_people_and_tokens(browser: Any, service: Service) -> None:
+    page = browser.new_page()
+    page.set_default_timeout(1000 * HANG)
+    page.on("dialog", lambda dialog: dialog.accept())
+    page.goto(service.url)
+    page.fill("#sign-in-name", "olga")
+    page.fill("#sign-in-password", PASSWORD)
+    page.click("#sign-in button")
+    page.click("#access-button")
+    page.wait_for_selector("#access li[data-key=anna]")
+    page.fill("#person-name", "otto")
+    page.select_option("#person-role", "operate")
+    page.fill("#person-password", PASSWORD)
+    page.click("text=Add the person")
+    page.wait_for_selector("#access li[data-key=otto]")
+    assert page.input_value("#person-password") == ""
+    page.click("[data-new-password=otto]")
+    page.fill("#other-password", "otto")
+    page.evaluate("document.querySelector('#other-password').minLength = 0")  # the service judges, too
+    page.click("text=Set the password")
+    page.wait_for_function("() => document.querySelector('#access .error').textContent.includes('cannot be used')")
+    page.click("[data-remove-person=otto]")
+    page.wait_for_selector("#access li[data-key=otto]", state="detached")
+    page.fill("#token-name", "cell-3")
+    page.click("text=Make the token")
+    token = page.inner_text("#access code")
+    assert token.startswith("teachpath-")
+    page.click("[data-revoke-token='cell-3']")
+    page.wait_for_function("() => document.querySelector('[aria-label=tokens] li').textContent.includes('revoked')")
+    page.click("#access-button")  # closes the popover
+    page.click("#access-button")
+    page.wait_for_selector("#access li[data-key^='cell-3']")
+    assert token not in page.content()
+    page.close()

@@ -1,0 +1,57 @@
+"""A lane does its jobs in one process, which has begun before the first of them."""
+
+import os
+import queue
+from collections.abc import Iterator
+
+import pytest
+
+from teachpath.errors import Cancelled
+from teachpath.jobs import worker
+from teachpath.jobs.job_lane import JobLane, LaneLimits
+from teachpath.process_server import CONTEXT
+from tests.waiting import HANG
+
+
+def process_id(*, progress: worker.Progress) -> int:
+    progress(1.0, "done")
+    return os.getpid()
+
+
+@pytest.fixture
+def done() -> queue.SimpleQueue[object]:
+    return queue.SimpleQueue()
+
+
+@pytest.fixture
+def lane(done: queue.SimpleQueue[object]) -> Iterator[JobLane]:
+    def process(lane: JobLane, key: str) -> None:
+        try:
+            done.put((key, lane.work(process_id, ())))
+        except Cancelled as error:
+            done.put((key, error))
+
+    reports = CONTEXT.Queue()
+    lane = JobLane("test", LaneLimits(0, HANG), reports, process)
+    yield lane
+    lane.stop()
+    reports.close()
+    reports.cancel_join_thread()
+
+
+def test_jobs_are_done_in_their_order_in_one_process(lane: JobLane, done: queue.SimpleQueue[object]) -> None:
+    for key in ("one", "two", "three"):
+        lane.put(key)
+    lane.start()
+    keys, processes = zip(*(done.get(timeout=HANG) for _ in range(3)), strict=True)
+    assert keys == ("one", "two", "three")
+    assert len(set(processes)) == 1
+    assert processes[0] != os.getpid()
+
+
+def test_a_stopped_lane_begins_no_process(lane: JobLane, done: queue.SimpleQueue[object]) -> None:
+    lane.stop()
+    lane.put("one")
+    lane.start()
+    lane.stop()
+    assert done.empty()
