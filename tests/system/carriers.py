@@ -149,18 +149,20 @@ FOLLOW = """async (places) => {
   hand.onSample = onSample;
 }"""
 
-# Keeps the time of every sample [ms].
-HEAR = """
-(() => {
-  const hand = teachpath.headset();
-  const { onSample } = hand;
+# Keeps the time of every sample [ms] of the headset that is put on next, from its first one.
+HEAR = """async () => {
+  const { XrHand } = await import("/web/hand/xr_hand.js");
   globalThis.heard = [];
-  hand.onSample = (sample) => {
-    heard.push(sample.ms);
-    onSample(sample);
-  };
-})()
-"""
+  Object.defineProperty(XrHand.prototype, "onSample", {
+    get() { return this.listener; },
+    set(listener) {
+      this.listener = (sample) => {
+        if (heard.at(-1) !== sample.ms) heard.push(sample.ms);
+        listener(sample);
+      };
+    },
+  });
+}"""
 
 
 def is_judged_by_its_frames(take: Demonstration, heard: np.ndarray) -> None:

@@ -102,9 +102,11 @@ def test_a_line_that_breaks_loses_what_was_under_way_and_our_client_sends_it_aga
         else:
             assert stretches(report) == [(201, 200 + report.lost)]
             assert report.lost >= 100
-            # Where the hole ends is the line's own time: in what is learned of a take, or on the hand's way to it.
+            # Where the hole ends is the line's own time: in a phase of a take, or in the next one's grasp; then the
+            # take before says how many samples it lacks.
             holed = [d for d in here.store.demonstrations("lift") if d.statistics.lost]
             assert holed
             for take in holed:
                 assert take.verdict != "clean"
-                assert any("a gap of " in reason for reason in take.reasons)
+                said = ("a gap of ", f"{take.statistics.lost} samples lost")
+                assert any(words in reason for reason in take.reasons for words in said), take.reasons

@@ -187,8 +187,8 @@ def test_pictures_never_tear_a_hole_into_a_take_and_come_back_after_it(visit: Vi
 
 
 def test_takes_by_an_emulated_hand_and_a_controller_in_one_headset(worn: Visit, service: Service) -> None:
-    begin(worn, service, "by-headset", button="In a headset")
     worn.page.evaluate(HEAR)
+    begin(worn, service, "by-headset", button="In a headset")
     carry_worn(worn, move_hand)
     phase(worn, "ready")
     worn.page.evaluate("headset.primaryInputMode = 'controller'; 0")
