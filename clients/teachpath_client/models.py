@@ -700,11 +700,13 @@ class Identity:
         mode: how it tells who asks; `none`: it does not ask.
         name: yours; empty where it does not ask.
         capabilities: what you may do.
+        provider: at which people sign in; empty: with a password.
     """
 
     mode: str
     name: str
     capabilities: list[Capability]
+    provider: str = ""
 
 
 @dataclass(frozen=True)
@@ -1520,6 +1522,17 @@ class Shape:
     orientation: tuple[float, float, float, float] = (1.0, 0.0, 0.0, 0.0)
     file: str = ""
     vertices: list[tuple[float, float, float]] = field(default_factory=list)
+
+
+@dataclass(frozen=True)
+class SignInAddress:
+    """Where a person signs in.
+
+    Attributes:
+        address: of the provider, with what it needs to know.
+    """
+
+    address: str
 
 
 @dataclass(frozen=True)

@@ -21,19 +21,22 @@ export class IdentityControl {
     const kind = { type: "password", id: "sign-in-password", required: "", autocomplete: "current-password" };
     this.password = element("input", kind);
     this.refusal = element("p", { class: "error", role: "alert" });
+    const name = element("p", { class: "field" }, element("label", { for: "sign-in-name" }, "Name"), this.name);
+    const label = element("label", { for: "sign-in-password" }, "Password");
+    this.fields = [name, element("p", { class: "field" }, label, this.password)];
+    this.button = element("button", { type: "submit", class: "primary" }, "Sign in");
     this.form = element(
       "form",
       {},
       element("h2", {}, "Sign in"),
       hint("This station asks who uses it. The arm is stopped by everybody, signed in or not."),
-      element("p", { class: "field" }, element("label", { for: "sign-in-name" }, "Name"), this.name),
-      element("p", { class: "field" }, element("label", { for: "sign-in-password" }, "Password"), this.password),
-      element("p", { class: "buttons" }, element("button", { type: "submit", class: "primary" }, "Sign in")),
+      ...this.fields,
+      element("p", { class: "buttons" }, this.button),
       this.refusal,
     );
     this.form.addEventListener("submit", (event) => {
       event.preventDefault();
-      this.#signIn();
+      this.#attempt(() => (this.store.state.identity.provider ? goToProvider() : this.#signIn()));
     });
     this.who.addEventListener("click", (event) => {
       if (event.target instanceof HTMLButtonElement) messages.attempt(() => this.#signOut());
@@ -50,7 +53,9 @@ export class IdentityControl {
    */
   async whenSeeing(begin) {
     this.#begin = begin;
+    const answer = takeProviderAnswer();
     await this.read();
+    if (answer && !this.mayLook) await this.#attempt(async () => this.#show(await post("session/code", answer())));
     if (this.mayLook) this.#beginOnce();
   }
 
@@ -73,16 +78,24 @@ export class IdentityControl {
     this.read();
   }
 
-  async #signIn() {
+  /** @param {() => Promise<void>} act says in the form why it could not be done */
+  async #attempt(act) {
     this.refusal.textContent = "";
+    this.button.disabled = true;
     try {
-      const identity = await post("session", { name: this.name.value.trim(), password: this.password.value });
-      this.messages.clear();
-      this.#show(identity);
+      await act();
     } catch (error) {
       this.refusal.textContent = error instanceof Error ? error.message : String(error);
       this.password.select();
+    } finally {
+      this.button.disabled = false;
     }
+  }
+
+  async #signIn() {
+    const identity = await post("session", { name: this.name.value.trim(), password: this.password.value });
+    this.messages.clear();
+    this.#show(identity);
   }
 
   async #signOut() {
@@ -98,6 +111,9 @@ export class IdentityControl {
     this.place.hidden = !isMissing;
     this.who.hidden = identity.mode === "none" || isMissing;
     this.who.replaceChildren(identity.name, element("button", { type: "button" }, "Sign out"));
+    for (const field of this.fields) field.hidden = identity.provider !== "";
+    for (const input of [this.name, this.password]) input.disabled = identity.provider !== "";
+    this.button.textContent = identity.provider ? `Sign in with ${identity.provider}` : "Sign in";
     if (isMissing && !this.form.isConnected) {
       this.place.append(this.form);
       this.name.focus();
@@ -107,6 +123,29 @@ export class IdentityControl {
       this.#beginOnce();
     }
   }
+}
+
+// Leave for the provider at which people sign in; it sends the browser back to this page.
+async function goToProvider() {
+  const { address } = await post("session/authorization", { path: location.pathname });
+  location.assign(address);
+}
+
+/**
+ * What the provider has sent the browser back with, taken out of the page's address, which is kept and shown.
+ * @returns {(() => {code: string, state: string, iss: string}) | null} throws where the provider has refused
+ */
+function takeProviderAnswer() {
+  const given = new URLSearchParams(location.search);
+  const [code, state, iss, error] = ["code", "state", "iss", "error"].map((name) => given.get(name) ?? "");
+  if (!state || !(code || error)) return null;
+  history.replaceState(null, "", location.pathname + location.hash);
+  return () => {
+    // Anybody can send somebody to this page with an error of his own: it may be a word of OAuth, and no sentence.
+    const word = /^[a-z_]{1,40}$/.test(error) ? error : "error";
+    if (!code) throw new Error(`The provider has signed nobody in (${word}). Sign in again.`);
+    return { code, state, iss };
+  };
 }
 
 /** @type {Record<string, string>} */

@@ -16,7 +16,12 @@
 // Lists are null until they have been read, and stay as they were while the service is away.
 // Until the service has said who uses the page.
 /** @type {Identity} */
-const ANYBODY = { mode: "none", name: "", capabilities: ["view", "demonstrate", "teach", "operate", "administer"] };
+const ANYBODY = {
+  mode: "none",
+  name: "",
+  capabilities: ["view", "demonstrate", "teach", "operate", "administer"],
+  provider: "",
+};
 
 /** @type {State} */
 export const INITIAL_STATE = Object.freeze({

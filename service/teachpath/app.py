@@ -16,6 +16,7 @@ from fastapi import FastAPI
 from teachpath import __version__
 from teachpath.access.access import Access
 from teachpath.access.audit import Audit
+from teachpath.access.provider_sign_in import open_provider
 from teachpath.api.events import events_router
 from teachpath.api.live_messages import StationState
 from teachpath.api.parts import Advice, Health, Parts
@@ -70,10 +71,11 @@ class Station:
     Raises:
         Conflict: another service uses the data folder.
         Unreachable: the Zenoh endpoint is taken.
-        UnusableSettings: of the bus, its logins, certificates or keys.
+        UnusableSettings: of the bus, its logins, certificates or keys, or of the provider at which people sign in.
     """
 
     def __init__(self, settings: Settings) -> None:
+        self._provider = open_provider(settings.auth.mode, settings.oidc)
         self._lock = StationLock(Path(settings.store.data_dir))
         self.event_hub = EventHub()
         with ExitStack() as on_failure:
@@ -143,7 +145,8 @@ class Station:
         settings = self.settings
         self.store.services.begin()
         self.audit = Audit(AuditLog(Path(settings.store.data_dir)))
-        self.access = Access(settings.auth, self.store.access_tokens, self.store.people)
+        tokens, people = self.store.access_tokens, self.store.people
+        self.access = Access(settings.auth, tokens, people, oidc=settings.oidc, provider=self._provider)
         self.reader = LimitedProcess(settings.jobs)
         self.calibrations = Calibrations(
             self.store, settings.recording, settings.calibrations, settings.scene, self.reader.call

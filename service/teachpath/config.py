@@ -16,7 +16,7 @@ from typing import Any, get_args, get_type_hints
 
 from pydantic import BaseModel, ConfigDict, PrivateAttr, ValidationError
 
-from teachpath.access.settings import AuthSettings, LimitSettings
+from teachpath.access.settings import AuthSettings, LimitSettings, OidcSettings
 from teachpath.errors import NotFound, UnusableSettings
 from teachpath.executor.settings import ExecutorSettings
 from teachpath.executor.teleop.settings import TeleoperationSettings
@@ -55,6 +55,7 @@ class Settings(BaseModel):
     bus: BusSettings = BusSettings()
     web: WebSettings = WebSettings()
     auth: AuthSettings = AuthSettings()
+    oidc: OidcSettings = OidcSettings()
     limits: LimitSettings = LimitSettings()
     store: StoreSettings = StoreSettings()
     imports: ImportSettings = ImportSettings()

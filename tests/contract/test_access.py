@@ -45,7 +45,8 @@ def test_only_stops_probes_the_page_and_its_description_are_open(desk: Desk) -> 
         "/", "/docs", "/favicon.ico", "/web/{name:path}", "/vendor/{name}", "/asyncapi.json", "/openapi.json",
         "/authority", "/authority.crt", "/authority/address.svg", "/help", "/help/{name:path}",
         "/api/v1/stop", "/api/v1/executions/{execution}/stop",
-        "/api/v1/session", "/api/v1/identity", "/api/v1/health/live", "/api/v1/health/ready",
+        "/api/v1/session", "/api/v1/session/authorization", "/api/v1/session/code", "/api/v1/identity",
+        "/api/v1/health/live", "/api/v1/health/ready",
     }  # fmt: skip
 
 
@@ -170,10 +171,16 @@ def test_a_websocket_needs_its_capability(guarded: Guarded) -> None:
 
 def test_everybody_hears_who_he_is(guarded: Guarded, desk: Desk) -> None:
     mine = guarded.desk.get("/identity", headers=guarded.headers(Capability.TEACH)).json()
-    assert mine == {"mode": "token", "name": "teach", "capabilities": ["view", "demonstrate", "teach"]}
+    assert mine == {"mode": "token", "name": "teach", "capabilities": ["view", "demonstrate", "teach"], "provider": ""}
     stranger = guarded.desk.get("/identity").json()
-    assert stranger == {"mode": "token", "name": "not signed in", "capabilities": []}
-    assert desk.get("/identity").json() == {"mode": "none", "name": "", "capabilities": list(Capability)}
+    assert stranger == {"mode": "token", "name": "not signed in", "capabilities": [], "provider": ""}
+    nobody = {"mode": "none", "name": "", "capabilities": list(Capability), "provider": ""}
+    assert desk.get("/identity").json() == nobody
+
+
+def test_without_a_provider_nobody_signs_in_at_one(desk: Desk) -> None:
+    for path, body in (("authorization", {"path": "/"}), ("code", {"code": "x", "state": "y"})):
+        refused(desk.post(f"/session/{path}", body), 422, "nobody signs in at a provider")
 
 
 def test_tokens_are_made_listed_and_revoked_over_rest(guarded: Guarded) -> None:

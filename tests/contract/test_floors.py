@@ -54,6 +54,8 @@ DOORS = {
     "zenoh": ["io/bus.py"],
     "argon2": ["access/passwords.py"],
     "cryptography": ["io/certificates.py", "io/web_certificates.py"],
+    "joserfc": ["io/identity_provider.py"],
+    "httpx": ["io/identity_provider.py"],
     "segno": ["api/authority.py"],
     "google": ["io/wire"],
     "cattrs": ["io/documents.py"],

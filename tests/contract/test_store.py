@@ -114,6 +114,21 @@ def test_a_name_has_one_token_that_holds(store: Store) -> None:
 # people
 
 
+def test_a_person_of_a_provider_keeps_the_first_name_and_has_the_last_roles(store: Store) -> None:
+    def anna(name: str, *roles: Capability, subject: str = "1") -> Person:
+        return Person(name, roles, "", 5, 5, "https://lab.example", subject)
+
+    people = store.people
+    assert people.register(anna("anna", Capability.TEACH)) == anna("anna", Capability.TEACH)
+    again = anna("anna", Capability.OPERATE)
+    assert people.register(anna("otto", Capability.OPERATE)) == again
+    assert people.all() == [again]
+    with pytest.raises(Conflict, match="taken by a person or a token"):
+        people.register(anna("anna", Capability.TEACH, subject="2"))
+    with pytest.raises(Conflict, match="has no password here"):
+        people.change_password("anna", "hash", 6)
+
+
 def test_people_are_kept_with_their_sessions_and_go_with_them(open_: Open) -> None:
     people = open_().people
     anna, otto = (Person(name, (Capability.TEACH,), f"hash of {name}", 5, 5) for name in ("anna", "otto"))

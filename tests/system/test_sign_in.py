@@ -1,7 +1,8 @@
-"""A person signs in on the page in headless Chromium, sees what one may not do, and signs out."""
+"""People sign in on the page in headless Chromium, see what they may not do, and sign out."""
 
 import time
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -10,6 +11,8 @@ from teachpath.access.passwords import hash_password
 from teachpath.io.store.settings import StoreSettings
 from teachpath.io.store.store import Store
 from teachpath.records import Capability, Person
+from tests.contract import stations
+from tests.identity_provider import CLIENT, SECRET, running
 from tests.system.processes import Service
 from tests.waiting import HANG
 
@@ -98,3 +101,32 @@ def test_whoever_administers_makes_and_takes_back_people_and_tokens(browser: Any
     page.wait_for_selector("#access li[data-key^='cell-3']")
     assert token not in page.content()
     page.close()
+
+
+def test_a_person_signs_in_at_a_provider(browser: Any, tmp_path: Path) -> None:
+    secret = tmp_path / "client"
+    secret.write_text(SECRET)
+    secret.chmod(0o600)
+    with running() as provider:
+        client = {"name": "Lab", "issuer": provider.issuer, "client_id": CLIENT, "client_secret_file": str(secret)}
+        oidc = client | {"teach": ["teachers"]}
+        with stations.station(auth={"mode": "oidc"}, oidc=oidc) as station, stations.web_port(station) as port:
+            page = browser.new_page()
+            page.set_default_timeout(1000 * HANG)
+            page.goto(f"http://127.0.0.1:{port}/?error=Call+0900&state=x")  # anybody can make such a link
+            page.wait_for_selector("#sign-in .error:has-text('signed nobody in (error)')")
+            assert not page.is_visible("#sign-in-password")
+            provider.answer = {"code": "", "error": "access_denied"}
+            page.click("text=Sign in with Lab")
+            page.wait_for_selector("#sign-in .error:has-text('(access_denied)')")
+            provider.answer = {}
+            page.click("text=Sign in with Lab")
+            page.wait_for_selector("#identity:has-text('anna')")
+            page.wait_for_function("() => teachpath.state().connection === 'live'")
+            assert page.url == f"http://127.0.0.1:{port}/"  # without the code
+            (cookie,) = page.context.cookies()
+            assert (cookie["httpOnly"], cookie["sameSite"]) == (True, "Strict")
+            page.click("#identity button")
+            page.wait_for_selector("text=Sign in with Lab")
+            assert page.context.cookies() == []
+            page.close()

@@ -118,7 +118,7 @@ def documents(count: int) -> dict[str, Any]:
         paths=tuple(way(k) for k in (1, 2, 3)),
     )
     return {
-        "identity": {"mode": "none", "name": "", "capabilities": list(Capability)},
+        "identity": {"mode": "none", "name": "", "capabilities": list(Capability), "provider": ""},
         "tasks": [to_document(Task("t", "paper", "identity", 1))],
         "scenes": [to_document(paper_scene())],
         "executions": [],

@@ -8,8 +8,9 @@ from collections.abc import Callable, Sequence
 from datetime import UTC, datetime
 from typing import Final, Protocol
 
+from teachpath.access.provider_sign_in import Provider, ProviderSignIn
 from teachpath.access.sessions import PeopleTable, Sessions
-from teachpath.access.settings import AuthSettings
+from teachpath.access.settings import AuthSettings, OidcSettings
 from teachpath.access.tokens import MAX_LENGTH, digest_of
 from teachpath.errors import NotSignedIn
 from teachpath.periodic_thread import PeriodicThread
@@ -44,8 +45,10 @@ class Access:
     Args:
         settings: whether it asks at all.
         table: of the tokens.
-        people: with passwords, and their sessions.
+        people: with passwords or of a provider, and their sessions.
         now_ns: the time.
+        oidc: settings of the provider at which people sign in.
+        provider: the same; None: people sign in with passwords.
     """
 
     def __init__(
@@ -54,9 +57,14 @@ class Access:
         table: TokenTable,
         people: PeopleTable,
         now_ns: Callable[[], int] = time.time_ns,
+        oidc: OidcSettings | None = None,
+        provider: Provider | None = None,
     ) -> None:
         self.mode = settings.mode
-        self.sessions = Sessions(settings, people, now_ns)
+        self.sessions = Sessions(settings, people, now_ns, oidc.issuer if oidc and provider else "")
+        self.provider: ProviderSignIn | None = None
+        if oidc and provider:
+            self.provider = ProviderSignIn(oidc, provider, self.sessions, now_ns)
         self._table, self._now_ns = table, now_ns
         self._tokens: dict[str, AccessToken] = {}
         self._used: dict[str, int] = {}
@@ -66,9 +74,14 @@ class Access:
 
     def start(self) -> None:
         """Read the tokens now and again; what the database refuses now is raised."""
-        if self.mode == "token":
+        if self.has_sessions:
             self.refresh()
             self._thread.start()
+
+    @property
+    def has_sessions(self) -> bool:
+        """Whether programs show tokens, and people sign in."""
+        return self.mode in ("token", "oidc")
 
     def stop(self) -> None:
         """Read them no more."""

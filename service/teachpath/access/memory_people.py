@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from teachpath.errors import Conflict
 from teachpath.records import Person, Session
 
 
@@ -21,6 +22,15 @@ class MemoryPeople:
     def put(self, person: Person) -> None:
         """Keep a person, in the place of one of the name."""
         self._people[person.name] = person
+
+    def register(self, person: Person) -> Person:
+        """Keep a person of a provider under its first name, with the roles that it has now; raises Conflict."""
+        known = next((p for p in self.all() if (p.issuer, p.subject) == (person.issuer, person.subject)), None)
+        if known is None and person.name in self._people:
+            raise Conflict(f"the name {person.name!r} is taken by a person; take another")
+        kept = replace(known, roles=person.roles) if known else person
+        self.put(kept)
+        return kept
 
     def remove(self, name: str) -> None:
         """Remove a person and all sessions of that person."""

@@ -27,6 +27,9 @@ class PeopleTable(Protocol):
     def all(self) -> list[Person]:
         """Return every person."""
 
+    def register(self, person: Person) -> Person:
+        """Keep a person of a provider with the roles that it has now, and return it as it is kept; raises Conflict."""
+
     def sessions(self) -> list[Session]:
         """Return every session, ended ones too."""
 
@@ -47,10 +50,17 @@ class Sessions:
         settings: how long a session lasts.
         table: of people and sessions.
         now_ns: the time.
+        issuer: address of the provider whose people alone have sessions; empty: people with passwords alone.
     """
 
-    def __init__(self, settings: AuthSettings, table: PeopleTable, now_ns: Callable[[], int] = time.time_ns) -> None:
-        self._settings, self._table, self._now_ns = settings, table, now_ns
+    def __init__(
+        self,
+        settings: AuthSettings,
+        table: PeopleTable,
+        now_ns: Callable[[], int] = time.time_ns,
+        issuer: str = "",
+    ) -> None:
+        self._settings, self._table, self._now_ns, self._issuer = settings, table, now_ns, issuer
         self._attempts = Attempts(lambda: now_ns() / NS)
         self._people: dict[str, Person] = {}
         self._sessions: dict[str, Session] = {}
@@ -63,19 +73,22 @@ class Sessions:
 
     def refresh(self) -> None:
         """Read people and sessions, note which were used, and forget those that have ended."""
-        begin = self._now_ns()
         with self._lock:
-            used = {digest: s.used_ns for digest, s in self._sessions.items()}
-        stored = {session.digest: session for session in self._table.sessions()}
+            former, used = self._people, {digest: s.used_ns for digest, s in self._sessions.items()}
+        sessions, everybody = self._table.sessions(), self._table.all()
+        # A station on the same database may know people in another way: theirs are neither taken nor ended.
+        others = {person.name for person in everybody if person.issuer != self._issuer}
+        stored = {session.digest: session for session in sessions if session.person not in others}
         newer = {d: used_ns for d, used_ns in used.items() if d in stored and used_ns > stored[d].used_ns}
         if newer:
             self._table.note_use(newer)
-        people = {person.name: person for person in self._table.all()}
+        people = {person.name: person for person in everybody if person.issuer == self._issuer}
         with self._lock:
-            self._people = people
-            gone = [d for d, s in self._sessions.items() if d not in stored and s.created_ns < begin]
-            for digest in gone:
-                del self._sessions[digest]
+            # Who has signed in since these were read is not in them, or not with the roles of now.
+            new = {name: person for name, person in self._people.items() if former.get(name) is not person}
+            self._people = people | new
+            for digest in used.keys() - stored.keys():
+                self._sessions.pop(digest, None)
             for digest, session in stored.items():
                 known = self._sessions.get(digest, session)
                 self._sessions[digest] = replace(session, used_ns=max(session.used_ns, known.used_ns))
@@ -97,8 +110,25 @@ class Sessions:
         if not is_password(password, person.password_hash if person else None) or person is None:
             raise NotSignedIn(UNKNOWN)
         self._attempts.succeed(name, address)
+        return self._begin(person)
+
+    def sign_in_from_provider(self, person: Person) -> tuple[str, Subject]:
+        """Begin a session of a person whom the provider knows, with the roles that it has now.
+
+        Returns:
+            the secret of the session, and who it is: by the name that it had when it signed in first.
+
+        Raises:
+            Conflict: it is new here, and somebody else has the name.
+        """
+        kept = self._table.register(person)
+        with self._lock:
+            self._people = self._people | {kept.name: kept}
+        return self._begin(kept)
+
+    def _begin(self, person: Person) -> tuple[str, Subject]:
         secret, now = new_secret(), self._now_ns()
-        session = Session(digest_of(secret), name, now, now)
+        session = Session(digest_of(secret), person.name, now, now)
         self._table.begin_session(session)
         with self._lock:
             self._sessions[session.digest] = session

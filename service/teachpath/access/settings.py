@@ -12,12 +12,47 @@ from annotated_types import Ge, Gt, Le
 class AuthSettings:
     """How the station tells who asks."""
 
-    # none: asks nobody, answers this machine alone; token: programs show tokens, people sign in; proxy: web.proxies ask
-    mode: Literal["none", "token", "proxy"] = "none"
+    # none: asks nobody, answers this machine alone; token: programs show tokens, people sign in with passwords; oidc:
+    # programs show tokens, people sign in at a provider ([oidc]); proxy: web.proxies ask
+    mode: Literal["none", "token", "oidc", "proxy"] = "none"
     # [s] after which a session ends in which nothing was asked
     session_idle: Annotated[float, Ge(60), Le(604_800)] = 3600.0
     # [s] after which a session ends, whatever is asked
     session_length: Annotated[float, Ge(60), Le(2_592_000)] = 43_200.0
+
+
+@dataclass(frozen=True)
+class OidcSettings:
+    """The provider of OpenID Connect at which people sign in, where auth.mode is oidc."""
+
+    # of the provider; the page says: Sign in with NAME
+    name: str = "OpenID Connect"
+    # address of the provider, as its discovery document says it; https, or http of this machine
+    issuer: str = ""
+    # of this station at the provider, where the address of its page is a redirect URI
+    client_id: str = ""
+    # file of the client's secret, mode 0600; empty: the client has none (public, with PKCE)
+    client_secret_file: str = ""
+    # file of the authorities that vouch for the provider's https (PEM); empty: the public ones
+    authorities: str = ""
+    # what is asked for beside openid
+    scopes: tuple[str, ...] = ("profile",)
+    # what the provider asks at each sign-in; empty: nothing, if whoever used the device before is still known there
+    prompt: Literal["login", "select_account", ""] = "login"
+    # claim of the ID token that is a person's name here; of an e-mail address what stands before the @
+    name_claim: str = "preferred_username"
+    # claim of the ID token that has the groups of a person
+    groups_claim: str = "groups"
+    # groups whose people have the role view; who is in no group that is named has none, and is refused
+    view: tuple[str, ...] = ()
+    # groups whose people have the role demonstrate
+    demonstrate: tuple[str, ...] = ()
+    # groups whose people have the role teach
+    teach: tuple[str, ...] = ()
+    # groups whose people have the role operate
+    operate: tuple[str, ...] = ()
+    # groups whose people have the role administer
+    administer: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)

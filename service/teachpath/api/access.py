@@ -92,7 +92,7 @@ def identify(connection: HTTPConnection, access: Access) -> Subject:
 
 def _session(connection: HTTPConnection, access: Access) -> str:
     """Return the secret of the session of a request; empty where it has none, or shows a token."""
-    if access.mode != "token" or "authorization" in connection.headers:
+    if not access.has_sessions or "authorization" in connection.headers:
         return ""
     return read_cookie(connection)
 

@@ -12,6 +12,7 @@ from anyio.to_thread import run_sync
 from fastapi import APIRouter, Request, Response
 from pydantic import Field
 
+from teachpath.access.access import Access
 from teachpath.access.tokens import new_token
 from teachpath.api.access import ADMINISTER, OPEN, Sender
 from teachpath.api.audit import CLAIMED
@@ -49,11 +50,13 @@ class Identity:
         mode: how it tells who asks; `none`: it does not ask.
         name: yours; empty where it does not ask.
         capabilities: what you may do.
+        provider: at which people sign in; empty: with a password.
     """
 
     mode: str
     name: str
     capabilities: tuple[Capability, ...]
+    provider: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,7 +105,7 @@ def access_router(parts: Parts) -> APIRouter:
     @router.get("/identity", dependencies=OPEN)
     async def get_identity(sender: Sender) -> Identity:
         """Say who you are here, and what you may do."""
-        return _identity(access.mode, sender)
+        return identity_of(access, sender)
 
     @router.post("/session", responses=refusals(401, 507), dependencies=OPEN)
     async def sign_in(wanted: Credentials, request: Request, response: Response) -> Identity:
@@ -113,13 +116,15 @@ def access_router(parts: Parts) -> APIRouter:
             raise UnusableInput(
                 "this station asks nobody who he is (auth.mode is none); there is nothing to sign in to"
             )
+        if access.provider:
+            raise UnusableInput(f"people sign in at {access.provider.name} here (auth.mode is oidc), on the page")
         address = request.client.host if request.client else ""
         checked = partial(access.sessions.sign_in, wanted.name, wanted.password, address)
         secret, subject = await run_sync(checked, limiter=hashing)
         if former := read_cookie(request):
             await run_sync(access.sessions.sign_out, former)
         set_cookie(request, response, secret, seconds=parts.settings.auth.session_length)
-        return _identity(access.mode, subject)
+        return identity_of(access, subject)
 
     @router.delete("/session", status_code=204, dependencies=OPEN)
     def sign_out(request: Request, response: Response) -> None:
@@ -154,8 +159,10 @@ def access_router(parts: Parts) -> APIRouter:
     return router
 
 
-def _identity(mode: str, subject: Subject) -> Identity:
-    return Identity(mode, subject.name, tuple(c for c in Capability if c in subject.capabilities))
+def identity_of(access: Access, subject: Subject) -> Identity:
+    """Return who a subject is at a station."""
+    capabilities = tuple(c for c in Capability if c in subject.capabilities)
+    return Identity(access.mode, subject.name, capabilities, access.provider.name if access.provider else "")
 
 
 def _listed(token: AccessToken) -> ListedToken:

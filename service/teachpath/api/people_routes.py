@@ -74,6 +74,8 @@ def people_router(parts: Parts) -> APIRouter:
         """Add somebody who may sign in; of the password a hash is kept."""
         request.scope[NOTED] = f"{new.name}, {' '.join(new.roles)}"
         require_private_line(request)
+        if access.provider:
+            raise Conflict(f"people are known by {access.provider.name} here (auth.mode is oidc): add them there")
         if not is_name(new.name):
             raise UnusableInput(name_refusal("person", new.name))
         kept = await run_sync(partial(hash_password, new.password, new.name), limiter=hashing)
@@ -83,7 +85,7 @@ def people_router(parts: Parts) -> APIRouter:
         await run_sync(access.refresh)
         return _listed(person, [])
 
-    @router.put("/people/{name}/password", status_code=204, responses=refusals(507), dependencies=ADMINISTER)
+    @router.put("/people/{name}/password", status_code=204, responses=refusals(409, 507), dependencies=ADMINISTER)
     async def change_password(name: str, new: NewPassword, request: Request) -> Response:
         """Give a person another password; every session that was begun with the former one ends."""
         require_private_line(request)

@@ -1,4 +1,4 @@
-"""The cookie of a session: to no other site, not readable by scripts, and over TLS to no other host or path."""
+"""The cookies of sessions: to no other site, not readable by scripts, and over TLS to no other host or path."""
 
 from __future__ import annotations
 
@@ -10,19 +10,22 @@ from starlette.requests import HTTPConnection
 from teachpath.access.loopback import host_of, is_loopback
 from teachpath.errors import NotAllowed, NotSignedIn
 
-SECURE_COOKIE: Final = "__Host-teachpath-session"  # which browsers take over TLS alone, of this host alone
-LOOPBACK_COOKIE: Final = "teachpath-session"  # on http of loopback, where no other machine hears it
+SESSION: Final = "teachpath-session"
+SIGN_IN: Final = "teachpath-sign-in"  # while a person is at the provider
+HOST: Final = "__Host-"  # before its name: browsers take the cookie over TLS alone, of this host alone
+SECURE_COOKIE: Final = HOST + SESSION
+LOOPBACK_COOKIE: Final = SESSION  # on http of loopback, where no other machine hears it
 
 
-def read_cookie(connection: HTTPConnection) -> str:
-    """Return the secret of the session of a request; empty where it has none.
+def read_cookie(connection: HTTPConnection, kind: str = SESSION) -> str:
+    """Return the secret of a cookie of a request; empty where it has none.
 
     Raises:
         NotSignedIn: it has several, so that somebody else may have set one of them.
     """
     if not (headers := connection.headers.getlist("cookie")):
         return ""
-    name = _name(connection)
+    name = _name(connection, kind)
     pairs = [pair.strip().partition("=") for header in headers for pair in header.split(";")]
     found = [value for key, _, value in pairs if key == name]
     if len(found) > 1:
@@ -30,10 +33,12 @@ def read_cookie(connection: HTTPConnection) -> str:
     return found[0] if found else ""
 
 
-def set_cookie(connection: HTTPConnection, response: Response, secret: str, *, seconds: float) -> None:
-    """Give a session to a browser, for at most so many seconds."""
+def set_cookie(
+    connection: HTTPConnection, response: Response, secret: str, *, seconds: float, kind: str = SESSION
+) -> None:
+    """Give a cookie to a browser, for at most so many seconds."""
     response.set_cookie(
-        _name(connection),
+        _name(connection, kind),
         secret,
         max_age=round(seconds),
         path="/",
@@ -43,9 +48,11 @@ def set_cookie(connection: HTTPConnection, response: Response, secret: str, *, s
     )
 
 
-def clear_cookie(connection: HTTPConnection, response: Response) -> None:
-    """Take a session from a browser."""
-    response.delete_cookie(_name(connection), path="/", secure=_is_secure(connection), httponly=True, samesite="strict")
+def clear_cookie(connection: HTTPConnection, response: Response, kind: str = SESSION) -> None:
+    """Take a cookie from a browser."""
+    response.delete_cookie(
+        _name(connection, kind), path="/", secure=_is_secure(connection), httponly=True, samesite="strict"
+    )
 
 
 def require_private_line(connection: HTTPConnection) -> None:
@@ -63,5 +70,5 @@ def _is_secure(connection: HTTPConnection) -> bool:
     return connection.url.scheme in ("https", "wss")
 
 
-def _name(connection: HTTPConnection) -> str:
-    return SECURE_COOKIE if _is_secure(connection) else LOOPBACK_COOKIE
+def _name(connection: HTTPConnection, kind: str) -> str:
+    return HOST + kind if _is_secure(connection) else kind

@@ -36,6 +36,7 @@ from teachpath.api.parts import Health, Parts
 from teachpath.api.people_routes import people_router
 from teachpath.api.probes import probes_router
 from teachpath.api.programs import programs_router
+from teachpath.api.provider_routes import provider_router
 from teachpath.api.recording import recording_router
 from teachpath.api.request_numbers import RequestNumbers
 from teachpath.api.revocable_sockets import RevocableSockets
@@ -109,6 +110,7 @@ def build_api(parts: Parts, *pages: APIRouter) -> FastAPI:
         robot_router,
         station_router,
         access_router,
+        provider_router,
         people_router,
         audit_router,
         probes_router,

@@ -43,6 +43,8 @@ def add(
         store.people.add(Person(name, capabilities(role), kept, now, now))
     note(settings, f"add person {name}, {' '.join(role)}")
     print(f"{name} may {', '.join(role)}")
+    if settings.auth.mode == "oidc":
+        print(f"People sign in at {settings.oidc.name} now: {name} can when auth.mode is token.", file=sys.stderr)
 
 
 @app.command("password")

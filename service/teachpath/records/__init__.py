@@ -4,7 +4,16 @@ Conventions (ARCHITECTURE.md): metres, radians, seconds inside; integer nanoseco
 (names end in `_ns`); quaternions w, x, y, z; frame `world` unless another is named.
 """
 
-from teachpath.records.access import ROLES, AccessToken, Capability, Person, Session, Subject, capabilities_of
+from teachpath.records.access import (
+    ROLES,
+    AccessToken,
+    Capability,
+    CodeGrant,
+    Person,
+    Session,
+    Subject,
+    capabilities_of,
+)
 from teachpath.records.arrays import Array, Matrix, Pose, Quaternion, Vector
 from teachpath.records.assessments import Assessment, Failure, Suggestion
 from teachpath.records.audit import AuditEntry
@@ -85,6 +94,7 @@ __all__ = [
     "CertificateQuery",
     "Clock",
     "Cluster",
+    "CodeGrant",
     "Command",
     "ControlPointChange",
     "Demonstration",

@@ -61,11 +61,13 @@ class AccessToken:
 
 @dataclass(frozen=True, slots=True)
 class Person:
-    """Somebody who signs in with a password.
+    """Somebody who signs in with a password, or at a provider of OpenID Connect.
 
     Attributes:
-        password_hash: of Argon2.
+        password_hash: of Argon2; empty: signs in at a provider.
         changed_ns: when the password was set; sessions of before have ended.
+        issuer: address of the provider; empty: signs in with a password.
+        subject: who it is at the provider, whatever name it has there.
     """
 
     name: str
@@ -73,6 +75,8 @@ class Person:
     password_hash: str = field(repr=False)
     created_ns: int
     changed_ns: int
+    issuer: str = ""
+    subject: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,6 +92,23 @@ class Session:
     person: str
     created_ns: int
     used_ns: int
+
+
+@dataclass(frozen=True, slots=True)
+class CodeGrant:
+    """A code of a provider of OpenID Connect, and what the station had asked with.
+
+    Attributes:
+        code: for one ID token.
+        redirect_uri: to which the code was sent.
+        verifier: of PKCE (RFC 7636).
+        nonce: that the ID token has to hold.
+    """
+
+    code: str = field(repr=False)
+    redirect_uri: str
+    verifier: str = field(repr=False)
+    nonce: str = field(repr=False)
 
 
 @dataclass(frozen=True, slots=True)

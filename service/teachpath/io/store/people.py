@@ -1,4 +1,4 @@
-"""People who sign in with a password, and their sessions."""
+"""People who sign in, with a password or at a provider, and their sessions."""
 
 from __future__ import annotations
 
@@ -28,29 +28,35 @@ class People:
         """Keep a person; raises Conflict when somebody or a token that holds has the name."""
         with Transaction(self._writing) as transaction, transaction.begin():
             lock_name(transaction, NAMES, person.name)
-            tokens = select(AccessTokenRow).where(
-                AccessTokenRow.name == person.name,
-                AccessTokenRow.revoked_ns == 0,
-                AccessTokenRow.expires_ns > person.created_ns,
-            )
-            if transaction.get(PersonRow, person.name) or transaction.scalars(tokens).first():
-                raise Conflict(f"the name {person.name!r} is taken by a person or a token; take another")
-            transaction.add(
-                PersonRow(
-                    name=person.name,
-                    roles=list(person.roles),
-                    password_hash=person.password_hash,
-                    created_ns=person.created_ns,
-                    changed_ns=person.changed_ns,
-                )
-            )
+            _add(transaction, person)
+
+    def register(self, person: Person) -> Person:
+        """Keep a person of a provider with the roles that it has now, under the name that it had first.
+
+        Returns:
+            the person as it is kept.
+
+        Raises:
+            Conflict: it is new here, and somebody else or a token that holds has the name.
+        """
+        same = select(PersonRow).where(PersonRow.issuer == person.issuer, PersonRow.subject == person.subject)
+        with Transaction(self._writing) as transaction, transaction.begin():
+            lock_name(transaction, NAMES, person.name)
+            row = transaction.scalars(same).first()
+            if row is None:
+                row = _add(transaction, person)
+            else:
+                row.roles = list(person.roles)
+            return _person_of(row)
 
     def change_password(self, name: str, password_hash: str, now_ns: int) -> None:
-        """Give a person another password, and end the sessions that were begun with the former; raises NotFound."""
+        """Give a person another password, and end the sessions of the former; raises NotFound, Conflict."""
         with Transaction(self._writing) as transaction, transaction.begin():
             row = transaction.get(PersonRow, name)
             if row is None:
                 raise _missing(name, self.all())
+            if row.issuer:
+                raise Conflict(f"{name} signs in at {row.issuer}, and has no password here")
             row.password_hash, row.changed_ns = password_hash, now_ns
             transaction.execute(delete(SessionRow).where(SessionRow.person == name))
 
@@ -97,9 +103,31 @@ class People:
             transaction.execute(delete(SessionRow).where(SessionRow.digest.in_(digests)))
 
 
+def _add(transaction: Transaction, person: Person) -> PersonRow:
+    """Add a person under a name that nobody has; raises Conflict."""
+    tokens = select(AccessTokenRow).where(
+        AccessTokenRow.name == person.name,
+        AccessTokenRow.revoked_ns == 0,
+        AccessTokenRow.expires_ns > person.created_ns,
+    )
+    if transaction.get(PersonRow, person.name) or transaction.scalars(tokens).first():
+        raise Conflict(f"the name {person.name!r} is taken by a person or a token; take another")
+    row = PersonRow(
+        name=person.name,
+        roles=list(person.roles),
+        password_hash=person.password_hash,
+        created_ns=person.created_ns,
+        changed_ns=person.changed_ns,
+        issuer=person.issuer,
+        subject=person.subject,
+    )
+    transaction.add(row)
+    return row
+
+
 def _person_of(row: PersonRow) -> Person:
     roles = tuple(Capability(role) for role in row.roles)
-    return Person(row.name, roles, row.password_hash, row.created_ns, row.changed_ns)
+    return Person(row.name, roles, row.password_hash, row.created_ns, row.changed_ns, row.issuer, row.subject)
 
 
 def _missing(name: str, people: list[Person]) -> NotFound:

@@ -19,7 +19,7 @@ from sqlalchemy import (
 from sqlalchemy.orm import DeclarativeBase, Mapped, mapped_column
 
 ID = String(64)
-NEWEST: Final = "0015"  # of the migrations
+NEWEST: Final = "0016"  # of the migrations
 
 
 class Base(DeclarativeBase):
@@ -182,7 +182,7 @@ class AccessTokenRow(Base):
 
 
 class PersonRow(Base):
-    """Somebody who signs in with a password: its hash."""
+    """Somebody who signs in: the hash of the password, or who it is at a provider."""
 
     __tablename__ = "people"
     name: Mapped[str] = mapped_column(ID, primary_key=True)
@@ -190,6 +190,8 @@ class PersonRow(Base):
     password_hash: Mapped[str] = mapped_column(Text)
     created_ns: Mapped[int] = mapped_column(BigInteger)
     changed_ns: Mapped[int] = mapped_column(BigInteger)
+    issuer: Mapped[str] = mapped_column(Text)
+    subject: Mapped[str] = mapped_column(Text)
 
 
 class SessionRow(Base):
