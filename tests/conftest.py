@@ -17,6 +17,7 @@ from xdist.scheduler import LoadScopeScheduling
 
 from teachpath.commands.serving import PRELOADED
 from teachpath.process_server import CONTEXT
+from tests.object_storage import ObjectServer, serving_objects
 from tests.postgres import MISSING, Server, find_programs, serving
 
 # No example fails because the machine was busy.
@@ -53,6 +54,15 @@ def browser() -> Iterator[Any]:
         browser = playwright.chromium.launch(executable_path=found, headless=True, args=flags)
         yield browser
         browser.close()
+
+
+@pytest.fixture
+def objects(monkeypatch: pytest.MonkeyPatch) -> Iterator[ObjectServer]:
+    """A server of object storage, which clients find by their environment."""
+    with serving_objects() as server:
+        for name, value in server.environment.items():
+            monkeypatch.setenv(name, value)
+        yield server
 
 
 @pytest.fixture(scope="session")

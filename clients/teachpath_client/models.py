@@ -367,7 +367,7 @@ class Demonstration:
         release: index behind its last sample.
         verdict: clean, repaired (usable, with losses) or reject (not learned from).
         statistics: counts of its samples.
-        recording: place of the MCAP file within the recordings.
+        recording: place of the MCAP file within the recordings, or its address in object storage (`s3://...`).
         reasons: why the verdict is not clean, with figures.
         advice: what the operator should know and do about it, in one sentence.
         left_out: numbers of the samples that jumped.

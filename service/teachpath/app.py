@@ -102,7 +102,7 @@ class Station:
         try:
             first: tuple[Startable, ...] = (self.audit, self.access, self.preview, self.guidance, self.recorder)
             then: tuple[Startable, ...] = (self._queries, self.executions, self.objects, self.certificate_status)
-            for part in (*first, *then, self.joints, self._state_poller, *self.processes):
+            for part in (*first, *then, self.joints, self._state_poller, self.store.spool, *self.processes):
                 part.start()
             remove_leftovers(Path(self.settings.store.data_dir), self.store.awaited_uploads())
             self.jobs.start()
@@ -243,6 +243,7 @@ class Station:
         """Say what an operator should know."""
         notes = [note for process in self.processes if (note := process.note())]
         notes += self.recorder.faults() + self.executions.faults() + self.store.health.faults()
+        notes += self.store.spool.faults()
         notes += self._access.notes(datetime.now(UTC)) if self._access else []
         notes += self.access.notes() + self.audit.notes()
         notes += self.certificate.notes(datetime.now(UTC)) if self.certificate else []

@@ -23,6 +23,7 @@ from teachpath.executor.teleop.settings import TeleoperationSettings
 from teachpath.io.bus_settings import BusSettings
 from teachpath.io.import_settings import ImportSettings
 from teachpath.io.meshes import read_hull
+from teachpath.io.store.object_storage import check_url
 from teachpath.io.store.settings import StoreSettings
 from teachpath.jobs.settings import JobSettings
 from teachpath.learning.settings import LearningSettings
@@ -124,6 +125,8 @@ def load(file: Path | None = None, *, document: dict[str, Any] | None = None) ->
     _check_names("robot", [settings.bus.robot])
     if settings.store.station:
         _check_names("station", [settings.store.station])
+    if settings.store.recordings:
+        check_url(settings.store.recordings)
     _check_calibrations(settings.calibrations)
     _check_scenes(settings.scenes)
     return settings

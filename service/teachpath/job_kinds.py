@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 from teachpath.config import Settings
@@ -33,11 +32,13 @@ class LearningKinds:
         store: of demonstrations and runs.
         settings: of the station.
         calibrations: that demonstrations have to be recorded under, in their present version.
+        is_away: whether recordings that wait to be uploaded may lie on another machine, so that jobs wait for them.
     """
 
     store: Store
     settings: Settings
     calibrations: Calibrations
+    is_away: bool = False
 
     def by_name(self) -> dict[str, JobKind]:
         """Return these kinds of jobs by the names that REST gives them."""
@@ -66,9 +67,11 @@ class LearningKinds:
 
     def _stored(self, task: str, rows: list[Demonstration]) -> StoredDemonstrations:
         self.store.require_recorded_here(task)
+        if self.is_away:
+            self.store.recordings.require_uploaded([row.recording for row in rows])
         carried = self.settings.scene(self.store.task(task).scene).carried
         return StoredDemonstrations(
-            Path(self.settings.store.data_dir),
+            self.store.recordings,
             tuple(rows),
             ObjectPose(carried.position, carried.orientation) if carried else None,
         )

@@ -20,10 +20,11 @@ from teachpath_proto.keys import Keys
 class JobService:
     """Does the learning jobs of a station that nobody else does; use it as a context manager.
 
-    It needs the station's settings, its database, and its data folder, of which it reads the recordings.
+    It needs the station's settings, its database, and its recordings: in object storage, or in its data folder.
 
     Raises:
-        UnusableSettings: the database is not one that services share, or the recordings are not in the data folder.
+        UnusableSettings: the database is not one that services share, or the recordings are neither in the data folder
+            nor in object storage.
     """
 
     def __init__(self, settings: Settings) -> None:
@@ -37,7 +38,7 @@ class JobService:
         calibrations = Calibrations(
             self._store, settings.recording, settings.calibrations, settings.scene, self._reader.call
         )
-        kinds = LearningKinds(self._store, settings, calibrations).by_name()
+        kinds = LearningKinds(self._store, settings, calibrations, is_away=True).by_name()
         self._jobs = Jobs(MemoryBus(), Keys(settings.bus.prefix), self._store, settings.jobs, kinds)
 
     def __enter__(self) -> JobService:
@@ -58,11 +59,14 @@ class JobService:
                 "a worker needs a database that several services share: name one on PostgreSQL in the setting "
                 "store.database; with SQLite the service itself does all jobs"
             )
-        for place in sorted(self._store.checks.named_recordings())[:1]:
+        if self._store.recordings.objects.url:
+            return  # what is not there yet, jobs wait for
+        for place in sorted(self._store.checks.places())[:1]:
             try:
                 self._store.recordings.path(place)
             except NotFound:
                 raise UnusableSettings(
                     f"recording {place} of station {self._store.services.station!r} is not under {folder}; name the "
-                    "station's data folder with --data, and the station in the setting store.station"
+                    "station's data folder with --data, and the station in the setting store.station; or keep "
+                    "recordings in object storage (store.recordings)"
                 ) from None

@@ -61,6 +61,7 @@ DOORS = {
     "cattrs": ["io/documents.py"],
     "sqlalchemy": ["io/store"],
     "alembic": ["io/store"],
+    "obstore": ["io/store/object_storage.py"],
     "mcap": ["io/store", "io/programs/rosbag.py"],
     "mcap_protobuf": ["io/store"],
     "foxglove_schemas_protobuf": ["io/store"],

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from teachpath.io.store.recordings import read_facts
+from teachpath.io.store.recording_facts import read_facts
 from teachpath_client import Link, Tracker
 from tests.system.access import grave
 from tests.system.operators import Leader, Shown

@@ -70,7 +70,7 @@ def demonstrations_router(parts: Parts) -> APIRouter:
         """Return the MCAP file with every sample."""
         row = store.demonstration(demonstration)
         store.recordings.content(row.recording, row.digest)  # so that a changed one is refused
-        file = store.recordings.path(row.recording)
-        return FileResponse(file, media_type=MCAP, filename=file.name)
+        name = row.recording.rpartition("/")[2]
+        return FileResponse(store.recordings.path(row.recording), media_type=MCAP, filename=name)
 
     return router

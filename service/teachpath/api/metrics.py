@@ -88,6 +88,9 @@ class StationMetrics(Collector):
         takes = CounterMetricFamily("teachpath_takes", "Demonstrations that were made.", labels=("verdict",))
         yield _labelled(takes, {(verdict,): count for verdict, count in totals.takes.items()})
         yield GaugeMetricFamily("teachpath_recordings", "Recordings that run.", len(recorder.statuses()))
+        waiting, size = self._parts.store.spool.waiting()
+        yield GaugeMetricFamily("teachpath_waiting_recordings", "Recordings that wait to be uploaded.", waiting)
+        yield GaugeMetricFamily("teachpath_waiting_bytes", "Size of the recordings that wait to be uploaded.", size)
         yield GaugeMetricFamily("teachpath_trackers", "Trackers that are there.", len(recorder.trackers()))
         yield GaugeMetricFamily("teachpath_backlog_samples", "Samples that wait for the recorder.", recorder.backlog)
 

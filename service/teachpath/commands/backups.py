@@ -35,6 +35,8 @@ def backup(
         print_json(made)
     else:
         print(f"{into}: {made.files} files, {made.size / 1e6:.1f} MB")
+        if made.distant:
+            print(f"{made.distant} recordings stay in object storage: back up the bucket by its own means")
         for fault in made.faults:
             print(fault, file=sys.stderr)
     if made.faults:

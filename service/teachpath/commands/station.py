@@ -57,7 +57,8 @@ def serve(
 def worker(config: Config = None, data: Data = None) -> None:
     """Do learning jobs for a station until Ctrl-C, on another machine or beside its service.
 
-    It needs the station's settings, its database on PostgreSQL (store.database), and its data folder on a shared disk.
+    It needs the station's settings, its database on PostgreSQL (store.database), and its recordings: in
+    object storage (store.recordings), or in its data folder on a shared disk.
     """
     from teachpath.commands.serving import PRELOADED, until_signalled
     from teachpath.job_service import JobService

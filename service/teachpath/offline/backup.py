@@ -20,7 +20,8 @@ from typing import Any, Final
 from teachpath.errors import Conflict, NotFound, UnusableInput
 from teachpath.io.store.database_files import DATABASE, copy_database, database_file
 from teachpath.io.store.faults import TEMPORARY, storage_fault
-from teachpath.io.store.recordings import RECORDINGS
+from teachpath.io.store.object_storage import is_address
+from teachpath.io.store.recordings import RECORDINGS, Recordings
 from teachpath.io.store.settings import StoreSettings
 from teachpath.io.store.store import Store
 from teachpath.offline.leftovers import TRANSFERS
@@ -41,11 +42,13 @@ class Backup:
         files: their count, the database among them.
         size: of all [bytes].
         faults: recordings that are missing or not what was recorded, which a backup cannot mend.
+        distant: recordings that stay in object storage, which keeps copies in its own way.
     """
 
     files: int
     size: int
     faults: tuple[str, ...] = ()
+    distant: int = 0
 
 
 def back_up(settings: StoreSettings, into: Path, progress: Progress = lambda fraction, what: None) -> Backup:
@@ -68,7 +71,7 @@ def back_up(settings: StoreSettings, into: Path, progress: Progress = lambda fra
     with _removed_unless_whole(part):
         part.mkdir(parents=True)
         copy_database(file, part / DATABASE)
-        found = _copy_files(Path(settings.data_dir), part, progress)
+        found = _copy_files(settings, part, progress)
         _sync(part)
         part.rename(into)
     return found
@@ -115,33 +118,39 @@ def restore(source: Path, settings: StoreSettings, *, replace: bool = False) -> 
     return aside
 
 
-def _copy_files(data: Path, part: Path, progress: Progress) -> Backup:
+def _copy_files(settings: StoreSettings, part: Path, progress: Progress) -> Backup:
     """Copy all that the copied database names, and the recordings of executions; write the manifest."""
+    data = Path(settings.data_dir)
+    recordings = Recordings(data / RECORDINGS, url=settings.recordings, cache_size=settings.cache_size)
     copy = Store(StoreSettings(data_dir=str(part), database=f"sqlite:///{part / DATABASE}"))
     try:
         rows = [row for _, row in copy.checks.demonstrations() if not isinstance(row, str)]
         uploads = copy.awaited_uploads()
     finally:
         copy.close()
-    digests = {f"{RECORDINGS}/{row.recording}": row.digest for row in rows}
+    digests = {f"{RECORDINGS}/{row.recording}": row.digest for row in rows if not is_address(row.recording)}
+    distant = len(rows) - len(digests)
     names = [*digests, *(f"{EXECUTIONS}/{file.name}" for file in sorted((data / EXECUTIONS).glob("*.mcap")))]
     names += [f"{TRANSFERS}/{upload}/upload" for upload in uploads]
     listed: dict[str, dict[str, Any]] = {}
     faults = []
     for number, name in enumerate(names):
         progress(number / len(names), name)
-        if not (data / name).is_file():
+        try:
+            # One that the copied database has in the folder may have been uploaded since.
+            source = recordings.path(name.removeprefix(f"{RECORDINGS}/")) if name in digests else data / name
+            (part / name).parent.mkdir(parents=True, exist_ok=True)
+            shutil.copyfile(source, part / name)
+        except (NotFound, FileNotFoundError):
             faults.append(f"{name} is missing")
             continue
-        (part / name).parent.mkdir(parents=True, exist_ok=True)
-        shutil.copyfile(data / name, part / name)
         listed[name] = _described(part / name)
         digest = digests.get(name)
         if digest is not None and digest.sha256 != listed[name]["sha256"]:
             faults.append(f"{name} is not what was recorded; run: teachpath doctor")
     listed[DATABASE] = _described(part / DATABASE)
     (part / MANIFEST).write_text(json.dumps({"created_ns": time.time_ns(), "files": listed}, indent=1))
-    return Backup(len(listed), sum(each["size"] for each in listed.values()), tuple(faults))
+    return Backup(len(listed), sum(each["size"] for each in listed.values()), tuple(faults), distant)
 
 
 def _described(file: Path) -> dict[str, Any]:

@@ -18,6 +18,7 @@ from teachpath.offline.file_faults import check_spare_files, check_torn_files
 from teachpath.offline.findings import FaultKind, Finding
 from teachpath.offline.leftovers import find_leftovers, remove_leftover
 from teachpath.offline.lock import StationLock
+from teachpath.offline.object_faults import check_objects
 from teachpath.offline.row_faults import check_rows
 from teachpath.offline.staging import AbandonedImport, abandoned_imports
 from teachpath.offline.torn_recordings import SALVAGED, set_aside
@@ -58,6 +59,7 @@ def examine(
         _check_imports(examination)
         _check_motions(examination)
         examination.read()
+        check_objects(examination)
         check_rows(examination)
         check_spare_files(examination)
         check_torn_files(examination)

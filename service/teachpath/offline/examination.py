@@ -36,6 +36,7 @@ class Examination:
         rows: demonstrations by their ids.
         files: finished recordings that can be read, by their places.
         spare: those of them that no row names.
+        distant: ids of the rows whose recordings are in object storage, not among the files.
         findings: what was found so far.
     """
 
@@ -49,6 +50,7 @@ class Examination:
     files: dict[str, Inspection] = field(default_factory=dict)
     unreadable: set[str] = field(default_factory=set)
     spare: dict[str, Inspection] = field(default_factory=dict)
+    distant: set[str] = field(default_factory=set)
     findings: list[Finding] = field(default_factory=list)
 
     def read(self) -> None:

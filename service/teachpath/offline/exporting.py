@@ -13,7 +13,7 @@ import numpy as np
 
 from teachpath.errors import Conflict, NotFound, UnusableInput
 from teachpath.io.sample_files import write_samples
-from teachpath.io.store.recordings import amended
+from teachpath.io.store.recording_facts import amended
 from teachpath.io.store.store import Store
 from teachpath.offline import task_archive
 from teachpath.records import Demonstration, Trajectory

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from pathlib import Path
 
-from teachpath.io.store.recordings import RECORDINGS, Recordings
+from teachpath.io.store.recordings import Recordings
 from teachpath.jobs import worker
 from teachpath.learning.settings import LearningSettings
 from teachpath.recording.demonstration import object_trajectory
@@ -21,21 +20,26 @@ class StoredDemonstrations:
     """Demonstrations of one task that are still to be read.
 
     Attributes:
-        data_dir: folder of the station's data.
+        recordings: of the station.
         rows: of the demonstrations.
         object_pose: where the scene has the object, or None.
     """
 
-    data_dir: Path
+    recordings: Recordings
     rows: tuple[Demonstration, ...]
     object_pose: ObjectPose | None
 
     def read(self) -> dict[str, Trajectory]:
-        """Return the object's trajectories by the ids of the demonstrations; raises UnusableRecording, NotFound."""
-        recordings = Recordings(self.data_dir / RECORDINGS)
+        """Return the object's trajectories by the ids of the demonstrations.
+
+        Raises:
+            NotFound: a recording is missing.
+            UnusableRecording: one is not what was recorded.
+            StorageUnavailable: the object storage does not answer.
+        """
         return {
             row.id: object_trajectory(
-                recordings.samples(row.recording, row.digest),
+                self.recordings.samples(row.recording, row.digest),
                 TransportSpan(*row.transport),
                 row.calibration,
                 pose.position if (pose := row.object_pose or self.object_pose) else None,

@@ -44,7 +44,8 @@ def remove_leftovers(data_dir: Path, kept_transfers: Collection[str]) -> None:
 def note_unnamed(store: Store) -> None:
     """Let health say of recordings that no row names, as after a database was lost, and log the torn ones."""
     named, recordings = store.checks.named_recordings(), store.recordings
-    unnamed = sum(recordings.place(file) not in named for file in recordings.finished())
+    places = map(recordings.place, recordings.finished())
+    unnamed = sum(place not in named and recordings.objects.address(place) not in named for place in places)
     if unfinished := len(recordings.unfinished()):
         log.warning("%d recordings were cut off; look at them with: teachpath doctor", unfinished)
     if unnamed:

@@ -11,7 +11,8 @@ from pathlib import Path
 from teachpath.errors import TeachpathError
 from teachpath.io.documents import decode_demonstration
 from teachpath.io.store.integrity import find_contradiction, with_new_summary
-from teachpath.io.store.recordings import RecordingHeader, read_facts_stream, salvage_stream
+from teachpath.io.store.recording_facts import read_facts_stream
+from teachpath.io.store.recordings import RecordingHeader, salvage_stream
 from teachpath.records import Demonstration, RecordingDigest, Sample
 
 

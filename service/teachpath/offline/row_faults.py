@@ -22,14 +22,14 @@ def check_rows(examination: Examination) -> None:
     """Compare every row with its recording."""
     named: dict[str, str] = {}  # of a recording: the row that it belongs to
     for row in examination.rows.values():
-        if row.recording in examination.unreadable:
+        if row.recording in examination.unreadable or row.id in examination.distant:
             continue
         inspection = examination.files.get(row.recording)
         if inspection is None:
             _check_missing(examination, row)
         elif (owner := named.setdefault(row.recording, _owner(examination, row, inspection))) != row.id:
             fault = f"it names the recording of {owner}"
-            _report_lost(examination, FaultKind.DOUBLED, row, fault)
+            report_lost(examination, FaultKind.DOUBLED, row, fault)
         elif row.digest is None:
             _check_unhashed(examination, row, inspection)
         elif inspection.digest.sha256 != row.digest.sha256:
@@ -45,11 +45,11 @@ def _owner(examination: Examination, row: Demonstration, inspection: Inspection)
 def _check_missing(examination: Examination, row: Demonstration) -> None:
     if (copy := _find_copy(examination, row)) is None:
         fault = f"its recording {row.recording} is gone"
-        _report_lost(examination, FaultKind.MISSING, row, fault)
+        report_lost(examination, FaultKind.MISSING, row, fault)
         return
     place = examination.store.recordings.place(copy.file)
     fault = f"its recording {row.recording} lies at {place}"
-    examination.report(FaultKind.MOVED, _called(row), fault, partial(_move_back, examination, copy, row))
+    examination.report(FaultKind.MOVED, called(row), fault, partial(_move_back, examination, copy, row))
 
 
 def _check_unhashed(examination: Examination, row: Demonstration, inspection: Inspection) -> None:
@@ -58,11 +58,11 @@ def _check_unhashed(examination: Examination, row: Demonstration, inspection: In
         _check_changed(examination, row, inspection)
     elif count != row.samples:
         fault = f"{row.recording} has {count} samples, and its row says {row.samples}"
-        _report_lost(examination, FaultKind.EDITED, row, fault)
+        report_lost(examination, FaultKind.EDITED, row, fault)
     else:
         fault = f"it was stored before digests were, and {row.recording} can be read whole"
         repair = partial(_keep_digest, examination, row, inspection)
-        examination.report(FaultKind.UNHASHED, _called(row), fault, repair, inspection=inspection)
+        examination.report(FaultKind.UNHASHED, called(row), fault, repair, inspection=inspection)
 
 
 def _check_changed(examination: Examination, row: Demonstration, inspection: Inspection) -> None:
@@ -71,12 +71,12 @@ def _check_changed(examination: Examination, row: Demonstration, inspection: Ins
     content = inspection.with_new_summary
     if content is not None and _is_content_of(content, row):
         repair = partial(_rewrite, inspection.file, content)
-        examination.report(kind, _called(row), fault, repair, inspection=inspection)
+        examination.report(kind, called(row), fault, repair, inspection=inspection)
     elif (copy := _find_copy(examination, row)) is not None:
         repair = partial(_replace, examination, inspection, copy, row)
-        examination.report(kind, _called(row), fault, repair, inspection=inspection)
+        examination.report(kind, called(row), fault, repair, inspection=inspection)
     else:
-        _report_lost(examination, kind, row, fault)
+        report_lost(examination, kind, row, fault)
 
 
 def _difference(row: Demonstration, inspection: Inspection) -> str:
@@ -136,14 +136,15 @@ def _keep_digest(examination: Examination, row: Demonstration, inspection: Inspe
     return Repair("its SHA-256 is kept from now on")
 
 
-def _called(row: Demonstration) -> str:
+def called(row: Demonstration) -> str:
+    """Return what a finding calls a row."""
     return f"{row.task} {row.number} ({row.id})"
 
 
-def _report_lost(examination: Examination, kind: FaultKind, row: Demonstration, fault: str) -> None:
+def report_lost(examination: Examination, kind: FaultKind, row: Demonstration, fault: str, back: str = RESTORE) -> None:
     """Report a row whose samples are lost; there is nothing to do where it is discarded."""
     if row.discarded_ns:
         advice = "it is discarded, and nothing is learned from it"
     else:
-        advice = f"{RESTORE}; or give it up: teachpath amend {row.task} {row.number} --discard"
-    examination.report(kind, _called(row), fault, advice=advice, settled=bool(row.discarded_ns))
+        advice = f"{back}; or give it up: teachpath amend {row.task} {row.number} --discard"
+    examination.report(kind, called(row), fault, advice=advice, settled=bool(row.discarded_ns))

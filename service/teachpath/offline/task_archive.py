@@ -20,7 +20,7 @@ from typing import Final
 from teachpath.errors import OverLimit, UnusableInput, UnusableRecording
 from teachpath.io.documents import decode, encode
 from teachpath.io.import_settings import ImportSettings
-from teachpath.io.store.recordings import amended
+from teachpath.io.store.recording_facts import amended
 from teachpath.io.store.store import Store
 from teachpath.records import Demonstration, Task
 

@@ -11,7 +11,8 @@ from typing import Any
 import numpy as np
 
 from teachpath.errors import UnusableRecording
-from teachpath.io.store.recordings import RecordingFile, facts_of
+from teachpath.io.store.recording_facts import facts_of
+from teachpath.io.store.recordings import RecordingFile
 from teachpath.io.store.store import Store
 from teachpath.recording.advice import ending_advice
 from teachpath.recording.demonstration import carried_numbers, is_in_order, object_trajectory, to_world, usable_samples

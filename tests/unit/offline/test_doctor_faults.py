@@ -15,7 +15,8 @@ from hypothesis import strategies as st
 from teachpath.errors import UnusableRecording
 from teachpath.io.documents import to_document
 from teachpath.io.store.integrity import find_contradiction
-from teachpath.io.store.recordings import RecordingHeader, Recordings, amended, read_facts, salvage
+from teachpath.io.store.recording_facts import amended, read_facts
+from teachpath.io.store.recordings import RecordingHeader, Recordings, salvage
 from teachpath.offline.exporting import export_demonstrations
 from teachpath.offline.findings import ExitCode, FaultKind, exit_code
 from teachpath.offline.learning_job import StoredDemonstrations
@@ -111,7 +112,7 @@ def test_export_and_learning_refuse_what_does_not_match_its_hash(
         export_demonstrations(store, rows[1:2], kind, tmp_path / "out", trajectory=lambda row: pytest.fail("not read"))
     assert not any((tmp_path / "out").iterdir())
     with pytest.raises(UnusableRecording, match=r"lift/demo-2\.mcap is not what was recorded.*teachpath doctor"):
-        StoredDemonstrations(data, tuple(rows), None).read()
+        StoredDemonstrations(Recordings(data / "recordings"), tuple(rows), None).read()
 
 
 def test_an_edited_recording_is_no_damaged_one_and_is_refused_all_the_same(data: Path) -> None:

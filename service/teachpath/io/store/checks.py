@@ -9,6 +9,7 @@ from sqlalchemy.orm import Session
 
 from teachpath.errors import UnusableInput
 from teachpath.io.documents import from_document
+from teachpath.io.store.object_storage import SCHEME
 from teachpath.io.store.tables import DemonstrationRow
 from teachpath.records import Demonstration
 
@@ -31,10 +32,18 @@ class Checks:
             f"row {row} of {table} names a row of {parent} that is not there" for table, row, parent, _ in orphans
         ]
 
-    def named_recordings(self) -> set[str]:
-        """Return the places of the recordings that rows of this station name."""
+    def named_recordings(self, *, everywhere: bool = False) -> set[str]:
+        """Return the places or addresses of the recordings that rows of this station name, or those of all stations."""
+        question = select(DemonstrationRow.document["recording"].as_string())
         with Session(self._engine) as session:
-            return set(session.scalars(select(DemonstrationRow.document["recording"].as_string()).where(self._own)))
+            return set(session.scalars(question if everywhere else question.where(self._own)))
+
+    def places(self) -> dict[str, str]:
+        """Return the ids of this station's demonstrations by the places of their recordings in the data folder."""
+        place = DemonstrationRow.document["recording"].as_string()
+        question = select(place, DemonstrationRow.id).where(self._own, ~place.startswith(SCHEME))
+        with Session(self._engine) as session:
+            return {row[0]: row[1] for row in session.execute(question)}
 
     def demonstrations(self) -> Iterator[tuple[str, Demonstration | str]]:
         """Yield the station's demonstrations by their ids, by task and number; why, where a row says nothing."""

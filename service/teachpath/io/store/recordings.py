@@ -10,7 +10,7 @@ import io
 import os
 from collections.abc import Callable, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from hashlib import sha256
 from pathlib import Path
 from typing import BinaryIO
@@ -18,16 +18,18 @@ from typing import BinaryIO
 from mcap.exceptions import EndOfFile
 from mcap.records import Channel, Message, Metadata, Statistics
 
-from teachpath.errors import NotFound, UnusableRecording
+from teachpath.errors import NotFound, StorageUnavailable, UnusableRecording
 from teachpath.io import documents
 from teachpath.io.import_settings import ImportSettings
 from teachpath.io.store.integrity import add_integrity
 from teachpath.io.store.mcap_file import McapFile
 from teachpath.io.store.mcap_records import read_records
+from teachpath.io.store.object_cache import CACHE, CACHE_SIZE, ObjectCache
+from teachpath.io.store.object_storage import ObjectStorage, is_address
 from teachpath.io.store.sample_rows import SampleRows
 from teachpath.io.store.viewer_messages import ViewerMessages, message_batch
 from teachpath.io.wire import decode_sample, encode_sample, message_types
-from teachpath.records import Calibration, Demonstration, ObjectPose, RecordingDigest, Sample, Vector
+from teachpath.records import Calibration, ObjectPose, RecordingDigest, Sample, Vector
 
 RECORDINGS = "recordings"  # their folder, in that of the data
 TOPIC = "samples"
@@ -132,10 +134,22 @@ class RecordingFile:
 
 
 class Recordings:
-    """The folder of all recordings; `opener` opens a new file in it."""
+    """The folder of all recordings, and those of them that were uploaded to object storage.
 
-    def __init__(self, root: Path, opener: Opener = open_new) -> None:
+    Args:
+        root: the folder.
+        opener: opens a new file in it.
+        url: of the object storage to which finished recordings are uploaded; empty: they stay in the folder.
+        cache_size: bytes of the objects of which copies are kept beside the folder.
+
+    Attributes:
+        objects: the object storage.
+    """
+
+    def __init__(self, root: Path, opener: Opener = open_new, url: str = "", cache_size: int = CACHE_SIZE) -> None:
         self._root, self._opener = root, opener
+        self.objects = ObjectStorage(url)
+        self._cache = ObjectCache(root.parent / CACHE, cache_size, self.objects)
 
     def begin(self, demonstration: str, header: RecordingHeader) -> RecordingFile:
         """Open the recording of a new demonstration."""
@@ -150,11 +164,28 @@ class Recordings:
         return file.relative_to(self._root).as_posix()
 
     def path(self, place: str) -> Path:
-        """Return the file at `place`; raises NotFound."""
+        """Return the file at `place`, or a copy of the object at that address.
+
+        Raises:
+            NotFound: it is missing.
+            StorageUnavailable: the object storage does not answer.
+        """
+        if is_address(place):
+            return self._cache.file(place)
         file = self._root / place
-        if not file.is_file():
-            raise NotFound(f"recording {place} is missing under {self._root}; was the folder moved?")
-        return file
+        if file.is_file():
+            return file
+        if self.objects.url:  # it may have been uploaded since its row was read
+            with suppress(NotFound):
+                return self._cache.file(self.objects.address(place))
+        beside = f" and in {self.objects.url}" if self.objects.url else ""
+        raise NotFound(f"recording {place} is missing under {self._root}{beside}; was the folder moved?")
+
+    def require_uploaded(self, places: Sequence[str]) -> None:
+        """Raise StorageUnavailable while recordings are neither here nor in the object storage."""
+        away = sum(not is_address(place) and not (self._root / place).is_file() for place in places)
+        if away and self.objects.url:
+            raise StorageUnavailable(f"{away} recordings wait at their station to be uploaded to {self.objects.url}")
 
     def take_over(self, folder: Path, place: str) -> None:
         """Move the finished recording at `place` within `folder` to the same place here; one disk must hold both.
@@ -184,14 +215,24 @@ class Recordings:
         Raises:
             NotFound: it is missing.
             UnusableRecording: it is not what `digest` says, if that is known.
+            StorageUnavailable: the object storage does not answer.
         """
-        content = self.path(place).read_bytes()
+        content = self._read(place)
+        if digest is not None and sha256(content).hexdigest() != digest.sha256 and is_address(place):
+            self._cache.drop(place)  # a copy may be damaged where the object is not
+            content = self._read(place)
         if digest is not None and (found := sha256(content).hexdigest()) != digest.sha256:
             raise UnusableRecording(
                 f"recording {place} is not what was recorded: {len(content)} bytes with SHA-256 {found[:12]}…, "
                 f"recorded were {digest.size} with {digest.sha256[:12]}…; run: teachpath doctor"
             )
         return content
+
+    def _read(self, place: str) -> bytes:
+        try:
+            return self.path(place).read_bytes()
+        except FileNotFoundError:  # it was uploaded, and its file removed, since it was looked for
+            return self.path(place).read_bytes()
 
     def samples(self, place: str, digest: RecordingDigest | None = None) -> list[Sample]:
         """Read all samples of a finished recording, in the order they were received; raises as `content`."""
@@ -248,47 +289,3 @@ def salvage_stream(
     except Exception as error:  # damage shows as whatever the reader, its decompressor or the unpacking raises
         fault = str(error) or type(error).__name__
     return header, samples, fault
-
-
-def facts_of(demonstration: Demonstration) -> dict[str, str]:
-    """Return what the recording of a demonstration says of itself."""
-    stated = replace(demonstration, number=0, recording="", digest=None)  # they follow from where it is stored
-    account = documents.encode(stated.statistics).decode()
-    return {"verdict": stated.verdict, "statistics": account, "demonstration": documents.encode(stated).decode()}
-
-
-def amended(content: bytes, demonstration: Demonstration) -> bytes:
-    """Return a finished recording that says what has become of its demonstration since: marks, trim, verdict.
-
-    Nothing that is in it is changed; what it says of itself last counts, its digest of all before too.
-
-    Raises:
-        UnusableRecording: the recording is damaged.
-    """
-    facts = facts_of(demonstration)
-    if read_facts_stream(io.BytesIO(content)) == facts:
-        return content
-    stream = io.BytesIO()
-    file = McapFile.reopen(stream, content)
-    file.add_metadata(FACTS, facts)
-    numbers = [sample.sequence for sample in salvage_stream(io.BytesIO(content))[1]]
-    add_integrity(file, len(numbers), min(numbers, default=0), max(numbers, default=0))
-    file.finish()
-    return stream.getvalue()
-
-
-def read_facts(file: Path) -> dict[str, str]:
-    """Return what a recording said of itself when it was finished; nothing when it is torn before that."""
-    with suppress(OSError), file.open("rb") as stream:
-        return read_facts_stream(stream)
-    return {}
-
-
-def read_facts_stream(stream: BinaryIO) -> dict[str, str]:
-    """Return what a recording says of itself, last of all, from an open file; as `read_facts`."""
-    facts: dict[str, str] = {}
-    with suppress(Exception):  # damage shows as whatever the reader raises
-        for record in read_records(stream):
-            if isinstance(record, Metadata) and record.name == FACTS:
-                facts = dict(record.metadata)
-    return facts

@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Annotated
+
+from annotated_types import Ge
 
 
 @dataclass(frozen=True)
@@ -15,3 +18,7 @@ class StoreSettings:
     database: str = ""
     # name of this station among those that share the database, each with a data_dir of its own
     station: str = ""
+    # object storage of finished recordings, s3://BUCKET/PREFIX, of this database alone; empty: they stay in data_dir
+    recordings: str = ""
+    # bytes of the objects that were read last of which data_dir keeps copies
+    cache_size: Annotated[int, Ge(0)] = 2_147_483_648

@@ -26,20 +26,13 @@ from teachpath.io.store.job_claims import UNFINISHED, JobClaims
 from teachpath.io.store.journal import Journal
 from teachpath.io.store.lists import Execution, Lists, execution_of
 from teachpath.io.store.motions import Motions
+from teachpath.io.store.object_storage import SCHEME
 from teachpath.io.store.people import People
 from teachpath.io.store.recordings import RECORDINGS, Opener, Recordings, open_new
-from teachpath.io.store.rows import (
-    Run,
-    ensured_task,
-    imported_rows,
-    job_of,
-    numbered_row,
-    run_of,
-    success,
-    task_of,
-)
+from teachpath.io.store.rows import Run, ensured_task, imported_rows, job_of, numbered_row, run_of, success, task_of
 from teachpath.io.store.services import Services
 from teachpath.io.store.settings import StoreSettings
+from teachpath.io.store.spool import Spool
 from teachpath.io.store.storage_health import StorageHealth
 from teachpath.io.store.tables import Base, DemonstrationRow, ExecutionTable, JobRow, PlanRow, RunTable, TaskRow
 from teachpath.io.store.versions import Versions, learned_row
@@ -56,7 +49,7 @@ class Store:
     def __init__(self, settings: StoreSettings, *, opener: Opener = open_new, changed: Changed = unheard) -> None:
         """Open the database; `opener` opens the files of new recordings, `changed` hears of every changed row."""
         folder = make_data_folder(settings)
-        self.recordings = Recordings(folder / RECORDINGS, opener)
+        self.recordings = Recordings(folder / RECORDINGS, opener, settings.recordings, settings.cache_size)
         self.motions = Motions(folder / "executions", opener)
         engine = open_engine(database_url(settings))
         self.services = Services(engine, settings.station, folder)
@@ -72,10 +65,12 @@ class Store:
         self.people = People(self._engine)
         self.lists = Lists(self._engine)
         self.checks = Checks(self._engine, settings.station)
+        self.spool = Spool(self.recordings, self.checks.places, self.demonstration, self.change_demonstration)
         self.health = StorageHealth(folder / RECORDINGS, self._engine, database_file(settings))
 
     def close(self) -> None:
         """Close every connection."""
+        self.spool.stop()
         self.feed.stop()
         with suppress(StorageUnavailable):  # then others find out by themselves
             self.services.end()
@@ -124,7 +119,9 @@ class Store:
     def require_recorded_here(self, task: str) -> None:
         """Raise UnusableInput where a task has demonstrations whose recordings another station keeps."""
         question = select(DemonstrationRow.station, func.count()).where(
-            DemonstrationRow.task == task, DemonstrationRow.station.not_in(("", self.services.station))
+            DemonstrationRow.task == task,
+            DemonstrationRow.station.not_in(("", self.services.station)),
+            ~DemonstrationRow.document["recording"].as_string().startswith(SCHEME),  # which every station can read
         )
         with Session(self._engine) as session:
             others = session.execute(question.group_by(DemonstrationRow.station)).all()
