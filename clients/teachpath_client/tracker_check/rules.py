@@ -59,13 +59,14 @@ class Observation:
 def verdicts(seen: Observation) -> Iterator[Verdict]:
     """Yield the verdict of every rule; where no sample can be read, of the first rules alone."""
     yield Verdict("publishes under one name that can be a tracker's", _name_fault(seen))
-    samples = _samples(seen)
+    sound = _sound(seen)
+    samples = [sample for _, sample in sound]
     yield Verdict("sends only samples that the recorder takes", _sample_fault(seen, samples))
     if not samples:
         return
     yield Verdict("numbers its samples one by one and loses none", _number_fault(samples))
     yield Verdict("waits where the line is slow (congestion control: block)", _congestion_fault(seen))
-    yield Verdict("stamps samples by a clock that counts nanoseconds since the Unix epoch", _clock_fault(seen, samples))
+    yield Verdict("stamps samples by a clock that counts nanoseconds since the Unix epoch", _clock_fault(sound))
     closed = _closed_span(samples)
     yield Verdict("closes the hand, carries and opens it, as the recorder reads it", _grasp_fault(samples, closed))
     yield Verdict(f"gives at least {MIN_RATE:g} new readings a second while it carries", _rate_fault(closed))
@@ -82,8 +83,10 @@ def _name_fault(seen: Observation) -> str:
     return "" if is_name(names[0]) else name_refusal("tracker", names[0])
 
 
-def _samples(seen: Observation) -> list[HandSample]:
-    return [sample for one in seen.received if (sample := _parsed(one.payload)) is not None and not _values(sample)]
+def _sound(seen: Observation) -> list[tuple[int, HandSample]]:
+    """Return the samples that the recorder takes, and when they came [ns]."""
+    parsed = ((one.receive_ns, _parsed(one.payload)) for one in seen.received)
+    return [(came, sample) for came, sample in parsed if sample is not None and not _values(sample)]
 
 
 def _parsed(payload: bytes) -> HandSample | None:
@@ -126,20 +129,51 @@ def _congestion_fault(seen: Observation) -> str:
     return f"{dropping} samples may be dropped on the way; declare the publisher with BLOCK" if dropping else ""
 
 
-def _clock_fault(seen: Observation, samples: Sequence[HandSample]) -> str:
+def _clock_fault(sound: Sequence[tuple[int, HandSample]]) -> str:
+    samples = [sample for _, sample in sound]
     stamps = [sample.device_ns for sample in samples]
     back = next((i for i, (a, b) in enumerate(itertools.pairwise(stamps)) if b <= a), None)
     if back is not None:
         number, step = samples[back + 1].sequence, (stamps[back + 1] - stamps[back]) / 1e9
         return f"the time of number {number} is {-step:g} s before that of the number before; it must go on"
-    ours = (seen.received[-1].receive_ns - seen.received[0].receive_ns) / 1e9
-    theirs = (stamps[-1] - stamps[0]) / 1e9
-    if ours >= MIN_CLOCK_SPAN and not abs(theirs / ours - 1.0) <= CLOCK_TOLERANCE:
-        return f"{theirs:.4g} s of its clock went by in {ours:.4g} s of ours; are the stamps nanoseconds?"
-    offset = abs(seen.received[0].receive_ns - stamps[0]) / 1e9
+    first = sound[0][0]
+    theirs = [(stamp - stamps[0]) / 1e9 for stamp in stamps]
+    ours = [(came - first) / 1e9 for came, _ in sound]
+    if ours[-1] >= MIN_CLOCK_SPAN:
+        span = theirs[-1] * _clock_rate(theirs, ours)
+        if abs(theirs[-1] - span) > CLOCK_TOLERANCE * span:
+            return f"{theirs[-1]:.4g} s of its clock went by in {span:.4g} s of ours; are the stamps nanoseconds?"
+    offset = abs(first - stamps[0]) / 1e9
     if offset > MAX_CLOCK_OFFSET:
         return f"its clock is {offset / 86_400:.0f} days from ours; count from the Unix epoch, not from the start"
     return ""
+
+
+def _clock_rate(theirs: Sequence[float], ours: Sequence[float]) -> float:
+    """Return how many seconds of our clock go by in one of theirs.
+
+    Samples come late or in time, and never too early: a machine that stalls delays some. So the rate is that of the
+    line under all of them that is nearest to them (Moon, Skelly and Towsley 1999): the edge of their lower convex hull
+    above the mean of their times.
+
+    Args:
+        theirs: when samples were taken, by their clock [s]; increasing.
+        ours: when they came, by ours [s].
+    """
+    hull: list[tuple[float, float]] = []
+    for x, y in zip(theirs, ours, strict=True):
+        while len(hull) > 1 and _is_above(hull[-2], hull[-1], (x, y)):
+            hull.pop()
+        hull.append((x, y))
+    middle = sum(theirs) / len(theirs)
+    (x0, y0), (x1, y1) = next((a, b) for a, b in itertools.pairwise(hull) if b[0] >= middle)
+    return (y1 - y0) / (x1 - x0)
+
+
+def _is_above(before: tuple[float, float], point: tuple[float, float], after: tuple[float, float]) -> bool:
+    """Tell whether a point lies on or above the line from the one before to the one after it."""
+    (x0, y0), (x, y), (x1, y1) = before, point, after
+    return (y - y0) * (x1 - x0) >= (y1 - y0) * (x - x0)
 
 
 def _closed_span(samples: Sequence[HandSample]) -> list[HandSample]:

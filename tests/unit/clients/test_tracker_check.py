@@ -193,6 +193,30 @@ def test_a_flaw_breaks_the_rule_that_is_about_it(flaw: Flaw, rules: set[str]) ->
     assert all(any(rule.startswith(start) for rule in found) for start in rules)
 
 
+@pytest.mark.parametrize("stall", [0.1, 0.5, 1.2])
+def test_samples_that_a_stall_delays_wherever_it_falls_say_nothing_of_the_clock(stall: float) -> None:
+    for begin in range(0, COUNT, 20):
+        seen = sound()
+        over = seen.received[begin].receive_ns + round(1e9 * stall)
+        for place in range(begin, COUNT):
+            came = max(seen.received[place].receive_ns, over)
+            seen.received[place] = replace(seen.received[place], receive_ns=came)
+        assert broken(seen) == set(), begin
+
+
+@pytest.mark.parametrize("rate", [0.85, 1.15])
+def test_a_clock_that_runs_too_fast_or_too_slowly_is_noticed_beside_a_stall(rate: float) -> None:
+    for begin in range(0, COUNT, 50):
+        seen = sound()
+        changed(lambda sample, place: setattr(sample, "device_ns", NOW + round(1e9 * rate * PERIOD * place)))(seen)
+        over = seen.received[begin].receive_ns + round(0.5e9)
+        seen.received = [
+            replace(one, receive_ns=max(one.receive_ns, over) if place >= begin else one.receive_ns)
+            for place, one in enumerate(seen.received)
+        ]
+        assert {rule.split()[0] for rule in broken(seen)} == {CLOCK}, begin
+
+
 def test_a_tracker_whose_recordings_others_begin_needs_no_handshake() -> None:
     seen = sound()
     seen.started = seen.stopped = None
