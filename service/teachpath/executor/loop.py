@@ -37,7 +37,6 @@ from teachpath_proto.keys import Keys
 log = logging.getLogger(__name__)
 
 IDLE_PERIODS: Final = 5  # control periods in one cycle of the loop while no execution is under way
-STALL_TIMEOUT: Final = 0.5  # [s] that an arm may take up no setpoint; a driver plays them up to 0.05 s late
 UNASKED_MOTION: Final = "unasked motion"  # in the journal, where verbs of commands stand
 # [Hz] at which the status is published at most while no execution is under way. The service takes an executor for gone
 # after a second.
@@ -211,13 +210,14 @@ class Executor:
         untaken = current.untaken(arm) / self._settings.rate
         stalled = self._stall_detector.stall_duration(due, current.id, arm, untaken)
         if current.is_settled or current.displacement:
-            if current.arm_has_stopped(arm) or stalled > STALL_TIMEOUT:  # otherwise the arm is late, and still moves
+            # Otherwise the arm is late, and still moves.
+            if current.arm_has_stopped(arm) or stalled > self._settings.setpoint_timeout:
                 off = float(np.abs(arm.position - current.program.current_q).max())
                 current.displacement = off if off > self._settings.regain else 0.0
             if current.displacement:
                 self._stall_detector.restart(due)
             return
-        if stalled > STALL_TIMEOUT:
+        if stalled > self._settings.setpoint_timeout:
             why = f"the arm has taken up no setpoint for {stalled:.1f} s"
             self._hold(current, f"{why}: does its driver hear them? resume when it does")
         current.wait_for_late_arm(arm)

@@ -22,6 +22,8 @@ class ExecutorSettings:
     silence: Annotated[float, Gt(0), Le(5)] = 0.2
     # [s] without a joint state after which the execution that was held for it ends as faulted
     silence_timeout: Annotated[float, Gt(0), Le(600)] = 10.0
+    # [s] for which an arm that speaks may take up no setpoint before it is held; a driver plays them up to 0.05 s late
+    setpoint_timeout: Annotated[float, Ge(0.1), Le(5)] = 0.5
     # [s] without a tracked sample after which a live hand is lost, or who presses its clutch
     hand_silence: Annotated[float, Gt(0), Le(5)] = 0.15
     # [s] within which a lost hand that is back where it was, or one whose arm was late, is followed again by itself
