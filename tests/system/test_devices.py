@@ -32,11 +32,13 @@ TRACKER = "paper-hand"
 
 @pytest.fixture
 def devices(tmp_path: Path) -> Iterator[tuple[Emulator, Emulator]]:
-    """A tracker and a glove that show the first reading until they are told to go on."""
+    """A tracker that shows its first reading until it is told to go on, and a glove on the hand that it follows."""
     GLOVE.save(tmp_path / "glove.toml")
     with ExitStack() as stack:
         tracker = stack.enter_context(Emulator(FastrakSimulator(), tmp_path / "fastrak", rate=RATE, hold=True))
-        glove = stack.enter_context(Emulator(GloveSimulator(GLOVE), tmp_path / "glove", rate=RATE, moving=True))
+        glove = stack.enter_context(
+            Emulator(GloveSimulator(GLOVE), tmp_path / "glove", rate=RATE, hand=lambda: tracker.now)
+        )
         yield tracker, glove
 
 
@@ -51,8 +53,8 @@ def test_the_first_demonstration_of_the_paper_through_fastrak_and_cyberglove(
     service: Service, devices: tuple[Emulator, Emulator], tmp_path: Path
 ) -> None:
     shown: list[HandReading] = list(itertools.islice(experiment_1(), SHOWN))
-    for device in devices:
-        device.show(shown[0])
+    tracker, glove = devices
+    tracker.show(shown[0])
     options = {"fastrak.port": "fastrak", "glove.port": "glove", "glove.calibration": "glove.toml"}
     client = subprocess.Popen(
         [
@@ -70,11 +72,12 @@ def test_the_first_demonstration_of_the_paper_through_fastrak_and_cyberglove(
             lambda: (report := recording(service)) and report.received > 5,
             f"the station receives; the client ended with {client.poll()}",
         )
-        for device in devices:
-            device.play(shown)
-        for device in devices:
-            assert device.played.wait(HANG)
-        wait_until(lambda: (report := recording(service)) and report.demonstrations, "it was cut")
+        tracker.play(shown)
+        assert tracker.played.wait(HANG)
+        # Of a hand whose glove did not answer, because this machine stalled, no reading is sent.
+        wait_until(
+            lambda: (report := recording(service)) and report.demonstrations and report.received > SHOWN, "it was cut"
+        )
         os.kill(client.pid, signal.SIGINT)
         out, err = client.communicate(timeout=HANG)
     finally:
@@ -85,14 +88,13 @@ def test_the_first_demonstration_of_the_paper_through_fastrak_and_cyberglove(
     assert "Traceback" not in err
     assert "devices: recording: transport; 0 takes\n" in err
     assert "  + take 1 clean\n" in err
-    amplitudes = devices[1].simulator.amplitudes
+    amplitudes = glove.simulator.amplitudes
     assert [amplitude for amplitude in amplitudes if amplitude] == [128], (
         amplitudes
     )  # once, while the object was in the hand
     assert amplitudes[-1] == 0
     report = json.loads(out)
     assert (report["lost"], report["refused"], len(report["demonstrations"])) == (0, 0, 1), report
-    assert report["received"] > SHOWN
     (demonstration,) = service.station.demonstrations("devices")
     assert demonstration.verdict == "clean"
     trajectory = service.station.trajectory(demonstration.id)

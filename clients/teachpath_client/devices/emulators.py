@@ -34,8 +34,8 @@ class Emulator:
         simulator: the device.
         link: path of the port: a link to the pty, which comes and goes as a real device node does.
         rate: [Hz] of its stream.
-        moving: advance through the readings also while the device does not stream, as for one that is polled.
         hold: when nothing is left to play, send the last reading again and again; otherwise be silent.
+        hand: what it measures instead of what is played: a glove is on the hand that a tracker follows.
         corrupt: changes the bytes of a record on the wire.
         clock: [s] that never runs back.
     """
@@ -46,14 +46,14 @@ class Emulator:
         link: Path,
         *,
         rate: float,
-        moving: bool = False,
         hold: bool = False,
+        hand: Callable[[], HandReading] | None = None,
         corrupt: Corruption | None = None,
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
         self.simulator: ProtocolSimulator = simulator
         self._link, self._rate, self._hold = link, rate, hold
-        self._moving = moving
+        self._hand = hand
         self.corrupt: Corruption | None = corrupt
         self._clock = clock
         self._script: deque[HandReading] = deque()
@@ -80,6 +80,11 @@ class Emulator:
     def show(self, reading: HandReading) -> None:
         """Measure this from now on: what a polled device answers, and what a stream holds."""
         self._now = reading
+
+    @property
+    def now(self) -> HandReading:
+        """What it measures now."""
+        return self._now if self._hand is None else self._hand()
 
     def plug(self) -> None:
         """Plug the device in: its path appears, and it has forgotten its settings."""
@@ -108,17 +113,13 @@ class Emulator:
         while not self._over.is_set():
             wait = min(IDLE_WAIT, max(0.0, due - self._clock()))
             if select.select([self._master], [], [], wait)[0]:
-                self._send(self.simulator.receive(os.read(self._master, 4096), self._now))
+                self._send(self.simulator.receive(os.read(self._master, 4096), self.now))
             now = self._clock()
             if now < due:
                 continue
             due = due + 1.0 / self._rate if now - due < 1.0 / self._rate else now + 1.0 / self._rate
             if self.simulator.streaming:
                 self._stream(now)
-            elif self._moving and self._script:
-                self._now = self._script.popleft()
-                if not self._script:
-                    self.played.set()
 
     def _stream(self, now: float) -> None:
         fresh = bool(self._script)
@@ -126,7 +127,7 @@ class Emulator:
             self._now = self._script.popleft()
         elif not self._hold:
             return
-        record = self.simulator.record(self._now)
+        record = self.simulator.record(self.now)
         wire = self.corrupt(record) if self.corrupt else record
         # The books are kept before the bytes go out, so that whoever reads the last record finds it in them.
         intact = record in wire
