@@ -164,12 +164,13 @@ identity.whenSeeing(() => {
   feedView(view, (state, details) => showConnection("connection", state, details));
 });
 
-// What the browser tests may ask: the state, whether all of the task is drawn, paths drawn, where they are, how often
-// the view was drawn.
+// What the browser tests may ask: the state, whether all of the task is drawn, whether the camera stays where it is, paths
+// drawn, where they are, how often the view was drawn.
 Object.assign(globalThis, {
   teachpath: {
     state: () => store.state,
     settled: () => sceneLayers.isComplete,
+    framed: () => view.isFramed,
     objectPaths: () => view.objectPaths(),
     worldMatrix: (/** @type {string} */ path) => view.worldMatrix(path),
     opacity: (/** @type {string} */ path) => view.opacity(path),

@@ -26,7 +26,8 @@ export class View {
     this.dimmedKinds = new Set(); // kinds that are drawn pale, so that what is edited stands out
     this.lastDraw = 0; // [ms]
     this.frameInterval = 0; // [ms] between two draws
-    this.framedFor = ""; // the objects that the camera was last fitted to
+    this.element = element;
+    this.framedFor = ""; // the objects and the size that the camera was last fitted to
     this.cameraMoved = false; // by the operator: it stays where it is
     this.environment = createEnvironment(this.viewer);
     this.#sizeTo(element);
@@ -53,6 +54,11 @@ export class View {
   resetCamera() {
     this.cameraMoved = false;
     this.environment.fitCamera();
+  }
+
+  /** Whether the camera is fitted to what is there now: else the next draw may move it. */
+  get isFramed() {
+    return this.framedFor === this.#frame();
   }
 
   /** @param {string} layer */
@@ -183,19 +189,23 @@ export class View {
     viewer.render = () => {
       if (performance.now() - this.lastDraw < this.frameInterval) return; // it stays dirty and is asked again with the next frame
       this.lastDraw = performance.now();
-      const here = Object.keys(viewer.scene_tree.children)
-        .filter((name) => ["robot", "scene", "paths"].includes(name))
-        .join();
-      if (here !== this.framedFor && !this.cameraMoved) {
-        this.framedFor = here;
-        this.environment.fitCamera();
-      }
+      const frame = this.#frame();
+      if (frame !== this.framedFor && !this.cameraMoved) this.environment.fitCamera();
+      this.framedFor = frame;
       const began = performance.now();
       render();
       this.renderTime = performance.now() - began;
       this.draws += 1;
-      if (here) this.onReady();
+      if (this.#framedObjects().length) this.onReady();
     };
+  }
+
+  #framedObjects() {
+    return Object.keys(this.viewer.scene_tree.children).filter((name) => ["robot", "scene", "paths"].includes(name));
+  }
+
+  #frame() {
+    return `${this.#framedObjects()} ${this.element.clientWidth} ${this.element.clientHeight}`;
   }
 }
 

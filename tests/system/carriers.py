@@ -40,7 +40,7 @@ def begin(visit: Visit, service: Service, task: str, button: str = "Show it here
 def carry(visit: Visit, *, way: float = 0.0) -> None:
     """Press on the box, lift it with the wheel, carry it between the obstacles, lower it and let go."""
     mouse = visit.page.mouse
-    at = tuple(visit.page.evaluate(f"teachpath.project({list(START)})"))
+    at = visit.project(str(list(START)))
     mouse.move(*at)
     mouse.down()
     phase(visit, "carrying")
@@ -57,16 +57,16 @@ def carry(visit: Visit, *, way: float = 0.0) -> None:
     mouse.up()
 
 
-def offset(visit: Visit, at: tuple[float, ...]) -> list[float]:
+def offset(visit: Visit, at: tuple[float, float]) -> list[float]:
     """How far the box is from what is under the pointer, at the height where it is carried."""
     plane = f"{{through: [0, 0, {OVER}], normal: [0, 0, 1]}}"
     hit = visit.page.evaluate(f"teachpath.unproject({at[0]}, {at[1]}, {plane})")
     return [START[0] - hit[0], START[1] - hit[1], 0.0]
 
 
-def seen(visit: Visit, point: tuple[float, float, float], off: list[float]) -> tuple[float, ...]:
+def seen(visit: Visit, point: tuple[float, float, float], off: list[float]) -> tuple[float, float]:
     under = [p - o for p, o in zip(point, off, strict=True)]
-    return tuple(visit.page.evaluate(f"teachpath.project({under})"))
+    return visit.project(str(under))
 
 
 def finish(visit: Visit) -> str:

@@ -41,7 +41,7 @@ class Desk(Visit):
 
     def drag(self, index: int, dx: float, dy: float, *, steps: int = 6) -> None:
         """Drag a control point over the picture by so many pixels."""
-        x, y = self.ask(f"teachpath.project(editor.draft.curve.control_points[{index}])")
+        x, y = self.project(f"editor.draft.curve.control_points[{index}]")
         mouse = self.page.mouse
         mouse.move(x, y)
         mouse.down()
@@ -50,8 +50,8 @@ class Desk(Visit):
 
     def pull(self, handle: str, along: tuple[float, float, float]) -> None:
         """Drag a handle of the gizmo, X to Z or two of them for a plane, which lies that way from its middle."""
-        x, y = self.ask("teachpath.project(editor.selectionCenter)")
-        ahead = self.ask(f"teachpath.project(editor.selectionCenter.map((value, i) => value + {list(along)}[i]))")
+        x, y = self.project("editor.selectionCenter")
+        ahead = self.project(f"editor.selectionCenter.map((value, i) => value + {list(along)}[i])")
         way = np.subtract(ahead, (x, y))
         way /= np.linalg.norm(way)
         mouse = self.page.mouse
@@ -68,7 +68,7 @@ class Desk(Visit):
     def toggle(self, index: int) -> None:
         """Click a control point with Shift."""
         with self.shift():
-            self.page.mouse.click(*self.ask(f"teachpath.project(editor.draft.curve.control_points[{index}])"))
+            self.page.mouse.click(*self.project(f"editor.draft.curve.control_points[{index}]"))
 
     @contextmanager
     def shift(self) -> Iterator[None]:

@@ -59,12 +59,12 @@ def test_the_page_evaluates_a_curve_as_the_service_does(desks: Any, service: Ser
 def test_a_control_point_is_dragged_taken_back_and_dragged_again(desks: Any, paths: list[str]) -> None:
     desk = desks(paths[0])
     before = desk.curve()
-    at = desk.ask("teachpath.project(editor.draft.curve.control_points[2])")
+    at = desk.project("editor.draft.curve.control_points[2]")
     desk.drag(2, 40, -30)
     after = desk.curve()
     moved = np.linalg.norm(after.control_points - before.control_points, axis=1) > 0
     assert moved.tolist() == [i == 2 for i in range(len(moved))]
-    there = desk.ask("teachpath.project(editor.draft.curve.control_points[2])")
+    there = desk.project("editor.draft.curve.control_points[2]")
     assert np.allclose(np.subtract(there, at), (40, -30), atol=0.5)  # it follows the pointer in the picture's plane
     desk.until("editor.feasibility.assessment || editor.feasibility.error")
     assert "assessing" not in desk.page.inner_text("#edit-feasibility")
@@ -251,7 +251,7 @@ def test_an_object_and_its_goal_are_moved_and_the_path_follows(desks: Any, servi
     ends = np.array(base.curve.control_points)[[0, -1]]
     desk.page.get_by_role("button", name="Move object and goal").click()
     desk.page.wait_for_selector("#edit-adapt[aria-pressed=true]")
-    x, y = desk.ask(f"teachpath.project({ends[0].tolist()})")
+    x, y = desk.project(str(ends[0].tolist()))
     desk.page.mouse.move(x, y)
     desk.page.mouse.down()
     desk.page.mouse.move(x + 12, y - 8, steps=6)

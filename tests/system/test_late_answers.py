@@ -154,9 +154,14 @@ def test_a_card_shows_the_newest_version_of_a_path(desk: Desk, service: Service,
     known.wait(1)
     newest = store(service, paths[2])
     known.wait(2)
+
+    def shown() -> int:
+        return int(desk.page.evaluate(f"teachpath.state().latestVersions['{paths[2]}'].version"))
+
     known.let_go(-1)
+    desk.wait(lambda: shown() == newest)
     known.over()
-    assert desk.page.evaluate(f"teachpath.state().latestVersions['{paths[2]}'].version") == newest
+    assert shown() == newest
 
 
 # edit
@@ -178,7 +183,7 @@ def test_a_gesture_is_a_step_of_the_path_that_it_was_made_on(desk: Desk, paths: 
     versions = Late(desk, f"paths/{paths[1]}/versions")
     desk.click(f"#edit-path [data-path='{paths[1]}']")
     versions.wait()
-    x, y = desk.ask("teachpath.project(editor.draft.curve.control_points[2])")
+    x, y = desk.project("editor.draft.curve.control_points[2]")
     desk.page.mouse.move(x, y)
     desk.page.mouse.down()
     desk.page.mouse.move(x + 30, y - 20, steps=3)

@@ -142,7 +142,7 @@ def test_what_is_pointed_at_in_a_table_stands_out_in_the_view_and_back(visit: Vi
     visit.wait(lambda: visit.page.evaluate(f"{opacity.format(one)} > {opacity.format(other)}"))
     path = learned.learned.paths[2]
     curve = from_document(Curve, asdict(path.curve))
-    seen = visit.page.evaluate(f"teachpath.project({curve([0.6])[0].tolist()})")
+    seen = visit.project(str(curve([0.6])[0].tolist()))
     visit.page.locator("#tab-ways").hover()  # nothing is pointed at
     visit.wait(lambda: visit.page.evaluate(f"{opacity.format(one)} === {opacity.format(other)}"))
     visit.page.mouse.move(*seen)

@@ -16,6 +16,7 @@ from tests.system.operators import Leader, Shown
 from tests.system.processes import Service
 from tests.system.test_station import FAST, SHOWN, shown
 from tests.system.test_view import Visit
+from tests.waiting import wait_until
 
 pytestmark = pytest.mark.system
 
@@ -93,6 +94,7 @@ def test_a_recording_is_paused_and_resumed_from_the_page(visit: Visit, service: 
         visit.page.get_by_role("button", name="Pause").click()
         until(visit, f"{text('recordings')}.includes('Recording glove-paused: paused')")
         tracker.publish(shown(1), speed=FAST)
+        wait_until(lambda: service.station.recordings("paused")[0].received == SHOWN, "all of it has come")
         visit.page.get_by_role("button", name="Resume").click()
         until(visit, f"{text('recordings')}.includes('Recording glove-paused: reach')")
         report = tracker.stop()
@@ -125,11 +127,11 @@ def test_the_arm_follows_the_page_s_hand_while_the_clutch_is_held(visit: Visit, 
         return np.array(visit.page.evaluate("teachpath.teleop().handModel.position"))
 
     def press() -> None:
-        mouse.move(*visit.page.evaluate("teachpath.project(teachpath.teleop().handModel.position)"))
+        mouse.move(*visit.project("teachpath.teleop().handModel.position"))
         mouse.down()
 
     def drag() -> None:
-        x, y = visit.page.evaluate("teachpath.project(teachpath.teleop().handModel.position)")
+        x, y = visit.project("teachpath.teleop().handModel.position")
         mouse.move(x - 9, y + 6, steps=3)
 
     def there() -> bool:

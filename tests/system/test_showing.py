@@ -119,7 +119,7 @@ def test_a_take_by_touch_with_a_second_finger_for_the_height(visit: Visit, servi
         at = [{"x": x, "y": y, "id": number} for number, (x, y) in enumerate(points)]
         fingers.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": at})
 
-    x, y = visit.page.evaluate(f"teachpath.project({list(START)})")
+    x, y = visit.project(str(list(START)))
     touch("touchStart", (x, y))
     phase(visit, "carrying")
     second = (x + 120, y)

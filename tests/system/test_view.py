@@ -1,7 +1,6 @@
 """The page and its 3-D view in headless Chromium: what is shown, what moves, what comes back, what is refused."""
 
 import io
-import socket
 import threading
 from collections.abc import Callable, Iterator
 from typing import Any
@@ -38,6 +37,7 @@ from teachpath.nurbs import Curve
 from teachpath.records import Capability, Cluster, Fit, JointState, Learned, LearnedPath, RunSummary, Task, Trajectory
 from teachpath_proto.keys import Keys
 from tests.contract.rows import demonstration
+from tests.ports import free_port
 from tests.waiting import HANG, wait_until
 
 ARM = Arm.of_variant()
@@ -61,9 +61,7 @@ class Server:
     """A preview with arm, scene, demonstrations and paths behind a web server that can be restarted."""
 
     def __init__(self) -> None:
-        with socket.socket() as probe:
-            probe.bind(("127.0.0.1", 0))
-            self.port = int(probe.getsockname()[1])
+        self.port = free_port()
         self.bus = MemoryBus()
 
     def start(self, demonstrations: int) -> None:
@@ -180,6 +178,12 @@ class Visit:
         """Pose of a path in the world; the page gives three.js's frame, y up."""
         up = np.array([[1, 0, 0, 0], [0, 0, -1, 0], [0, 1, 0, 0], [0, 0, 0, 1.0]])
         return up @ np.reshape(self.page.evaluate(f"teachpath.worldMatrix('{path}')"), (4, 4)).T
+
+    def project(self, point: str) -> tuple[float, float]:
+        """Where on the page a point is drawn, given as an expression, once the camera stays where it is."""
+        self.page.wait_for_function("() => teachpath.framed()", polling=20)
+        x, y = self.page.evaluate(f"() => {{ const {{ editor }} = teachpath; return teachpath.project({point}); }}")
+        return float(x), float(y)
 
     def place_at_rest(self, path: str) -> np.ndarray:
         """Pose of a path in the world, once it has been the same for five looks."""
