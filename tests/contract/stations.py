@@ -10,10 +10,11 @@ from pathlib import Path
 from typing import Any
 
 from teachpath.app import Station
-from teachpath.commands.serving import free_port, listen
+from teachpath.commands.serving import listen
 from teachpath.config import Settings, load
 from teachpath.web.server import web_server
 from teachpath.web.settings import WebSettings
+from tests.ports import free_port
 from tests.waiting import HANG
 
 

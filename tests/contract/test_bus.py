@@ -2,7 +2,6 @@
 
 import itertools
 import queue
-import socket
 import time
 from collections.abc import Iterator
 from contextlib import suppress
@@ -13,13 +12,8 @@ from teachpath.errors import Conflict, TeachpathError, Unreachable
 from teachpath.io.bus import Bus, BusSettings, listen_on_bus, open_bus
 from teachpath.io.memory_bus import MemoryBus
 from teachpath_client import Link
+from tests.ports import free_endpoint
 from tests.waiting import HANG, wait_until
-
-
-def free_endpoint() -> str:
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return f"tcp/127.0.0.1:{probe.getsockname()[1]}"
 
 
 @pytest.fixture(params=["memory", "zenoh: one session", "zenoh: two clients of a peer"])

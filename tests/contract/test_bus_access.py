@@ -18,7 +18,7 @@ from teachpath.io.bus_access import BusAccess, granted
 from teachpath.io.bus_logins import local_login, new_password, prepare_access
 from teachpath_proto.keys import Keys
 from teachpath_proto.logins import Login, Role, find_login, logins_path, read_logins, write_logins
-from tests.contract.test_bus import free_endpoint
+from tests.ports import free_endpoint
 from tests.waiting import HANG, wait_until
 
 PREFIX = "teachpath/station"

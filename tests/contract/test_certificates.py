@@ -24,7 +24,7 @@ from teachpath_proto.keys import Keys
 from teachpath_proto.logins import Login, Role, read_logins
 from teachpath_proto.sessions import listening, listening_over_tls, open_session
 from tests.contract import router_file
-from tests.contract.test_bus import free_endpoint
+from tests.ports import free_endpoint
 from tests.waiting import HANG, wait_until
 
 KEYS = Keys()

@@ -13,10 +13,11 @@ from websockets.exceptions import ConnectionClosed, InvalidStatus
 from websockets.sync.client import ClientConnection, connect
 
 from teachpath.app import Station
-from teachpath.commands.serving import free_port, listen
+from teachpath.commands.serving import listen
 from teachpath.web.server import web_server
 from tests.contract.desk import csv
 from tests.contract.stations import station
+from tests.ports import free_port
 from tests.waiting import HANG
 
 

@@ -106,9 +106,10 @@ def test_samples_that_come_out_of_order_and_twice_are_accounted_for(desk: Desk, 
     with come(port, "page-3") as socket:
         desk.post("/tasks/disorder/recording", {"tracker": "page-3"})
         stream = demonstration(at=START)
-        for s in [*stream[:50], stream[51], stream[50], stream[51], stream[10], *stream[53:]]:
+        sent = [*stream[:50], stream[51], stream[50], stream[51], stream[10], *stream[53:]]
+        for s in sent:
             socket.send(encode_sample(s))
-        recorded(desk.station, "page-3", len(stream))
+        recorded(desk.station, "page-3", len(sent))
         report = ask(socket, {"end": len(stream)})["report"]
         assert (report["reordered"], report["duplicated"], report["lost"]) == (1, 2, 1)
 

@@ -3,8 +3,9 @@ from pathlib import Path
 
 import pytest
 
+from tests.ports import free_ports
 from tests.system.demos import Start
-from tests.system.processes import BUSY, Command, Service, free_ports
+from tests.system.processes import BUSY, Command, Service
 
 
 @pytest.fixture(scope="module")

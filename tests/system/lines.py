@@ -19,7 +19,7 @@ from teachpath.records import Calibration, RecordingRequest, RecordingStatus, Sa
 from teachpath_client import Link
 from teachpath_proto import tracker_pb2
 from teachpath_proto.keys import Keys
-from tests.system.processes import free_ports
+from tests.ports import free_ports
 from tests.system.proxy import Proxy
 from tests.waiting import wait_until
 

@@ -49,7 +49,7 @@ class Operator:
         """Click an order as soon as the page offers it, and again while the arm is silent or not at rest."""
 
         def taken() -> bool:
-            with self.page.expect_response(lambda answer: "/executions/" in answer.url) as answer:
+            with self.page.expect_response(is_order) as answer:
                 self.page.get_by_role("button", name=name, exact=True).click()
             return bool(answer.value.ok)
 
@@ -70,14 +70,13 @@ class Operator:
         before = [one.id for one in self.executions()]
 
         def begun() -> bool:
-            button = self.page.locator("#arm button.hold:not([disabled])")
-            button.scroll_into_view_if_needed()
-            box = button.bounding_box()
-            assert box is not None
-            with self.answer_to("executions") as answer:
-                self.page.mouse.move(box["x"] + 20, box["y"] + box["height"] / 2)
-                self.page.mouse.down()
-            self.page.mouse.up()
+            self.page.locator("#arm button.hold:not([disabled])").click(
+                trial=True
+            )  # it is there, and nothing covers it
+            button = self.page.locator("#arm button.hold")
+            with self.answer_to("executions") as answer:  # told to it itself: what comes above it meanwhile moves it
+                button.dispatch_event("pointerdown")
+            button.dispatch_event("pointerup")
             return bool(answer.value.ok)
 
         self._visit.wait(begun)
@@ -100,6 +99,11 @@ class Operator:
         except AssertionError:
             raise AssertionError(f"it never was so; {seen[-1]}") from None
         return seen[-1]
+
+
+def is_order(answer: Any) -> bool:
+    """Whether it answers an order to an execution; what the page reads of executions is none."""
+    return answer.request.method == "POST" and "/executions/" in answer.url
 
 
 def grasp_point(flange: np.ndarray) -> np.ndarray:

@@ -2,7 +2,6 @@
 
 import os
 import signal
-import socket
 import subprocess
 import sys
 import uuid
@@ -14,6 +13,7 @@ import httpx
 from teachpath_client.errors import NotStopped
 from teachpath_client.models import Execution
 from teachpath_client.station import Station
+from tests.ports import free_ports
 from tests.waiting import HANG, wait_until
 
 # What is judged elsewhere: a tracker, an arm or a hand that gets no turn on a busy machine is silent or irregular.
@@ -28,20 +28,12 @@ BUSY = {
     "TEACHPATH_RECORDING__HANDSHAKE_TIMEOUT": "20",
     "TEACHPATH_EXECUTOR__SILENCE": "5",
     "TEACHPATH_EXECUTOR__SILENCE_TIMEOUT": "60",
+    "TEACHPATH_EXECUTOR__SETPOINT_TIMEOUT": "5",
     "TEACHPATH_EXECUTOR__REST_TIMEOUT": "30",
     "TEACHPATH_EXECUTOR__HAND_SILENCE": "5",
     "TEACHPATH_EXECUTOR__HAND_RETURN_TIMEOUT": "60",
 }
 FAMILY = "SYSTEM_TEST_FAMILY"  # in the environment of a command and of all that it starts
-
-
-def free_ports(count: int) -> list[int]:
-    """Return TCP ports of loopback that nobody listens on now, all different."""
-    probes = [socket.create_server(("127.0.0.1", 0)) for _ in range(count)]
-    ports = [int(probe.getsockname()[1]) for probe in probes]
-    for probe in probes:
-        probe.close()
-    return ports
 
 
 class Command:

@@ -15,7 +15,8 @@ from cryptography.hazmat.primitives import hashes, serialization
 from cryptography.hazmat.primitives.asymmetric import ec
 from cryptography.x509.oid import NameOID
 
-from tests.system.processes import Service, free_ports
+from tests.ports import free_ports
+from tests.system.processes import Service
 from tests.waiting import HANG, wait_until
 
 pytestmark = pytest.mark.system

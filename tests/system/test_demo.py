@@ -8,8 +8,9 @@ import pytest
 
 from teachpath_client import ClientError
 from teachpath_client.station import Station
+from tests.ports import free_ports
 from tests.system.demos import Start, assert_nothing_left, assert_story
-from tests.system.processes import Command, free_ports
+from tests.system.processes import Command
 from tests.waiting import wait_until
 
 pytestmark = pytest.mark.system

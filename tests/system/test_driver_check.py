@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.system.processes import free_ports
+from tests.ports import free_ports
 from tests.waiting import HANG
 
 pytestmark = pytest.mark.system

@@ -1,5 +1,6 @@
 """Plans that may not move the arm, sent to the executor of real processes by every way in: the arm does not move."""
 
+import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import replace
@@ -259,6 +260,9 @@ def test_another_arm_another_calibration_and_another_time_are_refused(tmp_path: 
         assert "motion.clearance_min = 0.005, and it is 0.01 now" in refusal(service, plan)
     with Service(data, ports=service.ports, TEACHPATH_MOTION__CERTIFICATE_VALIDITY="1e-6") as service:
         brief = stored(service, service.station.plan(plan.path).id)
+        assert brief.certificate.signature is not None
+        end = brief.certificate.signature.expires_ns
+        wait_until(lambda: time.time_ns() > end, "its time is over")
         assert "expired" in refusal(service, brief)
         measure(service, 0.01)
         assert "calibration lab@1 has been measured anew (lab@2)" in refusal(service, plan)

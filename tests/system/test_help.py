@@ -20,7 +20,7 @@ from teachpath.access.memory_tokens import MemoryTokens
 from teachpath.access.settings import AuthSettings
 from teachpath.api.help import help_router
 from teachpath.commands.serving import listen
-from tests.system.processes import free_ports
+from tests.ports import free_ports
 from tests.waiting import HANG, wait_until
 
 pytestmark = pytest.mark.system

@@ -3,7 +3,6 @@
 import os
 import signal
 import time
-from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
 
@@ -28,13 +27,6 @@ pytestmark = pytest.mark.system
 
 TASK = "late"
 OFF_PATH = 3e-4  # m
-
-
-@pytest.fixture(scope="module")
-def service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Service]:
-    # An arm that has not come to rest yet is waited for; how punctual this machine is, is not judged here.
-    with Service(tmp_path_factory.mktemp("station") / "data", TEACHPATH_EXECUTOR__SILENCE="1.0") as service:
-        yield service
 
 
 @pytest.fixture(scope="module")

@@ -21,7 +21,8 @@ from teachpath.io.bus_settings import BusSettings
 from teachpath.io.wire import decode_state
 from teachpath_proto.keys import Keys
 from teachpath_proto.logins import Login, Role, read_logins
-from tests.system.processes import Command, Service, free_ports
+from tests.ports import free_ports
+from tests.system.processes import Command, Service
 from tests.waiting import HANG, wait_until
 
 pytestmark = [

@@ -223,7 +223,7 @@ def test_a_past_execution_is_replayed_as_it_was(visit: Visit, service: Service, 
     operator.until(lambda status: status["state"] in RESTING)
     last = operator.executions()[0]
     before = visit.place_at_rest("/robot/link6")
-    visit.page.locator("#replay li button").first.click()
+    visit.page.locator(f"#replay button[data-execution='{last.id}']").click()
     slider = visit.page.get_by_label("Instant of the execution")
     slider.wait_for()
     series = service.station.series(last.id, points=1500)

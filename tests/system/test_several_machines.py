@@ -16,7 +16,8 @@ from teachpath_client import Link
 from teachpath_client.errors import ClientError
 from teachpath_proto.keys import Keys
 from teachpath_proto.logins import Login, Role, read_logins
-from tests.system.processes import Command, Service, free_ports, run
+from tests.ports import free_ports
+from tests.system.processes import Command, Service, run
 from tests.system.test_hijacked_hand import Hand, leads, moves
 from tests.waiting import HANG, wait_until
 

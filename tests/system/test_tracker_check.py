@@ -6,7 +6,7 @@ import sys
 import pytest
 
 from teachpath_client import HandReading, Link, Tracker
-from tests.system.processes import free_ports
+from tests.ports import free_ports
 from tests.waiting import HANG
 
 pytestmark = pytest.mark.system

@@ -11,7 +11,7 @@ import zenoh
 from teachpath_client.errors import ClientError
 from teachpath_client.link import Link
 from teachpath_proto.logins import Login, Role, logins_path, write_logins
-from tests.system.processes import free_ports
+from tests.ports import free_ports
 from tests.waiting import HANG, wait_until
 
 pytestmark = pytest.mark.system

@@ -11,7 +11,7 @@ from teachpath.__main__ import app
 from teachpath.errors import TeachpathError
 from teachpath_client.__main__ import main as client
 from teachpath_proto.logins import Role, logins_path, read_logins
-from tests.contract.test_bus import free_endpoint
+from tests.ports import free_endpoint
 
 
 @pytest.fixture

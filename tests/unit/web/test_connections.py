@@ -16,9 +16,10 @@ from starlette.routing import Route, WebSocketRoute
 from starlette.websockets import WebSocket
 
 from teachpath.api.middleware import AnswersAtTheEnd, RequestLimits
-from teachpath.commands.serving import free_port, listen
+from teachpath.commands.serving import listen
 from teachpath.web.server import web_server
 from teachpath.web.settings import WebSettings
+from tests.ports import free_port
 from tests.waiting import HANG, wait_until
 
 SHORT = 0.3  # [s] after which a client of these tests is too slow

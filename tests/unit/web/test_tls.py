@@ -18,12 +18,13 @@ from starlette.websockets import WebSocket
 from websockets.sync.client import connect
 
 from teachpath.api.https_only import HttpsOnly
-from teachpath.commands.serving import free_port, listen
+from teachpath.commands.serving import listen
 from teachpath.errors import UnusableSettings
 from teachpath.io.web_certificates import issue_web_certificate, prepare_web_authority, web_expiry, web_hosts
 from teachpath.web.certificate import WebCertificate, find_certificate
 from teachpath.web.server import web_server
 from teachpath.web.settings import WebSettings
+from tests.ports import free_port
 from tests.waiting import HANG, wait_until
 
 NOW = datetime.now(UTC)
