@@ -4,14 +4,14 @@ import asyncio
 import json
 import socket
 import threading
-from collections.abc import Iterator
+from collections.abc import AsyncIterator, Iterator
 from contextlib import ExitStack, contextmanager, suppress
 from typing import Any
 
 import pytest
 from starlette.applications import Starlette
 from starlette.requests import Request
-from starlette.responses import PlainTextResponse
+from starlette.responses import PlainTextResponse, StreamingResponse
 from starlette.routing import Route, WebSocketRoute
 from starlette.websockets import WebSocket
 
@@ -25,6 +25,7 @@ from tests.waiting import HANG, wait_until
 SHORT = 0.3  # [s] after which a client of these tests is too slow
 NEVER = 3600.0
 ASKED = threading.Event()  # somebody waits for what never comes
+OVER = threading.Event()  # nothing more is sent to a client of these tests
 LARGE = 16 * 1024 * 1024  # bytes; more than all buffers on the way hold
 HANDSHAKE = (
     b"GET /messages HTTP/1.1\r\nHost: x\r\nConnection: Upgrade\r\nUpgrade: websocket\r\n"
@@ -46,8 +47,17 @@ async def client(request: Request) -> PlainTextResponse:
     return PlainTextResponse(f"{request.client and request.client.host} by {request.url.scheme}")
 
 
-async def pour(request: Request) -> PlainTextResponse:
-    return PlainTextResponse("x" * LARGE)
+async def pour(request: Request) -> StreamingResponse:
+    return StreamingResponse(pieces())
+
+
+async def pieces() -> AsyncIterator[str]:
+    """Give much, and then, when that was taken or the reader has gone, a little more."""
+    try:
+        yield "x" * LARGE
+        yield "x"
+    finally:
+        OVER.set()
 
 
 async def pour_messages(page: WebSocket) -> None:
@@ -55,6 +65,7 @@ async def pour_messages(page: WebSocket) -> None:
     with suppress(Exception):  # the page has gone
         while True:
             await page.send_text("x" * 65536)
+    OVER.set()
 
 
 @contextmanager
@@ -149,14 +160,16 @@ def test_a_request_that_waits_when_the_service_ends_is_answered() -> None:
 
 
 def test_a_reader_that_takes_nothing_is_closed() -> None:
+    OVER.clear()
     with served(request_timeout=SHORT) as port, opened(port, b"GET /large HTTP/1.1\r\nHost: x\r\n\r\n") as connection:
-        threading.Event().wait(3 * SHORT)
+        assert OVER.wait(HANG)
         assert len(rest(connection)) < LARGE
 
 
 def test_a_page_that_reads_no_message_is_closed() -> None:
+    OVER.clear()
     with served(request_timeout=SHORT) as port, opened(port, HANDSHAKE) as connection:
-        threading.Event().wait(3 * SHORT)
+        assert OVER.wait(HANG)
         assert rest(connection).startswith(b"HTTP/1.1 101")  # and it ends
 
 
