@@ -86,6 +86,7 @@ def test_a_browser_shows_and_searches_them_under_the_policy(browser: Any, addres
     page.wait_for_selector("h1:has-text('teachpath')")
     page.get_by_role("link", name="What a certificate proves").first.click()
     page.wait_for_selector("h1:has-text('What a certificate proves')")
+    page.wait_for_load_state("load")  # its script hears keys from then on
     page.keyboard.press("/")
     page.keyboard.type("tool_speed")
     page.wait_for_selector(".md-search-result__item, [class*=search] a[href*='certificate']", state="attached")

@@ -103,7 +103,7 @@ def test_an_executor_that_oversleeps_leaves_the_arm_on_its_path(service: Service
 def test_an_executor_that_dies_leaves_the_arm_at_rest_on_its_path(service: Service, plan: Plan) -> None:
     station = service.station
     station.wait_for_arm()
-    execution = station.begin_execution(plan.id)
+    execution = station.begin_execution(plan.id, override=0.5)
     wait_until(lambda: station.get_execution(execution.id).status.progress > 0.1, "it is on its way")
     os.kill(executor(service), signal.SIGKILL)
     wait_until(lambda: motion_of(service, execution.id).states[-1].stopped, "the arm follows its way to rest")

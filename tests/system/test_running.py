@@ -146,16 +146,14 @@ def test_a_start_must_be_meant_and_the_path_is_gone_step_by_step_and_back(visit:
     visit.page.evaluate(TAP)
     visit.page.wait_for_timeout(1000)  # where it is not enough to show a fault, nothing fails
     assert len(operator.executions()) == count
-    visit.page.get_by_role("slider", name="Speed").fill("30")
-    operator.start()
-    operator.until(lambda status: status["length"] > 0.1)
-    assert operator.status()["override"] == pytest.approx(0.3)
+    creep(visit, operator)
     hold(operator)
     assert visit.page.locator("#arm .state").inner_text().startswith("Held on the path: held by")  # and why
     assert grave(visit.page, "held") == []
     for name, way in (("+ 1 cm", 0.01), ("− 1 cm", -0.01), ("− 1 cm", -0.01)):
         held = step(operator, name, way)
     lengths = [held["length"]]
+    visit.page.get_by_role("slider", name="Speed").fill("30")
 
     def back(status: Status) -> bool:
         lengths.append(status["length"])
@@ -167,6 +165,16 @@ def test_a_start_must_be_meant_and_the_path_is_gone_step_by_step_and_back(visit:
     operator.press("Resume")
     operator.until(lambda status: status["state"] == "following" and status["length"] > 0.0)
     assert operator.said == []
+
+
+def creep(visit: Visit, operator: Operator) -> None:
+    """Start, and go on along the path so slowly that its end is far, however late the next order comes."""
+    speed = visit.page.get_by_role("slider", name="Speed")
+    speed.fill("30")
+    operator.start()
+    assert operator.until(lambda status: status["length"] > 0.0)["override"] == pytest.approx(0.3)
+    speed.fill("5")
+    operator.until(lambda status: status["override"] == pytest.approx(0.05) and status["length"] > 0.03)
 
 
 def step(operator: Operator, name: str, way: float) -> Status:
@@ -198,9 +206,7 @@ def hold(operator: Operator) -> Status:
 
 
 def test_the_space_bar_stops_the_arm_wherever_the_focus_is(visit: Visit, operator: Operator) -> None:
-    visit.page.get_by_role("slider", name="Speed").fill("30")
-    operator.start()
-    operator.until(lambda status: status["length"] > 0.05)
+    creep(visit, operator)
     visit.page.locator("#tab-ways").focus()
     visit.page.keyboard.press("Space")
     status = operator.until(lambda status: status["state"] in RESTING)

@@ -32,6 +32,7 @@ from tests.waiting import wait_until
 pytestmark = pytest.mark.system
 
 STOP = KEYS.executor_stop
+CREEP = 0.02  # share of the speed at which the end of the path is far, however late the next order comes
 WARNING = "Press the emergency stop of the arm"
 
 
@@ -116,11 +117,12 @@ def plan(service: Service) -> Plan:
 
 
 def begin(service: Service, plan: Plan) -> str:
-    """Move the arm along a plan, slowly; return the execution once it is on its way, clear of where the object lay."""
+    """Move the arm along a plan; return the execution once it creeps on, clear of where the object lay."""
     station = service.station
     station.wait_for_arm()
     execution = station.begin_execution(plan.id, override=0.2).id
     wait_until(lambda: station.get_execution(execution).status.progress > 0.2, "it is on its way")
+    station.override(execution, CREEP)
     return execution
 
 
