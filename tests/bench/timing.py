@@ -116,6 +116,7 @@ def _path(name: str, curve: Curve, repeats: int) -> _Found:
         *_bounds(label, found, candidate, bound),
         against(f"{label}: timing it", seconds, "s", name="asked", value=0.5),
         against(f"{label}: stops from full speed", stops, "s", name="worst allowed", value=LONGEST_STOP),
+        against(f"{label}: ways to rest from full speed", _ways(track), "s", name="worst allowed", value=LONGEST_STOP),
         Figure(f"{label}: stop over the best possible", tuple(ratios), ""),
         Figure(f"{label}: moving cycle p50", (float(np.median(cycles)),), "us"),
         against(f"{label}: moving cycle p99", [float(np.quantile(cycles, 0.99))], "us", name="budget", value=BUDGET),
@@ -187,6 +188,14 @@ def _stops(track: TimedTrajectory) -> list[tuple[float, list[float]]]:
             rates.append(governor.step().rate)
         stopped.append((place * DT, rates))
     return stopped
+
+
+def _ways(track: TimedTrajectory) -> list[float]:
+    """Return how long the way to rest lasts that travels with each setpoint at full speed [s]."""
+    governor, ways = Governor(track, DT), []
+    while not governor.step().finished:
+        ways.append(DT * len(governor.way_to_rest().states))
+    return ways
 
 
 def _random_commands(track: TimedTrajectory, *, runs: int) -> tuple[np.ndarray, float]:

@@ -148,7 +148,7 @@ class Execution:
         point = self._rest_points.find(cycle)
         if point is None:
             return False
-        self.program.restart(point)
+        self.reason = self.program.restart(point) or self.reason
         self._restarted = (cycle, due)
         self._standstill_left = STANDSTILL_SETPOINTS
         self._rest_setpoints = 2  # the arm knows that it rests, so the time that was lost is let go

@@ -209,15 +209,15 @@ class Executor:
             return
         untaken = current.untaken(arm) / self._settings.rate
         stalled = self._stall_detector.stall_duration(due, current.id, arm, untaken)
+        has_stalled = stalled > self._settings.setpoint_timeout
         if current.is_settled or current.displacement:
-            # Otherwise the arm is late, and still moves.
-            if current.arm_has_stopped(arm) or stalled > self._settings.setpoint_timeout:
+            if current.arm_has_stopped(arm) or has_stalled:  # otherwise the arm is late, and still moves
                 off = float(np.abs(arm.position - current.program.current_q).max())
                 current.displacement = off if off > self._settings.regain else 0.0
             if current.displacement:
                 self._stall_detector.restart(due)
             return
-        if stalled > self._settings.setpoint_timeout:
+        if has_stalled:
             why = f"the arm has taken up no setpoint for {stalled:.1f} s"
             self._hold(current, f"{why}: does its driver hear them? resume when it does")
         current.wait_for_late_arm(arm)
@@ -238,8 +238,9 @@ class Executor:
             self._hold(current, "setpoints were late, and the arm came to rest; resume brings it back to the path")
             return False
         self._stall_detector.restart(due)
-        reason = f"setpoints were late {current.program.location}: the arm came to rest, and goes on from there"
-        self._command_handler.write_journal("the arm", CommandVerb.HOLD, reason)
+        reason = f"setpoints were late {current.program.location}: the arm came to rest"
+        goes_on = "" if current.program.held else ", and goes on from there"
+        self._command_handler.write_journal("the arm", CommandVerb.HOLD, reason + goes_on)
         return True
 
     def _hold(self, current: Execution, reason: str) -> None:

@@ -62,6 +62,7 @@ class Bench:
         failed_grasp: Literal["fault", "hold"] = "fault",
         hand_scene: str = "",
         arm: Arm | None = None,
+        setpoint_timeout: float = 0.5,
     ) -> None:
         self.bus = MemoryBus()
         self.now = 0
@@ -92,7 +93,9 @@ class Bench:
         self.executor = Executor(
             self.bus,
             KEYS,
-            ExecutorSettings(realtime=False, failed_grasp=failed_grasp, hand_scene=hand_scene),
+            ExecutorSettings(
+                realtime=False, failed_grasp=failed_grasp, hand_scene=hand_scene, setpoint_timeout=setpoint_timeout
+            ),
             signing_key=KEY,
             motion=motion,
             arm=arm,

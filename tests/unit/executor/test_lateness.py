@@ -129,3 +129,35 @@ def test_an_arm_that_rests_in_a_segment_that_is_over_is_taken_up_there(middle: P
         assert off_path(played, path) <= OFF_PATH
         assert is_within_limits(played), largest_uses(played)
         np.testing.assert_allclose(tool_pose(played[-1:], ARM)[0, :3, 3], path[-1], atol=1e-9)
+
+
+@pytest.mark.parametrize("lost", [0, 30])
+def test_an_arm_told_to_step_goes_no_farther_by_itself_when_setpoints_are_lost(
+    middle: Plan, path: np.ndarray, lost: int
+) -> None:
+    gap, held = [10**9], []
+    bench = PlayedBench(lambda cycle: [] if gap[0] <= cycle < gap[0] + 40 else [0.0])
+
+    def step(behind: int) -> None:
+        gap[0] = len(bench.setpoints) + behind
+        bench.command("step", length=0.05)
+
+    def settled() -> bool:
+        return all(status.state == "held" for status in bench.statuses[-5:])
+
+    bench.start(middle)
+    bench.when(lambda: bench.state == "following" and bench.statuses[-1].progress > 0.1, lambda: bench.command("hold"))
+    for behind in (lost, 10**9):
+        bench.when(settled, lambda: held.append(bench.statuses[-1]))
+        bench.when(lambda: True, lambda behind=behind: step(behind))  # type: ignore[misc]
+        bench.when(lambda: bench.state == "following", lambda: None)
+    bench.when(settled, lambda: held.append(bench.statuses[-1]))
+    bench.when(lambda: True, lambda: bench.command("stop"))
+    bench.when(lambda: bench.state == "ended" and bench.player.at_rest, bench.stop.set)
+    bench.run()
+    begin, cut, again = (status.length for status in held)
+    assert begin - 1e-9 <= cut <= begin + 0.05 + 1e-6
+    assert again == pytest.approx(cut + 0.05, abs=1e-6)
+    assert f"rests at s = {cut:.3f} m, short of its end: step again, or resume" in held[1].reason
+    assert off_path(np.array(bench.played), path) <= OFF_PATH
+    assert is_within_limits(np.array(bench.played))

@@ -160,13 +160,14 @@ class TeleopProgram:
         way = self._follower.way_to_rest()
         return way, RestPoint(way[-1, 0] if len(way) else self._state.position)
 
-    def restart(self, point: RestPoint) -> None:
-        """Stand where the arm rests; the arm follows again if the hand is near to where it was."""
+    def restart(self, point: RestPoint) -> str:
+        """Stand where the arm rests; the arm follows again if the hand is near to where it was. Returns nothing."""
         if self._clutch.engaged:
             self._pause(LATE_ARM_HINT)
         self._follower.rest_at(point.position)
         still = np.zeros(6)
         self._state = MotionState(point.position, still, still, self._gripper.closed)
+        return ""
 
     def advance_planning(self) -> None:
         """Do one slice of the planning of the next motion."""

@@ -60,22 +60,26 @@ class Dynamics:
         steady = np.maximum(np.abs(gravity), np.abs(gravity + coriolis))
         return np.asarray(np.abs(inertia) @ acceleration + steady + np.abs(self._viscous * velocity) + self._coulomb)
 
-    def motion_bounds(self, states: Array, turns: Array, period: float) -> Array:
-        """Return upper bounds (n, 6) [N m] of the torques at any moment of the n periods of a motion.
+    def motion_bounds(self, states: Array, turns: Array, period: float, stride: int = 1) -> Array:
+        """Return upper bounds (m, 6) [N m] of the torques at any moment of n periods, a row for each stride.
 
         Args:
             states: (n + 1, 3, 6) position, velocity and acceleration of the joints at the ends of the periods, in each
                 of which the acceleration is linear in time.
             turns: (n, 6) bounds of how far each joint turns in a period [rad].
             period: [s].
+            stride: periods from one configuration whose torques are computed to the next; the more, the looser.
         """
-        q, velocity, acceleration = states[:-1, 0], states[:, 1], states[:, 2]
-        inertia, gravity, coriolis = self._terms(q, velocity[:-1])
-        ends = np.stack([acceleration[:-1], acceleration[1:]])  # what is linear in time is largest at one of both
-        largest = np.abs(np.einsum("nij,knj->kni", inertia, ends) + gravity + coriolis).max(axis=0)
+        begins = np.arange(0, len(turns), stride)
+        q, velocity, acceleration = states[begins, 0], states[:, 1], states[:, 2]
+        inertia, gravity, coriolis = self._terms(q, velocity[begins])
+        # What is linear in time is largest at an end of a period.
+        ends = acceleration[np.minimum(begins[:, None] + np.arange(stride + 1), len(turns))]
+        largest = np.abs(np.einsum("nij,nkj->nki", inertia, ends) + (gravity + coriolis)[:, None]).max(axis=1)
         speeds, accelerations = np.abs(velocity).max(axis=0), np.abs(acceleration).max(axis=0)
-        changes = period * accelerations
-        variation = self._variation.bound(turns.max(axis=0), speeds, changes, accelerations)
+        changes = stride * period * accelerations
+        turned = np.add.reduceat(turns, begins).max(axis=0)
+        variation = self._variation.bound(turned, speeds, changes, accelerations)
         friction = self._viscous * (speeds + changes) + self._coulomb
         return np.asarray(largest + variation + friction, dtype=np.float64)
 

@@ -3,8 +3,7 @@
 The governor always executes a verified ramp: its setpoints, joined to those already sent, were checked one by one
 against all limits, and it ends at a constant rate of at most 1, at which the plan is feasible. Another ramp replaces it
 only after it was verified in the same way. So no command can break a limit or lead off the path, and nothing can fail
-in mid-motion. A ramp to rest is the shortest stop that `find_stop` finds, any other one has three phases; where no stop
-is found, it has three phases, too.
+in mid-motion.
 """
 
 from __future__ import annotations
@@ -16,24 +15,17 @@ import numpy as np
 
 from teachpath.motion.arm.model import Arm
 from teachpath.motion.arm.puma560 import Array
-from teachpath.motion.timing import kernels, ramp_checks, ramp_following
+from teachpath.motion.timing import kernels, ramp_following
 from teachpath.motion.timing.joint_moves import straight_move
-from teachpath.motion.timing.limit_margins import SYMMETRIC_MARGINS
 from teachpath.motion.timing.ramp_checks import MAX_RAMP_PERIODS, PHASES
-from teachpath.motion.timing.ramp_search import MIN_TIME_SAVED, find_ramp, shorten_ramp
-from teachpath.motion.timing.ruckig_check import RuckigCheck
-from teachpath.motion.timing.stop_search import find_stop
+from teachpath.motion.timing.ramp_finder import RampFinder
+from teachpath.motion.timing.ramp_search import MIN_TIME_SAVED
 from teachpath.motion.timing.timed_trajectory import TimedTrajectory
 
 MIN_OVERRIDE: Final = 0.01  # a smaller override holds
-MAX_RAMPS_PER_PERIOD: Final = 20  # ramps to another rate that are judged in one control period at most
-MAX_RAMPS_AMID_RAMP: Final = 8  # the same where the next period begins from another rate anyway
-MAX_SHORTER_RAMPS: Final = 4  # the same to the rate that the present ramp leads to
 MAX_REVERSE_RATE: Final = 0.96  # of the way back: a plan has its margins on the other side (see `limit_margins`)
-MAX_STOPS: Final = 3  # stops that are judged in one period at most
 STOP_SEARCH_INTERVAL: Final = 2  # periods from one search for a shorter stop to the next, while one is followed
-MAX_STOP_PERIODS: Final = 500  # of a stop; with none so short the present motion goes on for a while
-STOP_LEADS: Final = (2, 8, 32)  # periods for which it goes on
+STOP_LEADS: Final = (0.032, 0.064, 0.1, 0.13)  # [s] for which the present motion goes on where no stop is found
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,10 +64,6 @@ class Governor:
         self._step = trajectory.step
         self._end = trajectory.duration
         self._dt = dt
-        limits = trajectory.limits
-        self._limits = np.stack([limits.speed * dt, limits.acceleration * dt**2, limits.jerk * dt**3])
-        # A planned motion keeps this share of the tool's limit in reserve, for rates that overshoot the full speed.
-        self._max_rate = 1.0 / SYMMETRIC_MARGINS[0] if np.isfinite(limits.tool_speed) else np.inf
         self._override = _share(override)
         self._held = False
         self._reversing = False
@@ -83,15 +71,12 @@ class Governor:
         self._state = np.zeros(3)  # tau, its rate, the rate's derivative
         self._ramp = np.zeros((MAX_RAMP_PERIODS, 3))  # its states at the ends of the periods; the last one goes on
         self._ramp_periods, self._ramp_end, self._done = 1, 0.0, 1
-        self._trial = np.zeros(8)
-        self._stop = np.zeros((MAX_STOP_PERIODS, 3))  # states of a stop
-        self._uses = np.zeros(MAX_STOP_PERIODS)
+        self._finder = RampFinder(trajectory, dt)
         self._stop_periods: int | None = None  # of the one from the present state, once that was searched for
         self._motion = np.zeros((3, 7))
         kernels.evaluate_motion(self._table, self._step, self._state, self._motion)
         self._sent = np.zeros((PHASES, 3, 6))  # newest setpoint and differences (see `ramp_checks.advance`)
         self._sent[:, 0] = self._motion[0, :6]
-        self._ruckig = RuckigCheck()
 
     @property
     def override(self) -> float:
@@ -208,19 +193,19 @@ class Governor:
             return self._sampled(self._ramp_periods - self._done, 0)
         if periods := self._present_stop():
             return self._sampled(0, periods)
-        for lead in STOP_LEADS:
+        for lead in (round(seconds / self._dt) for seconds in STOP_LEADS):
             sent, state = self._sent.copy(), self._state.copy()
             self._follow(lead, sent, state, np.empty((lead, 3, 7)))
-            if state[1] == 0.0 or (periods := self._find_stop(state, sent)):
+            if state[1] == 0.0 or (periods := self._finder.find_stop(state, sent)):
                 return self._sampled(lead, periods)
         return self._sampled(MAX_RAMP_PERIODS, 0)  # nothing but the end of the trajectory is one
 
     def _sampled(self, lead: int, periods: int) -> WayToRest:
-        """Return the way to rest along the ramp for some periods, and then along `_stop` for some."""
+        """Return the way to rest along the ramp for some periods, and then along the newest stop for some."""
         sent, state, motions = self._sent.copy(), self._state.copy(), np.empty((lead + periods, 3, 7))
         count = self._follow(lead, sent, state, motions[:lead])
         if periods:
-            stop = (self._stop, periods, 0, self._dt)
+            stop = (self._finder.stop, periods, 0, self._dt)
             count += ramp_following.follow(self._table, self._step, *stop, sent, state, motions[lead:])
         return WayToRest(motions[:count, :, :6], min(max(float(state[0]), 0.0), self._end))
 
@@ -231,56 +216,27 @@ class Governor:
     def _present_stop(self) -> int:
         """Find a stop from the present state once; return its periods, or 0."""
         if self._stop_periods is None:
-            self._stop_periods = self._find_stop(self._state, self._sent)
+            self._stop_periods = self._finder.find_stop(self._state, self._sent)
         return self._stop_periods
 
-    def _find_stop(self, state: Array, sent: Array) -> int:
-        """Write a stop from a state to `_stop`; return its periods, or 0 where none is found."""
-        given = (self._table, self._step, state, sent, self._limits, self._dt)
-        if periods := find_stop(*given, self._max_rate, MAX_STOPS, self._stop):
-            return int(periods)
-        if not self._find_ramp(0.0, state, sent, np.inf):
-            return 0
-        periods = ramp_following.sample_ramp(self._trial, self._dt, self._stop)
-        # A player reads the states as a spline, which differs from the phases where these begin within a period.
-        joined = (state, self._stop, periods, sent, self._limits, self._dt, self._uses)
-        return periods if periods and ramp_checks.check_states(self._table, self._step, *joined) else 0
-
     def _change_rate(self, target: float, within: float) -> None:
-        trial, state = self._trial, self._state
+        state = self._state
         if (state[0] <= 0.0 and target >= 0.0) or (state[0] >= self._end and target <= 0.0):
-            trial[:] = (state[0], target, 0.0, 0.0, 0.0, 0.0, 0.0, target)
-            kept = ramp_checks.check_ramp(self._table, self._step, trial, self._sent, self._limits, self._dt)
-            if kept[0] == ramp_checks.KEPT:
-                self._follow_trial()
+            if self._finder.keeps_rate(target, float(state[0]), self._sent):
+                self._follow_ramp()
         elif target == 0.0:
             if within < np.inf and self._done % STOP_SEARCH_INTERVAL:
                 return
             periods = self._present_stop()
             if periods and periods * self._dt < within - MIN_TIME_SAVED:
-                self._ramp[:periods] = self._stop[:periods]
+                self._ramp[:periods] = self._finder.stop[:periods]
                 self._ramp_periods, self._ramp_end, self._done = periods, 0.0, 0
-        elif self._find_ramp(target, state, self._sent, within):
-            self._follow_trial()
+        elif self._finder.find_ramp(target, state, self._sent, within):
+            self._follow_ramp()
 
-    def _find_ramp(self, target: float, state: Array, sent: Array, within: float) -> bool:
-        """Write a ramp of three phases that takes less than `within` [s] to `_trial`; return whether there is one."""
-        given = (self._table, self._step, state, target, sent, self._limits, self._dt)
-        peak = -1.0
-        if within == np.inf:
-            longest = MAX_STOP_PERIODS * self._dt if target == 0.0 else within
-            tries = MAX_RAMPS_AMID_RAMP if state[2] else MAX_RAMPS_PER_PERIOD
-            peak = find_ramp(*given, longest, tries, self._max_rate, self._trial)
-            if peak < 0.0:
-                return False
-            within = float(self._trial[3:6].sum())
-        shorter = shorten_ramp(*given, within, MAX_SHORTER_RAMPS, self._max_rate, self._trial)
-        peak = shorter if shorter >= 0.0 else peak
-        return peak >= 0.0 and self._ruckig.agrees(self._trial, peak)
-
-    def _follow_trial(self) -> None:
-        if periods := ramp_following.sample_ramp(self._trial, self._dt, self._ramp):
-            self._ramp_periods, self._ramp_end, self._done = periods, float(self._trial[7]), 0
+    def _follow_ramp(self) -> None:
+        if periods := ramp_following.sample_ramp(self._finder.ramp, self._dt, self._ramp):
+            self._ramp_periods, self._ramp_end, self._done = periods, float(self._finder.ramp[7]), 0
 
     def _rest(self, tau: float) -> None:
         self._state[:] = (tau, 0.0, 0.0)

@@ -80,8 +80,8 @@ class MotionProgram(Protocol):
         They are position [rad], velocity and acceleration one control period apart, the first one period ahead.
         """
 
-    def restart(self, point: RestPoint) -> None:
-        """Go on from where the arm rests at the end of a way to rest."""
+    def restart(self, point: RestPoint) -> str:
+        """Go on from where the arm rests after a way to rest; return why it is held there instead, or nothing."""
 
     def advance_planning(self) -> None:
         """Do one slice of the planning, in the time that is left behind a setpoint."""

@@ -34,10 +34,14 @@ class PlanProgram:
     Attributes:
         state: the motion of the newest setpoint.
         waiting: whether the program waits for an arm that is late.
+        override: share of the full speed that is asked for.
+        arc_length: of the learned path that is done [m].
 
     Raises:
         PathRefused: the plan has changed since it was certified, or the way from `start_q` to its start is not free.
     """
+
+    latency = (0.0, 0.0)  # a plan answers no hand
 
     def __init__(
         self,
@@ -57,10 +61,10 @@ class PlanProgram:
         self._segments = plan_segments(plan, start_q, settings, arm, dwell)
         self._next = 0  # index of the segment behind the present one
         self._length = float(plan.lengths[-1])
-        self._override = override
+        self.override = override
         self._held = self.waiting = False
         self._period = period
-        self._elapsed = self._arc_length = 0.0
+        self._elapsed = self.arc_length = 0.0
         still = np.zeros(6)
         self.state = MotionState(np.array(start_q, dtype=np.float64), still, still, False)
         self._segment: Segment | None = None
@@ -91,13 +95,13 @@ class PlanProgram:
         governor = self._active_governor
         # On the way back it may rest elsewhere, too: where the arm was late, until that goes on.
         returned = governor is not None and governor.reversing and governor.progress.at_rest and governor.tau <= 0.0
-        return self._held or self._override < MIN_OVERRIDE or returned
+        return self._held or self.override < MIN_OVERRIDE or returned
 
     @property
     def hold_reason(self) -> str:
         """Why the arm is held without a call of `hold`, in words."""
-        if self._override < MIN_OVERRIDE:
-            return f"the override is {self._override:g}"
+        if self.override < MIN_OVERRIDE:
+            return f"the override is {self.override:g}"
         # Told to go back, it is said to be held until its next step.
         return f"back at the beginning {self.location}; resume to go on" if self.held and not self._held else ""
 
@@ -112,24 +116,9 @@ class PlanProgram:
         return self.state.position
 
     @property
-    def override(self) -> float:
-        """Share of the full speed that is asked for."""
-        return self._override
-
-    @property
     def progress(self) -> float:
         """Share of the learned path's length that is done, 0 to 1."""
-        return min(self._arc_length / self._length, 1.0)
-
-    @property
-    def arc_length(self) -> float:
-        """Arc length of the learned path that is done [m]."""
-        return self._arc_length
-
-    @property
-    def latency(self) -> tuple[float, float]:
-        """Zeros: a plan answers no hand."""
-        return 0.0, 0.0
+        return min(self.arc_length / self._length, 1.0)
 
     @property
     def activity(self) -> str:
@@ -143,7 +132,7 @@ class PlanProgram:
         """Where the execution is, in words."""
         if self._segment is None:
             return "at its end"
-        return f"at s = {self._arc_length:.3f} m" if self.activity == "on the path" else self.activity
+        return f"at s = {self.arc_length:.3f} m" if self.activity == "on the path" else self.activity
 
     def hold(self) -> None:
         """Come to rest on the path as soon as the limits allow."""
@@ -169,7 +158,7 @@ class PlanProgram:
             self.hold()
             return
         self._held = False
-        step = self._detour is not None and self._detour.end_time is not None
+        step = self._detour is not None and self._detour.is_step
         for governor in self._detour_governors if step else [*self._detour_governors, self._governor]:
             if governor is self._governor or step:
                 governor.reverse()
@@ -178,7 +167,7 @@ class PlanProgram:
 
     def set_override(self, share: float) -> None:
         """Go at `share` of the full speed from now on."""
-        self._override = share
+        self.override = share
         for governor in self._governors():
             governor.set_override(share)
 
@@ -192,11 +181,11 @@ class PlanProgram:
         if segment is None or segment.trajectory is None or governor is None or not segment.is_path:
             activity = self.activity or "at rest"
             raise Conflict(f"steps are taken on the path; the arm is {activity}: resume, and hold it there")
-        if self._detour is not None and self._detour.end_time is None:
+        if self._detour is not None and not self._detour.is_step:
             raise Conflict(f"the arm is {self.activity}; resume, and hold it on the path")
         if not (self.held and self.at_rest):
             raise Conflict("the arm still moves; hold it first, then step")
-        done = self._arc_length
+        done = self.arc_length
         goal = node_length(self._plan.lengths, done, nodes) if nodes else done + length
         end_time = time_at_length(segment.trajectory, min(max(goal, 0.0), self._length))
         begin = governor.tau if self._detour is None else time_at_length(segment.trajectory, done)
@@ -230,7 +219,7 @@ class PlanProgram:
         state = governor.step()
         on_path = segment.is_path and self.activity == segment.name
         if on_path:
-            self._arc_length = self._length if state.finished else state.s  # the table ends a last bit away from it
+            self.arc_length = self._length if state.finished else state.s  # the table ends a last bit away from it
         position, velocity, acceleration = governor.motion[:, :6].copy()
         self.state = MotionState(position, velocity, acceleration, segment.gripper_closed, on_path)
         if state.finished and not self.held:
@@ -248,8 +237,14 @@ class PlanProgram:
         taus = tuple((governor, way.tau if governor is active else governor.tau) for governor in self._governors())
         return way.states, RestPoint(end, self._next - 1, self._detour, taus, self._elapsed, self.state.on_path)
 
-    def restart(self, point: RestPoint) -> None:
-        """Go on from where the arm rests, as the program was at that setpoint, whatever it has done since."""
+    def restart(self, point: RestPoint) -> str:
+        """Go on from where the arm rests, as the program was at that setpoint, whatever it has done since.
+
+        Returns:
+            Why it is held there instead: an arm that was told to step goes no farther by itself. Else nothing.
+        """
+        steps = any(detour is not None and detour.is_step for detour in (point.detour, self._detour))
+        self._held = self._held or steps
         self._next = point.segment
         self._advance()
         self._elapsed, self._detour = point.elapsed, point.detour
@@ -260,8 +255,13 @@ class PlanProgram:
             self._governor = governors.pop()
         self._detour_governors = governors
         self.state = replace(self.state, position=point.position, on_path=point.on_path)
-        if point.on_path and self._governor is not None:
-            self._arc_length = float(self._governor.motion[0, 6])
+        if point.on_path and (active := self._active_governor) is not None:
+            self.arc_length = float(active.motion[0, 6])
+        if steps and governors and governors[0].progress.finished:
+            self._finish()
+            return ""
+        late = f"setpoints were late on a step, and the arm rests {self.location}, short of its end"
+        return f"{late}: step again, or resume" if steps else ""
 
     @property
     def _active_governor(self) -> Governor | None:
@@ -271,7 +271,7 @@ class PlanProgram:
         return [*self._detour_governors, *([self._governor] if self._governor is not None else [])]
 
     def _governor_of(self, trajectory: TimedTrajectory) -> Governor:
-        governor = Governor(trajectory, self._period, override=self._override)
+        governor = Governor(trajectory, self._period, override=self.override)
         governor.set_waiting(self.waiting)
         return governor
 

@@ -48,6 +48,11 @@ class Detour:
     trajectories: tuple[TimedTrajectory, ...]
     end_time: float | None = None
 
+    @property
+    def is_step(self) -> bool:
+        """Whether it is a step along the path, at whose end the arm is held."""
+        return self.end_time is not None
+
 
 @dataclass(frozen=True, eq=False)
 class RestPoint:

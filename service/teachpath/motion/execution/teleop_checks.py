@@ -15,6 +15,7 @@ from teachpath.motion.settings import MotionSettings
 from teachpath.motion.timing.constant_jerk import ConstantJerkMotion
 
 ROUNDING: Final = 1e-9  # [rad]
+TORQUE_STRIDES: Final = (5, 1)  # control periods between two torques; the first bound is quick, the second close
 FIRST_STEP: Final = 0.06  # [m] that any point may move before the second configuration that is measured
 SAMPLING_CLEARANCE: Final = 0.015  # [m] besides `clearance_min`, so that few configurations prove what lies between
 
@@ -28,19 +29,29 @@ def limit_passed(positions: Array, arm: Arm) -> str:
     return describe_limit(int(joint), float(positions[row, joint]), arm)
 
 
-class PayloadCheck:
-    """Says where the motors are too weak for the payload; a live hand carries no other load that weighs on them."""
+class TorqueCheck:
+    """Proves that the motors move the arm at every moment of a motion, whether or not it holds the scene's object.
 
-    def __init__(self, arm: Arm) -> None:
-        self._dynamics = Dynamics(arm) if arm.payload.mass else None
-        self._torque = arm.limits.torque
+    Torques are linear in the mass that is held. So what keeps the limits with the object and without it keeps them when
+    it is taken or let go on the way, too.
+    """
+
+    def __init__(self, model: CollisionModel) -> None:
+        held = (None, model.scene.carried) if model.scene.carried else (None,)
+        self._dynamics = [Dynamics(model.arm, each) for each in held]
+        self._torque = model.arm.limits.torque
 
     def __call__(self, motion: ConstantJerkMotion) -> str:
-        """Say that the motors are too weak at some moment of a motion, or nothing."""
-        if self._dynamics is None:
-            return ""
-        torques = self._dynamics.motion_bounds(motion.states, motion.turns(), motion.period)
-        return "the motors are too weak for the payload there" if np.any(torques > self._torque) else ""
+        """Say which motor is too weak at some moment of a motion, or nothing."""
+        return next(filter(None, (self._weakness(motion, dynamics) for dynamics in self._dynamics)), "")
+
+    def _weakness(self, motion: ConstantJerkMotion, dynamics: Dynamics) -> str:
+        for stride in TORQUE_STRIDES:
+            bounds = dynamics.motion_bounds(motion.states, motion.turns(), motion.period, stride)
+            uses = (bounds / self._torque).max(axis=0)
+            if uses.max() <= 1.0:
+                return ""
+        return f"the motor of joint {1 + int(np.argmax(uses))} is too weak there for the arm and what it carries"
 
 
 class SweptCheck:

@@ -19,7 +19,7 @@ from teachpath.errors import PathRefused
 from teachpath.motion.arm.kinematics import tool_pose
 from teachpath.motion.arm.puma560 import Array
 from teachpath.motion.collision.collision_model import CollisionModel, Load
-from teachpath.motion.execution.teleop_checks import PayloadCheck, SweptCheck, limit_passed
+from teachpath.motion.execution.teleop_checks import SweptCheck, TorqueCheck, limit_passed
 from teachpath.motion.execution.teleop_goal import (
     MIN_TURN,
     ReachableGoal,
@@ -94,7 +94,7 @@ class TeleopFollower:
         self._period = period
         limits = model.arm.limits.motion.scaled(share, share, share)
         self._pace = Pace(limits, model.arm, period)
-        self._payload_check = PayloadCheck(model.arm)
+        self._torque_check = TorqueCheck(model)
         pose = tool_pose(start_q, model.arm)
         self._branch = branch_at(start_q, pose, model.arm)
         self._orientation = pose[:3, :3]  # (3, 3) of the tool where it rests, or where the present motion ends
@@ -234,7 +234,7 @@ class TeleopFollower:
         else:
             return
         check = SweptCheck(motion.joints, self._model, self.load, self._settings)
-        near = limit_passed(motion.joints.hull(), arm) or self._payload_check(motion.joints)
+        near = limit_passed(motion.joints.hull(), arm) or self._torque_check(motion.joints)
         while not (near or check.is_done) and self._cycle < begins - 1:
             yield
             near = check.advance(CHECKS_PER_SLICE)

@@ -41,8 +41,9 @@ def test_no_torque_between_setpoints_exceeds_its_bound_and_the_bound_is_near(
     dynamics, rng, excess = Dynamics(arm, carried), np.random.default_rng(7), []
     for _ in range(12):
         motion = swing(rng)
-        bounds = dynamics.motion_bounds(motion.states, motion.turns(), motion.period)
         torques = np.array([np.abs(dynamics.torques(*within(motion, share))) for share in (0.0, 0.3, 0.6, 0.9)])
-        assert np.all(torques <= bounds + 1e-9)
+        for stride in (7, 1):
+            bounds = dynamics.motion_bounds(motion.states, motion.turns(), motion.period, stride)
+            assert np.all(torques <= np.repeat(bounds, stride, axis=0)[: len(motion)] + 1e-9)
         excess.append((bounds.max(axis=0) - torques.max(axis=(0, 1))) / arm.limits.torque)
     assert np.median(excess, axis=0).max() < 0.35

@@ -5,10 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from teachpath.motion.arm.dynamics import Dynamics
 from teachpath.motion.arm.kinematics import tool_pose
 from teachpath.motion.arm.model import Arm
 from teachpath.motion.collision.collision_model import CollisionModel, Load, grasped_load
-from teachpath.motion.execution.teleop_checks import SweptCheck
+from teachpath.motion.execution.teleop_checks import SweptCheck, TorqueCheck
 from teachpath.motion.settings import MotionSettings
 from teachpath.motion.timing.constant_jerk import ConstantJerkMotion
 from teachpath.records import Scene, Shape
@@ -46,9 +47,15 @@ def judge(motion: ConstantJerkMotion, model: CollisionModel, load: Load | None =
 
 def dense(motion: ConstantJerkMotion) -> np.ndarray:
     """Return configurations (n, 6) of a motion, between its setpoints too."""
-    t = DT * np.linspace(0.0, 1.0, 4, endpoint=False)[:, None]
+    return densely(motion)[0]
+
+
+def densely(motion: ConstantJerkMotion) -> np.ndarray:
+    """Return positions, velocities and accelerations (3, n, 6) of a motion, between its setpoints too."""
+    t, jerk = DT * np.linspace(0.0, 1.0, 4, endpoint=False)[:, None], motion.jerks[:, None]
     p, v, a = np.moveaxis(motion.states[:-1, :, None], 1, 0)
-    return np.asarray((p + v * t + a * t**2 / 2 + motion.jerks[:, None] * t**3 / 6).reshape(-1, 6))
+    rows = (p + v * t + a * t**2 / 2 + jerk * t**3 / 6, v + a * t + jerk * t**2 / 2, a + jerk * t)
+    return np.array([row.reshape(-1, 6) for row in rows])
 
 
 def test_a_motion_that_is_proved_comes_no_nearer_to_a_sharp_corner_than_it_may() -> None:
@@ -94,3 +101,20 @@ def test_a_held_object_is_pressed_no_deeper_into_what_it_stood_on_than_it_may_be
         assert lowest >= -SETTINGS.contact_tolerance or "into what it stood on" in said
         proved, pressed = proved + (not said), pressed + ("into what it stood on" in said)
     assert min(proved, pressed) > 5
+
+
+def test_what_is_proved_for_the_motors_holds_with_the_object_and_without_it() -> None:
+    chest = Shape("chest", "box", (0.3, 0.3, 0.3), (0.5, 0.1, 0.15))  # 8 kg
+    heavy, none = (
+        TorqueCheck(CollisionModel(Scene("s", carried=chest), ARM)),
+        TorqueCheck(CollisionModel(Scene("s"), ARM)),
+    )
+    cases, rng, proved, refused = (Dynamics(ARM), Dynamics(ARM, chest)), np.random.default_rng(11), 0, 0
+    for _ in range(40):
+        motion = swing(*(HOME + rng.uniform(-0.25, 0.25, (2, 6))), periods=int(rng.integers(40, 125)))
+        said = heavy(motion)
+        use = max(float(np.max(np.abs(each.torques(*densely(motion))) / ARM.limits.torque)) for each in cases)
+        assert said == "" or use > 0.6, (said, use)  # no motion is refused that is easy
+        assert said or use <= 1.0
+        proved, refused = proved + (not said), refused + (none(motion) == "" and said.startswith("the motor of joint"))
+    assert min(proved, refused) > 5

@@ -269,7 +269,7 @@ def test_an_arm_whose_payload_is_too_heavy_stays_where_it_is_and_says_so() -> No
     session.follower.engage(np.zeros(3))
     session.run(100, np.array([0.05, 0.0, 0.0]))
     np.testing.assert_array_equal(session.sent[-1], HOME)
-    assert any("too weak for the payload" in reason for reason in session.reasons)
+    assert any("is too weak there for the arm and what it carries" in reason for reason in session.reasons)
 
 
 def test_a_limit_of_the_tools_speed_holds_however_the_hand_moves_and_the_tool_still_arrives() -> None:
