@@ -7,11 +7,13 @@ column, a thinner forearm on the inner side of the elbow, and a slender wrist.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from math import atan2, cos, hypot, pi, radians, sin, sqrt
 from typing import Final
 
 import numpy as np
 
+from teachpath.motion.arm.connectors import Connector, connectors
 from teachpath.motion.arm.model import Arm
 from teachpath.motion.arm.poses import pose_matrix, turned
 from teachpath.motion.arm.puma560 import FINGER_TRAVEL, Array
@@ -53,7 +55,7 @@ class LinkSolid:
         orientation: of the solid in the link's frame.
         opening_offset: displacement in the link's frame while the gripper is open [m].
         visual_only: whether it is only drawn. Such a solid stands out of another one of its link by a few millimetres,
-            where nothing can touch it.
+            where nothing can touch it, or closes the gap that a user's model leaves at a joint.
     """
 
     name: str
@@ -75,7 +77,7 @@ def collision_solids(arm: Arm | None = None) -> tuple[LinkSolid, ...]:
 
 
 def visual_solids(arm: Arm | None = None) -> tuple[LinkSolid, ...]:
-    """Return all solids of an arm and its gripper; of a user's model, what may collide.
+    """Return all solids of an arm and its gripper; of a user's model, what may collide and what joins it.
 
     The proportions of the Puma 560 are our own, after photographs of the arm. What holds a tool centre point beyond the
     fingers is taken as a rod as thick as a finger, and what holds a gripper that does not sit on the flange as a
@@ -85,7 +87,8 @@ def visual_solids(arm: Arm | None = None) -> tuple[LinkSolid, ...]:
         arm: whose solids they are; None for the Puma 560 with its gripper on the flange.
     """
     if arm is not None and arm.model is not None:
-        return _model_solids(arm.model) + gripper_solids(arm)
+        rods = [solid for one in connectors(arm) for solid in _rods(one)]
+        return (*_model_solids(arm.model), *rods, *gripper_solids(arm))
     gripper = _GRIPPER if arm is None else _gripper(arm.tool_length)
     if arm is None or arm.tool is None or arm.gripper_mount is None:
         return _ARM + gripper
@@ -139,15 +142,28 @@ def _mounted(solid: LinkSolid, mount: Array, orientation: Quaternion) -> LinkSol
 def _adapter(place: Array) -> tuple[LinkSolid, ...]:
     """Return the adapter between the flange, on which it lies, and a gripper at a place (3,) [m]."""
     begin = np.array([0.0, 0.0, ADAPTER_RADIUS])
-    far = float(np.linalg.norm(place - begin))
-    if min(far, float(np.linalg.norm(place))) < MIN_ADAPTER:
+    if min(float(np.linalg.norm(place - begin)), float(np.linalg.norm(place))) < MIN_ADAPTER:
         return ()
-    x, y, z = (float(v) for v in (place - begin) / far)
-    lean = hypot(1.0 + z, y, x)  # the shortest turn of z towards the gripper
+    return (_rod("adapter", 6, begin, place, ADAPTER_RADIUS, STEEL_COLOR),)
+
+
+def _rods(connector: Connector) -> tuple[LinkSolid, ...]:
+    """Return what is drawn of a connector: rods with a ball at each end but the first."""
+    link, radius, made = connector.link, connector.radius, []
+    for k, (begin, end) in enumerate(pairwise(connector.points), start=1):
+        rod = _rod(f"rod {link}.{k}", link, begin, end, radius, JOINT_COLOR)
+        ball = LinkSolid(f"ball {link}.{k}", link, "sphere", (radius,), _vector(end), color=JOINT_COLOR)
+        made += [replace(one, visual_only=True) for one in (rod, ball)]
+    return tuple(made)
+
+
+def _rod(name: str, link: int, begin: Array, end: Array, radius: float, color: int) -> LinkSolid:
+    """Return a cylinder from one point (3,) to another [m], in the frame of its link."""
+    length = float(np.linalg.norm(end - begin))
+    x, y, z = (float(v) for v in (end - begin) / length)
+    lean = hypot(1.0 + z, y, x)  # the shortest turn of z towards the end
     turn = ((1.0 + z) / lean, -y / lean, x / lean, 0.0) if lean > 1e-9 else (0.0, 1.0, 0.0, 0.0)
-    return (
-        LinkSolid("adapter", 6, "cylinder", (ADAPTER_RADIUS, far), _vector((begin + place) / 2), turn, STEEL_COLOR),
-    )
+    return LinkSolid(name, link, "cylinder", (radius, length), _vector((begin + end) / 2), turn, color)
 
 
 def _vector(values: Array) -> Vector:
