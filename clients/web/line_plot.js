@@ -1,7 +1,8 @@
 // A line plot in the page's colours. uPlot draws it on a canvas, which no screen reader reads: `label` says what it shows.
-
+// The library comes when the first plot is drawn: nobody needs it to see the arm.
 import { element } from "./elements.js";
-import uPlot from "./vendor/uplot/uPlot.esm.js";
+
+/** @import uPlot from "uplot" */
 
 const HEIGHT = 150; // [px]
 const FONT = "11px system-ui, sans-serif";
@@ -28,6 +29,7 @@ const dark = matchMedia("(prefers-color-scheme: dark)");
 export class LinePlot {
   /** @type {uPlot | null} */
   #chart = null;
+  #isRemoved = false;
   /** @type {uPlot.AlignedData} */
   #data;
   /** @type {[number, number] | null} */
@@ -72,6 +74,7 @@ export class LinePlot {
   }
 
   remove() {
+    this.#isRemoved = true;
     dark.removeEventListener("change", this.#rebuild);
     this.resize.disconnect();
     this.#chart?.destroy();
@@ -79,7 +82,9 @@ export class LinePlot {
   }
 
   // The colours are read from the style sheet when the chart is made: another theme needs another chart.
-  #build() {
+  async #build() {
+    const { default: Chart } = await import("./vendor/uplot/uPlot.esm.js");
+    if (this.#isRemoved) return;
     this.#chart?.destroy();
     const style = getComputedStyle(document.documentElement);
     /** @param {string} name */
@@ -92,7 +97,7 @@ export class LinePlot {
     };
     /** @param {uPlot} _ @param {number[]} ticks */
     const xTicks = (_, ticks) => ticks.map((tick) => `${tick}${this.xUnit && ` ${this.xUnit}`}`);
-    this.#chart = new uPlot(
+    this.#chart = new Chart(
       {
         width: 300,
         height: this.height,

@@ -40,6 +40,7 @@ def test_ways_and_demonstrations_are_drawn_and_told(package: Package) -> None:
     assert page.locator("#cut .tree .leaf").count() == COUNT
     assert page.locator("#cut .tree .link").count() == COUNT - 1
     assert page.locator("#selection tbody tr:not(.why)").count() == COUNT
+    page.wait_for_selector("#scores canvas >> nth=1")
     assert page.locator("#scores canvas").count() == 2
     for part in ("#learned article", "#cut svg", "#selection table", "#scores canvas", "#view canvas"):
         assert page.locator(part).first.is_visible()

@@ -14,6 +14,7 @@ from collections.abc import Callable, Mapping
 _SPECIFIER = re.compile(
     r"""(?<=\bfrom )["'](\.{1,2}/[^"']+)["']|(?<=^import )["'](\.{1,2}/[^"']+)["'];""", re.MULTILINE
 )
+_LATE = re.compile(r"""(?<=\bawait import\()["'](\.{1,2}/[^"']+)["'](?=\))""")
 
 
 def import_map(entry: str, read: Callable[[str], str], *, instead: Mapping[str, str]) -> dict[str, dict[str, str]]:
@@ -32,20 +33,21 @@ def import_map(entry: str, read: Callable[[str], str], *, instead: Mapping[str, 
             continue
         text = read(instead.get(path, path))
         folder = posixpath.dirname(instead.get(path, path))
-        texts[path], imported = _with_bare_names(text, folder)
-        waiting += imported
+        text, imported = _with_bare_names(text, folder, _SPECIFIER)
+        texts[path], late = _with_bare_names(text, folder, _LATE)
+        waiting += imported + late
     return {"imports": {f"page/{path}": data_address(text, "text/javascript") for path, text in sorted(texts.items())}}
 
 
 def imported_modules(entry: str, read: Callable[[str], str]) -> list[str]:
-    """Return the paths of a module and of all that it imports, directly or not."""
+    """Return the paths of a module and of all that it imports when it is loaded, directly or not."""
     found: dict[str, None] = {}
     waiting = [entry]
     while waiting:
         path = waiting.pop(0)
         if path not in found:
             found[path] = None
-            waiting += _with_bare_names(read(path), posixpath.dirname(path))[1]
+            waiting += _with_bare_names(read(path), posixpath.dirname(path), _SPECIFIER)[1]
     return list(found)
 
 
@@ -54,12 +56,12 @@ def data_address(text: str, kind: str) -> str:
     return f"data:{kind};charset=utf-8;base64,{base64.b64encode(text.encode()).decode()}"
 
 
-def _with_bare_names(text: str, folder: str) -> tuple[str, list[str]]:
+def _with_bare_names(text: str, folder: str, specifier: re.Pattern[str]) -> tuple[str, list[str]]:
     imported = []
 
     def bare(found: re.Match[str]) -> str:
-        path = posixpath.normpath(posixpath.join(folder, found[1] or found[2]))
+        path = posixpath.normpath(posixpath.join(folder, next(group for group in found.groups() if group)))
         imported.append(path)
-        return f'"page/{path}"' + (";" if found[2] else "")
+        return f'"page/{path}"' + (";" if found[0].endswith(";") else "")
 
-    return _SPECIFIER.sub(bare, text), imported
+    return specifier.sub(bare, text), imported
