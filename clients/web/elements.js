@@ -85,9 +85,29 @@ export function definitionList(facts) {
   return element("dl", {}, rows);
 }
 
-/** @param {number | undefined} share @param {string} label */
-export function progressBar(share, label) {
-  return element("progress", { max: "1", value: String(share ?? 0), "aria-label": label });
+const MOST_UNFINISHED = 0.97; // of a bar: while anything is waited for, a part of it is open
+
+/** @param {number | undefined} share @param {string} label @param {boolean} isOver whether nothing is waited for any more */
+export function progressBar(share, label, isOver = false) {
+  const shown = isOver ? (share ?? 0) : Math.min(share ?? 0, MOST_UNFINISHED);
+  return element("progress", { max: "1", value: String(shown), "aria-label": label });
+}
+
+/**
+ * Attributes of a control that cannot be used now: it says why.
+ * @param {string} why "": it can be used
+ */
+export const blocked = (why) => (why ? { disabled: "", title: why } : {});
+
+/**
+ * Let a control that stays not be used, and say why; or let it be used again.
+ * @param {HTMLButtonElement | HTMLInputElement | HTMLSelectElement} control
+ * @param {string} why "": it can be used
+ * @param {string} title what it says of itself then
+ */
+export function block(control, why, title = "") {
+  control.disabled = why !== "";
+  control.title = why || title;
 }
 
 /** @param {string} text */
@@ -119,6 +139,19 @@ export function codeBlock(text) {
 export function section(parent, id, title) {
   const body = element("div", { id });
   parent.append(element("section", {}, element("h2", {}, title), body));
+  return body;
+}
+
+/**
+ * A part of a panel that is folded until somebody wants it; returns where its content goes.
+ * @param {HTMLElement} parent
+ * @param {string} id
+ * @param {string} title
+ */
+export function foldedSection(parent, id, title) {
+  const body = element("div", { id });
+  const head = element("summary", {}, element("h2", {}, title));
+  parent.append(element("section", { class: "folded" }, element("details", {}, head, body)));
   return body;
 }
 

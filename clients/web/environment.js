@@ -1,11 +1,16 @@
-// The view's environment: background, light, floor grid and camera; it belongs to the page and not to the scene.
+// The view's environment: background, light, floor grid, a stand; it belongs to the page and not to the scene.
+import { boxOf } from "./camera.js";
+
 const THEMES = {
   light: { background: 0xe9edf1, grid: 0xc3ccd5, ground: 0.16, light: 1 },
   dark: { background: 0x171b20, grid: 0x333c46, ground: 0.45, light: 0.78 },
 };
 
+const MIN_GAP = 0.01; // [m] between the arm's base and the floor, from which on a stand is drawn
+
 /**
- * Add it to meshcat's viewer; returns {fitCamera(), setFloor(height)}: the first puts the camera to its home.
+ * Add it to meshcat's viewer; returns {setFloor(height), placeStand(), stand}: the second is called when the arm has been
+ * drawn anew.
  * @param {MeshCatViewer} viewer
  */
 export function createEnvironment(viewer) {
@@ -18,7 +23,8 @@ export function createEnvironment(viewer) {
   const ground = new THREE.Mesh(new THREE.PlaneGeometry(8, 8), new THREE.ShadowMaterial());
   ground.receiveShadow = true;
   ground.position.z = 0.001;
-  group.add(grid, ground);
+  const stand = createStand();
+  group.add(grid, ground, stand);
 
   const dark = matchMedia("(prefers-color-scheme: dark)");
   const paint = () => {
@@ -28,6 +34,7 @@ export function createEnvironment(viewer) {
     for (const [light, intensity] of lights) light.intensity = intensity * theme.light;
     grid.material.color.setHex(theme.grid);
     ground.material.opacity = theme.ground;
+    stand.material.color.setHex(theme.grid);
     viewer.set_dirty();
   };
   dark.addEventListener("change", paint);
@@ -36,9 +43,20 @@ export function createEnvironment(viewer) {
   const setFloor = (height) => {
     grid.position.z = height;
     ground.position.z = height + 0.001;
+    placeStand();
     viewer.set_dirty();
   };
-  return { fitCamera: () => fitCamera(viewer), setFloor };
+  const placeStand = () => {
+    const box = boxOf(viewer.scene_tree.children.robot?.children.link0);
+    const gap = box.min.y - grid.position.z;
+    stand.visible = !box.isEmpty() && gap > MIN_GAP;
+    if (!stand.visible) return;
+    const size = box.getSize(new THREE.Vector3());
+    const middle = viewer.scene.worldToLocal(box.getCenter(new THREE.Vector3()));
+    stand.scale.set(size.x / 2, size.z / 2, gap);
+    stand.position.set(middle.x, middle.y, grid.position.z + gap / 2);
+  };
+  return { setFloor, placeStand, stand };
 }
 
 /**
@@ -84,63 +102,10 @@ function createGrid(cells = 16, size = 0.25) {
   return new THREE.LineSegments(geometry, new THREE.LineBasicMaterial());
 }
 
-/**
- * Fit the scene and the arm's workspace into the view, seen from the free side of the table, a little from above.
- * @param {MeshCatViewer} viewer
- */
-function fitCamera(viewer) {
+/** A pale column under an arm whose base is above the floor: nobody has said what it stands on, and nothing is checked there. */
+function createStand() {
   const { THREE } = globalThis.MeshCat;
-  const { camera } = viewer;
-  camera.fov = 30;
-  const tall = Math.tan((camera.fov * Math.PI) / 360);
-  const wide = tall * camera.aspect;
-  const ahead = new THREE.Vector3(0.7, 0.47, 0.7).normalize(); // three's frame: x forward of the arm, y up, z its right
-  const right = new THREE.Vector3(0, 1, 0).cross(ahead).normalize();
-  const up = ahead.clone().cross(right);
-  const target = new THREE.Vector3();
-  const corners = boxes(viewer).flatMap((box) => cornersOf(box));
-  let distance = 0;
-  for (let round = 0; round < 4; round++) {
-    const relative = corners.map((corner) => corner.clone().sub(target));
-    const seen = relative.map((p) => ({ x: p.dot(right), y: p.dot(up), z: p.dot(ahead) }));
-    distance = 1.05 * Math.max(...seen.map((p) => p.z + Math.max(Math.abs(p.x) / wide, Math.abs(p.y) / tall)));
-    const [x, y] = [middle(seen.map((p) => p.x / (distance - p.z))), middle(seen.map((p) => p.y / (distance - p.z)))];
-    target.addScaledVector(right, x * distance).addScaledVector(up, y * distance);
-  }
-  camera.position.copy(target).addScaledVector(ahead, distance);
-  viewer.controls.target.copy(target);
-  viewer.controls.update();
-  camera.updateProjectionMatrix();
-  viewer.set_dirty();
+  const geometry = new THREE.CylinderGeometry(1, 1, 1, 32).rotateX(Math.PI / 2);
+  const material = new THREE.MeshLambertMaterial({ transparent: true, opacity: 0.55 });
+  return new THREE.Mesh(geometry, material);
 }
-
-/**
- * What the camera is fitted to, in three's frame. The arm's own box would jump with its pose: a column of its usual height
- * stands for it.
- * @param {MeshCatViewer} viewer
- */
-function boxes(viewer) {
-  const { THREE } = globalThis.MeshCat;
-  const found = [new THREE.Box3(new THREE.Vector3(-0.25, 0, -0.25), new THREE.Vector3(0.25, 1.15, 0.25))];
-  for (const name of ["scene", "paths"]) {
-    const box = new THREE.Box3();
-    const node = viewer.scene_tree.children[name];
-    if (node) box.expandByObject(node.object);
-    if (!box.isEmpty()) found.push(box);
-  }
-  return found;
-}
-
-/** @param {THREE.Box3} box */
-function cornersOf({ min, max }) {
-  const { THREE } = globalThis.MeshCat;
-  const [xs, ys, zs] = [
-    [min.x, max.x],
-    [min.y, max.y],
-    [min.z, max.z],
-  ];
-  return xs.flatMap((x) => ys.flatMap((y) => zs.map((z) => new THREE.Vector3(x, y, z))));
-}
-
-/** @param {number[]} values */
-const middle = (values) => (Math.max(...values) + Math.min(...values)) / 2;

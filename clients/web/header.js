@@ -1,5 +1,9 @@
-// The header: which task, who holds control, and the stop button, which says until it is confirmed that it is not.
-import { option } from "./elements.js";
+// The header: which task, who holds control, what the arm does, and the stop button, which says until it is confirmed that it is not.
+import { element, option } from "./elements.js";
+import { stateText } from "./panels/arm_state.js";
+import { patchChildren } from "./patch_children.js";
+import { activeExecution, changesAny } from "./store.js";
+import { formatPercent } from "./texts.js";
 
 const NOT_STOPPED =
   "NOT STOPPED: the executor has not confirmed the stop, and the arm may be moving. Press the emergency stop of the arm. " +
@@ -7,17 +11,28 @@ const NOT_STOPPED =
 
 /**
  * @param {Context} context
- * @param {{task: HTMLSelectElement, control: HTMLElement}} parts
+ * @param {{task: HTMLSelectElement, control: HTMLElement, arm: HTMLElement}} parts
  */
-export function header({ store }, { task, control }) {
+export function header({ store }, { task, control, arm }) {
   task.addEventListener("change", () => store.set({ task: task.value }));
   store.subscribe((state, changed) => {
     if (changed.has("tasks") || changed.has("task")) choose(task, state);
-    if (!changed.has("executor")) return;
+    if (!changesAny(changed, "executor", "connection")) return;
+    patchChildren(arm, state.connection === "lost" ? null : armText(state));
     const { operator, asking } = state.executor ?? {};
     control.hidden = !operator;
     control.textContent = operator ? `${operator} has control${asking ? `, ${asking} asks for it` : ""}` : "";
   });
+}
+
+/** What the arm does, and how fast while it moves. @param {State} state @returns {Child[]} */
+function armText(state) {
+  const active = activeExecution(state);
+  if (!state.executor) return [];
+  const speed = active && active.state !== "held" ? `, ${formatPercent(active.override)}` : "";
+  const { state: name } = state.executor;
+  const text = active || name === "faulted" ? stateText(state.executor) : "At rest";
+  return [element("span", { class: `dot ${name}` }), `${text}${speed}`];
 }
 
 /** @type {Record<import("./arm/stop.js").StopState, string>} */

@@ -11,7 +11,7 @@ const GREEN = 0x2a8f5a;
 /** @typedef {{kind: string, size: number[], vertices?: Point[]}} Solid */
 
 /** @param {number} color @param {number} opacity */
-function phongMaterial(color, opacity = 1) {
+export function phongMaterial(color, opacity = 1) {
   const { THREE } = globalThis.MeshCat;
   return new THREE.MeshPhongMaterial({
     color,

@@ -11,7 +11,7 @@
 // capturePointer(handler)   handler = {down(event), move(event), up(event)}: after down() has returned true the camera stays
 //                   still until up(event), or up(null) when the gesture was cancelled. Further fingers call down() too, and
 //                   each has its up(). Returns what removes the handler.
-// setKeyboardLabel(label)   make the view focusable, and say what its keys do; "" takes that back
+// setKeyboardLabel(label)   say what the view's keys do, and that they are taken; "": they turn the view again
 // lockCamera(locked)        keep the camera still while e.g. TransformControls drags
 
 /**
@@ -22,6 +22,9 @@
  *
  * @typedef {{through?: Point, normal?: Point}} PlaneOptions
  */
+
+const VIEW_KEYS =
+  "Arrow keys turn it, plus and minus zoom, 1, 2 and 3 look from the front, the side and above, F shows the chosen way, 0 all.";
 
 export class Overlay {
   /** @type {Map<string, THREE.Line>} */
@@ -42,6 +45,8 @@ export class Overlay {
     viewer.scene.updateMatrixWorld();
     this.worldGroup.applyMatrix4(viewer.scene.matrixWorld.clone().invert());
     viewer.scene.add(this.group, this.worldGroup);
+    this.areKeysTaken = false; // by what is carried or edited: else they move the camera
+    this.setKeyboardLabel("");
     this.#listen();
   }
 
@@ -126,11 +131,9 @@ export class Overlay {
 
   /** @param {string} label */
   setKeyboardLabel(label) {
-    const attributes = { tabindex: "0", role: "application", "aria-label": label };
-    for (const [name, value] of Object.entries(attributes)) {
-      if (label) this.element.setAttribute(name, value);
-      else this.element.removeAttribute(name);
-    }
+    this.areKeysTaken = label !== "";
+    const attributes = { tabindex: "0", role: "application", "aria-label": label || `3-D view. ${VIEW_KEYS}` };
+    for (const [name, value] of Object.entries(attributes)) this.element.setAttribute(name, value);
   }
 
   /** @param {boolean} locked */

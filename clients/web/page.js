@@ -18,6 +18,7 @@ import { ArmStop } from "./arm/stop.js";
 import { closest, closestData, element } from "./elements.js";
 import { eventLog } from "./event_log.js";
 import { EventStream } from "./event_stream.js";
+import { keepFocus } from "./focus_keeper.js";
 import { header, stopButton } from "./header.js";
 import { panelHelp } from "./help_links.js";
 import { IdentityControl, missingSentence } from "./identity.js";
@@ -29,6 +30,7 @@ import { panel as run } from "./panels/run.js";
 import { panel as ways } from "./panels/ways.js";
 import { enablePathPicking } from "./path_picking.js";
 import { SceneLayers } from "./scene_layers.js";
+import { doneSteps } from "./steps.js";
 import { activeExecution, Store } from "./store.js";
 import { Tabs } from "./tabs.js";
 import { View } from "./view.js";
@@ -126,7 +128,7 @@ administration(byId("access"), byId("access-button"), context);
 eventLog(byId("events"), byId("events-button"), store);
 const taskSelect = /** @type {HTMLSelectElement} */ (byId("task"));
 const stop = /** @type {HTMLButtonElement} */ (byId("stop"));
-header(context, { task: taskSelect, control: byId("control") });
+header(context, { task: taskSelect, control: byId("control"), arm: byId("arm-state") });
 stopButton(context, armStop, { stop, warning: byId("not-stopped") });
 const identity = new IdentityControl(context, { who: byId("identity"), signIn: byId("sign-in") });
 let mayMove = false; // also while an executor is silent that moved the arm
@@ -135,6 +137,7 @@ store.subscribe((state, changed) => {
   if (changed.has("identity")) showMissing(state.identity);
   if (changed.has("station")) showStation(state.station);
   for (const panel of panels) panel.update(state, changed);
+  tabs.setDone(doneSteps(state));
   sceneLayers.update(state, changed);
 });
 for (const panel of panels) panel.update(store.state, new Set(Object.keys(store.state)));
@@ -144,7 +147,8 @@ byId("panels").addEventListener("click", (event) => {
   const { open } = closestData(event, "[data-open]");
   if (open) tabs.select(open);
 });
-connectViewControls(view);
+connectViewControls(view, store);
+keepFocus();
 // The space bar stops the arm wherever the focus is, but in a text field.
 addEventListener(
   "keydown",
@@ -165,7 +169,7 @@ identity.whenSeeing(() => {
 });
 
 // What the browser tests may ask: the state, whether all of the task is drawn, whether the camera stays where it is, paths
-// drawn, where they are, how often the view was drawn.
+// drawn, where they are, the height of the arm's stand [m], how often the view was drawn.
 Object.assign(globalThis, {
   teachpath: {
     state: () => store.state,
@@ -184,6 +188,7 @@ Object.assign(globalThis, {
     get editor() {
       return edit.editor;
     },
+    stand: () => (view.environment.stand.visible ? view.environment.stand.scale.z : 0),
     get draws() {
       return view.draws;
     },

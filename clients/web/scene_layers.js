@@ -1,6 +1,6 @@
 // Draws the chosen task in the 3-D view: its scene, demonstrations, learned paths, deviations and spread.
-// Names in the view's tree: /scene/NAME, /zones/NAME, /demonstrations/ID, /paths/ID, /deviations/ID (of a demonstration), /spread/ID
-// (of a path); panels may draw beside them on the overlay.
+// Names in the view's tree: /scene/NAME, /zones/NAME, /demonstrations/ID, /paths/ID, /deviations/ID (of a demonstration), and of a path
+// also /marks/ID, /names/ID, /spread/ID; panels may draw beside them on the overlay.
 import { get } from "./api.js";
 import {
   demonstrationLine,
@@ -12,6 +12,7 @@ import {
   shapeMesh,
   spreadTube,
 } from "./meshes.js";
+import { pathMarks, pathName } from "./path_marks.js";
 import { changesAny, latestPaths, selectedPath, waysOfDemonstrations } from "./store.js";
 import { TrajectoryCache, trimKey } from "./trajectory_cache.js";
 
@@ -92,6 +93,14 @@ export class SceneLayers {
     this.#sync(
       "paths",
       paths.map((path) => [path.id, `${path.version}`, () => pathTube(path)]),
+    );
+    this.#sync(
+      "marks",
+      paths.map((path) => [path.id, `${path.version}`, () => pathMarks(path)]),
+    );
+    this.#sync(
+      "names",
+      paths.map((path) => [path.id, `${path.version}`, () => pathName(path)]),
     );
     this.#sync("spread", spreads(paths, clusters));
     this.#highlight(state);

@@ -2,7 +2,7 @@
 import { element } from "./elements.js";
 
 export class Tabs {
-  /** @type {Map<string, {tab: HTMLButtonElement, panel: HTMLDivElement, scrolled: number}>} */
+  /** @type {Map<string, {tab: HTMLButtonElement, tick: HTMLElement, panel: HTMLDivElement, scrolled: number}>} */
   #tabs = new Map();
   current = "";
 
@@ -39,10 +39,19 @@ export class Tabs {
     tab.addEventListener("click", () => this.select(id));
     this.list.append(tab);
     this.panels.append(panel);
-    this.#tabs.set(id, { tab, panel, scrolled: 0 });
+    const tick = element("span", { class: "tick", role: "img", "aria-label": "done" }, " ✓");
+    this.#tabs.set(id, { tab, tick, panel, scrolled: 0 });
     if (!this.current) this.select(id);
     else this.#render();
     return panel;
+  }
+
+  /** Put a tick behind those whose work is done. @param {Set<string>} done ids */
+  setDone(done) {
+    for (const [id, { tab, tick }] of this.#tabs) {
+      if (done.has(id)) tab.append(tick);
+      else tick.remove();
+    }
   }
 
   /** @param {string} id */

@@ -1,10 +1,21 @@
 // The 3-D view: meshcat's viewer as a library. The service's part of it comes in batches, see view_feed.js.
 
+import { fitCamera, framePoints, moveCamera } from "./camera.js";
+import { createCompass } from "./compass.js";
 import { createEnvironment } from "./environment.js";
 import { Overlay } from "./overlay.js";
 
 const SERVICE_OBJECTS = ["robot", "object", "hand"]; // what the service draws; the rest is the page's own
-const LAYERS = ["demonstrations", "paths", "deviations", "spread", "hand"];
+/** What the page draws, and the layer that it is shown with. @type {Record<string, string>} */
+const LAYERS = {
+  demonstrations: "demonstrations",
+  paths: "paths",
+  marks: "paths",
+  names: "paths",
+  deviations: "deviations",
+  spread: "spread",
+  hand: "hand",
+};
 const [PALE, WEAK] = [0.16, 0.4]; // shares of the opacity: beside what is pointed at, beside what is chosen
 
 export class View {
@@ -30,6 +41,7 @@ export class View {
     this.framedFor = ""; // the objects and the size that the camera was last fitted to
     this.cameraMoved = false; // by the operator: it stays where it is
     this.environment = createEnvironment(this.viewer);
+    this.showAxes = createCompass(element.parentElement ?? element);
     this.#sizeTo(element);
     this.overlay = new Overlay(this.viewer, element);
   }
@@ -53,7 +65,25 @@ export class View {
 
   resetCamera() {
     this.cameraMoved = false;
-    this.environment.fitCamera();
+    fitCamera(this.viewer);
+  }
+
+  /** Show everything from a direction. @param {number[]} from see VIEWPOINTS in camera.js */
+  lookFrom(from) {
+    this.cameraMoved = true;
+    fitCamera(this.viewer, from);
+  }
+
+  /** Show some points as near as they go, from where the camera is. @param {Point[]} points */
+  frame(points) {
+    this.cameraMoved = true;
+    framePoints(this.viewer, points);
+  }
+
+  /** Turn the view about what it shows, or bring it nearer. @param {Parameters<typeof moveCamera>[1]} by */
+  move(by) {
+    this.cameraMoved = true;
+    moveCamera(this.viewer, by);
   }
 
   /** Whether the camera is fitted to what is there now: else the next draw may move it. */
@@ -97,18 +127,21 @@ export class View {
 
   /** Apply visibility and dimming to what has just been added, and draw. */
   refresh() {
-    for (const layer of LAYERS) {
-      const node = this.viewer.scene_tree.children[layer];
-      if (node) node.object.visible = !this.hiddenLayers.has(layer);
-    }
-    for (const kind of ["demonstrations", "paths", "deviations", "spread"]) {
-      for (const [id, node] of Object.entries(this.viewer.scene_tree.children[kind]?.children ?? {})) {
-        const pale = this.highlightedNames !== null && !this.highlightedNames.has(`${kind}/${id}`);
-        const isOther = kind === "paths" && this.highlightedNames === null && this.chosenPath && id !== this.chosenPath;
-        dimMaterial(materialOf(node), pale || this.dimmedKinds.has(kind) ? PALE : isOther ? WEAK : 1);
-      }
+    for (const [kind, layer] of Object.entries(LAYERS)) {
+      const drawn = this.viewer.scene_tree.children[kind];
+      if (!drawn) continue;
+      drawn.object.visible = !this.hiddenLayers.has(layer);
+      if (kind === "hand") continue;
+      for (const [id, node] of Object.entries(drawn.children)) dimMaterial(materialOf(node), this.#share(layer, id));
     }
     this.viewer.set_dirty();
+  }
+
+  /** The share of its opacity with which something is drawn. @param {string} layer @param {string} id */
+  #share(layer, id) {
+    const names = this.highlightedNames;
+    if (this.dimmedKinds.has(layer) || (names !== null && !names.has(`${layer}/${id}`))) return PALE;
+    return layer === "paths" && names === null && this.chosenPath && id !== this.chosenPath ? WEAK : 1;
   }
 
   /** Paths that hold a drawn object, e.g. "/robot/link2/upper". */
@@ -163,6 +196,7 @@ export class View {
       this.viewer.handle_command_bytearray(new Uint8Array(batch, at + 4, length));
       at += 4 + length;
     }
+    this.environment.placeStand();
     this.viewer.set_dirty();
   }
 
@@ -190,11 +224,12 @@ export class View {
       if (performance.now() - this.lastDraw < this.frameInterval) return; // it stays dirty and is asked again with the next frame
       this.lastDraw = performance.now();
       const frame = this.#frame();
-      if (frame !== this.framedFor && !this.cameraMoved) this.environment.fitCamera();
+      if (frame !== this.framedFor && !this.cameraMoved) fitCamera(viewer);
       this.framedFor = frame;
       const began = performance.now();
       render();
       this.renderTime = performance.now() - began;
+      this.showAxes(viewer.camera);
       this.draws += 1;
       if (this.#framedObjects().length) this.onReady();
     };

@@ -1,16 +1,20 @@
-"""What keeps people from a page: the findings of axe-core."""
+"""What keeps people from a page: the findings of axe-core, and controls that are off and do not say why."""
 
 from pathlib import Path
 from typing import Any
 
 AXE = (Path(__file__).parent / "assets" / "axe" / "axe.min.js").read_text()
+SILENT = """[...document.querySelectorAll(":disabled")].filter((one) => one.checkVisibility() && !one.title)
+  .map((one) => one.outerHTML)"""
+
+Finding = tuple[str, str, str]  # where, rule, first element
 
 
-def grave(page: Any, where: str) -> list[tuple[str, str, str]]:
-    """Return (where, rule, first element) of every serious or critical finding on the page as it looks now."""
+def barriers(page: Any, where: str) -> list[Finding]:
+    """Return every finding of any level on the page as it looks now, and every control that is off without a reason."""
     page.evaluate("Promise.all(document.getAnimations().map((one) => one.finished.catch(() => {})))")  # what fades
     page.evaluate(f"{AXE};0")
     result = page.evaluate("axe.run(document, {resultTypes: ['violations']})")
     assert len(result["passes"]) > 10  # it has looked
-    found = [v for v in result["violations"] if v["impact"] in ("serious", "critical")]
-    return [(where, v["id"], v["nodes"][0]["html"]) for v in found]
+    silent = [(where, "off without a reason", html) for html in page.evaluate(SILENT)]
+    return [(where, v["id"], v["nodes"][0]["html"]) for v in result["violations"]] + silent

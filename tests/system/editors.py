@@ -77,6 +77,11 @@ class Desk(Visit):
         yield
         self.page.keyboard.up("Shift")
 
+    def unfold(self, section: str) -> None:
+        """Unfold the section with this id, unless it is."""
+        if not self.page.locator(section).is_visible():
+            self.click(f"summary:has(+ {section})")
+
     def save(self) -> None:
         self.click("#edit-save")
 

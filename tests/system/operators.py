@@ -112,6 +112,15 @@ def grasp_point(flange: np.ndarray) -> np.ndarray:
     return point
 
 
+def named_joints(route: Any) -> None:
+    """Answer as a service does whose arm's model has names of its own for its joints."""
+    answer = route.fetch()
+    arm = answer.json()
+    for k, joint in enumerate(arm["joints"]):
+        joint["name"] = f"axis {k}"
+    route.fulfill(response=answer, json=arm)
+
+
 class Leader(Operator):
     """Somebody who leads the arm by a live hand; where a busy machine makes it lose the hand, it is led again."""
 

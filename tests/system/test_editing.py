@@ -10,7 +10,7 @@ import pytest
 
 from teachpath.io.documents import from_document
 from teachpath.nurbs import Curve
-from tests.system.access import grave
+from tests.system.access import barriers
 from tests.system.editors import Desk, U
 from tests.system.processes import Service
 from tests.system.test_station import record
@@ -143,7 +143,7 @@ def test_the_second_of_two_editors_chooses_and_no_edit_is_lost(desks: Any, servi
     ben.save()
     ben.page.wait_for_selector("#conflict[open]")
     assert "anna" in ben.page.inner_text("#conflict-status")
-    assert grave(ben.page, "conflict") == []
+    assert barriers(ben.page, "conflict") == []
     ben.click("#conflict button[value=theirs]")
     ben.until("editor.draft.base.number === 2")
     assert same(ben.curve(), anna.curve())
@@ -214,6 +214,7 @@ def test_several_points_are_chosen_and_pulled_along_an_axis_and_in_a_plane(desks
 def test_knots_come_and_go_without_a_change_of_the_shape_and_versions_branch(desks: Any, paths: list[str]) -> None:
     desk = desks(paths[2])
     begin, count = desk.curve(), len(desk.curve().control_points)
+    desk.unfold("#edit-knots")
     desk.page.fill("#edit-u", "0.37")
     desk.click("#edit-insert")
     desk.until(f"editor.draft.curve.control_points.length === {count + 1}")
@@ -230,6 +231,7 @@ def test_knots_come_and_go_without_a_change_of_the_shape_and_versions_branch(des
     desk.page.fill("#edit-branch", "higher")
     desk.save()
     desk.until("editor.draft.base.number === 2 && editor.versions.length === 2")
+    desk.unfold("#edit-versions")
     desk.page.get_by_role("button", name="edit version 1").click()
     desk.until("editor.draft.base.number === 1")
     assert same(desk.curve(), begin)

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from tests.system.access import grave
+from tests.system.access import barriers
 from tests.system.processes import Service
 from tests.system.test_view import Visit
 from tests.unit.offline.test_file_report import dwelling, table, two_markers, two_motions
@@ -66,7 +66,7 @@ def test_files_are_corrected_marked_and_imported_and_moved(visit: Visit, service
         plot.click(position={"x": share * box["width"], "y": 0.5 * box["height"]})
     until(visit, "document.querySelectorAll('#import-files [role=slider]').length === 2")
     card_says(visit, "unsure.csv", "clean")
-    assert grave(page, "files") == []
+    assert barriers(page, "files") == []
 
     page.locator("#import-task").fill("filed")
     page.locator("#import-task").blur()

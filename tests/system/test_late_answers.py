@@ -202,6 +202,7 @@ def test_a_gesture_is_a_step_of_the_path_that_it_was_made_on(desk: Desk, paths: 
 def test_a_version_that_is_taken_is_taken_into_its_own_path(desk: Desk, paths: list[str]) -> None:
     desk.open(paths[0])
     version = Late(desk, f"paths/{paths[0]}/versions/1")
+    desk.unfold("#edit-versions")
     desk.page.get_by_role("button", name="edit version 1").click()
     version.wait()
     desk.page.locator(f"#edit-path [data-path='{paths[1]}']").click()
@@ -238,6 +239,7 @@ def test_typed_numbers_stay_while_the_degree_is_raised(desk: Desk, paths: list[s
     desk.page.select_option("#edit-points", "2")
     degree = desk.ask("editor.draft.curve.degree")
     raised = Late(desk, "curves/elevate", "POST")
+    desk.unfold("#edit-knots")
     desk.click("#edit-elevate")
     raised.wait()
     desk.page.fill("#edit-u", "0.123")
@@ -257,6 +259,7 @@ def test_the_versions_to_compare_stay_chosen_when_another_one_is_saved(
     lists = Late(desk, f"paths/{paths[0]}/versions")
     third = store(service, paths[0])
     lists.wait()
+    desk.unfold("#edit-versions")
     desk.page.select_option("#edit-first", str(second))
     desk.page.select_option("#edit-second", "1")
     lists.over()

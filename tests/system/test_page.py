@@ -1,5 +1,6 @@
 """The page on a real service: readable for everybody, nothing from elsewhere, ways chosen, back after a restart."""
 
+import itertools
 import re
 from collections.abc import Iterator
 from dataclasses import asdict
@@ -14,7 +15,9 @@ from websockets.sync.client import connect
 from teachpath.io.documents import from_document
 from teachpath.nurbs import Curve
 from teachpath_client.models import Run
-from tests.system.access import grave
+from tests.system.access import barriers
+from tests.system.keyboard import tell_by_keyboard
+from tests.system.operators import Operator
 from tests.system.packages import Package
 from tests.system.processes import Service, run
 from tests.system.test_station import record
@@ -61,21 +64,28 @@ def tab(visit: Visit, name: str) -> None:
     visit.page.locator(f"#tab-{name}").click()
 
 
-@pytest.mark.parametrize("scheme", ["light", "dark"])
-def test_nothing_serious_keeps_anybody_from_the_page(visit: Visit, scheme: Any) -> None:
+def test_nothing_keeps_anybody_from_the_page(visit: Visit) -> None:
     page = visit.page
-    page.emulate_media(color_scheme=scheme)
     found = []
-    for task in (TASK, "bare"):
+    schemes: tuple[Any, ...] = ("light", "dark")
+    for scheme, task in itertools.product(schemes, (TASK, "bare")):
+        page.emulate_media(color_scheme=scheme)
         choose(visit, task)
         for name in TABS:
             tab(visit, name)
-            found += grave(page, f"{task}, {name}")
-    for name in ("events", "new-task"):
-        page.locator(f"#{name}-button").click()
-        found += grave(page, name)
-        page.keyboard.press("Escape")
+            found += barriers(page, f"{task}, {name}, {scheme}")
+        for name in ("events", "new-task"):
+            page.locator(f"#{name}-button").click()
+            found += barriers(page, f"{name}, {scheme}")
+            page.keyboard.press("Escape")
     assert found == []
+
+
+def test_the_whole_story_is_told_by_the_keyboard_alone(visit: Visit, service: Service) -> None:
+    operator = Operator(visit, service.station)
+    assert tell_by_keyboard(visit, operator) < 400
+    visit.wait(lambda: operator.executions()[0].status.state == "ended")
+    assert operator.said == []
 
 
 def test_a_task_is_made_in_the_page_and_kept_through_a_reload(visit: Visit, service: Service) -> None:
@@ -198,14 +208,14 @@ def test_after_a_restart_of_the_service_the_page_shows_the_truth_again(browser: 
     visit.wait(lambda: "No connection to the service" in page.locator("#connection").inner_text())
     for name in TABS:
         tab(visit, name)
-        assert grave(page, f"without the service, {name}") == []
+        assert barriers(page, f"without the service, {name}") == []
     visit.wait(lambda: "the arm holds" in page.locator("#arm .state").inner_text())
     tab(visit, "demonstrate")
     visit.wait(lambda: "Not known" in page.locator("#recordings").inner_text())
     tab(visit, "ways")
     page.get_by_role("button", name="Learn anew").click()
     page.wait_for_selector("#message .error:has-text('Is it running?')")
-    assert grave(page, "an error is told") == []
+    assert barriers(page, "an error is told") == []
     tab(visit, "run")
     with Service(service.data, ports=service.ports) as again:
         again.station.make_task("made-meanwhile")
@@ -232,7 +242,7 @@ def test_the_review_package_answers_as_the_service_does_and_keeps_nobody_out(
     with Package(browser, tmp_path / f"{TASK}.html") as package:
         for name in ("ways", "run", "demonstrations", "origin"):
             package.page.locator(f"#tab-{name}").click()
-            found += grave(package.page, f"review package, {name}")
+            found += barriers(package.page, f"review package, {name}")
         archive = package.archive()
     assert found == []
     for path in (path for path in archive if path.startswith(("robot", "paths", "plans", "demonstrations", "tasks/"))):
@@ -244,12 +254,10 @@ def test_the_review_package_answers_as_the_service_does_and_keeps_nobody_out(
             assert answer == archive[path], path
 
 
-@pytest.mark.parametrize("name", ["demo", "x" * 64])
-def test_stop_is_in_the_same_place_at_every_width(visit: Visit, name: str) -> None:
+def test_stop_is_in_the_same_place_at_every_width(visit: Visit) -> None:
     page = visit.page
-    page.evaluate("name => document.querySelector('#task').replaceChildren(new Option(name))", name)
-    page.evaluate("document.querySelector('label.task').hidden = false")
-    for width in (360, 390, 600, 860, 1024, 1920):
+    for name, width in itertools.product(("demo", "x" * 64), (360, 390, 600, 860, 1024, 1920)):
+        page.evaluate("name => document.querySelector('#task').replaceChildren(new Option(name))", name)
         page.set_viewport_size({"width": width, "height": 420})
         box = page.locator("#stop").bounding_box()
         place = (width - box["x"] - box["width"], box["y"], box["width"])  # from the right and from above

@@ -2,6 +2,7 @@
 
 import dataclasses
 import json
+import zipfile
 from collections.abc import Iterator
 from dataclasses import asdict
 from typing import Any
@@ -11,7 +12,7 @@ import pytest
 
 from teachpath.io.store.recording_facts import read_facts
 from teachpath_client import Link, Tracker
-from tests.system.access import grave
+from tests.system.access import barriers
 from tests.system.operators import Leader, Shown
 from tests.system.processes import Service
 from tests.system.test_station import FAST, SHOWN, shown
@@ -82,6 +83,12 @@ def test_every_demonstration_has_its_verdict_and_what_is_wrong_with_it(visit: Vi
     visit.page.get_by_role("button", name="Undo discard").click()
     until(visit, "document.querySelectorAll('#demonstrations .demonstration-list li.discarded').length === 0")
     until(visit, f"{text('demonstrations')}.includes('One demonstration so far; show it again.')")
+    with visit.page.expect_download() as begun:
+        visit.page.get_by_role("link", name="Download everything of this task").click()
+    with zipfile.ZipFile(begun.value.path()) as archive:
+        names = archive.namelist()
+    assert len([name for name in names if name.endswith(".mcap")]) == 2  # also the rejected one
+    assert any(name.endswith("SHA256SUMS") for name in names)
     assert visit.said == []
 
 
@@ -138,7 +145,7 @@ def test_the_arm_follows_the_page_s_hand_while_the_clutch_is_held(visit: Visit, 
         return np.linalg.norm(ball() - begin) > 0.03 and np.linalg.norm(leader.tool() - ball()) < 0.002
 
     visit.wait(lambda: visit.page.evaluate("teachpath.teleop().isPositioned"))
-    assert grave(visit.page, "leading the arm") == []
+    assert barriers(visit.page, "leading the arm") == []
     leader.lead(press, drag, mouse.up, there)
     after = leader.tool_at_rest()
     mouse.move(500, 300, steps=3)  # nobody holds the clutch

@@ -10,9 +10,9 @@ import pytest
 from teachpath.motion.arm.kinematics import link_frames
 from teachpath.motion.arm.model import Arm
 from teachpath_client.models import Plan
-from tests.system.access import grave
+from tests.system.access import barriers
 from tests.system.carriers import HEADSET, NEXT, START, begin, carry, carry_worn, move_hand, phase
-from tests.system.operators import RESTING, Leader, Operator, Status
+from tests.system.operators import RESTING, Leader, Operator, Status, named_joints
 from tests.system.processes import Service, stop_arm
 from tests.system.test_view import REST, Visit
 from tests.waiting import wait_until
@@ -149,7 +149,7 @@ def test_a_start_must_be_meant_and_the_path_is_gone_step_by_step_and_back(visit:
     creep(visit, operator)
     hold(operator)
     assert visit.page.locator("#arm .state").inner_text().startswith("Held on the path: held by")  # and why
-    assert grave(visit.page, "held") == []
+    assert barriers(visit.page, "held") == []
     for name, way in (("+ 1 cm", 0.01), ("− 1 cm", -0.01), ("− 1 cm", -0.01)):
         held = step(operator, name, way)
     lengths = [held["length"]]
@@ -229,6 +229,7 @@ def test_a_past_execution_is_replayed_as_it_was(visit: Visit, service: Service, 
     operator.until(lambda status: status["state"] in RESTING)
     last = operator.executions()[0]
     before = visit.place_at_rest("/robot/link6")
+    visit.page.route("**/api/v1/robot", named_joints)
     visit.page.locator(f"#replay button[data-execution='{last.id}']").click()
     slider = visit.page.get_by_label("Instant of the execution")
     slider.wait_for()
@@ -242,7 +243,9 @@ def test_a_past_execution_is_replayed_as_it_was(visit: Visit, service: Service, 
         q = np.array([np.interp(shown, times, column) for column in joints.T])
         drawn = np.array(visit.page.evaluate("teachpath.replayGhost()")).reshape(7, 4, 4).transpose(0, 2, 1)
         np.testing.assert_allclose(drawn, link_frames(q, ARM), atol=1e-6)
-    assert visit.page.locator("#replay .u-over").count() == 4
+    visit.wait(lambda: visit.page.locator("#replay .u-over").count() == 4)
+    names = visit.page.locator("#replay .values dt").all_inner_texts()
+    assert names[:6] == [f"axis {k}" for k in range(6)]  # as the arm's model has it
     np.testing.assert_allclose(visit.place("/robot/link6"), before, atol=2 * REST)
     assert operator.executions()[0].id == last.id
     visit.page.get_by_role("button", name="Close replay").click()
@@ -263,7 +266,7 @@ def test_control_is_taken_and_given_back(visit: Visit, service: Service, operato
 
 def test_the_joints_are_plotted_as_they_move(visit: Visit, operator: Operator) -> None:
     visit.page.wait_for_selector("#joints .values dd")
-    assert visit.page.locator("#joints .u-over").count() == 4
+    visit.wait(lambda: visit.page.locator("#joints .u-over").count() == 4)
     names = visit.page.locator("#joints .values dt").all_inner_texts()
     assert names[:2] == ["joint 1", "joint 2"]
     assert operator.said == []

@@ -23,7 +23,7 @@ from teachpath_client.errors import NotStopped
 from teachpath_client.models import Plan
 from teachpath_proto.control import CommandVerb, ExecutorState
 from teachpath_proto.logins import Login, Role, find_login
-from tests.system.access import grave
+from tests.system.access import barriers
 from tests.system.processes import Service, run, stop_arm
 from tests.system.test_lateness import executor, ready_plan
 from tests.system.test_view import KEYS, Server, Visit
@@ -99,7 +99,7 @@ def test_the_page_says_not_stopped_until_the_executor_confirms_it(browser: Any, 
     visit = Visit(browser, server.address)
     visit.page.locator("#stop").click()
     wait_not_stopped(visit)
-    assert grave(visit.page, "not stopped") == []
+    assert barriers(visit.page, "not stopped") == []
     server.start_executor()
     wait_confirmed(visit)
     visit.page.close()

@@ -64,8 +64,8 @@ class Server:
         self.port = free_port()
         self.bus = MemoryBus()
 
-    def start(self, demonstrations: int) -> None:
-        self.preview = Preview(self.bus, KEYS, visual_solids(), arm=ARM, robot=ROBOT, home=HOME, statuses=list)
+    def start(self, demonstrations: int, arm: Arm = ARM, home: np.ndarray = HOME) -> None:
+        self.preview = Preview(self.bus, KEYS, visual_solids(arm), arm=arm, robot=ROBOT, home=home, statuses=list)
         self.preview.show_object(paper_scene().carried)
         self.preview.start()
         app = self.web_app(demonstrations)
@@ -223,6 +223,9 @@ def test_shows_arm_obstacles_paths_and_demonstrations_with_a_clean_console(visit
     paths = visit.paths()
     assert {"/scene/table", "/scene/box", "/scene/cylinder", "/object"} <= set(paths)
     assert [p for p in paths if p.startswith("/paths/")] == ["/paths/p1", "/paths/p2", "/paths/p3"]
+    assert [p for p in paths if p.startswith(("/marks/", "/names/"))] == [
+        f"/{kind}/p{k}" for kind in ("marks", "names") for k in (1, 2, 3)
+    ]
     assert len([p for p in paths if p.startswith("/demonstrations/")]) == 12
     assert len([p for p in paths if p.startswith("/robot/link")]) == len(visual_solids())
     picture = np.asarray(Image.open(io.BytesIO(visit.page.screenshot())).convert("L"), dtype=float)
@@ -254,6 +257,7 @@ def test_comes_back_after_a_restart_and_shows_the_truth(visit: Visit, server: Se
     visit.page.wait_for_selector("html[data-connection=live][data-events=live]", state="attached")
     visit.wait(lambda: len([p for p in visit.paths() if p.startswith("/demonstrations/")]) == 3)
     assert len([p for p in visit.paths() if p.startswith("/robot/link")]) == len(visual_solids())
+    assert visit.page.evaluate("teachpath.stand()") == 0  # it stands on the floor
 
 
 def test_every_demonstration_of_many_can_be_reached(visit: Visit, server: Server) -> None:

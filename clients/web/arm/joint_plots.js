@@ -18,14 +18,12 @@ const DEGREES_PER_RADIAN = 180 / Math.PI;
  * @property {number | null} lateness [s]
  */
 
-const JOINTS = [1, 2, 3, 4, 5, 6].map((joint) => `joint ${joint}`);
-/** @type {{name: PlotName, title: string, series: string[], yRange: Range, limits?: number[]}[]} */
+/** @type {{name: PlotName, title: string, series?: string[], yRange: Range, limits?: number[]}[]} without `series`: the joints */
 const PLOTS = [
-  { name: "positions", title: "Joint positions [°]", series: JOINTS, yRange: padded },
+  { name: "positions", title: "Joint positions [°]", yRange: padded },
   {
     name: "speeds",
     title: "Joint speeds, share of the limit [%]",
-    series: JOINTS,
     yRange: [-105, 105],
     limits: [-100, 100],
   },
@@ -63,10 +61,12 @@ export class JointPlots {
 
   /**
    * @param {HTMLElement} place
+   * @param {Robot} arm whose joints they are, by name
    * @param {{window?: number}} options `window` [s] of the newest rows is shown; 0: all of them
    */
-  constructor(place, { window = 0 } = {}) {
+  constructor(place, arm, { window = 0 } = {}) {
     this.window = window;
+    this.joints = arm.joints.map(({ name }) => name);
     this.element = element("div", { class: "plots" });
     place.append(this.element);
     this.plots = PLOTS.map((plot) => this.#createPlot(plot));
@@ -102,8 +102,8 @@ export class JointPlots {
   }
 
   /** @param {typeof PLOTS[number]} plot */
-  #createPlot({ name, title, series, yRange, limits }) {
-    const styled = series.map((label, i) => ({ label, color: `--way-${i}` }));
+  #createPlot({ name, title, series = this.joints, yRange, limits }) {
+    const styled = series.map((label, i) => ({ label, color: series === this.joints ? `--joint-${i}` : "--accent" }));
     const plot = new LinePlot(this.element, {
       title,
       label: `${title}, against time`,
@@ -145,7 +145,7 @@ export class JointPlots {
     const [error, lateness] = [row.error[0], row.lateness[0]];
     patchChildren(
       this.#values,
-      JOINTS.map((name, i) =>
+      this.joints.map((name, i) =>
         valueRow(name, `${formatValue(row.positions[i], 1)}°`, `${formatValue(row.speeds[i], 0)}\u202f%`, `joint-${i}`),
       ),
       valueRow("tracking error", error === null ? "–" : `${formatValue(error, 2)}\u202fmrad`),

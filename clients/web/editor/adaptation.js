@@ -1,7 +1,7 @@
 // An object that lies elsewhere: its place and its goal are dragged in the view or entered, the path follows, and the service
 // saves and certifies the adapted version.
 import { ApiError, get, post, put, resourcePath } from "../api.js";
-import { element } from "../elements.js";
+import { block, element } from "../elements.js";
 import { capitalize } from "../texts.js";
 import { predictPath } from "./adaptation_model.js";
 import { describeCertainty } from "./adaptation_range.js";
@@ -70,7 +70,7 @@ class AdaptationSection {
       if (this.#model) this.editor.context.attempt(() => this.#set(active));
     }
     if (what === "curve" || what === "draft") {
-      this.certify.disabled = draft?.edited ?? true;
+      block(this.certify, draft && !draft.edited ? "" : "Save the version first; a saved version is adapted.");
       this.#say();
     }
   }

@@ -1,18 +1,22 @@
 // From a saved version to a certified plan, and on to where the arm is moved.
 import { get, post, resourcePath } from "../api.js";
-import { closest, element, progressBar } from "../elements.js";
+import { block, closest, element, progressBar } from "../elements.js";
+import { icon } from "../icons.js";
 import { patchChildren } from "../patch_children.js";
 import { formatLength, formatNumber } from "../texts.js";
 import { versionTitle } from "./versions.js";
 
+export const UNSAVED = "Save the version first; only what is saved is certified.";
+
 /** @typedef {Job & {path: string, version: import("./draft.js").BaseVersion, plan?: Plan}} Planning */
 
-/** @param {HTMLElement} place @param {Editor} editor @returns {EditorSection} */
-export function certificationSection(place, editor) {
+/** @param {HTMLElement} place @param {Editor} editor @param {HTMLElement} foot where its button goes @returns {EditorSection} */
+export function certificationSection(place, editor, foot) {
   const certify = element("button", { type: "button", id: "edit-certify", class: "primary" });
   const status = element("div", { id: "edit-certified", role: "status" });
-  const why = element("p", { class: "note" }, "Save the version first; only what is saved is certified.");
-  place.append(element("div", { class: "row" }, certify), why, status);
+  const why = element("p", { class: "note" }, UNSAVED);
+  place.append(why, status);
+  foot.append(certify);
   /** @type {Planning | null} */
   let job = null; // that is followed
   const { context } = editor;
@@ -52,8 +56,8 @@ export function certificationSection(place, editor) {
         render();
       }
       if (!draft || what === "drag" || what === "feasibility") return;
-      certify.textContent = `Certify version ${versionTitle(draft.base)}`;
-      certify.disabled = draft.edited;
+      certify.replaceChildren(icon("certify"), `Certify version ${versionTitle(draft.base)}`);
+      block(certify, draft.edited ? UNSAVED : "");
       why.hidden = !draft.edited;
       render();
     },

@@ -1,5 +1,5 @@
 // The control points in numbers: a list to choose from, coordinates in millimetres, the weight, and the pins.
-import { element } from "../elements.js";
+import { block, element } from "../elements.js";
 import { movePoints, setPoint, setWeights } from "./curve_edits.js";
 
 /** @typedef {{input: HTMLInputElement, label: HTMLLabelElement}} Field */
@@ -134,6 +134,6 @@ function writeFields({ draft, selectionCenter }, fields, weight) {
 /** @param {HTMLInputElement} input @param {string | number} value @param {boolean} disabled */
 function writeField(input, value, disabled) {
   if (input === document.activeElement && "typed" in input.dataset) return; // whatever comes meanwhile
-  input.disabled = disabled;
+  block(input, disabled ? "Choose a control point first." : "");
   if (input.value !== String(value)) input.value = String(value);
 }

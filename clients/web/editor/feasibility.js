@@ -1,9 +1,11 @@
 // Whether the arm can follow the draft: a sentence, the segment that fails, what to move, and the colors along the curve.
-import { closest, element, svgElement } from "../elements.js";
+import { blocked, closest, element, svgElement } from "../elements.js";
 import { patchChildren } from "../patch_children.js";
 import { capitalize, formatLength, formatNumber } from "../texts.js";
 import { colorFunction, legendColors, METRICS } from "./color_scale.js";
 import { movePoints } from "./curve_edits.js";
+
+const PINNED = "It is pinned; unlock start and goal first.";
 
 /** @param {HTMLElement} place @param {Editor} editor @returns {EditorSection} */
 export function feasibilitySection(place, editor) {
@@ -67,11 +69,11 @@ function content({ draft, feasibility }) {
         { class: "buttons" },
         element(
           "button",
-          { type: "button", id: "edit-suggestion", "data-key": "suggestion", ...(pinned && { disabled: "" }) },
+          { type: "button", id: "edit-suggestion", "data-key": "suggestion", ...blocked(pinned ? PINNED : "") },
           `Move control point ${suggestion.control_point + 1} by ${formatLength(size)}`,
         ),
       ),
-    size > 0 && pinned && element("p", { class: "note" }, "It is pinned; unlock start and goal first."),
+    size > 0 && pinned && element("p", { class: "note" }, PINNED),
   ];
 }
 

@@ -1,7 +1,9 @@
 // Knots: more of them for finer edits, fewer for a calmer curve, a higher degree; the shape stays.
-import { element } from "../elements.js";
+import { block, element } from "../elements.js";
 import { formatNumber } from "../texts.js";
 import { grevilleAbscissa, innerKnots, spanMidpoint } from "./curve_edits.js";
+
+const MAX_DEGREE = 7;
 
 /** @param {HTMLElement} place @param {Editor} editor @returns {EditorSection} */
 export function knotsSection(place, editor) {
@@ -14,7 +16,7 @@ export function knotsSection(place, editor) {
     title: "place of the new knot, from 0 at the start to 1 at the goal",
   });
   const insert = element("button", { type: "button", id: "edit-insert" }, "Insert knot");
-  const choice = element("select", { id: "edit-knot", title: "knots inside the curve" });
+  const choice = element("select", { id: "edit-knot" });
   const allowed = element("input", {
     type: "number",
     id: "edit-allowed",
@@ -78,8 +80,10 @@ export function knotsSection(place, editor) {
         ),
       );
       if ([...choice.options].some(({ value }) => value === kept)) choice.value = kept;
-      remove.disabled = choice.disabled = !inner.length;
-      elevate.disabled = curve.degree >= 7;
+      const none = inner.length ? "" : "The curve has no knot inside.";
+      block(remove, none);
+      block(choice, none, "knots inside the curve");
+      block(elevate, curve.degree >= MAX_DEGREE ? `${MAX_DEGREE} is the highest degree.` : "");
       const around = draft.selected.length === 1 ? grevilleAbscissa(curve, draft.selected[0]) : 0.5;
       // What was typed stays until other points are chosen.
       const of = `${draft.path} ${draft.selected}`;

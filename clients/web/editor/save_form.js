@@ -1,26 +1,33 @@
 // Saving the draft as a version. When somebody saved a newer one meanwhile, the operator chooses; no edit is lost.
 import { ApiError, post, resourcePath } from "../api.js";
-import { element } from "../elements.js";
+import { block, element } from "../elements.js";
+import { icon } from "../icons.js";
 import { conflictDialog } from "./conflict_dialog.js";
 import { versionTitle } from "./versions.js";
 
+const FORM = "edit-form";
 const AUTHOR_KEY = "operator"; // who works at this browser, also for control of the arm
 
 /** @typedef {Record<"name" | "author" | "note" | "branch", HTMLInputElement>} Fields */
 
-/** @param {HTMLElement} place @param {Editor} editor @returns {EditorSection} */
-export function saveForm(place, editor) {
+/** @param {HTMLElement} place @param {Editor} editor @param {HTMLElement} foot where its button goes @returns {EditorSection} */
+export function saveForm(place, editor, foot) {
   const fields = createFields();
   const labels = Object.entries({ name: "Name of the version", author: "Author", note: "Note", branch: "Branch" });
-  const save = element("button", { type: "submit", id: "edit-save", class: "primary" }, "Save version");
+  const save = element(
+    "button",
+    { type: "submit", id: "edit-save", form: FORM, class: "primary" },
+    icon("save"),
+    "Save version",
+  );
   const status = element("p", { class: "note", id: "edit-unsaved" });
   const form = element(
     "form",
-    { class: "saving" },
+    { class: "saving", id: FORM },
     labels.map(([name, label]) => element("label", {}, label, fields[/** @type {keyof Fields} */ (name)])),
-    save,
   );
   place.append(status, form);
+  foot.append(save);
   const ask = conflictDialog(editor);
   form.addEventListener("submit", (event) => {
     event.preventDefault();
@@ -39,7 +46,7 @@ export function saveForm(place, editor) {
         if (filled.path !== path || fields.branch.value === filled.branch) fields.branch.value = base.branch;
         filled = { path, branch: base.branch };
       }
-      save.disabled = !draft.edited && fields.branch.value === base.branch;
+      block(save, draft.edited || fields.branch.value !== base.branch ? "" : "Nothing was edited since this version.");
       status.textContent = statusText(draft, editor.versions);
     },
   };

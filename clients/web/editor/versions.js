@@ -1,6 +1,6 @@
 // The versions of the path: which there are, which one is edited, and how two of them differ.
 import { get, resourcePath } from "../api.js";
-import { closestData, element, option } from "../elements.js";
+import { block, closestData, element, option } from "../elements.js";
 import { patchChildren } from "../patch_children.js";
 import { readVersion } from "./stored_versions.js";
 
@@ -48,7 +48,7 @@ export function versionsSection(place, editor) {
         select.replaceChildren(...editor.versions.map((version) => option(version.number, versionTitle(version))));
         select.value = chosen.get(select) ?? usual[i];
       }
-      compare.disabled = numbers.length < 2;
+      block(compare, numbers.length < 2 ? "There is one version only." : "");
     },
   };
 }

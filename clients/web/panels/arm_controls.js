@@ -1,15 +1,23 @@
-// The arm: its state, a start that must be held, hold, resume, step, reverse, the speed; who holds control.
+// The console of the arm: its state, a start that must be held, hold, resume, stop, the speed; steps; who holds control.
 import { get, post, resourcePath } from "../api.js";
 import { lease } from "../arm/lease.js";
-import { closestData, element } from "../elements.js";
+import { block, blocked, closestData, element } from "../elements.js";
+import { icon } from "../icons.js";
 import { patchChildren } from "../patch_children.js";
 import { activeExecution, changesAny } from "../store.js";
 import { capitalize, formatPercent } from "../texts.js";
-import { armState, isTeleoperated } from "./arm_state.js";
+import { armFigures, armState, isTeleoperated } from "./arm_state.js";
 import { bindHold } from "./hold_button.js";
 
 const LEASE_POLL_INTERVAL = 2000; // [ms]
 const STEP_LENGTH = 0.01; // [m]
+const HOW_TO_START = "Keep the button pressed until the bar is full. The space bar stops the arm.";
+/** What orders say of themselves. @type {Record<string, string>} */
+const TITLES = {
+  back: "Step back by a centimetre",
+  step: "Step ahead by a centimetre",
+  stop: "Or press the space bar",
+};
 
 /** @param {HTMLElement} place @param {Context} context */
 export function armControls(place, context) {
@@ -149,18 +157,20 @@ class ArmControls {
     const active = activeExecution(state);
     const last = state.executor?.execution ? state.executor : state.executions?.[0]?.status;
     const isAway = state.connection === "lost";
-    patchChildren(parts.state, armState(active ?? last, active !== null, isAway));
+    const status = active ?? last;
+    patchChildren(parts.state, armState(status, isAway));
+    patchChildren(parts.figures, !isAway && status && armFigures(status, active !== null));
     const isOthers = Boolean(state.lease?.holder) && !lease.held;
     const unasked = (!isAway && state.executor?.unasked_motion) || "";
     parts.driver.hidden = isAway;
     parts.unasked.hidden = unasked === "";
     parts.unaskedText.textContent = unasked && `${capitalize(unasked)}.`;
-    parts.start.disabled = active !== null || !state.plan || isAway || isOthers || unasked !== "";
-    parts.why.textContent = startBlocker(state, active, isOthers);
+    const why = startBlocker(state, active, isOthers);
+    block(parts.start, why);
+    parts.why.textContent = isAway || active ? "" : why || HOW_TO_START;
     parts.why.hidden = parts.why.textContent === "";
-    for (const button of parts.commands.querySelectorAll("button")) {
-      button.disabled = !active || !isAvailable(button.dataset.verb, active);
-    }
+    for (const button of parts.commands.querySelectorAll("button"))
+      block(button, orderBlocker(button.dataset.verb, active), TITLES[button.dataset.verb ?? ""]);
     this.#showOverride(active);
     patchChildren(parts.owner, isAway ? "Who holds control is not known." : leaseOwner(state.lease));
     parts.nameField.hidden = lease.token !== "";
@@ -168,31 +178,31 @@ class ArmControls {
 }
 
 /**
- * Why the arm cannot be started now, and what to do.
+ * Why the arm cannot be started now, and what to do; "" when it can.
  * @param {State} state
  * @param {ExecutorStatus | null} active
  * @param {boolean} isOthers somebody else holds control
  */
 function startBlocker(state, active, isOthers) {
-  if (state.connection === "lost" || active) return ""; // said above
+  if (state.connection === "lost") return "The service does not answer.";
+  if (active) return "The arm is moving already.";
   if (state.executor?.unasked_motion) return "It starts when somebody has acknowledged that the arm moved.";
-  if (!state.plan) return "It starts with a certified motion only: plan one above.";
-  return isOthers
-    ? `${state.lease?.holder} holds control: ask for it below.`
-    : "Keep the button pressed until the bar is full. The space bar stops the arm.";
+  if (!state.plan) return "It starts with a certified motion only: plan one below.";
+  return isOthers ? `${state.lease?.holder} holds control: ask for it below.` : "";
 }
 
 /**
- * Whether an order makes sense now: the arm is held before it steps, and runs before it is held. Stop does always, and
- * reverse where there is a path: not with a live hand.
+ * Why an order makes no sense now; "" when it does. The arm is held before it steps, and runs before it is held. Stop does
+ * while anything moves, and reverse where there is a path: not with a live hand.
  * @param {string | undefined} verb
- * @param {ExecutorStatus} status
+ * @param {ExecutorStatus | null} status
  */
-function isAvailable(verb = "", status) {
+function orderBlocker(verb = "", status) {
+  if (!status) return "Nothing moves the arm.";
   const isHeld = status.state === "held";
-  if (verb === "hold") return !isHeld;
-  if (isTeleoperated(status) && ["step", "back", "reverse"].includes(verb)) return false;
-  return !["resume", "step", "back"].includes(verb) || isHeld;
+  if (verb === "hold") return isHeld ? "It is held already." : "";
+  if (isTeleoperated(status) && ["step", "back", "reverse"].includes(verb)) return "A live hand leads the arm.";
+  return ["resume", "step", "back"].includes(verb) && !isHeld ? "The arm is not held." : "";
 }
 
 /**
@@ -216,58 +226,54 @@ function leaseOwner(state) {
 }
 
 function createParts() {
-  /** @param {string} verb @param {string} text @param {string} [title] */
-  const order = (verb, text, title) => element("button", { type: "button", "data-verb": verb, title }, text);
-  const state = element("div", {});
-  const driver = element("div", { class: "driver" });
-  const unaskedText = element("span", {});
-  const acknowledge = element("button", { type: "button" }, "I have seen why: acknowledge");
-  const acknowledgeRow = element("p", { class: "buttons" }, acknowledge);
-  const unasked = element(
-    "div",
-    { role: "alert", hidden: "" },
-    element("p", { class: "failed" }, unaskedText),
-    acknowledgeRow,
-  );
+  const unasked = unaskedParts();
+  /** @param {string} verb @param {string} drawing @param {string} text */
+  const order = (verb, drawing, text) =>
+    element("button", { type: "button", "data-verb": verb, title: TITLES[verb] }, icon(drawing), text);
   const start = element(
     "button",
-    { type: "button", class: "primary hold", disabled: "" },
+    { type: "button", class: "primary hold", ...blocked("It is not known yet how the arm stands.") },
+    icon("start"),
     "Keep pressed to start the arm",
   );
   const why = element("p", { class: "note" });
-  const commands = element(
-    "p",
-    { class: "buttons steer" },
-    order("hold", "Hold"),
-    order("resume", "Resume"),
-    order("back", "− 1 cm", "Step back by a centimetre"),
-    order("step", "+ 1 cm", "Step ahead by a centimetre"),
-    order("reverse", "Reverse"),
-    order("stop", "Stop"),
-  );
   const speed = element("input", { type: "range", id: "speed", min: "0", max: "100", step: "1", value: "100" });
   const share = element("output", { for: "speed" }, formatPercent(1));
-  const speedField = element("p", { class: "field" }, element("label", { for: "speed" }, "Speed"), speed, share);
+  const [hold, resume, stop] = [
+    order("hold", "hold", "Hold"),
+    order("resume", "resume", "Resume"),
+    order("stop", "stop", "Stop"),
+  ];
+  const [back, ahead, reverse] = [
+    order("back", "back", "− 1 cm"),
+    order("step", "ahead", "+ 1 cm"),
+    order("reverse", "reverse", "Reverse"),
+  ];
+  const commands = element(
+    "div",
+    { class: "steer" },
+    element("p", { class: "buttons" }, hold, resume, stop),
+    element("p", { class: "field" }, element("label", { for: "speed" }, "Speed"), speed, share),
+    element("p", { class: "buttons" }, back, ahead, reverse),
+  );
+  const [state, figures, driver] = [element("div", {}), element("div", {}), element("div", { class: "driver" })];
   const owner = element("p", { class: "who" });
   const text = { type: "text", maxlength: "64", placeholder: "shown to everybody", autocomplete: "off" };
   const name = element("input", { ...text, id: "operator", value: localStorage.getItem("operator") ?? "" });
   const nameField = element("p", { class: "field" }, element("label", { for: "operator" }, "Your name"), name);
-  const startRow = element("p", { class: "buttons" }, start);
-  const all = [state, driver, unasked, startRow, why, commands, speedField, owner, nameField];
-  return {
-    all,
-    state,
-    driver,
-    unasked,
-    unaskedText,
-    acknowledge,
-    start,
-    why,
-    commands,
-    speed,
-    share,
-    owner,
-    name,
-    nameField,
-  };
+  const all = [state, unasked.unasked, start, why, commands, figures, driver, owner, nameField];
+  return { all, ...unasked, state, start, why, commands, speed, share, figures, driver, owner, name, nameField };
+}
+
+/** What says that the arm moved unasked. */
+function unaskedParts() {
+  const unaskedText = element("span", {});
+  const acknowledge = element("button", { type: "button" }, "I have seen why: acknowledge");
+  const unasked = element(
+    "div",
+    { role: "alert", hidden: "" },
+    element("p", { class: "failed" }, unaskedText),
+    element("p", { class: "buttons" }, acknowledge),
+  );
+  return { unasked, unaskedText, acknowledge };
 }

@@ -19,18 +19,26 @@ export const isTeleoperated = ({ activity }) => activity.startsWith("mirroring")
 
 /**
  * @param {ExecutorStatus | undefined} status of the execution that runs, else of the last one
- * @param {boolean} isRunning
  * @param {boolean} isAway the service does not answer
+ * @returns {Child}
+ */
+export function armState(status, isAway) {
+  if (isAway) return stateLine("Not known: the service does not answer. On a lost link the arm holds.");
+  if (!status) return stateLine(element("span", { class: "dot idle" }), "At rest. Nothing has been executed yet.");
+  const reason = status.reason && element("span", { class: "reason" }, `: ${status.reason}`);
+  return stateLine(element("span", { class: `dot ${status.state}` }), stateText(status), reason);
+}
+
+/**
+ * How far it has come, and the figures of its motion, folded.
+ * @param {ExecutorStatus} status
+ * @param {boolean} isRunning
  * @returns {Child[]}
  */
-export function armState(status, isRunning, isAway) {
-  if (isAway) return [stateLine("Not known: the service does not answer. On a lost link the arm holds.")];
-  if (!status) return [stateLine(element("span", { class: "dot idle" }), "At rest. Nothing has been executed yet.")];
-  const reason = status.reason && element("span", { class: "reason" }, `: ${status.reason}`);
+export function armFigures(status, isRunning) {
   return [
-    stateLine(element("span", { class: `dot ${status.state}` }), stateText(status), reason),
-    progressBar(status.progress, "progress along the path"),
-    definitionList(figures(status, isRunning)),
+    progressBar(status.progress, "progress along the path", !isRunning),
+    element("details", {}, element("summary", {}, "Figures"), definitionList(figures(status, isRunning))),
   ];
 }
 
@@ -41,7 +49,7 @@ const stateLine = (...children) => element("p", { class: "state", role: "status"
  * What is held need not be on the path yet.
  * @param {ExecutorStatus} status
  */
-function stateText(status) {
+export function stateText(status) {
   const { state, activity } = status;
   if (state === "held" && activity) return activity.startsWith("on ") ? `Held ${activity}` : `Held while ${activity}`;
   if (state === "following" && isTeleoperated(status)) return "Following a live hand";

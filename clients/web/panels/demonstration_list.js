@@ -1,6 +1,6 @@
 // The demonstrations of the task: what is known of all, and a list of them to search, filter, sort and page through.
 import { patch, post, resourcePath } from "../api.js";
-import { closestData, codeBlock, definitionList, element, hint, option } from "../elements.js";
+import { blocked, closestData, codeBlock, definitionList, element, hint, option } from "../elements.js";
 import { patchChildren } from "../patch_children.js";
 import { changesAny, waysOfDemonstrations } from "../store.js";
 import { capitalize, formatNumber, pluralize } from "../texts.js";
@@ -158,22 +158,26 @@ function list(state, shown, trajectories, readOnly, chosen) {
 function pager(found, page) {
   if (found <= PAGE_SIZE) return null;
   const [first, last] = [page * PAGE_SIZE + 1, Math.min(found, (page + 1) * PAGE_SIZE)];
-  /** @param {number} turn @param {string} sign @param {string} name @param {boolean} possible */
-  const button = (turn, sign, name, possible) =>
+  /** @param {number} turn @param {string} sign @param {string} name @param {string} why */
+  const button = (turn, sign, name, why) =>
     element(
       "button",
-      { type: "button", "data-turn": turn, "data-key": name, "aria-label": name, disabled: !possible && "" },
+      { type: "button", "data-turn": turn, "data-key": name, "aria-label": name, ...blocked(why) },
       sign,
     );
   const pages = Math.ceil(found / PAGE_SIZE);
+  const [isFirst, isLast] = [
+    page > 0 ? "" : "This is the first page.",
+    page < pages - 1 ? "" : "This is the last page.",
+  ];
   return element(
     "p",
     { class: "pager" },
-    button(-page, "«", "First page", page > 0),
-    button(-1, "‹", "Page before", page > 0),
+    button(-page, "«", "First page", isFirst),
+    button(-1, "‹", "Page before", isFirst),
     element("span", { role: "status" }, `${first} to ${last} of ${found.toLocaleString("en")}`),
-    button(1, "›", "Next page", page < pages - 1),
-    button(pages - 1 - page, "»", "Last page", page < pages - 1),
+    button(1, "›", "Next page", isLast),
+    button(pages - 1 - page, "»", "Last page", isLast),
   );
 }
 
@@ -183,7 +187,10 @@ function orders(task, all) {
   return [
     element("p", { class: "note" }, ABOUT_MARKS),
     discardButtons(kept.length, all.length),
-    kept.some(({ verdict }) => verdict !== "reject") && exportLinks(task),
+    exportLinks(
+      task,
+      kept.some(({ verdict }) => verdict !== "reject"),
+    ),
   ];
 }
 
@@ -210,13 +217,23 @@ function discardButtons(kept, all) {
 }
 
 /**
- * Files of all that is usable: for other programs, or to be imported again.
+ * Files of what is usable: for other programs, or to be imported again; and all of the task in one archive.
  * @param {string} task
+ * @param {boolean} isUsable whether any demonstration is
  */
-function exportLinks(task) {
+function exportLinks(task, isUsable) {
   const path = `api/v1/${resourcePath("tasks", task, "export")}`;
   /** @param {string} format @param {string} name */
   const link = (format, name) => element("a", { href: `${path}?format=${format}`, download: "" }, name);
   const [mcap, csv, lerobot] = [link("mcap", "MCAP"), link("csv", "CSV"), link("lerobot", "LeRobot")];
-  return element("p", { class: "note saved" }, "Save them to files: ", mcap, ", ", csv, " or ", lerobot, ".");
+  const all = link("archive&all=true", "Download everything of this task");
+  return [
+    isUsable && element("p", { class: "note saved" }, "Save them to files: ", mcap, ", ", csv, " or ", lerobot, "."),
+    element(
+      "p",
+      { class: "note saved" },
+      all,
+      ": one archive, also of what was rejected or discarded, with checksums.",
+    ),
+  ];
 }

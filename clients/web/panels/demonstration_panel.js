@@ -1,5 +1,6 @@
 // Demonstrations without a glove: by mouse, touch, keyboard, gamepad or headset, one after the other.
 import { get, patch, put, resourcePath } from "../api.js";
+import { block } from "../elements.js";
 import { DemonstrationSession } from "../hand/demonstration_session.js";
 import { SAMPLE_RATE } from "../hand/fixed_rate_timer.js";
 import { XrHand, xrUnavailableReason } from "../hand/xr_hand.js";
@@ -214,13 +215,16 @@ class DemonstrationPanel {
     parts.idle.hidden = session !== null;
     parts.active.hidden = session === null;
     parts.nameField.hidden = Boolean(task) || tasks === null;
-    parts.headset.disabled = this.#headsetReason !== "";
+    if (this.#headsetReason !== null) block(parts.headset, this.#headsetReason);
     parts.why.textContent = this.#headsetReason ?? "";
     if (!session) return;
     if (session.phase !== "countdown") parts.statusText.textContent = sessionText(session);
     parts.demonstrations.replaceChildren(...session.demonstrations.map(demonstrationRow));
-    parts.discard.disabled = !session.demonstrations.some((one) => !one.discarded_ns);
-    parts.undo.disabled = !session.demonstrations.some((one) => one.discarded_ns);
+    const [isKept, isDiscarded] = [false, true].map((discarded) =>
+      session.demonstrations.some((one) => Boolean(one.discarded_ns) === discarded),
+    );
+    block(parts.discard, isKept ? "" : "There is no take to discard.");
+    block(parts.undo, isDiscarded ? "" : "No take was discarded.");
     parts.figures.replaceChildren(senderFacts(session.sender));
   }
 }

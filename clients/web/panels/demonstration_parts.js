@@ -1,5 +1,6 @@
 // What the panel of a demonstration session is made of, and how it shows a session.
-import { definitionList, element, hint, option } from "../elements.js";
+import { blocked, definitionList, element, hint, option } from "../elements.js";
+import { icon } from "../icons.js";
 import { capitalize, formatNumber } from "../texts.js";
 
 /** @type {Record<string, string>} */
@@ -25,7 +26,8 @@ export function createParts() {
   /** @param {string} text @param {import("../elements.js").Attributes} attributes */
   const button = (text, attributes = {}) => element("button", { type: "button", ...attributes }, text);
   const start = button("Show it here", { class: "primary" });
-  const headset = button("In a headset", { disabled: true });
+  start.prepend(icon("show"));
+  const headset = button("In a headset", blocked("It is not known yet whether there is a headset."));
   const why = element("p", { class: "note" });
   const name = element("input", { type: "text", id: "task-name", value: "first-task", autocomplete: "off" });
   const nameField = element("p", { class: "field" }, element("label", { for: "task-name" }, "Name of the task"), name);

@@ -1,6 +1,6 @@
 // Several demonstrations at once: chosen in the list, then marked, discarded, restored or moved to another task.
 import { get, patch, post, read, remove, resourcePath, upload } from "../api.js";
-import { element, option } from "../elements.js";
+import { blocked, element, option } from "../elements.js";
 import { formatNumber, pluralize } from "../texts.js";
 
 const POLL_INTERVAL = 300; // [ms] between two looks at an import, which is heard of for the chosen task only
@@ -102,7 +102,7 @@ export class DemonstrationSelection {
     if (!this.isOn)
       return element("p", { class: "buttons" }, button("select", "Select several", { "data-select": "on" }));
     const count = this.ids.size;
-    const disabled = count === 0 || this.#doing ? "" : null;
+    const why = this.#doing || (count === 0 ? "Select demonstrations in the list first." : "");
     const all = found.length > 0 && found.every(({ id }) => this.ids.has(id));
     return [
       element(
@@ -119,11 +119,11 @@ export class DemonstrationSelection {
       element(
         "p",
         { class: "buttons" },
-        Object.entries(CHANGES).map(([verb, [name]]) => button(verb, name, { "data-change": verb, disabled })),
+        Object.entries(CHANGES).map(([verb, [name]]) => button(verb, name, { "data-change": verb, ...blocked(why) })),
         others.length > 0 &&
           element(
             "select",
-            { "data-move": "1", "data-key": "move", "aria-label": "Move them to another task", disabled },
+            { "data-move": "1", "data-key": "move", "aria-label": "Move them to another task", ...blocked(why) },
             option("", "Move to …"),
             others.map((name) => option(name)),
           ),

@@ -1,6 +1,6 @@
 // The dendrogram: how the demonstrations merge, with a cut that can be dragged to make more ways or fewer.
 import { get, post, resourcePath } from "../api.js";
-import { closestData, element, hideSection } from "../elements.js";
+import { block, closestData, element, hideSection } from "../elements.js";
 import { patchChildren } from "../patch_children.js";
 import { demonstrationNumbers } from "../store.js";
 import { formatNumber, pluralize } from "../texts.js";
@@ -62,7 +62,7 @@ class DendrogramCut {
    */
   #enable(run) {
     const isKnown = this.#shown?.run === run;
-    this.slider.disabled = !isKnown;
+    block(this.slider, isKnown ? "" : "The tree of this run has not been read yet.");
     for (const part of [this.view.element, this.buttons]) part.inert = !isKnown;
   }
 

@@ -8,13 +8,20 @@ import { KEYBOARD_HELP } from "../editor/keyboard.js";
 import { knotsSection } from "../editor/knots.js";
 import { saveForm } from "../editor/save_form.js";
 import { versionsSection } from "../editor/versions.js";
-import { closestData, element, hideSection, hint, section, tabButton } from "../elements.js";
+import { block, closestData, element, foldedSection, hideSection, hint, section, tabButton } from "../elements.js";
+import { icon } from "../icons.js";
 import { patchChildren } from "../patch_children.js";
 import { changesAny, selectedPath } from "../store.js";
 import { wayClass } from "../way_colors.js";
 
 const NOTHING =
   "Nothing to edit yet. Learn the ways of a task first; each has a path, whose control points can be dragged here.";
+
+const VERDICTS = {
+  yes: ["good", "The arm can probably follow"],
+  no: ["failed", "The arm cannot follow"],
+  unknown: ["hint", "Being assessed …"],
+};
 
 /** @type {EditPanel | null} */
 let edit = null;
@@ -50,16 +57,19 @@ class EditPanel {
     this.pathButtons = element("div", { class: "row choice", role: "group", "aria-label": "path to edit" });
     const steps = undoButtons(editor);
     section(this.sections, "edit-path", "Path").append(this.pathButtons, steps.element);
+    const foot = element("div", { class: "edit-foot" });
     editor.add(
       steps,
+      verdictLine(foot),
       feasibilitySection(section(this.sections, "edit-arm", "Can the arm follow?"), editor),
-      adaptationSection(section(this.sections, "edit-adaptation", "An object that lies elsewhere"), editor),
       controlPointsSection(section(this.sections, "edit-place", "Control points"), editor),
-      knotsSection(section(this.sections, "edit-knots", "Knots"), editor),
-      saveForm(section(this.sections, "edit-saving", "Save"), editor),
-      certificationSection(section(this.sections, "edit-certifying", "Certify"), editor),
-      versionsSection(section(this.sections, "edit-versions", "Versions"), editor),
+      adaptationSection(section(this.sections, "edit-adaptation", "An object that lies elsewhere"), editor),
+      knotsSection(foldedSection(this.sections, "edit-knots", "Knots"), editor),
+      saveForm(section(this.sections, "edit-saving", "Save"), editor, foot),
+      certificationSection(section(this.sections, "edit-certifying", "Certify"), editor, foot),
+      versionsSection(foldedSection(this.sections, "edit-versions", "Versions"), editor),
     );
+    this.sections.append(foot);
     this.pathButtons.addEventListener("click", (event) => {
       const { path } = closestData(event);
       if (path) context.store.set({ path });
@@ -90,6 +100,21 @@ class EditPanel {
   }
 }
 
+/** Whether the arm can follow, in a few words that are always in view. @param {HTMLElement} foot @returns {EditorSection} */
+function verdictLine(foot) {
+  const line = element("p", { class: "verdict-line" });
+  foot.append(line);
+  return {
+    update({ draft, feasibility }, what) {
+      if (!draft || (what !== "feasibility" && what !== "draft")) return;
+      const { assessment, error } = feasibility ?? {};
+      const [look, text] = error || assessment?.failure ? VERDICTS.no : assessment ? VERDICTS.yes : VERDICTS.unknown;
+      line.className = `verdict-line ${look}`;
+      line.textContent = text;
+    },
+  };
+}
+
 /** @param {LearnedPath} path @param {boolean} isEdited */
 function pathButton({ id, cluster }, isEdited) {
   const attributes = { type: "button", "data-path": id, "data-key": id, "aria-pressed": String(isEdited) };
@@ -100,7 +125,7 @@ function pathButton({ id, cluster }, isEdited) {
 function undoButtons(editor) {
   /** @param {string} id @param {string} text @param {string} keys @param {() => void} onClick */
   const button = (id, text, keys, onClick) => {
-    const made = element("button", { type: "button", id: `edit-${id}`, "aria-keyshortcuts": keys }, text);
+    const made = element("button", { type: "button", id: `edit-${id}`, "aria-keyshortcuts": keys || null }, text);
     made.addEventListener("click", onClick);
     return made;
   };
@@ -109,16 +134,19 @@ function undoButtons(editor) {
   const revert = button("revert", "Back to the version", "", () => {
     if (editor.draft) editor.change(editor.draft.original, "going back to the version");
   });
+  for (const [one, drawing] of /** @type {const} */ ([
+    [undo, "undo"],
+    [redo, "redo"],
+  ]))
+    one.prepend(icon(drawing));
   const help = element("p", { class: "note" }, `Drag control points in the view. ${KEYBOARD_HELP}`);
   return {
     element: element("div", {}, element("div", { class: "row" }, undo, redo, revert), help),
     update({ draft }, what) {
       if (!draft || what === "drag" || what === "feasibility") return;
-      undo.disabled = !draft.undoLabel;
-      undo.title = draft.undoLabel && `Undo ${draft.undoLabel}`;
-      redo.disabled = !draft.redoLabel;
-      redo.title = draft.redoLabel && `Redo ${draft.redoLabel}`;
-      revert.disabled = !draft.edited;
+      block(undo, draft.undoLabel ? "" : "There is no step to undo.", `Undo ${draft.undoLabel}`);
+      block(redo, draft.redoLabel ? "" : "No step was undone.", `Redo ${draft.redoLabel}`);
+      block(revert, draft.edited ? "" : "Nothing was edited since this version.");
     },
   };
 }

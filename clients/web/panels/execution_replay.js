@@ -94,7 +94,7 @@ class ExecutionReplay {
     const carried = series.object.length ? (plan?.scene.carried ?? null) : null;
     const ghost = new GhostArm(this.context.overlay, this.context.view, arm, carried);
     this.player.open(motionOf(series), ghost);
-    this.#plots ??= new JointPlots(this.curves);
+    this.#plots ??= new JointPlots(this.curves, arm);
     this.#plots.set(plotRows(series, arm));
     this.#select(execution);
     this.player.show(0);

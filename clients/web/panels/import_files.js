@@ -1,6 +1,6 @@
 // Files that other programs wrote: dropped or chosen, looked at, corrected, and imported into the task, all or none.
 import { get, post, resourcePath } from "../api.js";
-import { closestData, element, hint } from "../elements.js";
+import { blocked, closestData, element, hint } from "../elements.js";
 import { fileCard, formatColumns, parseColumns } from "../files/file_card.js";
 import { FileImport, numbered, UNMARKED } from "../files/file_import.js";
 import { importProgress, importSummary, standing } from "../files/import_parts.js";
@@ -216,7 +216,7 @@ class ImportPanel {
   #orders() {
     const { files, isReady } = this.files;
     const all = `Import ${files.length === 1 ? "it" : `all ${files.length}`}`;
-    const order = { class: "primary", disabled: isReady ? null : "" };
+    const order = { class: "primary", ...blocked(isReady ? "" : standing(files)) };
     return [
       element(
         "p",

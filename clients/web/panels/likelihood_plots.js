@@ -1,12 +1,14 @@
 // Two plots: the log-likelihood while each way's model was trained (the paper's Fig. 4), and that of every demonstration.
-import { hideSection, hint } from "../elements.js";
+import { element, hideSection, hint } from "../elements.js";
 import { LinePlot } from "../line_plot.js";
 import { demonstrationNumbers } from "../store.js";
 import { formatNumber } from "../texts.js";
 import { wayVariable } from "../way_colors.js";
 
 /** @param {HTMLElement} place @param {Context} context @returns {Section} */
-export function likelihoodPlots(place, { store }) {
+export function likelihoodPlots(place, { store, readOnly }) {
+  const body = readOnly ? place : element("div", {}); // who works looks at them now and then, who reviews reads all
+  if (body !== place) place.append(element("details", {}, element("summary", {}, "Log-likelihoods"), body));
   let shown = "";
   /** @type {LinePlot[]} */
   let plots = [];
@@ -20,8 +22,8 @@ export function likelihoodPlots(place, { store }) {
     if (key === shown) return;
     shown = key;
     for (const plot of plots) plot.remove();
-    place.replaceChildren();
-    plots = drawPlots(place, run.learned.clusters, numbers);
+    body.replaceChildren();
+    plots = drawPlots(body, run.learned.clusters, numbers);
   };
   return { show: () => draw(store.state), update: (state) => draw(state) };
 }

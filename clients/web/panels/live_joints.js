@@ -28,15 +28,18 @@ const WINDOW = 15; // [s]
  * @returns {Section}
  */
 export function liveJoints(place, { attempt }, onState) {
-  const plots = new JointPlots(place, { window: WINDOW });
   /** @type {Robot | undefined} */
   let arm;
+  /** @type {JointPlots | undefined} */
+  let plots;
   let begin = 0; // [s] of the first state
   /** @param {JointState} state */
   const plot = ({ stamp_ns, position, speed, tracking_error, lateness }) => {
     const seconds = stamp_ns / 1e9;
     begin ||= seconds;
-    if (arm) plots.append(plotRow(arm, { time: seconds - begin, position, speed, error: tracking_error, lateness }));
+    if (!arm) return;
+    plots ??= new JointPlots(place, arm, { window: WINDOW });
+    plots.append(plotRow(arm, { time: seconds - begin, position, speed, error: tracking_error, lateness }));
   };
   /** @param {JointState} state */
   const receive = (state) => {

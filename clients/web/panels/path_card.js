@@ -1,5 +1,6 @@
-// The card of one way: what is known of its path, and what can be done with it.
-import { definitionList, element } from "../elements.js";
+// The card of one way: whether the arm can follow its path, what can be done with it, and folded what else is known.
+import { blocked, definitionList, element } from "../elements.js";
+import { icon } from "../icons.js";
 import { latestPaths, selectedPath } from "../store.js";
 import { capitalize, formatLength, pluralize } from "../texts.js";
 import { wayClass } from "../way_colors.js";
@@ -18,10 +19,15 @@ export function pathCard(state, cluster, readOnly) {
     "article",
     { class: `card ${chosen ? "chosen" : ""}`, "data-focus": `paths ${path.id}` },
     element("header", {}, heading(cluster), pickButton(path, chosen)),
-    definitionList([...facts(path, cluster), ...(summary.facts ?? [])]),
-    summary.error && element("p", { class: "failed" }, capitalize(summary.error)),
+    verdict(summary),
     notes.map((note) => element("p", { class: "note" }, capitalize(note))),
-    actions(path, summary, readOnly),
+    actions(path, summary, readOnly, chosen),
+    element(
+      "details",
+      {},
+      element("summary", {}, "Figures"),
+      definitionList([...facts(path, cluster), ...(summary.facts ?? [])]),
+    ),
   );
 }
 
@@ -31,6 +37,13 @@ function heading({ index, members }) {
     element("h3", {}, element("span", { class: `swatch ${wayClass(index)}` }), `Way ${index}`),
     element("span", { class: "members" }, `${members.length} ${pluralize(members.length, "demonstration")}`),
   ];
+}
+
+/** The one sentence that counts. @param {PathSummary} summary */
+function verdict({ verdict: text, error, planned }) {
+  if (error) return element("p", { class: "failed" }, capitalize(error));
+  if (!text) return element("p", { class: "hint" }, "Whether the arm can follow is being assessed …");
+  return element("p", { class: planned ? "good" : "" }, planned && icon("certify"), text);
 }
 
 /** @param {LearnedPath} path @param {boolean} chosen */
@@ -54,21 +67,34 @@ function facts({ version, curve, fit }, { scores, members, spread }) {
   ];
 }
 
-/** @param {LearnedPath} path @param {PathSummary} summary @param {boolean} readOnly */
-function actions({ id, cluster }, { planning, planned }, readOnly) {
-  /** @param {string} verb @param {string} text @param {string} label @param {boolean} disabled */
-  const button = (verb, text, label, disabled = false) => {
+/**
+ * What can be done with it; the next step of the chosen way stands out.
+ * @param {LearnedPath} path
+ * @param {PathSummary} summary
+ * @param {boolean} readOnly
+ * @param {boolean} chosen
+ */
+function actions({ id, cluster }, { planning, planned, error }, readOnly, chosen) {
+  const next = planned ? "run" : error ? "edit" : "plan";
+  /** @param {string} verb @param {string} drawing @param {string} text @param {string} label */
+  const button = (verb, drawing, text, label) => {
     const data = { [`data-${verb}`]: id, "data-key": `${verb} ${id}` };
-    const attributes = { type: "button", "aria-label": `${label} way ${cluster}`, disabled: disabled && "" };
-    return element("button", { ...attributes, ...data }, text);
+    const look = {
+      type: "button",
+      class: chosen && verb === next && "primary",
+      "aria-label": `${label} way ${cluster}`,
+    };
+    const why = verb === "plan" && planning ? "Its motion is being planned." : "";
+    return element("button", { ...look, ...data, ...blocked(why) }, icon(drawing), text);
   };
-  if (readOnly) return planned && element("p", { class: "buttons" }, button("run", "Motion", "See the motion of"));
+  if (readOnly)
+    return planned && element("p", { class: "buttons" }, button("run", "start", "Motion", "See the motion of"));
   return element(
     "p",
     { class: "buttons" },
-    !planned && button("plan", planning ? "Planning …" : "Certify", "Certify", planning),
-    button("edit", "Edit", "Edit"),
-    planned && button("run", "Run", "Run"),
+    !planned && button("plan", "certify", planning ? "Planning …" : "Certify", "Certify"),
+    planned && button("run", "start", "Run", "Run"),
+    button("edit", "edit", "Edit", "Edit"),
   );
 }
 

@@ -1,6 +1,7 @@
 // One card per way, with what is known of its path; and which run is shown.
 import { post, resourcePath } from "../api.js";
-import { closestData, codeBlock, element, hint, option, tabButton } from "../elements.js";
+import { blocked, closestData, codeBlock, element, hint, option, tabButton } from "../elements.js";
+import { icon } from "../icons.js";
 import { patchChildren } from "../patch_children.js";
 import { changesAny } from "../store.js";
 import { capitalize, pluralize } from "../texts.js";
@@ -13,6 +14,7 @@ const ABOUT_CARDS =
   "One card for each way that was shown. Choose one and certify it: that proves that the arm can follow, and lets you run it.";
 const ABOUT_LEARNING =
   "Learning finds the different ways, keeps the demonstrations that agree, and fits a smooth path to each way.";
+const BUSY = "The task is being learned now.";
 const NOTHING =
   "Nothing to learn from yet. Show the task a few times first, each way at least three times; then learn it here, or with:";
 
@@ -82,7 +84,12 @@ function learnButton({ jobs }, text, isNext = true) {
   return element(
     "p",
     {},
-    element("button", { type: "button", class: isNext && "primary", ...data, disabled: busy && "" }, text),
+    element(
+      "button",
+      { type: "button", class: isNext && "primary", ...data, ...blocked(busy ? BUSY : "") },
+      icon("learn"),
+      text,
+    ),
   );
 }
 

@@ -1,9 +1,9 @@
-// Summaries of the paths: duration, clearance and reach, from the newest plan, else from an assessment.
+// Summaries of the paths: whether the arm can follow, duration and clearance, from the newest plan, else from an assessment.
 import { ApiError, get, post, resourcePath } from "../api.js";
 import { latestPaths } from "../store.js";
 import { formatLength, formatNumber, formatPercent } from "../texts.js";
 
-/** @typedef {Pick<PathSummary, "facts" | "error">} Summary */
+/** @typedef {Pick<PathSummary, "verdict" | "facts" | "error">} Summary */
 
 export class PathSummaries {
   /** @type {Map<string, Summary>} */
@@ -27,7 +27,7 @@ export class PathSummaries {
       const plan = job?.state === "succeeded" ? job.outcome : "";
       const key = plan || `${path.id} ${path.version}`;
       this.#request(key, () => (plan ? summarizePlan(plan) : summarizeAssessment(path)));
-      const refused = job?.state === "failed" ? { facts: [], error: `Not certified: ${job.message}` } : {};
+      const refused = job?.state === "failed" ? { verdict: "", facts: [], error: `Not certified: ${job.message}` } : {};
       const planning = job?.state === "queued" || job?.state === "running";
       found[path.id] = { ...this.#summaries.get(key), ...refused, planning, planned: plan !== "" };
     }
@@ -70,12 +70,10 @@ async function summarizePlan(id) {
   /** @type {Plan} */
   const { duration, certificate } = await get(resourcePath("plans", id));
   const range = formatPercent(certificate.position_use.value);
+  const clearance = formatLength(certificate.clearance.value);
   return {
-    facts: [
-      ["Duration", formatNumber(duration, 2, "s")],
-      ["Clearance", formatLength(certificate.clearance.value)],
-      ["Reach", `the whole way, ${range} of joint range`],
-    ],
+    verdict: `Certified: ${formatNumber(duration, 2, "s")}, clearance ${clearance}`,
+    facts: [["Reach", `the whole way, ${range} of joint range`]],
   };
 }
 
@@ -85,11 +83,9 @@ async function summarizeAssessment({ id, version, curve }) {
   const assessment = await post(resourcePath("paths", id, "assessment"), { version, curve });
   const { duration, clearance, failure, sentence } = assessment;
   if (failure) return { error: sentence }; // which says by how much; estimates beside it would say otherwise
+  const time = duration === null ? "" : `about ${formatNumber(duration, 1, "s")}, `;
   return {
-    facts: [
-      ["Duration", duration !== null && `about ${formatNumber(duration, 1, "s")}`],
-      ["Clearance", `about ${formatLength(Math.min(...clearance))}`],
-      ["Reach", "the whole way"],
-    ],
+    verdict: `The arm can probably follow: ${time}clearance about ${formatLength(Math.min(...clearance))}`,
+    facts: [["Reach", "the whole way"]],
   };
 }

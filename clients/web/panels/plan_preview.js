@@ -4,6 +4,7 @@ import { GhostArm } from "../arm/ghost_arm.js";
 import { Motion } from "../arm/motion.js";
 import { MotionPlayer } from "../arm/motion_player.js";
 import { definitionList, element, hint, progressBar, tabButton } from "../elements.js";
+import { icon } from "../icons.js";
 import { patchChildren } from "../patch_children.js";
 import { changesAny, selectedPath } from "../store.js";
 import { formatLength, formatNumber, formatPercent } from "../texts.js";
@@ -41,7 +42,7 @@ class PlanPreview {
   constructor(place, context) {
     this.context = context;
     this.facts = element("div", {});
-    this.previewButton = element("button", { type: "button", class: "primary" }, "Preview");
+    this.previewButton = element("button", { type: "button" }, icon("preview"), "Preview");
     this.planButton = element("button", { type: "button", class: "primary" }, "Plan the motion");
     this.player = new MotionPlayer({
       sliderLabel: "Instant of the motion",

@@ -1,4 +1,4 @@
-// Run: a preview by a ghost arm, then the arm itself, by a plan or by a live hand, its joints, and past executions.
+// Run: the console of the arm, the motion that it would start as a ghost arm shows it, a live hand, joints, past executions.
 import { armControls } from "./arm_controls.js";
 import { driverState } from "./driver_state.js";
 import { executionReplay } from "./execution_replay.js";
@@ -24,8 +24,8 @@ function armWithDriver(place, context) {
 }
 
 const run = sectionedPanel("run", "Run", [
-  ["preview", "Preview", (place, context) => (preview = planPreview(place, context))],
   ["arm", "Arm", armWithDriver],
+  ["preview", "Motion", (place, context) => (preview = planPreview(place, context))],
   ["teleop", "Live hand", (place, context) => (teleop = teleopPanel(place, context))],
   ["joints", "Joints", (place, context) => liveJoints(place, context, (state) => driver.update(state))],
   ["replay", "Past executions", (place, context) => (replay = executionReplay(place, context))],

@@ -1,6 +1,7 @@
 // Teleoperation: the arm follows a live hand while its clutch is held; why it slows down or stops is shown.
 import { get, post, resourcePath } from "../api.js";
 import { lease } from "../arm/lease.js";
+import { block } from "../elements.js";
 import { TeleopSession } from "../hand/teleop_session.js";
 import { XrHand, xrUnavailableReason } from "../hand/xr_hand.js";
 import { ReconnectingSocket } from "../reconnecting_socket.js";
@@ -209,18 +210,24 @@ class TeleopPanel {
     const isOthers = Boolean(state.lease?.holder) && !lease.held;
     parts.idle.hidden = session !== null;
     parts.active.hidden = session === null;
-    parts.begin.disabled =
-      this.#isBeginning || activeExecution(state) !== null || state.connection !== "live" || isOthers;
+    block(parts.begin, this.#isBeginning ? "It begins." : beginBlocker(state, isOthers));
     parts.calibrationField.hidden = [PAGE_HAND, HEADSET, ""].includes(parts.hand.value);
     if (!session) return;
     parts.grip.hidden = !session.usesPageHand || session.usesHeadset;
     parts.clutch.hidden = session.usesHeadset;
-    parts.grip.disabled = !session.clutchPressed;
+    block(parts.grip, session.clutchPressed ? "" : "Hold the clutch first.");
     parts.grip.textContent = session.handClosed ? "Open the gripper" : "Close the gripper";
     parts.clutch.classList.toggle("pressed", session.clutchPressed);
     parts.clutch.setAttribute("aria-pressed", String(session.clutchPressed));
     if (state.executor) this.#showStatus(state.executor);
   }
+}
+
+/** @param {State} state @param {boolean} isOthers somebody else holds control */
+function beginBlocker(state, isOthers) {
+  if (state.connection !== "live") return "The service does not answer.";
+  if (activeExecution(state)) return "The arm is moving already.";
+  return isOthers ? `${state.lease?.holder} holds control.` : "";
 }
 
 /** @param {string} execution */

@@ -3,6 +3,7 @@ import { post } from "../api.js";
 import { ArmStop } from "../arm/stop.js";
 import { closestData } from "../elements.js";
 import { EventStream } from "../event_stream.js";
+import { keepFocus } from "../focus_keeper.js";
 import { Messages } from "../messages.js";
 import { demonstrationList } from "../panels/demonstration_list.js";
 import { planPreview } from "../panels/plan_preview.js";
@@ -63,7 +64,8 @@ byId("panels").addEventListener("click", (event) => {
   if (open) tabs.select(open);
 });
 enablePathPicking(view, store, sceneLayers);
-connectViewControls(view);
+connectViewControls(view, store);
+keepFocus();
 const arm = Uint8Array.from(atob(byId("arm").textContent ?? ""), (letter) => letter.charCodeAt(0));
 view.draw(arm.buffer);
 eventStream.readAll();

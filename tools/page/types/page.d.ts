@@ -24,7 +24,8 @@ declare global {
   /** A pair without a value is left out. */
   type Fact = [name: string, value: string | number | false | null | undefined] | false | null | undefined;
 
-  type PathSummary = { facts?: Fact[]; error?: string; planning: boolean; planned: boolean };
+  /** `verdict`: whether the arm can follow, in one line; `error`: why it cannot. */
+  type PathSummary = { verdict?: string; facts?: Fact[]; error?: string; planning: boolean; planned: boolean };
 
   type ConnectionState = "connecting" | "live" | "lost" | "refused";
   type ConnectionDetails = { delay?: number; reason?: string };
