@@ -2,6 +2,7 @@
 #   make demo [SPEED=4] [ARGS=--once]   the main job: tracker -> recorder -> learning -> arm
 #   make test    check and all tests          make bench   measured figures
 #   make check   format, lint, types          make proto   regenerate the messages
+#   make lint-contract   Spectral and Redocly over the description of the REST API
 #   make experiments [ARGS=--quick]   the paper's experiments, as a report in reports/
 #   make docs    the documents as a site; the service shows it under /help
 #   make pins [ARGS=--upgrade]   choose the versions of requirements/ anew
@@ -25,7 +26,7 @@ READY   := .venv/.ready
 # Every file is checked against its hash, and nothing is installed that requirements/ does not name.
 PINNED  := --no-deps --require-hashes -r requirements
 
-.PHONY: demo serve test check check-page bench experiments docs pins sbom proto clean setup programs
+.PHONY: demo serve test check check-page lint-contract bench experiments docs pins sbom proto clean setup programs
 .DEFAULT_GOAL := help
 
 help:
@@ -80,6 +81,17 @@ $(PAGE_TOOLS): tools/page/package-lock.json | $(READY)
 check-page: $(PAGE_TOOLS)
 	@$(NPM) run --silent check
 
+# Linters of the REST API's description; what they find wrongly is named in tools/contract/spectral.yaml.
+CONTRACT_TOOLS := tools/contract/node_modules/.package-lock.json
+
+$(CONTRACT_TOOLS): tools/contract/package-lock.json | $(READY)
+	@PATH="$(CURDIR)/$(BIN):$$PATH" npm --prefix tools/contract ci --silent
+	@touch $@
+
+lint-contract: $(CONTRACT_TOOLS)
+	@$(BIN)/python -m tests.contract.openapi dist/openapi.json
+	@PATH="$(CURDIR)/$(BIN):$$PATH" npm --prefix tools/contract run --silent lint
+
 # What tests need beside Python's packages: found, installed where that is allowed, or named.
 SEEN = PATH="$$PATH:/usr/sbin" command -v
 programs:
@@ -124,5 +136,5 @@ proto: $(READY)
 	cd proto && ../$(BIN)/python -m grpc_tools.protoc -I . --python_out=. --pyi_out=. teachpath_proto/tracker.proto teachpath_proto/motion.proto teachpath_proto/job.proto
 
 clean:
-	rm -rf .venv tools/page/node_modules .venv.log .mypy_cache .ruff_cache .pytest_cache .hypothesis build dist service/teachpath/help
+	rm -rf .venv tools/page/node_modules tools/contract/node_modules .venv.log .mypy_cache .ruff_cache .pytest_cache .hypothesis build dist service/teachpath/help
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +

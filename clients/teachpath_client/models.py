@@ -378,6 +378,7 @@ class Demonstration:
         amended_by: who marked, trimmed, discarded or restored it last, where the station asks.
         digest: of its recording; None: it was stored before digests were.
         object_pose: of the object before it was grasped; None: as the scene has it.
+        source_sha256: of the file that it was imported from, hexadecimal; empty: it was not imported.
     """
 
     id: str
@@ -402,6 +403,7 @@ class Demonstration:
     amended_by: str = ""
     digest: RecordingDigest | None = None
     object_pose: ObjectPose | None = None
+    source_sha256: str = ""
 
 
 @dataclass(frozen=True)
@@ -620,6 +622,8 @@ class FileReport:
         made: demonstrations that would be made, with their verdicts.
         refusal: why it cannot be imported as it is, and the way out at the command line; empty: it can.
         question: what of it an answer would mend; null: it is another fault.
+        sha256: of the file, hexadecimal.
+        imported_before: that the task has demonstrations of the same file, in words; empty: it has none.
     """
 
     file: str
@@ -638,6 +642,8 @@ class FileReport:
     made: list[Demonstration] = field(default_factory=list)
     refusal: str = ""
     question: OpenQuestion | None = None
+    sha256: str = ""
+    imported_before: str = ""
 
 
 @dataclass(frozen=True)
@@ -1678,6 +1684,8 @@ class Task:
         created_ns: when it was made [ns since the Unix epoch].
         object_at_grasp: whether the object lies where the hand grasps, anew in each demonstration, instead of
             where the scene has it.
+        archived_ns: when it was deleted [ns since the Unix epoch]; 0: it was not. All of it is kept, and can be
+            brought back.
     """
 
     name: str
@@ -1685,6 +1693,7 @@ class Task:
     calibration: str
     created_ns: int
     object_at_grasp: bool = False
+    archived_ns: int = 0
 
 
 @dataclass(frozen=True)

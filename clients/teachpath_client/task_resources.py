@@ -83,9 +83,9 @@ class TaskResources(Rest):
 
     # tasks and their demonstrations
 
-    def tasks(self) -> list[Task]:
-        """List the tasks, oldest first."""
-        return self._list(Task, "/tasks")
+    def tasks(self, *, archived: bool = False) -> list[Task]:
+        """List the tasks, or those that were deleted, oldest first."""
+        return self._list(Task, "/tasks", archived=archived) if archived else self._list(Task, "/tasks")
 
     def get_task(self, task: str) -> Task:
         """Return one task."""
@@ -105,6 +105,18 @@ class TaskResources(Rest):
         wanted = {"scene": scene or None, "calibration": calibration or None, "object_at_grasp": object_at_grasp}
         body = {name: value for name, value in wanted.items() if value is not None}
         return self._ask(Task, "PUT", f"/tasks/{task}", body)
+
+    def delete_task(self, task: str) -> Task:
+        """Archive a task: lists leave it out, and nothing is begun with it; `restore_task` brings it back."""
+        return self._ask(Task, "DELETE", f"/tasks/{task}")
+
+    def restore_task(self, task: str) -> Task:
+        """Bring back a task that was deleted."""
+        return self._ask(Task, "POST", f"/tasks/{task}/restore")
+
+    def rename_task(self, task: str, name: str) -> Task:
+        """Give a task another name, with all that is of it."""
+        return self._ask(Task, "PATCH", f"/tasks/{task}", {"name": name})
 
     def demonstrations(self, task: str) -> list[Demonstration]:
         """List a task's demonstrations in their order; `pages` gives a long list bit by bit."""

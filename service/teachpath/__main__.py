@@ -30,6 +30,7 @@ try:
         resources,
         station,
         stores,
+        tasks,
         tls,
         tokens,
         work,
@@ -88,6 +89,7 @@ for command in (
 ):
     app.command(name=command.__name__.rstrip("_"))(command)
 app.add_typer(exporting.app, name="export")
+app.add_typer(tasks.app, name="task")
 app.add_typer(curves.app, name="curve")
 app.add_typer(arms.app, name="arm")
 app.add_typer(logins.app, name="login")

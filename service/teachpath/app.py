@@ -36,6 +36,7 @@ from teachpath.jobs.limited_process import LimitedProcess
 from teachpath.live.event_hub import EventHub
 from teachpath.live.preview.asset_paths import has_documents
 from teachpath.live.preview.preview import Preview
+from teachpath.live.shown_task import ShownTask
 from teachpath.live.state_poller import Poll, StatePoller
 from teachpath.motion.arm.geometry import visual_solids
 from teachpath.motion.planning.signature import SigningKey
@@ -89,7 +90,6 @@ class Station:
             self.bus: Bus = listen_on_bus(settings.bus, self._access)
             on_failure.pop_all()
         self.keys = Keys(settings.bus.prefix)
-        self._shown = ""
         self._started = time.monotonic()
         self._open_recording()
         self._open_work()
@@ -106,10 +106,7 @@ class Station:
                 part.start()
             remove_leftovers(Path(self.settings.store.data_dir), self.store.awaited_uploads())
             self.jobs.start()
-            if tasks := self.store.tasks():
-                self._show_task(tasks[-1].name)
-            else:
-                self.preview.show_object(self.settings.scenes[0].carried)
+            self._shown.show_newest()
         except BaseException:
             self.__exit__(None, None, None)
             raise
@@ -152,7 +149,9 @@ class Station:
             self.store, settings.recording, settings.calibrations, settings.scene, self.reader.call
         )
         self.executions = Executions(self.bus, self.keys, self.store, self.audit.note_journal, robot=settings.bus.robot)
-        self.objects = ObjectPoses(self.bus, self.keys, settings.scene, self.executions.is_moving, self._show_object)
+        self.objects = ObjectPoses(
+            self.bus, self.keys, settings.scene, self.executions.is_moving, lambda scene: self._shown.show_scene()
+        )
         self.recorder = Recorder(
             self.bus,
             self.keys,
@@ -160,14 +159,21 @@ class Station:
             settings.recording,
             Lookup(settings.scene, self.calibrations.get, self.objects.reported),
             DemonstrationCallbacks(
-                added=lambda demonstration, trajectory: self._show_task(demonstration.task),
-                changed=lambda demonstration: self._show_task(demonstration.task),
+                added=lambda demonstration, trajectory: self._shown.show(demonstration.task),
+                changed=lambda demonstration: self._shown.show(demonstration.task),
             ),
             call=self.reader.call,
         )
         self._queries = RecorderQueries(self.bus, self.keys, self.recorder)
         self.guidance = GuidanceThread(self.store.demonstrations, self._course, settings.learning, self.reader.call)
         self.websocket_trackers = WebSocketTrackers(self.bus, self.keys, self.recorder)
+        self._shown = ShownTask(
+            self.store,
+            self.objects.scene,
+            settings.scenes[0],
+            lambda carried: self.preview.show_object(carried),  # the preview is opened later
+            self.guidance.request,
+        )
 
     def _open_work(self) -> None:
         """Open what learns, plans and looks at curves."""
@@ -175,7 +181,7 @@ class Station:
         self.assessor = CurveAssessor()
         self.transfers = TransferFolders(Path(settings.store.data_dir) / TRANSFERS)
         kinds = JobKinds(
-            self.store, settings, self.calibrations, self.transfers, self._show_task, self._signing_key, self.objects
+            self.store, settings, self.calibrations, self.transfers, self._shown.show, self._signing_key, self.objects
         ).by_name()
         self.jobs = Jobs(self.bus, self.keys, self.store, settings.jobs, kinds, on_finished=self.assessor.on_finished)
         self.exporter = Exporter(ExportSource(settings.store, settings.recording, settings.scenes), settings.jobs)
@@ -234,7 +240,7 @@ class Station:
             backlog=self.recorder.backlog,
             longest_backlog=self.settings.recording.longest_backlog,
             trackers=tuple(self.recorder.trackers()),
-            guidance=Advice(self._shown, self.guidance.advice(self._shown)),
+            guidance=Advice(self._shown.name, self.guidance.advice(self._shown.name)),
             executor=self.executions.status,
             notes=tuple(self.notes()),
         )
@@ -281,20 +287,9 @@ class Station:
             websocket_trackers=self.websocket_trackers,
             joints=self.joints,
             objects=self.objects,
-            trajectory=self.recorder.annotations.trajectory,
             reader=self.reader,
             health=self.health,
             transfers=self.transfers,
             exporter=self.exporter,
+            leave_task=self._shown.leave,
         )
-
-    def _show_task(self, task: str) -> None:
-        """Show a task whose demonstrations have changed: in the guidance, and its object in the preview."""
-        self._shown = task
-        self.guidance.request(task)
-        self._show_object()
-
-    def _show_object(self, _: str = "") -> None:
-        """Show the object of the task that is shown, where it lies."""
-        if self._shown:
-            self.preview.show_object(self.objects.scene(self.store.task(self._shown).scene).carried)

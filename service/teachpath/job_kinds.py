@@ -66,7 +66,7 @@ class LearningKinds:
         return learned, self._stored(job.task, list(chosen.values())), job.request["threshold"], job.request["clusters"]
 
     def _stored(self, task: str, rows: list[Demonstration]) -> StoredDemonstrations:
-        self.store.require_recorded_here(task)
+        self.store.services.require_recorded_here(task)
         if self.is_away:
             self.store.recordings.require_uploaded([row.recording for row in rows])
         carried = self.settings.scene(self.store.task(task).scene).carried

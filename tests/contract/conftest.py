@@ -11,7 +11,16 @@ from tests.postgres import Server
 # What a station answers must not depend on its database; elsewhere, tests ask a station with SQLite alone.
 ON_BOTH = {
     f"test_{name}"
-    for name in ("idempotency", "pages", "rest", "rest_calibrations", "rest_tasks", "rest_work", "versions")
+    for name in (
+        "idempotency",
+        "pages",
+        "rest",
+        "rest_calibrations",
+        "rest_task_changes",
+        "rest_tasks",
+        "rest_work",
+        "versions",
+    )
 }
 
 

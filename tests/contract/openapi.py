@@ -1,6 +1,7 @@
 """The description of the REST API: `python -m tests.contract.openapi` writes openapi.json after a wanted change.
 
-It writes the client's models with it.
+It writes the client's models with it. `python -m tests.contract.openapi FILE` writes the description as a station gives
+it into a file, for linters and generators, and nothing else.
 """
 
 import json
@@ -22,6 +23,13 @@ def text(description: dict[str, Any]) -> str:
 
 if __name__ == "__main__":
     with station() as opened:
-        FILE.write_text(text(opened.web.openapi()))
-        client_models.FILE.write_text(client_models.text(opened.web.openapi()))
-    sys.stdout.write(f"{FILE} and {client_models.FILE} written\n")
+        description = opened.web.openapi()
+    if sys.argv[1:]:
+        written = [Path(sys.argv[1])]
+        written[0].parent.mkdir(exist_ok=True)
+        written[0].write_text(json.dumps(description, indent=1))
+    else:
+        written = [FILE, client_models.FILE]
+        FILE.write_text(text(description))
+        client_models.FILE.write_text(client_models.text(description))
+    sys.stdout.write(f"{' and '.join(map(str, written))} written\n")

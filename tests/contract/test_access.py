@@ -71,7 +71,7 @@ def test_the_description_declares_the_scheme_and_what_each_operation_needs(desk:
     for method, path, need in access_matrix.needs(desk.station.web):
         operation = description["paths"].get(path, {}).get(method.lower())
         if operation is not None:
-            expected = None if need == access_matrix.NOBODY else [{"token": [need]}]
+            expected = [] if need == access_matrix.NOBODY else [{"token": [need]}]
             assert operation.get("security") == expected, (method, path)
 
 

@@ -5,9 +5,14 @@ import re
 import tomllib
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
+from types import NoneType
+from typing import Any, get_args
 
 import pytest
+from fastapi.routing import iter_route_contexts
+from jsonschema import Draft202012Validator
+from referencing import Registry, Resource
+from referencing.jsonschema import DRAFT202012
 
 import teachpath
 import teachpath_client
@@ -59,6 +64,35 @@ def test_what_begins_something_says_where_it_is() -> None:
     }
     assert len(begun) >= 6
     assert [name for name, response in begun.items() if "Location" not in response.get("headers", {})] == []
+
+
+def test_every_model_has_an_example_of_its_own_form() -> None:
+    shown = {name: schema for name, schema in SCHEMAS.items() if "properties" in schema}
+    assert len(shown) > 100
+    document = Resource(DESCRIPTION, DRAFT202012)
+    registry: Registry[Any] = Registry().with_resource("urn:api", document)
+    faults = []
+    for name, schema in shown.items():
+        (example,) = schema["examples"]
+        check = Draft202012Validator({"$ref": f"urn:api#/components/schemas/{name}"}, registry=registry)
+        faults += [f"{name} {error.json_path}: {error.message}" for error in check.iter_errors(example)]
+        assert example, name
+    assert faults == []
+
+
+def test_every_example_of_a_request_can_be_sent(desk: Desk) -> None:
+    fields = [getattr(route, "body_field", None) for route in iter_route_contexts(desk.station.web.routes)]
+    bodies = [field.field_info.annotation for field in fields if field is not None]
+    models = {next(each for each in (*get_args(body), body) if each is not NoneType) for body in bodies}
+    assert len(models) > 20
+    for model in models:
+        model.model_validate(SCHEMAS[model.__name__]["examples"][0])
+
+
+def test_every_operation_says_whether_it_asks_who_sends() -> None:
+    assert [name for name, operation in OPERATIONS.items() if "security" not in operation] == []
+    assert {"contact", "license"} <= set(DESCRIPTION["info"])
+    assert DESCRIPTION["servers"]
 
 
 def test_every_kind_of_refusal_is_listed(desk: Desk) -> None:

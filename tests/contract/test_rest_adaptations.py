@@ -75,6 +75,21 @@ def test_an_adaptation_is_a_new_version_with_its_certificate(desk: Desk, taught:
     assert desk.get(f"/plans/{job['outcome']}").json()["path"] == taught.path
 
 
+def test_an_adaptation_that_comes_again_with_its_key_is_answered_with_its_version(desk: Desk, taught: Taught) -> None:
+    key = {"Idempotency-Key": "adapt once"}
+    body = {"goal": {"position": np.add(taught.goal, [0.03, 0.0, 0.0]).tolist()}, "start": {"position": taught.start}}
+    address = f"/paths/{taught.path}/adaptations"
+    first = desk.post(address, body | {"branch": "once"}, headers=key)
+    job = desk.job_ended(first.json()["job"]["id"])
+    before = desk.get(f"/paths/{taught.path}/versions").json()
+    again = desk.post(address, body | {"branch": "once"}, headers=key)
+    assert (again.status_code, again.headers["location"]) == (201, first.headers["location"])
+    assert again.json() == first.json() | {"job": job}
+    assert desk.get(f"/paths/{taught.path}/versions").json() == before
+    refused(desk.post(address, body | {"branch": "other"}, headers=key), 409, "send a new key with each order")
+    assert desk.get(f"/paths/{taught.path}/versions").json() == before
+
+
 def test_what_was_not_shown_is_told(desk: Desk, taught: Taught) -> None:
     found = adapted(desk, taught, [0.0, -0.35, 0.0], branch="near").json()
     assert "apart on the level, shown were" in found["extrapolates"]

@@ -97,6 +97,31 @@ def test_an_import_is_a_job_that_is_listed_with_its_task(desk: Desk) -> None:
     wait_until(lambda: list(desk.data_dir.glob("transfers/*")) == [], "the upload is removed")
 
 
+def test_a_file_that_comes_twice_is_said(desk: Desk) -> None:
+    (first,) = desk.import_("twice", csv(80), name="one.csv")
+    assert first["statistics"]["notes"] == []
+    (again,) = desk.import_("twice", csv(80), name="another-name.csv")
+    (note,) = again["statistics"]["notes"]
+    assert "the same file was imported into twice before, as 1" in note
+    recording = desk.get(f"/demonstrations/{first['id']}/recording").content
+    (copy,) = desk.import_("twice", recording, name="copy.mcap")
+    assert "was imported into twice before, as 1:" in copy["statistics"]["notes"][-1]
+    (other,) = desk.import_("once-more", csv(80), name="one.csv")
+    assert other["statistics"]["notes"] == []
+    for shown in (first, again):
+        desk.send("PATCH", f"/api/v1/demonstrations/{shown['id']}", json={"discarded": True})
+    (alone,) = desk.import_("twice", csv(80))
+    assert alone["statistics"]["notes"] == []
+
+    upload = desk.post("/uploads", json=None, content=csv(80), params={"name": "one.csv"}).json()
+    reports = [
+        desk.post(f"/uploads/{upload['id']}/examination", {"task": task, "file": {"name": "one.csv"}}).json()
+        for task in ("twice", "never-seen")
+    ]
+    said = [report["imported_before"] for report in reports]
+    assert (said[0].startswith("the same file was imported into twice before, as 4:"), said[1]) == (True, "")
+
+
 def turned(reach: float) -> Any:
     values = np.zeros((40, 7))
     values[:, 3], values[:, 0] = 1.0, np.linspace(0.4, 0.4 + reach, 40)

@@ -137,7 +137,7 @@ def test_stations_have_jobs_executions_and_recordings_of_their_own(open_: Open) 
     assert [job.station for job in one.lists.jobs("t").entries] == ["two", "one"]  # and everybody sees them all
     assert [each.number for each in two.demonstrations("t")] == [1, 2]
     with pytest.raises(UnusableInput, match=r"recordings other stations keep \(1 at one\)"):
-        two.require_recorded_here("t")
+        two.services.require_recorded_here("t")
 
 
 def test_a_name_is_of_one_running_station(open_: Open, url: str) -> None:

@@ -2,6 +2,7 @@
 
 import json
 import re
+from collections.abc import Iterator
 from contextlib import suppress
 from typing import Any
 
@@ -9,6 +10,7 @@ import pytest
 from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import connect
 
+from teachpath.api.faults import MAX_FAULTS
 from tests.contract import openapi
 from tests.contract.desk import API, Desk, refused
 from tests.waiting import HANG
@@ -56,7 +58,7 @@ def test_an_unknown_parameter_is_refused_and_the_nearest_is_offered(
 
 
 @pytest.mark.parametrize(("method", "path", "operation"), OPERATIONS, ids=NAMES)
-def test_an_unknown_field_is_refused_and_the_nearest_is_offered(
+def test_an_unknown_field_is_refused_and_the_known_ones_are_named(
     desk: Desk, method: str, path: str, operation: dict[str, Any]
 ) -> None:
     schema = model(operation)
@@ -65,11 +67,49 @@ def test_an_unknown_field_is_refused_and_the_nearest_is_offered(
             refused(desk.send(method, address(path, operation), json={SPARE: 1}), 422, "takes none")
         return
     known = list(schema["properties"])
-    for name, said in [(SPARE, "known here: " + ", ".join(known)), (f"{known[0]}s", f"did you mean {known[0]}?")]:
-        answer = desk.send(method, address(path, operation), json={name: 1})
-        assert answer.status_code == 422, answer.text
-        faults = {fault["place"]: fault["fault"] for fault in answer.json()["errors"]}
-        assert said in faults[f"body.{name}"]
+    answer = desk.send(method, address(path, operation), json={SPARE: 1})
+    assert answer.status_code == 422, answer.text
+    faults = {fault["place"]: fault["fault"] for fault in answer.json()["errors"]}
+    assert f"known here: {', '.join(known)}" in faults[f"body.{SPARE}"]
+
+
+def objects(schema: dict[str, Any], place: str = "body") -> Iterator[tuple[str, dict[str, Any]]]:
+    """Yield every object that a body may hold, with its place: `body.points.0` is the first of a list."""
+    yield place, schema
+    for field, kind in schema["properties"].items():
+        steps = f"{place}.{field}{'.0' if 'items' in kind else ''}"
+        for name in re.findall(r"#/components/schemas/(\w+)", json.dumps(kind)):
+            if "properties" in (inner := DESCRIPTION["components"]["schemas"][name]):
+                yield from objects(inner, steps)
+
+
+def body(place: str, inner: dict[str, Any]) -> Any:
+    """Return a body that holds an object at a place."""
+    whole: Any = inner
+    for step in reversed(place.split(".")[1:]):
+        whole = [whole] if step == "0" else {step: whole}
+    return whole
+
+
+@pytest.mark.parametrize(
+    ("method", "path", "operation"),
+    [each for each in OPERATIONS if model(each[2]) is not None],
+    ids=[name for name, each in zip(NAMES, OPERATIONS, strict=True) if model(each[2]) is not None],
+)
+def test_a_slip_in_any_field_at_any_depth_is_refused_and_the_field_is_offered(
+    desk: Desk, method: str, path: str, operation: dict[str, Any]
+) -> None:
+    schema = model(operation)
+    assert schema is not None
+    for place, inner in objects(schema):
+        names = list(inner["properties"])
+        for first in range(0, len(names), MAX_FAULTS // 2):
+            slips = {f"{name[:1]}{name}": name for name in names[first : first + MAX_FAULTS // 2]}
+            answer = desk.send(method, address(path, operation), json=body(place, dict.fromkeys(slips, 1)))
+            assert answer.status_code == 422, answer.text
+            faults = {fault["place"]: fault["fault"] for fault in answer.json()["errors"]}
+            for slip, name in slips.items():
+                assert f"did you mean {name}?" in faults[f"{place}.{slip}"]
 
 
 def test_every_object_of_a_request_is_closed() -> None:

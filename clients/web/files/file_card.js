@@ -103,6 +103,7 @@ function examination(file, report, { isOnly, readers }) {
   const isUnsure = report.unsure.includes(report.motion) && !report.refusal;
   return [
     report.refusal && element("p", { class: "failed" }, refusalSentence(file.name, report)),
+    report.imported_before && element("p", { class: "failed" }, capitalize(report.imported_before)),
     report.motions > 1 && motionField(file, report),
     isUnsure && element("p", { class: "failed" }, UNSURE),
     report.times.length > 1 && motionPlot(id, report, shownMarks),

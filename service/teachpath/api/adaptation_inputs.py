@@ -49,5 +49,5 @@ def _trajectories(parts: Parts, run: Run, demonstrations: Sequence[Demonstration
     """Return the trajectories that are those that were learned from."""
     from teachpath.learning.summary import fingerprint  # here, because it loads what clusters demonstrations
 
-    found = ((d.id, parts.trajectory(d)) for d in demonstrations)
+    found = ((d.id, parts.recorder.annotations.trajectory(d)) for d in demonstrations)
     return [trajectory for key, trajectory in found if fingerprint(trajectory) == run.learned.inputs.get(key)]

@@ -2,25 +2,27 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
-from fastapi import APIRouter, Response
+from fastapi import APIRouter, Request, Response
 from pydantic import Field
 
 from teachpath.api.access import TEACH, VIEW, Sender, signed
 from teachpath.api.adaptation_inputs import shown_for
+from teachpath.api.adaptation_orders import Adaptation, answer_of, order_of
 from teachpath.api.answers import json_response, located, model_of
 from teachpath.api.parts import Parts
 from teachpath.api.poses import Component, Coordinate
 from teachpath.api.problems import refusals
 from teachpath.api.strict_requests import Body
 from teachpath.api.versions import BRANCH_PATTERN, LINE_PATTERN, wanted_version
+from teachpath.api.work import IdempotencyKey, submitter_of
 from teachpath.editing import check_editable
-from teachpath.errors import UnusableInput
+from teachpath.errors import Outdated, UnusableInput
 from teachpath.io.store.store import Store
 from teachpath.io.store.versions import Edit
+from teachpath.jobs.idempotency import ORDERED, begun_by
 from teachpath.learning.adaptation.adapted_course import AdaptationModel
 from teachpath.learning.adaptation.target import Target
 from teachpath.records import Array, Job, LearnedPath, ObjectPose, Scene, Version
@@ -52,32 +54,6 @@ class NewAdaptation(Body):
     author: str = Field("", max_length=80, pattern=LINE_PATTERN, description="who asked for it")
 
 
-@dataclass(frozen=True, eq=False)
-class Adaptation:
-    """A path that was adapted to another start and goal.
-
-    Attributes:
-        version: that was saved, or the base itself when it begins and ends there already.
-        path: of that version.
-        spread: two standard deviations [m] of a demonstration between these ends from the path, at 100 equal arc
-            lengths.
-        demonstrations: how many the shape was learned from.
-        places: at how many different starts or goals these were shown.
-        extrapolates: what is beyond the shown range; empty within it.
-        note: how sure the adaptation is, in words.
-        job: that certifies the version; its outcome is a plan.
-    """
-
-    version: Version
-    path: LearnedPath
-    spread: Array
-    demonstrations: int
-    places: int
-    extrapolates: str
-    note: str
-    job: Job
-
-
 UNCHANGED: Final[dict[str, Any]] = {
     "model": model_of(Adaptation),
     "description": "It begins and ends there already: no new version.",
@@ -98,7 +74,9 @@ def adaptations_router(parts: Parts) -> APIRouter:
         | refusals(409, 507),
         dependencies=TEACH,
     )
-    def adapt_path(path: str, wanted: NewAdaptation, sender: Sender) -> Response:
+    def adapt_path(
+        path: str, wanted: NewAdaptation, sender: Sender, request: Request, key: IdempotencyKey = ""
+    ) -> Response:
         """Adapt a path to another start and goal of the object: a new version, and a job that certifies it.
 
         The shape is learned from all demonstrations of the run that do the task in the same way, wherever they did it.
@@ -106,28 +84,23 @@ def adaptations_router(parts: Parts) -> APIRouter:
         /scenes/{scene}/object).
         """
         base = wanted_version(store, path, wanted.version)
-        run = store.run(base.run)
-        scene = parts.objects.scene(store.task(run.task).scene)
-        target = _target(base, scene, wanted)
-        shown = shown_for(parts, run, base)
-        adapted = parts.assessor.adapt(base, shown, target)
-        author = signed(sender, wanted.author)
-        saved = _saved(store, base, wanted, author, adapted, _object_pose(scene, target))
-        order = {"path": path, "version": saved.number}
-        job = parts.jobs.submit(run.task, "plan", order, who=sender.name)
-        answer = Adaptation(
-            saved,
-            versions.get(path, saved.number)[1],
-            adapted.spread,
-            adapted.demonstrations,
-            adapted.places,
-            adapted.extrapolates,
-            adapted.note,
-            job,
-        )
-        location = f"/api/v1/paths/{path}/versions/{saved.number}"
-        status = 200 if saved.number == base.version else 201
-        return json_response(answer, status=status, headers={"Location": location})
+        task, submitter = store.open_task(store.run(base.run).task).name, submitter_of(request, sender)
+        ordered = {"path": path, "adaptation": wanted.model_dump(mode="json")}
+
+        def begun() -> Job | None:
+            return begun_by(store, task, "plan", {ORDERED: ordered}, submitter, key)
+
+        if known := begun():
+            return answer_of(store, known)
+        parts.jobs.require_room(submitter)
+        try:
+            order = _saved_order(parts, base, wanted, signed(sender, wanted.author), ordered)
+        except Outdated:
+            if known := begun():  # the same order came at the same time
+                return answer_of(store, known)
+            raise
+        job = parts.jobs.submit(task, "plan", order, submitter, who=sender.name, idempotency_key=key)
+        return answer_of(store, job)
 
     @router.get(
         "/paths/{path}/versions/{number}/adaptation-model", response_model=model_of(AdaptationModel), dependencies=VIEW
@@ -139,6 +112,18 @@ def adaptations_router(parts: Parts) -> APIRouter:
         return json_response(parts.assessor.adaptation_model(base, shown))
 
     return router
+
+
+def _saved_order(
+    parts: Parts, base: LearnedPath, wanted: NewAdaptation, author: str, ordered: dict[str, Any]
+) -> dict[str, Any]:
+    """Adapt a path, save it, and return the order to certify it."""
+    run = parts.store.run(base.run)
+    scene = parts.objects.scene(parts.store.task(run.task).scene)
+    target = _target(base, scene, wanted)
+    adapted = parts.assessor.adapt(base, shown_for(parts, run, base), target)
+    saved = _saved(parts.store, base, wanted, author, adapted, _object_pose(scene, target))
+    return order_of(saved, ordered, adapted, base.version)
 
 
 def _saved(

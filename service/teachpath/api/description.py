@@ -9,6 +9,7 @@ from typing import Any, Final
 from fastapi import FastAPI
 from fastapi.routing import iter_route_contexts
 
+from teachpath.api.examples import add_examples
 from teachpath.api.problems import MEANINGS, PROBLEM, Refusal
 from teachpath.api.schemas import REFERENCE, Schema, describe, records_in
 
@@ -65,6 +66,7 @@ class DescribedApi(FastAPI):
             document["tags"] = [{"name": name, "description": text} for name, text in TAGS.items()]
             _add_refusal(document["components"]["schemas"])
             describe(document["components"]["schemas"], records_in(_types(self)))
+            add_examples(document["components"]["schemas"])
             for path, methods in document["paths"].items():
                 for method, operation in methods.items():
                     _describe_operation(path, method, operation)
@@ -95,6 +97,7 @@ def _describe_operation(path: str, method: str, operation: Schema) -> None:
             parameter["description"] = PATH_PARAMETERS.get(parameter["name"], "")
         if parameter["name"] == "after":
             responses["200"]["headers"] = LINK
+    operation.setdefault("security", [])  # said, that it asks nobody who he is
     refused = {status: _refusal(status) for status in sorted(_refusals(path, method, operation))}
     operation["responses"] = {code: said for code, said in responses.items() if code < "400"} | refused
 
@@ -104,8 +107,8 @@ def _refusals(path: str, method: str, operation: Schema) -> set[str]:
     declared = {status for status in operation["responses"] if status >= "400"}
     by_form = {
         "400": "application/json" in operation.get("requestBody", {}).get("content", {}),
-        "401": "security" in operation,
-        "403": "security" in operation or method != "get",  # a page of another origin
+        "401": bool(operation["security"]),
+        "403": bool(operation["security"]) or method != "get",  # a page of another origin
         "404": "{" in path,
         "408": "requestBody" in operation,
         "413": "requestBody" in operation,

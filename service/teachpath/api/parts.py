@@ -20,7 +20,7 @@ from teachpath.recorder.calibrations import Calibrations
 from teachpath.recorder.presence import Tracker
 from teachpath.recorder.recorder import Recorder
 from teachpath.recorder.websocket_trackers import WebSocketTrackers
-from teachpath.records import Demonstration, ExecutorStatus, Trajectory
+from teachpath.records import ExecutorStatus
 from teachpath.robot.executions import Executions
 from teachpath.robot.joint_feed import JointFeed
 from teachpath.robot.object_poses import ObjectPoses
@@ -92,8 +92,8 @@ class Parts:
     websocket_trackers: WebSocketTrackers
     joints: JointFeed
     objects: ObjectPoses
-    trajectory: Callable[[Demonstration], Trajectory]
     reader: LimitedProcess
     health: Callable[[], Health]
     transfers: TransferFolders
     exporter: Exporter
+    leave_task: Callable[[str], None]

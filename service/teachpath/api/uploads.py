@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from typing import Annotated, Final
 
 from fastapi import APIRouter, Query, Request, Response
@@ -192,7 +192,8 @@ def _add_uploads(router: APIRouter, parts: Parts) -> None:
             object_at_grasp=starts_at_object(store, task, examination.object_at_grasp),
             motion_marks=file.motion_marks,
         )
-        return json_response(parts.reader.call(examine_upload, order, examination.motion))
+        report = parts.reader.call(examine_upload, order, examination.motion)
+        return json_response(replace(report, imported_before=store.imported_files.imported_before(task, report.sha256)))
 
     @router.delete("/uploads/{upload}", status_code=204, responses=refusals(409), dependencies=DEMONSTRATE)
     def remove_upload(upload: UploadId) -> None:

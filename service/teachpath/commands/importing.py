@@ -6,6 +6,7 @@ import sys
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, contextmanager
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -111,7 +112,10 @@ def import_(
         )
         with progress_bar("examining" if dry_run else "importing") as show:
             if dry_run:
-                reports = examine_files(files, order, call=process.call, progress=show)
+                reports = [
+                    replace(each, imported_before=store.imported_files.imported_before(task, each.sha256))
+                    for each in examine_files(files, order, call=process.call, progress=show)
+                ]
             else:
                 outcomes = import_batch(store, folder, files, order, call=process.call, progress=show)
                 if made := sum(len(each.made) for each in outcomes):
@@ -171,6 +175,8 @@ def _report_examination(reports: Sequence[FileReport]) -> None:
         if report.dwell_times:
             dwells = ", ".join(f"{time:.2f}" for time in report.dwell_times)
             print(f"{report.file}: the hand dwells at {dwells} s; say where it takes and puts: --grasp, --release")
+        if report.imported_before:
+            print(f"{report.file}: {report.imported_before}")
         if report.refusal:
             print(f"{report.file}: cannot be used: {report.refusal}")
         for made in report.made:

@@ -49,24 +49,28 @@ def _status_lines(health: Health) -> list[str]:
 
 def tasks(
     task: Annotated[str, typer.Argument(help="One of them; all unless given.")] = "",
+    archived: Annotated[bool, typer.Option("--archived", help="List those that were deleted: all are kept.")] = False,
     url: Url = "",
     json_: Json = False,
 ) -> None:
     """List the tasks, or show one: its demonstrations by verdict, and the paths of its newest run."""
     with connected(url) as station:
         if not task:
-            listed = station.tasks()
+            listed = station.tasks(archived=archived)
             rows = [(t.name, t.scene, t.calibration, moment(t.created_ns)) for t in listed]
-            names, none = ("task", "scene", "calibration", "made"), "no tasks yet; teachpath demo shows one"
+            none = "no task is deleted" if archived else "no tasks yet; teachpath demo shows one"
+            names = ("task", "scene", "calibration", "made")
             print_list(listed, names, rows, none=none, json_=json_)
             return
-        if task not in (known.name for known in station.tasks()):
+        known = station.tasks() + station.tasks(archived=True)
+        if task not in (each.name for each in known):
             raise NotFound(f"there is no task {task!r}; list them with: teachpath tasks")
         shown = station.get_task(task)
         if json_:
             print_json(shown)
             return
-        print(f"task {shown.name}: scene {shown.scene}, calibration {shown.calibration}, {moment(shown.created_ns)}")
+        gone = f", deleted {moment(shown.archived_ns)}" if shown.archived_ns else ""
+        print(f"task {task}: scene {shown.scene}, calibration {shown.calibration}, {moment(shown.created_ns)}{gone}")
         verdicts = Counter(verdict_word(d.verdict) for d in station.demonstrations(task))
         print(f"demonstrations: {', '.join(f'{n} {verdict}' for verdict, n in verdicts.items()) or 'none'}")
         for run in station.runs(task, limit=1):

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 
 DIGITS: Final = 16
 CHOSEN: Final = frozenset({"upload"})  # by the station: another one when the order comes again
+ORDERED: Final = "ordered"  # holds what the sender ordered, of a request to which the station has added more
 
 
 def job_id(task: str, kind: str, submitter: str, idempotency_key: str) -> str:
@@ -36,7 +37,7 @@ def begun_by(
 
 
 def _require_same(job: Job, request: dict[str, Any]) -> Job:
-    if _ordered(job.request) != _ordered(request):
+    if _ordered(job.request.get(ORDERED, job.request)) != _ordered(request.get(ORDERED, request)):
         raise Conflict(
             f"this Idempotency-Key has begun job {job.id}, by another order; send a new key with each order, and the "
             "same one only with the same order again"

@@ -11,7 +11,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final, Literal
 
-from teachpath.errors import Cancelled, Conflict, QueueFull, StorageUnavailable, TeachpathError
+from teachpath.errors import Cancelled, Conflict, NotFound, QueueFull, StorageUnavailable, TeachpathError
 from teachpath.io.wire import encode_progress
 from teachpath.jobs.idempotency import begun_by, job_id
 from teachpath.jobs.job_faults import disk_sentence, evidence_of
@@ -154,10 +154,12 @@ class Jobs:
 
         Raises:
             QueueFull: too many jobs wait, or too many of this submitter.
-            Conflict: the key is of another order.
+            Conflict: the key is of another order, or the task is archived.
         """
         if known := begun_by(self._store, task, kind, request, submitter, idempotency_key):
             return known
+        with suppress(NotFound):  # an import makes its task
+            self._store.open_task(task)
         self.require_room(submitter)
         key = job_id(task, kind, submitter, idempotency_key)
         station, now = self._store.services.station, time.time_ns()

@@ -146,10 +146,8 @@ def _store_all(store: Store, staging: Path, order: ImportOrder, outcomes: Sequen
     batch = [(outcome.made, staging / str(n) / PREPARED / RECORDINGS) for n, outcome in enumerate(outcomes)]
     task = Task(order.task, order.scene.name, outcomes[0].made[0].calibration.name, 0, order.object_at_grasp)
     try:
-        numbers = iter(store.take_over(task, batch))
+        stored = iter(store.take_over(task, batch))
     except BaseException:
         shutil.rmtree(staging)  # the store has kept nothing of it
         raise
-    return [
-        replace(outcome, made=tuple(replace(row, number=next(numbers)) for row in outcome.made)) for outcome in outcomes
-    ]
+    return [replace(outcome, made=tuple(next(stored) for _ in outcome.made)) for outcome in outcomes]

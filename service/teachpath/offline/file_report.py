@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import shutil
 import tempfile
 from collections.abc import Callable, Sequence
@@ -47,6 +48,8 @@ class FileReport:
         made: demonstrations that would be made, with their verdicts.
         refusal: why it cannot be imported as it is, and the way out at the command line; empty: it can.
         question: what of it an answer would mend; null: it is another fault.
+        sha256: of the file, hexadecimal.
+        imported_before: that the task has demonstrations of the same file, in words; empty: it has none.
     """
 
     file: str
@@ -65,6 +68,8 @@ class FileReport:
     made: tuple[Demonstration, ...] = ()
     refusal: str = ""
     question: OpenQuestion | None = None
+    sha256: str = ""
+    imported_before: str = ""
 
 
 def examine_files(
@@ -95,7 +100,8 @@ def examine_files(
 
 def examine_upload(order: ImportOrder, motion: int = 1) -> FileReport:
     """Return what was understood of an uploaded file, with one of its motions, or the first; raises NotFound."""
-    report = FileReport(order.name, columns=_columns(order))
+    sha256 = hashlib.sha256(upload_content(order)).hexdigest()
+    report = FileReport(order.name, columns=_columns(order), sha256=sha256)
     try:
         read = read_upload(order)
     except OptionNeeded as error:

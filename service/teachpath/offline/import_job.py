@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import hashlib
 import itertools
 import shutil
 import uuid
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from teachpath.errors import NotFound, UnusableInput, UnusableRecording
@@ -135,7 +136,8 @@ def prepare_import(order: ImportOrder, *, progress: Progress = lambda fraction, 
     progress(0.05, f"reading {order.name}")
     read = read_upload(order)
     made = record_upload(order, read, prepared, progress=progress)
-    return PreparedImport(tuple(demonstration for demonstration, _ in made), read.understood)
+    sha256 = hashlib.sha256(upload_content(order)).hexdigest()
+    return PreparedImport(tuple(replace(row, source_sha256=sha256) for row, _ in made), read.understood)
 
 
 def read_upload(order: ImportOrder) -> FileSamples:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
+
 from teachpath.errors import Conflict, NotFound
 from teachpath.io.store.store import Store
 from teachpath.recorder.calibrations import Calibrations
@@ -15,9 +17,9 @@ def import_scene(store: Store, task: str, scene: str) -> str:
     """Return the name of the scene in which a file is judged; `scene` may be empty.
 
     Raises:
-        Conflict: the task has another scene.
+        Conflict: the task has another scene, or is archived.
     """
-    existing = _existing(store, task)
+    existing = existing_task(store, task)
     if existing is None:
         return scene or NEW_SCENE
     if scene and scene != existing.scene:
@@ -33,19 +35,19 @@ def import_calibration(store: Store, calibrations: Calibrations, task: str, kind
     Raises:
         NotFound: there is none of that name.
     """
-    existing = _existing(store, task)
+    existing = existing_task(store, task)
     own = existing.calibration if existing else ""
     return calibrations.get(calibration or NEW_CALIBRATION.get(kind, "") or own or "identity")
 
 
 def starts_at_object(store: Store, task: str, wanted: bool) -> bool:
     """Return whether the object lies where the hand grasps: as the task says, or as `wanted` for a new one."""
-    existing = _existing(store, task)
+    existing = existing_task(store, task)
     return existing.object_at_grasp if existing else wanted
 
 
-def _existing(store: Store, task: str) -> Task | None:
-    try:
-        return store.task(task)
-    except NotFound:
-        return None
+def existing_task(store: Store, task: str) -> Task | None:
+    """Return the task that an import adds to; None: it makes one. Raises Conflict where it is archived."""
+    with suppress(NotFound):
+        return store.open_task(task)
+    return None

@@ -11,6 +11,7 @@ from teachpath.errors import UnusableInput, UnusableRecording
 from teachpath.io.import_settings import ImportSettings
 from teachpath.io.store.store import Store
 from teachpath.offline.file_samples import FileSamples, Source, read_source
+from teachpath.offline.import_target import existing_task
 from teachpath.recorder.annotations import Annotations
 from teachpath.recorder.object_place import ObjectPlace
 from teachpath.recorder.recording_setup import RecordingSetup
@@ -81,7 +82,7 @@ def import_samples(
     """Make a demonstration of each motion that was read from the file `name`; as `import_file`."""
     if not is_name(task):
         raise UnusableInput(name_refusal("task", task))
-    known = next((one for one in store.tasks() if one.name == task), None)
+    known = existing_task(store, task)
     stated_pose = read.stated.object_pose if read.stated else None
     setup = RecordingSetup(
         task,

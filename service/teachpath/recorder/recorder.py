@@ -5,16 +5,17 @@ from __future__ import annotations
 import logging
 import time
 from collections.abc import Callable
+from contextlib import AbstractContextManager
 from dataclasses import dataclass, replace
 from functools import partial
 
-from teachpath.errors import Conflict, UnusableInput
+from teachpath.errors import Conflict
 from teachpath.io.bus import Bus, Handle
 from teachpath.io.store.store import Store
 from teachpath.recorder.annotations import Annotations
 from teachpath.recorder.feedback import FeedbackPublisher
 from teachpath.recorder.presence import Presence, Tracker
-from teachpath.recorder.recording_setup import RecordingSetup
+from teachpath.recorder.recording_setup import RecordingSetup, check_request
 from teachpath.recorder.recording_thread import RecordingThread
 from teachpath.recorder.recording_work import Call, call_directly
 from teachpath.recorder.sample_queues import SampleQueues
@@ -35,10 +36,9 @@ from teachpath.records import (
     StopRequest,
     Trajectory,
 )
-from teachpath_proto.keys import Keys, is_name, name_refusal
+from teachpath_proto.keys import Keys
 
 MAX_SHOWN_HANDS = 32  # more would hide each other
-MAX_RATE = 10_000.0  # [Hz] that a client may declare
 
 log = logging.getLogger("teachpath")
 
@@ -147,9 +147,13 @@ class Recorder:
         Raises:
             UnusableInput: a name that cannot be a folder and a key, or a rate outside its limits.
             NotFound: no such task, scene or calibration.
-            Conflict: this tracker is being recorded already.
+            Conflict: this tracker is being recorded already, or the task is archived.
         """
-        self._check(request)
+        check_request(request)
+        with self._recording.beginning:
+            return self._begin(request)
+
+    def _begin(self, request: RecordingRequest) -> RecordingStatus:
         if request.scene:
             self._lookup.scene(request.scene)
             calibration = self._lookup.calibration(request.calibration or "identity").name
@@ -251,19 +255,16 @@ class Recorder:
         found += self.owners.faults()
         return found + [sentence for sentence in [self._queues.invalid_names()] if sentence]
 
+    def kept_idle(self, task: str) -> AbstractContextManager[None]:
+        """Let no recording of a task begin in the block, and all takes be stored; raises Conflict where one runs."""
+        return self._recording.kept_idle(task)
+
     def task_of(self, tracker: str) -> str:
         """Return the task that `tracker` is recording; raises NotFound."""
         return self._recording.session(tracker).task
 
-    def _check(self, request: RecordingRequest) -> None:
-        for what, name in (("task", request.task), ("tracker", request.tracker)):
-            if not is_name(name):
-                raise UnusableInput(name_refusal(what, name))
-        if not 0.0 <= request.rate <= MAX_RATE:
-            raise UnusableInput(f"a rate of {request.rate:g} Hz is outside 0 (not said) to {MAX_RATE:g}")
-
     def _setup(self, request: RecordingRequest) -> RecordingSetup:
-        task = self._store.task(request.task)
+        task = self._store.open_task(request.task)
         return RecordingSetup(
             task=request.task,
             tracker=request.tracker,

@@ -4,11 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import Final
 
+from teachpath.errors import UnusableInput
 from teachpath.io.store.recordings import RecordingHeader
 from teachpath.recorder.object_place import ObjectPlace
 from teachpath.recorder.take import random_id
-from teachpath.records import Calibration, ObjectPose, Routine, Scene
+from teachpath.records import Calibration, ObjectPose, RecordingRequest, Routine, Scene
+from teachpath_proto.keys import is_name, name_refusal
+
+MAX_RATE: Final = 10_000.0  # [Hz] that a client may declare
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,3 +49,12 @@ class RecordingSetup:
             place.reported,
             self.object_at_grasp,
         )
+
+
+def check_request(request: RecordingRequest) -> None:
+    """Raise UnusableInput for a name that cannot be a folder and a key, or a rate outside its limits."""
+    for what, name in (("task", request.task), ("tracker", request.tracker)):
+        if not is_name(name):
+            raise UnusableInput(name_refusal(what, name))
+    if not 0.0 <= request.rate <= MAX_RATE:
+        raise UnusableInput(f"a rate of {request.rate:g} Hz is outside 0 (not said) to {MAX_RATE:g}")

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
 from functools import partial
+from weakref import WeakSet
 
-from teachpath.errors import NotFound, UnusableSample
+from teachpath.errors import Conflict, NotFound, UnusableSample
 from teachpath.io.wire import decode_sample
 from teachpath.periodic_thread import PeriodicThread
 from teachpath.recorder.closed_take import TakeQueue
@@ -38,6 +40,7 @@ class RecordingThread:
     Attributes:
         sessions: the running recordings by tracker; used only while `condition` is held.
         condition: notified whenever samples have been recorded.
+        beginning: held while a recording begins.
     """
 
     def __init__(
@@ -58,7 +61,9 @@ class RecordingThread:
         self._clock = clock
         self.sessions: dict[str, RecordingSession] = {}
         self.condition = threading.Condition()
+        self.beginning = threading.Lock()
         self._completing = ThreadPoolExecutor(COMPLETING_THREADS, thread_name_prefix="takes")
+        self._take_queues: WeakSet[TakeQueue] = WeakSet()  # of ended recordings too, while their takes are completed
         self._next_turn = 0  # of the running recordings, whose turn it is in the next round
         self._thread = PeriodicThread("recorder", ROUND_INTERVAL, self.process_round)
 
@@ -88,7 +93,9 @@ class RecordingThread:
 
     def take_queue(self) -> TakeQueue:
         """Return what completes the takes of one recording, beside those of the others."""
-        return TakeQueue(self._completing, self.condition, self._on_finished)
+        queue = TakeQueue(self._completing, self.condition, self._on_finished)
+        self._take_queues.add(queue)
+        return queue
 
     def wait_for_takes(self) -> None:
         """Wait until the takes that have ended are stored."""
@@ -96,6 +103,18 @@ class RecordingThread:
             sessions = list(self.sessions.values())
         for session in sessions:
             session.completer.wait()
+
+    @contextmanager
+    def kept_idle(self, task: str) -> Iterator[None]:
+        """Let no recording of a task begin in the block, and all takes be stored; raises Conflict where one runs."""
+        with self.beginning:
+            with self.condition:
+                running = sorted(tracker for tracker, session in self.sessions.items() if session.task == task)
+            if running:
+                raise Conflict(f"task {task} is being recorded from {', '.join(running)}; stop that first")
+            for queue in list(self._take_queues):
+                queue.wait()
+            yield
 
     def drain(self, session: RecordingSession) -> None:
         """Record all samples of one tracker that wait; the caller holds `condition`."""

@@ -71,6 +71,8 @@ class Task:
         created_ns: when it was made [ns since the Unix epoch].
         object_at_grasp: whether the object lies where the hand grasps, anew in each demonstration, instead of where
             the scene has it.
+        archived_ns: when it was deleted [ns since the Unix epoch]; 0: it was not. All of it is kept, and can be
+            brought back.
     """
 
     name: str
@@ -78,6 +80,7 @@ class Task:
     calibration: str
     created_ns: int
     object_at_grasp: bool = False
+    archived_ns: int = 0
 
 
 @dataclass(frozen=True, eq=False)
@@ -242,6 +245,7 @@ class Demonstration:
         amended_by: who marked, trimmed, discarded or restored it last, where the station asks.
         digest: of its recording; None: it was stored before digests were.
         object_pose: of the object before it was grasped; None: as the scene has it.
+        source_sha256: of the file that it was imported from, hexadecimal; empty: it was not imported.
     """
 
     id: str
@@ -266,6 +270,7 @@ class Demonstration:
     amended_by: str = ""
     digest: RecordingDigest | None = None
     object_pose: ObjectPose | None = None
+    source_sha256: str = ""
 
     @property
     def transport(self) -> tuple[int, int]:

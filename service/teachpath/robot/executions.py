@@ -108,11 +108,12 @@ class Executions:
 
         Raises:
             NotFound: no such plan.
-            Conflict: another execution is running, or somebody else is in control.
+            Conflict: another execution is running, somebody else is in control, or the task was deleted.
             PathRefused: the certificate does not hold, or the way to its start is not free.
             Unreachable: the executor does not answer.
         """
         stored = self._store.plan(plan)
+        self._store.task_changes.require_open_plan(plan)
         status = self.status
         if status is not None and not status.state.is_resting:
             raise Conflict(f"execution {status.execution} is {status.state}; stop it first")

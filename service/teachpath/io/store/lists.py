@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any, Final, TypeVar
 
 from sqlalchemy import Engine, Select, func, select
-from sqlalchemy.orm import Bundle, InstrumentedAttribute, Session, aliased, defer
+from sqlalchemy.orm import Bundle, Session, aliased, defer
 
 from teachpath.errors import NotFound
 from teachpath.io.documents import from_document
@@ -75,9 +75,10 @@ class Lists:
     def __init__(self, engine: Engine) -> None:
         self._engine = engine
 
-    def tasks(self, wanted: PageRequest = FIRST_PAGE) -> Page[Task]:
-        """List tasks, oldest first."""
-        return self._read(TASKS, select(TaskRow), wanted, task_of)
+    def tasks(self, wanted: PageRequest = FIRST_PAGE, *, archived: bool = False) -> Page[Task]:
+        """List the tasks that are there, or those that are archived, oldest first."""
+        question = select(TaskRow).where(TaskRow.archived_ns != 0 if archived else TaskRow.archived_ns == 0)
+        return self._read(TASKS, question, wanted, task_of)
 
     def demonstrations(self, task: str, wanted: PageRequest = FIRST_PAGE) -> Page[Demonstration]:
         """List the demonstrations of a task in their order."""
@@ -85,26 +86,27 @@ class Lists:
         return self._read(DEMONSTRATIONS, question, wanted, lambda row: from_document(Demonstration, row.document))
 
     def runs(self, task: str | None, wanted: PageRequest = FIRST_PAGE) -> Page[RunSummary]:
-        """List the learning runs of a task, or all, newest first, without what was learned."""
+        """List the learning runs of a task, or of all that are not archived, newest first, without what was learned."""
         question = select(RunTable).options(defer(RunTable.document))
-        return self._read(RUNS, _of_task(question, RunTable.task, task), wanted, _summary)
+        return self._read(RUNS, _of_open_task(question, task), wanted, _summary)
 
     def jobs(self, task: str | None, wanted: PageRequest = FIRST_PAGE) -> Page[Job]:
         """List the jobs of a task, or all, newest first."""
-        return self._read(JOBS, _of_task(select(JobRow), JobRow.task, task), wanted, job_of)
+        question = select(JobRow) if task is None else select(JobRow).where(JobRow.task == task)
+        return self._read(JOBS, question, wanted, job_of)
 
     def path_summaries(self, task: str | None = None, wanted: PageRequest = FIRST_PAGE) -> Page[PathSummary]:
-        """List the learned paths of a task, or all, newest first."""
+        """List the learned paths of a task, or of all that are not archived, newest first."""
         versions = aliased(PathRow)
         count = select(func.count()).where(versions.id == PathRow.id).scalar_subquery().label("versions")
         cluster = PathRow.document["cluster"].as_integer().label("cluster")
         columns = (PathRow.id, RunTable.task, PathRow.run, cluster, count, PathRow.created_ns)
         question: Select[Any] = select(Bundle("path", *columns)).join(RunTable, RunTable.id == PathRow.run)
-        question = _of_task(question.where(PathRow.parent.is_(None)), RunTable.task, task)
+        question = _of_open_task(question.where(PathRow.parent.is_(None)), task)
         return self._read(PATHS, question, wanted, lambda row: PathSummary(**row._asdict()))
 
     def plan_summaries(self, task: str | None = None, wanted: PageRequest = FIRST_PAGE) -> Page[PlanSummary]:
-        """List the plans of a task, or all, newest first, without what they hold."""
+        """List the plans of a task, or of all that are not archived, newest first, without what they hold."""
         document = PlanRow.document
         columns = (
             PlanRow.id,
@@ -123,9 +125,7 @@ class Lists:
             .join(RunTable, RunTable.id == PathRow.run)
             .outerjoin(RevocationRow, RevocationRow.plan == PlanRow.id)
         )
-        return self._read(
-            PLANS, _of_task(question, RunTable.task, task), wanted, lambda row: PlanSummary(**row._asdict())
-        )
+        return self._read(PLANS, _of_open_task(question, task), wanted, lambda row: PlanSummary(**row._asdict()))
 
     def job_counts(self) -> dict[tuple[str, ...], float]:
         """Return how many jobs there are of each kind and state."""
@@ -169,8 +169,11 @@ def execution_of(row: ExecutionTable) -> Execution:
     return Execution(row.id, row.plan, row.created_ns, from_document(ExecutorStatus, row.document))
 
 
-def _of_task(question: Select[Any], column: InstrumentedAttribute[str], task: str | None) -> Select[Any]:
-    return question if task is None else question.where(column == task)
+def _of_open_task(question: Select[Any], task: str | None) -> Select[Any]:
+    """Ask for what came of the runs of a task, or of all tasks that are not archived."""
+    if task is not None:
+        return question.where(RunTable.task == task)
+    return question.join(TaskRow, TaskRow.name == RunTable.task).where(TaskRow.archived_ns == 0)
 
 
 def _summary(row: RunTable) -> RunSummary:

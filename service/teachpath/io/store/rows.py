@@ -12,6 +12,7 @@ from sqlalchemy.orm import Session
 
 from teachpath.io.documents import from_document, to_document
 from teachpath.io.store.engine import lock_name
+from teachpath.io.store.imported_files import with_note
 from teachpath.io.store.tables import DemonstrationRow, JobRow, RunTable, TaskRow
 from teachpath.records import Demonstration, Failure, Job, JobState, Learned, RunSummary, Task
 
@@ -77,26 +78,28 @@ def numbered_row(session: Session, demonstration: Demonstration, station: str) -
 
 def imported_rows(
     session: Session, task: Task, made: Sequence[Demonstration], added: list[str], station: str
-) -> list[int]:
-    """Add the rows of demonstrations that are not there yet, and return the numbers of all.
+) -> list[Demonstration]:
+    """Add the rows of a file's demonstrations that are not there yet, and return all as they are stored.
 
     The places of the recordings whose rows are new are added to `added`.
     """
     ensured_task(session, task)
     session.flush()
-    numbers = []
-    for demonstration in made:
+    stored: list[Demonstration] = []
+    for demonstration in with_note(session, made):
         row = session.get(DemonstrationRow, demonstration.id)
         if row is None:
             added.append(demonstration.recording)
-        numbers.append(row.number if row else numbered_row(session, demonstration, station).number)
+            stored.append(numbered_row(session, demonstration, station))
+        else:
+            stored.append(from_document(Demonstration, row.document))
         session.flush()
-    return numbers
+    return stored
 
 
 def task_of(row: TaskRow) -> Task:
     """Return the task of a row."""
-    return Task(row.name, row.scene, row.calibration, row.created_ns, row.object_at_grasp)
+    return Task(row.name, row.scene, row.calibration, row.created_ns, row.object_at_grasp, row.archived_ns)
 
 
 def job_of(row: JobRow) -> Job:

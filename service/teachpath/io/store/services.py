@@ -10,8 +10,9 @@ from typing import Final
 from sqlalchemy import BigInteger, ColumnElement, Engine, cast, delete, exists, func, select, true, update
 from sqlalchemy.orm import Session
 
-from teachpath.errors import Conflict
+from teachpath.errors import Conflict, UnusableInput
 from teachpath.io.store.engine import is_served, lock_name
+from teachpath.io.store.object_storage import SCHEME
 from teachpath.io.store.tables import DemonstrationRow, ExecutionTable, JobRow, ServiceRow
 
 DEAD_AFTER: Final = 20.0  # [s] without one; longer than a line may be cut without harm
@@ -53,6 +54,22 @@ class Services:
             if self.station and role == SERVICE:  # rows of before it had a name are its own
                 for table in (DemonstrationRow, JobRow, ExecutionTable):
                     session.execute(update(table).where(table.station == "").values(station=self.station))
+
+    def require_recorded_here(self, task: str) -> None:
+        """Raise UnusableInput where a task has demonstrations whose recordings another station keeps."""
+        question = select(DemonstrationRow.station, func.count()).where(
+            DemonstrationRow.task == task,
+            DemonstrationRow.station.not_in(("", self.station)),
+            ~DemonstrationRow.document["recording"].as_string().startswith(SCHEME),  # which every station can read
+        )
+        with Session(self._engine) as session:
+            others = session.execute(question.group_by(DemonstrationRow.station)).all()
+        if others:
+            counts = ", ".join(f"{count} at {station}" for station, count in sorted(others))
+            raise UnusableInput(
+                f"task {task} has demonstrations whose recordings other stations keep ({counts}); learn it where all "
+                "were recorded, or record and import them here"
+            )
 
     def _require_own_name(self, session: Session) -> None:
         former = (ServiceRow.role == SERVICE, ServiceRow.place == self._place)

@@ -9,10 +9,10 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any, TypeVar
 
-from sqlalchemy import func, select
+from sqlalchemy import select
 from sqlalchemy.orm import Session
 
-from teachpath.errors import NotFound, StorageUnavailable, UnusableInput
+from teachpath.errors import NotFound, StorageUnavailable
 from teachpath.io.documents import from_document, to_document
 from teachpath.io.store.access_tokens import AccessTokens
 from teachpath.io.store.arms import Arms
@@ -22,11 +22,11 @@ from teachpath.io.store.changes import Changed, changing, unheard
 from teachpath.io.store.checks import Checks
 from teachpath.io.store.database_files import database_file, database_url, make_data_folder
 from teachpath.io.store.engine import lock_name, open_engine
+from teachpath.io.store.imported_files import ImportedFiles
 from teachpath.io.store.job_claims import UNFINISHED, JobClaims
 from teachpath.io.store.journal import Journal
 from teachpath.io.store.lists import Execution, Lists, execution_of
 from teachpath.io.store.motions import Motions
-from teachpath.io.store.object_storage import SCHEME
 from teachpath.io.store.people import People
 from teachpath.io.store.recordings import RECORDINGS, Opener, Recordings, open_new
 from teachpath.io.store.rows import Run, ensured_task, imported_rows, job_of, numbered_row, run_of, success, task_of
@@ -35,6 +35,7 @@ from teachpath.io.store.settings import StoreSettings
 from teachpath.io.store.spool import Spool
 from teachpath.io.store.storage_health import StorageHealth
 from teachpath.io.store.tables import Base, DemonstrationRow, ExecutionTable, JobRow, PlanRow, RunTable, TaskRow
+from teachpath.io.store.task_changes import TaskChanges, require_open
 from teachpath.io.store.versions import Versions, learned_row
 from teachpath.records import Demonstration, ExecutorStatus, Job, Learned, LearnedPath, Plan, Task
 from teachpath_proto.control import ExecutorState
@@ -59,6 +60,8 @@ class Store:
         self.feed = ChangeFeed(engine, self.services.id, changed)
         self.claims = JobClaims(self._engine, self.services, changed)
         self.calibrations = MeasuredCalibrations(self._engine)
+        self.task_changes = TaskChanges(self._engine, changed)
+        self.imported_files = ImportedFiles(self._engine)
         self.versions = Versions(self._engine, changed)
         self.journal = Journal(self._engine)
         self.access_tokens = AccessTokens(self._engine)
@@ -99,12 +102,17 @@ class Store:
         return task_of(row)
 
     def tasks(self) -> list[Task]:
-        """List all tasks, oldest first."""
-        return [task_of(row) for row in self._all(select(TaskRow).order_by(TaskRow.created_ns))]
+        """List the tasks that are not archived, oldest first."""
+        question = select(TaskRow).where(TaskRow.archived_ns == 0).order_by(TaskRow.created_ns)
+        return [task_of(row) for row in self._all(question)]
 
     def task(self, name: str) -> Task:
-        """Return one task; raises NotFound."""
+        """Return one task, archived or not; raises NotFound."""
         return task_of(self._one(TaskRow, name, "task"))
+
+    def open_task(self, name: str) -> Task:
+        """Return a task with which something is to begin; raises NotFound, or Conflict where it is archived."""
+        return require_open(self.task(name))
 
     def add_demonstration(self, demonstration: Demonstration) -> Demonstration:
         """Store a demonstration under the next number of its task and return it with that number."""
@@ -115,22 +123,6 @@ class Store:
         """List the demonstrations of a task in their order."""
         question = select(DemonstrationRow).where(DemonstrationRow.task == task).order_by(DemonstrationRow.number)
         return [from_document(Demonstration, row.document) for row in self._all(question)]
-
-    def require_recorded_here(self, task: str) -> None:
-        """Raise UnusableInput where a task has demonstrations whose recordings another station keeps."""
-        question = select(DemonstrationRow.station, func.count()).where(
-            DemonstrationRow.task == task,
-            DemonstrationRow.station.not_in(("", self.services.station)),
-            ~DemonstrationRow.document["recording"].as_string().startswith(SCHEME),  # which every station can read
-        )
-        with Session(self._engine) as session:
-            others = session.execute(question.group_by(DemonstrationRow.station)).all()
-        if others:
-            counts = ", ".join(f"{count} at {station}" for station, count in sorted(others))
-            raise UnusableInput(
-                f"task {task} has demonstrations whose recordings other stations keep ({counts}); learn it where all "
-                "were recorded, or record and import them here"
-            )
 
     def demonstration(self, key: str) -> Demonstration:
         """Return one demonstration; raises NotFound."""
@@ -259,23 +251,24 @@ class Store:
         Returns:
             The numbers that the first and the last one have now, e.g. `3-5`.
         """
-        with self._taking_over(task, batch) as (session, numbers):
+        with self._taking_over(task, batch) as (session, stored):
+            numbers = [each.number for each in stored]
             outcome = f"{min(numbers)}-{max(numbers)}"
             self.claims.change(session, key, success(outcome, time.time_ns()))
         return outcome
 
-    def take_over(self, task: Task, batch: Batch) -> list[int]:
-        """Take over demonstrations as `finish_import`, without a job, and return their numbers."""
-        with self._taking_over(task, batch) as (_, numbers):
-            return numbers
+    def take_over(self, task: Task, batch: Batch) -> list[Demonstration]:
+        """Take over demonstrations as `finish_import`, without a job, and return them as they are stored."""
+        with self._taking_over(task, batch) as (_, stored):
+            return stored
 
     @contextmanager
-    def _taking_over(self, task: Task, batch: Batch) -> Iterator[tuple[Session, list[int]]]:
+    def _taking_over(self, task: Task, batch: Batch) -> Iterator[tuple[Session, list[Demonstration]]]:
         station = self.services.station
         added: dict[Path, list[str]] = {recordings: [] for _, recordings in batch}  # places whose rows are new
         try:
             with self._change() as session:
-                yield session, [n for made, of in batch for n in imported_rows(session, task, made, added[of], station)]
+                yield session, [d for made, of in batch for d in imported_rows(session, task, made, added[of], station)]
                 session.flush()
                 for recordings, places in added.items():
                     for place in places:

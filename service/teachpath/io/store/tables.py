@@ -19,7 +19,7 @@ from sqlalchemy import (
 from sqlalchemy.orm import DeclarativeBase, Mapped, mapped_column
 
 ID = String(64)
-NEWEST: Final = "0016"  # of the migrations
+NEWEST: Final = "0017"  # of the migrations
 
 
 class Base(DeclarativeBase):
@@ -46,6 +46,7 @@ class TaskRow(Base):
     calibration: Mapped[str] = mapped_column(ID)
     created_ns: Mapped[int] = mapped_column(BigInteger)
     object_at_grasp: Mapped[bool] = mapped_column(Boolean)
+    archived_ns: Mapped[int] = mapped_column(BigInteger)  # 0: it was not deleted
 
 
 class DemonstrationRow(Base):

@@ -1,0 +1,51 @@
+"""task: delete, restore and rename a task, with all that is of it."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+
+from teachpath.commands.options import Json, Url, connected
+from teachpath.commands.printing import print_json
+from teachpath.commands.work import Task
+
+app = typer.Typer(no_args_is_help=True, help="Delete a task, bring it back, or rename it; `tasks` lists them.")
+
+
+@app.command()
+def delete(task: Task, url: Url = "", json_: Json = False) -> None:
+    """Archive a task: lists leave it out, and nothing is begun with it any more. All of it is kept."""
+    with connected(url) as station:
+        deleted = station.delete_task(task)
+    if json_:
+        print_json(deleted)
+    else:
+        print(f"task {task} is deleted, and kept; bring it back with: teachpath task restore {task}")
+
+
+@app.command()
+def restore(task: Task, url: Url = "", json_: Json = False) -> None:
+    """Bring back a task that was deleted, with its demonstrations, runs, paths and plans."""
+    with connected(url) as station:
+        restored = station.restore_task(task)
+    if json_:
+        print_json(restored)
+    else:
+        print(f"task {task} is back")
+
+
+@app.command()
+def rename(
+    task: Task,
+    name: Annotated[str, typer.Argument(help="Another name, that no task has, no deleted one either.")],
+    url: Url = "",
+    json_: Json = False,
+) -> None:
+    """Give a task another name; demonstrations, runs, paths, plans and jobs go with it."""
+    with connected(url) as station:
+        renamed = station.rename_task(task, name)
+    if json_:
+        print_json(renamed)
+    else:
+        print(f"task {task} is called {renamed.name} now")
