@@ -112,6 +112,23 @@ def test_a_slip_in_any_field_at_any_depth_is_refused_and_the_field_is_offered(
                 assert f"did you mean {name}?" in faults[f"{place}.{slip}"]
 
 
+@pytest.mark.parametrize(
+    ("resource", "body", "place"),
+    [
+        ("/executions", {"plan": "moon", "override": True}, "body.override"),
+        ("/executions", {"plan": "moon", "override": "0.2"}, "body.override"),
+        ("/paths/moon/plans", {"version": "1"}, "body.version"),
+        ("/paths/moon/adaptations", {"goal": {"position": [0.5, True, 0.5]}}, "body.goal.position.1"),
+        ("/lease", {"name": "ada", "hold_when_lost": "yes"}, "body.hold_when_lost"),
+        ("/tasks/moon/recording", {"tracker": "glove", "takes": False}, "body.takes"),
+    ],
+)
+def test_a_value_of_another_kind_is_no_number(desk: Desk, resource: str, body: Any, place: str) -> None:
+    answer = desk.post(resource, body)
+    assert answer.status_code == 422, answer.text
+    assert [fault["place"] for fault in answer.json()["errors"]] == [place]
+
+
 def test_every_object_of_a_request_is_closed() -> None:
     schemas = DESCRIPTION["components"]["schemas"]
     waiting = [model(operation) for _, _, operation in OPERATIONS]

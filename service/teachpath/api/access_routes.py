@@ -19,7 +19,7 @@ from teachpath.api.audit import CLAIMED
 from teachpath.api.parts import Parts
 from teachpath.api.problems import refusals
 from teachpath.api.session_cookie import clear_cookie, read_cookie, require_private_line, set_cookie
-from teachpath.api.strict_requests import Body
+from teachpath.api.strict_requests import Body, Roles
 from teachpath.errors import UnusableInput
 from teachpath.records import AccessToken, Capability, Subject
 from teachpath_proto.keys import is_name, name_refusal
@@ -38,7 +38,7 @@ class NewToken(Body):
     """A token to make."""
 
     name: str = Field(description="of the program; the journal has it")
-    roles: list[Capability] = Field(min_length=1, max_length=len(Capability), description="what it may do")
+    roles: Roles = Field(min_length=1, max_length=len(Capability), description="what it may do")
     days: float = Field(90.0, gt=0.0, le=3650.0, description="until it expires")
 
 

@@ -13,7 +13,7 @@ from teachpath.api.adaptation_inputs import shown_for
 from teachpath.api.adaptation_orders import Adaptation, answer_of, order_of
 from teachpath.api.answers import json_response, located, model_of
 from teachpath.api.parts import Parts
-from teachpath.api.poses import Component, Coordinate
+from teachpath.api.poses import Position, Quaternion
 from teachpath.api.problems import refusals
 from teachpath.api.strict_requests import Body
 from teachpath.api.versions import BRANCH_PATTERN, LINE_PATTERN, wanted_version
@@ -35,8 +35,8 @@ if TYPE_CHECKING:  # computed in another process
 class TargetPose(Body):
     """Where a path is to begin or to end, in the world."""
 
-    position: tuple[Coordinate, Coordinate, Coordinate] = Field(description="x, y, z of its centre [m]")
-    orientation: tuple[Component, Component, Component, Component] | None = Field(
+    position: Position = Field(description="x, y, z of its centre [m]")
+    orientation: Quaternion | None = Field(
         None, description="quaternion w, x, y, z, on a path that has learned orientations; left out: as learned"
     )
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Annotated
 
 from fastapi import APIRouter
-from pydantic import Field
+from pydantic import Field, Strict
 
 from teachpath.api.access import TEACH, VIEW
 from teachpath.api.parts import Parts
@@ -16,7 +16,7 @@ from teachpath.records import Demonstration, MeasuredCalibration, TaughtPoint
 
 MAX_POINTS = 1000
 Coordinate = Annotated[float, Field(allow_inf_nan=False)]
-Place = tuple[Coordinate, Coordinate, Coordinate]
+Place = Annotated[tuple[Coordinate, Coordinate, Coordinate], Strict(False)]
 
 
 class PointPair(Body):

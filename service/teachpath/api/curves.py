@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Annotated, Any, Literal
 
 from fastapi import APIRouter, Response
-from pydantic import Field
+from pydantic import Field, Strict
 
 from teachpath.api.access import TEACH
 from teachpath.api.answers import json_response, model_of
@@ -17,7 +17,7 @@ from teachpath.exchange import SAME_SHAPE_TOLERANCE
 from teachpath.nurbs import Curve
 
 MAX_PARAMETERS = 2001
-Point = tuple[float, float, float]
+Point = Annotated[tuple[float, float, float], Strict(False)]
 
 
 class CurveBody(Body):

@@ -8,7 +8,7 @@ from anyio import CapacityLimiter
 from anyio.to_thread import run_sync
 from fastapi import APIRouter, Query, Response
 from fastapi.responses import FileResponse
-from pydantic import Field
+from pydantic import Field, Strict
 
 from teachpath.api.access import DEMONSTRATE, VIEW, Sender
 from teachpath.api.answers import MCAP, files, model_of
@@ -24,7 +24,7 @@ class DemonstrationChanges(Body):
 
     mark: Literal["", "good", "bad"] | None = Field(None, description="good, bad, or empty for none")
     discarded: bool | None = Field(None, description="discarded ones are kept, but not learned from")
-    trim: tuple[int, int] | None = Field(
+    trim: Annotated[tuple[int, int], Strict(False)] | None = Field(
         None, description="transport phase, samples[begin:end]; [0, 0] brings back the recorder's own cut"
     )
 

@@ -105,5 +105,8 @@ async def receive_file(request: Request, file: Path, name: str) -> None:
         with file.open("wb") as stream:
             async for piece in request.stream():
                 await run_in_threadpool(stream.write, piece)
+            is_empty = stream.tell() == 0
     except OSError as error:
         raise storage_fault(error, name) or error from None
+    if is_empty:
+        raise UnusableInput(f"{name}: the file is empty")

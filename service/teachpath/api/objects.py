@@ -7,7 +7,7 @@ from pydantic import Field
 
 from teachpath.api.access import TEACH, VIEW
 from teachpath.api.parts import Parts
-from teachpath.api.poses import Component, Coordinate
+from teachpath.api.poses import Position, Quaternion
 from teachpath.api.strict_requests import Body
 from teachpath.records import ObjectPose
 
@@ -15,10 +15,8 @@ from teachpath.records import ObjectPose
 class SeenObject(Body):
     """Where the object of a scene was seen."""
 
-    position: tuple[Coordinate, Coordinate, Coordinate] = Field(description="x, y, z of its centre [m, world]")
-    orientation: tuple[Component, Component, Component, Component] = Field(
-        (1.0, 0.0, 0.0, 0.0), description="quaternion w, x, y, z in the world"
-    )
+    position: Position = Field(description="x, y, z of its centre [m, world]")
+    orientation: Quaternion = Field((1.0, 0.0, 0.0, 0.0), description="quaternion w, x, y, z in the world")
 
 
 def objects_router(parts: Parts) -> APIRouter:

@@ -18,7 +18,7 @@ from teachpath.api.audit import NOTED
 from teachpath.api.parts import Parts
 from teachpath.api.problems import refusals
 from teachpath.api.session_cookie import require_private_line
-from teachpath.api.strict_requests import Body
+from teachpath.api.strict_requests import Body, Roles
 from teachpath.errors import Conflict, UnusableInput
 from teachpath.records import Capability, Person, Session
 from teachpath_proto.keys import is_name, name_refusal
@@ -34,7 +34,7 @@ class NewPerson(NewPassword):
     """Somebody who may sign in."""
 
     name: str = Field(max_length=64, description="of the person; the journal has it")
-    roles: list[Capability] = Field(min_length=1, max_length=len(Capability), description="what the person may do")
+    roles: Roles = Field(min_length=1, max_length=len(Capability), description="what the person may do")
 
 
 @dataclass(frozen=True, slots=True)

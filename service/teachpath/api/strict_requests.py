@@ -5,13 +5,14 @@ from __future__ import annotations
 import difflib
 from collections.abc import Collection, Iterator, Sequence
 from contextlib import contextmanager
-from typing import Any, Final, get_args
+from typing import Annotated, Any, Final, get_args
 
 from fastapi import Request
 from fastapi.exceptions import RequestValidationError
-from pydantic import BaseModel, ConfigDict
+from pydantic import BaseModel, ConfigDict, Strict
 
 from teachpath.errors import NotFound, UnusableInput
+from teachpath.records import Capability
 
 EXTRA_FIELD: Final = "extra_forbidden"  # pydantic's name of this fault
 EMPTY_BODIES: Final = (b"", b"{}", b"null")  # bodies that say nothing
@@ -19,9 +20,16 @@ MAX_SHOWN_LENGTH: Final = 80  # characters of an unknown name
 
 
 class Body(BaseModel):
-    """A request body; a field that it does not have is refused."""
+    """A request body; a field that it does not have is refused, and so is true or "1" where a number is wanted.
 
-    model_config = ConfigDict(extra="forbid")
+    What JSON writes otherwise than Python (a tuple as a list, an enumeration as a word) says `Strict(False)`; what is
+    within it is strict all the same.
+    """
+
+    model_config = ConfigDict(extra="forbid", strict=True)
+
+
+Roles = list[Annotated[Capability, Strict(False)]]
 
 
 @contextmanager
