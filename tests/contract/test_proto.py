@@ -1,14 +1,61 @@
-"""The generated messages are those of the .proto files."""
+"""The generated messages are those of the .proto files, which say what every field of theirs is."""
 
+import re
+from collections.abc import Iterator
 from pathlib import Path
 
+import pytest
 from grpc_tools import protoc
 
 PROTO = Path(__file__).parents[2] / "proto"
+FILES = sorted(PROTO.glob("teachpath_proto/*.proto"))
+DECLARED = re.compile(r"^(?:(message|enum) (\w+) \{|((?:optional |repeated )?[\w.]+ )?(\w+) = (\d+);)$")
+UNIT = re.compile(r"\[(1|m|s|ns|us|Hz|rad|rad/s|rad/s\^2|N m)\b[^\]]*\]|unit of the field")
+
+
+def unsaid(text: str) -> Iterator[str]:
+    """Yield what a .proto file leaves unsaid: comments before declarations, units, and numbers that are gone."""
+    comment, scope = "", [("file", set[int]())]
+    for line in map(str.strip, text.splitlines()):
+        if line.startswith("//"):
+            comment += line
+            continue
+        if line == "}":
+            owner, numbers = scope.pop()
+            gone = set(range(min(numbers), max(numbers))) - numbers
+            yield from (f"{owner} does not reserve {number}" for number in sorted(gone))
+        if line.startswith("reserved"):
+            scope[-1][1].update(map(int, re.findall(r"\d+", line)))
+        if found := DECLARED.match(line):
+            _, owner, kind, field, number = found.groups()
+            name = owner or f"{scope[-1][0]}.{field}"
+            if not comment:
+                yield f"{name} has no comment before it"
+            elif (kind and re.search(r"double|float", kind)) or (field and field.endswith(("_ns", "_us"))):
+                yield from [] if UNIT.search(comment) else [f"{name} has no unit"]
+            scope.append((owner, set())) if owner else scope[-1][1].add(int(number))
+        comment = ""
+
+
+@pytest.mark.parametrize("file", FILES, ids=lambda file: str(file.name))
+def test_every_field_says_what_it_is_and_in_which_unit(file: Path) -> None:
+    assert list(unsaid(file.read_text())) == []
+
+
+def test_what_a_proto_file_leaves_unsaid_is_found() -> None:
+    text = (
+        "// of a hand\nmessage A {\n  // how long\n  double a = 1;\n  string b = 3;\n}\nenum B {\n  // no\n  C = 0;\n}"
+    )
+    assert list(unsaid(text)) == [
+        "A.a has no unit",
+        "A.b has no comment before it",
+        "A does not reserve 2",
+        "B has no comment before it",
+    ]
 
 
 def test_generated_messages_are_up_to_date(tmp_path: Path) -> None:
-    sources = sorted(p.relative_to(PROTO).as_posix() for p in PROTO.glob("teachpath_proto/*.proto"))
+    sources = [file.relative_to(PROTO).as_posix() for file in FILES]
     code = protoc.main(["protoc", f"-I{PROTO}", f"--python_out={tmp_path}", f"--pyi_out={tmp_path}", *sources])
     assert code == 0
     fresh = {p.relative_to(tmp_path).as_posix(): p.read_text() for p in tmp_path.rglob("*.py*")}

@@ -69,6 +69,7 @@ VALUES: Final[dict[str, Any]] = {
     "holder": "ada",
     "job": "learn-9b3d5f7a1c20",
     "operator": "ada",
+    "orientation": [1.0, 0.0, 0.0, 0.0],
     "path": "run-9b3d5f7a1c20-1",
     "plan": "plan-3f2a9c1b7d5e",
     "position": [0.55, -0.24, 0.52],

@@ -152,12 +152,12 @@ def _add_summaries(router: APIRouter, store: Store) -> None:
         """List the learning runs of all tasks, newest first."""
         return page.answer(store.lists.runs(None, page.wanted))
 
-    @router.get("/paths", response_model=model_of(list[PathSummary]), dependencies=VIEW)
+    @router.get("/paths", response_model=model_of(list[PathSummary]), responses=refusals(404), dependencies=VIEW)
     def list_paths(page: WantedPage, task: OfTask = None) -> Response:
         """List the learned paths of a task, or of all, newest first; each is at its own address."""
         return page.answer(store.lists.path_summaries(task and store.task(task).name, page.wanted))
 
-    @router.get("/plans", response_model=model_of(list[PlanSummary]), dependencies=VIEW)
+    @router.get("/plans", response_model=model_of(list[PlanSummary]), responses=refusals(404), dependencies=VIEW)
     def list_all_plans(page: WantedPage, task: OfTask = None) -> Response:
         """List the plans of a task, or of all, newest first; each is at its own address."""
         return page.answer(store.lists.plan_summaries(task and store.task(task).name, page.wanted))
