@@ -69,7 +69,7 @@ def test_head_answers_like_get_without_the_body(desk: Desk) -> None:
 
 
 def test_all_methods_of_an_address_are_said_to_be_allowed(desk: Desk) -> None:
-    assert desk.post("/tasks/moon", {}).headers["allow"] == "GET, HEAD, PUT"
+    assert desk.post("/tasks/moon", {}).headers["allow"] == "DELETE, GET, HEAD, PATCH, PUT"
 
 
 def test_a_wrong_address_and_a_wrong_method_say_where_to_look(desk: Desk) -> None:

@@ -87,16 +87,16 @@ def adaptations_router(parts: Parts) -> APIRouter:
         task, submitter = store.open_task(store.run(base.run).task).name, submitter_of(request, sender)
         ordered = {"path": path, "adaptation": wanted.model_dump(mode="json")}
 
-        def begun() -> Job | None:
+        def earlier_job() -> Job | None:
             return begun_by(store, task, "plan", {ORDERED: ordered}, submitter, key)
 
-        if known := begun():
+        if known := earlier_job():
             return answer_of(store, known)
         parts.jobs.require_room(submitter)
         try:
             order = _saved_order(parts, base, wanted, signed(sender, wanted.author), ordered)
         except Outdated:
-            if known := begun():  # the same order came at the same time
+            if known := earlier_job():  # the same order came at the same time
                 return answer_of(store, known)
             raise
         job = parts.jobs.submit(task, "plan", order, submitter, who=sender.name, idempotency_key=key)
