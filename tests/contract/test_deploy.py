@@ -4,6 +4,7 @@ import re
 import shlex
 import shutil
 import subprocess
+import tomllib
 from pathlib import Path
 
 import pytest
@@ -69,7 +70,28 @@ def test_the_container_runs_as_nobody_in_particular_and_installs_by_hash() -> No
             assert (ROOT / line.split()[1]).exists()
 
 
-@pytest.mark.parametrize("name", ["nginx.conf", "Caddyfile"])
+def test_caddy_takes_its_sample(tmp_path: Path) -> None:
+    program = shutil.which("caddy")
+    if program is None:
+        pytest.skip("no caddy; get it with: sudo apt-get install caddy")
+    command = [program, "validate", "--config", str(DEPLOY / "Caddyfile"), "--adapter", "caddyfile"]
+    environment = {"HOME": str(tmp_path), "XDG_DATA_HOME": str(tmp_path)}
+    done = subprocess.run(command, capture_output=True, text=True, timeout=HANG, env=environment)
+    assert done.returncode == 0, done.stderr
+
+
+def test_oauth2_proxy_asks_nginx_s_station_and_its_cookie_is_of_the_host_alone() -> None:
+    said = tomllib.loads((DEPLOY / "oauth2-proxy.cfg").read_text())
+    assert f"proxy_pass http://{said['http_address']};" in (DEPLOY / "nginx-oauth2.conf").read_text()
+    assert said["reverse_proxy"]
+    assert said["set_xauthrequest"]  # else nginx would hear no name
+    assert said["code_challenge_method"] == "S256"
+    assert (said["cookie_secure"], said["cookie_httponly"]) == (True, True)
+    assert said["cookie_name"].startswith("__Host-")
+    assert not any(name in said for name in ("client_secret", "cookie_secret"))  # in files of their own
+
+
+@pytest.mark.parametrize("name", ["nginx.conf", "nginx-oauth2.conf", "Caddyfile"])
 def test_a_proxy_tells_the_address_that_it_sees_and_not_what_it_was_told(name: str) -> None:
     said = (DEPLOY / name).read_text()
     assert re.search(r"X-Forwarded-For (\$remote_addr;|\{remote_host\})", said)

@@ -1,10 +1,13 @@
-"""The page behind nginx, under TLS and a path of its own, by the configuration in deploy/."""
+"""The page behind nginx, under TLS and a path of its own or behind a login, by the configurations in deploy/."""
 
 import datetime
 import ipaddress
 import shutil
+import ssl
 import subprocess
+import threading
 from collections.abc import Iterator
+from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +17,8 @@ from cryptography import x509
 from cryptography.hazmat.primitives import hashes, serialization
 from cryptography.hazmat.primitives.asymmetric import ec
 from cryptography.x509.oid import NameOID
+from websockets.exceptions import InvalidStatus
+from websockets.sync.client import connect
 
 from tests.ports import free_ports
 from tests.system.processes import Service
@@ -21,7 +26,8 @@ from tests.waiting import HANG, wait_until
 
 pytestmark = pytest.mark.system
 
-SAMPLE = Path(__file__).parents[2] / "deploy" / "nginx.conf"
+DEPLOY = Path(__file__).parents[2] / "deploy"
+PASSED = {"Cookie": "passed"}  # of whom has signed in at the emulated oauth2-proxy
 ABSENT = "no nginx; get it with: sudo apt-get install nginx-light"
 # What a distribution's own configuration has around a file of conf.d/, with all that nginx writes in its folder.
 AROUND = """daemon off;
@@ -31,7 +37,7 @@ events {{}}
 http {{
     access_log off;
     client_body_temp_path body; proxy_temp_path proxy; fastcgi_temp_path a; uwsgi_temp_path b; scgi_temp_path c;
-    {sample}
+    {samples}
 }}
 """
 
@@ -44,37 +50,70 @@ def service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Service]:
         yield service
 
 
+class OAuth2Proxy(BaseHTTPRequestHandler):
+    """What nginx asks of oauth2-proxy."""
+
+    def do_GET(self) -> None:
+        passed = self.headers.get("Cookie") == PASSED["Cookie"]
+        self.send_response({"/oauth2/auth": 202 if passed else 401}.get(self.path, 200))
+        if passed:
+            self.send_header("X-Auth-Request-Preferred-Username", "anna")
+        self.send_header("Content-Length", "0")
+        self.end_headers()
+
+    def log_message(self, *_: Any) -> None:
+        pass
+
+
 @pytest.fixture(scope="module")
-def address(service: Service, tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
-    """Where nginx answers for the service."""
+def addresses(service: Service, tmp_path_factory: pytest.TempPathFactory) -> Iterator[dict[str, str]]:
+    """Where nginx answers for the service, by the name of the sample."""
     program = shutil.which("nginx", path="/usr/sbin:/usr/bin:/usr/local/bin")
     if program is None:
         pytest.skip(ABSENT)
-    folder, (port,) = tmp_path_factory.mktemp("nginx"), free_ports(1)
+    folder, (first, second) = tmp_path_factory.mktemp("nginx"), free_ports(2)
     certify(folder)
-    sample = SAMPLE.read_text()
-    for said, here in {
-        "listen 443": f"listen 127.0.0.1:{port}",
-        "lab.example;": "127.0.0.1;",
-        "/etc/ssl/lab.example": str(folder / "station"),
-        "127.0.0.1:8765": service.url.removeprefix("http://"),
-    }.items():
+    with ThreadingHTTPServer(("127.0.0.1", 0), OAuth2Proxy) as asking:
+        threading.Thread(target=asking.serve_forever, daemon=True).start()
+        here = {
+            "lab.example;": "127.0.0.1;",
+            "/etc/ssl/lab.example": str(folder / "station"),
+            "127.0.0.1:8765": service.url.removeprefix("http://"),
+        }
+        asked = {"127.0.0.1:4180": f"127.0.0.1:{asking.server_port}"}
+        samples = [
+            filled("nginx.conf", here | {"listen 443": f"listen 127.0.0.1:{first}"}),
+            filled("nginx-oauth2.conf", here | asked | {"listen 443": f"listen 127.0.0.1:{second}"}),
+        ]
+        configuration = folder / "nginx.conf"
+        configuration.write_text(AROUND.format(samples="\n".join(samples)))
+        command = [program, "-e", "stderr", "-p", str(folder), "-c", str(configuration)]
+        checked = subprocess.run([*command, "-t"], capture_output=True, text=True, timeout=HANG)
+        assert checked.returncode == 0, checked.stderr
+        running = subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
+        found = {"path": f"https://127.0.0.1:{first}/cell-3/", "login": f"https://127.0.0.1:{second}/"}
+        try:
+            wait_until(lambda: answers(found["path"]), "nginx answers")
+            yield found
+        finally:
+            running.terminate()
+            _, said = running.communicate(timeout=HANG)
+            asking.shutdown()
+        assert "[error]" not in said, said
+
+
+def filled(name: str, values: dict[str, str]) -> str:
+    """Return a sample with the names and addresses of this machine."""
+    sample = (DEPLOY / name).read_text()
+    for said, value in values.items():
         assert said in sample
-        sample = sample.replace(said, here)
-    configuration = folder / "nginx.conf"
-    configuration.write_text(AROUND.format(sample=sample))
-    command = [program, "-e", "stderr", "-p", str(folder), "-c", str(configuration)]
-    checked = subprocess.run([*command, "-t"], capture_output=True, text=True, timeout=HANG)
-    assert checked.returncode == 0, checked.stderr
-    running = subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
-    url = f"https://127.0.0.1:{port}/cell-3/"
-    try:
-        wait_until(lambda: answers(url), "nginx answers")
-        yield url
-    finally:
-        running.terminate()
-        _, said = running.communicate(timeout=HANG)
-    assert "[error]" not in said, said
+        sample = sample.replace(said, value)
+    return sample
+
+
+@pytest.fixture
+def address(addresses: dict[str, str]) -> str:
+    return addresses["path"]
 
 
 def certify(folder: Path) -> None:
@@ -122,3 +161,24 @@ def test_an_order_of_another_origin_is_refused_there_as_well(address: str) -> No
             f"{address}api/v1/tasks/x", json={}, headers={"Origin": origin}, verify=False, trust_env=False
         )
         assert answer.status_code == status, answer.text
+
+
+def test_oauth2_proxy_is_asked_before_everything_but_a_stop(addresses: dict[str, str]) -> None:
+    address = addresses["login"]
+    with httpx.Client(base_url=address, verify=False, trust_env=False, timeout=HANG) as client:
+        page = client.get("")
+        assert (page.status_code, page.headers["location"]) == (302, "/oauth2/start?rd=%2F")
+        assert client.get("api/v1/tasks").status_code == 401
+        assert client.get("oauth2/auth", headers=PASSED).status_code == 404  # for nginx alone
+        forged = {"X-Forwarded-User": "mallory"}
+        assert client.get("api/v1/identity", headers=PASSED | forged).json()["name"] == "anna"
+        assert client.put("api/v1/tasks/asked", json={}, headers=PASSED).status_code == 200
+        stop = client.post("api/v1/stop", headers=forged)
+        assert stop.status_code not in (302, 401, 403, 404), stop.text
+    events = address.replace("https", "wss") + "api/v1/events"
+    trusting = ssl._create_unverified_context()
+    with connect(events, ssl=trusting, additional_headers=PASSED) as socket:
+        assert socket.recv(HANG)
+    with pytest.raises(InvalidStatus) as found, connect(events, ssl=trusting):
+        pass
+    assert found.value.response.status_code == 401

@@ -1,0 +1,136 @@
+"""A browser on another machine: a network namespace of its own, the station by its name, and the station's authority.
+
+Page, WebSockets and the headset's hand need https there; nothing is told to overlook a fault of the certificate.
+"""
+
+import os
+import shutil
+import subprocess
+import threading
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from typer.testing import CliRunner
+
+from teachpath.__main__ import app
+from teachpath.access.passwords import hash_password
+from teachpath.app import Station
+from teachpath.commands.serving import free_port, listen
+from teachpath.records import Capability, Person
+from teachpath.web.server import web_server
+from tests.conftest import NAMES
+from tests.contract import stations
+from tests.system.carriers import HEADSET
+from tests.waiting import HANG, wait_until
+
+pytestmark = pytest.mark.system
+
+NAME, PASSWORD = "robot.teachpath.internal", "four words put together"
+ASSETS = Path(__file__).parent / "assets"
+NETWORK = f"10.213.{os.getpid() % 250}"  # of this run alone
+HERE, THERE = f"{NETWORK}.1", f"{NETWORK}.2"
+
+
+@pytest.fixture(scope="module")
+def namespace() -> Iterator[str]:
+    """A network namespace with one line to this one."""
+    missing = [program for program in ("ip", "certutil") if shutil.which(program) is None]
+    if missing:
+        pytest.skip(f"no {' and no '.join(missing)}; get them with: sudo apt-get install iproute2 libnss3-tools")
+    name = f"teachpath-{os.getpid()}"
+    near, far = f"tp{os.getpid()}a", f"tp{os.getpid()}b"
+    if subprocess.run(["ip", "netns", "add", name], capture_output=True).returncode:
+        pytest.skip("only root may make a network namespace: run the tests as root, or in a container of its own")
+    try:
+        for words in (
+            f"link add {near} type veth peer name {far} netns {name}",
+            f"addr add {HERE}/30 dev {near}",
+            f"link set {near} up",
+            f"-n {name} addr add {THERE}/30 dev {far}",
+            f"-n {name} link set {far} up",
+        ):
+            subprocess.run(["ip", *words.split()], check=True, timeout=HANG)
+        yield name
+    finally:
+        subprocess.run(["ip", "netns", "del", name], check=True, timeout=HANG)
+
+
+@pytest.fixture(scope="module")
+def data(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A data folder with a certificate for the station's name."""
+    folder = tmp_path_factory.mktemp("station") / "data"
+    result = CliRunner().invoke(app, ["tls", "init", "--name", NAME, "--data", str(folder)])
+    assert result.exception is None, result.output
+    return folder
+
+
+@pytest.fixture(scope="module")
+def station(data: Path, namespace: str) -> Iterator[tuple[Station, str]]:
+    """A station that listens on the line, with a person who may show how it is done; and its address."""
+    with stations.station_in(data, auth={"mode": "token"}, web={"host": HERE, "hosts": [NAME]}) as station:
+        now = time.time_ns()
+        kept = hash_password(PASSWORD, "anna")
+        station.store.people.add(Person("anna", (Capability.DEMONSTRATE,), kept, now, now))
+        station.access.refresh()
+        station.store.ensure_task("far", scene="paper", calibration="identity")
+        assert station.certificate
+        port = free_port()
+        server = web_server(station.web, station.settings.web, station.certificate.context)
+        thread = threading.Thread(target=server.run, kwargs={"sockets": [listen(HERE, port)]}, daemon=True)
+        thread.start()
+        wait_until(lambda: server.started, "the server has started")
+        yield station, f"https://{NAME}:{port}"
+        server.should_exit = True
+        thread.join(HANG)
+
+
+@pytest.fixture(scope="module")
+def far_browser(browser: Any, namespace: str, data: Path, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Any]:
+    """Chromium in the namespace, which trusts the station's authority and knows the station's name."""
+    home = tmp_path_factory.mktemp("home")
+    trusted = home / ".pki" / "nssdb"
+    trusted.mkdir(parents=True)
+    authority = data / "tls" / "authority.pem"
+    for words in (["-N", "--empty-password"], ["-A", "-n", "station", "-t", "C,,", "-i", str(authority)]):
+        subprocess.run(["certutil", "-d", f"sql:{trusted}", *words], check=True, timeout=HANG)
+    program = home / "chromium"
+    chromium = next(path for name in NAMES if (path := shutil.which(name)))
+    program.write_text(f'#!/bin/sh\nexec ip netns exec {namespace} {chromium} "$@"\n')
+    program.chmod(0o700)
+    flags = ["--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-dev-shm-usage"]
+    flags.append(f"--host-resolver-rules=MAP {NAME} {HERE}")
+    environment = os.environ | {"HOME": str(home)}
+    launched = browser.browser_type.launch(executable_path=str(program), headless=True, args=flags, env=environment)
+    yield launched
+    launched.close()
+
+
+def test_page_websockets_and_headset_work_by_the_station_s_name(far_browser: Any, station: tuple[Station, str]) -> None:
+    running, address = station
+    page = far_browser.new_page()
+    page.set_default_timeout(1000 * HANG)
+    page.add_init_script((ASSETS / "iwer" / "iwer.min.js").read_text() + HEADSET)
+    page.goto(address)
+    page.fill("#sign-in-name", "anna")
+    page.fill("#sign-in-password", PASSWORD)
+    page.click("#sign-in button")
+    page.wait_for_function("() => teachpath.state().connection === 'live'")  # both WebSockets
+    assert page.evaluate("isSecureContext")
+    (cookie,) = page.context.cookies()
+    assert (cookie["name"], cookie["secure"]) == ("__Host-teachpath-session", True)
+    page.select_option("#task", "far")
+    page.locator("#tab-demonstrate").click()
+    page.get_by_label("Countdown").select_option("0")
+    page.get_by_role("button", name="In a headset").click()
+    page.wait_for_selector("html[data-session=ready]", state="attached")
+
+    def is_recorded() -> bool:
+        return any(s.statistics.received > 20 for s in running.recorder.statuses(with_statistics=True) if s.statistics)
+
+    wait_until(
+        is_recorded, "the headset's hand is recorded", pause=lambda seconds: page.wait_for_timeout(5000 * seconds)
+    )
+    page.close()
