@@ -1,6 +1,6 @@
 // Who uses this page: signs people in and out, and says in every tab what they may not do in it.
 import { get, post, remove } from "./api.js";
-import { element, hint } from "./elements.js";
+import { block, element, hint } from "./elements.js";
 
 const CHECK_INTERVAL = 1000; // [ms] between two looks at who it is, while the connection is lost
 
@@ -81,14 +81,14 @@ export class IdentityControl {
   /** @param {() => Promise<void>} act says in the form why it could not be done */
   async #attempt(act) {
     this.refusal.textContent = "";
-    this.button.disabled = true;
+    block(this.button, "Signing in …");
     try {
       await act();
     } catch (error) {
       this.refusal.textContent = error instanceof Error ? error.message : String(error);
       this.password.select();
     } finally {
-      this.button.disabled = false;
+      block(this.button, "");
     }
   }
 
