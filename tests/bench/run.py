@@ -15,6 +15,7 @@ from tests.bench import (
     learning_peers,
     learning_scale,
     lists,
+    long_takes,
     motion,
     page,
     plans,
@@ -38,6 +39,7 @@ def main() -> None:
     figures, trajectories = recording.measure(repeats=1 if quick else 5, samples=recording.DEMO * (1 if quick else 4))
     print_report("Recording: hand samples to MCAP files and rows, every sample accounted for", figures)
     print_report("Recording under load, as live", recording_load.measure(seconds=10.0 if quick else 60.0))
+    print_report("Long takes", long_takes.measure(repeats=1 if quick else 3))
     print_report(
         "Learning and planning, in this process",
         learning.measure(trajectories, repeats=3 if quick else 7),
