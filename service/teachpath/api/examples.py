@@ -47,6 +47,7 @@ REQUESTS: Final[dict[str, dict[str, Any]]] = {
     "NewToken": {"name": "cell-3", "roles": ["operate"], "days": 30.0},
     "NewVersion": {"base": 1, "curve": CURVE, "name": "higher over the rim", "author": "ada"},
     "Override": {"override": 0.3},
+    "Page": {"path": "/"},
     "PointPair": {"tracker": [0.3, 0.0, 0.0], "world": [0.7, -0.3, 0.5]},
     "RecordingEnd": {"tracker": "glove", "discard": False},
     "Revocation": {"reason": "the table was moved"},
