@@ -72,7 +72,7 @@ def tell_by_keyboard(visit: Visit, operator: Operator) -> int:
     keys.go("z in millimetres")
     keys.press("ArrowUp")
     keys.use("Save version")
-    visit.wait(lambda: page.evaluate("teachpath.editor.draft.base.number === 2"))
+    page.wait_for_selector("#edit-certify:enabled:has-text('Certify version 2')")  # once its versions were read anew
     keys.use("Certify version 2")
     page.locator("#edit-run").wait_for()
     keys.use("Go to Run")
