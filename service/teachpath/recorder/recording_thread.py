@@ -151,6 +151,8 @@ class RecordingThread:
 
     def _process(self, session: RecordingSession, now: float) -> int:
         with self.condition:
+            if self.sessions.get(session.tracker) is not session:  # it has ended; what waits is of the next recording
+                return 0
             batch = self._queues.pop(session.tracker, BATCH_SIZE)
             self._record(session, batch)
             if now - session.last_flush >= FLUSH_INTERVAL:
@@ -185,6 +187,8 @@ class RecordingThread:
         if self._presence.silence_of(session.tracker) <= limit:
             return
         with self.condition:
+            if self.sessions.get(session.tracker) is not session:
+                return
             # A tracker whose samples wait in its queue is not silent.
             if not (self._queues.is_empty(session.tracker) and session.is_carrying):
                 return

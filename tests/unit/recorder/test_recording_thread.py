@@ -1,6 +1,6 @@
 """The rounds of the recording thread, one by one: which tracker waits for which, and when the thread pauses."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 import pytest
 
@@ -24,6 +24,8 @@ class Desk:
 
     def __init__(self, store: Store, trackers: tuple[str, ...]) -> None:
         self.now = 0.0
+        self.store = store
+        self.meanwhile: Callable[[], None] = lambda: None  # what others do after a round has chosen whose turn it is
         presence = Presence(lambda: self.now)
         self.queues = SampleQueues(KEYS, presence, SETTINGS.longest_backlog)
         self.thread = RecordingThread(
@@ -32,12 +34,19 @@ class Desk:
             SETTINGS,
             on_finished=lambda finished: None,
             on_discard_request=lambda session: None,
-            clock=lambda: self.now,
+            clock=self._clock,
         )
         for tracker in trackers:
-            setup = RecordingSetup("lift", tracker, Calibration("identity"), Scene("empty"))
-            self.thread.sessions[tracker] = RecordingSession(store, SETTINGS, setup, clock=lambda: self.now)
-            self.queues.open(tracker)
+            self.begin(tracker)
+
+    def _clock(self) -> float:
+        self.meanwhile()
+        return self.now
+
+    def begin(self, tracker: str) -> None:
+        setup = RecordingSetup("lift", tracker, Calibration("identity"), Scene("empty"))
+        self.thread.sessions[tracker] = RecordingSession(self.store, SETTINGS, setup, clock=lambda: self.now)
+        self.queues.open(tracker)
 
     def send(self, tracker: str, count: int, first: int = 1) -> None:
         for n in range(first, first + count):
@@ -93,3 +102,21 @@ def test_of_hundreds_each_has_its_turn_within_a_few_rounds(store: Store) -> None
     assert counts[2] == [1] * TURNS_IN_A_ROUND + [2] * TURNS_IN_A_ROUND + [3]
     assert min(counts[5]) == 4
     desk.thread.stop()
+
+
+def test_a_recording_that_begins_while_the_one_before_has_its_turn_gets_its_own_samples(desk: Desk) -> None:
+    desk.send("left", 1)  # so that it has a turn
+    ended = desk.thread.sessions["left"]
+
+    def begin_anew() -> None:
+        with desk.thread.condition:
+            desk.thread.drain(ended)
+            ended.finish()
+            desk.begin("left")
+            desk.send("left", 3, first=2)
+        desk.meanwhile = lambda: None
+
+    desk.meanwhile = begin_anew
+    desk.thread.process_round()
+    desk.thread.process_round()
+    assert (ended.counter.received, desk.recorded("left")) == (1, 3)
