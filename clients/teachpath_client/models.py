@@ -1372,6 +1372,19 @@ class RunSummary:
 
 
 @dataclass(frozen=True)
+class SavedScene:
+    """A version of a scene, and the scene itself.
+
+    Attributes:
+        version: who saved it, and when.
+        scene: as it is in this version.
+    """
+
+    version: SceneVersion
+    scene: Scene
+
+
+@dataclass(frozen=True)
 class SavedVersion:
     """A version of a learned path, and the path itself.
 
@@ -1406,6 +1419,28 @@ class Scene:
     floor: float = 0.0
     keep_in: list[Shape] = field(default_factory=list)
     keep_out: list[Shape] = field(default_factory=list)
+
+
+@dataclass(frozen=True)
+class SceneVersion:
+    """Who changed a scene, and when.
+
+    Attributes:
+        scene: its name.
+        number: from 1, in the order of saving; a scene of the settings is the first one.
+        created_ns: when it was saved [ns since the Unix epoch]; 0: it stands in the settings, and was never
+            changed.
+        author: who changed it; empty: not said.
+        note: why; empty: not said.
+        removed: the scene was removed with this version, which holds it as it was last.
+    """
+
+    scene: str
+    number: int
+    created_ns: int
+    author: str = ""
+    note: str = ""
+    removed: bool = False
 
 
 @dataclass(frozen=True)

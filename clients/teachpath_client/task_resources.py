@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, Literal
 
 from teachpath_client.models import (
@@ -15,7 +15,9 @@ from teachpath_client.models import (
     ObjectPose,
     RecordingReport,
     Robot,
+    SavedScene,
     Scene,
+    SceneVersion,
     StoredArm,
     Task,
     Trajectory,
@@ -36,8 +38,34 @@ class TaskResources(Rest):
         return self._ask(Health, "GET", "/health")
 
     def scenes(self) -> list[Scene]:
-        """List the scenes."""
+        """List the scenes, each with its object where it lies now."""
         return self._ask(list[Scene], "GET", "/scenes")
+
+    def get_scene(self, name: str, number: int | None = None) -> SavedScene:
+        """Return a scene as it was saved: its newest version, or one of them."""
+        return self._ask(SavedScene, "GET", f"/scenes/{name}" + ("" if number is None else f"/versions/{number}"))
+
+    def scene_versions(self, name: str) -> list[SceneVersion]:
+        """List the versions of a scene, newest first, of one that was removed too."""
+        return self._ask(list[SceneVersion], "GET", f"/scenes/{name}/versions")
+
+    def save_scene(self, name: str, scene: Mapping[str, Any], **options: Any) -> SceneVersion:
+        """Make a scene, or save a changed one as its newest version.
+
+        Args:
+            name: of the scene.
+            scene: obstacles, carried, floor, keep_in, keep_out, as `PUT /scenes/{scene}` takes them.
+            options: base, author, note.
+        """
+        return self._ask(SceneVersion, "PUT", f"/scenes/{name}", dict(scene) | options)
+
+    def copy_scene(self, name: str, copy: str) -> SceneVersion:
+        """Keep a scene under another name too."""
+        return self._ask(SceneVersion, "POST", f"/scenes/{name}/copies", {"name": copy})
+
+    def remove_scene(self, name: str) -> SceneVersion:
+        """Remove a scene that no task is done in; its versions stay."""
+        return self._ask(SceneVersion, "DELETE", f"/scenes/{name}")
 
     def get_object(self, scene: str) -> ObjectPose:
         """Return where the object of a scene lies."""
@@ -48,7 +76,7 @@ class TaskResources(Rest):
         return self._ask(ObjectPose, "PUT", f"/scenes/{scene}/object", {"position": list(position)} | orientation)
 
     def reset_object(self, scene: str) -> ObjectPose:
-        """Put the object of a scene back to where the settings have it."""
+        """Put the object of a scene back to where the scene has it."""
         return self._ask(ObjectPose, "DELETE", f"/scenes/{scene}/object")
 
     def robot(self) -> Robot:

@@ -140,6 +140,7 @@ store.subscribe((state, changed) => {
   tabs.setDone(doneSteps(state));
   sceneLayers.update(state, changed);
 });
+for (const topic of ["scenes", "all"]) eventStream.on(topic, () => sceneLayers.reread());
 for (const panel of panels) panel.update(store.state, new Set(Object.keys(store.state)));
 tabs.select(keptTab);
 

@@ -23,6 +23,7 @@ const MAX_DEMONSTRATIONS = 200; // newest demonstrations
 export class SceneLayers {
   /** @type {Scene[] | null} */
   #scenes = null;
+  #reading = {}; // the newest reading of the scenes
   /** @type {Map<string, string>} */
   #drawn = new Map(); // name in the tree -> key
 
@@ -60,6 +61,17 @@ export class SceneLayers {
       this.#showTask(state);
     }
     if (changesAny(changed, "focus", "path", "runs")) this.#highlight(state);
+  }
+
+  /** Read the scenes anew, because one was changed; before the tasks are known, nothing has been drawn of them. */
+  async reread() {
+    if (this.store.state.tasks === null) return;
+    const reading = {};
+    this.#reading = reading;
+    const scenes = /** @type {Scene[] | null} */ (await get("scenes").catch(() => null)); // null: asked again as below
+    if (this.#reading !== reading) return;
+    this.#scenes = scenes;
+    if (scenes) this.#showScene();
   }
 
   async #showScene() {

@@ -28,6 +28,7 @@ try:
         moving,
         people,
         resources,
+        scenes,
         station,
         stores,
         tasks,
@@ -92,6 +93,7 @@ app.add_typer(exporting.app, name="export")
 app.add_typer(tasks.app, name="task")
 app.add_typer(curves.app, name="curve")
 app.add_typer(arms.app, name="arm")
+app.add_typer(scenes.app, name="scene")
 app.add_typer(logins.app, name="login")
 app.add_typer(certificates.app, name="station")
 app.add_typer(stores.app, name="store")

@@ -28,6 +28,7 @@ from teachpath.io.audit_log import AuditLog
 from teachpath.io.bus import Bus, listen_on_bus
 from teachpath.io.bus_logins import prepare_access
 from teachpath.io.signing_key import prepare_signing_key
+from teachpath.io.store.changes import EVERYTHING
 from teachpath.io.wire import recording_document
 from teachpath.job_kinds import JobKinds
 from teachpath.jobs.curve_assessor import CurveAssessor
@@ -45,7 +46,7 @@ from teachpath.offline.leftovers import TRANSFERS, note_unnamed, remove_leftover
 from teachpath.offline.lock import StationLock
 from teachpath.offline.staging import abandoned_notes
 from teachpath.offline.transfer_folders import TransferFolders
-from teachpath.periodic_thread import Startable
+from teachpath.periodic_thread import Startable, Stoppable
 from teachpath.recorder.calibrations import Calibrations
 from teachpath.recorder.guidance import GuidanceThread, read_course
 from teachpath.recorder.queries import RecorderQueries
@@ -58,6 +59,7 @@ from teachpath.robot.joint_feed import JointFeed
 from teachpath.robot.object_poses import ObjectPoses
 from teachpath.robot.processes import EXECUTOR_SUGGESTION, SIMULATOR_SUGGESTION, SupervisedProcess, attached
 from teachpath.robot.programs import Programs
+from teachpath.robot.scenes import Scenes
 from teachpath.stored_arm import open_store
 from teachpath.web.certificate import find_certificate
 from teachpath_proto.keys import Keys
@@ -81,7 +83,7 @@ class Station:
         self.event_hub = EventHub()
         with ExitStack() as on_failure:
             on_failure.enter_context(self._lock)
-            self.store, self.settings = open_store(settings, self.event_hub.publish_change)
+            self.store, self.settings = open_store(settings, self._on_change)
             on_failure.callback(self.store.close)
             self.certificate = find_certificate(settings.web, settings.store.data_dir)
             self._authority = bool(self.certificate and self.certificate.authority)
@@ -118,20 +120,10 @@ class Station:
         self._state_poller.stop()
         self.access.stop()
         self.processes[0].request_stop()
-        self._queries.stop()
-        self.recorder.stop()
-        self.reader.stop()
-        self.guidance.stop()
-        self.jobs.stop()
-        self.assessor.stop()
-        self.exporter.stop()
-        self.certificate_status.stop()
-        self.objects.stop()
-        for process in self.processes:
-            process.stop()
-        self.executions.stop()  # after the executor, whose last status is the end of what was under way
-        self.joints.stop()
-        self.preview.stop()
+        first: tuple[Stoppable, ...] = (self._queries, self.recorder, self.reader, self.guidance, self.jobs)
+        then: tuple[Stoppable, ...] = (self.assessor, self.exporter, self.certificate_status, self.objects)
+        for part in (*first, *then, *self.processes, self.executions, self.joints, self.preview):
+            part.stop()  # executions after the executor, whose last status is the end of what was under way
         self.bus.close()
         self.audit.stop()
         self.store.close()
@@ -145,24 +137,24 @@ class Station:
         tokens, people = self.store.access_tokens, self.store.people
         self.access = Access(settings.auth, tokens, people, oidc=settings.oidc, provider=self._provider)
         self.reader = LimitedProcess(settings.jobs)
-        self.calibrations = Calibrations(
-            self.store, settings.recording, settings.calibrations, settings.scene, self.reader.call
-        )
+        self.scenes = Scenes(self.store.scenes, settings.scenes)
+        scene, call = self.scenes.get, self.reader.call
+        self.calibrations = Calibrations(self.store, settings.recording, settings.calibrations, scene, call)
         self.executions = Executions(self.bus, self.keys, self.store, self.audit.note_journal, robot=settings.bus.robot)
         self.objects = ObjectPoses(
-            self.bus, self.keys, settings.scene, self.executions.is_moving, lambda scene: self._shown.show_scene()
+            self.bus, self.keys, scene, self.executions.is_moving, lambda scene: self._shown.show_scene()
         )
         self.recorder = Recorder(
             self.bus,
             self.keys,
             self.store,
             settings.recording,
-            Lookup(settings.scene, self.calibrations.get, self.objects.reported),
+            Lookup(scene, self.calibrations.get, self.objects.reported),
             DemonstrationCallbacks(
                 added=lambda demonstration, trajectory: self._shown.show(demonstration.task),
                 changed=lambda demonstration: self._shown.show(demonstration.task),
             ),
-            call=self.reader.call,
+            call=call,
         )
         self._queries = RecorderQueries(self.bus, self.keys, self.recorder)
         self.guidance = GuidanceThread(self.store.demonstrations, self._course, settings.learning, self.reader.call)
@@ -170,20 +162,20 @@ class Station:
         self._shown = ShownTask(
             self.store,
             self.objects.scene,
-            settings.scenes[0],
+            lambda: self.scenes.all()[0],
             lambda carried: self.preview.show_object(carried),  # the preview is opened later
             self.guidance.request,
         )
 
     def _open_work(self) -> None:
         """Open what learns, plans and looks at curves."""
-        settings = self.settings
+        settings, store, scenes, show = self.settings, self.store, self.scenes, self._shown.show
         self.assessor = CurveAssessor()
         self.transfers = TransferFolders(Path(settings.store.data_dir) / TRANSFERS)
         kinds = JobKinds(
-            self.store, settings, self.calibrations, self.transfers, self._shown.show, self._signing_key, self.objects
+            store, settings, self.calibrations, self.transfers, show, self._signing_key, scenes, self.objects
         ).by_name()
-        self.jobs = Jobs(self.bus, self.keys, self.store, settings.jobs, kinds, on_finished=self.assessor.on_finished)
+        self.jobs = Jobs(self.bus, self.keys, store, settings.jobs, kinds, on_finished=self.assessor.on_finished)
         self.exporter = Exporter(ExportSource(settings.store, settings.recording, settings.scenes), settings.jobs)
 
     def _open_robot(self) -> None:
@@ -222,7 +214,8 @@ class Station:
         key: bytes = b"",
     ) -> SupervisedProcess:
         login = self._access.login(role) if self._access else None
-        given = instructions(Instructions(self.settings, login, key))
+        settings = self.settings.model_copy(update={"scenes": tuple(self.scenes.all())})
+        given = instructions(Instructions(settings, login, key))
         return SupervisedProcess(name, attached(name), given, suggestion=suggestion, on_death=on_death)
 
     def _course(self, demonstration: Demonstration) -> Array:
@@ -251,7 +244,7 @@ class Station:
         notes += self.recorder.faults() + self.executions.faults() + self.store.health.faults()
         notes += self.store.spool.faults()
         notes += self._access.notes(datetime.now(UTC)) if self._access else []
-        notes += self.access.notes() + self.audit.notes()
+        notes += self.access.notes() + self.audit.notes() + self.scenes.notes
         notes += self.certificate.notes(datetime.now(UTC)) if self.certificate else []
         if (unfinished := self.store.recordings.unfinished()) and not self.recorder.statuses():
             notes.append(f"{len(unfinished)} recordings were cut off; stop the service and run: teachpath doctor")
@@ -286,6 +279,7 @@ class Station:
             programs=self.programs,
             websocket_trackers=self.websocket_trackers,
             joints=self.joints,
+            scenes=self.scenes,
             objects=self.objects,
             reader=self.reader,
             health=self.health,
@@ -293,3 +287,9 @@ class Station:
             exporter=self.exporter,
             leave_task=self._shown.leave,
         )
+
+    def _on_change(self, table: str, key: str) -> None:
+        """Publish a row that has changed, here or by another station; of a scene, show the object anew."""
+        self.event_hub.publish_change(table, key)
+        if table in ("scenes", EVERYTHING):
+            self._shown.show_scene()

@@ -17,7 +17,7 @@ from typing import Any, get_args, get_type_hints
 from pydantic import BaseModel, ConfigDict, PrivateAttr, ValidationError
 
 from teachpath.access.settings import AuthSettings, LimitSettings, OidcSettings
-from teachpath.errors import NotFound, UnusableSettings
+from teachpath.errors import UnusableInput, UnusableSettings
 from teachpath.executor.settings import ExecutorSettings
 from teachpath.executor.teleop.settings import TeleoperationSettings
 from teachpath.io.bus_settings import BusSettings
@@ -32,6 +32,7 @@ from teachpath.logs import LogSettings
 from teachpath.motion.arm.model import Arm
 from teachpath.motion.arm.mounting import check_mounting
 from teachpath.motion.collision.builtin_scenes import empty_scene, paper_scene
+from teachpath.motion.collision.scene_checks import check_scene
 from teachpath.motion.planning.model_arms import with_home
 from teachpath.motion.settings import MotionSettings
 from teachpath.recording.settings import RecordingSettings
@@ -43,7 +44,6 @@ from teachpath_proto.keys import is_name, name_refusal
 PREFIX = "TEACHPATH_"
 # former settings -> the one that does their work
 REPLACED = dict.fromkeys(("learning.guard", "learning.min_silhouette"), "learning.min_separation")
-SIZES = {"box": 3, "cylinder": 2, "sphere": 1, "mesh": 1}  # numbers in the size of a shape
 # RoboTasks (clfd datasets) was recorded in the frame of another arm; this maps it, shrunk, onto the Puma's table.
 ROBOTTASKS = Calibration("robottasks", scale=0.8, rotation=(1.0, 0.0, 0.0, 0.0), offset=(0.15, 0.17, 0.42))
 
@@ -90,13 +90,6 @@ class Settings(BaseModel):
         made = self.model_copy(update={"motion": home})
         made._model = model
         return made
-
-    def scene(self, name: str) -> Scene:
-        """Return the scene `name`; raises NotFound with the known ones."""
-        for scene in self.scenes:
-            if scene.name == name:
-                return scene
-        raise NotFound(f"there is no scene {name!r}; known: {', '.join(scene.name for scene in self.scenes)}")
 
     def learning_with(self, changes: Mapping[str, Any]) -> LearningSettings:
         """Return the settings of learning with `changes` laid over them; raises UnusableSettings."""
@@ -250,24 +243,10 @@ def _check_calibrations(calibrations: tuple[Calibration, ...]) -> None:
 def _check_scenes(scenes: tuple[Scene, ...]) -> None:
     _check_names("scene", (scene.name for scene in scenes))
     for scene in scenes:
-        _check_names(f"body of scene {scene.name}", (shape.name for shape in scene.bodies))
-        for shape in scene.bodies:
-            _check_shape(shape, scene.name)
-        for zone in scene.keep_in:
-            if zone.kind != "box":
-                raise UnusableSettings(f"keep-in zone {zone.name} in scene {scene.name} is a {zone.kind}; use a box")
-
-
-def _check_shape(shape: Shape, scene: str) -> None:
-    who = f"{shape.name} in scene {scene}"
-    if shape.kind not in SIZES:
-        raise UnusableSettings(f"{who} is a {shape.kind!r}; known are {', '.join(SIZES)}")
-    if len(shape.size) != SIZES[shape.kind] or min(shape.size) <= 0:
-        raise UnusableSettings(f"{who} has size {shape.size}; a {shape.kind} has {SIZES[shape.kind]} lengths over 0")
-    if not math.isclose(norm := math.hypot(*shape.orientation), 1.0, abs_tol=1e-6):
-        raise UnusableSettings(f"{who} has an orientation of length {norm:g}; a unit quaternion has 1")
-    if (shape.kind == "mesh") != bool(shape.vertices):
-        raise UnusableSettings(f"{who} is a {shape.kind}; a mesh, and only a mesh, has a file")
+        try:
+            check_scene(scene)
+        except UnusableInput as error:
+            raise UnusableSettings(str(error)) from None
 
 
 def _check_names(what: str, names: Iterable[str]) -> None:

@@ -22,6 +22,7 @@ from teachpath.offline.transfer_folders import TransferFolders
 from teachpath.recorder.calibrations import Calibrations
 from teachpath.records import Demonstration, Job, Learned, LearnedPath, ObjectPose, Plan, Scene, Task
 from teachpath.robot.object_poses import ObjectPoses
+from teachpath.robot.scenes import Scenes
 
 
 @dataclass(frozen=True)
@@ -32,12 +33,14 @@ class LearningKinds:
         store: of demonstrations and runs.
         settings: of the station.
         calibrations: that demonstrations have to be recorded under, in their present version.
+        scenes: of the tasks.
         is_away: whether recordings that wait to be uploaded may lie on another machine, so that jobs wait for them.
     """
 
     store: Store
     settings: Settings
     calibrations: Calibrations
+    scenes: Scenes
     is_away: bool = False
 
     def by_name(self) -> dict[str, JobKind]:
@@ -69,7 +72,7 @@ class LearningKinds:
         self.store.services.require_recorded_here(task)
         if self.is_away:
             self.store.recordings.require_uploaded([row.recording for row in rows])
-        carried = self.settings.scene(self.store.task(task).scene).carried
+        carried = self.scenes.get(self.store.task(task).scene).carried
         return StoredDemonstrations(
             self.store.recordings,
             tuple(rows),
@@ -91,6 +94,7 @@ class JobKinds:
         transfers: folders of uploaded files.
         imported: called with the name of a task that an import has added to.
         signing_key: with which plans are signed.
+        scenes: of the tasks.
         objects: where the objects lie that paths are planned for.
     """
 
@@ -100,12 +104,13 @@ class JobKinds:
     transfers: TransferFolders
     imported: Callable[[str], None]
     signing_key: SigningKey
+    scenes: Scenes
     objects: ObjectPoses
 
     def by_name(self) -> dict[str, JobKind]:
         """Return the kinds of jobs by the names that REST gives them."""
         return {
-            **LearningKinds(self.store, self.settings, self.calibrations).by_name(),
+            **LearningKinds(self.store, self.settings, self.calibrations, self.scenes).by_name(),
             "plan": JobKind(self._planning_input, worker.plan_path, self._store_plan),
             "import": JobKind(
                 self._import_input, prepare_imports, self._store_import, lane="files", clean_up=self._remove_uploads
@@ -155,7 +160,7 @@ class JobKinds:
         )
 
     def _scene_of(self, task: str, given: ImportRequest) -> Scene:
-        return self.settings.scene(import_scene(self.store, task, given.scene))
+        return self.scenes.get(import_scene(self.store, task, given.scene))
 
     def _store_import(self, job: Job, prepared: list[PreparedImport]) -> str:
         given = from_document(ImportRequest, job.request)

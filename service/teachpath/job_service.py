@@ -14,6 +14,7 @@ from teachpath.job_kinds import LearningKinds
 from teachpath.jobs.jobs import Jobs
 from teachpath.jobs.limited_process import LimitedProcess
 from teachpath.recorder.calibrations import Calibrations
+from teachpath.robot.scenes import Scenes
 from teachpath_proto.keys import Keys
 
 
@@ -35,10 +36,11 @@ class JobService:
             self._store.close()
             raise
         self._reader = LimitedProcess(settings.jobs)
+        scenes = Scenes(self._store.scenes, settings.scenes)
         calibrations = Calibrations(
-            self._store, settings.recording, settings.calibrations, settings.scene, self._reader.call
+            self._store, settings.recording, settings.calibrations, scenes.get, self._reader.call
         )
-        kinds = LearningKinds(self._store, settings, calibrations, is_away=True).by_name()
+        kinds = LearningKinds(self._store, settings, calibrations, scenes, is_away=True).by_name()
         self._jobs = Jobs(MemoryBus(), Keys(settings.bus.prefix), self._store, settings.jobs, kinds)
 
     def __enter__(self) -> JobService:

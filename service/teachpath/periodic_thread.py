@@ -17,6 +17,13 @@ class Startable(Protocol):
         """Begin to work."""
 
 
+class Stoppable(Protocol):
+    """A part that can be ended."""
+
+    def stop(self) -> object:
+        """End what it does."""
+
+
 class PeriodicThread:
     """Calls an action on a thread of its own, with a pause before each call; it can be started again after a stop.
 

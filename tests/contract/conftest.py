@@ -16,6 +16,7 @@ ON_BOTH = {
         "pages",
         "rest",
         "rest_calibrations",
+        "rest_scenes",
         "rest_task_changes",
         "rest_tasks",
         "rest_work",

@@ -33,6 +33,8 @@ READERS = [
     "curve/list",
     "curve/export",
     "curve/compare",
+    "scene/show",
+    "scene/versions",
     "arm/list",
     "arm/check",
     "login/list",
@@ -54,6 +56,10 @@ BY_REST = [
     "stop",
     "acknowledge",
     "curve/import",
+    "scene/add",
+    "scene/copy",
+    "scene/remove",
+    "scene/restore",
 ]
 STARTS = ["serve", "demo", "worker", "executor", "simulator", "replay"]  # what the service that they belong to writes
 WRITERS: dict[str, tuple[str, str]] = {  # in an order in which they can be given: words, and what is written

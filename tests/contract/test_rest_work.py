@@ -12,19 +12,21 @@ from teachpath.executor.lease import ControlLease
 from teachpath.io.documents import decode, encode
 from teachpath.io.wire import decode_command, decode_lease_request, encode_lease, encode_status
 from teachpath.motion.collision.builtin_scenes import empty_scene
-from teachpath.records import CertificateQuery, ExecutorStatus, Job, JobState, JournalEntry, Plan, Signature
+from teachpath.records import CertificateQuery, ExecutorStatus, Job, JobState, JournalEntry, Plan, Scene, Signature
 from teachpath_proto.keys import name_refusal
 from tests.contract.desk import API, Desk, csv, refused
 from tests.unit.io.test_documents import a_plan
 
 
-def planned(station: Station, key: str) -> str:
+def planned(station: Station, key: str, scene: Scene | None = None) -> str:
     """Store a plan, as signed, and return its id."""
     job = Job(f"plan-{key}", "t", "plan", {}, JobState.QUEUED, 0.0, "", "", 0, 1, 0)
     station.store.add_job(job)
     plan = a_plan()
     signature = Signature("puma", 0.1, {}, (), (), 1, 2, "ab")
-    signed = replace(plan, id=key, scene=empty_scene(), certificate=replace(plan.certificate, signature=signature))
+    signed = replace(
+        plan, id=key, scene=scene or empty_scene(), certificate=replace(plan.certificate, signature=signature)
+    )
     return station.store.finish_planning(job.id, signed)
 
 

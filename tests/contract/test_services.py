@@ -6,6 +6,7 @@ import sys
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -17,7 +18,9 @@ from teachpath.io.store.pages import PageRequest
 from teachpath.io.store.settings import StoreSettings
 from teachpath.io.store.store import Store
 from teachpath.job_service import JobService
+from teachpath.motion.collision.builtin_scenes import paper_scene
 from teachpath.records import ExecutorStatus, JobState, RunSummary
+from teachpath.robot.scenes import Scenes
 from teachpath_proto.control import ExecutorState
 from tests.contract.job_program import job_service
 from tests.contract.rows import a_job, demonstration, learned
@@ -207,6 +210,20 @@ def test_changes_reach_every_other_service_when_they_are_stored(open_: Open) -> 
         hearer.add_job(a_job())  # its own changes it knows already
         writer.add_demonstration(demonstration("d"))
         assert next_but_probes(heard) == ("demonstrations", "d")
+
+
+def test_a_scene_that_one_station_changes_counts_at_all(open_: Open) -> None:
+    writer, hearer = open_(station="one"), open_(station="other")
+    here, there = (Scenes(store.scenes, (paper_scene(),)) for store in (writer, hearer))
+    assert there.get("paper") == paper_scene()
+    with hearing(hearer, writer) as heard:
+        for number in range(2, 4):
+            changed = replace(paper_scene(), floor=-number / 10)
+            here.save(changed, base=number - 1)
+            assert next_but_probes(heard) == ("scenes", "paper")
+            assert there.get("paper") == changed
+        with pytest.raises(Conflict, match="has version 3"):
+            there.save(paper_scene(), base=2)
 
 
 def test_after_a_lost_line_everything_is_read_again(open_: Open, postgres: Server) -> None:

@@ -17,7 +17,7 @@ import pytest
 
 from teachpath import config
 from teachpath.config import Settings, load
-from teachpath.errors import NotFound, UnusableInput, UnusableSettings
+from teachpath.errors import UnusableInput, UnusableSettings
 from tests.contract import settings_file
 from tests.waiting import HANG
 
@@ -224,18 +224,11 @@ def test_a_scene_has_a_floor_and_zones_and_one_without_has_a_floor_at_the_arms_f
             load(toml(tmp_path, ZONE % zone))
 
 
-def test_scenes_are_found_by_name() -> None:
-    settings = Settings()
-    assert settings.scene("paper").name == "paper"
-    with pytest.raises(NotFound, match="there is no scene 'moon'; known: paper, empty"):
-        settings.scene("moon")
-
-
 def test_a_mesh_is_read_beside_the_settings_and_a_wrong_shape_is_named(tmp_path: Path) -> None:
     (tmp_path / "cube.obj").write_text("".join(f"v {x} {y} {z}\n" for x in (0, 9) for y in (0, 9) for z in (0, 9)))
     shape = 'scenes = [{name = "s", obstacles = [{name = "cube", kind = "mesh", size = [0.001], position = [0, 0, 0]'
     settings = load(toml(tmp_path, f'{shape}, file = "cube.obj"}}]}}]\n'))
-    (cube,) = settings.scene("s").obstacles
+    (cube,) = settings.scenes[0].obstacles
     assert len(set(cube.vertices)) == 8
     handed_on = load(document=settings.model_dump(mode="json"))
     assert handed_on.scenes == settings.scenes

@@ -76,7 +76,7 @@ def imports_router(parts: Parts) -> APIRouter:
         file = UploadedFile("", name, format, units, rate, time, columns, quaternion, track, marks)
         check_options(name, format, file.options)
         store, calibrations = parts.store, parts.calibrations
-        parts.settings.scene(await run_in_threadpool(import_scene, store, task, scene))
+        await run_in_threadpool(lambda: parts.scenes.get(import_scene(store, task, scene)))
         await run_in_threadpool(import_calibration, store, calibrations, task, format, calibration)
         submitter = submitter_of(request, sender)
         order = ImportRequest((file,), scene, calibration, object_at_grasp)

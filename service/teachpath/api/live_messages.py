@@ -19,6 +19,7 @@ Resource = Literal[
     "plans",
     "revocations",
     "runs",
+    "scenes",
     "services",
     "tasks",
 ]

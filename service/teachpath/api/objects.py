@@ -41,7 +41,7 @@ def objects_router(parts: Parts) -> APIRouter:
 
     @router.delete("/scenes/{scene}/object", dependencies=TEACH)
     def reset_object(scene: str) -> ObjectPose:
-        """Put the object of a scene back to where the settings have it, and return where that is."""
+        """Put the object of a scene back to where the scene has it, and return where that is."""
         return poses.forget(scene)
 
     return router

@@ -25,6 +25,7 @@ from teachpath.robot.executions import Executions
 from teachpath.robot.joint_feed import JointFeed
 from teachpath.robot.object_poses import ObjectPoses
 from teachpath.robot.programs import Programs
+from teachpath.robot.scenes import Scenes
 from teachpath.web.certificate import WebCertificate
 
 MAX_READERS: Final = 4  # threads of a resource that wait for recordings to be read
@@ -91,6 +92,7 @@ class Parts:
     programs: Programs
     websocket_trackers: WebSocketTrackers
     joints: JointFeed
+    scenes: Scenes
     objects: ObjectPoses
     reader: LimitedProcess
     health: Callable[[], Health]

@@ -1,4 +1,4 @@
-"""The station as a whole: health and scenes; and the application that holds all resources."""
+"""The station as a whole: its health; and the application that holds all resources."""
 
 from __future__ import annotations
 
@@ -41,13 +41,13 @@ from teachpath.api.recording import recording_router
 from teachpath.api.request_numbers import RequestNumbers
 from teachpath.api.revocable_sockets import RevocableSockets
 from teachpath.api.robot import robot_router
+from teachpath.api.scenes import scenes_router
 from teachpath.api.strict_requests import refuse_unknown
 from teachpath.api.tasks import tasks_router
 from teachpath.api.trackers import trackers_router
 from teachpath.api.uploads import uploads_router
 from teachpath.api.versions import versions_router
 from teachpath.api.work import jobs_router, results_router
-from teachpath.records import Scene
 from teachpath.web.server import possible_connections
 
 PREFIX: Final = "/api/v1"
@@ -105,6 +105,7 @@ def build_api(parts: Parts, *pages: APIRouter) -> FastAPI:
         versions_router,
         curves_router,
         adaptations_router,
+        scenes_router,
         objects_router,
         assessments_router,
         executions_router,
@@ -159,10 +160,5 @@ def station_router(parts: Parts) -> APIRouter:
     def get_health() -> Health:
         """Say which parts run, and what an operator should know."""
         return parts.health()
-
-    @router.get("/scenes", dependencies=VIEW)
-    def list_scenes() -> list[Scene]:
-        """List the scenes: table, obstacles and the object where it lies."""
-        return [parts.objects.scene(scene.name) for scene in parts.settings.scenes]
 
     return router

@@ -61,7 +61,7 @@ def _add_tasks(router: APIRouter, parts: Parts) -> None:
         """Make a task. One that exists stays as it is; what is asked of it and is otherwise there is refused."""
         _require_name(task)
         with named_in_body("scene"):
-            scene = parts.settings.scene(new.scene)
+            scene = parts.scenes.get(new.scene)
         with named_in_body("calibration"):
             calibration = parts.calibrations.get(new.calibration)
         made = store.ensure_task(

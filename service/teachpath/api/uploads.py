@@ -185,7 +185,7 @@ def _add_uploads(router: APIRouter, parts: Parts) -> None:
             kind=file.format,
             options=file.options,
             marks=file.marks,
-            scene=parts.settings.scene(import_scene(store, task, examination.scene)),
+            scene=parts.scenes.get(import_scene(store, task, examination.scene)),
             calibration=import_calibration(store, parts.calibrations, task, file.format, examination.calibration),
             recording=parts.settings.recording,
             limits=parts.settings.imports,
@@ -231,7 +231,7 @@ def _add_import(router: APIRouter, parts: Parts) -> None:
             with named_in_body("files"):
                 _require(parts, file.upload)
         with named_in_body("scene"):
-            parts.settings.scene(import_scene(store, task, new.scene))
+            parts.scenes.get(import_scene(store, task, new.scene))
         with named_in_body("calibration"):
             import_calibration(store, parts.calibrations, task, "", new.calibration)
         job = parts.jobs.submit(task, "import", order, submitter, who=sender.name, idempotency_key=key)

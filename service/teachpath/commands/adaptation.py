@@ -58,7 +58,7 @@ def adapted_plan(station: Station, path: str, start: str, goal: str, **options: 
 def object_(
     scene: Annotated[str, typer.Argument(help="Name of the scene.")],
     at: Annotated[str, typer.Option(help="Where its object lies: x,y,z [m], or x,y,z,qw,qx,qy,qz.")] = "",
-    reset: Annotated[bool, typer.Option("--reset", help="It lies where the settings have it.")] = False,
+    reset: Annotated[bool, typer.Option("--reset", help="It lies where the scene has it.")] = False,
     url: Url = "",
     json_: Json = False,
 ) -> None:

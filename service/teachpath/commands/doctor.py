@@ -53,13 +53,15 @@ def doctor(
         raise typer.Exit(_examine_system(config, data, json_))
     from teachpath.offline.doctor import examine
     from teachpath.offline.findings import exit_code
+    from teachpath.robot.scenes import Scenes
 
     settings = stored_settings(config, data)
-    scenes = {each.name: each for each in settings.scenes}
     folder = Path(settings.store.data_dir).absolute()
-    if scene:
-        settings.scene(scene)
     with _opened(settings, dry_run=dry_run, rebuild=rebuild) as store:
+        known = Scenes(store.scenes, settings.scenes)
+        if scene:
+            known.get(scene)
+        scenes = {each.name: each for each in known.all()}
         findings = examine(store, settings.recording, scenes, folder, mend=not dry_run, default_scene=scene)
     if not dry_run:
         note(settings, f"doctor{' --rebuild' if rebuild else ''}: {len(findings)} faults found")

@@ -116,12 +116,14 @@ def _demonstrations(
 ) -> None:
     from teachpath.offline.exporting import chosen, export_demonstrations
     from teachpath.recorder.annotations import Annotations
+    from teachpath.robot.scenes import Scenes
 
     with opened_store(settings) as store:
         known = what in {task.name for task in store.tasks()}
         rows = chosen(store, what, numbers=numbers, all_=all_) if known else [store.demonstration(what)]
         with progress_bar("exporting") as show:
-            trajectory = Annotations(store, settings.recording, settings.scene).trajectory
+            scenes = Scenes(store.scenes, settings.scenes)
+            trajectory = Annotations(store, settings.recording, scenes.get).trajectory
             written = export_demonstrations(store, rows, kind, into, trajectory=trajectory, progress=show)
         left_out = len(store.demonstrations(what)) - len(rows) if known and not numbers else 0
     for file in written:
@@ -134,14 +136,16 @@ def _demonstrations(
 def _review(run: str, file: Path, settings: Settings) -> None:
     from teachpath.offline.report import review_of, write_package
     from teachpath.recorder.annotations import Annotations
+    from teachpath.robot.scenes import Scenes
 
     settings = with_arm(settings)
     with opened_store(settings) as store:
+        scenes = Scenes(store.scenes, settings.scenes)
         review = review_of(
             store,
             run,
-            scene=settings.scene,
-            trajectory=Annotations(store, settings.recording, settings.scene).trajectory,
+            scene=scenes.get,
+            trajectory=Annotations(store, settings.recording, scenes.get).trajectory,
             motion=settings.motion,
             arm=settings.arm,
             robot=settings.bus.robot,

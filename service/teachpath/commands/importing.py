@@ -84,6 +84,7 @@ def import_(
     from teachpath.offline.import_target import import_calibration, import_scene, starts_at_object
     from teachpath.offline.track_samples import PhaseMarks
     from teachpath.recorder.calibrations import Calibrations
+    from teachpath.robot.scenes import Scenes
 
     settings = stored_settings(config, data, may_make=True)
     options = ReadOptions(units, time, rate, columns, quaternion, track)
@@ -95,7 +96,8 @@ def import_(
         store, process = Store(settings.store), LimitedProcess(settings.jobs)
         opened.callback(store.close)
         opened.callback(process.stop)
-        calibrations = Calibrations(store, settings.recording, settings.calibrations, settings.scene)
+        scenes = Scenes(store.scenes, settings.scenes)
+        calibrations = Calibrations(store, settings.recording, settings.calibrations, scenes.get)
         order = ImportOrder(  # without a key, folder and name: the batch gives each file its own
             key="",
             folder=Path(),
@@ -104,7 +106,7 @@ def import_(
             kind=format,
             options=options,
             marks=PhaseMarks(grasp, release, whole),
-            scene=settings.scene(import_scene(store, task, scene)),
+            scene=scenes.get(import_scene(store, task, scene)),
             calibration=import_calibration(store, calibrations, task, format, calibration),
             recording=settings.recording,
             limits=settings.imports,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
+from dataclasses import asdict
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -10,6 +11,7 @@ import typer
 from teachpath.commands.options import Json, Url, connected
 from teachpath.commands.printing import moment, print_columns, print_json, print_list, verdict_word
 from teachpath.commands.references import find_execution, find_job, find_path, find_plan, find_run
+from teachpath.commands.scenes import print_bodies
 from teachpath.errors import NotFound
 from teachpath.lengths import describe_length
 
@@ -258,15 +260,7 @@ def scenes(
     if json_:
         print_json(chosen[0] if scene else chosen)
     elif scene:
-        carried = [("object", chosen[0].carried)] if chosen[0].carried else []
-        bodies = [*(("obstacle", shape) for shape in chosen[0].obstacles), *carried]
-        bodies += [("keep in", shape) for shape in chosen[0].keep_in]
-        bodies += [("keep out", shape) for shape in chosen[0].keep_out]
-        rows = [
-            (role, s.name, s.kind, " x ".join(f"{v:g}" for v in s.size), ", ".join(f"{v:.3f}" for v in s.position))
-            for role, s in bodies
-        ]
-        print_columns(("role", "name", "kind", "size [m]", "centre [m]"), rows, none=f"nothing stands in {scene}")
+        print_bodies(asdict(chosen[0]))
     else:
         listed_rows = [
             (s.name, ", ".join(o.name for o in s.obstacles) or "none", s.carried.name if s.carried else "")

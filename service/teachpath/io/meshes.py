@@ -8,16 +8,17 @@ from typing import Final
 
 import numpy as np
 import scipy
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from teachpath.errors import UnusableInput
+from teachpath.records import Vector
 
 LARGEST: Final = 50_000_000  # bytes
 HEADER: Final = 84  # bytes before the triangles of a binary STL: a comment and their number
 TRIANGLE: Final = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
 
 
-def read_hull(file: Path) -> tuple[tuple[float, float, float], ...]:
+def read_hull(file: Path) -> tuple[Vector, ...]:
     """Return the convex hull of a mesh in the file's units: three corners a triangle, counter-clockwise from outside.
 
     Raises:
@@ -29,16 +30,29 @@ def read_hull(file: Path) -> tuple[tuple[float, float, float], ...]:
         content = file.read_bytes()
     except OSError as error:
         raise UnusableInput(f"cannot read the mesh {file}: {error.strerror}") from None
-    corners = _corners(content, file)
-    if len(corners) < 4:
-        raise UnusableInput(f"mesh {file} has {len(corners)} corners; a body needs 4 at least")
-    if not np.all(np.isfinite(corners)):
-        raise UnusableInput(f"mesh {file} has a corner that is not finite")
+    return convex_hull(_corners(content, file), str(file))
+
+
+def convex_hull(corners: ArrayLike, name: str) -> tuple[Vector, ...]:
+    """Return the convex hull of points (n, 3): three corners a triangle, counter-clockwise from outside.
+
+    Args:
+        corners: in any unit.
+        name: of the mesh, for the refusal.
+
+    Raises:
+        UnusableInput: fewer than 4 points, one that is not finite, or all of them in a plane.
+    """
+    points = np.asarray(corners, dtype=np.float64)
+    if len(points) < 4:
+        raise UnusableInput(f"mesh {name} has {len(points)} corners; a body needs 4 at least")
+    if not np.all(np.isfinite(points)):
+        raise UnusableInput(f"mesh {name} has a corner that is not finite")
     try:
-        hull = scipy.spatial.ConvexHull(corners)
+        hull = scipy.spatial.ConvexHull(points)
     except scipy.spatial.QhullError:
-        raise UnusableInput(f"mesh {file} is flat; a body has three dimensions") from None
-    triangles = corners[hull.simplices]
+        raise UnusableInput(f"mesh {name} is flat; a body has three dimensions") from None
+    triangles = points[hull.simplices]
     normals = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
     inward = np.einsum("ij,ij->i", normals, hull.equations[:, :3]) < 0
     triangles[inward] = triangles[inward][:, ::-1]

@@ -18,14 +18,14 @@ class ShownTask:
     Attributes:
         store: of the tasks.
         scene: returns the scene of a name, with its object where it lies.
-        first_scene: what is shown while there is no task.
+        first_scene: returns what is shown while there is no task.
         show_object: shows the object of a scene; None: there is none.
         request_guidance: has the demonstrations of a task compared.
     """
 
     store: Store
     scene: Callable[[str], Scene]
-    first_scene: Scene
+    first_scene: Callable[[], Scene]
     show_object: Callable[[Shape | None], None]
     request_guidance: Callable[[str], None]
     name: str = ""
@@ -42,7 +42,7 @@ class ShownTask:
             self.show(tasks[-1].name)
         else:
             self.name = ""
-            self.show_object(self.first_scene.carried)
+            self.show_object(self.first_scene().carried)
 
     def leave(self, task: str) -> None:
         """Show another task where this one is shown, which was archived or renamed."""

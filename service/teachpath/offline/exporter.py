@@ -23,6 +23,7 @@ from teachpath.offline.task_archive import SUFFIX
 from teachpath.recorder.annotations import Annotations
 from teachpath.recording.settings import RecordingSettings
 from teachpath.records import Demonstration, Scene
+from teachpath.robot.scenes import Scenes
 
 FILES: Final = "files"  # in the folder of an export
 
@@ -104,10 +105,9 @@ class Exporter:
 
 def _write(source: ExportSource, demonstrations: list[Demonstration], kind: str, folder: Path, zipped: bool) -> Path:
     worker.limit_memory()
-    scenes = {scene.name: scene for scene in source.scenes}
     store = Store(source.store)
     try:
-        trajectory = Annotations(store, source.recording, lambda name: scenes[name]).trajectory
+        trajectory = Annotations(store, source.recording, Scenes(store.scenes, source.scenes).get).trajectory
         written = export_demonstrations(store, demonstrations, kind, folder / FILES, trajectory=trajectory)
     finally:
         store.close()

@@ -48,9 +48,9 @@ class Lookup:
     """Finds what a recording names; all functions raise NotFound.
 
     Attributes:
-        scene: returns the scene of a name as the settings have it.
+        scene: returns the scene of a name as it was saved last.
         calibration: returns the calibration of a name.
-        reported_object: returns where the object of a scene was told to lie; None: where the settings have it.
+        reported_object: returns where the object of a scene was told to lie; None: where the scene has it.
     """
 
     scene: Callable[[str], Scene]

@@ -67,6 +67,7 @@ from teachpath.records.recording import (
     TaskReference,
 )
 from teachpath.records.sampled_motion import SampledMotion
+from teachpath.records.scene_versions import SavedScene, SceneVersion
 from teachpath.records.serial_arms import (
     ArmSummary,
     JointLimit,
@@ -136,8 +137,10 @@ __all__ = [
     "RunSummary",
     "Sample",
     "SampledMotion",
+    "SavedScene",
     "Scene",
     "SceneQuery",
+    "SceneVersion",
     "Score",
     "SegmentInterval",
     "SerialArm",

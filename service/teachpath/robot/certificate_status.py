@@ -81,8 +81,8 @@ class CertificateStatus:
             present = self._scene(name)
         except NotFound as error:
             raise PathRefused(
-                f"{plan.id} was certified in scene {name}: {error}; put the scene back into the settings, or plan the "
-                "path again in another one"
+                f"{plan.id} was certified in scene {name}: {error}; make that scene again, or plan the path "
+                "again in another one"
             ) from None
         taken, lies = plan.scene.carried, present.carried
         if taken and lies and present != plan.scene and replace(present, carried=taken) == plan.scene:

@@ -1,4 +1,4 @@
-"""Where the objects of the scenes lie: as told over REST or on the bus, else as the settings have them."""
+"""Where the objects of the scenes lie: as told over REST or on the bus, else as the scenes have them."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class ObjectPoses:
     less than what a camera sees of an object at rest changes nothing: plans are certified for the pose.
 
     Args:
-        configured: returns the scene of a name as the settings have it; raises NotFound.
+        saved: returns the scene of a name as it was saved; raises NotFound.
         moving: tells whether the arm is under way.
         on_change: called with the name of a scene whose object was told to lie elsewhere.
     """
@@ -38,13 +38,13 @@ class ObjectPoses:
         self,
         bus: Bus,
         keys: Keys,
-        configured: Callable[[str], Scene],
+        saved: Callable[[str], Scene],
         moving: Callable[[], bool],
         on_change: Callable[[str], None] = lambda scene: None,
     ) -> None:
         self._bus = bus
         self._keys = keys
-        self._configured = configured
+        self._saved = saved
         self._moving = moving
         self._on_change = on_change
         self._lock = threading.Lock()
@@ -66,7 +66,7 @@ class ObjectPoses:
 
     def scene(self, name: str) -> Scene:
         """Return a scene with its object where it was told to lie; raises NotFound."""
-        configured, moving = self._configured(name), self._moving()
+        saved, moving = self._saved(name), self._moving()
         with self._lock:
             reported, current = self._reported.get(name), self._current.get(name)
             if not moving and (reported is None or current is None or not _same(reported, current)):
@@ -74,7 +74,7 @@ class ObjectPoses:
                 self._current.pop(name, None)
                 if reported is not None:
                     self._current[name] = reported
-        return configured.with_object(current) if current else configured
+        return saved.with_object(current) if current else saved
 
     def scene_for(self, name: str, path: LearnedPath) -> Scene:
         """Return the scene for a path: its object lies where an adapted path takes it; raises NotFound."""
@@ -85,11 +85,11 @@ class ObjectPoses:
         """Return where the object of a scene lies; raises NotFound: no such scene, or it has no object."""
         carried = self.scene(name).carried
         if carried is None:
-            raise NotFound(f"scene {name} has no object; give it one in the settings (carried)")
+            raise NotFound(f"scene {name} has no object; give it one: teachpath scene add (carried)")
         return ObjectPose(carried.position, carried.orientation)
 
     def reported(self, name: str) -> ObjectPose | None:
-        """Return where the object of a scene was told to lie; None: where the settings have it. Raises NotFound."""
+        """Return where the object of a scene was told to lie; None: where the scene has it. Raises NotFound."""
         carried = self.scene(name).carried
         with self._lock:
             return self._current.get(name) if carried else None
@@ -108,7 +108,7 @@ class ObjectPoses:
         return self._changed(name)
 
     def forget(self, name: str) -> ObjectPose:
-        """Put the object of a scene back to where the settings have it; raises NotFound."""
+        """Put the object of a scene back to where the scene has it; raises NotFound."""
         self.pose(name)
         with self._lock:
             self._reported.pop(name, None)

@@ -88,7 +88,7 @@ def test_a_scene_that_has_changed_or_gone_is_refused(station: Station) -> None:
     station.scenes["s"] = replace(station.scenes["s"], obstacles=())
     assert "scene s has changed since id was certified; plan the path again" in station.refusal()
     station.scenes.clear()
-    assert "there is no scene 's'; put the scene back" in station.refusal()
+    assert "there is no scene 's'; make that scene again" in station.refusal()
 
 
 def test_an_object_that_lies_elsewhere_is_named_with_both_places(station: Station) -> None:

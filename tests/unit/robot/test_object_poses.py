@@ -112,5 +112,5 @@ def test_a_quaternion_is_brought_to_unit_length(seen: Seen) -> None:
 
 
 def test_a_scene_without_an_object_has_none_to_tell_of(seen: Seen) -> None:
-    with pytest.raises(NotFound, match="scene empty has no object; give it one in the settings"):
+    with pytest.raises(NotFound, match="scene empty has no object; give it one: teachpath scene add"):
         seen.poses.tell("empty", ELSEWHERE)

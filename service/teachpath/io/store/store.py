@@ -30,6 +30,7 @@ from teachpath.io.store.motions import Motions
 from teachpath.io.store.people import People
 from teachpath.io.store.recordings import RECORDINGS, Opener, Recordings, open_new
 from teachpath.io.store.rows import Run, ensured_task, imported_rows, job_of, numbered_row, run_of, success, task_of
+from teachpath.io.store.scenes import StoredScenes
 from teachpath.io.store.services import Services
 from teachpath.io.store.settings import StoreSettings
 from teachpath.io.store.spool import Spool
@@ -62,6 +63,7 @@ class Store:
         self.calibrations = MeasuredCalibrations(self._engine)
         self.task_changes = TaskChanges(self._engine, changed)
         self.imported_files = ImportedFiles(self._engine)
+        self.scenes = StoredScenes(self._engine, changed)
         self.versions = Versions(self._engine, changed)
         self.journal = Journal(self._engine)
         self.access_tokens = AccessTokens(self._engine)

@@ -19,7 +19,7 @@ from sqlalchemy import (
 from sqlalchemy.orm import DeclarativeBase, Mapped, mapped_column
 
 ID = String(64)
-NEWEST: Final = "0017"  # of the migrations
+NEWEST: Final = "0018"  # of the migrations
 
 
 class Base(DeclarativeBase):
@@ -81,6 +81,19 @@ class ArmRow(Base):
     version: Mapped[int] = mapped_column(Integer, primary_key=True)
     hash: Mapped[str] = mapped_column(ID)
     created_ns: Mapped[int] = mapped_column(BigInteger)
+    document: Mapped[dict[str, Any]] = mapped_column(JSON)
+
+
+class SceneRow(Base):
+    """One version of a scene that was changed."""
+
+    __tablename__ = "scenes"
+    name: Mapped[str] = mapped_column(ID, primary_key=True)
+    version: Mapped[int] = mapped_column(Integer, primary_key=True)
+    created_ns: Mapped[int] = mapped_column(BigInteger)
+    author: Mapped[str] = mapped_column(Text)
+    note: Mapped[str] = mapped_column(Text)
+    removed: Mapped[bool] = mapped_column(Boolean)
     document: Mapped[dict[str, Any]] = mapped_column(JSON)
 
 

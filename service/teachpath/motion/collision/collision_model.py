@@ -82,7 +82,7 @@ class CollisionModel:
         try:
             self._model = mujoco.MjModel.from_xml_string(write_mjcf(scene, arm))
         except ValueError as error:
-            raise UnusableInput(f"scene {scene.name!r} cannot be built: {error}") from None
+            raise UnusableInput(f"scene {scene.name!r} cannot be built: {' '.join(str(error).split())}") from None
         self._data = mujoco.MjData(self._model)
         self._solids = {self._id(part.name): part for part in collision_solids(arm)}
         self._self_pairs = checked_solid_pairs(self._solids, arm)

@@ -1,0 +1,42 @@
+"""The rules of a scene: names, and the kinds, sizes and orientations of its shapes."""
+
+from __future__ import annotations
+
+import math
+from typing import Final
+
+from teachpath.errors import UnusableInput
+from teachpath.records import Scene, Shape
+from teachpath_proto.keys import is_name, name_refusal
+
+SIZES: Final = {"box": 3, "cylinder": 2, "sphere": 1, "mesh": 1}  # numbers in the size of a shape
+
+
+def check_scene(scene: Scene) -> None:
+    """Raise UnusableInput where no scene can be so; the sentence names the shape."""
+    if not is_name(scene.name):
+        raise UnusableInput(name_refusal("scene", scene.name))
+    known: set[str] = set()
+    for shape in scene.bodies:
+        what = f"body of scene {scene.name}"
+        if not is_name(shape.name):
+            raise UnusableInput(name_refusal(what, shape.name))
+        if shape.name in known:
+            raise UnusableInput(f"there are two bodies {shape.name} in scene {scene.name}; rename one of them")
+        known.add(shape.name)
+        _check_shape(shape, scene.name)
+    for zone in scene.keep_in:
+        if zone.kind != "box":
+            raise UnusableInput(f"keep-in zone {zone.name} in scene {scene.name} is a {zone.kind}; use a box")
+
+
+def _check_shape(shape: Shape, scene: str) -> None:
+    who = f"{shape.name} in scene {scene}"
+    if shape.kind not in SIZES:
+        raise UnusableInput(f"{who} is a {shape.kind!r}; known are {', '.join(SIZES)}")
+    if len(shape.size) != SIZES[shape.kind] or min(shape.size) <= 0:
+        raise UnusableInput(f"{who} has size {shape.size}; a {shape.kind} has {SIZES[shape.kind]} lengths over 0")
+    if not math.isclose(norm := math.hypot(*shape.orientation), 1.0, abs_tol=1e-6):
+        raise UnusableInput(f"{who} has an orientation of length {norm:g}; a unit quaternion has 1")
+    if (shape.kind == "mesh") != bool(shape.vertices):
+        raise UnusableInput(f"{who} is a {shape.kind}; a mesh, and only a mesh, has a file")
