@@ -47,7 +47,7 @@ pytestmark = pytest.mark.system
 KEYS = Keys()
 HOME = np.array(MotionSettings().home)
 ROBOT = "puma560"
-REST = 1e-4  # [m], and of the entries of a rotation: an arm that moves less within half a second rests
+REST = 1e-4  # [m], and of the entries of a rotation: an arm that moves less within a second rests
 # How often the view had been drawn ten frames ago, and now.
 TEN_FRAMES = """async () => {
   const before = teachpath.draws;
@@ -186,13 +186,13 @@ class Visit:
         return float(x), float(y)
 
     def place_at_rest(self, path: str) -> np.ndarray:
-        """Pose of a path in the world, once it has been the same for five looks."""
+        """Pose of a path in the world, once it has been the same for a second, longer than a stall keeps it back."""
         seen = [self.place(path)]
 
         def rests() -> bool:
             self.page.wait_for_timeout(100)
             seen.append(self.place(path))
-            return len(seen) > 5 and bool(np.ptp(seen[-5:], axis=0).max() < REST)
+            return len(seen) > 10 and bool(np.ptp(seen[-10:], axis=0).max() < REST)
 
         self.wait(rests, f"{path} rests")
         return seen[-1]
