@@ -29,6 +29,7 @@ def server() -> Iterator[Server]:
 
 def shares(visit: Visit, points: Any) -> np.ndarray:
     """Where points (n, 3) are in the view (n, 2), from 0 at its left and upper edge to 1."""
+    visit.page.wait_for_function("() => teachpath.framed()", polling=20)
     seen = visit.page.evaluate(f"{np.asarray(points).tolist()}.map((p) => teachpath.project(p))")
     box = visit.page.locator("#view").bounding_box()
     assert box is not None

@@ -18,11 +18,12 @@ from typer.testing import CliRunner
 from teachpath.__main__ import app
 from teachpath.access.passwords import hash_password
 from teachpath.app import Station
-from teachpath.commands.serving import free_port, listen
+from teachpath.commands.serving import listen
 from teachpath.records import Capability, Person
 from teachpath.web.server import web_server
 from tests.conftest import NAMES
 from tests.contract import stations
+from tests.ports import free_port
 from tests.system.carriers import HEADSET
 from tests.waiting import HANG, wait_until
 

@@ -178,12 +178,15 @@ def creep(visit: Visit, operator: Operator) -> None:
 
 
 def step(operator: Operator, name: str, way: float) -> Status:
-    """Go a step; where setpoints were missed on it, so that the arm came to rest by itself, go one from there."""
+    """Go a step; where setpoints were late on it, so that the arm came to rest by itself, go one from there."""
     before = operator.status()
     goal = before["length"] + way
 
     def rests(now: Status) -> bool:
-        return is_held(goal, now) or (now["state"] == "held" and now["missed"] > before["missed"])
+        is_short = now["missed"] > before["missed"] or (
+            now["reason"] != before["reason"] and "short of its end" in now["reason"]
+        )
+        return is_held(goal, now) or (now["state"] == "held" and is_short)
 
     operator.press(name)
     status = operator.until(rests)
