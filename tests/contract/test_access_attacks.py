@@ -314,7 +314,7 @@ def test_a_station_with_tokens_may_be_on_a_network() -> None:
         require_safe_binding("none", "127.0.0.1", (), ("127.0.0.1",))
 
 
-@pytest.mark.parametrize("mode", ["None", "off", "oidc", ""])
+@pytest.mark.parametrize("mode", ["None", "off", "OIDC", ""])
 def test_no_word_for_a_mode_means_none_by_accident(mode: str) -> None:
     with pytest.raises(UnusableSettings, match=r"auth\.mode"):
         load(document={"auth": {"mode": mode}})

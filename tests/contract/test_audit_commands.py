@@ -60,6 +60,9 @@ BY_REST = [
     "scene/copy",
     "scene/remove",
     "scene/restore",
+    "task/delete",
+    "task/rename",
+    "task/restore",
 ]
 STARTS = ["serve", "demo", "worker", "executor", "simulator", "replay"]  # what the service that they belong to writes
 WRITERS: dict[str, tuple[str, str]] = {  # in an order in which they can be given: words, and what is written
