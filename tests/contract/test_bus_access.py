@@ -276,7 +276,7 @@ def test_a_driver_that_is_held_to_its_arm_takes_part_in_everything_that_an_arm_d
         for bus, key in ((driver, keys.state("puma560")), (executor, keys.setpoint("puma560"))):
             bus.publish(key, b"")
             assert heard.get(timeout=HANG) == key
-        assert answered(executor, keys.reset("puma560"))
+        assert executor.ask(keys.reset("puma560"), timeout=HANG) == b"done"
     driver.close()
     executor.close()
 
