@@ -7,12 +7,13 @@ run among ports of its own, and none twice.
 
 import itertools
 import os
+import random
 import socket
 from contextlib import suppress
 
 FIRST, COUNT = 12_000, 4_000  # of one process of a run; the system's own begin at 32768
 PROCESSES = 5
-_numbers = itertools.count(os.getpid())  # runs beside each other hardly begin at the same one
+_numbers = itertools.count(random.SystemRandom().randrange(COUNT))  # other runs on this machine begin elsewhere
 
 
 def free_port() -> int:
