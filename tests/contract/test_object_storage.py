@@ -11,6 +11,7 @@ from teachpath.errors import StorageUnavailable, UnusableSettings
 from teachpath.io.store.store import Store
 from teachpath.job_kinds import LearningKinds
 from teachpath.recorder.calibrations import Calibrations
+from teachpath.robot.scenes import Scenes
 from tests.contract.desk import Desk, refused
 from tests.contract.rows import a_job, demonstration
 from tests.contract.stations import settings, station_in
@@ -63,10 +64,11 @@ def test_a_job_on_another_machine_waits_for_what_is_not_uploaded_yet(tmp_path: P
     store = Store(given.store)
     store.ensure_task("t", scene="paper", calibration="identity")
     store.add_demonstration(demonstration("d"))
+    scenes = Scenes(store.scenes, given.scenes)
     calibrations = Calibrations(
-        store, given.recording, given.calibrations, given.scene, lambda work, *values: work(*values)
+        store, given.recording, given.calibrations, scenes.get, lambda work, *values: work(*values)
     )
-    kinds = LearningKinds(store, given, calibrations, is_away=True)
+    kinds = LearningKinds(store, given, calibrations, scenes, is_away=True)
     with pytest.raises(StorageUnavailable, match="1 recordings wait at their station to be uploaded to s3://"):
         kinds.by_name()["learn"].prepare(a_job())
     store.change_demonstration("d", recording=f"{URL}/t/d.mcap")

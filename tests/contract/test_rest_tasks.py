@@ -147,7 +147,8 @@ def test_an_empty_scene_of_tasks_shows_lists(desk: Desk) -> None:
         assert desk.get(f"/tasks/bare/{resource}").json() == []
     health = desk.get("/health").json()
     assert health["executor"] is None
-    assert [s["name"] for s in desk.get("/scenes").json()][:2] == ["paper", "empty"]  # other tests add theirs behind them
+    # Other tests add theirs behind them.
+    assert [s["name"] for s in desk.get("/scenes").json()][:2] == ["paper", "empty"]
     assert [c["calibration"]["name"] for c in desk.get("/calibrations").json()][:2] == ["identity", "robottasks"]
 
 

@@ -28,7 +28,7 @@ class Page(Body):
     """The page to which a person comes back."""
 
     path: str = Field(
-        max_length=200, pattern=r"^/[A-Za-z0-9._~/-]*$", description="of the page's address, e.g. / or /robot/"
+        max_length=200, pattern=r"^/[a-zA-Z0-9._~/-]*$", description="of the page's address, e.g. / or /robot/"
     )
 
 
