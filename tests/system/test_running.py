@@ -31,6 +31,7 @@ TAP = """() => {
   for (const name of ["pointerdown", "pointerup"]) button.dispatchEvent(new PointerEvent(name, { bubbles: true }));
 }"""
 SCRIPT = (ASSETS / "iwer" / "iwer.min.js").read_text() + HEADSET
+SETTLED = 50  # control periods after the answer to an order in which the page is told of what came of it
 SMALL, SMALLER = (900, 420), (900, 240)  # less to draw
 Plans = list[Plan]  # one a way, in the order in which the ways were shown: by mouse, by the headset's hand
 
@@ -150,10 +151,11 @@ def test_a_start_must_be_meant_and_the_path_is_gone_step_by_step_and_back(visit:
     hold(operator)
     assert visit.page.locator("#arm .state").inner_text().startswith("Held on the path: held by")  # and why
     assert barriers(visit.page, "held") == []
-    for name, way in (("+ 1 cm", 0.01), ("− 1 cm", -0.01), ("− 1 cm", -0.01)):
-        held = step(operator, name, way)
-    lengths = [held["length"]]
     visit.page.get_by_role("slider", name="Speed").fill("30")
+    operator.until(lambda status: status["override"] == pytest.approx(0.3))
+    for name, way in (("+ 1 cm", 0.01), ("− 1 cm", -0.01), ("− 1 cm", -0.01)):
+        length = step(operator, name, way)
+    lengths = [length]
 
     def back(status: Status) -> bool:
         lengths.append(status["length"])
@@ -177,24 +179,23 @@ def creep(visit: Visit, operator: Operator) -> None:
     operator.until(lambda status: status["override"] == pytest.approx(0.05) and status["length"] > 0.03)
 
 
-def step(operator: Operator, name: str, way: float) -> Status:
-    """Go a step; where setpoints were late on it, so that the arm came to rest by itself, go one from there."""
-    before = operator.status()
-    goal = before["length"] + way
-
-    def rests(now: Status) -> bool:
-        is_short = now["missed"] > before["missed"] or (
-            now["reason"] != before["reason"] and "short of its end" in now["reason"]
-        )
-        return is_held(goal, now) or (now["state"] == "held" and is_short)
-
+def step(operator: Operator, name: str, way: float) -> float:
+    """Go a step and return where it ends; where setpoints were late, so that the arm rests short of it, go one more."""
+    before = operator.executions()[0].status
     operator.press(name)
-    status = operator.until(rests)
-    return status if is_held(goal, status) else step(operator, name, way)
+    ordered = operator.executions()[0].status.cycles
+    seen: list[tuple[float, int]] = []  # where the arm was held, and in which control period
 
+    def rests() -> bool:
+        now = operator.executions()[0].status
+        if now.state == "held" and now.cycles > ordered + SETTLED:
+            seen.append((now.length, now.cycles))
+        return any(length == now.length and cycles < now.cycles - SETTLED for length, cycles in seen)
 
-def is_held(length: float, status: Status) -> bool:
-    return status["state"] == "held" and abs(status["length"] - length) < 1e-5
+    wait_until(rests, "the arm rests after a step")
+    length = seen[-1][0]
+    operator.until(lambda status: abs(status["length"] - length) < 1e-5)  # the page says it, too
+    return length if abs(length - before.length - way) < 1e-5 else step(operator, name, way)
 
 
 def hold(operator: Operator) -> Status:
