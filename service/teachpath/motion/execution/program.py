@@ -219,7 +219,8 @@ class PlanProgram:
         state = governor.step()
         on_path = segment.is_path and self.activity == segment.name
         if on_path:
-            self.arc_length = self._length if state.finished else state.s  # the table ends a last bit away from it
+            # The table of the whole path ends a last bit away from its length; that of a step ends where the step does.
+            self.arc_length = self._length if state.finished and self._detour is None else state.s
         position, velocity, acceleration = governor.motion[:, :6].copy()
         self.state = MotionState(position, velocity, acceleration, segment.gripper_closed, on_path)
         if state.finished and not self.held:

@@ -60,3 +60,19 @@ def test_a_motion_that_rests_on_its_way_back_is_back_at_the_beginning_only_there
         program.step()
     assert program.progress == 0.0
     assert program.hold_reason.startswith("back at the beginning")
+
+
+def test_a_step_never_says_that_the_arm_is_farther_than_it_goes(middle: Plan) -> None:
+    program = PlanProgram(middle, np.array(SETTINGS.home), SETTINGS, ARM)
+    while not (program.state.on_path and program.arc_length > 0.1):
+        program.step()
+    program.hold()
+    while not program.at_rest:
+        program.step()
+    begin = program.arc_length
+    program.start_detour(program.plan_step(length=0.01))
+    lengths = []
+    while not program.held:
+        program.step()
+        lengths.append(program.arc_length)
+    assert max(lengths) == pytest.approx(begin + 0.01, abs=1e-6)
