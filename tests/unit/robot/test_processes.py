@@ -111,14 +111,15 @@ def test_what_follows_a_death_may_fail_and_the_process_is_started_again_all_the_
 
 
 def test_a_process_that_is_stopped_stays_stopped(supervise: Supervise, causes: list[str], tmp_path: Path) -> None:
-    process = supervise(f"open(file, 'a').write('started\\n'); {LISTEN}", file=str(tmp_path / "starts"))
-    wait_until((tmp_path / "starts").exists, "it has started")
+    starts = tmp_path / "starts"
+    process = supervise(f"open(file, 'a').write('started\\n'); {LISTEN}", file=str(starts))
+    wait_until(lambda: starts.exists() and starts.read_text(), "it has started")  # the file is there before its words
     process.stop()
     process.stop()
     assert not process.is_alive()
     assert causes == []
     assert process.note() == ""
-    assert (tmp_path / "starts").read_text() == "started\n"
+    assert starts.read_text() == "started\n"
 
 
 def test_a_process_that_ignores_its_end_is_killed(supervise: Supervise, tmp_path: Path) -> None:
